@@ -202,12 +202,12 @@ pub struct LostMotion {
 impl LostMotion {
     /// Twist \[rad\] under the total torque \[N m\].
     pub fn angle_rad(&self, torque_nm: f64) -> f64 {
-        self.half_width_rad * (torque_nm / self.torque_nm).tanh()
+        self.half_width_rad * libm::tanh(torque_nm / self.torque_nm)
     }
 
     /// Tangent compliance \[rad/(N m)\] at a torque \[N m\]. It falls as the torque grows.
     pub fn tangent_compliance_rad_per_nm(&self, torque_nm: f64) -> f64 {
-        self.half_width_rad / self.torque_nm / (torque_nm / self.torque_nm).cosh().powi(2)
+        self.half_width_rad / self.torque_nm / libm::cosh(torque_nm / self.torque_nm).powi(2)
     }
 }
 

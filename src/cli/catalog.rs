@@ -520,7 +520,7 @@ fn rating(x: Option<f64>, factor: f64) -> String {
     if x == 0.0 {
         return "0".into();
     }
-    let magnitude = x.abs().log10().floor() as i32;
+    let magnitude = libm::log10(x.abs()).floor() as i32;
     if !(-4..7).contains(&magnitude) {
         return format!("{x:.3e}");
     }

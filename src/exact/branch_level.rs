@@ -59,9 +59,9 @@ impl Problem<'_> {
             let [light, heavy] = work.masses[piece];
             let mass = light * middling(light, heavy) / mass_kg.max(f64::MIN_POSITIVE);
             // Frequency is the square root of the quotient, hence the half.
-            let score = f64::ln_1p(mass)
-                + f64::ln_1p(work.tip_growth[piece])
-                + 0.5 * (f64::ln_1p(softer) + f64::ln_1p(heavier));
+            let score = libm::log1p(mass)
+                + libm::log1p(work.tip_growth[piece])
+                + 0.5 * (libm::log1p(softer) + libm::log1p(heavier));
             if best.is_none_or(|(most, _)| score > most) {
                 best = Some((score, level));
             }

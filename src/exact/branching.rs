@@ -94,7 +94,8 @@ impl Rows<'_> {
             Some(curve) => (DRIVE, curve.stiff.windup.k1_nm_per_rad),
             None => (TUBE, stiff),
         };
-        let number = |(axis, times): (usize, f64), x: f64| (axis, times * x.max(f64::MIN_POSITIVE).ln());
+        let number =
+            |(axis, times): (usize, f64), x: f64| (axis, times * libm::log(x.max(f64::MIN_POSITIVE)));
         [number(places[0], light), number(places[1], stiff)]
     }
 

@@ -14,7 +14,7 @@ pub(super) fn thinned<T>(all: Vec<T>, step: f64, objectives: impl Fn(&T) -> &Obj
     let mut cells: BTreeMap<[i64; 3], (f64, T)> = BTreeMap::new();
     for one in all {
         let o = objectives(&one);
-        let at = [o.mass_kg, o.tip_deflection_m.max(1e-12), 1.0 / o.lowest_mode_hz].map(f64::ln);
+        let at = [o.mass_kg, o.tip_deflection_m.max(1e-12), 1.0 / o.lowest_mode_hz].map(libm::log);
         let (cell, merit) = (at.map(|x| (x / step).floor() as i64), at.iter().sum());
         if cells.get(&cell).is_none_or(|(best, _)| merit < *best) {
             cells.insert(cell, (merit, one));

@@ -79,7 +79,7 @@ impl Incumbents {
 
 /// The grid step of a positive number on a logarithmic scale.
 fn step(x: f64) -> i32 {
-    (x.max(f64::MIN_POSITIVE).log2() * STEPS).floor() as i32
+    (libm::log2(x.max(f64::MIN_POSITIVE)) * STEPS).floor() as i32
 }
 
 /// Whether `a` dominates `b`: better in at least one objective, and worse in none by more than rounding.

@@ -216,6 +216,6 @@ fn feasible_drives(tree: &Tree<DriveBox>, node: u32, asked: &LeastDemand, depth:
 fn stress_holds(links: &LinkBox, load: &[f64; 4]) -> bool {
     let [axial, y, z, torsion]: [f64; 4] = std::array::from_fn(|k| load[k] * links.stress[k]);
     // For other sections the two bending stresses add up at one edge of the section.
-    let bending = if links.round { y.hypot(z) } else { y + z };
+    let bending = if links.round { libm::hypot(y, z) } else { y + z };
     von_mises(axial + bending, torsion) <= 1.0
 }

@@ -148,8 +148,8 @@ impl Bounds for LinkBox {
     /// Mass counts twice, because it is an objective and also loads everything inboard. Shear and stretch hardly
     /// change any objective.
     fn key(&self) -> Key {
-        let s = self.low.stiffnesses.map(|s| if s.is_finite() { s.ln() } else { 0.0 });
-        [2.0 * self.low.inertias[inertia::MASS].ln(), s[0], 0.7 * s[1], 0.1 * s[2], 0.3 * s[3]]
+        let s = self.low.stiffnesses.map(|s| if s.is_finite() { libm::log(s) } else { 0.0 });
+        [2.0 * libm::log(self.low.inertias[inertia::MASS]), s[0], 0.7 * s[1], 0.1 * s[2], 0.3 * s[3]]
     }
 }
 
@@ -307,14 +307,14 @@ impl Bounds for DriveBox {
     fn key(&self) -> Key {
         let k = self.curve.map_or([0.0; 3], |c| {
             let w = &c.stiff.windup;
-            [w.k1_nm_per_rad.ln(), w.k3_nm_per_rad.ln(), 0.2 * w.t1_nm.min(1e9).ln()]
+            [libm::log(w.k1_nm_per_rad), libm::log(w.k3_nm_per_rad), 0.2 * libm::log(w.t1_nm.min(1e9))]
         });
         [
             4.0 * k[0],
             2.0 * k[1],
             k[2],
-            self.mass_kg[0].max(1e-3).ln(),
-            3.0 * self.multiples[RAYS / 2].clamp(1e-9, 1e9).ln(),
+            libm::log(self.mass_kg[0].max(1e-3)),
+            3.0 * libm::log(self.multiples[RAYS / 2].clamp(1e-9, 1e9)),
         ]
     }
 }

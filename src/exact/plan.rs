@@ -91,14 +91,14 @@ fn step_to(slack: f64, from: f64) -> f64 {
     if finer * SHORTEST_STEP < 1.0 {
         return from * SHORTEST_STEP;
     }
-    let steps = (finer.ln() / LONGEST_STEP.ln()).ceil().max(1.0);
-    from * finer.powf(-steps.recip())
+    let steps = (libm::log(finer) / libm::log(LONGEST_STEP)).ceil().max(1.0);
+    from * libm::pow(finer, -steps.recip())
 }
 
 /// The exponent `g` of the growth `t ∝ ε^-g`, measured between the last two passes.
 fn growth(done: &[Pass]) -> f64 {
     let [.., before, last] = done else { return GROWTH };
-    let measured = (last.took_s / before.took_s).ln() / (before.slack / last.slack).ln();
+    let measured = libm::log(last.took_s / before.took_s) / libm::log(before.slack / last.slack);
     // The times of passes that took no time measure nothing.
     if measured.is_finite() { measured.clamp(LEAST_GROWTH, MOST_GROWTH) } else { GROWTH }
 }
@@ -106,7 +106,7 @@ fn growth(done: &[Pass]) -> f64 {
 /// The least slack of a pass that should be done within a time \[s\].
 fn least_slack_within(done: &[Pass], within_s: f64) -> f64 {
     let Some(last) = done.last() else { return f64::INFINITY };
-    last.slack * (last.took_s / within_s).powf(growth(done).recip())
+    last.slack * libm::pow(last.took_s / within_s, growth(done).recip())
 }
 
 #[cfg(test)]

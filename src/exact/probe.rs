@@ -43,7 +43,8 @@ impl Merit {
     /// The merit of a bound: a weighted sum of the logarithms of its objectives. Less is better.
     fn of(&self, box_bound: &BoxBound) -> f64 {
         let [mass, tip, mode] = self.0;
-        mass * box_bound.mass_kg.ln() + tip * box_bound.tip_m.max(1e-12).ln() - mode * box_bound.hz.ln()
+        mass * libm::log(box_bound.mass_kg) + tip * libm::log(box_bound.tip_m.max(1e-12))
+            - mode * libm::log(box_bound.hz)
     }
 }
 

@@ -244,7 +244,7 @@ impl<'p> Exact<'p> {
             early.into_iter().for_each(|early| early.tell(found, designs));
         };
         let per_decade = if by_regions { PROBES_TO_EVOLVE } else { PROBES };
-        let probes = (per_decade * (whole.designs() as f64).log10().powi(2)) as usize;
+        let probes = (per_decade * libm::log10(whole.designs() as f64).powi(2)) as usize;
         let probed = probe(&self.budget, whole, probes, state);
         tell(&state.front(), state.evaluated);
         if by_regions {

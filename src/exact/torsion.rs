@@ -197,7 +197,7 @@ impl BreakPoints {
 
     /// The grid cell of a torque. Torques beyond the grid count to its ends.
     fn cell(t_nm: f64) -> usize {
-        let at = (t_nm.log2() - Self::LEAST_LOG2) * (Self::CELLS / Self::OCTAVES);
+        let at = (libm::log2(t_nm) - Self::LEAST_LOG2) * (Self::CELLS / Self::OCTAVES);
         at.clamp(0.0, Self::CELLS - 1.0) as usize
     }
 }

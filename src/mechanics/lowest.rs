@@ -245,7 +245,7 @@ mod tests {
     fn by_hand(m: &Matrix2<f64>, c: [f64; 2], twists: [Vector2<f64>; 2]) -> f64 {
         let a = |i: usize, j: usize| (c[i] * c[j]).sqrt() * twists[i].dot(&(m * twists[j]));
         let (mean, half) = (0.5 * (a(0, 0) + a(1, 1)), 0.5 * (a(0, 0) - a(1, 1)));
-        1.0 / (mean + half.hypot(a(0, 1)))
+        1.0 / (mean + libm::hypot(half, a(0, 1)))
     }
 
     #[test]

@@ -21,12 +21,12 @@ pub struct Response {
 impl Response {
     /// Amplitude along each world axis \[m\].
     pub fn amplitude_m(&self) -> Vector3<f64> {
-        self.tip_m.map(Complex::norm)
+        self.tip_m.map(|z| libm::hypot(z.re, z.im))
     }
 
     /// Phase of the displacement relative to the force, along each world axis \[rad\].
     pub fn phase_rad(&self) -> Vector3<f64> {
-        self.tip_m.map(Complex::arg)
+        self.tip_m.map(|z| libm::atan2(z.im, z.re))
     }
 }
 

@@ -100,8 +100,8 @@ fn cubic_roots([c0, c1, c2, c3]: [f64; 4]) -> [f64; 3] {
     let (a, b, c) = (c2 / c3, c1 / c3, c0 / c3);
     let p = (a * a - 3.0 * b) / 9.0;
     let q = (2.0 * a * a * a - 9.0 * a * b + 27.0 * c) / 54.0;
-    let angle = (q / p.powf(1.5)).clamp(-1.0, 1.0).acos();
-    let root = |k: f64| -2.0 * p.sqrt() * ((angle + TAU * k) / 3.0).cos() - a / 3.0;
+    let angle = libm::acos((q / libm::pow(p, 1.5)).clamp(-1.0, 1.0));
+    let root = |k: f64| -2.0 * p.sqrt() * libm::cos((angle + TAU * k) / 3.0) - a / 3.0;
     let mut roots = [0.0, 1.0, -1.0].map(root).map(|x| polish([c, b, a], x));
     roots.sort_by(f64::total_cmp);
     roots
@@ -127,8 +127,8 @@ pub fn single_spring_hz(stiffness_n_per_m: f64, mass_kg: f64) -> f64 {
 /// arm's own values, in steps that never change one of them by more than a tenth. `None` if the three frequencies
 /// cannot be reached with this spring.
 pub fn masses_that_give(arm: &PaperArm, wanted_hz: [f64; 3]) -> Option<PaperArm> {
-    let wanted = Vector3::from(wanted_hz.map(f64::ln));
-    let mut x = Vector3::new(arm.wrist_kg.ln(), arm.load_kg.ln(), arm.third_link_m.ln());
+    let wanted = Vector3::from(wanted_hz.map(libm::log));
+    let mut x = Vector3::new(libm::log(arm.wrist_kg), libm::log(arm.load_kg), libm::log(arm.third_link_m));
     for _ in 0..400 {
         let here = log_frequencies(arm, &x);
         let gap = wanted - here;
@@ -153,9 +153,14 @@ pub fn masses_that_give(arm: &PaperArm, wanted_hz: [f64; 3]) -> Option<PaperArm>
 }
 
 fn with_masses(arm: &PaperArm, x: &Vector3<f64>) -> PaperArm {
-    PaperArm { wrist_kg: x.x.exp(), load_kg: x.y.exp(), third_link_m: x.z.exp(), ..arm.clone() }
+    PaperArm {
+        wrist_kg: libm::exp(x.x),
+        load_kg: libm::exp(x.y),
+        third_link_m: libm::exp(x.z),
+        ..arm.clone()
+    }
 }
 
 fn log_frequencies(arm: &PaperArm, x: &Vector3<f64>) -> Vector3<f64> {
-    Vector3::from(CoupledArm::new(&with_masses(arm, x)).frequencies_hz().map(f64::ln))
+    Vector3::from(CoupledArm::new(&with_masses(arm, x)).frequencies_hz().map(libm::log))
 }

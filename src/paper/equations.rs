@@ -19,7 +19,7 @@ pub fn deflection_eq_4_m(
 
 /// Eq 13: displacement of the end of the arm by the wind-up of a joint \[m\].
 pub fn deflection_eq_13_m(torque_nm: f64, stiffness_nm_per_rad: f64, length_m: f64) -> f64 {
-    (torque_nm / stiffness_nm_per_rad).sin() * length_m
+    libm::sin(torque_nm / stiffness_nm_per_rad) * length_m
 }
 
 /// The total deflection as the paper computes it.
@@ -58,7 +58,7 @@ pub fn printed_deflection(arm: &PaperArm, force: EndForce) -> PrintedDeflection 
     let to_wrist_m = [l1 + l2, l2, 0.0];
     let solved = arm.solve(LinkModel::Rigid);
     let torques_nm = JOINTS.map(|name| solved.torque_nm(name));
-    let windup = |i: usize| arm.curves[i].angle_rad(torques_nm[i]).sin() * to_wrist_m[i];
+    let windup = |i: usize| libm::sin(arm.curves[i].angle_rad(torques_nm[i])) * to_wrist_m[i];
     let drives_kg = [arm.joint_3_kg, arm.wrist_kg];
     let outboard_kg =
         [arm.joint_3_kg + arm.link_kg(1) + arm.wrist_kg + arm.load_kg, arm.wrist_kg + arm.load_kg];

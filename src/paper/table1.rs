@@ -166,7 +166,7 @@ fn summary(study: &Table1) -> String {
 /// Amplitude at the load \[um\] under 1 N, against frequency \[Hz\].
 fn response(links: LinkModel) -> Vec<(f64, f64)> {
     let arm = PaperArm::table_1();
-    let frequencies_hz: Vec<f64> = (0..=600).map(|i| 10f64.powf(f64::from(i) / 200.0)).collect();
+    let frequencies_hz: Vec<f64> = (0..=600).map(|i| libm::pow(10f64, f64::from(i) / 200.0)).collect();
     arm.with_posed(&arm.arm().structure(JointModel::K2), links, |posed| {
         frequency_response(posed, &posed.statics(), &Vector3::z(), DAMPING_RATIO, &frequencies_hz)
             .iter()

@@ -29,7 +29,7 @@ pub fn rounded(x: f64) -> f64 {
     if x == 0.0 || !x.is_finite() {
         return x;
     }
-    let scale = 10f64.powi(DIGITS - 1 - x.abs().log10().floor() as i32);
+    let scale = 10f64.powi(DIGITS - 1 - libm::log10(x.abs()).floor() as i32);
     // numbers below 1e-297 have no twelve digits that mean anything
     if scale.is_finite() { (x * scale).round() / scale } else { x }
 }

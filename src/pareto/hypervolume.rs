@@ -60,7 +60,8 @@ pub const REFERENCE: Objectives = Objectives { tip_deflection_m: 0.1, mass_kg: 1
 /// Hypervolume of designs below [`REFERENCE`], in the natural logarithms of mass, deflection and lowest mode. With logarithms
 /// a factor of two counts the same in each objective. A design with an objective that has no logarithm adds nothing.
 pub fn front_hypervolume(designs: impl Iterator<Item = Objectives>) -> f64 {
-    let logarithms = |o: Objectives| [o.mass_kg.ln(), o.tip_deflection_m.ln(), -o.lowest_mode_hz.ln()];
+    let logarithms =
+        |o: Objectives| [libm::log(o.mass_kg), libm::log(o.tip_deflection_m), -libm::log(o.lowest_mode_hz)];
     let points: Vec<[f64; 3]> = designs.map(logarithms).filter(|p| p.iter().all(|x| x.is_finite())).collect();
     hypervolume(&points, logarithms(REFERENCE)).unwrap_or_default()
 }

@@ -52,9 +52,9 @@ fn a_design_that_halves_an_objective_adds_the_same_whichever_it_is() {
     };
     let one = |o: Objectives| front_hypervolume([o].into_iter());
     let cube = one(design(100.0, 10.0, 1.0));
-    assert!((cube - 10f64.ln().powi(3)).abs() < 1e-12);
+    assert!((cube - libm::log(10f64).powi(3)).abs() < 1e-12);
     for better in [design(50.0, 10.0, 1.0), design(100.0, 5.0, 1.0), design(100.0, 10.0, 2.0)] {
-        assert!((one(better) / cube - 20f64.ln() / 10f64.ln()).abs() < 1e-12);
+        assert!((one(better) / cube - libm::log(20f64) / libm::log(10f64)).abs() < 1e-12);
     }
     assert_eq!(one(design(100.0, 10.0, f64::INFINITY)), 0.0);
 }

@@ -237,7 +237,7 @@ impl Analysis<'_> {
             self.forward.data.len()
         )];
         if gain < WEAK {
-            let odds = gain.exp();
+            let odds = libm::exp(gain);
             out.push(format!(
                 "that is weak evidence, with odds of {odds:.0} to 1: take the next test before relying on it"
             ));

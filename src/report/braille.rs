@@ -74,7 +74,7 @@ impl Scale {
 
     fn place(&self, value: f64) -> f64 {
         let share = match self.ratio {
-            true => (value / self.low).ln() / (self.high / self.low).ln(),
+            true => libm::log(value / self.low) / libm::log(self.high / self.low),
             false => (value - self.low) / (self.high - self.low),
         };
         if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.5 }

@@ -223,7 +223,7 @@ impl Grain {
     /// Whether the markers of two designs do not touch.
     fn apart(&self, a: &Design, b: &Design) -> bool {
         let steps = |i: usize| (place(self.axes[i], a) - place(self.axes[i], b)) / self.step[i];
-        steps(0).hypot(steps(1)) > MARKER_STEPS
+        libm::hypot(steps(0), steps(1)) > MARKER_STEPS
     }
 }
 
@@ -236,7 +236,7 @@ impl Drawn<'_> {
 /// Where a design lies along an axis, up to scale.
 fn place((objective, scale): (Objective, Scale), design: &Design) -> f64 {
     let value = objective.of(design);
-    if scale == Scale::Log { value.ln() } else { value }
+    if scale == Scale::Log { libm::log(value) } else { value }
 }
 
 #[cfg(test)]

@@ -135,7 +135,7 @@ impl Scale {
     /// The objective, small is good; in logarithms where all are positive.
     fn value(&self, design: &Design) -> f64 {
         let value = self.objective.of(design);
-        let value = if self.logarithmic { value.ln() } else { value };
+        let value = if self.logarithmic { libm::log(value) } else { value };
         if self.objective == Objective::Mode { -value } else { value }
     }
 

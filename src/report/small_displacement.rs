@@ -42,16 +42,16 @@ mod tests {
         let mut turn_rad = 0.0;
         // a fixed point: the spring turns by the torque on the lever that it has turned
         for _ in 0..200 {
-            turn_rad = compliance_rad * (above_rad - turn_rad).cos();
+            turn_rad = compliance_rad * libm::cos(above_rad - turn_rad);
         }
-        [compliance_rad * above_rad.cos(), turn_rad]
+        [compliance_rad * libm::cos(above_rad), turn_rad]
     }
 
     #[test]
     fn at_the_limit_a_linear_deflection_is_off_by_five_percent_at_45_degrees_and_by_little_if_stretched() {
         let off = |above_deg: f64| {
             let above_rad = above_deg.to_radians();
-            let [linear, balanced] = turns_rad(SMALL_PART / above_rad.cos(), above_rad);
+            let [linear, balanced] = turns_rad(SMALL_PART / libm::cos(above_rad), above_rad);
             assert!((linear - SMALL_PART).abs() < 1e-12);
             (balanced / linear - 1.0).abs()
         };

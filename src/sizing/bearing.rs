@@ -255,12 +255,12 @@ impl BearingLimits {
 
 /// Life of a bearing of dynamic rating C \[N\] under an equivalent load \[N\] at a mean speed \[rad/s\], in hours.
 pub(super) fn life_h(rating_n: f64, load_n: f64, mean_speed_rad_s: f64) -> f64 {
-    RATED_TURNS / turns_per_h(mean_speed_rad_s) * (rating_n / (LOAD_FACTOR * load_n)).powf(10.0 / 3.0)
+    RATED_TURNS / turns_per_h(mean_speed_rad_s) * libm::pow(rating_n / (LOAD_FACTOR * load_n), 10.0 / 3.0)
 }
 
 /// The equivalent load \[N\] under which a bearing of dynamic rating C \[N\] just lives so long.
 fn load_of_life_n(rating_n: f64, mean_speed_rad_s: f64, life_h: f64) -> f64 {
-    rating_n / LOAD_FACTOR * (RATED_TURNS / (turns_per_h(mean_speed_rad_s) * life_h)).powf(0.3)
+    rating_n / LOAD_FACTOR * libm::pow(RATED_TURNS / (turns_per_h(mean_speed_rad_s) * life_h), 0.3)
 }
 
 /// Turns in an hour.

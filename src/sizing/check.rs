@@ -194,8 +194,8 @@ impl Check {
     pub fn torque_margin(&self) -> Option<f64> {
         let margin = self.margin()?;
         Some(match self.kind {
-            CheckKind::GearLife => margin.cbrt(),
-            CheckKind::BearingLife => margin.powf(0.3),
+            CheckKind::GearLife => libm::cbrt(margin),
+            CheckKind::BearingLife => libm::pow(margin, 0.3),
             fit if fit.is_fit() && self.state == CheckState::Holds => f64::INFINITY,
             _ => margin,
         })

@@ -146,7 +146,7 @@ impl DriveLimits {
         times(self.static_torque_nm, demand.static_torque_nm)
             .min(times(self.peak_torque_nm, demand.peak_torque_nm()))
             .min(times(self.stop_torque_nm, demand.stop_torque_nm))
-            .min(times(self.mean_torque_cubed_nm3, demand.mean_torque_cubed_nm3).cbrt())
+            .min(libm::cbrt(times(self.mean_torque_cubed_nm3, demand.mean_torque_cubed_nm3)))
             .min(self.bearing.multiple_of(&demand.bearing))
             .min(self.heat.multiple_of(demand))
     }

@@ -400,7 +400,11 @@ mod tests {
         let life = row.checks.iter().find(|c| c.kind == CheckKind::GearLife).unwrap();
         let part = life.allowed.unwrap() / life.needed.unwrap();
         assert_eq!(row.binds, Some("gear life"));
-        assert!(part < 0.9 && (row.margin.unwrap() - part.cbrt()).abs() < 1e-12, "{part} {:?}", row.margin);
+        assert!(
+            part < 0.9 && (row.margin.unwrap() - libm::cbrt(part)).abs() < 1e-12,
+            "{part} {:?}",
+            row.margin
+        );
     }
 
     #[test]

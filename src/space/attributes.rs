@@ -49,7 +49,7 @@ impl StressCheck {
         let [axial_n, torsion_nm, moment_y_nm, moment_z_nm] = place.local(wrench, at_m);
         let (y, z) = (moment_y_nm.abs() * self.per_moment_y, moment_z_nm.abs() * self.per_moment_z);
         // the stresses of both bending moments meet in the corner of a rectangle, but not in one point of a circle
-        let bending = if self.round { y.hypot(z) } else { y + z };
+        let bending = if self.round { libm::hypot(y, z) } else { y + z };
         let normal = axial_n.abs() * self.per_axial_n + bending;
         let shear = torsion_nm.abs() * self.per_torsion;
         von_mises(normal, shear) / self.strength_pa

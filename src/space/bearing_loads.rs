@@ -84,7 +84,7 @@ fn half_width_m(axis: &Vector3<f64>, vector_m: &Vector3<f64>, section: &Section)
     let along = section_frame(vector_m).tr_mul(axis);
     let (width_m, height_m) = section.outer_m();
     // exact for a box seen along one of its sides, and for a round tube that is not oblique
-    (width_m / 2.0 * along.y).hypot(height_m / 2.0 * along.z)
+    libm::hypot(width_m / 2.0 * along.y, height_m / 2.0 * along.z)
 }
 
 impl BearingLoads {

@@ -100,7 +100,7 @@ fn width_across_m(axis: &Unit<Vector3<f64>>, vector_m: &Vector3<f64>, section: &
         return width_m.min(height_m);
     }
     // exact for a box that lies along the axis with one of its sides, and for a round tube
-    (width_m * along.z).hypot(height_m * along.y) / along.y.hypot(along.z)
+    libm::hypot(width_m * along.z, height_m * along.y) / libm::hypot(along.y, along.z)
 }
 
 #[cfg(test)]

@@ -123,7 +123,7 @@ fn short(x: f64) -> String {
 
 /// Rounds to five significant digits, up or down, so that a sufficient value stays sufficient.
 fn toward(x: f64, up: bool) -> f64 {
-    let scale = 10f64.powi(4 - x.abs().max(f64::MIN_POSITIVE).log10().floor() as i32);
+    let scale = 10f64.powi(4 - libm::log10(x.abs().max(f64::MIN_POSITIVE)).floor() as i32);
     let scaled = x * scale;
     (if up { (scaled * (1.0 + 1e-12)).ceil() } else { (scaled * (1.0 - 1e-12)).floor() }) / scale
 }

@@ -109,11 +109,11 @@ impl Trial {
 
 /// Boxes of a space with so many designs, by the power that two smaller spaces show.
 fn grown(small: &Trial, large: &Trial, designs: f64) -> f64 {
-    let growth = (large.boxes.max(1.0) / small.boxes.max(1.0)).ln();
-    let of_designs = (large.designs / small.designs).ln();
+    let growth = libm::log(large.boxes.max(1.0) / small.boxes.max(1.0));
+    let of_designs = libm::log(large.designs / small.designs);
     // two spaces of nearly the same size show no power; then no box is spared
     let power = if of_designs > 0.1 { (growth / of_designs).clamp(0.0, 1.0) } else { 1.0 };
-    large.boxes.max(1.0) * (designs / large.designs).max(1.0).powf(power)
+    large.boxes.max(1.0) * libm::pow((designs / large.designs).max(1.0), power)
 }
 
 /// The space with at most so many designs, made by dropping every second option of the piece that has most of them.

@@ -117,7 +117,10 @@ struct Stream {
 impl Stream {
     fn new(seed: u64, figure: &Rating, part: f64) -> Self {
         let named = blake3::hash(format!("{seed} {figure:?}").as_bytes());
-        Self { generator: Xoshiro256PlusPlus::from_seed(*named.as_bytes()), sigma: part.ln_1p() / SIGMAS_95 }
+        Self {
+            generator: Xoshiro256PlusPlus::from_seed(*named.as_bytes()),
+            sigma: libm::log1p(part) / SIGMAS_95,
+        }
     }
 
     /// A number in (0, 1].
@@ -127,8 +130,8 @@ impl Stream {
 
     /// The next factor: Box and Muller's normal number as the logarithm.
     fn factor(&mut self) -> f64 {
-        let (radius, angle) = ((-2.0 * self.uniform().ln()).sqrt(), TAU * self.uniform());
-        (self.sigma * radius * angle.cos()).exp()
+        let (radius, angle) = ((-2.0 * libm::log(self.uniform())).sqrt(), TAU * self.uniform());
+        libm::exp(self.sigma * radius * libm::cos(angle))
     }
 }
 

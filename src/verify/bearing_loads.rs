@@ -103,8 +103,8 @@ impl PosedBearing {
 /// Takes moment, radial and axial force of some components where they are larger.
 fn take(largest: &mut [Span; 3], [u_n, v_n, axial_n, u_nm, v_nm]: &Components<Span>) {
     let norm = |a: &Span, b: &Span| Span {
-        least: a.least_size().hypot(b.least_size()),
-        most: a.largest_size().hypot(b.largest_size()),
+        least: libm::hypot(a.least_size(), b.least_size()),
+        most: libm::hypot(a.largest_size(), b.largest_size()),
     };
     let axial = Span { least: axial_n.least_size(), most: axial_n.largest_size() };
     for (largest, here) in largest.iter_mut().zip([norm(u_nm, v_nm), norm(u_n, v_n), axial]) {

@@ -159,7 +159,7 @@ impl Skeleton {
                     let size = |i: usize| end[i].over(loads).least_size();
                     let [axial, about_y, about_z, torsion] = tube.least.stresses;
                     let (y, z) = (size(4) * about_y, size(5) * about_z);
-                    let bending = if tube.most.round > 0.0 { y.hypot(z) } else { y + z };
+                    let bending = if tube.most.round > 0.0 { libm::hypot(y, z) } else { y + z };
                     let (normal, shear) = (size(0) * axial + bending, size(3) * torsion);
                     (normal * normal + 3.0 * shear * shear).sqrt() * pose.stress_factor
                 };

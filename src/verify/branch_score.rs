@@ -33,7 +33,9 @@ impl BranchScore<'_> {
             if of > 0.0 && score_of.is_finite() { (score_of / of).max(0.0) } else { 0.0 }
         };
         let slower = part(eigenvalue, self.slow.eigenvalue);
-        part(mass_kg, self.ideal.mass_kg) + part(tip_m, self.ideal.tip_m).ln_1p() + 0.5 * slower.ln_1p()
+        part(mass_kg, self.ideal.mass_kg)
+            + libm::log1p(part(tip_m, self.ideal.tip_m))
+            + 0.5 * libm::log1p(slower)
     }
 
     /// By how much an average drive makes mass \[kg\], deflection \[m\] and `λ` \[1/s²\] worse.

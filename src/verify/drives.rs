@@ -175,12 +175,12 @@ fn keys(option: &DriveOption) -> Vec<f64> {
     let (drive, ratings) = (&option.range, option.ratings());
     let stiff = &drive.stiff;
     vec![
-        drive.least_kg.ln(),
-        0.5 * stiff.k1_nm_per_rad.ln(),
-        0.5 * stiff.k3_nm_per_rad.ln(),
-        0.2 * stiff.t1_nm.ln(),
-        0.3 * drive.greatest_tilt_stiffness().ln(),
-        0.2 * ratings.on(Quantity::Peak).ln(),
-        0.2 * ratings.on(Quantity::Static).ln(),
+        libm::log(drive.least_kg),
+        0.5 * libm::log(stiff.k1_nm_per_rad),
+        0.5 * libm::log(stiff.k3_nm_per_rad),
+        0.2 * libm::log(stiff.t1_nm),
+        0.3 * libm::log(drive.greatest_tilt_stiffness()),
+        0.2 * libm::log(ratings.on(Quantity::Peak)),
+        0.2 * libm::log(ratings.on(Quantity::Static)),
     ]
 }

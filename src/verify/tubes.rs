@@ -158,8 +158,8 @@ fn half_width_m(piece: &LinkPiece, direction: &Vector3<f64>) -> f64 {
 
 /// The numbers by which the tree separates tubes.
 fn keys(tube: &TubeNumbers) -> Vec<f64> {
-    let [bending_y, bending_z, _, torsion, _] = tube.stiffnesses.map(f64::ln);
-    vec![1.5 * tube.mass_kg.ln(), bending_y, bending_z, 0.3 * torsion]
+    let [bending_y, bending_z, _, torsion, _] = tube.stiffnesses.map(libm::log);
+    vec![1.5 * libm::log(tube.mass_kg), bending_y, bending_z, 0.3 * torsion]
 }
 
 /// Stress per axial force, moment about y, moment about z and torque, each over the strength. A link in bending is pulled

@@ -23,7 +23,7 @@ pub(crate) const KIND: Kind = Kind {
 };
 
 fn starts(setting: &Setting) -> Vec<Vec<f64>> {
-    [0.03, 0.1, 0.3].iter().map(|part| vec![1.0, (part * setting.torque_nm).ln()]).collect()
+    [0.03, 0.1, 0.3].iter().map(|part| vec![1.0, libm::log(part * setting.torque_nm)]).collect()
 }
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {

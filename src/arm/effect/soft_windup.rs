@@ -48,7 +48,7 @@ pub(crate) const KIND: Kind = Kind {
 };
 
 fn starts(setting: &Setting) -> Vec<Vec<f64>> {
-    let ln_torque = |part: &f64| (part * setting.torque_nm).ln();
+    let ln_torque = |part: &f64| libm::log(part * setting.torque_nm);
     BREAKS.iter().map(|(a, b)| vec![1.4, 1.0, 0.85, ln_torque(a), ln_torque(b)]).collect()
 }
 

@@ -3,8 +3,8 @@
 
 /// Sine and cosine of a joint's angle, then sine and cosine of twice the angle.
 pub fn transmission_waves(angle_rad: f64) -> [f64; 4] {
-    let (sin, cos) = angle_rad.sin_cos();
-    let (sin2, cos2) = (2.0 * angle_rad).sin_cos();
+    let (sin, cos) = libm::sincos(angle_rad);
+    let (sin2, cos2) = libm::sincos(2.0 * angle_rad);
     [sin, cos, sin2, cos2]
 }
 

@@ -184,7 +184,7 @@ fn without(matrix: &DMatrix<f64>, mut held: [usize; 2]) -> DMatrix<f64> {
 
 fn ln_determinant(matrix: DMatrix<f64>) -> f64 {
     Cholesky::new(matrix)
-        .map_or(f64::INFINITY, |c| 2.0 * c.l().diagonal().iter().map(|d| d.ln()).sum::<f64>())
+        .map_or(f64::INFINITY, |c| 2.0 * c.l().diagonal().iter().map(|d| libm::log(*d)).sum::<f64>())
 }
 
 /// The posterior distribution over the nodes.
@@ -204,7 +204,7 @@ impl Posterior {
         self.cells.iter().map(move |(nodes, cell)| {
             // a node stands for its area, because nodes are not equally spaced
             let area = width(0, nodes[0]) * width(1, nodes[1]);
-            (nodes, cell, (cell.ln_density - top).exp() * area)
+            (nodes, cell, libm::exp(cell.ln_density - top) * area)
         })
     }
 
@@ -251,7 +251,7 @@ impl Posterior {
             parts.iter().map(part).sum()
         };
         let density = |v: f64| -> f64 {
-            parts.iter().map(|(u, sd, mass)| mass / sd * (-0.5 * ((v - u) / sd).powi(2)).exp()).sum()
+            parts.iter().map(|(u, sd, mass)| mass / sd * libm::exp(-0.5 * ((v - u) / sd).powi(2))).sum()
         };
         let peak = parts.iter().map(|(u, _, _)| density(*u)).fold(0.0, f64::max);
         let all = below(high);

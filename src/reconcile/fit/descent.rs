@@ -459,10 +459,10 @@ pub fn finish<'a>(
         // a uniform prior of this width has the variance width² / 12; adding it keeps the evidence finite
         // where the data say nothing
         curvature[(p, p)] += 12.0 / (width * width);
-        evidence += 0.5 * TAU.ln() - width.ln();
+        evidence += 0.5 * libm::log(TAU) - libm::log(width);
     }
     let determinant = Cholesky::new(curvature.clone())
-        .map_or(f64::INFINITY, |c| 2.0 * c.l().diagonal().iter().map(|d| d.ln()).sum::<f64>());
+        .map_or(f64::INFINITY, |c| 2.0 * c.l().diagonal().iter().map(|d| libm::log(*d)).sum::<f64>());
     evidence -= 0.5 * determinant;
     Fit { model: model.clone(), point, jacobian, curvature, evidence }
 }

@@ -58,11 +58,11 @@ pub(crate) fn stretches(forward: &Forward, best: &Coefficients) -> Vec<Stretch> 
         let ratio = both / square;
         let slips = wrong_unit::SLIPS.iter().map(|(factor, _)| *factor).filter(|factor| *factor > 1.0);
         let factor = slips.min_by(|a, b| {
-            let apart = |factor: &f64| (ratio / factor).ln().abs();
+            let apart = |factor: &f64| libm::log(ratio / factor).abs();
             apart(a).total_cmp(&apart(b))
         })?;
         let misses = own.iter().zip(&predicted[range]).map(|(d, model)| ((d.value - model) / d.sigma).abs());
-        let is_slip = square > 0.0 && ratio > 0.0 && (ratio / factor).ln().abs() < NEAR;
+        let is_slip = square > 0.0 && ratio > 0.0 && libm::log(ratio / factor).abs() < NEAR;
         (is_slip && median(misses.collect()) > factor.sqrt()).then_some(Stretch { channel, factor })
     };
     [Channel::Static, Channel::Modal, Channel::Windup].into_iter().filter_map(of_channel).collect()

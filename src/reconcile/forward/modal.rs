@@ -279,7 +279,7 @@ impl ModalTest {
         self.modes.iter().any(|(a, low)| {
             self.modes.iter().any(|(b, high)| {
                 let (a, b) = (&data[*a], &data[*b]);
-                low < high && a.value - b.value > UNMISTAKABLE * a.sigma.hypot(b.sigma)
+                low < high && a.value - b.value > UNMISTAKABLE * libm::hypot(a.sigma, b.sigma)
             })
         })
     }
@@ -293,7 +293,7 @@ impl ModalTest {
         let spectrum = self.spectrum(layout, coefficients, self.mode_count());
         let cost = |modes: &[(usize, usize)]| -> f64 {
             let off = |&(datum, mode): &(usize, usize)| {
-                spectrum.get(mode).map_or(OFF, |hz| (data[datum].value / hz).ln().abs().min(OFF))
+                spectrum.get(mode).map_or(OFF, |hz| libm::log(data[datum].value / hz).abs().min(OFF))
             };
             modes.iter().map(off).sum()
         };
@@ -488,7 +488,7 @@ fn tangent(law: &JointLaw, torque_nm: f64, width: f64) -> f64 {
     if width == 0.0 {
         return law.tangent_compliance_rad_per_nm(torque_nm);
     }
-    let beyond = |t: f64| 0.5 * (1.0 + (((torque_nm.abs().max(1e-12)) / t).ln() / width).tanh());
+    let beyond = |t: f64| 0.5 * (1.0 + libm::tanh(libm::log((torque_nm.abs().max(1e-12)) / t) / width));
     let segments = w.segments();
     let [c1, c2, c3] = segments.map(|s| 1.0 / s.stiffness_nm_per_rad);
     let smooth = c1 + (c2 - c1) * beyond(segments[0].to_nm) + (c3 - c2) * beyond(segments[1].to_nm);

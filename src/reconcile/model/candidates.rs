@@ -96,7 +96,7 @@ fn candidate(forward: &Forward, sizes: &Sizes, kind: &'static Kind, place: Place
 /// cannot be told from another.
 fn within_torque(free: FreeParameter, parameter: &Parameter, torque_nm: f64) -> FreeParameter {
     match parameter.torque_parts {
-        Some((low, high)) => free.within((low * torque_nm).ln(), (high * torque_nm).ln()),
+        Some((low, high)) => free.within(libm::log(low * torque_nm), libm::log(high * torque_nm)),
         None => free,
     }
 }

@@ -66,7 +66,9 @@ impl FreeParameter {
             }
             Scale::Stiffness => (joint_stiffness, (expected.0, expected.1.max(SOFTEST)), expected, Some(0.0)),
             Scale::Reciprocal => (1.0, (1.0 / high, 1.0 / low), expected, Some(1.0)),
-            Scale::Log => (1.0, (low.ln(), high.ln()), (expected.0.ln(), expected.1.ln()), None),
+            Scale::Log => {
+                (1.0, (libm::log(low), libm::log(high)), (libm::log(expected.0), libm::log(expected.1)), None)
+            }
         };
         let (scale, not_below) = (parameter.scale, parameter.not_below);
         Self { name: parameter.name, component, scale, reference, low, high, not_below, absent, expected }
@@ -90,7 +92,7 @@ impl FreeParameter {
             Scale::Stiffness if u <= self.reference / RIGID_NM_PER_RAD => RIGID_NM_PER_RAD,
             Scale::Stiffness => self.reference / u,
             Scale::Reciprocal => 1.0 / u,
-            Scale::Log => u.exp(),
+            Scale::Log => libm::exp(u),
         }
     }
 
@@ -100,7 +102,7 @@ impl FreeParameter {
             Scale::Linear => value / self.reference,
             Scale::Stiffness => self.reference / value,
             Scale::Reciprocal => 1.0 / value,
-            Scale::Log => value.ln(),
+            Scale::Log => libm::log(value),
         }
     }
 
@@ -143,7 +145,7 @@ impl FreeParameter {
         let Some(absent) = self.absent else { return range };
         // a density that falls as 1/size, cut off near zero where it would diverge
         let small = SMALL * range;
-        let decades = |end: f64| ((end - absent).abs() / small).ln_1p();
+        let decades = |end: f64| libm::log1p((end - absent).abs() / small);
         (decades(self.low) + decades(self.high)) * ((u - absent).abs() + small)
     }
 }
@@ -286,7 +288,7 @@ impl Nuisance {
 
     /// The factor that a calibrated parameter has at `u`.
     pub fn factor(&self, index: usize, u: f64) -> f64 {
-        (u * self.numbers[index].1).exp()
+        libm::exp(u * self.numbers[index].1)
     }
 
     fn apply(&self, u: &[f64], subject: &mut Subject) {

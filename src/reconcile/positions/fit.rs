@@ -146,8 +146,9 @@ pub(crate) fn scale(errors: &[Vector3<f64>], near_m: f64) -> f64 {
 /// ln of the likelihood of errors with this scale.
 pub(crate) fn ln_likelihood(errors: &[Vector3<f64>], scale_m: f64) -> f64 {
     let s2 = scale_m * scale_m;
-    let one =
-        |e: &Vector3<f64>| -0.5 * (NU + 3.0) * (1.0 + e.norm_squared() / (NU * s2)).ln() - 3.0 * scale_m.ln();
+    let one = |e: &Vector3<f64>| {
+        -0.5 * (NU + 3.0) * libm::log(1.0 + e.norm_squared() / (NU * s2)) - 3.0 * libm::log(scale_m)
+    };
     errors.iter().map(one).sum()
 }
 

@@ -175,7 +175,7 @@ pub(crate) struct Pose {
 
 impl Pose {
     pub(crate) fn new(angles_rad: Vec<f64>) -> Self {
-        let sin_cos = angles_rad.iter().map(|angle| angle.sin_cos()).collect();
+        let sin_cos = angles_rad.iter().map(|angle| libm::sincos(*angle)).collect();
         Self { angles_rad, sin_cos }
     }
 }
@@ -329,7 +329,7 @@ impl Geometry {
             across: self.axes.iter().map(|axis| across(axis).map(Unit::into_inner)).collect(),
             turned_by: (0..self.zeros_rad.len()).map(turned_by).collect(),
             along: self.arms.iter().map(along).collect(),
-            zero_sin_cos: self.zeros_rad.iter().map(|zero| zero.sin_cos()).collect(),
+            zero_sin_cos: self.zeros_rad.iter().map(|zero| libm::sincos(*zero)).collect(),
             turned_rad: Vec::new(),
             frames: Vec::new(),
             at_m: Vector3::zeros(),
@@ -401,7 +401,7 @@ impl Placer<'_> {
                 let ((sin, cos), (zero_sin, zero_cos)) = (pose.sin_cos[*j], self.zero_sin_cos[*j]);
                 (sin * zero_cos + cos * zero_sin, cos * zero_cos - sin * zero_sin)
             }
-            _ => angle.of(&self.turned_rad).sin_cos(),
+            _ => libm::sincos(angle.of(&self.turned_rad)),
         }
     }
 

@@ -150,7 +150,7 @@ impl Positions {
             "the best model leaves {:.2} times the declared standard deviation",
             left.chi2_per_dof.sqrt()
         )];
-        let telling = left.structures.iter().filter(|s| s.ln_p < (1e-6f64).ln()).take(3);
+        let telling = left.structures.iter().filter(|s| s.ln_p < libm::log(1e-6f64)).take(3);
         out.extend(telling.map(|s| {
             format!("{}: {:.0} % of the remaining sum of squares", s.sentence(), 100.0 * self.part(s))
         }));

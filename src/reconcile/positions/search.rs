@@ -124,7 +124,7 @@ impl Positions {
     /// `places` places.
     pub(crate) fn price(&self, numbers: usize, places: usize) -> f64 {
         let readings = 3.0 * self.samples.len() as f64;
-        0.5 * numbers as f64 * readings.ln() + (places as f64).ln() + 3.0
+        0.5 * numbers as f64 * libm::log(readings) + libm::log(places as f64) + 3.0
     }
 
     /// Models with one more effect. All allowed candidates are screened with the linearized model, and the

@@ -66,7 +66,7 @@ impl Positions {
             }
         }
         // Bonferroni, as in the test of the other readings
-        let asked = (structures.len() as f64).max(1.0).ln();
+        let asked = libm::log((structures.len() as f64).max(1.0));
         structures.iter_mut().for_each(|s| s.ln_p = (s.ln_p + asked).min(0.0));
         structures.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
         let fails = structures.iter().any(|s| self.is_material(s));
@@ -80,7 +80,7 @@ impl Positions {
 
     /// Whether a structure is real and accounts for enough.
     pub(crate) fn is_material(&self, structure: &Structure) -> bool {
-        structure.ln_p < IMPROBABLE.ln() && self.part(structure) > MATERIAL_PART
+        structure.ln_p < libm::log(IMPROBABLE) && self.part(structure) > MATERIAL_PART
     }
 
     /// Variance of the errors over the declared one, estimated by the median.
@@ -158,7 +158,7 @@ impl<'a> Asker<'a> {
         for (candidate, largest_nm) in &self.joints {
             let (lever, torque_nm) = sample.deflection.lever(*candidate);
             let part = torque_nm / largest_nm;
-            out.extend([(8.0 * part).tanh(), part.powi(3)].map(|size| from_level * lever * size));
+            out.extend([libm::tanh(8.0 * part), part.powi(3)].map(|size| from_level * lever * size));
         }
         if self.largest_payload_kg > 0.0 {
             let part = self.payloads_kg[index] / self.largest_payload_kg;

@@ -82,7 +82,7 @@ fn is_probable(search: &Search, set: &Scored, misfit: f64) -> bool {
     let readings = search.forward.data.len();
     let free = free_parameters(search, &set.effects);
     let dof = readings.saturating_sub(free).max(1) as f64;
-    ln_chi_squared_tail(misfit, dof) > IMPROBABLE.ln()
+    ln_chi_squared_tail(misfit, dof) > libm::log(IMPROBABLE)
 }
 
 fn free_parameters(search: &Search, effects: &[usize]) -> usize {
@@ -300,10 +300,10 @@ fn free_factors(search: &Search, set: &Scored, joint: &str) -> (f64, f64) {
         u.insert(index, 0.0);
         let mut reached = 1.0;
         for factor in factors {
-            model.held = vec![(index, factor.ln())];
+            model.held = vec![(index, libm::log(*factor))];
             let fitted = fit(search.forward, &model, &u, search.weights, Effort::default());
             // the prior of the held factor is no misfit
-            let misfit = fitted.point.objective - factor.ln().powi(2);
+            let misfit = fitted.point.objective - libm::log(*factor).powi(2);
             if !is_probable(search, set, misfit) {
                 break;
             }

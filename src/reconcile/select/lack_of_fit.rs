@@ -44,7 +44,7 @@ impl LackOfFit {
     /// Sentences on the most improbable structures, without repetition.
     pub fn sentences(&self) -> Vec<String> {
         let mut told: Vec<&Structure> = Vec::new();
-        for structure in self.structures.iter().filter(|s| s.ln_p < CHANCE.ln()) {
+        for structure in self.structures.iter().filter(|s| s.ln_p < libm::log(CHANCE)) {
             if !told.iter().any(|t| t.channel == structure.channel && t.follows == structure.follows) {
                 told.push(structure);
             }
@@ -66,15 +66,16 @@ pub(crate) fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, wei
         }
     }
     // Bonferroni: with many questions one of them looks improbable by chance
-    let asked = (structures.len() as f64).max(1.0).ln();
+    let asked = libm::log((structures.len() as f64).max(1.0));
     structures.iter_mut().for_each(|s| s.ln_p = (s.ln_p + asked).min(0.0));
     structures.extend(unnamed::law_questions(campaign, forward, fit, weights));
     structures.sort_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
     let chi2_per_dof = tester.chi2_per_dof(forward, fit);
     let ln_p = structures.first().map_or(0.0, |s| s.ln_p);
     // a structure alone fails only if chance is excluded; a large chi-squared fails by itself
-    let fails =
-        ln_p < CHANCE.ln() || chi2_per_dof > MATERIAL || (ln_p < SUSPECTED.ln() && chi2_per_dof > SUSPICIOUS);
+    let fails = ln_p < libm::log(CHANCE)
+        || chi2_per_dof > MATERIAL
+        || (ln_p < libm::log(SUSPECTED) && chi2_per_dof > SUSPICIOUS);
     LackOfFit { structures, chi2_per_dof, fails }
 }
 

@@ -327,7 +327,7 @@ impl<'a> Search<'a> {
             let prior = parameter.width(u[p]);
             let width = 1.0 / (curvature[(p, p)] + 12.0 / prior.powi(2)).sqrt();
             // the Occam factor of the parameter; 0.9 is ln of the root of 2 pi
-            score += (width / prior).ln() + 0.9;
+            score += libm::log(width / prior) + 0.9;
         }
         (u, score)
     }
@@ -354,7 +354,7 @@ impl<'a> Search<'a> {
                     }
                 }
                 // the score is a logarithm of probability, so its difference gives the odds
-                let odds = |s: &Scored| (s.score - best.score).exp();
+                let odds = |s: &Scored| libm::exp(s.score - best.score);
                 let all = 1.0 + competitors.iter().map(odds).sum::<f64>();
                 let mut held = 1.0;
                 competitors.retain(|s| {

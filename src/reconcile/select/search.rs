@@ -166,7 +166,7 @@ impl<'a> Search<'a> {
     /// Scores a fit.
     pub(crate) fn scored(&self, effects: &[usize], fit: &Fit) -> Scored {
         // each effect could have been named at any place, and the price is the logarithm of their number
-        let penalty = effects.len() as f64 * (self.places() as f64).ln();
+        let penalty = effects.len() as f64 * libm::log(self.places() as f64);
         Scored {
             effects: effects.to_vec(),
             u: fit.point.u.clone(),

@@ -56,7 +56,7 @@ pub(crate) fn law_questions(
 ) -> Vec<Structure> {
     let competitors = competitors(campaign, forward, fit, weights);
     // Bonferroni: one of many laws fits better by chance
-    let asked = (competitors.len() as f64).max(1.0).ln();
+    let asked = libm::log((competitors.len() as f64).max(1.0));
     competitors
         .into_iter()
         .map(|competitor| {
@@ -84,7 +84,7 @@ pub(crate) fn instead(search: &Search, best: &Scored, baseline: &Fit) -> Option<
     });
     let fits: Vec<Fit> = single.collect();
     let better = |fit: &Fit| {
-        let evidence = best.score + fit.model.effects.len() as f64 * places.ln();
+        let evidence = best.score + fit.model.effects.len() as f64 * libm::log(places);
         best_of(competitors(search.campaign, search.forward, fit, search.weights), evidence, places)
     };
     fits.iter().chain([baseline]).filter_map(better).max_by(|a, b| a.gain.total_cmp(&b.gain))
@@ -93,7 +93,7 @@ pub(crate) fn instead(search: &Search, best: &Scored, baseline: &Fit) -> Option<
 /// The best competing model, if its evidence is higher than `evidence`. That evidence is not charged for the places
 /// of effects that stay.
 fn best_of(competitors: Vec<Competitor>, evidence: f64, places: f64) -> Option<Better> {
-    let gain = |r: &Competitor| r.evidence - places.ln() - evidence;
+    let gain = |r: &Competitor| r.evidence - libm::log(places) - evidence;
     let best = competitors.into_iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
     let better =
         Better { gain: gain(&best), what: best.what, numbers: best.numbers, objective: best.objective };
@@ -145,10 +145,10 @@ fn competitor(forward: &Forward, fit: &Fit, law: &Law, weights: &Weights) -> Com
     for p in fit.model.calibrated()..n {
         let width = width(fit, own, p, u[p]);
         curvature[(p, p)] += 12.0 / width.powi(2);
-        evidence += 0.5 * TAU.ln() - width.ln();
+        evidence += 0.5 * libm::log(TAU) - libm::log(width);
     }
     let determinant = Cholesky::new(curvature)
-        .map_or(f64::INFINITY, |c| 2.0 * c.l().diagonal().iter().map(|d| d.ln()).sum::<f64>());
+        .map_or(f64::INFINITY, |c| 2.0 * c.l().diagonal().iter().map(|d| libm::log(*d)).sum::<f64>());
     evidence -= 0.5 * determinant;
     Competitor { what: law.what.clone(), numbers: law.columns.len(), objective, evidence }
 }
@@ -158,6 +158,6 @@ fn competitor(forward: &Forward, fit: &Fit, law: &Law, weights: &Weights) -> Com
 fn width(fit: &Fit, own: usize, p: usize, u: f64) -> f64 {
     match p < own {
         true => fit.model.free_parameters().nth(p - fit.model.calibrated()).map_or(1.0, |k| k.width(u)),
-        false => 2.0 * (1.0 / SMALL).ln_1p() * (u.abs() + SMALL),
+        false => 2.0 * libm::log1p(1.0 / SMALL) * (u.abs() + SMALL),
     }
 }

@@ -5,11 +5,11 @@ use std::f64::consts::TAU;
 /// Sine and cosine of an angle, once and twice a turn.
 pub(crate) fn waves(angle_deg: f64) -> [f64; 4] {
     let a = angle_deg.to_radians();
-    [a.sin(), a.cos(), (2.0 * a).sin(), (2.0 * a).cos()]
+    [libm::sin(a), libm::cos(a), libm::sin(2.0 * a), libm::cos(2.0 * a)]
 }
 
 /// A line, a parabola, and slow and fast waves over the order of the rows; `part` runs from 0 to 1.
 pub(crate) fn order_functions(part: f64) -> [f64; 6] {
     let (a, b) = (TAU * part, 2.0 * TAU * part);
-    [part - 0.5, (part - 0.5).powi(2), a.sin(), a.cos(), b.sin(), b.cos()]
+    [part - 0.5, (part - 0.5).powi(2), libm::sin(a), libm::cos(a), libm::sin(b), libm::cos(b)]
 }

@@ -152,7 +152,7 @@ fn number(x: f64) -> String {
     match x.abs() {
         0.0 => "0".into(),
         a if (1e-3..1e5).contains(&a) => {
-            let digits = (3 - a.log10().floor() as i32).max(0) as usize;
+            let digits = (3 - libm::log10(a).floor() as i32).max(0) as usize;
             format!("{x:.digits$}")
         }
         _ => format!("{x:.3e}"),

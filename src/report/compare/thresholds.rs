@@ -105,7 +105,7 @@ fn round_between(low: f64, high: f64, count: usize, limited: Objective) -> Vec<f
 
 /// All numbers `stop * 10^n` in a range, rising.
 fn stops_between(low: f64, high: f64, stops: &[u32]) -> Vec<f64> {
-    let (from, to) = (low.log10().floor() as i32 - 1, high.log10().ceil() as i32);
+    let (from, to) = (libm::log10(low).floor() as i32 - 1, libm::log10(high).ceil() as i32);
     (from..=to)
         .flat_map(|power| stops.iter().map(move |s| decimal(*s, power - 1)))
         .filter(|v| (low..=high).contains(v))
@@ -120,10 +120,10 @@ fn decimal(digits: u32, power: i32) -> f64 {
 
 /// Picks, from rising numbers, those nearest to places that are evenly spread (in ratio) over the range.
 fn spread(found: &[f64], low: f64, high: f64, count: usize) -> Vec<f64> {
-    let place = |i: usize| low * (high / low).powf((i as f64 + 0.5) / count as f64);
+    let place = |i: usize| low * libm::pow(high / low, (i as f64 + 0.5) / count as f64);
     let mut out: Vec<f64> = (0..count)
         .filter_map(|i| {
-            let off = |v: &f64| (v / place(i)).ln().abs();
+            let off = |v: &f64| libm::log(v / place(i)).abs();
             found.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)))
         })
         .collect();
@@ -134,7 +134,7 @@ fn spread(found: &[f64], low: f64, high: f64, count: usize) -> Vec<f64> {
 /// The next number of two digits on the side of the looser limit.
 fn nearest_round(low: f64, high: f64, limited: Objective) -> f64 {
     let (value, up) = if limited == Objective::Mode { (low, false) } else { (high, true) };
-    let power = value.log10().floor() as i32 - 1;
+    let power = libm::log10(value).floor() as i32 - 1;
     let digits = value / 10f64.powi(power);
     decimal(if up { digits.ceil() } else { digits.floor() } as u32, power)
 }

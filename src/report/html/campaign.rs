@@ -228,7 +228,7 @@ impl CampaignPage {
         let rows = || self.parts.iter().filter(|p| Self::is_channel(p));
         let values = || rows().flat_map(|c| [c.before, c.after]).filter(|v| *v > 0.0);
         let (low, high) = (values().fold(f64::INFINITY, f64::min).min(0.5), values().fold(1.0, f64::max));
-        let share = |v: f64| (v.max(low) / low).ln() / (high / low).ln().max(1e-9);
+        let share = |v: f64| libm::log(v.max(low) / low) / libm::log(high / low).max(1e-9);
         let line = |name: &str, when: &str, v: f64| {
             format!("  {name:<10} {when:<6} {:>6} {}\n", significant(v, 3), bar(share(v), 50))
         };

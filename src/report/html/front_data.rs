@@ -164,7 +164,7 @@ impl Axis {
     /// Where a value lies, 0 to 1.
     pub(crate) fn place(&self, value: f64) -> f64 {
         match self.range {
-            Some((low, high, Scale::Log)) => (value / low).ln() / (high / low).ln(),
+            Some((low, high, Scale::Log)) => libm::log(value / low) / libm::log(high / low),
             Some((low, high, Scale::Linear)) => (value - low) / (high - low),
             None => (value + 0.5) / self.words.len().max(1) as f64,
         }

@@ -68,12 +68,12 @@ impl ArmSketch {
             values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
         };
         let size = span(|p| p.0).max(span(|p| p.1));
-        let most = self.stations().map(|(_, moved)| moved.0.hypot(moved.1)).fold(0.0, f64::max);
+        let most = self.stations().map(|(_, moved)| libm::hypot(moved.0, moved.1)).fold(0.0, f64::max);
         let ideal = 0.12 * size / most;
         if !ideal.is_finite() || ideal <= 0.0 {
             return 1.0;
         }
-        let power = 10f64.powf(ideal.log10().floor());
+        let power = libm::pow(10f64, libm::log10(ideal).floor());
         let step = [5.0, 2.0, 1.0].into_iter().find(|s| s * power <= ideal).unwrap_or(1.0);
         step * power
     }
@@ -158,13 +158,13 @@ impl ArmSketch {
                     );
                 }
                 Some(axis) => {
-                    let long = axis.0.hypot(axis.1).max(1e-9);
+                    let long = libm::hypot(axis.0, axis.1).max(1e-9);
                     let (dx, dy) = (11.0 * axis.0 / long, -11.0 * axis.1 / long);
                     line(out, (x - dx, y - dy), (x + dx, y + dy), INK, 3.0);
                 }
             }
             let (x, y) = at(pivot.at.0);
-            match labels.iter_mut().find(|((lx, ly), _)| (lx - x).hypot(ly - y) < 24.0) {
+            match labels.iter_mut().find(|((lx, ly), _)| libm::hypot(lx - x, ly - y) < 24.0) {
                 Some((_, names)) => names.push(&pivot.name),
                 None => labels.push(((x, y), vec![&pivot.name])),
             }
@@ -249,7 +249,7 @@ impl Tube {
 fn normal(points: &[(f64, f64)], i: usize) -> (f64, f64) {
     let (a, b) = (points[i.saturating_sub(1)], points[(i + 1).min(points.len() - 1)]);
     let (dx, dy) = (b.0 - a.0, b.1 - a.1);
-    let long = dx.hypot(dy);
+    let long = libm::hypot(dx, dy);
     if long > 0.0 { (-dy / long, dx / long) } else { (0.0, 0.0) }
 }
 

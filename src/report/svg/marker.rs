@@ -61,7 +61,7 @@ fn circle(r: f64, sweep: u8) -> String {
 }
 
 fn polygon<'a>(corners: impl Iterator<Item = &'a (f64, f64)>, r: f64, turn_rad: f64) -> String {
-    let (sin, cos) = turn_rad.sin_cos();
+    let (sin, cos) = libm::sincos(turn_rad);
     let corners: Vec<String> = corners
         .map(|(x, y)| format!("{} {}", px(r * (cos * x - sin * y)), px(r * (sin * x + cos * y))))
         .collect();

@@ -110,7 +110,7 @@ impl Canvas {
             .into_iter()
             .flat_map(|r| (0..16).map(move |i| (r, f64::from(i) * std::f64::consts::PI / 8.0)))
             .map(|(r, angle)| {
-                let (sin, cos) = angle.sin_cos();
+                let (sin, cos) = libm::sincos(angle);
                 let middle = (x + cos * (r + width / 2.0), y - sin * (r + height / 2.0));
                 Rect::around(middle, width, height)
             })
@@ -135,7 +135,7 @@ impl Obstacles {
         let points =
             self.points.iter().filter(|p| place.touches(&Rect::around(**p, 3.0, 3.0))).count() as u64;
         let (x, y) = place.nearest(own);
-        let way = (x - own.0).hypot(y - own.1);
+        let way = libm::hypot(x - own.0, y - own.1);
         (boxes + rings) * 1_000_000 + points * 200 + (way * 10.0) as u64
     }
 }
@@ -186,7 +186,7 @@ fn ring(out: &mut String, (x, y): (f64, f64)) {
 /// A thin line from a ring to its note, where they do not touch.
 fn leader(out: &mut String, (x, y): (f64, f64), note: &Rect) {
     let (end_x, end_y) = note.nearest((x, y));
-    let way = (end_x - x).hypot(end_y - y);
+    let way = libm::hypot(end_x - x, end_y - y);
     if way > RING_PX + 6.0 {
         let start = RING_PX / way;
         line(out, (x + start * (end_x - x), y + start * (end_y - y)), (end_x, end_y), INK, 1.0);

@@ -37,7 +37,7 @@ impl Ruling {
     pub(crate) fn position(&self, value: f64) -> f64 {
         match self.scale {
             Scale::Linear => (value - self.low) / (self.high - self.low),
-            Scale::Log => (value / self.low).ln() / (self.high / self.low).ln(),
+            Scale::Log => libm::log(value / self.low) / libm::log(self.high / self.low),
         }
     }
 }
@@ -57,7 +57,7 @@ fn linear(low: f64, high: f64, count: usize) -> Ruling {
 
 /// A step of 1, 2, 2.5 or 5 times a power of ten that is at least `least`, and its decimals.
 fn nice_step(least: f64) -> (f64, usize) {
-    let power = least.log10().floor() as i32;
+    let power = libm::log10(least).floor() as i32;
     let unit = 10f64.powi(power);
     let (factor, extra) = [(1.0, 0), (2.0, 0), (2.5, 1), (5.0, 0), (10.0, -1)]
         .into_iter()
@@ -69,7 +69,7 @@ fn nice_step(least: f64) -> (f64, usize) {
 fn logarithmic(low: f64, high: f64, count: usize) -> Ruling {
     let (low, high) = if high / low < 1.02 { (low / 1.5, high * 1.5) } else { (low, high) };
     let (low, high) = (stop_below(low), stop_above(high));
-    let decades = (high / low).log10();
+    let decades = libm::log10(high / low);
     let labelled: &[f64] = if 3.0 * decades > (2 * count + 1) as f64 {
         &[1.0]
     } else if decades <= 1.05 {
@@ -80,7 +80,7 @@ fn logarithmic(low: f64, high: f64, count: usize) -> Ruling {
         &[1.0]
     };
     let every = ((decades / (2 * count.max(1)) as f64).ceil() as i32).max(1);
-    let ticks = (low.log10().floor() as i32..=high.log10().ceil() as i32)
+    let ticks = (libm::log10(low).floor() as i32..=libm::log10(high).ceil() as i32)
         .flat_map(|power| (1..10).map(move |m| (m, power)))
         .map(|(m, power)| (f64::from(m), power, times_power(f64::from(m), power)))
         .filter(|(_, _, value)| (low * (1.0 - 1e-9)..=high * (1.0 + 1e-9)).contains(value))
@@ -102,13 +102,13 @@ fn times_power(mantissa: f64, power: i32) -> f64 {
 const STOPS: [f64; 3] = [1.0, 2.0, 5.0];
 
 fn stop_below(value: f64) -> f64 {
-    let power = value.log10().floor() as i32;
+    let power = libm::log10(value).floor() as i32;
     let candidates = STOPS.iter().map(|s| times_power(*s, power));
     candidates.filter(|s| *s <= value * (1.0 + 1e-9)).fold(times_power(1.0, power), f64::max)
 }
 
 fn stop_above(value: f64) -> f64 {
-    let power = value.log10().floor() as i32;
+    let power = libm::log10(value).floor() as i32;
     let candidates = STOPS.iter().map(|s| times_power(*s, power));
     candidates.filter(|s| *s >= value * (1.0 - 1e-9)).fold(times_power(1.0, power + 1), f64::min)
 }

@@ -40,8 +40,8 @@ impl UpperBounds {
 /// zero. Their objectives are made worse by [`BETTER`].
 fn thinned(front: &[Objectives], apart: f64) -> Vec<UpperBound> {
     let mut taken = HashSet::new();
-    let step = apart.ln_1p();
-    let cell = |x: f64| if step > 0.0 { (x.ln() / step).floor() as i64 } else { 0 };
+    let step = libm::log1p(apart);
+    let cell = |x: f64| if step > 0.0 { (libm::log(x) / step).floor() as i64 } else { 0 };
     let rows = front.iter().filter(|row| {
         let cells = [row.mass_kg, row.tip_deflection_m, row.lowest_mode_hz].map(cell);
         step == 0.0 || taken.insert(cells)
