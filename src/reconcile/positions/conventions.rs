@@ -1,0 +1,259 @@
+//! Asks whether positions that no calibration comes near were written down by another convention: in another unit, in a
+//! frame whose axes are swapped or left-handed, or with joint angles of another sign or zero.
+//!
+//! The search is greedy. From the file as it is, every single change is tried by a quick fit of the placement alone; the
+//! best is kept while it helps. What it finds is then calibrated in full like the file itself, and said if the errors
+//! that are left are several times smaller. Nothing is applied: which convention holds is for the user to say.
+
+use super::align::nearest_motion;
+use super::analysis::{Positions, samples};
+use super::fit::fit;
+use super::fitted::{Fitted, Sample};
+use super::kinematics::{Geometry, Number, Pose, number_groups};
+use super::points::points;
+use crate::reconcile::readings::campaign::{Campaign, PositionsSpec};
+use crate::report::number::significant;
+use nalgebra::Vector3;
+use rayon::prelude::*;
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::Arc;
+
+/// Conventions are asked about where the errors that calibration leaves exceed the declared ones by this factor.
+const FAR: f64 = 5.0;
+/// A convention is said if its calibration leaves errors that are smaller by this factor.
+const TELLING: f64 = 5.0;
+/// A change is kept in the search if it lowers the errors of the quick fit to this part.
+const HELPS: f64 = 0.9;
+/// Conventions whose errors differ by less than this factor cannot be told apart.
+const TIE: f64 = 1.2;
+/// Largest number of changes that are made together.
+const MOST_CHANGES: usize = 8;
+/// Number of positions of a quick fit.
+const QUICK: usize = 60;
+/// Size of the errors that another convention leaves \[m\].
+const ROUGH_M: f64 = 0.3;
+/// Units other than the millimetre, each with its length \[mm\].
+const UNITS: [(&str, f64); 4] =
+    [("metres", 1e3), ("micrometres", 1e-3), ("centimetres", 10.0), ("inches", 25.4)];
+
+/// One way in which a file can be written otherwise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Change {
+    /// Positions in a unit, by its index in [`UNITS`].
+    Unit(usize),
+    /// Coordinate of the file, and whether its sign is other, for each axis of the frame.
+    Axes([(usize, bool); 3]),
+    /// An axis points the other way: the frame is left-handed.
+    LeftHanded,
+    /// A joint's angles have the other sign.
+    Sign(usize),
+    /// A joint's zero is elsewhere \[rad\].
+    Zero(usize, f64),
+}
+
+const COORDINATES: [&str; 3] = ["x_mm", "y_mm", "z_mm"];
+
+impl Change {
+    /// Whether both say something of the same thing, so that one replaces the other.
+    fn replaces(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Unit(_), Self::Unit(_)) | (Self::Axes(_), Self::Axes(_)) => true,
+            (Self::Zero(a, _), Self::Zero(b, _)) => a == b,
+            (a, b) => a == b,
+        }
+    }
+
+    /// The sample as it is if the file was written so.
+    fn applied(&self, mut sample: Sample) -> Sample {
+        let turned = |sample: &mut Sample, j: usize, of: &dyn Fn(f64) -> f64| {
+            let mut angles_rad = sample.pose.angles_rad.clone();
+            angles_rad[j] = of(angles_rad[j]);
+            sample.pose = Arc::new(Pose::new(angles_rad));
+        };
+        match *self {
+            Self::Unit(unit) => sample.measured_m *= UNITS[unit].1,
+            Self::Axes(axes) => {
+                let sign = |(_, is_other): (usize, bool)| if is_other { -1.0 } else { 1.0 };
+                let (at_m, precision) = (sample.measured_m, sample.precision);
+                sample.measured_m = Vector3::from(axes.map(|axis| sign(axis) * at_m[axis.0]));
+                sample.precision = Vector3::from(axes.map(|axis| precision[axis.0]));
+            }
+            Self::LeftHanded => sample.measured_m.z *= -1.0,
+            Self::Sign(j) => turned(&mut sample, j, &|angle| -angle),
+            Self::Zero(j, by) => turned(&mut sample, j, &|angle| angle + by),
+        }
+        sample
+    }
+
+    fn words(&self, driven: &[String]) -> String {
+        match *self {
+            Self::Unit(unit) => format!("the positions are in {}", UNITS[unit].0),
+            Self::Axes(axes) => {
+                let axis = |(c, is_other): (usize, bool)| {
+                    format!("{}{}", if is_other { "-" } else { "" }, COORDINATES[c])
+                };
+                format!("the frame's x, y, z are {} of the file", axes.map(axis).join(", "))
+            }
+            Self::LeftHanded => {
+                "the instrument's frame is left-handed (two axes are swapped, or one has the other sign)"
+                    .into()
+            }
+            Self::Sign(j) => format!("the angles of {} have the other sign", driven[j]),
+            Self::Zero(j, by) => {
+                format!("{:.0} degrees are added to the angles of {}", by.to_degrees(), driven[j])
+            }
+        }
+    }
+}
+
+/// The changes that can be made: with a free base a turned frame is no change.
+fn changes(spec: &PositionsSpec, joints: usize) -> Vec<Change> {
+    let mut out: Vec<Change> = (0..UNITS.len()).map(Change::Unit).collect();
+    match spec.base_placement {
+        true => out.push(Change::LeftHanded),
+        false => out.extend(other_axes()),
+    }
+    out.extend((0..joints).map(Change::Sign));
+    out.extend((0..joints).flat_map(|j| [FRAC_PI_2, -FRAC_PI_2, PI].map(|by| Change::Zero(j, by))));
+    out
+}
+
+/// The 47 ways in which axes can be swapped and turned round.
+fn other_axes() -> Vec<Change> {
+    const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
+    let signed = ORDERS.iter().flat_map(|order| {
+        (0..8).map(move |signs| Change::Axes([0, 1, 2].map(|c| (order[c], signs >> c & 1 == 1))))
+    });
+    signed.skip(1).collect()
+}
+
+/// Fits positions as if they were written by other conventions.
+struct Asked<'a> {
+    spec: &'a PositionsSpec,
+    samples: Vec<Sample>,
+    nominal: Geometry,
+    groups: Vec<Vec<Number>>,
+}
+
+impl Asked<'_> {
+    /// Scale of the errors that are left with the first groups of numbers free \[m\].
+    fn scale_m(&self, changes: &[Change], groups: usize, most: usize) -> f64 {
+        let step = self.samples.len().div_ceil(most).max(1);
+        let written = self.samples.iter().step_by(step).cloned();
+        let own: Vec<Sample> = written
+            .map(|sample| changes.iter().fold(sample, |sample, change| change.applied(sample)))
+            .collect();
+        let own: Vec<&Sample> = own.iter().collect();
+        let mut geometry = self.nominal.clone();
+        if self.spec.base_placement {
+            nearest_motion(&own, &mut geometry);
+        }
+        let mut fitted = Fitted::rigid(geometry, ROUGH_M);
+        let mut numbers = Vec::new();
+        for group in &self.groups[..groups] {
+            numbers.extend(group.iter().cloned());
+            fitted = fit(&own, &numbers, &[], &fitted);
+        }
+        fitted.scale_m
+    }
+
+    fn quick_m(&self, changes: &[Change]) -> f64 {
+        self.scale_m(changes, 1, QUICK)
+    }
+
+    fn full_m(&self, changes: &[Change]) -> f64 {
+        self.scale_m(changes, self.groups.len(), usize::MAX)
+    }
+
+    /// The changes that the quick fit needs, from these on.
+    fn search(&self, all: &[Change], mut made: Vec<Change>) -> Vec<Change> {
+        let mut here_m = self.quick_m(&made);
+        while made.len() < MOST_CHANGES {
+            let with = |change: &Change| {
+                let mut out: Vec<Change> = made.iter().filter(|m| !change.replaces(m)).copied().collect();
+                out.push(*change);
+                (self.quick_m(&out), out)
+            };
+            let open: Vec<&Change> = all.iter().filter(|change| !made.contains(change)).collect();
+            let tried: Vec<(f64, Vec<Change>)> = open.into_par_iter().map(with).collect();
+            let best = tried.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+            match best.filter(|(scale_m, _)| *scale_m < HELPS * here_m) {
+                Some((scale_m, changes)) => (here_m, made) = (scale_m, changes),
+                None => break,
+            }
+        }
+        self.pruned(made)
+    }
+
+    /// Without the changes that a later one made needless.
+    fn pruned(&self, mut made: Vec<Change>) -> Vec<Change> {
+        let mut at = 0;
+        while at < made.len() {
+            let mut rest = made.clone();
+            rest.remove(at);
+            match self.quick_m(&rest) < self.quick_m(&made) / HELPS {
+                true => made = rest,
+                false => at += 1,
+            }
+        }
+        made
+    }
+
+    /// Single changes that leave errors as small as those of one change \[m\].
+    fn equals(&self, all: &[Change], only: Change, scale_m: f64) -> Vec<Change> {
+        let quick_m = self.quick_m(&[only]);
+        let near = all.iter().filter(|change| **change != only && self.quick_m(&[**change]) < 2.0 * quick_m);
+        near.filter(|change| self.full_m(&[**change]) < TIE * scale_m).copied().collect()
+    }
+}
+
+impl Positions {
+    /// A sentence on the convention by which the positions would fit far better, if calibration does not come near them
+    /// and there is one.
+    pub(super) fn other_convention(&self, campaign: &Campaign) -> Option<String> {
+        let spec = &campaign.statement.positions;
+        let declared_mm: f64 = campaign.positions.iter().map(|row| row.sigma_mm()).sum();
+        let declared_m = 1e-3 * declared_mm / campaign.positions.len().max(1) as f64;
+        // each attitude of an unknown mounting would have to be tried with each convention
+        if self.rigid.scale_m < FAR * declared_m || !spec.mounts.is_empty() {
+            return None;
+        }
+        let points = points(campaign);
+        let nominal = Geometry::nominal(&self.tree, points.len());
+        let samples = samples(campaign, &self.tree, &nominal, &[], &points);
+        let groups = number_groups(&self.tree, spec, points.len()).into_iter().map(|(_, group)| group);
+        let asked = Asked { spec, samples, nominal, groups: groups.collect() };
+        let all = changes(spec, self.tree.driven.len());
+        let starts = if spec.base_placement { vec![vec![], vec![Change::LeftHanded]] } else { vec![vec![]] };
+        let found = starts.into_iter().map(|start| asked.search(&all, start)).filter(|made| !made.is_empty());
+        let judged = found.map(|made| (asked.full_m(&made), made));
+        // of two that cannot be told apart, the one with fewer changes
+        let is_better = |a: &(f64, Vec<Change>), b: &(f64, Vec<Change>)| {
+            a.0 < b.0 / TIE || (a.0 < TIE * b.0 && a.1.len() < b.1.len())
+        };
+        let (scale_m, made) =
+            judged.reduce(|best, next| if is_better(&next, &best) { next } else { best })?;
+        let ratio = self.rigid.scale_m / scale_m;
+        if ratio < TELLING {
+            return None;
+        }
+        let words = |change: &Change| change.words(&self.tree.driven);
+        let mut told = made.iter().map(words).collect::<Vec<_>>().join(" and ");
+        if let [only] = made.as_slice() {
+            let equals = asked.equals(&all, *only, scale_m);
+            told.push_str(
+                &equals
+                    .iter()
+                    .map(|change| format!(", or just as well if {}", words(change)))
+                    .collect::<String>(),
+            );
+        }
+        Some(format!(
+            "the positions fit {} times better if {told} (calibration leaves errors of {} mm, and {} mm as the file is): \
+             correct the file if that is so; it was taken as it is",
+            significant(ratio, 2),
+            significant(1e3 * scale_m, 3),
+            significant(1e3 * self.rigid.scale_m, 3)
+        ))
+    }
+}
