@@ -255,7 +255,8 @@ impl Analysis<'_> {
 
     /// Says which structure the residuals keep, without naming an effect.
     fn left_over(&self) -> Vec<String> {
-        let mut out = self.lack_of_fit.sentences();
+        let mut out = units::other_signs(self.forward);
+        out.extend(self.lack_of_fit.sentences());
         out.push(format!(
             "the best model leaves {:.2} times the declared variance; no effect of the library explains the rest",
             self.lack_of_fit.chi2_per_dof

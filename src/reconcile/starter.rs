@@ -156,10 +156,15 @@ fn meaning(channel: Channel, column: &str) -> (&'static str, &'static str) {
         "branch" => ("-", "loading or unloading; may be blank"),
         "dx_mm" => ("mm", "displacement along the world's x; blank if it was not measured"),
         "dy_mm" | "dz_mm" => ("mm", "the same along y, z (up)"),
+        "sigma_mm" if channel == Channel::Static => (
+            "mm",
+            "standard deviation of each component: how far repeated readings scatter, for a gauge about a third of a division \
+             to one. A component that differs may have a column of its own, such as `sigma_dz_mm`",
+        ),
         "sigma_mm" => (
             "mm",
-            "standard deviation of each component: how far repeated readings scatter. For a gauge about a third of a division \
-             to one. Components that differ have columns of their own, such as `sigma_dz_mm` or, of positions, `sigma_z_mm`",
+            "standard deviation of each coordinate: how far repeated readings scatter. One that differs may have a column of \
+             its own, such as `sigma_z_mm`",
         ),
         "mode" => ("-", "number of the mode, from 1 by rising frequency"),
         "frequency_hz" => ("Hz", "its frequency"),

@@ -209,6 +209,16 @@ fn each_direction_may_have_a_sigma_of_its_own_and_a_row_its_own_blanks() {
 }
 
 #[test]
+fn a_gauge_that_counts_the_other_way_is_said_and_not_turned() {
+    let header = "payload_kg,dz_mm,sigma_mm";
+    let write = |_: usize, _: [f64; 2], kg: f64, d: [f64; 3]| format!("{kg},{:.3},{SIGMA_MM}", -d[2]);
+    let outcome = outcome(Bench::standing(false).campaign(header, &write).path());
+    assert_eq!(outcome.verdict, Verdict::Unexplained);
+    let said = |r: &String| r.contains("dz_mm is") && r.contains("with the other sign");
+    assert!(outcome.reasons.iter().any(said), "{:?}", outcome.reasons);
+}
+
+#[test]
 fn one_gauge_that_is_turned_from_x_to_z_and_zeros_elsewhere_find_it_too() {
     let header = "payload_kg,dx_mm,dy_mm,dz_mm,sigma_mm";
     let write = |row: usize, _: [f64; 2], kg: f64, d: [f64; 3]| match row % 2 {

@@ -1,8 +1,8 @@
 //! Asks whether positions that no calibration comes near were written down by another convention: in another unit, in a
 //! frame whose axes are swapped or left-handed, or with joint angles of another sign or zero.
 //!
-//! The search is greedy. From the file as it is, every single change is tried by a quick fit of the placement alone; the
-//! best is kept while it helps. What it finds is then calibrated in full like the file itself, and said if the errors
+//! The search is greedy. From the file as it is, every single change, or every pair, is tried by a quick fit of the
+//! placement alone; the best is kept while it helps. What it finds is then calibrated in full like the file itself, and said if the errors
 //! that are left are several times smaller. Nothing is applied: which convention holds is for the user to say.
 
 use super::align::nearest_motion;
@@ -26,6 +26,10 @@ const TELLING: f64 = 5.0;
 const HELPS: f64 = 0.9;
 /// Conventions whose errors differ by less than this factor cannot be told apart.
 const TIE: f64 = 1.2;
+/// Largest number of conventions that are said beside the best one.
+const MOST_EQUALS: usize = 3;
+/// A fit is far off if its errors are larger than this part of the spread of the positions.
+const FAR_OFF: f64 = 0.01;
 /// Largest number of changes that are made together.
 const MOST_CHANGES: usize = 8;
 /// Number of positions of a quick fit.
@@ -118,11 +122,22 @@ fn changes(spec: &PositionsSpec, joints: usize) -> Vec<Change> {
     out
 }
 
+/// Every two changes of the angles of two joints.
+fn pairs(all: &[Change]) -> Vec<Vec<Change>> {
+    let joint = |change: &Change| match change {
+        Change::Sign(j) | Change::Zero(j, _) => Some(*j),
+        Change::Unit(_) | Change::Axes(_) | Change::LeftHanded => None,
+    };
+    let of_two = |a: &Change, b: &Change| joint(a).zip(joint(b)).is_some_and(|(a, b)| a < b);
+    let with = |a: &Change| all.iter().filter(|b| of_two(a, b)).map(|b| vec![*a, *b]).collect::<Vec<_>>();
+    all.iter().flat_map(with).collect()
+}
+
 /// The 47 ways in which axes can be swapped and turned round.
 fn other_axes() -> Vec<Change> {
     const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
     let signed = ORDERS.iter().flat_map(|order| {
-        (0..8).map(move |signs| Change::Axes([0, 1, 2].map(|c| (order[c], signs >> c & 1 == 1))))
+        (0..8).map(move |signs| Change::Axes([0, 1, 2].map(|c| (order[c], (signs >> c) & 1 == 1))))
     });
     signed.skip(1).collect()
 }
@@ -165,24 +180,45 @@ impl Asked<'_> {
         self.scale_m(changes, self.groups.len(), usize::MAX)
     }
 
-    /// The changes that the quick fit needs, from these on.
+    /// The changes that the quick fit needs, from these on. Where no single one helps and the fit is still far off, pairs
+    /// are tried: of two parallel joints that turn the other way, one alone is no better.
     fn search(&self, all: &[Change], mut made: Vec<Change>) -> Vec<Change> {
+        let singles: Vec<Vec<Change>> = all.iter().map(|change| vec![*change]).collect();
+        let pairs = pairs(all);
         let mut here_m = self.quick_m(&made);
         while made.len() < MOST_CHANGES {
-            let with = |change: &Change| {
-                let mut out: Vec<Change> = made.iter().filter(|m| !change.replaces(m)).copied().collect();
-                out.push(*change);
-                (self.quick_m(&out), out)
-            };
-            let open: Vec<&Change> = all.iter().filter(|change| !made.contains(change)).collect();
-            let tried: Vec<(f64, Vec<Change>)> = open.into_par_iter().map(with).collect();
-            let best = tried.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
-            match best.filter(|(scale_m, _)| *scale_m < HELPS * here_m) {
-                Some((scale_m, changes)) => (here_m, made) = (scale_m, changes),
-                None => break,
-            }
+            let better =
+                |added: &[Vec<Change>]| self.best_with(&made, added).filter(|b| b.0 < HELPS * here_m);
+            let found = better(&singles)
+                .or_else(|| (here_m > FAR_OFF * self.spread_m(&made)).then(|| better(&pairs)).flatten());
+            let Some(found) = found else { break };
+            (here_m, made) = found;
         }
         self.pruned(made)
+    }
+
+    /// The changes that the quick fit likes best, of these with each of some added, and the scale of its errors \[m\].
+    fn best_with(&self, made: &[Change], added: &[Vec<Change>]) -> Option<(f64, Vec<Change>)> {
+        let with = |new: &Vec<Change>| {
+            let is_kept = |old: &&Change| !new.iter().any(|change| change.replaces(old));
+            let changes: Vec<Change> = made.iter().filter(is_kept).chain(new).copied().collect();
+            (self.quick_m(&changes), changes)
+        };
+        let open: Vec<&Vec<Change>> =
+            added.iter().filter(|new| !new.iter().all(|c| made.contains(c))).collect();
+        let tried: Vec<(f64, Vec<Change>)> = open.into_par_iter().map(with).collect();
+        tried.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// Root mean square distance of the positions from their centre \[m\].
+    fn spread_m(&self, changes: &[Change]) -> f64 {
+        let at_m = |sample: &Sample| {
+            changes.iter().fold(sample.clone(), |sample, change| change.applied(sample)).measured_m
+        };
+        let all: Vec<Vector3<f64>> = self.samples.iter().map(at_m).collect();
+        let count = all.len().max(1) as f64;
+        let centre = all.iter().sum::<Vector3<f64>>() / count;
+        (all.iter().map(|at| (at - centre).norm_squared()).sum::<f64>() / count).sqrt()
     }
 
     /// Without the changes that a later one made needless.
@@ -199,11 +235,21 @@ impl Asked<'_> {
         made
     }
 
-    /// Single changes that leave errors as small as those of one change \[m\].
-    fn equals(&self, all: &[Change], only: Change, scale_m: f64) -> Vec<Change> {
-        let quick_m = self.quick_m(&[only]);
-        let near = all.iter().filter(|change| **change != only && self.quick_m(&[**change]) < 2.0 * quick_m);
-        near.filter(|change| self.full_m(&[**change]) < TIE * scale_m).copied().collect()
+    /// Sets of changes with one of them replaced by another that leave errors as small as theirs, `scale_m` \[m\].
+    fn equals(&self, all: &[Change], made: &[Change], scale_m: f64) -> Vec<Vec<Change>> {
+        let quick_m = self.quick_m(made);
+        let others = || all.iter().filter(|change| !made.iter().any(|m| m.replaces(change)));
+        let with = |at: usize| {
+            others().map(move |change| {
+                let mut out = made.to_vec();
+                out[at] = *change;
+                out
+            })
+        };
+        let tried: Vec<Vec<Change>> = (0..made.len()).flat_map(with).collect();
+        let is_near = |changes: &Vec<Change>| self.quick_m(changes) < 2.0 * quick_m;
+        let is_equal = |changes: &Vec<Change>| self.full_m(changes) < TIE * scale_m;
+        tried.into_par_iter().filter(is_near).filter(is_equal).collect()
     }
 }
 
@@ -224,7 +270,11 @@ impl Positions {
         let groups = number_groups(&self.tree, spec, points.len()).into_iter().map(|(_, group)| group);
         let asked = Asked { spec, samples, nominal, groups: groups.collect() };
         let all = changes(spec, self.tree.driven.len());
-        let starts = if spec.base_placement { vec![vec![], vec![Change::LeftHanded]] } else { vec![vec![]] };
+        let is_far_off = self.rigid.scale_m > FAR_OFF * asked.spread_m(&[]);
+        let mut starts = vec![vec![]];
+        if spec.base_placement && is_far_off {
+            starts.push(vec![Change::LeftHanded]);
+        }
         let found = starts.into_iter().map(|start| asked.search(&all, start)).filter(|made| !made.is_empty());
         let judged = found.map(|made| (asked.full_m(&made), made));
         // of two that cannot be told apart, the one with fewer changes
@@ -234,19 +284,17 @@ impl Positions {
         let (scale_m, made) =
             judged.reduce(|best, next| if is_better(&next, &best) { next } else { best })?;
         let ratio = self.rigid.scale_m / scale_m;
-        if ratio < TELLING {
+        // a convention that is far off too is not the right one
+        if ratio < TELLING || scale_m > FAR_OFF * asked.spread_m(&made) {
             return None;
         }
-        let words = |change: &Change| change.words(&self.tree.driven);
-        let mut told = made.iter().map(words).collect::<Vec<_>>().join(" and ");
-        if let [only] = made.as_slice() {
-            let equals = asked.equals(&all, *only, scale_m);
-            told.push_str(
-                &equals
-                    .iter()
-                    .map(|change| format!(", or just as well if {}", words(change)))
-                    .collect::<String>(),
-            );
+        let words = |changes: &[Change]| {
+            let each = changes.iter().map(|change| change.words(&self.tree.driven));
+            each.collect::<Vec<_>>().join(" and ")
+        };
+        let mut told = words(&made);
+        for equal in asked.equals(&all, &made, scale_m).iter().take(MOST_EQUALS) {
+            told.push_str(&format!(", or just as well if {}", words(equal)));
         }
         Some(format!(
             "the positions fit {} times better if {told} (calibration leaves errors of {} mm, and {} mm as the file is): \

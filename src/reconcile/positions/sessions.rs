@@ -152,7 +152,8 @@ impl Positions {
         let all: Vec<&Sample> = samples.iter().collect();
         let fitted = fit(&all, &numbers, &start.effects, &start);
         let readings = readings(&samples) as f64;
-        let price = 0.5 * new.numbers().len() as f64 * libm::log(readings) + libm::log(readings * kinds as f64) + 3.0;
+        let price =
+            0.5 * new.numbers().len() as f64 * libm::log(readings) + libm::log(readings * kinds as f64) + 3.0;
         let gain = fitted.ln_likelihood - self.fitted.ln_likelihood - price;
         Split { samples, numbers, fitted, moved, first, gain }
     }
