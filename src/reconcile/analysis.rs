@@ -14,6 +14,7 @@ use super::model::estimate::Interval;
 use super::model::estimate::{Estimate, Finding};
 use super::model::parameters::{Candidate, Model, Nuisance};
 use super::readings::campaign::Campaign;
+use super::readings::components::{DISPLACEMENT, FEWEST_ALIKE};
 use super::select::few_rows;
 use super::select::lack_of_fit::{LackOfFit, lack_of_fit};
 use super::select::screening::Selection;
@@ -31,7 +32,7 @@ const MOST_ALTERNATIVES: usize = 3;
 /// A rise of ln of the evidence below this is not yet strong (Kass and Raftery 1995, table of Bayes factors).
 const WEAK: f64 = 3.0;
 /// Smallest number of poses that can tell effects at different places apart.
-const FEWEST_POSES: usize = 3;
+pub(crate) const FEWEST_POSES: usize = 3;
 
 /// Reconciles the displacements, frequencies and bench readings of a campaign with its arm.
 pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
@@ -254,7 +255,8 @@ impl Analysis<'_> {
 
     /// Says which structure the residuals keep, without naming an effect.
     fn left_over(&self) -> Vec<String> {
-        let mut out = self.lack_of_fit.sentences();
+        let mut out = units::other_signs(self.forward);
+        out.extend(self.lack_of_fit.sentences());
         out.push(format!(
             "the best model leaves {:.2} times the declared variance; no effect of the library explains the rest",
             self.lack_of_fit.chi2_per_dof
@@ -392,7 +394,7 @@ impl Analysis<'_> {
         let quantity = |i: usize| -> &'static str {
             let datum = &self.forward.data[i];
             match datum.channel.word() {
-                "static" => ["dx_mm", "dy_mm", "dz_mm"][datum.component],
+                "static" => DISPLACEMENT.values[datum.component],
                 "modal" => "frequency_hz",
                 _ => "windup_arcmin",
             }
@@ -403,6 +405,8 @@ impl Analysis<'_> {
                 ReadingResidual {
                     channel: datum.channel,
                     row: datum.row + 1,
+                    index: datum.index,
+                    component: datum.component,
                     quantity: quantity(i),
                     measured: datum.value,
                     sigma: datum.sigma,
@@ -513,15 +517,13 @@ fn too_little(campaign: &Campaign, forward: &Forward) -> Vec<String> {
     reasons
 }
 
-/// Equal readings are suspicious from this many rows of a channel on.
-const FEWEST_ALIKE: usize = 4;
-
 /// Names channels whose readings are all equal, and says if no reading exceeds the noise.
 fn dead_instruments(forward: &Forward) -> Vec<String> {
     let mut out = Vec::new();
     for channel in [Channel::Static, Channel::Modal, Channel::Windup] {
         let data = &forward.data[forward.range(channel)];
-        let is_first = |d: &Datum| data[d.component].value == d.value;
+        let first = [0, 1, 2].map(|component| data.iter().find(|d| d.component == component));
+        let is_first = |d: &Datum| first[d.component].is_some_and(|first| first.value == d.value);
         if data.last().is_some_and(|d| d.row + 1 >= FEWEST_ALIKE) && data.iter().all(is_first) {
             out.push(format!(
                 "every {} reading is the same: the instrument did not follow the arm",

@@ -20,6 +20,7 @@ pub(crate) mod positions;
 pub mod predict;
 pub mod readings;
 pub(crate) mod select;
+pub(crate) mod starter;
 pub(crate) mod together;
 pub mod verdict;
 

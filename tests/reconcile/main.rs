@@ -3,10 +3,12 @@
 mod bad_data;
 mod bearings;
 mod campaigns;
+mod conventions;
 #[path = "scoring/detectability.rs"]
 mod detectability;
 mod few_rows;
 mod forward;
+mod gauge;
 mod generated;
 mod generator;
 #[path = "../../examples/measured/mod.rs"]

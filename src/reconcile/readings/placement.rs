@@ -150,8 +150,7 @@ mod tests {
             payload: Payload::default(),
             arm: 0,
             point: "tip".into(),
-            position_mm: [0.0; 3],
-            sigma_mm: 1.0,
+            measured: [None; 3],
         }
     }
 

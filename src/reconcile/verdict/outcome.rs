@@ -90,6 +90,10 @@ pub struct ReadingResidual {
     pub channel: Channel,
     /// Row of its file, from 1.
     pub row: usize,
+    /// Index of its row among the rows of its channel in the campaign.
+    pub index: usize,
+    /// Component 0-2 of a vector.
+    pub component: usize,
     /// `dx_mm`, `frequency_hz` ...
     pub quantity: &'static str,
     /// Measured.
