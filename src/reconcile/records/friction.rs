@@ -1,0 +1,175 @@
+//! Friction from the balance of torques: what the motor gives is what the load takes and what friction takes.
+//!
+//! `T_m = T_0 + I a + A sin q + B cos q + (coupling with other joints) + (F_c + f |T_l|) sgn w + F_v w`
+//!
+//! The load of a joint also depends on how the other joints stand and move. Their angles, speeds and accelerations enter as
+//! free columns, joint by joint, where held-out blocks become better with them. `T_l`, the torque of the load, is what the
+//! fit before says without friction.
+
+use super::blocks::Fitted;
+use super::reading::Record;
+use super::signals::{JointRows, Sample};
+use super::smooth::{half_width, smooth};
+use super::twist::CLEARLY;
+use crate::reconcile::model::estimate::Estimate;
+
+/// Columns of the joint itself after the offsets of the records: acceleration, sine and cosine once and twice a turn.
+const OWN_LOAD: usize = 5;
+/// Columns of friction: sign of the speed, speed, and sign of the speed times the size of the load.
+const FRICTION: usize = 3;
+/// Columns of another joint.
+const OTHER: usize = 8;
+
+/// Friction of a joint; each with its interval.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Friction {
+    /// Coulomb friction \[N m\].
+    pub coulomb_nm: Estimate,
+    /// Viscous friction \[N m s/rad\].
+    pub viscous_nms_per_rad: Estimate,
+    /// Friction for each newton metre of load, if held-out blocks are better with it.
+    pub load_part: Option<Estimate>,
+    /// Whether held-out blocks are better with Coulomb and with viscous friction.
+    pub clearly: [bool; 2],
+}
+
+/// Motion of another joint at the rows of this one: angle, speed, acceleration.
+type Motion = Vec<Option<[f64; 3]>>;
+
+struct Balance<'a> {
+    rows: &'a JointRows,
+    others: Vec<Motion>,
+    load_nm: Vec<f64>,
+}
+
+impl Balance<'_> {
+    fn friction(&self) -> [usize; FRICTION] {
+        std::array::from_fn(|i| self.rows.record_count() + OWN_LOAD + i)
+    }
+
+    fn other(&self, joint: usize) -> Vec<usize> {
+        let first = self.rows.record_count() + OWN_LOAD + FRICTION + OTHER * joint;
+        (first..first + OTHER).collect()
+    }
+
+    fn load(&self) -> Vec<usize> {
+        (0..self.rows.record_count() + OWN_LOAD).collect()
+    }
+
+    fn target(&self) -> usize {
+        self.rows.record_count() + OWN_LOAD + FRICTION + OTHER * self.others.len()
+    }
+
+    fn fill(&self, i: usize, sample: &Sample, row: &mut [f64]) -> bool {
+        let first = self.rows.record_count();
+        let (q, w) = (sample.angle_rad, sample.speed_rad_s);
+        row[sample.record] = 1.0;
+        let own = [sample.acceleration_rad_s2, q.sin(), q.cos() - 1.0, (2.0 * q).sin(), (2.0 * q).cos() - 1.0];
+        row[first..first + OWN_LOAD].copy_from_slice(&own);
+        let [sense, speed, load] = self.friction();
+        row[sense] = sample.sense;
+        row[speed] = w;
+        row[load] = sample.sense * self.load_nm[i].abs();
+        for (k, motion) in self.others.iter().enumerate() {
+            let Some([angle, other_speed, acceleration]) = motion[i] else { return false };
+            let first = self.other(k)[0];
+            let columns = [
+                acceleration,
+                other_speed.powi(2),
+                angle.sin(),
+                angle.cos() - 1.0,
+                (q + angle).sin(),
+                (q + angle).cos() - 1.0,
+                (q - angle).sin(),
+                (q - angle).cos() - 1.0,
+            ];
+            row[first..first + OTHER].copy_from_slice(&columns);
+        }
+        let last = row.len() - 1;
+        row[last] = sample.torque_nm;
+        true
+    }
+
+    /// The load that a fit says, row by row: everything but friction.
+    fn load_of(&self, fitted: &Fitted) -> Vec<f64> {
+        let friction = self.friction();
+        let mut row = vec![0.0; self.target() + 1];
+        let rows = self.rows.samples.iter().enumerate();
+        rows.map(|(i, sample)| {
+            row.fill(0.0);
+            self.fill(i, sample, &mut row);
+            let parts = fitted.columns.iter().zip(&fitted.values).filter(|(c, _)| !friction.contains(c));
+            parts.map(|(c, v)| row[*c] * v).sum()
+        })
+        .collect()
+    }
+}
+
+/// Angle, speed and acceleration of the other joints at the rows of this one.
+fn motions(rows: &JointRows, records: &[Record]) -> Vec<Motion> {
+    let own: Vec<&Record> =
+        records.iter().filter(|r| r.joints.iter().any(|j| j.joint == rows.joint && !j.link_rad.is_empty())).collect();
+    let Some(first) = own.first() else { return Vec::new() };
+    let names = first.joints.iter().map(|j| &j.joint).filter(|name| **name != rows.joint);
+    let in_all = names.filter(|name| own.iter().all(|r| r.joints.iter().any(|j| j.joint == **name)));
+    in_all
+        .map(|name| {
+            let signals = own.iter().filter_map(|r| Some((r, r.joints.iter().find(|j| j.joint == *name)?)));
+            let smoothed: Vec<_> = signals
+                .map(|(r, j)| smooth(&r.t_s, &j.motor_rad, half_width(&r.t_s, &j.motor_rad)))
+                .collect();
+            let at = |s: &Sample| {
+                let m = smoothed.get(s.record)?;
+                (!m.value[s.row].is_nan()).then(|| [m.value[s.row], m.slope[s.row], m.curvature[s.row]])
+            };
+            rows.samples.iter().map(at).collect()
+        })
+        .collect()
+}
+
+/// Finds the friction of a joint. `None` where the joint has no torque or nothing moves.
+pub(crate) fn friction(rows: &JointRows, records: &[Record]) -> Option<Friction> {
+    if !rows.has_torque {
+        return None;
+    }
+    let mut balance = Balance { rows, others: motions(rows, records), load_nm: vec![0.0; rows.samples.len()] };
+    let target = balance.target();
+    let sums = rows.sums(target + 1, |i, s, row| balance.fill(i, s, row));
+    let [sense, speed, load_sense] = balance.friction();
+    let mut columns = [balance.load(), vec![sense, speed]].concat();
+    let mut best = sums.fit(&columns, target, |_| None)?;
+    let mut left: Vec<usize> = (0..balance.others.len()).collect();
+    loop {
+        let tried = left.iter().filter_map(|k| {
+            let more = [columns.clone(), balance.other(*k)].concat();
+            Some((*k, sums.fit(&more, target, |_| None)?))
+        });
+        let better = tried.filter(|(_, fit)| fit.better_than(&best) > CLEARLY);
+        let rms = |fit: &Fitted| fit.held_out_rms();
+        let Some((k, fit)) = better.min_by(|a, b| rms(&a.1).total_cmp(&rms(&b.1))) else { break };
+        columns.extend(balance.other(k));
+        left.retain(|other| *other != k);
+        best = fit;
+    }
+    balance.load_nm = balance.load_of(&best);
+    let sums = rows.sums(target + 1, |i, s, row| balance.fill(i, s, row));
+    let fit = |columns: &[usize]| sums.fit(columns, target, |_| None);
+    let with_load = fit(&[columns.clone(), vec![load_sense]].concat())?;
+    let has_load = with_load.better_than(&best) > CLEARLY && is_positive(&with_load.coefficient(load_sense));
+    let chosen = if has_load { with_load } else { best };
+    let without = |column: usize| {
+        let others: Vec<usize> = chosen.columns.iter().copied().filter(|c| *c != column).collect();
+        fit(&others).is_some_and(|other| chosen.better_than(&other) > CLEARLY)
+    };
+    Some(Friction {
+        coulomb_nm: chosen.coefficient(sense),
+        viscous_nms_per_rad: chosen.coefficient(speed),
+        load_part: has_load.then(|| chosen.coefficient(load_sense)),
+        clearly: [without(sense), without(speed)],
+    })
+}
+
+/// Whether a whole interval lies above zero.
+pub(crate) fn is_positive(estimate: &Estimate) -> bool {
+    estimate.low.is_some_and(|low| low > 0.0)
+}

@@ -1,0 +1,177 @@
+//! One joint's signals from all records: smoothed, differentiated, cut into blocks of time.
+
+use super::blocks::Blocks;
+use super::reading::{JointSignals, Record};
+use super::smooth::{Smooth, half_width, noise, slope_noise, smooth, usual_step_s};
+
+/// The sign of a speed is taken as smooth below this part of the largest speed, because friction is.
+const SLOW_PART: f64 = 0.01;
+/// Fewest blocks of a record, so that no record stands or falls with one.
+const FEWEST_BLOCKS: usize = 4;
+
+/// One row of one record.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Sample {
+    /// Which record.
+    pub record: usize,
+    /// Which row of it.
+    pub row: usize,
+    /// Which block of time.
+    pub block: usize,
+    /// Angle of the motor at the output \[rad\].
+    pub angle_rad: f64,
+    /// Its speed \[rad/s\].
+    pub speed_rad_s: f64,
+    /// Its acceleration \[rad/s²\].
+    pub acceleration_rad_s2: f64,
+    /// Sign of the speed, smooth about zero.
+    pub sense: f64,
+    /// Torque of the motor at the output; 0 if it is not recorded \[N m\].
+    pub torque_nm: f64,
+}
+
+struct Signals {
+    t_s: Vec<f64>,
+    motor_rad: Vec<f64>,
+    link_rad: Vec<f64>,
+    link: Smooth,
+    step_s: f64,
+}
+
+/// The rows of one joint.
+pub(crate) struct JointRows {
+    /// Joint.
+    pub joint: String,
+    /// Turns of the motor for one of the output.
+    pub ratio: Option<f64>,
+    /// Rotor's inertia at the output \[kg m²\].
+    pub rotor_inertia_kgm2: Option<f64>,
+    /// Whether torques are recorded.
+    pub has_torque: bool,
+    /// Rows at which all derivatives are known.
+    pub samples: Vec<Sample>,
+    /// Number of blocks.
+    pub blocks: usize,
+    /// Rows between samples \[s\].
+    pub step_s: f64,
+    records: Vec<Signals>,
+}
+
+/// Twist at a row when the link's signal is read later, and what a further second would change.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Twist {
+    /// Motor less link \[rad\].
+    pub twist_rad: f64,
+    /// Speed of the link \[rad/s\].
+    pub link_speed_rad_s: f64,
+}
+
+impl JointRows {
+    /// Gathers a joint from the records in which both its sides stand.
+    pub(crate) fn gather(records: &[Record], joint: &str, blocks: usize) -> Option<Self> {
+        let whole = |j: &&JointSignals| j.joint == joint && !j.link_rad.is_empty();
+        let own: Vec<(&Record, &JointSignals)> =
+            records.iter().filter_map(|r| Some((r, r.joints.iter().find(whole)?))).collect();
+        let first = own.first()?.1;
+        let has_torque = own.iter().all(|(_, j)| !j.torque_nm.is_empty());
+        let total: usize = own.iter().map(|(r, _)| r.t_s.len()).sum();
+        let mut out = Self {
+            joint: joint.into(),
+            ratio: first.ratio,
+            rotor_inertia_kgm2: first.rotor_inertia_kgm2,
+            has_torque,
+            samples: Vec::new(),
+            blocks: 0,
+            step_s: usual_step_s(&own[0].0.t_s),
+            records: Vec::new(),
+        };
+        for (record, signals) in own {
+            let share = (blocks * record.t_s.len()) as f64 / total as f64;
+            out.push(&record.t_s, signals, (share.round() as usize).max(FEWEST_BLOCKS));
+        }
+        Some(out)
+    }
+
+    fn push(&mut self, t_s: &[f64], signals: &JointSignals, blocks: usize) {
+        let half = half_width(t_s, &signals.motor_rad);
+        let motor = smooth(t_s, &signals.motor_rad, half);
+        let link = smooth(t_s, &signals.link_rad, half);
+        let torque_nm = match self.has_torque {
+            true => smooth(t_s, &signals.torque_nm, half_width(t_s, &signals.torque_nm)).value,
+            false => vec![0.0; t_s.len()],
+        };
+        let step_s = usual_step_s(t_s);
+        let fastest = motor.slope.iter().filter(|w| !w.is_nan()).fold(0.0f64, |m, w| m.max(w.abs()));
+        let doubt = slope_noise(&signals.motor_rad, half, step_s);
+        let slow = (SLOW_PART * fastest).max(3.0 * doubt).max(f64::MIN_POSITIVE);
+        let record = self.records.len();
+        for row in 0..t_s.len() {
+            let sample = Sample {
+                record,
+                row,
+                block: self.blocks + row * blocks / t_s.len(),
+                angle_rad: motor.value[row],
+                speed_rad_s: motor.slope[row],
+                acceleration_rad_s2: motor.curvature[row],
+                sense: (motor.slope[row] / slow).tanh(),
+                torque_nm: torque_nm[row],
+            };
+            if !(sample.angle_rad.is_nan() || sample.torque_nm.is_nan() || link.value[row].is_nan()) {
+                self.samples.push(sample);
+            }
+        }
+        self.blocks += blocks;
+        let (motor_rad, link_rad) = (signals.motor_rad.clone(), signals.link_rad.clone());
+        self.records.push(Signals { t_s: t_s.to_vec(), motor_rad, link_rad, link, step_s });
+    }
+
+    /// Number of records.
+    pub(crate) fn record_count(&self) -> usize {
+        self.records.len()
+    }
+
+    /// The twist at a row if the link's signal is late by `shift_s`: the link is read so much later, by the nearest row and
+    /// the second-order series about it. `None` beyond the ends.
+    pub(crate) fn twist(&self, sample: &Sample, shift_s: f64) -> Option<Twist> {
+        let signals = &self.records[sample.record];
+        let steps = (shift_s / signals.step_s).round() as isize;
+        let row = sample.row.checked_add_signed(steps).filter(|r| *r < signals.t_s.len())?;
+        let rest_s = signals.t_s[sample.row] + shift_s - signals.t_s[row];
+        let (slope, curvature) = (signals.link.slope[row], signals.link.curvature[row]);
+        // across a gap the nearest row is none
+        if slope.is_nan() || rest_s.abs() > 1.5 * signals.step_s {
+            return None;
+        }
+        let link_rad = signals.link_rad[row] + rest_s * slope + 0.5 * rest_s.powi(2) * curvature;
+        let twist_rad = signals.motor_rad[sample.row] - link_rad;
+        Some(Twist { twist_rad, link_speed_rad_s: slope + rest_s * curvature })
+    }
+
+    /// Noise of the twist from row to row \[rad\].
+    pub(crate) fn noise_rad(&self) -> f64 {
+        let squares: f64 =
+            self.records.iter().map(|r| noise(&r.motor_rad).powi(2) + noise(&r.link_rad).powi(2)).sum();
+        (squares / self.records.len() as f64).sqrt()
+    }
+
+    /// Smallest and largest angle \[rad\].
+    pub(crate) fn range_rad(&self) -> (f64, f64) {
+        let ends = (f64::INFINITY, f64::NEG_INFINITY);
+        self.samples.iter().fold(ends, |(low, high), s| (low.min(s.angle_rad), high.max(s.angle_rad)))
+    }
+
+    /// Sums products of columns over all rows, block by block.
+    pub(crate) fn sums(&self, width: usize, fill: impl Fn(usize, &Sample, &mut [f64]) -> bool) -> Blocks {
+        // a row that cannot be filled counts with nothing but zeros
+        Blocks::new(
+            self.samples.len(),
+            width,
+            |i| Some(self.samples[i].block),
+            |i, row| {
+                if !fill(i, &self.samples[i], row) {
+                    row.fill(0.0);
+                }
+            },
+        )
+    }
+}
