@@ -10,6 +10,8 @@ use crate::arm::file::read_arm;
 use crate::arm::{Arm, Element};
 use crate::catalog::Catalogs;
 use crate::input::json::{Document, Fault, Faults, InputError, Node, Object};
+use crate::reconcile::records::reading::{Record, read_all};
+use crate::reconcile::records::spec::{RecordSpec, STATEMENT_KEYS, read_records};
 use std::path::{Path, PathBuf};
 
 /// The tolerance of parts: 95 % limits as fractions of the nominal value.
@@ -65,6 +67,8 @@ pub struct Statement {
     pub effects: Option<Vec<String>>,
     /// What is unknown in absolute positions.
     pub positions: PositionsSpec,
+    /// Records against time.
+    pub records: Vec<RecordSpec>,
     arm_file: String,
     /// Files of further arms on the same trunk, next to `campaign.json`.
     pub other_arm_files: Vec<String>,
@@ -90,6 +94,8 @@ pub struct Campaign {
     pub windup: Vec<WindupRow>,
     /// Absolute positions.
     pub positions: Vec<PositionRow>,
+    /// Records against time.
+    pub records: Vec<Record>,
     /// blake3 of all files of the campaign.
     pub hash: String,
 }
@@ -108,7 +114,7 @@ pub(crate) fn read_statement(path: &Path) -> Result<Statement, InputError> {
 }
 
 fn statement(node: &Node) -> Option<Statement> {
-    let root = node.object(&[
+    const KEYS: &[&str] = &[
         "name",
         "arm",
         "other_arms",
@@ -124,7 +130,8 @@ fn statement(node: &Node) -> Option<Statement> {
         "machine",
         "date",
         "provenance",
-    ])?;
+    ];
+    let root = node.object(&[KEYS, &STATEMENT_KEYS].concat())?;
     let name = root.or("name", "campaign".to_string(), |n| n.string().map(String::from));
     let arm_file = root.or("arm", "arm.json".to_string(), |n| n.string().map(String::from));
     let other_arm_files = root.or("other_arms", Vec::new(), read_names);
@@ -143,6 +150,7 @@ fn statement(node: &Node) -> Option<Statement> {
     });
     let effects = root.or("effects", None, |n| read_effect_names(n).map(Some));
     let positions = root.or("positions", PositionsSpec::default(), read_positions);
+    let records = read_records(&root);
     Some(Statement {
         name: name?,
         tolerance: tolerance?,
@@ -150,6 +158,7 @@ fn statement(node: &Node) -> Option<Statement> {
         rigid_links: rigid_links?,
         effects: effects?,
         positions: positions?,
+        records: records?,
         arm_file: arm_file?,
         other_arm_files: other_arm_files?,
         files: Channel::ALL.map(|c| file_of(&root, c)),
@@ -249,6 +258,7 @@ impl Campaign {
             modal: Vec::new(),
             windup: Vec::new(),
             positions: Vec::new(),
+            records: Vec::new(),
             hash: String::new(),
         };
         faults.extend(campaign.faults());
@@ -259,6 +269,8 @@ impl Campaign {
                 faults.extend(table.into_faults());
             }
         }
+        let (names, specs) = (campaign.driven_joint_names(), &campaign.statement.records);
+        campaign.records = read_all(folder, specs, &names, &mut faults)?;
         campaign.hash = campaign.hash_files();
         if faults.is_empty() { Ok(campaign) } else { Err(Faults(faults).into()) }
     }
@@ -303,6 +315,7 @@ impl Campaign {
             modal: Vec::new(),
             windup: Vec::new(),
             positions: rows,
+            records: Vec::new(),
             hash: String::new(),
         };
         let faults = campaign.faults();
@@ -352,10 +365,17 @@ impl Campaign {
         out
     }
 
-    /// Splits the campaign in two: the readings other than absolute positions, and the positions.
+    /// Splits the campaign in two: the readings other than absolute positions, and the positions. Records are in neither.
     pub fn parted(&self) -> (Self, Self) {
-        let loaded = Self { positions: Vec::new(), other_arms: Vec::new(), ..self.clone() };
-        let placed = Self { statics: Vec::new(), modal: Vec::new(), windup: Vec::new(), ..self.clone() };
+        let loaded =
+            Self { positions: Vec::new(), records: Vec::new(), other_arms: Vec::new(), ..self.clone() };
+        let placed = Self {
+            statics: Vec::new(),
+            modal: Vec::new(),
+            windup: Vec::new(),
+            records: Vec::new(),
+            ..self.clone()
+        };
         (loaded, placed)
     }
 
@@ -384,7 +404,8 @@ impl Campaign {
         let named = ["campaign.json", &self.statement.arm_file].into_iter().chain(others.map(String::as_str));
         let files =
             named.map(|f| self.folder.join(f)).chain(Channel::ALL.into_iter().filter_map(|c| self.file(c)));
-        for file in files {
+        let records = self.records.iter().map(|r| PathBuf::from(&r.file));
+        for file in files.chain(records) {
             hasher.update(&std::fs::read(file).unwrap_or_default());
         }
         hasher.finalize().to_hex().to_string()
@@ -408,6 +429,7 @@ impl Campaign {
             self.modal.extend(other.modal);
             self.windup.extend(other.windup);
             self.positions.extend(other.positions);
+            self.records.extend(other.records);
             self.statement.name = format!("{}+{}", self.statement.name, other.statement.name);
             self.hash = blake3::hash(format!("{}{}", self.hash, other.hash).as_bytes()).to_hex().to_string();
         }

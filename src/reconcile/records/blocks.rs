@@ -75,7 +75,12 @@ impl Blocks {
 
     /// Fits the last column by others. `prior` gives for a column the standard deviation of its coefficient known before,
     /// in units of `sigma`, the standard deviation of an independent row.
-    pub(crate) fn fit(&self, columns: &[usize], target: usize, prior: impl Fn(usize) -> Option<f64>) -> Option<Fitted> {
+    pub(crate) fn fit(
+        &self,
+        columns: &[usize],
+        target: usize,
+        prior: impl Fn(usize) -> Option<f64>,
+    ) -> Option<Fitted> {
         let p = columns.len();
         let pick = |m: &DMatrix<f64>| DMatrix::from_fn(p, p, |i, j| m[(columns[i], columns[j])]);
         let side = |m: &DMatrix<f64>| DVector::from_fn(p, |i, _| m[(columns[i], target)]);
@@ -191,9 +196,8 @@ pub(crate) fn rows_per_reading(errors: &[f64]) -> f64 {
     const MOST_LAGS: usize = 4000;
     let n = errors.len();
     let mean = errors.iter().sum::<f64>() / n.max(1) as f64;
-    let product = |lag: usize| -> f64 {
-        errors.iter().zip(&errors[lag..]).map(|(a, b)| (a - mean) * (b - mean)).sum()
-    };
+    let product =
+        |lag: usize| -> f64 { errors.iter().zip(&errors[lag..]).map(|(a, b)| (a - mean) * (b - mean)).sum() };
     let variance = product(0);
     if variance <= 0.0 {
         return 1.0;

@@ -20,6 +20,8 @@ const CLOSING: [f64; 6] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.4];
 const PLAYS: [f64; 8] = [0.005, 0.01, 0.02, 0.04, 0.07, 0.12, 0.2, 0.3];
 /// Standard errors by which held-out blocks must be better: the best of a grid is chosen.
 const CLEARLY_OF_GRID: f64 = 3.0;
+/// A law must change the twist by this part of its root mean square.
+const MATERIAL: f64 = 0.02;
 /// Rounds of improvement of the torques of a law.
 const ROUNDS: usize = 5;
 /// Largest change of a torque in one round, as a part of it.
@@ -75,7 +77,7 @@ impl Law {
         match self {
             Law::Segments(a, b) => [t.clamp(-a, a), t.clamp(-b, b), beyond(a), beyond(b)],
             Law::LostMotion(closing) => {
-                let tanh = (t / closing).tanh();
+                let tanh = libm::tanh(t / closing);
                 [tanh, 0.0, -t / closing.powi(2) * (1.0 - tanh * tanh), 0.0]
             }
             Law::Play(width) => [drag[0] - t, 0.0, (drag[1] - drag[0]) / (WIDER * width), 0.0],
@@ -117,7 +119,7 @@ pub(crate) fn spring_torque(model: &TwistModel, viscous_nms_per_rad: f64) -> Vec
     let p = model.places;
     let compliance = model.fitted.value(p.torque());
     let mut row = vec![0.0; p.further() + 1];
-    let parts = [p.torque(), p.acceleration(), p.sense(), p.load_sense()];
+    let parts = [p.torque(), p.acceleration(), p.sense(), p.load_sense(), p.rate()];
     (0..model.rows.samples.len())
         .map(|i| {
             row.fill(0.0);
@@ -147,11 +149,15 @@ pub(crate) fn curve(model: &TwistModel, viscous_nms_per_rad: f64) -> Option<Curv
         let tried = out.best_of_grids(model, &own, largest_nm)?;
         let clear = |fit: &Fitted| fit.better_than(&out.fitted) > CLEARLY_OF_GRID;
         let Some((law, fit)) = tried.iter().find(|(_, fit)| clear(fit)).cloned() else { break };
+        if !is_material(&fit, law, first + 4 * out.laws.len(), &out.spring_nm, model.places.torque()) {
+            break;
+        }
         if let Some(reason) = impossible(&fit, law, first, out.laws.len(), model.places.torque()) {
             out.refused.push((law.what(), reason));
             break;
         }
-        let alike = tried.iter().find(|(l, f)| l.what() != law.what() && clear(f) && fit.better_than(f) < 2.0);
+        let alike =
+            tried.iter().find(|(l, f)| l.what() != law.what() && clear(f) && fit.better_than(f) < 2.0);
         out.rival = out.rival.or(alike.map(|(l, _)| l.what()));
         let laws = [out.laws.as_slice(), &[law]].concat();
         let Some((laws, fit)) = out.improved(model, &own, laws) else { break };
@@ -161,16 +167,30 @@ pub(crate) fn curve(model: &TwistModel, viscous_nms_per_rad: f64) -> Option<Curv
     Some(out)
 }
 
+/// Whether a law changes the twist by so much that it is no matter of how friction is written.
+fn is_material(fit: &Fitted, law: Law, at: usize, spring_nm: &[f64], torque: usize) -> bool {
+    let squares: f64 = spring_nm.iter().map(|t| t * t).sum();
+    let twist_rad = fit.value(torque).abs() * (squares / spring_nm.len() as f64).sqrt();
+    let size_rad = match law {
+        Law::Segments(a, b) => fit.value(at).abs() * a + fit.value(at + 1).abs() * b,
+        Law::LostMotion(_) => fit.value(at).abs(),
+        Law::Play(width) => fit.value(at).abs() * width,
+    };
+    size_rad > MATERIAL * twist_rad
+}
+
 /// Why a law cannot be what its coefficients say.
 fn impossible(fit: &Fitted, law: Law, first: usize, before: usize, torque: usize) -> Option<&'static str> {
     let size = fit.value(first + 4 * before);
     let second = fit.value(first + 4 * before + 1);
     let end = fit.value(torque);
     match law {
-        Law::Play(_) if size <= 0.0 => {
-            Some("the best value has the wrong sign: the twist would lead a reversal of torque, and play can only lag")
+        Law::Play(_) if size <= 0.0 => Some(
+            "the best value has the wrong sign: the twist would lead a reversal of torque, and play can only lag",
+        ),
+        Law::LostMotion(_) if size <= 0.0 => {
+            Some("the best value is negative: the joint is stiffer near zero torque")
         }
-        Law::LostMotion(_) if size <= 0.0 => Some("the best value is negative: the joint is stiffer near zero torque"),
         Law::Segments(..) if size < 0.0 || second < 0.0 || end <= 0.0 => {
             Some("the joint softens as the torque grows, and a gear stiffens")
         }
@@ -180,12 +200,18 @@ fn impossible(fit: &Fitted, law: Law, first: usize, before: usize, torque: usize
 
 impl Curve {
     /// The best of each law's grid beside the laws found before, best first.
-    fn best_of_grids(&self, model: &TwistModel, own: &[usize], largest_nm: f64) -> Option<Vec<(Law, Fitted)>> {
+    fn best_of_grids(
+        &self,
+        model: &TwistModel,
+        own: &[usize],
+        largest_nm: f64,
+    ) -> Option<Vec<(Law, Fitted)>> {
         let has = |what: &str| self.laws.iter().any(|l| l.what() == what);
         let is_shaped = has("torsion_curve") || has("lost_motion");
         let mut grids: Vec<Vec<Law>> = Vec::new();
         if !is_shaped {
-            let pairs = BREAKS.iter().enumerate().flat_map(|(i, a)| BREAKS[i + 1..].iter().map(move |b| (*a, *b)));
+            let pairs =
+                BREAKS.iter().enumerate().flat_map(|(i, a)| BREAKS[i + 1..].iter().map(move |b| (*a, *b)));
             grids.push(pairs.map(|(a, b)| Law::Segments(a * largest_nm, b * largest_nm)).collect());
             grids.push(CLOSING.iter().map(|c| Law::LostMotion(c * largest_nm)).collect());
         }

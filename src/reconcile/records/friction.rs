@@ -1,6 +1,6 @@
 //! Friction from the balance of torques: what the motor gives is what the load takes and what friction takes.
 //!
-//! `T_m = T_0 + I a + A sin q + B cos q + (coupling with other joints) + (F_c + f |T_l|) sgn w + F_v w`
+//! `T_m = T_0 + J a_m + I a_l + A sin q_l + B cos q_l + (coupling with other joints) + (F_c + f |T_l|) sgn w + F_v w`
 //!
 //! The load of a joint also depends on how the other joints stand and move. Their angles, speeds and accelerations enter as
 //! free columns, joint by joint, where held-out blocks become better with them. `T_l`, the torque of the load, is what the
@@ -13,10 +13,13 @@ use super::smooth::{half_width, smooth};
 use super::twist::CLEARLY;
 use crate::reconcile::model::estimate::Estimate;
 
-/// Columns of the joint itself after the offsets of the records: acceleration, sine and cosine once and twice a turn.
-const OWN_LOAD: usize = 5;
+/// Columns of the joint itself after the offsets of the records: acceleration of motor and link, sine and cosine of the
+/// link's angle once and twice a turn.
+const OWN_LOAD: usize = 6;
 /// Columns of friction: sign of the speed, speed, and sign of the speed times the size of the load.
 const FRICTION: usize = 3;
+/// Rows count in the balance where the smoothed sign of the speed is one within this.
+const TURNING: f64 = 0.01;
 /// Columns of another joint.
 const OTHER: usize = 8;
 
@@ -31,6 +34,14 @@ pub(crate) struct Friction {
     pub load_part: Option<Estimate>,
     /// Whether held-out blocks are better with Coulomb and with viscous friction.
     pub clearly: [bool; 2],
+    /// The part of the torque's variance that neither load nor friction explains.
+    pub left_share: f64,
+}
+
+/// Sine and cosine of an angle, both zero at zero so that they do not compete with an offset.
+fn wave(angle_rad: f64) -> [f64; 2] {
+    let (sin, cos) = libm::sincos(angle_rad);
+    [sin, cos - 1.0]
 }
 
 /// Motion of another joint at the rows of this one: angle, speed, acceleration.
@@ -38,6 +49,7 @@ type Motion = Vec<Option<[f64; 3]>>;
 
 struct Balance<'a> {
     rows: &'a JointRows,
+    shift_s: f64,
     others: Vec<Motion>,
     load_nm: Vec<f64>,
 }
@@ -61,10 +73,17 @@ impl Balance<'_> {
     }
 
     fn fill(&self, i: usize, sample: &Sample, row: &mut [f64]) -> bool {
+        // where the joint turns back, friction has no formula
+        if (sample.sense.abs() - 1.0).abs() > TURNING {
+            return false;
+        }
+        let read = self.rows.link(sample, self.shift_s).zip(self.rows.accelerations(sample, self.shift_s));
+        let Some(([q, _], [of_motor, of_link])) = read else { return false };
         let first = self.rows.record_count();
-        let (q, w) = (sample.angle_rad, sample.speed_rad_s);
+        let w = sample.speed_rad_s;
         row[sample.record] = 1.0;
-        let own = [sample.acceleration_rad_s2, q.sin(), q.cos() - 1.0, (2.0 * q).sin(), (2.0 * q).cos() - 1.0];
+        let [[sin, cos], [sin2, cos2]] = [wave(q), wave(2.0 * q)];
+        let own = [of_motor, of_link, sin, cos, sin2, cos2];
         row[first..first + OWN_LOAD].copy_from_slice(&own);
         let [sense, speed, load] = self.friction();
         row[sense] = sample.sense;
@@ -73,17 +92,9 @@ impl Balance<'_> {
         for (k, motion) in self.others.iter().enumerate() {
             let Some([angle, other_speed, acceleration]) = motion[i] else { return false };
             let first = self.other(k)[0];
-            let columns = [
-                acceleration,
-                other_speed.powi(2),
-                angle.sin(),
-                angle.cos() - 1.0,
-                (q + angle).sin(),
-                (q + angle).cos() - 1.0,
-                (q - angle).sin(),
-                (q - angle).cos() - 1.0,
-            ];
-            row[first..first + OTHER].copy_from_slice(&columns);
+            let waves = [wave(angle), wave(q + angle), wave(q - angle)];
+            row[first..first + 2].copy_from_slice(&[acceleration, other_speed.powi(2)]);
+            row[first + 2..first + OTHER].copy_from_slice(waves.as_flattened());
         }
         let last = row.len() - 1;
         row[last] = sample.torque_nm;
@@ -107,8 +118,10 @@ impl Balance<'_> {
 
 /// Angle, speed and acceleration of the other joints at the rows of this one.
 fn motions(rows: &JointRows, records: &[Record]) -> Vec<Motion> {
-    let own: Vec<&Record> =
-        records.iter().filter(|r| r.joints.iter().any(|j| j.joint == rows.joint && !j.link_rad.is_empty())).collect();
+    let own: Vec<&Record> = records
+        .iter()
+        .filter(|r| r.joints.iter().any(|j| j.joint == rows.joint && !j.link_rad.is_empty()))
+        .collect();
     let Some(first) = own.first() else { return Vec::new() };
     let names = first.joints.iter().map(|j| &j.joint).filter(|name| **name != rows.joint);
     let in_all = names.filter(|name| own.iter().all(|r| r.joints.iter().any(|j| j.joint == **name)));
@@ -128,11 +141,12 @@ fn motions(rows: &JointRows, records: &[Record]) -> Vec<Motion> {
 }
 
 /// Finds the friction of a joint. `None` where the joint has no torque or nothing moves.
-pub(crate) fn friction(rows: &JointRows, records: &[Record]) -> Option<Friction> {
+pub(crate) fn friction(rows: &JointRows, records: &[Record], shift_s: f64) -> Option<Friction> {
     if !rows.has_torque {
         return None;
     }
-    let mut balance = Balance { rows, others: motions(rows, records), load_nm: vec![0.0; rows.samples.len()] };
+    let mut balance =
+        Balance { rows, shift_s, others: motions(rows, records), load_nm: vec![0.0; rows.samples.len()] };
     let target = balance.target();
     let sums = rows.sums(target + 1, |i, s, row| balance.fill(i, s, row));
     let [sense, speed, load_sense] = balance.friction();
@@ -166,6 +180,7 @@ pub(crate) fn friction(rows: &JointRows, records: &[Record]) -> Option<Friction>
         viscous_nms_per_rad: chosen.coefficient(speed),
         load_part: has_load.then(|| chosen.coefficient(load_sense)),
         clearly: [without(sense), without(speed)],
+        left_share: chosen.squares / fit(&(0..rows.record_count()).collect::<Vec<_>>())?.squares.max(1e-300),
     })
 }
 

@@ -15,11 +15,21 @@ const BLOCKS: usize = 30;
 const FEWEST_BLOCKS: usize = 10;
 /// A block is at least this many times as long as errors follow each other.
 const LONG_BLOCK: f64 = 3.0;
-/// The least part of the torque's variance that the joint's own motion must leave. Below it compliance cannot be told from
-/// the inertia of the rotor, and friction, which no formula gives to better than about a tenth of the torque, decides.
+/// The part of the torque's variance that the joint's own motion must leave for its compliance to be told from the inertia
+/// of the rotor and from friction, unless friction follows its formula closely.
 const OWN_SHARE: f64 = 0.1;
+/// A smaller part will do if it is so many times what the balance of torques leaves unexplained.
+const WELL_BALANCED: f64 = 20.0;
 /// A compliance whose interval spans more than this factor is not identified.
 const WIDE: f64 = 5.0;
+/// No interval is narrower than this part of its value on either side: scales of sensors are not known better.
+const LEAST_PART: f64 = 2e-3;
+/// The same for friction, which no joint has constant.
+const LEAST_FRICTION_PART: f64 = 0.01;
+/// The same for the numbers of a law, which no gear follows exactly.
+const LEAST_LAW_PART: f64 = 0.05;
+/// A time shift is not known better than this part of the time between rows.
+const LEAST_STEP_PART: f64 = 0.01;
 /// Points of a picture.
 const POINTS: usize = 600;
 /// A joint must turn through so much for once and twice a turn to be told apart \[rad\].
@@ -50,8 +60,8 @@ struct Judged<'a> {
 
 impl<'a> Judged<'a> {
     fn new(rows: &'a JointRows, model: &'a TwistModel<'a>, records: &'a [Record]) -> Self {
-        let friction = friction(rows, records);
-        let compliance = compliance(model);
+        let friction = balanced(rows, model, records);
+        let compliance = compliance(model, friction.map_or(1.0, |f| f.left_share));
         let is_found = compliance.state == State::Found && Curve::applies(model);
         let viscous = friction.filter(|f| f.clearly[1] && is_positive(&f.viscous_nms_per_rad));
         let viscous = viscous.map_or(0.0, |f| f.viscous_nms_per_rad.value);
@@ -90,7 +100,9 @@ impl<'a> Judged<'a> {
     /// that of all of the friction.
     fn motor_part(&self) -> (f64, f64) {
         let p = self.model.places;
-        let Some(f) = self.friction.filter(|f| f.clearly[0] && is_positive(&f.coulomb_nm)) else { return (0.0, 1.0) };
+        let Some(f) = self.friction.filter(|f| f.clearly[0] && is_positive(&f.coulomb_nm)) else {
+            return (0.0, 1.0);
+        };
         let total = f.coulomb_nm;
         let part = self.model.fitted.estimate(|c| -c(p.sense()) / c(p.torque()) / total.value);
         let spread = half(&total) / total.value;
@@ -114,22 +126,32 @@ impl<'a> Judged<'a> {
             }
         };
         let (shift, words) = self.with_friction(plain);
+        let shift = widened(shift, LEAST_STEP_PART * self.rows.step_s);
         let is_clear = self.model.groups.contains(&Group::Shift) && excludes_zero(&shift);
         let absent = "held-out blocks are not predicted better with a shift, or friction explains it as well";
         let state = if is_clear { State::Found } else { State::Absent };
         Stated::one("time_shift", state, "seconds", shift, if is_clear { &words } else { absent })
     }
 
+    /// The shift with the part of viscous friction put back. Where the compliance is not identified, the interval has what
+    /// any compliance that it allows could hide.
     fn with_friction(&self, plain: Estimate) -> (Estimate, String) {
-        let is_used = self.compliance.state == State::Found;
-        let Some(f) = self.friction.filter(|f| is_used && f.clearly[1] && is_positive(&f.viscous_nms_per_rad)) else {
+        let Some(f) = self.friction.filter(|f| self.rows.has_torque && is_positive(&f.viscous_nms_per_rad))
+        else {
             return (plain, String::new());
         };
-        let compliance = self.model.fitted.value(self.model.places.torque());
-        let (least, most) = self.motor_part();
+        let c = self.model.fitted.coefficient(self.model.places.torque());
+        let is_known = is_positive(&c);
+        let compliance = if is_known { c.value } else { 0.0 };
+        let most_compliant = c.high.unwrap_or(0.0).max(0.0);
+        let (least, most) = if is_known { self.motor_part() } else { (0.0, 1.0) };
         let viscous = f.viscous_nms_per_rad;
         let by_friction = |part: f64| part * compliance * viscous.value;
-        let spread = |part: f64| half(&plain).hypot(part * compliance * half(&viscous));
+        let spread = |part: f64| {
+            let (by_viscous, by_compliance) =
+                (compliance * half(&viscous), (most_compliant - compliance) * viscous.value);
+            libm::hypot(half(&plain), part * libm::hypot(by_viscous, by_compliance))
+        };
         let value = plain.value + by_friction(most);
         let out = Estimate {
             value,
@@ -137,7 +159,7 @@ impl<'a> Judged<'a> {
             high: Some(value + spread(most)),
         };
         let words = format!(
-            "viscous friction counts for {:.2} ms of it (from {:.2} ms: a part of the friction may sit behind the spring)",
+            "viscous friction counts for {:.2} ms of it ({:.2} ms if a part of the friction sits behind the spring)",
             1e3 * by_friction(most),
             1e3 * by_friction(least)
         );
@@ -147,7 +169,9 @@ impl<'a> Judged<'a> {
     fn laws(&self) -> Vec<Stated> {
         let all = ["torsion_curve", "hysteresis", "lost_motion"];
         let Some(curve) = &self.curve else {
-            return all.map(|w| Stated::none(w, State::NotIdentified, "compliance is not identified")).to_vec();
+            return all
+                .map(|w| Stated::none(w, State::NotIdentified, "compliance is not identified"))
+                .to_vec();
         };
         let state = |what: &'static str| {
             if let Some(law) = curve.laws.iter().find(|l| l.what() == what) {
@@ -168,14 +192,22 @@ impl<'a> Judged<'a> {
             return names.map(|n| Stated::none(n, State::NotIdentified, words)).to_vec();
         };
         let one = |what, name, estimate: Estimate, clearly: bool| {
+            let estimate = widened(estimate, LEAST_FRICTION_PART * estimate.value.abs());
             if clearly && is_positive(&estimate) {
                 return Stated::one(what, State::Found, name, estimate, "");
             }
             if clearly && estimate.high.is_some_and(|h| h < 0.0) {
-                let words = "the best value drives the motion: the load of the joint is not what is assumed of it";
+                let words =
+                    "the best value drives the motion: the load of the joint is not what is assumed of it";
                 return Stated::one(what, State::Refused, name, estimate, words);
             }
-            Stated::one(what, State::NotIdentified, name, estimate, "the interval contains zero, or held-out blocks are as good without it")
+            Stated::one(
+                what,
+                State::NotIdentified,
+                name,
+                estimate,
+                "the interval contains zero, or held-out blocks are as good without it",
+            )
         };
         let load = match f.load_part {
             Some(part) => Stated::one(names[2], State::Found, "nm_per_nm", part, ""),
@@ -233,7 +265,7 @@ impl<'a> Judged<'a> {
         self.model.fitted.estimate(|c| {
             let ends = (f64::INFINITY, f64::NEG_INFINITY);
             let (least, most) = (0..=STEPS).fold(ends, |(least, most), i| {
-                let (sin, cos) = (ratio * (low + (high - low) * i as f64 / STEPS as f64)).sin_cos();
+                let (sin, cos) = libm::sincos(ratio * (low + (high - low) * i as f64 / STEPS as f64));
                 let shapes = [sin, cos, 2.0 * sin * cos, cos * cos - sin * sin];
                 let error: f64 = shapes.iter().zip(columns).map(|(s, k)| s * c(k)).sum();
                 (least.min(error), most.max(error))
@@ -264,7 +296,10 @@ impl<'a> Judged<'a> {
     fn remarks(&self) -> Vec<String> {
         let mut out = Vec::new();
         if let Some(rival) = self.curve.as_ref().and_then(|c| c.rival) {
-            out.push(format!("held-out blocks cannot tell the law of the twist from {}", rival.replace('_', " ")));
+            out.push(format!(
+                "held-out blocks cannot tell the law of the twist from {}",
+                rival.replace('_', " ")
+            ));
         }
         let refused = self.model.fitted.value(self.model.places.torque()) < 0.0;
         if refused && self.compliance.state == State::Refused {
@@ -281,7 +316,7 @@ impl<'a> Judged<'a> {
         let fitted = self.curve.as_ref().map_or(&model.fitted, |c| &c.fitted);
         let record = |i: usize| self.rows.samples[i].record;
         let spring = self.curve.as_ref().map(|c| (c.spring_twist_rad(p, record), &c.spring_nm));
-        let elastic = [p.torque(), p.sense(), p.load_sense(), p.acceleration()];
+        let elastic = [p.torque(), p.sense(), p.load_sense(), p.acceleration(), p.rate()];
         let every = (self.rows.samples.len() / POINTS).max(1);
         let mut out = Vec::new();
         for i in (0..self.rows.samples.len()).step_by(every) {
@@ -304,8 +339,30 @@ impl<'a> Judged<'a> {
     }
 }
 
+/// Friction, with the link read at its own time: the shift that the twist shows lacks what viscous friction hides of it.
+fn balanced(rows: &JointRows, model: &TwistModel, records: &[Record]) -> Option<Friction> {
+    const ROUNDS: usize = 5;
+    let compliance = model.fitted.value(model.places.torque()).max(0.0);
+    let mut out = friction(rows, records, model.shift_s)?;
+    for _ in 1..ROUNDS {
+        let is_sure = out.clearly[1] && is_positive(&out.viscous_nms_per_rad);
+        let hidden_s = if is_sure { compliance * out.viscous_nms_per_rad.value } else { 0.0 };
+        out = friction(rows, records, model.shift_s + hidden_s)?;
+    }
+    Some(out)
+}
+
 fn half(estimate: &Estimate) -> f64 {
     estimate.high.zip(estimate.low).map_or(0.0, |(high, low)| 0.5 * (high - low))
+}
+
+/// The interval, at least so wide on either side of the value.
+fn widened(estimate: Estimate, least: f64) -> Estimate {
+    Estimate {
+        low: estimate.low.map(|low| low.min(estimate.value - least)),
+        high: estimate.high.map(|high| high.max(estimate.value + least)),
+        ..estimate
+    }
 }
 
 fn excludes_zero(estimate: &Estimate) -> bool {
@@ -313,7 +370,7 @@ fn excludes_zero(estimate: &Estimate) -> bool {
 }
 
 /// Whether the compliance is identified, and how large it is.
-fn compliance(model: &TwistModel) -> Stated {
+fn compliance(model: &TwistModel, left_share: f64) -> Stated {
     const WHAT: &str = "compliance";
     const NAME: &str = "stiffness_nm_per_rad";
     if !model.rows.has_torque {
@@ -321,25 +378,57 @@ fn compliance(model: &TwistModel) -> Stated {
     }
     let share = model.own_share_of_torque();
     let c = model.fitted.coefficient(model.places.torque());
-    if share < OWN_SHARE {
-        let known = if model.rows.rotor_inertia_kgm2.is_none() { " and the rotor's inertia is not stated" } else { "" };
+    if share < OWN_SHARE.min(WELL_BALANCED * left_share) {
+        let known = if model.rows.rotor_inertia_kgm2.is_none() {
+            " and the rotor's inertia is not stated"
+        } else {
+            ""
+        };
         let words = format!(
-            "insufficient excitation: {:.0} % of the torque's variance is the joint's own acceleration and friction{known}, and \
-             compliance cannot be told from them; record motion under gravity or with payloads",
-            100.0 * (1.0 - share)
+            "insufficient excitation: {:.0} % of the torque's variance is the joint's own acceleration and friction{known}; \
+             {:.1} % are explained by neither friction nor load, so that compliance cannot be told from them",
+            100.0 * (1.0 - share),
+            100.0 * left_share
         );
         return Stated { parameters: open(&c), ..Stated::none(WHAT, State::NotIdentified, words) };
     }
     if c.high.is_some_and(|high| high < 0.0) {
         return Stated::none(WHAT, State::Refused, "the twist falls as the torque grows");
     }
+    let c = widened(c, LEAST_PART * c.value.abs());
     let (low, high) = (c.low.unwrap_or(0.0), c.high.unwrap_or(f64::INFINITY));
     if low <= 0.0 || high / low > WIDE || model.gain(Group::Compliance) < CLEARLY {
         let words = "the interval of the compliance contains zero or spans a factor of more than 5: the record hardly loads the joint";
         return Stated { parameters: open(&c), ..Stated::none(WHAT, State::NotIdentified, words) };
     }
+    let (low, high, mut words) = with_gear_error(model, low, high);
     let stiffness = Estimate { value: 1.0 / c.value, low: Some(1.0 / high), high: Some(1.0 / low) };
-    Stated::one(WHAT, State::Found, NAME, stiffness, "")
+    let p = model.places;
+    let plain =
+        model.fit_with(&[p.offsets(), vec![p.torque()]].concat()).map_or(0.0, |f| f.value(p.torque()));
+    if model.groups.contains(&Group::Shift) && plain > 0.0 && plain / c.value > 1.1 {
+        words.push(format!(
+            "without time shift and friction it would come out {:.1} times too soft",
+            plain / c.value
+        ));
+    }
+    Stated::one(WHAT, State::Found, NAME, stiffness, &words.join("; "))
+}
+
+/// Limits of the compliance, wide enough for it to be right with and without an error of the gear: gravity turns with the
+/// joint, and so does such an error.
+fn with_gear_error(model: &TwistModel, low: f64, high: f64) -> (f64, f64, Vec<String>) {
+    if !model.groups.contains(&Group::Output) {
+        return (low, high, Vec::new());
+    }
+    let others: Vec<Group> = model.groups.iter().copied().filter(|g| *g != Group::Output).collect();
+    let without = model.fit(&others).map(|f| f.coefficient(model.places.torque()));
+    let Some(c) = without.filter(is_positive) else { return (low, high, Vec::new()) };
+    let words = format!(
+        "{:.3e} Nm/rad without the transmission error, which turns with the joint as gravity does; the interval has both",
+        1.0 / c.value
+    );
+    (low.min(c.low.unwrap_or(low)), high.max(c.high.unwrap_or(high)), vec![words])
 }
 
 /// The stiffness that belongs to a compliance which is not identified: an end where the compliance may be zero is open.
@@ -354,7 +443,12 @@ fn open(c: &Estimate) -> Vec<(String, Vec<Estimate>)> {
 }
 
 fn law_stated(curve: &Curve, law: Law, model: &TwistModel) -> Stated {
-    let parameters = curve.parameters(law, model.places);
+    let wide = |e: &Estimate| widened(*e, LEAST_LAW_PART * e.value.abs());
+    let parameters: Vec<(String, Vec<Estimate>)> = curve
+        .parameters(law, model.places)
+        .into_iter()
+        .map(|(name, list)| (name, list.iter().map(wide).collect()))
+        .collect();
     // a size whose interval contains zero is no finding
     let is_bounded = match law {
         Law::Segments(..) => true,

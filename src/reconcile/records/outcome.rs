@@ -82,7 +82,11 @@ fn is_explained(joint: &JointRecord) -> bool {
     joint.after_rad <= (LEFT * joint.before_rad).max(NOISY * joint.noise_rad)
 }
 
-fn verdict(joints: &[JointRecord], findings: &[Finding], stiffnesses: &[Stiffness]) -> (Verdict, Vec<String>) {
+fn verdict(
+    joints: &[JointRecord],
+    findings: &[Finding],
+    stiffnesses: &[Stiffness],
+) -> (Verdict, Vec<String>) {
     if joints.is_empty() {
         let text = "no joint of the records could be judged: nothing moves, or nearly all rows stand at gaps in time";
         return (Verdict::InsufficientData, vec![text.into()]);
@@ -124,7 +128,9 @@ fn named(joint: &JointRecord) -> Vec<Finding> {
         // once a turn and gravity look alike where no other joint changes the torque
         let is_compliance = joint.found("compliance").is_some();
         match what {
-            "transmission_error" if is_compliance => vec![("connection_compliance".into(), joint.joint.clone())],
+            "transmission_error" if is_compliance => {
+                vec![("connection_compliance".into(), joint.joint.clone())]
+            }
             _ => Vec::new(),
         }
     };
@@ -189,7 +195,7 @@ fn stiffness(campaign: &Campaign, joint: &JointRecord) -> Stiffness {
         low: measured.low.map(factor),
         high: measured.high.map(factor),
     };
-    let spread = 0.25 * (ends.1 / ends.0.max(1e-9)).ln();
+    let spread = 0.25 * libm::log(ends.1 / ends.0.max(1e-9));
     let calibrated = Calibrated {
         name: format!("{}.stiffness", joint.joint),
         factor: own,
@@ -216,7 +222,12 @@ fn nominal_compliance(campaign: &Campaign, joint: &str, torque_nm: f64) -> f64 {
 }
 
 /// The corrected arm: what belongs to the joints is written into it even where another joint stays unexplained.
-fn corrected(campaign: &Campaign, findings: &[Finding], joints: &[JointRecord], stiffnesses: &[Stiffness]) -> Arm {
+fn corrected(
+    campaign: &Campaign,
+    findings: &[Finding],
+    joints: &[JointRecord],
+    stiffnesses: &[Stiffness],
+) -> Arm {
     let mut arm = campaign.arm.clone();
     for (joint, stiffness) in joints.iter().zip(stiffnesses) {
         let Some(factor) = stiffness.factor.filter(|_| is_explained(joint)) else { continue };
@@ -253,7 +264,12 @@ fn held_out(joints: &[JointRecord]) -> Option<HeldOut> {
         (sum / count as f64).sqrt()
     };
     let after = mean(|j| j.after_rad);
-    (count > 0).then(|| HeldOut { rms_before: mean(|j| j.before_rad), rms_after: after, rms_declared_after: after, count })
+    (count > 0).then(|| HeldOut {
+        rms_before: mean(|j| j.before_rad),
+        rms_after: after,
+        rms_declared_after: after,
+        count,
+    })
 }
 
 fn located(joints: &[JointRecord]) -> Vec<Located> {
@@ -296,7 +312,10 @@ pub(crate) fn joined(mut other: Outcome, records: Outcome) -> Outcome {
         outcome.reasons.iter().map(|r| format!("{what}: {r}")).collect()
     };
     let mut reasons = [words("the other readings", &other), words("the records", &records)].concat();
-    reasons.push("records and other readings are each judged by itself, and the verdict is the less favourable one".into());
+    reasons.push(
+        "records and other readings are each judged by itself, and the verdict is the less favourable one"
+            .into(),
+    );
     let known: Vec<Finding> = [other.effects.as_slice(), &other.suspects].concat();
     let is_told = |at: &str| known.iter().any(|f| f.at == at && OF_TWIST.contains(&f.effect.as_str()));
     let is_new = |f: &&Finding| !(OF_TWIST.contains(&f.effect.as_str()) && is_told(&f.at));
@@ -311,10 +330,16 @@ pub(crate) fn joined(mut other: Outcome, records: Outcome) -> Outcome {
         Verdict::NoGap | Verdict::Unexplained => (Vec::new(), Vec::new()),
     };
     if verdict == Verdict::Explained {
-        let added = records.corrected.effects.iter().filter(|e| new.iter().any(|f| f.effect == e.effect && f.at == e.at));
+        let added = records
+            .corrected
+            .effects
+            .iter()
+            .filter(|e| new.iter().any(|f| f.effect == e.effect && f.at == e.at));
         other.corrected.effects.extend(added.cloned());
     } else if records.verdict == Verdict::Explained {
-        reasons.push(format!("{CORRECTED_FILE} has nothing of the records, because the other readings are not explained"));
+        reasons.push(format!(
+            "{CORRECTED_FILE} has nothing of the records, because the other readings are not explained"
+        ));
     }
     other.verdict = verdict;
     other.reasons = reasons;

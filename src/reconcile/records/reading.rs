@@ -56,19 +56,38 @@ struct Reader<'a> {
     faults: Vec<Fault>,
 }
 
+/// Reads all records of a campaign. A record that `campaign.json` does not name is read if its usual file exists.
+///
+/// # Errors
+/// A file cannot be read. Faults are added to `faults`.
+pub(crate) fn read_all(
+    folder: &Path,
+    specs: &[RecordSpec],
+    joints: &[String],
+    faults: &mut Vec<Fault>,
+) -> Result<Vec<Record>, InputError> {
+    let mut out = Vec::new();
+    for spec in specs {
+        let path = folder.join(&spec.file);
+        if spec.is_named || path.exists() {
+            out.extend(read_record(&path, spec, joints, faults)?);
+        }
+    }
+    Ok(out)
+}
+
 /// Reads a record.
 ///
 /// # Errors
 /// The file cannot be read, or its faults.
-pub(crate) fn read_record(
+fn read_record(
     path: &Path,
     spec: &RecordSpec,
     joints: &[String],
     faults: &mut Vec<Fault>,
 ) -> Result<Option<Record>, InputError> {
     let file = path.display().to_string();
-    let text =
-        std::fs::read(path).map_err(|source| InputError::Unreadable { file: file.clone(), source })?;
+    let text = std::fs::read(path).map_err(|source| InputError::Unreadable { file: file.clone(), source })?;
     let mut reader = Reader { file, spec, header: Vec::new(), faults: Vec::new() };
     let record = reader.read(&text, joints);
     let is_sound = reader.faults.is_empty();
@@ -76,7 +95,13 @@ pub(crate) fn read_record(
     faults.extend(reader.faults.into_iter().take(MOST_FAULTS));
     if listed > MOST_FAULTS {
         let problem = format!("{} further faults of this kind", listed - MOST_FAULTS);
-        faults.push(Fault { file: reader.file, line: None, field: String::new(), problem, hint: String::new() });
+        faults.push(Fault {
+            file: reader.file,
+            line: None,
+            field: String::new(),
+            problem,
+            hint: String::new(),
+        });
     }
     Ok(record.filter(|_| is_sound))
 }
@@ -159,7 +184,8 @@ impl Reader<'_> {
                 self.fault(Some(1), &theirs, problem, &hint);
             }
             let suffixes = ["_motor_deg", "_motor_shaft_deg", "_link_deg", "_motor_torque_nm", "_current_a"];
-            let of_joint = suffixes.iter().any(|s| ours.strip_suffix(s).is_some_and(|j| joints.iter().any(|k| k == j)));
+            let of_joint =
+                suffixes.iter().any(|s| ours.strip_suffix(s).is_some_and(|j| joints.iter().any(|k| k == j)));
             if ours != "t_s" && !of_joint {
                 let hint = format!(
                     "known are t_s and, for each joint ({}), the joint's name followed by one of: {}",
@@ -173,7 +199,12 @@ impl Reader<'_> {
         let stated = [&spec.ratio, &spec.torque_constant_nm_per_a, &spec.rotor_inertia_kgm2];
         for name in stated.iter().flat_map(|p| p.joints()).filter(|n| !joints.iter().any(|j| j == n)) {
             let hint = format!("joints of the arm: {}", joints.join(", "));
-            self.fault(None, name, "campaign.json states a constant of this joint, which the arm lacks".into(), &hint);
+            self.fault(
+                None,
+                name,
+                "campaign.json states a constant of this joint, which the arm lacks".into(),
+                &hint,
+            );
         }
     }
 
@@ -233,7 +264,12 @@ impl Reader<'_> {
         let t_s = self.number(cells, line, time);
         if out.t_s.last().is_some_and(|last| t_s <= *last) {
             let problem = format!("{t_s} s does not come after {} s", out.t_s[out.t_s.len() - 1]);
-            self.fault(line, "t_s", problem, "sort the rows by time and give each time once; cut records apart");
+            self.fault(
+                line,
+                "t_s",
+                problem,
+                "sort the rows by time and give each time once; cut records apart",
+            );
         }
         for (c, signals) in columns.iter().zip(&mut out.joints) {
             signals.motor_rad.push(self.number(cells, line, c.motor.0).to_radians() * c.motor.1);

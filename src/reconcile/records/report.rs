@@ -44,7 +44,9 @@ fn numbers(stated: &Stated) -> String {
         let (unit, factor) = shown_as(name);
         let values: Vec<String> = list.iter().map(|e| interval(e, factor)).collect();
         let label = match name.as_str() {
-            "k1_nm_per_rad" | "k2_nm_per_rad" | "k3_nm_per_rad" | "t1_nm" | "t2_nm" => format!("{} ", &name[..2]),
+            "k1_nm_per_rad" | "k2_nm_per_rad" | "k3_nm_per_rad" | "t1_nm" | "t2_nm" => {
+                format!("{} ", &name[..2])
+            }
             "peak_to_peak_rad" => "peak to peak ".into(),
             "sin_cos_sin2_cos2_rad" => "sin, cos, sin 2, cos 2: ".into(),
             _ => String::new(),
@@ -99,7 +101,8 @@ pub(crate) fn sections(joints: &[JointRecord]) -> Vec<PageSection> {
 }
 
 fn section(joint: &JointRecord) -> PageSection {
-    let mut table = Table::new(vec![Column::left("what"), Column::left("state"), Column::left("value and why")]);
+    let mut table =
+        Table::new(vec![Column::left("what"), Column::left("state"), Column::left("value and why")]);
     for stated in &joint.stated {
         let values = numbers(stated);
         let words: Vec<&str> =
@@ -141,7 +144,8 @@ fn figure(joint: &JointRecord) -> Figure {
         height_px: 300.0,
         ..Plot::default()
     };
-    let scatter = |name: &str, style: usize, points| Series { marker_px: 2.0, ..Series::scatter(name, style, points) };
+    let scatter =
+        |name: &str, style: usize, points| Series { marker_px: 2.0, ..Series::scatter(name, style, points) };
     let mut model = points(|t| t.model_rad);
     model.sort_by(|a, b| a.0.total_cmp(&b.0));
     let sheet = Sheet {

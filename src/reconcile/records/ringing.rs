@@ -51,7 +51,7 @@ pub(crate) fn swings(t_s: &[f64], motor_rad: &[f64], link_rad: &[f64]) -> Vec<(f
     let speed = smooth(t_s, motor_rad, half).slope;
     let fastest = speed.iter().filter(|w| !w.is_nan()).fold(0.0f64, |m, w| m.max(w.abs()));
     let slow = (AT_REST * fastest).max(4.0 * slope_noise(motor_rad, half, usual_step_s(t_s)));
-    let level = noise(motor_rad).hypot(noise(link_rad));
+    let level = libm::hypot(noise(motor_rad), noise(link_rad));
     let mut out = Vec::new();
     let mut begin = 0;
     for i in 0..=t_s.len() {
@@ -88,7 +88,7 @@ pub(crate) fn joined(swings: &[(f64, f64, f64)]) -> Option<Ringing> {
     let ends = |sign: f64| Some(frequency_hz + sign * half);
     Some(Ringing {
         frequency_hz: Estimate { value: frequency_hz, low: ends(-1.0), high: ends(1.0) },
-        damping: decay / (TAU * frequency_hz).hypot(decay),
+        damping: decay / libm::hypot(TAU * frequency_hz, decay),
         stretches: alike.len(),
     })
 }
@@ -110,7 +110,8 @@ fn swing(t_s: &[f64], twist_rad: &[f64], noise_rad: f64) -> Option<Swing> {
     guess = frequency;
     let straight = squares_of(&t, twist_rad, &[]).0;
     let amplitude = ((straight - squares).max(0.0) / t.len() as f64).sqrt();
-    let in_range = guess * duration >= FEWEST_PERIODS && guess < HIGHEST_PART / step && decay >= -0.5 / duration;
+    let in_range =
+        guess * duration >= FEWEST_PERIODS && guess < HIGHEST_PART / step && decay >= -0.5 / duration;
     if !in_range || squares > (1.0 - TELLING) * straight || amplitude < LOUD * noise_rad {
         return None;
     }
@@ -128,17 +129,23 @@ fn peak(t: &[f64], x: &[f64], low_hz: f64, high_hz: f64) -> Option<f64> {
     let (_, errors) = squares_of(t, x, &[]);
     let duration = t[t.len() - 1];
     let count = ((high_hz - low_hz) * duration * 2.0).max(0.0) as usize;
-    let power = |f: f64| {
-        let (mut re, mut im) = (0.0, 0.0);
-        for (t, e) in t.iter().zip(&errors) {
-            let (sin, cos) = (TAU * f * t).sin_cos();
-            re += e * cos;
-            im += e * sin;
+    let turn = |f: f64| t.iter().map(move |t| libm::sincos(TAU * f * t));
+    // each row's sine and cosine are turned on from one frequency to the next
+    let mut now: Vec<(f64, f64)> = turn(low_hz).collect();
+    let on: Vec<(f64, f64)> = turn(0.5 / duration).collect();
+    let mut best = (0.0, None);
+    for i in 0..=count {
+        let sum =
+            now.iter().zip(&errors).fold((0.0, 0.0), |(s, c), ((sin, cos), e)| (s + e * sin, c + e * cos));
+        let power = sum.0 * sum.0 + sum.1 * sum.1;
+        if power > best.0 {
+            best = (power, Some(low_hz + 0.5 * i as f64 / duration));
         }
-        re * re + im * im
-    };
-    let frequencies = (0..=count).map(|i| low_hz + 0.5 * i as f64 / duration);
-    frequencies.map(|f| (power(f), f)).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, f)| f)
+        for ((sin, cos), (ds, dc)) in now.iter_mut().zip(&on) {
+            (*sin, *cos) = (*sin * dc + *cos * ds, *cos * dc - *sin * ds);
+        }
+    }
+    best.1
 }
 
 /// Squares left by a line and further columns, and the errors.
@@ -162,14 +169,16 @@ fn solved(t: &[f64], x: &[f64], columns: &[Vec<f64>]) -> (Vec<f64>, Vec<f64>) {
     for i in 0..p {
         normal[(i, i)] *= 1.0 + 1e-12;
     }
-    let Some(c) = normal.cholesky().map(|c| c.solve(&a.tr_mul(&b))) else { return (b.as_slice().to_vec(), Vec::new()) };
+    let Some(c) = normal.cholesky().map(|c| c.solve(&a.tr_mul(&b))) else {
+        return (b.as_slice().to_vec(), Vec::new());
+    };
     let errors = b - a * &c;
     (errors.as_slice().to_vec(), c.as_slice()[2..].to_vec())
 }
 
 fn swing_columns(t: &[f64], [f, d]: [f64; 2]) -> [Vec<f64>; 2] {
-    let column = |part: fn(f64) -> f64| t.iter().map(|t| (-d * t).exp() * part(TAU * f * t)).collect();
-    [column(f64::cos), column(f64::sin)]
+    let column = |part: fn(f64) -> f64| t.iter().map(|t| libm::exp(-d * t) * part(TAU * f * t)).collect();
+    [column(libm::cos), column(libm::sin)]
 }
 
 /// Gauss-Newton from a guess: at each step amplitudes, frequency and decay are solved for together.
@@ -219,7 +228,8 @@ fn deviation_hz(t: &[f64], x: &[f64], at: [f64; 2]) -> f64 {
     let scale: Vec<f64> = (0..6).map(|j| a.column(j).norm().max(1e-300)).collect();
     let scaled = DMatrix::from_fn(t.len(), 6, |i, j| a[(i, j)] / scale[j]);
     let inverse = scaled.tr_mul(&scaled).try_inverse();
-    let variance = errors.iter().map(|e| e * e).sum::<f64>() / (t.len() - 6) as f64 * rows_per_reading(&errors);
+    let variance =
+        errors.iter().map(|e| e * e).sum::<f64>() / (t.len() - 6) as f64 * rows_per_reading(&errors);
     inverse.map_or(f64::INFINITY, |m| (m[(4, 4)].max(0.0) * variance).sqrt() / scale[4]).max(1e-9)
 }
 
@@ -230,8 +240,9 @@ mod tests {
     #[test]
     fn a_damped_swing_after_a_stop_is_found() {
         let t: Vec<f64> = (0..3000).map(|i| 0.001 * i as f64).collect();
-        let motor: Vec<f64> = t.iter().map(|t| if *t < 1.0 { 0.5 * t * t * (3.0 - 2.0 * t) } else { 0.5 }).collect();
-        let swing = |t: f64| 1e-3 * (-1.5 * (t - 1.0)).exp() * (TAU * 11.3 * (t - 1.0)).cos();
+        let motor: Vec<f64> =
+            t.iter().map(|t| if *t < 1.0 { 0.5 * t * t * (3.0 - 2.0 * t) } else { 0.5 }).collect();
+        let swing = |t: f64| 1e-3 * libm::exp(-1.5 * (t - 1.0)) * libm::cos(TAU * 11.3 * (t - 1.0));
         let link: Vec<f64> =
             t.iter().zip(&motor).map(|(t, m)| m - if *t > 1.0 { swing(*t) } else { 0.0 }).collect();
         let found = joined(&swings(&t, &motor, &link)).expect("a swing");

@@ -5,7 +5,9 @@ use super::reading::{JointSignals, Record};
 use super::smooth::{Smooth, half_width, noise, slope_noise, smooth, usual_step_s};
 
 /// The sign of a speed is taken as smooth below this part of the largest speed, because friction is.
-const SLOW_PART: f64 = 0.01;
+const SLOW_PART: f64 = 0.002;
+/// An acceleration that is so much larger than that of the gear's other side is no real one.
+const RESTLESS: f64 = 1.2;
 /// Fewest blocks of a record, so that no record stands or falls with one.
 const FEWEST_BLOCKS: usize = 4;
 
@@ -24,10 +26,14 @@ pub(crate) struct Sample {
     pub speed_rad_s: f64,
     /// Its acceleration \[rad/s²\].
     pub acceleration_rad_s2: f64,
-    /// Sign of the speed, smooth about zero.
+    /// Sign of the speed, smoothed as the torque is.
     pub sense: f64,
+    /// Sign of the speed times the size of the torque, smoothed in the same way \[N m\].
+    pub load_sense_nm: f64,
     /// Torque of the motor at the output; 0 if it is not recorded \[N m\].
     pub torque_nm: f64,
+    /// Its rate \[N m/s\].
+    pub torque_rate_nm_s: f64,
 }
 
 struct Signals {
@@ -54,6 +60,8 @@ pub(crate) struct JointRows {
     pub blocks: usize,
     /// Rows between samples \[s\].
     pub step_s: f64,
+    /// Root mean squares of the accelerations of motor and link \[rad/s²\].
+    accelerations_rad_s2: [f64; 2],
     records: Vec<Signals>,
 }
 
@@ -83,27 +91,60 @@ impl JointRows {
             samples: Vec::new(),
             blocks: 0,
             step_s: usual_step_s(&own[0].0.t_s),
+            accelerations_rad_s2: [0.0; 2],
             records: Vec::new(),
         };
         for (record, signals) in own {
             let share = (blocks * record.t_s.len()) as f64 / total as f64;
             out.push(&record.t_s, signals, (share.round() as usize).max(FEWEST_BLOCKS));
         }
+        out.accelerations_rad_s2 = out.rms_accelerations();
         Some(out)
     }
 
+    fn rms_accelerations(&self) -> [f64; 2] {
+        let of_link = |s: &Sample| self.records[s.record].link.curvature[s.row];
+        let mean = |of: &dyn Fn(&Sample) -> f64| {
+            let sum: f64 = self.samples.iter().map(|s| of(s).powi(2)).sum();
+            (sum / self.samples.len().max(1) as f64).sqrt()
+        };
+        [mean(&|s| s.acceleration_rad_s2), mean(&of_link)]
+    }
+
+    /// Acceleration of motor and link. An error of the gear within a turn of the motor shows in the acceleration of one of
+    /// them, as large as any real one; the calmer side then stands for both \[rad/s²\].
+    pub(crate) fn accelerations(&self, sample: &Sample, shift_s: f64) -> Option<[f64; 2]> {
+        let both = [sample.acceleration_rad_s2, self.link(sample, shift_s)?[1]];
+        let [motor, link] = self.accelerations_rad_s2;
+        Some(match () {
+            () if motor > RESTLESS * link => [both[1]; 2],
+            () if link > RESTLESS * motor => [both[0]; 2],
+            () => both,
+        })
+    }
+
     fn push(&mut self, t_s: &[f64], signals: &JointSignals, blocks: usize) {
-        let half = half_width(t_s, &signals.motor_rad);
+        // an error of the gear within a turn of the motor shows on one side and narrows that side's window only
+        let half = half_width(t_s, &signals.motor_rad).max(half_width(t_s, &signals.link_rad));
         let motor = smooth(t_s, &signals.motor_rad, half);
         let link = smooth(t_s, &signals.link_rad, half);
-        let torque_nm = match self.has_torque {
-            true => smooth(t_s, &signals.torque_nm, half_width(t_s, &signals.torque_nm)).value,
-            false => vec![0.0; t_s.len()],
-        };
+
         let step_s = usual_step_s(t_s);
         let fastest = motor.slope.iter().filter(|w| !w.is_nan()).fold(0.0f64, |m, w| m.max(w.abs()));
         let doubt = slope_noise(&signals.motor_rad, half, step_s);
-        let slow = (SLOW_PART * fastest).max(3.0 * doubt).max(f64::MIN_POSITIVE);
+        let slow = (SLOW_PART * fastest).max(2.0 * doubt).max(f64::MIN_POSITIVE);
+        let sign: Vec<f64> =
+            motor.slope.iter().map(|w| if w.is_nan() { 0.0 } else { libm::tanh(w / slow) }).collect();
+        let none = vec![0.0; t_s.len()];
+        let (torque_nm, torque_half) = match self.has_torque {
+            true => (&signals.torque_nm, half_width(t_s, &signals.torque_nm)),
+            false => (&none, half),
+        };
+        // friction jumps where the joint turns back, and so does the torque: both are smoothed alike
+        let torque = smooth(t_s, torque_nm, torque_half);
+        let sense = smooth(t_s, &sign, torque_half).value;
+        let loaded: Vec<f64> = sign.iter().zip(torque_nm).map(|(s, t)| s * t.abs()).collect();
+        let load_sense_nm = smooth(t_s, &loaded, torque_half).value;
         let record = self.records.len();
         for row in 0..t_s.len() {
             let sample = Sample {
@@ -113,8 +154,10 @@ impl JointRows {
                 angle_rad: motor.value[row],
                 speed_rad_s: motor.slope[row],
                 acceleration_rad_s2: motor.curvature[row],
-                sense: (motor.slope[row] / slow).tanh(),
-                torque_nm: torque_nm[row],
+                sense: sense[row],
+                load_sense_nm: load_sense_nm[row],
+                torque_nm: torque.value[row],
+                torque_rate_nm_s: torque.slope[row],
             };
             if !(sample.angle_rad.is_nan() || sample.torque_nm.is_nan() || link.value[row].is_nan()) {
                 self.samples.push(sample);
@@ -145,6 +188,20 @@ impl JointRows {
         let link_rad = signals.link_rad[row] + rest_s * slope + 0.5 * rest_s.powi(2) * curvature;
         let twist_rad = signals.motor_rad[sample.row] - link_rad;
         Some(Twist { twist_rad, link_speed_rad_s: slope + rest_s * curvature })
+    }
+
+    /// Angle and acceleration of the link at a row if its signal is late by `shift_s`, between the rows on either side. An
+    /// error of half a row here would be taken for viscous friction \[rad, rad/s²\].
+    pub(crate) fn link(&self, sample: &Sample, shift_s: f64) -> Option<[f64; 2]> {
+        let signals = &self.records[sample.record];
+        let place = sample.row as f64 + shift_s / signals.step_s;
+        let (row, part) = (place.floor(), place - place.floor());
+        if row < 0.0 || row as usize + 1 >= signals.t_s.len() {
+            return None;
+        }
+        let between = |x: &[f64]| x[row as usize] * (1.0 - part) + x[row as usize + 1] * part;
+        let out = [between(&signals.link.value), between(&signals.link.curvature)];
+        (!out[0].is_nan()).then_some(out)
     }
 
     /// Noise of the twist from row to row \[rad\].

@@ -54,7 +54,12 @@ pub(crate) fn half_width(t_s: &[f64], x: &[f64]) -> usize {
         let taken = 9.0 / (4.0 * (2 * **half + 1) as f64);
         count > x.len() / 2 && (sum / count as f64).sqrt() <= STILL_NOISE * noise * (1.0 - taken).sqrt()
     };
-    HALF_WIDTHS.iter().take_while(|h| **h == HALF_WIDTHS[0] || fits(h)).last().copied().unwrap_or(HALF_WIDTHS[0])
+    HALF_WIDTHS
+        .iter()
+        .take_while(|h| **h == HALF_WIDTHS[0] || fits(h))
+        .last()
+        .copied()
+        .unwrap_or(HALF_WIDTHS[0])
 }
 
 /// Fits a cubic around each row.
@@ -102,7 +107,7 @@ mod tests {
 
     #[test]
     fn a_cubic_is_met_exactly_at_uneven_times() {
-        let t: Vec<f64> = (0..60).map(|i| 0.01 * i as f64 + 0.002 * (i as f64).sin()).collect();
+        let t: Vec<f64> = (0..60).map(|i| 0.01 * i as f64 + 0.002 * libm::sin(i as f64)).collect();
         let x: Vec<f64> = t.iter().map(|t| 1.0 + 2.0 * t - 3.0 * t * t + 4.0 * t * t * t).collect();
         let s = smooth(&t, &x, 6);
         let at = t[30];
@@ -115,7 +120,7 @@ mod tests {
     fn the_noise_of_a_smooth_signal_is_found_and_widens_the_window() {
         let t: Vec<f64> = (0..4000).map(|i| 0.001 * i as f64).collect();
         let with = |size: f64| -> Vec<f64> {
-            t.iter().zip(deviates(4000)).map(|(t, e)| (9.0 * t).sin() + size * e).collect()
+            t.iter().zip(deviates(4000)).map(|(t, e)| libm::sin(9.0 * t) + size * e).collect()
         };
         assert!((noise(&with(0.01)) / 0.01 - 1.0).abs() < 0.05);
         assert!(half_width(&t, &with(1e-2)) > half_width(&t, &with(1e-7)));

@@ -31,7 +31,9 @@ impl PerJoint {
 pub struct RecordSpec {
     /// File name, next to `campaign.json`.
     pub file: String,
-    /// Names of this page's columns with the names that the file gives them.
+    /// Whether `campaign.json` names the file; else it need not exist.
+    pub is_named: bool,
+    /// Names of the columns of this format with the names that the file gives them.
     pub columns: Vec<(String, String)>,
     /// Turns of the motor for one of the output.
     pub ratio: PerJoint,
@@ -60,7 +62,7 @@ fn read_record(node: &Node, common: &RecordSpec) -> Option<RecordSpec> {
     let file = object.or("file", common.file.clone(), |n| n.string().map(String::from));
     let columns = object.or("columns", Vec::new(), read_columns);
     let constants = read_constants(&object, common);
-    Some(RecordSpec { file: file?, columns: columns?, ..constants? })
+    Some(RecordSpec { file: file?, is_named: true, columns: columns?, ..constants? })
 }
 
 fn read_constants(object: &Object, common: &RecordSpec) -> Option<RecordSpec> {
