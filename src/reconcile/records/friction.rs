@@ -18,8 +18,10 @@ use crate::reconcile::model::estimate::Estimate;
 const OWN_LOAD: usize = 6;
 /// Columns of friction: sign of the speed, speed, and sign of the speed times the size of the load.
 const FRICTION: usize = 3;
+/// Standard errors by which held-out blocks must be better for the link's acceleration, one column that is surely there.
+const SLIGHTLY: f64 = 1.0;
 /// Rows count in the balance where the smoothed sign of the speed is one within this.
-const TURNING: f64 = 0.01;
+const TURNING: f64 = 0.5;
 /// Columns of another joint.
 const OTHER: usize = 8;
 
@@ -64,8 +66,20 @@ impl Balance<'_> {
         (first..first + OTHER).collect()
     }
 
+    /// Acceleration of the link.
+    fn link(&self) -> usize {
+        self.rows.record_count() + 1
+    }
+
     fn load(&self) -> Vec<usize> {
-        (0..self.rows.record_count() + OWN_LOAD).collect()
+        (0..self.rows.record_count() + OWN_LOAD).filter(|c| *c != self.link()).collect()
+    }
+
+    /// What may be added to the load where held-out blocks become better: the link's own acceleration, and the motion of each
+    /// other joint.
+    fn candidates(&self) -> Vec<Vec<usize>> {
+        let others = (0..self.others.len()).map(|k| self.other(k));
+        std::iter::once(vec![self.link()]).chain(others).collect()
     }
 
     fn target(&self) -> usize {
@@ -152,17 +166,17 @@ pub(crate) fn friction(rows: &JointRows, records: &[Record], shift_s: f64) -> Op
     let [sense, speed, load_sense] = balance.friction();
     let mut columns = [balance.load(), vec![sense, speed]].concat();
     let mut best = sums.fit(&columns, target, |_| None)?;
-    let mut left: Vec<usize> = (0..balance.others.len()).collect();
+    let mut left = balance.candidates();
     loop {
-        let tried = left.iter().filter_map(|k| {
-            let more = [columns.clone(), balance.other(*k)].concat();
-            Some((*k, sums.fit(&more, target, |_| None)?))
+        let tried = left.iter().enumerate().filter_map(|(k, group)| {
+            let more = [columns.as_slice(), group].concat();
+            Some((k, sums.fit(&more, target, |_| None)?))
         });
-        let better = tried.filter(|(_, fit)| fit.better_than(&best) > CLEARLY);
+        let asked = |k: usize| if left[k].len() == 1 { SLIGHTLY } else { CLEARLY };
+        let better = tried.filter(|(k, fit)| fit.better_than(&best) > asked(*k));
         let rms = |fit: &Fitted| fit.held_out_rms();
         let Some((k, fit)) = better.min_by(|a, b| rms(&a.1).total_cmp(&rms(&b.1))) else { break };
-        columns.extend(balance.other(k));
-        left.retain(|other| *other != k);
+        columns.extend(left.remove(k));
         best = fit;
     }
     balance.load_nm = balance.load_of(&best);
@@ -175,11 +189,15 @@ pub(crate) fn friction(rows: &JointRows, records: &[Record], shift_s: f64) -> Op
         let others: Vec<usize> = chosen.columns.iter().copied().filter(|c| *c != column).collect();
         fit(&others).is_some_and(|other| chosen.better_than(&other) > CLEARLY)
     };
+    // more friction than the motor ever gave is a load that was taken for friction
+    let largest_nm = rows.samples.iter().fold(0.0f64, |m, s| m.max(s.torque_nm.abs()));
+    let fastest = rows.samples.iter().fold(0.0f64, |m, s| m.max(s.speed_rad_s.abs()));
+    let is_possible = chosen.value(speed) * fastest < largest_nm;
     Some(Friction {
         coulomb_nm: chosen.coefficient(sense),
         viscous_nms_per_rad: chosen.coefficient(speed),
         load_part: has_load.then(|| chosen.coefficient(load_sense)),
-        clearly: [without(sense), without(speed)],
+        clearly: [without(sense), without(speed) && is_possible],
         left_share: chosen.squares / fit(&(0..rows.record_count()).collect::<Vec<_>>())?.squares.max(1e-300),
     })
 }

@@ -23,7 +23,7 @@ const WELL_BALANCED: f64 = 20.0;
 /// A compliance whose interval spans more than this factor is not identified.
 const WIDE: f64 = 5.0;
 /// No interval is narrower than this part of its value on either side: scales of sensors are not known better.
-const LEAST_PART: f64 = 2e-3;
+const LEAST_PART: f64 = 5e-3;
 /// The same for friction, which no joint has constant.
 const LEAST_FRICTION_PART: f64 = 0.01;
 /// The same for the numbers of a law, which no gear follows exactly.

@@ -151,7 +151,7 @@ impl JointRows {
                 record,
                 row,
                 block: self.blocks + row * blocks / t_s.len(),
-                angle_rad: motor.value[row],
+                angle_rad: signals.motor_rad[row],
                 speed_rad_s: motor.slope[row],
                 acceleration_rad_s2: motor.curvature[row],
                 sense: sense[row],
@@ -159,7 +159,7 @@ impl JointRows {
                 torque_nm: torque.value[row],
                 torque_rate_nm_s: torque.slope[row],
             };
-            if !(sample.angle_rad.is_nan() || sample.torque_nm.is_nan() || link.value[row].is_nan()) {
+            if !(sample.speed_rad_s.is_nan() || sample.torque_nm.is_nan() || link.value[row].is_nan()) {
                 self.samples.push(sample);
             }
         }
