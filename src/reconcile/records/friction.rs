@@ -36,6 +36,8 @@ pub(crate) struct Friction {
     pub load_part: Option<Estimate>,
     /// Whether held-out blocks are better with Coulomb and with viscous friction.
     pub clearly: [bool; 2],
+    /// Whether the viscous friction stays below the largest torque of the motor.
+    pub is_possible: bool,
     /// The part of the torque's variance that neither load nor friction explains.
     pub left_share: f64,
 }
@@ -198,6 +200,7 @@ pub(crate) fn friction(rows: &JointRows, records: &[Record], shift_s: f64) -> Op
         viscous_nms_per_rad: chosen.coefficient(speed),
         load_part: has_load.then(|| chosen.coefficient(load_sense)),
         clearly: [without(sense), without(speed) && is_possible],
+        is_possible,
         left_share: chosen.squares / fit(&(0..rows.record_count()).collect::<Vec<_>>())?.squares.max(1e-300),
     })
 }

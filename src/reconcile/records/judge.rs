@@ -136,8 +136,7 @@ impl<'a> Judged<'a> {
     /// The shift with the part of viscous friction put back. Where the compliance is not identified, the interval has what
     /// any compliance that it allows could hide.
     fn with_friction(&self, plain: Estimate) -> (Estimate, String) {
-        let Some(f) = self.friction.filter(|f| self.rows.has_torque && is_positive(&f.viscous_nms_per_rad))
-        else {
+        let Some(f) = self.friction.filter(|f| f.is_possible && is_positive(&f.viscous_nms_per_rad)) else {
             return (plain, String::new());
         };
         let c = self.model.fitted.coefficient(self.model.places.torque());
