@@ -184,6 +184,7 @@ impl Analysis<'_> {
             calibrated,
             evidence: if verdict == Verdict::Unexplained { Vec::new() } else { self.evidence() },
             stages: Vec::new(),
+            records: Vec::new(),
             residuals: self.residuals(),
             corrected,
             other_corrected: Vec::new(),

@@ -17,6 +17,8 @@ mod other_simulator;
 mod positions;
 mod positions_maker;
 mod positions_other_simulator;
+mod record_simulator;
+mod records;
 mod scoring;
 mod together;
 mod unusual;

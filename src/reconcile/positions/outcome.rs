@@ -99,6 +99,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         corrected: corrected[0].clone(),
         other_corrected: corrected[1..].to_vec(),
         stages: found.stages.clone(),
+        records: Vec::new(),
         effects,
     }
 }

@@ -12,7 +12,9 @@ use crate::arm::effect::channel::Channel;
 use crate::arm::file::read_arm;
 use crate::arm::{Arm, Element};
 use crate::catalog::Catalogs;
-use crate::input::json::{Document, Fault, Faults, InputError, Node};
+use crate::input::json::{Document, Fault, Faults, InputError, Node, Object};
+use crate::reconcile::records::reading::{Record, read_all};
+use crate::reconcile::records::spec::{RecordSpec, STATEMENT_KEYS, read_records};
 use std::path::{Path, PathBuf};
 
 /// The tolerance of parts: 95 % limits as fractions of the nominal value.
@@ -68,6 +70,8 @@ pub struct Statement {
     pub effects: Option<Vec<String>>,
     /// What is unknown in absolute positions.
     pub positions: PositionsSpec,
+    /// Records against time.
+    pub records: Vec<RecordSpec>,
     arm_file: String,
     /// Files of further arms on the same trunk, next to `campaign.json`.
     pub other_arm_files: Vec<String>,
@@ -96,6 +100,8 @@ pub struct Campaign {
     pub positions: Vec<PositionRow>,
     /// What was read otherwise than it is written, in sentences.
     pub remarks: Vec<String>,
+    /// Records against time.
+    pub records: Vec<Record>,
     /// blake3 of all files of the campaign.
     pub hash: String,
 }
@@ -113,7 +119,7 @@ pub(crate) fn read_statement(path: &Path) -> Result<Statement, InputError> {
 }
 
 fn statement(node: &Node) -> Option<Statement> {
-    let root = node.object(&[
+    const KEYS: &[&str] = &[
         "name",
         "arm",
         "other_arms",
@@ -132,7 +138,8 @@ fn statement(node: &Node) -> Option<Statement> {
         "date",
         "provenance",
         "note",
-    ])?;
+    ];
+    let root = node.object(&[KEYS, &STATEMENT_KEYS].concat())?;
     let name = root.or("name", "campaign".to_string(), |n| n.string().map(String::from));
     let arm_file = root.or("arm", "arm.json".to_string(), |n| n.string().map(String::from));
     let other_arm_files = root.or("other_arms", Vec::new(), read_names);
@@ -151,6 +158,7 @@ fn statement(node: &Node) -> Option<Statement> {
     });
     let effects = root.or("effects", None, |n| read_effect_names(n).map(Some));
     let positions = root.or("positions", PositionsSpec::default(), read_positions);
+    let records = read_records(&root);
     Some(Statement {
         name: name?,
         tolerance: tolerance?,
@@ -158,6 +166,7 @@ fn statement(node: &Node) -> Option<Statement> {
         rigid_links: rigid_links?,
         effects: effects?,
         positions: positions?,
+        records: records?,
         arm_file: arm_file?,
         other_arm_files: other_arm_files?,
         sources: read_sources(&root),
@@ -255,6 +264,7 @@ impl Campaign {
             windup: Vec::new(),
             positions: Vec::new(),
             remarks: Vec::new(),
+            records: Vec::new(),
             hash: String::new(),
         };
         faults.extend(campaign.faults());
@@ -266,6 +276,8 @@ impl Campaign {
                 faults.extend(table.into_faults());
             }
         }
+        let (names, specs) = (campaign.driven_joint_names(), &campaign.statement.records);
+        campaign.records = read_all(folder, specs, &names, &mut faults)?;
         campaign.hash = campaign.hash_files();
         if faults.is_empty() { Ok(campaign) } else { Err(Faults(faults).into()) }
     }
@@ -319,6 +331,7 @@ impl Campaign {
             windup: Vec::new(),
             positions: rows,
             remarks: Vec::new(),
+            records: Vec::new(),
             hash: String::new(),
         };
         let faults = campaign.faults();
@@ -368,10 +381,17 @@ impl Campaign {
         out
     }
 
-    /// Splits the campaign in two: the readings other than absolute positions, and the positions.
+    /// Splits the campaign in two: the readings other than absolute positions, and the positions. Records are in neither.
     pub fn parted(&self) -> (Self, Self) {
-        let loaded = Self { positions: Vec::new(), other_arms: Vec::new(), ..self.clone() };
-        let placed = Self { statics: Vec::new(), modal: Vec::new(), windup: Vec::new(), ..self.clone() };
+        let loaded =
+            Self { positions: Vec::new(), records: Vec::new(), other_arms: Vec::new(), ..self.clone() };
+        let placed = Self {
+            statics: Vec::new(),
+            modal: Vec::new(),
+            windup: Vec::new(),
+            records: Vec::new(),
+            ..self.clone()
+        };
         (loaded, placed)
     }
 
@@ -400,7 +420,8 @@ impl Campaign {
         let named = ["campaign.json", &self.statement.arm_file].into_iter().chain(others.map(String::as_str));
         let files =
             named.map(|f| self.folder.join(f)).chain(Channel::ALL.into_iter().filter_map(|c| self.file(c)));
-        for file in files {
+        let records = self.records.iter().map(|r| PathBuf::from(&r.file));
+        for file in files.chain(records) {
             hasher.update(&std::fs::read(file).unwrap_or_default());
         }
         hasher.finalize().to_hex().to_string()
@@ -425,6 +446,7 @@ impl Campaign {
             self.windup.extend(other.windup);
             self.positions.extend(other.positions);
             self.remarks.extend(other.remarks);
+            self.records.extend(other.records);
             self.statement.name = format!("{}+{}", self.statement.name, other.statement.name);
             self.hash = blake3::hash(format!("{}{}", self.hash, other.hash).as_bytes()).to_hex().to_string();
         }

@@ -7,6 +7,7 @@ use crate::arm::effect::channel::Channel;
 use crate::reconcile::fit::held_out::HeldOut;
 use crate::reconcile::fit::noise::Noise;
 use crate::reconcile::model::estimate::{Estimate, Finding};
+use crate::reconcile::records::finding::JointRecord;
 use crate::reconcile::select::lack_of_fit::LackOfFit;
 use serde_json::{Value, json};
 
@@ -152,6 +153,8 @@ pub struct Outcome {
     pub evidence: Vec<Evidence>,
     /// Absolute positions: how the error falls as each effect is added.
     pub stages: Vec<Stage>,
+    /// Records against time: what they say about each joint.
+    pub records: Vec<JointRecord>,
     /// Readings and residuals.
     pub residuals: Vec<ReadingResidual>,
     /// The corrected arm.
@@ -220,6 +223,7 @@ impl Outcome {
             "calibrated": self.calibrated.iter().map(|c| json!({
                 "name": c.name, "factor": c.factor.json(), "learnt": c.learnt,
             })).collect::<Vec<_>>(),
+            "records": self.records.iter().map(JointRecord::json).collect::<Vec<_>>(),
             "stages": self.stages.iter().map(Stage::json).collect::<Vec<_>>(),
             "evidence": self.evidence.iter().map(|e| json!({
                 "model": e.model, "score": e.score, "chi_squared": e.objective,

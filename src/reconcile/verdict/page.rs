@@ -5,6 +5,7 @@ use super::stage::Stage;
 use crate::arm::effect::channel::Channel;
 use crate::reconcile::model::estimate::{Estimate, Finding};
 use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::records;
 use crate::report::html::campaign::{CampaignPage, Compared, Found, Ranged, Reading, Test, Weighed};
 use crate::report::html::pick::degrees;
 use crate::report::html::positions::{Position, Step};
@@ -44,6 +45,7 @@ pub fn campaign_page(campaign: &Campaign, outcome: &Outcome) -> CampaignPage {
         kept_out: outcome.held_out.map(|k| (k.count, k.rms_before, k.rms_after)),
         quality: text.lines().filter(|l| is_quality(l)).map(|l| l.trim().to_string()).collect(),
         tests: outcome.next_tests.iter().map(test).collect(),
+        records: records::report::sections(&outcome.records),
         optimum: None,
         facts: facts(campaign, outcome),
     }
@@ -177,6 +179,7 @@ fn facts(campaign: &Campaign, outcome: &Outcome) -> Vec<(String, String)> {
         named("modal rows", campaign.modal.len().to_string()),
         named("wind-up rows", campaign.windup.len().to_string()),
         named("position rows", campaign.positions.len().to_string()),
+        named("rows of records", campaign.records.iter().map(|r| r.t_s.len()).sum::<usize>().to_string()),
         named("verdict", outcome.verdict.word().to_string()),
         named("tool version", env!("CARGO_PKG_VERSION").into()),
         named("blake3 of the campaign", outcome.hash.clone()),

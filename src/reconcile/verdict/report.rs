@@ -3,6 +3,7 @@
 use super::files::{CORRECTED_FILE, corrected_file};
 use super::outcome::{Outcome, Verdict};
 use crate::reconcile::model::estimate::{Estimate, Finding};
+use crate::reconcile::records;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -28,6 +29,7 @@ impl Outcome {
             );
         }
         self.stages_table(&mut out);
+        out.push_str(&records::report::text(&self.records));
         self.quality(&mut out);
         if let Some(test) = self.next_tests.first() {
             let angles = |p: &Vec<f64>| p.iter().map(|a| format!("{a:.1}")).collect::<Vec<_>>().join(", ");
