@@ -22,6 +22,7 @@ pub(crate) const KIND: Kind = Kind {
         odds: RARE,
         starts,
         is_nonlinear: true,
+        screens_at_starts: true,
         moves_working_points: true,
         in_studies: false,
         ..Traits::USUAL

@@ -252,6 +252,8 @@ pub struct Traits {
     /// Whether the readings follow its parameters so crookedly that a confidence interval must follow the
     /// profile of the objective.
     pub is_nonlinear: bool,
+    /// Whether a screening keeps the numbers that say how it acts at their starts: far from there the linear model misleads.
+    pub screens_at_starts: bool,
     /// Whether it replaces the torsion curve of a gear, with break points at which frequencies step.
     pub is_gear_curve: bool,
     /// Whether it changes the torques at which gears vibrate, so that frequencies step.
@@ -280,6 +282,7 @@ impl Traits {
         needs: Needs::Nothing,
         starts: |setting| vec![vec![1.0; setting.values_at_one.len()]],
         is_nonlinear: false,
+        screens_at_starts: false,
         is_gear_curve: false,
         moves_working_points: false,
         changes_bending: false,

@@ -6,6 +6,9 @@ use super::subject::Subject;
 /// The parameter that needs the temperature of each reading.
 pub(crate) const PER_K: &str = "per_k";
 
+/// The number of rows in which most of the change comes.
+pub(crate) const ROWS: &str = "rows";
+
 const PARAMETERS: &[Parameter] = &[
     Parameter {
         default: Some(0.0),
@@ -17,7 +20,7 @@ const PARAMETERS: &[Parameter] = &[
     },
     Parameter {
         default: Some(1.0),
-        ..Parameter::number("rows", 0.1, 1e6, 30.0, Scale::Log).expected(2.0, 500.0)
+        ..Parameter::number(ROWS, 0.1, 1e6, 30.0, Scale::Log).expected(2.0, 500.0)
     },
 ];
 
@@ -31,24 +34,24 @@ pub(crate) const KIND: Kind = Kind {
     apply,
     traits: Traits {
         needs: Needs::BendingLink,
-        variants: &[&[(PER_K, None)], &[("change", None), ("rows", None)]],
+        variants: &[&[(PER_K, None)], &[("change", None), (ROWS, None)]],
         odds: RARE,
         starts,
         is_nonlinear: true,
+        screens_at_starts: true,
         changes_bending: true,
         contradiction,
         ..Traits::USUAL
     },
 };
 
-/// Moduli that fall and that rise; with the order of the tests early, in the middle, or to the end.
+/// With the order of the tests moduli change at once, in the middle, or to the end.
 fn starts(setting: &Setting) -> Vec<Vec<f64>> {
     match setting.values_at_one.len() {
-        1 => vec![vec![-1.0], vec![1.0]],
-        _ => [0.1, 0.3, 1.0]
-            .iter()
-            .flat_map(|part| [-1.0, 1.0].map(|change| vec![change, libm::log((part * setting.rows).max(1.0))]))
-            .collect(),
+        1 => vec![vec![1.0]],
+        _ => [0.04, 0.12, 0.3, 0.7, 1.5]
+            .map(|part| vec![-1.0, libm::log((part * setting.rows).max(1.0))])
+            .to_vec(),
     }
 }
 

@@ -161,7 +161,8 @@ fn candidate(forward: &Forward, sizes: &Sizes, asked: Asked) -> Candidate {
             if is_free(parameter, component, freed) {
                 let reference = if parameter.scale == Scale::Torque { torque_nm } else { reference };
                 let free = FreeParameter::new(sized, component, reference);
-                free_parameters.push(within_torque(free, parameter, torque_nm));
+                let free = within_torque(free, parameter, torque_nm);
+                free_parameters.push(within_rows(free, rows_of_campaign(forward)));
                 numbers.push(Number::Free);
             } else {
                 numbers.push(Number::Stated(stated(forward, parameter, channel)));
@@ -178,7 +179,7 @@ fn candidate(forward: &Forward, sizes: &Sizes, asked: Asked) -> Candidate {
             free_parameters[0].low.max(-0.999 * least_kg / free_parameters[0].value(1.0));
     }
     let values_at_one: Vec<f64> = free_parameters.iter().map(|free| free.value(1.0)).collect();
-    let rows = (forward.range(Channel::Static).len() / 3).max(forward.range(Channel::Modal).len()) as f64;
+    let rows = rows_of_campaign(forward);
     let setting = Setting { torque_nm, twist_rad: torque_nm / reference, rows, values_at_one: &values_at_one };
     let starts = (kind.traits.starts)(&setting);
     Candidate { kind, at, free_parameters, numbers, starts, twins: Vec::new() }
@@ -190,6 +191,19 @@ fn within_torque(free: FreeParameter, parameter: &Parameter, torque_nm: f64) -> 
     match parameter.torque_parts {
         Some((low, high)) => free.within(libm::log(low * torque_nm), libm::log(high * torque_nm)),
         None => free,
+    }
+}
+
+/// Number of rows of the longest file of readings of the whole arm.
+fn rows_of_campaign(forward: &Forward) -> f64 {
+    (forward.range(Channel::Static).len() / 3).max(forward.range(Channel::Modal).len()) as f64
+}
+
+/// Limits a number of rows to parts of the campaign. A change that is over at once or hardly begins is none of the order.
+fn within_rows(free: FreeParameter, rows: f64) -> FreeParameter {
+    match free.name == thermal_modulus::ROWS && rows > 0.0 {
+        true => free.within(libm::log(0.02 * rows), libm::log(3.0 * rows)),
+        false => free,
     }
 }
 

@@ -124,6 +124,11 @@ impl FreeParameter {
         matches!(self.scale, Scale::Stiffness | Scale::Reciprocal)
     }
 
+    /// Whether it says how large the effect is, and not only how it acts.
+    pub(crate) fn is_size(&self) -> bool {
+        self.absent.is_some()
+    }
+
     /// Whether `u` means an absent effect, so that this end of an interval is no bound.
     pub fn unbounded(&self, u: f64) -> bool {
         self.scale == Scale::Stiffness && u <= 1e-6

@@ -291,10 +291,20 @@ impl<'a> Search<'a> {
         // held
         model.held =
             model.break_points().into_iter().filter(|p| *p < base.len()).map(|p| (p, here.u[p])).collect();
+        let held = model.held.clone();
+        let mut at_start = |start: &[f64]| {
+            model.held = held.clone();
+            if candidate.kind.traits.screens_at_starts {
+                let numbers = candidate.free_parameters.iter().zip(start).enumerate();
+                let kept = numbers.filter(|(_, (parameter, _))| !parameter.is_size());
+                model.held.extend(kept.map(|(i, (_, u))| (base.len() + i, *u)));
+            }
+            self.linear(&model, here, slopes, start)
+        };
         candidate
             .starts
             .iter()
-            .map(|start| self.linear(&model, here, slopes, start))
+            .map(|start| at_start(start))
             .max_by(|a, b| a.1.total_cmp(&b.1))
             .map(|(u, score)| (index, u, score))
     }
