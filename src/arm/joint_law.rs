@@ -1,6 +1,7 @@
 //! Joint laws: how far a joint twists about its axis under a torque.
 
 use super::JointModel;
+use super::effect::waves::transmission_waves;
 
 /// The three-segment torsion curve of a harmonic-drive gear. It is odd in the torque and has the slope 1/K1 up to T1, 1/K2
 /// up to T2 and 1/K3 beyond.
@@ -187,6 +188,9 @@ impl Curve {
     }
 }
 
+/// Least part of its mean compliance that a joint has at any angle.
+const STIFFEST: f64 = 0.02;
+
 /// Torque below which a joint counts as unloaded \[N m\]: smaller torques are rounding errors.
 const REST_NM: f64 = 1e-9;
 
@@ -233,15 +237,35 @@ pub struct JointLaw {
     /// Half width of the friction play (hysteresis) \[rad\]; 0 if there is none. Where no history is known, |T| rises from
     /// rest.
     pub hysteresis_rad: f64,
+    /// How the compliance of gear and connection varies with the angle of the joint: parts of it that follow the
+    /// [waves](transmission_waves) of the angle.
+    pub waves: [f64; 4],
 }
 
 impl From<Curve> for JointLaw {
     fn from(curve: Curve) -> Self {
-        Self { curve, connection_rad_per_nm: 0.0, lost_motion: None, hysteresis_rad: 0.0 }
+        Self { curve, connection_rad_per_nm: 0.0, lost_motion: None, hysteresis_rad: 0.0, waves: [0.0; 4] }
     }
 }
 
 impl JointLaw {
+    /// The law at an angle of the joint. A law whose compliance varies with the angle is its mean until then.
+    #[must_use]
+    pub fn at_angle(&self, angle_rad: f64) -> Self {
+        if self.waves == [0.0; 4] {
+            return *self;
+        }
+        let waves = transmission_waves(angle_rad);
+        let varied: f64 = waves.iter().zip(&self.waves).map(|(wave, size)| wave * size).sum();
+        let softer = (1.0 + varied).max(STIFFEST);
+        Self {
+            curve: self.curve.stiffened(1.0 / softer),
+            connection_rad_per_nm: self.connection_rad_per_nm * softer,
+            waves: [0.0; 4],
+            ..*self
+        }
+    }
+
     /// Twist \[rad\] under the total torque \[N m\], without the friction play.
     pub fn angle_rad(&self, torque_nm: f64) -> f64 {
         let play = self.lost_motion.map_or(0.0, |lost| lost.angle_rad(torque_nm));
@@ -276,6 +300,11 @@ impl JointLaw {
     /// Whether the joint has lost motion or friction play in addition to its curve.
     pub fn has_play(&self) -> bool {
         self.lost_motion.is_some() || self.hysteresis_rad > 0.0
+    }
+
+    /// Whether the twist is not in proportion to the torque.
+    pub fn is_curved(&self) -> bool {
+        self.has_play() || matches!(self.curve, Curve::Windup(_) | Curve::WindupK1(_))
     }
 
     /// Twist \[rad\] after the torque has risen from rest to `torque_nm`. The friction play starts at 0 and holds the joint

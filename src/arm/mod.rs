@@ -9,11 +9,13 @@
 //! - [`Structure`] is the arm as the mechanics sees it: effects are applied, and names of parts are gone.
 //! - [`effect`] has the effects, one file each.
 
+pub(crate) mod base_lift;
 pub(crate) mod bearing;
 pub mod effect;
 pub(crate) mod extras;
 pub(crate) mod file;
 pub(crate) mod joint_law;
+pub(crate) mod joint_torque;
 pub(crate) mod linkage;
 pub(crate) mod load;
 pub(crate) mod section;

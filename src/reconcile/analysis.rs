@@ -42,6 +42,8 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     candidates.retain(|c| campaign.statement.considers(c.kind.name));
     let few = rows(campaign) < few_rows::FEWEST_ROWS;
     if few {
+        // a handful of readings cannot show what is seldom met
+        candidates.retain(|c| c.kind.traits.odds >= 1.0);
         candidates = candidates.into_iter().map(Candidate::from_corners).collect();
     }
     let found = settled(campaign, &mut forward, &nuisance, &candidates, few);
@@ -541,15 +543,16 @@ fn dead_instruments(forward: &Forward) -> Vec<String> {
 /// A fitted effect's parameters with their intervals.
 fn parameters(effect: &Candidate, u: &[f64], ends: &[Interval]) -> Vec<(String, Vec<Estimate>)> {
     let mut out: Vec<(String, Vec<Estimate>)> = Vec::new();
-    for ((parameter, value), interval) in effect.free_parameters.iter().zip(effect.numbers(u)).zip(ends) {
+    for ((parameter, value), interval) in effect.free_parameters.iter().zip(effect.free_values(u)).zip(ends) {
         let estimate = parameter.estimate(value, interval);
         match out.iter_mut().find(|(name, _)| name == parameter.name) {
             Some((_, list)) => list.push(estimate),
             None => out.push((parameter.name.to_string(), vec![estimate])),
         }
     }
+    let stated = |value: f64| Estimate { value, low: Some(value), high: Some(value) };
+    out.extend(effect.words().into_iter().map(|(name, number, _)| (name.to_string(), vec![stated(number)])));
     if effect.free_parameters.is_empty() {
-        let stated = |value: f64| Estimate { value, low: Some(value), high: Some(value) };
         out.push(("factor".into(), effect.numbers(&[]).into_iter().map(stated).collect()));
     }
     out

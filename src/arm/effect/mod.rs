@@ -7,6 +7,7 @@
 //! describe a test and not the product: only `predict` and `reconcile` use them.
 
 pub(crate) mod base_compliance;
+pub(crate) mod base_lift;
 pub(crate) mod bearing_tilt;
 pub(crate) mod catalogue;
 pub(crate) mod channel;
@@ -19,6 +20,7 @@ pub(crate) mod harness_mass;
 pub(crate) mod hysteresis;
 pub(crate) mod immersion;
 pub(crate) mod joint_compliance;
+pub(crate) mod joint_torque;
 pub mod kind;
 pub(crate) mod link_flexibility;
 pub(crate) mod lost_motion;
@@ -29,11 +31,17 @@ pub(crate) mod payload_mass_error;
 pub(crate) mod places;
 pub(crate) mod sensor_bias;
 pub(crate) mod sensor_gain;
+pub(crate) mod servo_compliance;
+pub(crate) mod setup;
 pub(crate) mod soft_windup;
+pub(crate) mod stiffness_waves;
 pub(crate) mod subject;
+pub(crate) mod test_mass;
+pub(crate) mod thermal_modulus;
 pub(crate) mod time_shift;
 pub(crate) mod transmission_error;
 pub(crate) mod validate;
+pub(crate) mod warming;
 pub(crate) mod waves;
 pub(crate) mod wrong_unit;
 
@@ -41,7 +49,9 @@ pub use catalogue::{KINDS, kind};
 pub use channel::{Channel, Reading};
 pub use entry::Effect;
 pub use kind::{Kind, Parameter, Place, Scale, Scope};
+pub use setup::Setup;
 pub use subject::Subject;
 pub use validate::{EffectFault, fits_nominal};
+pub use warming::{Moment, Warming};
 pub use waves::{transmission_rad, transmission_waves};
 pub use wrong_unit::SLIPS as UNIT_SLIPS;

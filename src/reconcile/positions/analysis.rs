@@ -6,6 +6,7 @@ use super::fit::fit;
 use super::fitted::{Fitted, Sample};
 use super::kinematics::{Geometry, Number, Pose, number_groups};
 use super::loads::{Loads, Yielding, candidates};
+use super::play;
 use super::points::{Point, points};
 use super::tree::Tree;
 use crate::arm::Arm;
@@ -106,7 +107,9 @@ impl Positions {
         let tree = Tree::new(campaign);
         let points = points(campaign);
         let geometry = Geometry::nominal(&tree, points.len());
-        let candidates = candidates(&tree);
+        let springs = candidates(&tree);
+        let loaded = samples(campaign, &tree, &geometry, &springs, &points);
+        let candidates = play::with_play(springs, &loaded);
         let considered = candidates.iter().map(|c| campaign.statement.considers(c.effect)).collect();
         let samples = samples(campaign, &tree, &geometry, &candidates, &points);
         let fitted = Fitted::rigid(geometry, ROUGH_M);

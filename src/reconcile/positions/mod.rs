@@ -21,6 +21,7 @@ pub(crate) mod loads;
 pub(crate) mod next_test;
 pub(crate) mod normal;
 pub(crate) mod outcome;
+pub(crate) mod play;
 pub(crate) mod points;
 pub(crate) mod predict;
 pub(crate) mod rows;

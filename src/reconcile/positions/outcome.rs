@@ -187,6 +187,13 @@ impl Positions {
         let candidate = &self.candidates[self.fitted.effects[i]];
         let (c, sd) = (&self.fitted.compliances[i], &self.fitted.deviations[i]);
         let parameters = match candidate.yields {
+            _ if candidate.play_nm.is_some() => {
+                let scale_nm = candidate.play_nm.unwrap_or_default();
+                vec![
+                    ("half_width_rad".into(), vec![within(c[0], sd[0])]),
+                    ("torque_nm".into(), vec![self.play_scale(i, scale_nm)]),
+                ]
+            }
             Yields::Frame => frame_parameters(c, sd),
             Yields::AboutAxis | Yields::Tilt => {
                 vec![("stiffness_nm_per_rad".into(), vec![stiffness(c[0], sd[0])])]

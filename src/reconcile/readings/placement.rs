@@ -148,6 +148,7 @@ mod tests {
             test: test.into(),
             pose_deg: vec![angle_deg],
             payload: Payload::default(),
+            temperature_c: None,
             arm: 0,
             point: "tip".into(),
             measured: [None; 3],

@@ -3,6 +3,7 @@
 use super::outcome::{NextTest, Outcome, ReadingResidual, Verdict};
 use super::stage::Stage;
 use crate::arm::effect::channel::Channel;
+use crate::arm::effect::entry::word_of;
 use crate::reconcile::model::estimate::{Estimate, Finding};
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::records;
@@ -132,12 +133,22 @@ fn step(stage: &Stage) -> Step {
 }
 
 fn found(finding: &Finding) -> Found {
+    let word = |name: &str, e: &Estimate| word_of(&finding.effect, name, e.value);
     let named = |(name, estimates): &(String, Vec<Estimate>)| -> Vec<Ranged> {
+        // a word is part of the label
+        if estimates.iter().any(|e| word(name, e).is_some()) {
+            return Vec::new();
+        }
         let axis = |i: usize| if estimates.len() > 1 { format!("{name} [{i}]") } else { name.clone() };
         estimates.iter().enumerate().map(|(i, e)| ranged(axis(i), e)).collect()
     };
+    let words: Vec<&str> = finding
+        .parameters
+        .iter()
+        .filter_map(|(name, estimates)| word(name, estimates.first()?))
+        .collect();
     Found {
-        label: finding.label(),
+        label: words.iter().fold(finding.label(), |label, word| format!("{label} ({word})")),
         parameters: finding.parameters.iter().flat_map(named).collect(),
         like: finding.indistinguishable_from.iter().map(|(effect, at)| format!("{effect}@{at}")).collect(),
     }

@@ -2,6 +2,7 @@
 
 use super::files::{CORRECTED_FILE, corrected_file};
 use super::outcome::{Outcome, Verdict};
+use crate::arm::effect::entry::word_of;
 use crate::reconcile::model::estimate::{Estimate, Finding};
 use crate::reconcile::records;
 use std::fmt::Write as _;
@@ -132,7 +133,11 @@ fn describe(finding: &Finding, verdict: Verdict) -> String {
     let word = if verdict == Verdict::Explained { "" } else { "suspect " };
     let mut out = format!("  {word}{}:", finding.label());
     for (name, estimates) in &finding.parameters {
-        let values: Vec<String> = estimates.iter().map(value).collect();
+        let said = |e: &Estimate| match word_of(&finding.effect, name, e.value) {
+            Some(word) => word.to_string(),
+            None => value(e),
+        };
+        let values: Vec<String> = estimates.iter().map(said).collect();
         let _ = write!(out, " {name} = {}", values.join("; "));
     }
     out.push('\n');
