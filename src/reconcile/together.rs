@@ -186,6 +186,9 @@ impl Both<'_> {
             hash: loaded.hash,
             calibrated: loaded.calibrated,
             evidence: loaded.evidence,
+            // the corrected arm of both is the calibrated one where either is unexplained
+            empirical: Vec::new(),
+            models: Vec::new(),
         }
     }
 

@@ -7,6 +7,7 @@
 //! its catalog ratings.
 
 use super::definition::Study;
+use crate::arm::effect::empirical;
 use crate::arm::effect::entry::Effect;
 use crate::arm::effect::kind::Removes;
 use crate::arm::joint_law::Curve;
@@ -79,6 +80,11 @@ fn unfit(space: &DesignSpace, effect: &Effect) -> Option<(String, String, String
                 "give the joint its mass_kg, or a smaller loss".into(),
             ))
         }
+        Some(_) if effect.effect == empirical::KIND.name => Some((
+            "effect".into(),
+            format!("the searches have no bounds for the further twist of {} that readings gave", effect.at),
+            "remove it from the study; `armwright analyze` computes a single arm with it".into(),
+        )),
         _ if effect.is_of_bending() && space.links == LinkModel::Rigid => Some((
             "effect".into(),
             format!("{} changes how a link bends, and the study holds its links rigid", effect.effect),

@@ -239,9 +239,7 @@ impl Coefficients {
             || self.payload_offset_m != other.payload_offset_m
             || self.payload_weight != other.payload_weight;
         // readings count from the unloaded arm, so where twists are proportional to torques, weights do not show
-        let is_proportional = |law: &JointLaw| {
-            law.lost_motion.is_none() && law.hysteresis_rad == 0.0 && !matches!(law.curve, Curve::Windup(_))
-        };
+        let is_proportional = |law: &JointLaw| !law.has_play() && !matches!(law.curve, Curve::Windup(_));
         let is_other = linear || payload || laws.contains(&true);
         let weights = self.weights != other.weights && (is_other || !self.laws.iter().all(is_proportional));
         StaticChanges { linear, weights, payload, laws }
@@ -260,6 +258,7 @@ impl Coefficients {
                 a.curve == b.curve
                     && a.connection_rad_per_nm == b.connection_rad_per_nm
                     && a.lost_motion == b.lost_motion
+                    && a.further == b.further
             })
     }
 }

@@ -89,7 +89,7 @@ fn candidate(forward: &Forward, sizes: &Sizes, kind: &'static Kind, place: Place
     let values_at_one: Vec<f64> = free_parameters.iter().map(|free| free.value(1.0)).collect();
     let setting = Setting { torque_nm, twist_rad: torque_nm / reference, values_at_one: &values_at_one };
     let starts = (kind.traits.starts)(&setting);
-    Candidate { kind, at, free_parameters, fixed, starts, twins: Vec::new() }
+    Candidate { kind, at, free_parameters, before: Vec::new(), fixed, starts, twins: Vec::new() }
 }
 
 /// Limits a torque to parts of the largest torque of the campaign. A law that changes where no torque reaches
@@ -164,6 +164,7 @@ fn unit_slips(forward: &Forward) -> Vec<Candidate> {
         kind: &wrong_unit::KIND,
         at: channel.word().into(),
         free_parameters: Vec::new(),
+        before: Vec::new(),
         fixed: vec![factor],
         starts: vec![Vec::new()],
         twins: Vec::new(),

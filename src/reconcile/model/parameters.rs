@@ -159,7 +159,9 @@ pub struct Candidate {
     pub at: String,
     /// Its fitted parameters.
     pub free_parameters: Vec<FreeParameter>,
-    /// Parameters that are stated and not fitted. They follow the fitted ones.
+    /// Numbers that are stated and not fitted, before the fitted ones in the order of the kind.
+    pub(crate) before: Vec<f64>,
+    /// Numbers that are stated and not fitted, after the fitted ones.
     pub(crate) fixed: Vec<f64>,
     /// Starting points of fits, each a list of `u`.
     pub starts: Vec<Vec<f64>>,
@@ -179,9 +181,16 @@ impl Candidate {
         self
     }
 
-    /// Values of all parameters in the order of the kind. A parameter that must not be below another is
-    /// raised to it.
+    /// Values of all parameters in the order of the kind.
     pub fn numbers(&self, u: &[f64]) -> Vec<f64> {
+        let mut out = self.fitted(u);
+        out.splice(0..0, self.before.iter().copied());
+        out.extend(&self.fixed);
+        out
+    }
+
+    /// Values of the fitted parameters. A parameter that must not be below another is raised to it.
+    pub fn fitted(&self, u: &[f64]) -> Vec<f64> {
         let mut out: Vec<f64> = self.free_parameters.iter().zip(u).map(|(k, u)| k.value(*u)).collect();
         for (i, parameter) in self.free_parameters.iter().enumerate() {
             if let Some(least) = self.free_parameters.iter().position(|k| Some(k.name) == parameter.not_below)
@@ -189,7 +198,6 @@ impl Candidate {
                 out[i] = out[i].max(out[least]);
             }
         }
-        out.extend(&self.fixed);
         out
     }
 

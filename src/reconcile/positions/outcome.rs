@@ -96,6 +96,8 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         corrected: corrected[0].clone(),
         other_corrected: corrected[1..].to_vec(),
         stages: found.stages.clone(),
+        empirical: Vec::new(),
+        models: Vec::new(),
         effects,
     }
 }
