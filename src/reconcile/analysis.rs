@@ -15,6 +15,7 @@ use super::model::estimate::{Estimate, Finding};
 use super::model::parameters::{Candidate, Model, Nuisance};
 use super::readings::campaign::Campaign;
 use super::readings::components::{DISPLACEMENT, FEWEST_ALIKE};
+use super::select::empirical;
 use super::select::few_rows;
 use super::select::lack_of_fit::{LackOfFit, lack_of_fit};
 use super::select::screening::Selection;
@@ -22,10 +23,12 @@ use super::select::search::{Scored, Search};
 use super::select::settle::Settled;
 use super::select::unnamed;
 use super::select::unnamed::Better;
+use super::verdict::corrected_model::Choice;
 use super::verdict::next_test;
-use super::verdict::outcome::{Calibrated, Evidence, Located, Outcome, ReadingResidual, Verdict};
-use super::verdict::{correct, locate};
+use super::verdict::outcome::{Calibrated, Evidence, Law, Located, Outcome, ReadingResidual, Verdict};
+use super::verdict::{correct, corrected_model, locate};
 use crate::arm::effect::channel::Channel;
+use crate::arm::effect::empirical::KIND;
 
 /// Largest number of alternatives with which an effect is still named.
 const MOST_ALTERNATIVES: usize = 3;
@@ -58,6 +61,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         candidates: &candidates,
         weights: &weights,
     };
+    let with_laws = [candidates.as_slice(), &empirical::laws(&forward)].concat();
     let hopeless = found.selection.given_up || !search.may_explain(chosen);
     let best = match hopeless {
         true => search.fit(&chosen.effects, &chosen.u, Effort::default()),
@@ -78,6 +82,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         campaign,
         forward: &forward,
         search: &search,
+        with_laws: &Search { candidates: &with_laws, ..search },
         selection: &found.selection,
         noise: &found.noise,
         remarks: &found.remarks,
@@ -129,6 +134,8 @@ struct Analysis<'a> {
     campaign: &'a Campaign,
     forward: &'a Forward,
     search: &'a Search<'a>,
+    /// The same with laws without a name after its candidates.
+    with_laws: &'a Search<'a>,
     selection: &'a Selection,
     noise: &'a Noise,
     remarks: &'a [String],
@@ -161,16 +168,24 @@ impl Analysis<'_> {
             Verdict::Explained => (findings, Vec::new()),
             _ => (Vec::new(), findings),
         };
-        let shown = if verdict == Verdict::Unexplained { &self.baseline } else { &self.best };
+        let choice = (verdict == Verdict::Unexplained).then(|| self.model_without_explanation());
+        let shown = match &choice {
+            Some(choice) => choice.fit.as_ref().unwrap_or(&self.baseline),
+            None => &self.best,
+        };
         let calibrated = self.calibrated(shown);
-        let (corrected, provenance) = correct::corrected(
-            self.campaign,
-            self.forward,
-            shown,
-            if verdict == Verdict::Explained { &effects } else { &[] },
-            &calibrated,
-            verdict,
-        );
+        let written = match (&choice, verdict) {
+            (Some(choice), _) => choice.fit.as_ref(),
+            (None, Verdict::InsufficientData) => None,
+            (None, _) => Some(&self.best),
+        };
+        let in_arm = if choice.is_some() {
+            written.map_or(Vec::new(), |fit| self.found_in(fit, &[]))
+        } else {
+            effects.clone()
+        };
+        let (corrected, provenance) =
+            correct::corrected(self.campaign, self.forward, written, &in_arm, &calibrated, verdict);
         Outcome {
             campaign: self.campaign.statement.name.clone(),
             hash: self.campaign.hash.clone(),
@@ -179,6 +194,8 @@ impl Analysis<'_> {
             next_tests: next_test::propose(&self.next_question(verdict)),
             effects,
             suspects,
+            empirical: written.map_or(Vec::new(), |fit| self.laws(fit, &in_arm)),
+            models: choice.as_ref().map_or(Vec::new(), |choice| choice.rows.clone()),
             held_out,
             located: self.located(),
             noise: self.noise.clone(),
@@ -319,21 +336,49 @@ impl Analysis<'_> {
         if let Some(explaining) = &self.explaining {
             return few_rows::suspects(self.search, explaining, self.weights);
         }
-        let ends = intervals(self.forward, &self.best, self.weights);
+        let competitors: Vec<_> = (0..self.best.model.effects.len()).map(|i| self.competitors(i)).collect();
+        self.found_in(&self.best, &competitors)
+    }
+
+    /// The effects of a model with their intervals, and for each effect those that could replace it.
+    fn found_in(&self, fit: &Fit, competitors: &[Vec<(String, String)>]) -> Vec<Finding> {
+        let ends = intervals(self.forward, fit, self.weights);
         let mut parameter = 0;
-        let effects = self.best.model.effects.iter().enumerate();
+        let effects = fit.model.effects.iter().enumerate();
         effects
             .map(|(i, effect)| {
-                let first = self.best.model.first_parameter(i);
+                let first = fit.model.first_parameter(i);
                 let own = first..first + effect.free_parameters.len();
                 let finding = Finding {
                     effect: effect.kind.name.into(),
                     at: effect.at.clone(),
-                    parameters: parameters(effect, &self.best.point.u[own], &ends[parameter..]),
-                    indistinguishable_from: self.competitors(i),
+                    parameters: parameters(effect, &fit.point.u[own], &ends[parameter..]),
+                    indistinguishable_from: competitors.get(i).cloned().unwrap_or_default(),
                 };
                 parameter += effect.free_parameters.len();
                 finding
+            })
+            .collect()
+    }
+
+    /// The model of the corrected arm where nothing explains the gap.
+    fn model_without_explanation(&self) -> Choice<'_> {
+        let first_law = self.search.candidates.len();
+        let again =
+            |fit: &Fit, effects: &[usize]| self.with_laws.fit(effects, &fit.point.u, Effort::default());
+        let chosen = &self.selection.best.effects;
+        let (baseline, named) = (again(&self.baseline, &[]), again(&self.best, chosen));
+        corrected_model::choose(self.with_laws, first_law, self.noise, baseline, named, chosen)
+    }
+
+    /// The laws without a name of a model.
+    fn laws(&self, fit: &Fit, findings: &[Finding]) -> Vec<Law> {
+        let each = fit.model.effects.iter().zip(findings);
+        each.filter(|(effect, _)| effect.kind.name == KIND.name)
+            .map(|(effect, finding)| Law {
+                finding: finding.clone(),
+                law: empirical::in_words(effect),
+                may_be: empirical::may_be(effect),
             })
             .collect()
     }

@@ -205,6 +205,9 @@ impl Both<'_> {
             calibrated: loaded.calibrated,
             evidence: loaded.evidence,
             records: Vec::new(),
+            // the corrected arm of both is the calibrated one where either is unexplained
+            empirical: Vec::new(),
+            models: Vec::new(),
         }
     }
 

@@ -100,6 +100,8 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         other_corrected: corrected[1..].to_vec(),
         stages: found.stages.clone(),
         records: Vec::new(),
+        empirical: Vec::new(),
+        models: Vec::new(),
         effects,
     }
 }
