@@ -275,7 +275,14 @@ pub struct JointLaw {
 
 impl From<Curve> for JointLaw {
     fn from(curve: Curve) -> Self {
-        Self { curve, connection_rad_per_nm: 0.0, lost_motion: None, hysteresis_rad: 0.0, waves: [0.0; 4], further: None }
+        Self {
+            curve,
+            connection_rad_per_nm: 0.0,
+            lost_motion: None,
+            hysteresis_rad: 0.0,
+            waves: [0.0; 4],
+            further: None,
+        }
     }
 }
 

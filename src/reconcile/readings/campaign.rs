@@ -12,7 +12,7 @@ use crate::arm::effect::channel::Channel;
 use crate::arm::file::read_arm;
 use crate::arm::{Arm, Element};
 use crate::catalog::Catalogs;
-use crate::input::json::{Document, Fault, Faults, InputError, Node, Object};
+use crate::input::json::{Document, Fault, Faults, InputError, Node};
 use crate::reconcile::records::reading::{Record, read_all};
 use crate::reconcile::records::spec::{RecordSpec, STATEMENT_KEYS, read_records};
 use std::path::{Path, PathBuf};

@@ -118,11 +118,17 @@ fn twists(joint: &str, torque_nm: f64, twist_rad: f64) -> [Candidate; 2] {
 fn readings(channel: Channel, largest: f64) -> Vec<Candidate> {
     let bend = Parameter { count: 2, ..Parameter::number(BEND, -1.0, 1.0, 0.1, Scale::Linear) };
     let bent = law(channel.word(), bend, 0.0);
-    let mut out = vec![Candidate { numbers: [vec![Free, Free, Stated(largest)], vec![Stated(1.0); 3]].concat(), ..bent }];
+    let mut out = vec![Candidate {
+        numbers: [vec![Free, Free, Stated(largest)], vec![Stated(1.0); 3]].concat(),
+        ..bent
+    }];
     if channel.components() == 3 {
         let gain = Parameter::vector(GAIN, 0.5, 2.0, 1.0).absent(Absent::AtOne);
         let gains = law(channel.word(), gain, 1.0);
-        out.push(Candidate { numbers: [vec![Stated(0.0), Stated(0.0), Stated(1.0)], vec![Free; 3]].concat(), ..gains });
+        out.push(Candidate {
+            numbers: [vec![Stated(0.0), Stated(0.0), Stated(1.0)], vec![Free; 3]].concat(),
+            ..gains
+        });
     }
     out
 }
@@ -132,14 +138,7 @@ fn law(at: &str, parameter: Parameter, absent: f64) -> Candidate {
     let free = (0..parameter.count).map(|component| FreeParameter::new(&parameter, component, 1.0));
     let free_parameters: Vec<FreeParameter> = free.collect();
     let starts = vec![free_parameters.iter().map(|free| free.u(absent)).collect()];
-    Candidate {
-        kind: &KIND,
-        at: at.into(),
-        free_parameters,
-        numbers: Vec::new(),
-        starts,
-        twins: Vec::new(),
-    }
+    Candidate { kind: &KIND, at: at.into(), free_parameters, numbers: Vec::new(), starts, twins: Vec::new() }
 }
 
 /// Largest torque on a joint in the campaign, including the bench \[N m\].
