@@ -22,5 +22,6 @@ mod records;
 mod scoring;
 mod together;
 mod unusual;
+mod without_a_name;
 #[path = "../witness/mod.rs"]
 mod witness;
