@@ -67,7 +67,12 @@ impl Arm {
     pub fn from_json(file: &Value) -> Self {
         let parts = file["chain"].as_array().expect("an arm has a chain");
         let chain = parts.iter().map(|part| Part::from_json(part, &file["materials"])).collect();
-        Self { gravity_m_s2: file["gravity_m_s2"].as_f64().unwrap_or(9.81), base_nm_per_rad: None, base_lift: None, chain }
+        Self {
+            gravity_m_s2: file["gravity_m_s2"].as_f64().unwrap_or(9.81),
+            base_nm_per_rad: None,
+            base_lift: None,
+            chain,
+        }
     }
 
     /// The joint of this name.

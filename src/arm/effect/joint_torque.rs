@@ -59,10 +59,7 @@ fn starts(setting: &Setting) -> Vec<Vec<f64>> {
 }
 
 fn contradiction(numbers: &[f64]) -> Option<(&'static str, &'static str)> {
-    numbers
-        .iter()
-        .all(|n| *n == 0.0)
-        .then_some(("no torque is given", "give offset_nm, sin_nm or cos_nm"))
+    numbers.iter().all(|n| *n == 0.0).then_some(("no torque is given", "give offset_nm, sin_nm or cos_nm"))
 }
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
@@ -82,13 +79,8 @@ mod tests {
     use crate::mechanics::chain::Chain;
     use nalgebra::Vector3;
 
-    const CURVE: Windup = Windup {
-        k1_nm_per_rad: 1e4,
-        k2_nm_per_rad: 2e4,
-        k3_nm_per_rad: 4e4,
-        t1_nm: 20.0,
-        t2_nm: 60.0,
-    };
+    const CURVE: Windup =
+        Windup { k1_nm_per_rad: 1e4, k2_nm_per_rad: 2e4, k3_nm_per_rad: 4e4, t1_nm: 20.0, t2_nm: 60.0 };
 
     #[test]
     fn the_gear_turns_and_vibrates_at_the_sum_of_both_torques() {

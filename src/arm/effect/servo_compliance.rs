@@ -9,11 +9,7 @@ pub(crate) const CHANNEL: &str = "channel";
 
 const PARAMETERS: &[Parameter] = &[
     Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 2e5, Scale::Stiffness).expected(0.0, 6.0),
-    Parameter {
-        is_channel: true,
-        default: None,
-        ..Parameter::number(CHANNEL, 0.0, 3.0, 1.0, Scale::Linear)
-    },
+    Parameter { is_channel: true, default: None, ..Parameter::number(CHANNEL, 0.0, 3.0, 1.0, Scale::Linear) },
 ];
 
 /// The effect.

@@ -56,13 +56,17 @@ fn starts(setting: &Setting) -> Vec<Vec<f64>> {
 
 fn contradiction(numbers: &[f64]) -> Option<(&'static str, &'static str)> {
     let is_whole = (1e-12..0.95).contains(&(numbers[0] + numbers[1]));
-    (!is_whole).then_some(("once and twice together are nothing, or more than the joint has", "give a sum below 0.95"))
+    (!is_whole).then_some((
+        "once and twice together are nothing, or more than the joint has",
+        "give a sum below 0.95",
+    ))
 }
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
     if let Some(joint) = subject.structure.joint_mut(at) {
         let waves = &mut joint.law.waves;
-        for (k, (size, phase)) in [(numbers[0], numbers[2]), (numbers[1], numbers[3])].into_iter().enumerate() {
+        for (k, (size, phase)) in [(numbers[0], numbers[2]), (numbers[1], numbers[3])].into_iter().enumerate()
+        {
             waves[2 * k] += size * libm::cos(phase);
             waves[2 * k + 1] += size * libm::sin(phase);
         }

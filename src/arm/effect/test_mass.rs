@@ -58,8 +58,7 @@ mod tests {
         let mut subject = subject();
         let bare = subject.structure.clone();
         apply(&[0.4, 0.02, -0.03, 0.05], "modal", &mut subject);
-        let payload =
-            Payload { mass_kg: 0.4, cg_m: Vector3::new(0.02, -0.03, 0.05), ..Payload::default() };
+        let payload = Payload { mass_kg: 0.4, cg_m: Vector3::new(0.02, -0.03, 0.05), ..Payload::default() };
         let answers = |structure: &crate::arm::structure::Structure, payload: &Payload| {
             let chain = Chain::new(structure, LinkModel::Full);
             let posed = chain.pose_rad(&[0.4, 0.9], payload, Vector3::new(3.0, -2.0, 1.0));
@@ -70,7 +69,10 @@ mod tests {
         let (with_m, with_hz) = answers(&subject.structure_in(Channel::Modal), &Payload::default());
         let (like_m, like_hz) = answers(&bare, &payload);
         assert!((with_m - like_m).norm() < 1e-12, "{with_m} {like_m}");
-        assert!(with_hz.iter().zip(&like_hz).all(|(a, b)| (a / b - 1.0).abs() < 1e-9), "{with_hz:?} {like_hz:?}");
+        assert!(
+            with_hz.iter().zip(&like_hz).all(|(a, b)| (a / b - 1.0).abs() < 1e-9),
+            "{with_hz:?} {like_hz:?}"
+        );
         assert_eq!(subject.structure_in(Channel::Static), bare);
     }
 }

@@ -56,7 +56,8 @@ fn starts(setting: &Setting) -> Vec<Vec<f64>> {
 }
 
 fn contradiction(numbers: &[f64]) -> Option<(&'static str, &'static str)> {
-    (numbers[0] == 0.0 && numbers[1] == 0.0).then_some(("no change is given", "give per_k, or change and rows"))
+    (numbers[0] == 0.0 && numbers[1] == 0.0)
+        .then_some(("no change is given", "give per_k, or change and rows"))
 }
 
 fn apply(numbers: &[f64], _at: &str, subject: &mut Subject) {

@@ -135,7 +135,9 @@ pub fn fits_nominal(kind: &Kind, at: &str, structure: &Structure) -> bool {
         Needs::CurvedJoint => structure.joints().any(|j| j.name == at && j.is_driven() && j.law.is_curved()),
         Needs::RigidLink => rigid_link,
         // an effect of the whole arm needs a link that bends somewhere
-        Needs::BendingLink if at == "arm" => structure.links().any(|l| l.beam.is_some_and(|b| b.flexibility > 0.0)),
+        Needs::BendingLink if at == "arm" => {
+            structure.links().any(|l| l.beam.is_some_and(|b| b.flexibility > 0.0))
+        }
         Needs::BendingLink => !rigid_link,
     }
 }

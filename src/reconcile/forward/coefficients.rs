@@ -305,8 +305,7 @@ impl Coefficients {
     /// What differs between two subjects for static readings.
     pub(crate) fn static_changes(&self, other: &Self) -> StaticChanges {
         let in_test = |c: &Self, joint: usize| c.law(joint, Channel::Static);
-        let laws: Vec<bool> =
-            (0..self.laws.len()).map(|j| in_test(self, j) != in_test(other, j)).collect();
+        let laws: Vec<bool> = (0..self.laws.len()).map(|j| in_test(self, j) != in_test(other, j)).collect();
         let linear = self.linear != other.linear || self.warming != other.warming;
         let payload = self.payload_delta_kg != other.payload_delta_kg
             || self.payload_offset_m != other.payload_offset_m

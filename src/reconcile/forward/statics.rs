@@ -184,11 +184,8 @@ impl PoseGeometry {
     /// Moments about world x and y on the base of what hangs on it in every test of a channel \[N m\].
     pub fn dead_base_nm(&self, coefficients: &Coefficients, layout: &Layout, channel: Channel) -> [f64; 2] {
         let masses = self.dead_base_per_mass_nm.iter().zip(&coefficients.weights);
-        let test = coefficients.tests[channel as usize].weight(
-            &self.tip_m,
-            &self.rotation,
-            layout.gravity_m_s2,
-        );
+        let test =
+            coefficients.tests[channel as usize].weight(&self.tip_m, &self.rotation, layout.gravity_m_s2);
         [0, 1].map(|i| {
             let further: f64 = masses.clone().map(|(per_mass, weight)| per_mass[i] * weight).sum();
             self.dead_base_nm[i] + further + self.base[i].twist.dot(&test)
@@ -208,7 +205,12 @@ impl PoseGeometry {
     }
 
     /// Torque on each joint of what hangs on it in every test of a channel \[N m\].
-    pub fn dead_torques_nm(&self, coefficients: &Coefficients, layout: &Layout, channel: Channel) -> Vec<f64> {
+    pub fn dead_torques_nm(
+        &self,
+        coefficients: &Coefficients,
+        layout: &Layout,
+        channel: Channel,
+    ) -> Vec<f64> {
         let mut torques_nm = Vec::new();
         self.add_up_dead_torques(coefficients, layout, channel, &mut torques_nm);
         torques_nm
@@ -366,9 +368,8 @@ impl StaticPose {
         let dead_nm = self.geometry.dead_base_nm(coefficients, layout, Channel::Static);
         let base = &self.geometry.base;
         let lifted = |wrench: &Wrench| {
-            [0, 1].map(|i| {
-                lift.angle_rad(dead_nm[i] + base[i].twist.dot(wrench)) - lift.angle_rad(dead_nm[i])
-            })
+            [0, 1]
+                .map(|i| lift.angle_rad(dead_nm[i] + base[i].twist.dot(wrench)) - lift.angle_rad(dead_nm[i]))
         };
         state.lifted_rad.extend(state.wrenches.iter().map(lifted));
     }

@@ -6,10 +6,10 @@ use super::parameters::{Candidate, FreeParameter, Number};
 use crate::arm::effect::catalogue::KINDS;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::immersion::PAYLOAD_DENSITY;
-use crate::arm::effect::{connection_compliance, servo_compliance, thermal_modulus};
 use crate::arm::effect::kind::{Freed, Kind, Parameter, Place, Removes, Scale, Setting, Yields};
 use crate::arm::effect::validate::fits_nominal;
 use crate::arm::effect::wrong_unit;
+use crate::arm::effect::{connection_compliance, servo_compliance, thermal_modulus};
 use crate::arm::joint_law::Curve;
 use crate::arm::structure::Piece;
 use crate::reconcile::forward::prepared::Forward;
@@ -69,13 +69,7 @@ fn channel_is_sought(forward: &Forward, kind: &Kind, place: Place) -> bool {
 }
 
 /// The candidates of a kind at a place: one for each set of parameters that is freed.
-fn variants(
-    forward: &Forward,
-    sizes: &Sizes,
-    kind: &'static Kind,
-    place: Place,
-    at: &str,
-) -> Vec<Candidate> {
+fn variants(forward: &Forward, sizes: &Sizes, kind: &'static Kind, place: Place, at: &str) -> Vec<Candidate> {
     let asked = Asked { kind, place, at, freed: None, channel: None };
     let candidate = |asked: Asked| candidate(forward, sizes, asked);
     if (kind.parameters)(place).iter().any(|p| p.is_channel) {
@@ -180,7 +174,8 @@ fn candidate(forward: &Forward, sizes: &Sizes, asked: Asked) -> Candidate {
     }
     let values_at_one: Vec<f64> = free_parameters.iter().map(|free| free.value(1.0)).collect();
     let rows = rows_of_campaign(forward);
-    let setting = Setting { torque_nm, twist_rad: torque_nm / reference, rows, values_at_one: &values_at_one };
+    let setting =
+        Setting { torque_nm, twist_rad: torque_nm / reference, rows, values_at_one: &values_at_one };
     let starts = (kind.traits.starts)(&setting);
     Candidate { kind, at, free_parameters, numbers, starts, twins: Vec::new() }
 }

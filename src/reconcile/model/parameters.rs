@@ -52,9 +52,7 @@ impl FreeParameter {
         let (low, high) = (parameter.low, parameter.high);
         let (reference, (low, high), expected, absent) = match parameter.scale {
             // the reference of a torque is the largest on its joint; a torque is looked for up to twice what is expected
-            Scale::Torque => {
-                (joint_stiffness, (2.0 * expected.0, 2.0 * expected.1), expected, Some(0.0))
-            }
+            Scale::Torque => (joint_stiffness, (2.0 * expected.0, 2.0 * expected.1), expected, Some(0.0)),
             Scale::Linear => {
                 let size = parameter.typical.abs().max(1e-12);
                 let by_size = |(a, b): (f64, f64)| (a / size, b / size);

@@ -53,11 +53,8 @@ impl Positions {
             let fitted: Fitted = fit(&all, &self.numbers, &effects, &self.fitted);
             fitted.ln_likelihood < self.fitted.ln_likelihood - FALL
         };
-        let scales: Vec<f64> = variants
-            .into_par_iter()
-            .filter(unlikely)
-            .filter_map(|c| self.candidates[c].play_nm)
-            .collect();
+        let scales: Vec<f64> =
+            variants.into_par_iter().filter(unlikely).filter_map(|c| self.candidates[c].play_nm).collect();
         Estimate {
             value: scale_nm,
             low: scales.iter().copied().filter(|nm| *nm < scale_nm).reduce(f64::max),

@@ -214,7 +214,8 @@ impl Positions {
     pub(crate) fn competitors(&self, position: usize) -> Vec<(usize, Fitted)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let own = self.fitted.effects[position];
-        let numbers = |c: usize| self.candidates[c].count() + usize::from(self.candidates[c].play_nm.is_some());
+        let numbers =
+            |c: usize| self.candidates[c].count() + usize::from(self.candidates[c].play_nm.is_some());
         let rest: Vec<usize> = self.fitted.effects.iter().copied().filter(|e| *e != own).collect();
         let without = fit(&all, &self.numbers, &rest, &self.fitted);
         let is_other = |c: usize| !self.is_same(c, own) && numbers(c) <= numbers(own);

@@ -61,7 +61,8 @@ impl<'a> Search<'a> {
     /// break points are smoothed at first and then sharpened.
     fn fit_model(&self, mut model: Model<'a>, u: &[f64], effort: Effort) -> Fit<'a> {
         let mut start = u.to_vec();
-        if !self.forward.modal.is_empty() && model.effects.last().is_some_and(|e| e.kind.traits.steps_frequencies())
+        if !self.forward.modal.is_empty()
+            && model.effects.last().is_some_and(|e| e.kind.traits.steps_frequencies())
         {
             for smoothing in [WIDE, 0.03, NARROW] {
                 model.smoothing = smoothing;

@@ -82,9 +82,7 @@ pub(crate) fn instead(search: &Search, best: &Scored, baseline: &Fit) -> Option<
         (search.price(&effects), search.fit(&effects, &u, Effort::default()))
     });
     let fits: Vec<(f64, Fit)> = single.collect();
-    let better = |(price, fit): (f64, &Fit)| {
-        best_of(competitors(search, fit), best.score + price, places)
-    };
+    let better = |(price, fit): (f64, &Fit)| best_of(competitors(search, fit), best.score + price, places);
     let fits = fits.iter().map(|(price, fit)| (*price, fit));
     fits.chain([(0.0, baseline)]).filter_map(better).max_by(|a, b| a.gain.total_cmp(&b.gain))
 }

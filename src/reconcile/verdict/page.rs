@@ -143,11 +143,8 @@ fn found(finding: &Finding) -> Found {
         let axis = |i: usize| if estimates.len() > 1 { format!("{name} [{i}]") } else { name.clone() };
         estimates.iter().enumerate().map(|(i, e)| ranged(axis(i), e)).collect()
     };
-    let words: Vec<&str> = finding
-        .parameters
-        .iter()
-        .filter_map(|(name, estimates)| word(name, estimates.first()?))
-        .collect();
+    let words: Vec<&str> =
+        finding.parameters.iter().filter_map(|(name, estimates)| word(name, estimates.first()?)).collect();
     Found {
         label: words.iter().fold(finding.label(), |label, word| format!("{label} ({word})")),
         parameters: finding.parameters.iter().flat_map(named).collect(),

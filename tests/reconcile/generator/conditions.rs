@@ -31,7 +31,8 @@ impl Conditions {
                 self.servos.push((channel, at, p["stiffness_nm_per_rad"].as_f64().expect("stiffness")));
             }
             "thermal_modulus" => {
-                self.warming = Some((p["change"].as_f64().expect("change"), p["rows"].as_f64().expect("rows")));
+                self.warming =
+                    Some((p["change"].as_f64().expect("change"), p["rows"].as_f64().expect("rows")));
             }
             "stiffness_waves" => {
                 let size = |key: &str| p[key].as_f64().unwrap_or(0.0);
@@ -55,9 +56,7 @@ impl Conditions {
         }
         let chain = arm["chain"].as_array_mut().expect("chain");
         for (_, kg, cg_m) in self.masses.iter().filter(|(at, ..)| at == channel) {
-            let offset = |name: &str, factor: f64, kg: f64| {
-                json!({"type": "link", "name": name, "vector_m": cg_m.map(|x| factor * x), "mass_kg": kg})
-            };
+            let offset = |name: &str, factor: f64, kg: f64| json!({"type": "link", "name": name, "vector_m": cg_m.map(|x| factor * x), "mass_kg": kg});
             chain.extend([offset("probe", 2.0, *kg), offset("probe_back", -2.0, 0.0)]);
         }
         arm

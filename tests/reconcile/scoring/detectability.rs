@@ -15,10 +15,7 @@ pub fn detectable_sigmas(campaign: &Campaign, hidden: &[Value]) -> Option<f64> {
     let mut forward = Forward::new(campaign);
     let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
     let library = candidates(&forward);
-    let effects: Vec<&Candidate> = hidden
-        .iter()
-        .map(|h| candidate(&library, h))
-        .collect::<Option<_>>()?;
+    let effects: Vec<&Candidate> = hidden.iter().map(|h| candidate(&library, h)).collect::<Option<_>>()?;
     let mut u = vec![0.0; nuisance.numbers.len()];
     for (effect, key) in effects.iter().zip(hidden) {
         u.extend(effect.free_parameters.iter().enumerate().map(|(i, parameter)| {
