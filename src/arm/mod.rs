@@ -27,7 +27,7 @@ pub use bearing::{Bearing, BearingSource};
 pub use effect::entry::Effect;
 pub use extras::{Extras, ExtrasSource};
 pub use file::{read_arm, read_arm_document};
-pub use joint_law::{Curve, JointLaw, LostMotion, Windup};
+pub use joint_law::{Curve, FurtherTwist, JointLaw, LostMotion, Windup};
 pub use linkage::Linkage;
 pub use load::{LoadCase, Payload, Water, read_load_cases};
 pub use section::{LinkMaterial, Section, SectionProperties};

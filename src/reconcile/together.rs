@@ -2,7 +2,7 @@
 //!
 //! Absolute positions determine the geometry, which displacements, frequencies and bench readings take as
 //! given. These in turn determine what yields under loads of their own, while positions are loaded by gravity
-//! alone. So each kind is reconciled with the findings of the other.
+//! alone. So each kind is reconciled with the findings of the other. Records against time are judged by themselves.
 
 use super::analysis;
 use super::fit::held_out::HeldOut;
@@ -13,6 +13,7 @@ use super::positions::analysis::Calibrated;
 use super::positions::outcome::FEWEST;
 use super::predict::subject;
 use super::readings::campaign::Campaign;
+use super::records;
 use super::select::few_rows::FEWEST_ROWS;
 use super::select::lack_of_fit::LackOfFit;
 use super::verdict::outcome::{Outcome, Verdict};
@@ -36,6 +37,23 @@ use serde_json::json;
 /// assert!(outcome.effects.is_empty());
 /// ```
 pub fn reconcile(campaign: &Campaign) -> Outcome {
+    let mut outcome = of_all(campaign);
+    outcome.reasons.extend(campaign.remarks.iter().cloned());
+    outcome
+}
+
+/// Reconciles what there is of records and of the readings without time.
+fn of_all(campaign: &Campaign) -> Outcome {
+    let has_others = campaign.has_displacements() || !campaign.positions.is_empty();
+    if campaign.records.is_empty() {
+        return of_readings(campaign);
+    }
+    let recorded = records::outcome::reconcile(campaign);
+    if has_others { records::outcome::joined(of_readings(campaign), recorded) } else { recorded }
+}
+
+/// Reconciles the readings without time.
+fn of_readings(campaign: &Campaign) -> Outcome {
     let (loaded, placed) = campaign.parted();
     let (rows, count) = (analysis::rows(&loaded), placed.positions.len());
     if count == 0 {
@@ -139,8 +157,8 @@ impl Both<'_> {
         let Self { campaign, calibrated, loaded, mut placed, corrected, .. } = self;
         let mut next_tests = [loaded.next_tests, placed.next_tests].concat();
         next_tests.sort_by(|a, b| b.expected_sigmas.total_cmp(&a.expected_sigmas));
-        for (residual, before) in placed.residuals.iter_mut().zip(calibrated.predicted_mm.iter().flatten()) {
-            residual.before = *before;
+        for residual in &mut placed.residuals {
+            residual.before = calibrated.predicted_mm[residual.index][residual.component];
         }
         let effects = [loaded.effects, placed.effects].concat();
         let suspects = [loaded.suspects, placed.suspects].concat();
@@ -186,6 +204,10 @@ impl Both<'_> {
             hash: loaded.hash,
             calibrated: loaded.calibrated,
             evidence: loaded.evidence,
+            records: Vec::new(),
+            // the corrected arm of both is the calibrated one where either is unexplained
+            empirical: Vec::new(),
+            models: Vec::new(),
         }
     }
 

@@ -3,10 +3,12 @@
 mod bad_data;
 mod bearings;
 mod campaigns;
+mod conventions;
 #[path = "scoring/detectability.rs"]
 mod detectability;
 mod few_rows;
 mod forward;
+mod gauge;
 mod generated;
 mod generator;
 #[path = "../../examples/measured/mod.rs"]
@@ -15,6 +17,8 @@ mod other_simulator;
 mod positions;
 mod positions_maker;
 mod positions_other_simulator;
+mod record_simulator;
+mod records;
 mod scoring;
 mod together;
 mod unusual;

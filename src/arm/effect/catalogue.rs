@@ -3,14 +3,15 @@
 
 use super::kind::Kind;
 use super::{
-    base_compliance, base_lift, bearing_tilt, connection_compliance, drift, extra_mass, frame_compliance,
-    harness_mass, hysteresis, immersion, joint_compliance, joint_torque, link_flexibility, lost_motion,
-    modulus_error, outlier, payload_cg_error, payload_mass_error, sensor_bias, sensor_gain, servo_compliance,
-    soft_windup, stiffness_waves, test_mass, thermal_modulus, time_shift, transmission_error, wrong_unit,
+    base_compliance, base_lift, bearing_tilt, connection_compliance, drift, empirical, extra_mass,
+    frame_compliance, harness_mass, hysteresis, immersion, joint_compliance, joint_torque, link_flexibility,
+    lost_motion, modulus_error, outlier, payload_cg_error, payload_mass_error, sensor_bias, sensor_gain,
+    servo_compliance, soft_windup, stiffness_waves, test_mass, thermal_modulus, time_shift,
+    transmission_error, wrong_unit,
 };
 
 /// Every effect, in the order of the documentation.
-pub static KINDS: [&Kind; 28] = [
+pub static KINDS: [&Kind; 29] = [
     &connection_compliance::KIND,
     &soft_windup::KIND,
     &lost_motion::KIND,
@@ -39,6 +40,7 @@ pub static KINDS: [&Kind; 28] = [
     &outlier::KIND,
     &wrong_unit::KIND,
     &time_shift::KIND,
+    &empirical::KIND,
 ];
 
 /// The kind of an effect by its name.

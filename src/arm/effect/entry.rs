@@ -55,9 +55,9 @@ impl Effect {
         self.kind().is_some_and(|k| k.traits.changes_bending)
     }
 
-    /// Whether the effect describes the test and not the product.
+    /// Whether the effect describes the test and not the product. Whatever sits at a channel does.
     pub fn is_of_test(&self) -> bool {
-        self.kind().is_some_and(|k| k.scope == Scope::Test)
+        self.kind().is_some_and(|k| k.scope == Scope::Test) || Channel::from_word(&self.at).is_some()
     }
 }
 

@@ -13,6 +13,7 @@ pub(crate) mod catalogue;
 pub(crate) mod channel;
 pub(crate) mod connection_compliance;
 pub(crate) mod drift;
+pub(crate) mod empirical;
 pub(crate) mod entry;
 pub(crate) mod extra_mass;
 pub(crate) mod frame_compliance;

@@ -311,9 +311,7 @@ impl Coefficients {
             || self.payload_offset_m != other.payload_offset_m
             || self.payload_weight != other.payload_weight;
         // readings count from the unloaded arm, so where twists are proportional to torques, weights do not show
-        let is_proportional = |law: &JointLaw| {
-            law.lost_motion.is_none() && law.hysteresis_rad == 0.0 && !matches!(law.curve, Curve::Windup(_))
-        };
+        let is_proportional = |law: &JointLaw| !law.has_play() && !matches!(law.curve, Curve::Windup(_));
         let lift = self.lift != other.lift;
         let is_other = linear || payload || lift || laws.contains(&true);
         let [own, others] = [self, other].map(|c| &c.tests[Channel::Static as usize]);
@@ -343,6 +341,7 @@ impl Coefficients {
                     && a.connection_rad_per_nm == b.connection_rad_per_nm
                     && a.lost_motion == b.lost_motion
                     && a.waves == b.waves
+                    && a.further == b.further
             })
     }
 }

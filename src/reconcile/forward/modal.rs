@@ -72,7 +72,7 @@ pub(crate) fn prepare(
 ) -> Vec<ModalTest> {
     let mut tests: Vec<ModalTest> = Vec::new();
     let mut keys: Vec<(Vec<f64>, Payload)> = Vec::new();
-    for row in &campaign.modal {
+    for (row_index, row) in campaign.modal.iter().enumerate() {
         let group = groups.of(&row.pose_deg);
         let key = (row.pose_deg.clone(), row.payload);
         // A mode number that comes again starts a list of its own: the test was repeated.
@@ -89,6 +89,7 @@ pub(crate) fn prepare(
         data.push(Datum {
             channel: Channel::Modal,
             row: row.row,
+            index: row_index,
             component: 0,
             group,
             value: row.frequency_hz,

@@ -123,6 +123,11 @@ impl Forward {
         }
     }
 
+    /// Number of static rows.
+    pub fn static_rows(&self) -> usize {
+        self.statics.iter().map(StaticPose::count).sum()
+    }
+
     /// Sizes of a joint's torques on the bench \[N m\].
     pub fn bench_torques_nm(&self, joint: usize) -> impl Iterator<Item = f64> + '_ {
         self.bench.iter().filter(move |b| b.joint == joint).flat_map(Bench::sizes_nm)
@@ -131,12 +136,10 @@ impl Forward {
     /// Torque on every joint at each static or modal datum \[N m\].
     pub fn torques_nm(&self, coefficients: &Coefficients) -> Vec<Vec<f64>> {
         let mut out = vec![Vec::new(); self.starts[2]];
-        let statics = self.statics.iter().flat_map(|pose| {
-            let loads = pose.torques_nm(&self.layout, coefficients);
-            loads.into_iter().skip(1)
-        });
-        for (row, torques) in statics.enumerate() {
-            out[3 * row..3 * row + 3].fill(torques);
+        for pose in &self.statics {
+            for (load, torques) in pose.torques_nm(&self.layout, coefficients).iter().skip(1).enumerate() {
+                pose.measured(load).for_each(|(_, datum)| out[datum].clone_from(torques));
+            }
         }
         for test in &self.modal {
             let torques = test.torques_nm(&self.layout, coefficients);
@@ -158,6 +161,22 @@ impl Forward {
             test.predict(&self.layout, coefficients, &mut out);
         }
         self.read(coefficients, &mut out);
+        out
+    }
+
+    /// Readings of the displacement in every static row, those of components that were not measured included \[mm\].
+    pub fn displacements_mm(&self, coefficients: &Coefficients) -> Vec<[f64; 3]> {
+        let reading = &coefficients.channels[Channel::Static as usize];
+        let mut out = Vec::new();
+        for pose in &self.statics {
+            let state = pose.state(&self.layout, coefficients);
+            for load in 0..pose.count() {
+                let true_mm = pose.displacement_mm(&state, load);
+                // every component of a row is read at the same time
+                let row = pose.measured(load).next().map_or(0, |(_, datum)| self.data[datum].row);
+                out.push(std::array::from_fn(|c| reading.of(true_mm[c], c, row)));
+            }
+        }
         out
     }
 

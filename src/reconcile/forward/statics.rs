@@ -14,6 +14,7 @@ use crate::arm::load::Payload;
 use crate::mechanics::chain::{Item, Posed};
 use crate::mechanics::{Twist, Wrench, angular, displacement_at, force_wrench};
 use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::readings::components::Component;
 use nalgebra::{Matrix3x6, Rotation3, Vector3};
 
 /// A coordinate and how it moves the tip.
@@ -56,8 +57,9 @@ pub struct PoseGeometry {
 struct Load {
     payload: Payload,
     force_n: Vector3<f64>,
+    /// Index of the datum of each component that was measured.
+    data: [Option<usize>; 3],
     when: Moment,
-    first_datum: usize,
 }
 
 /// A pose with its loads in the order of the file.
@@ -117,7 +119,7 @@ pub(crate) fn prepare(
 ) -> Vec<StaticPose> {
     let mut poses: Vec<StaticPose> = Vec::new();
     let mut last: Option<&[f64]> = None;
-    for row in &campaign.statics {
+    for (index, row) in campaign.statics.iter().enumerate() {
         let group = groups.of(&row.pose_deg);
         // loads in one pose share a history, so only a change of pose starts a new one
         if last != Some(&row.pose_deg) {
@@ -125,17 +127,23 @@ pub(crate) fn prepare(
             poses.push(StaticPose { geometry, loads: Vec::new() });
             last = Some(&row.pose_deg);
         }
-        let first_datum = data.len();
-        let load = Load { payload: row.payload, force_n: row.force_n, when: row.moment(), first_datum };
+        let mut load =
+            Load { payload: row.payload, force_n: row.force_n, data: [None; 3], when: row.moment() };
+        for (component, read) in row.measured.iter().enumerate() {
+            let Some(Component { value_mm, sigma_mm }) = *read else { continue };
+            load.data[component] = Some(data.len());
+            let (value, sigma) = (value_mm, sigma_mm);
+            data.push(Datum {
+                channel: Channel::Static,
+                row: row.row,
+                index,
+                component,
+                group,
+                value,
+                sigma,
+            });
+        }
         poses.last_mut().expect("pushed above").loads.push(load);
-        data.extend((0..3).map(|component| Datum {
-            channel: Channel::Static,
-            row: row.row,
-            component,
-            group,
-            value: row.d_mm[component],
-            sigma: row.sigma_mm,
-        }));
     }
     poses
 }
@@ -361,6 +369,36 @@ impl StaticPose {
         }
     }
 
+    /// Displacement of the tip under a load, by its index \[mm\].
+    pub(crate) fn displacement_mm(&self, state: &StaticState, load: usize) -> Vector3<f64> {
+        let wrench = state.wrenches[load];
+        let mut tip = state.compliance * wrench;
+        if let Some(softness) = state.softness.get(load) {
+            tip += state.bending * wrench * *softness;
+        }
+        if let Some(lifted_rad) = state.lifted_rad.get(load) {
+            self.geometry.base.iter().zip(lifted_rad).for_each(|(m, angle)| tip += m.tip * *angle);
+        }
+        for (j, mover) in self.geometry.joints.iter().enumerate() {
+            tip += mover.tip * state.twists_rad[j * self.loads.len() + load];
+        }
+        1e3 * tip
+    }
+
+    /// Number of loads.
+    pub(crate) fn count(&self) -> usize {
+        self.loads.len()
+    }
+
+    /// The measured components of the displacement under a load, by its index, each with the index of its datum.
+    pub(crate) fn measured(&self, load: usize) -> impl Iterator<Item = (usize, usize)> {
+        self.loads[load]
+            .data
+            .into_iter()
+            .enumerate()
+            .filter_map(|(component, datum)| Some((component, datum?)))
+    }
+
     /// Brings the tilts of a base whose feet lift off up to date.
     fn lift(&self, layout: &Layout, coefficients: &Coefficients, state: &mut StaticState) {
         state.lifted_rad.clear();
@@ -374,23 +412,11 @@ impl StaticPose {
         state.lifted_rad.extend(state.wrenches.iter().map(lifted));
     }
 
-    /// Writes the displacements of all loads \[mm\].
+    /// Writes the displacements of all loads \[mm\], as far as they were measured.
     pub(crate) fn write(&self, state: &StaticState, out: &mut [f64]) {
-        let count = self.loads.len();
-        for (k, (load, wrench)) in self.loads.iter().zip(&state.wrenches).enumerate() {
-            let mut tip = state.compliance * wrench;
-            if let Some(softness) = state.softness.get(k) {
-                tip += state.bending * wrench * *softness;
-            }
-            if let Some(lifted_rad) = state.lifted_rad.get(k) {
-                self.geometry.base.iter().zip(lifted_rad).for_each(|(m, angle)| tip += m.tip * *angle);
-            }
-            for (j, mover) in self.geometry.joints.iter().enumerate() {
-                tip += mover.tip * state.twists_rad[j * count + k];
-            }
-            for component in 0..3 {
-                out[load.first_datum + component] = 1e3 * tip[component];
-            }
+        for load in 0..self.loads.len() {
+            let moved = self.displacement_mm(state, load);
+            self.measured(load).for_each(|(component, datum)| out[datum] = moved[component]);
         }
     }
 
@@ -409,10 +435,10 @@ impl StaticPose {
             .iter()
             .filter_map(|m| Some(m.tip * (compliance(m.index)? * m.twist.transpose())))
             .sum();
-        for load in &self.loads {
+        for (k, load) in self.loads.iter().enumerate() {
             let wrench = geometry.wrench(&load.payload, &load.force_n, layout.gravity_m_s2, coefficients);
             let moved = 1e3 * yielding * wrench;
-            (0..3).for_each(|component| out[load.first_datum + component] += moved[component]);
+            self.measured(k).for_each(|(component, datum)| out[datum] += moved[component]);
         }
     }
 

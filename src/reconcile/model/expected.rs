@@ -32,7 +32,7 @@ impl Sizes {
             payload_kg: forward.largest_payload_kg,
             displacement_mm: largest(Channel::Static),
             twist_arcmin: largest(Channel::Windup),
-            static_rows: (forward.range(Channel::Static).len() / 3).max(1) as f64,
+            static_rows: forward.static_rows().max(1) as f64,
         }
     }
 

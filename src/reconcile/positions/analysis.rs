@@ -13,6 +13,7 @@ use crate::arm::Arm;
 use crate::arm::effect::kind::Yields;
 use crate::reconcile::fit::stats::median;
 use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::readings::components::Components;
 use crate::reconcile::readings::rows::pose_key;
 use crate::reconcile::verdict::stage::Stage;
 use nalgebra::{Rotation3, Vector3};
@@ -223,6 +224,14 @@ impl Positions {
     }
 }
 
+/// How much an error of each coordinate counts in a fit. A coordinate with a larger standard deviation than the best one
+/// of its row counts less, but not below a tenth: what a model misses is often larger than what an instrument does.
+fn precision(measured: &Components) -> Vector3<f64> {
+    const LEAST: f64 = 0.1;
+    let best_mm = measured.iter().flatten().map(|read| read.sigma_mm).fold(f64::INFINITY, f64::min);
+    Vector3::from(measured.map(|read| read.map_or(0.0, |read| (best_mm / read.sigma_mm).max(LEAST))))
+}
+
 /// The measured positions, each with the deflection of its point under gravity.
 pub(super) fn samples(
     campaign: &Campaign,
@@ -250,7 +259,9 @@ pub(super) fn samples(
                 station: 0,
                 index,
                 group,
-                measured_m: Vector3::from(row.position_mm) / 1e3,
+                measured_m: Vector3::from(row.measured.map(|read| read.map_or(0.0, |read| read.value_mm)))
+                    / 1e3,
+                precision: precision(&row.measured),
                 deflection: Arc::new(loads.deflection(row, point)),
             }
         })

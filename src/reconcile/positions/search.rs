@@ -3,7 +3,7 @@
 
 use super::analysis::Positions;
 use super::fit::{fit, ln_likelihood, scale};
-use super::fitted::{Fitted, Sample};
+use super::fitted::{Fitted, Miss, Sample, readings};
 use super::normal::Factor;
 use super::rows::{Further, normal};
 use super::structure::squares;
@@ -51,7 +51,9 @@ impl Positions {
     }
 
     fn held_out_ln_likelihood(&self) -> f64 {
-        ln_likelihood(&self.held_out, scale(&self.held_out, self.fitted.scale_m))
+        let held_out = self.samples.iter().zip(&self.held_out);
+        let misses: Vec<Miss> = held_out.map(|(sample, error)| sample.miss(error)).collect();
+        ln_likelihood(&misses, scale(&misses, self.fitted.scale_m))
     }
 
     /// Repeats fits, each with gravity's effect on the geometry fitted before, until no effect is unnecessary.
@@ -133,7 +135,7 @@ impl Positions {
     /// Price of `numbers` parameters in ln of the likelihood. It charges for the parameters, and for having looked at
     /// `places` places.
     pub(crate) fn price(&self, numbers: usize, places: usize) -> f64 {
-        let readings = 3.0 * self.samples.len() as f64;
+        let readings = readings(&self.samples) as f64;
         0.5 * numbers as f64 * libm::log(readings) + libm::log(places as f64) + 3.0
     }
 

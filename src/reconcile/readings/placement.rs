@@ -151,8 +151,7 @@ mod tests {
             temperature_c: None,
             arm: 0,
             point: "tip".into(),
-            position_mm: [0.0; 3],
-            sigma_mm: 1.0,
+            measured: [None; 3],
         }
     }
 

@@ -6,6 +6,7 @@ use crate::arm::effect::channel::Channel;
 use crate::arm::effect::entry::word_of;
 use crate::reconcile::model::estimate::{Estimate, Finding};
 use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::records;
 use crate::report::html::campaign::{CampaignPage, Compared, Found, Ranged, Reading, Test, Weighed};
 use crate::report::html::pick::degrees;
 use crate::report::html::positions::{Position, Step};
@@ -45,6 +46,7 @@ pub fn campaign_page(campaign: &Campaign, outcome: &Outcome) -> CampaignPage {
         kept_out: outcome.held_out.map(|k| (k.count, k.rms_before, k.rms_after)),
         quality: text.lines().filter(|l| is_quality(l)).map(|l| l.trim().to_string()).collect(),
         tests: outcome.next_tests.iter().map(test).collect(),
+        records: records::report::sections(&outcome.records),
         optimum: None,
         facts: facts(campaign, outcome),
     }
@@ -76,18 +78,11 @@ fn is_quality(line: &str) -> bool {
 
 /// The residuals, each with its pose. Rows come channel by channel, in the order of the files.
 fn readings(campaign: &Campaign, outcome: &Outcome) -> Vec<Reading> {
-    let mut seen = [0usize; 2];
     let own = outcome.residuals.iter().filter(|r| r.channel != Channel::Positions);
     own.map(|r| {
         let pose = match r.channel {
-            Channel::Static => {
-                seen[0] += 1;
-                campaign.statics.get((seen[0] - 1) / 3).map(|s| s.pose_deg.clone())
-            }
-            Channel::Modal => {
-                seen[1] += 1;
-                campaign.modal.get(seen[1] - 1).map(|m| m.pose_deg.clone())
-            }
+            Channel::Static => campaign.statics.get(r.index).map(|s| s.pose_deg.clone()),
+            Channel::Modal => campaign.modal.get(r.index).map(|m| m.pose_deg.clone()),
             Channel::Windup | Channel::Positions => None,
         };
         Reading {
@@ -104,13 +99,17 @@ fn readings(campaign: &Campaign, outcome: &Outcome) -> Vec<Reading> {
     .collect()
 }
 
-/// The errors of absolute positions, with their three coordinates combined.
+/// The errors of absolute positions, with their coordinates combined. One that was not measured counts as zero.
 fn positions(campaign: &Campaign, outcome: &Outcome) -> Vec<Position> {
     let own: Vec<&ReadingResidual> =
         outcome.residuals.iter().filter(|r| r.channel == Channel::Positions).collect();
-    let rows = own.chunks_exact(3).zip(&campaign.positions);
+    let rows = own.chunk_by(|a, b| a.index == b.index);
+    let rows = rows.filter_map(|axes| Some((axes, campaign.positions.get(axes[0].index)?)));
     rows.map(|(axes, row)| {
-        let along = |of: fn(&ReadingResidual) -> f64| std::array::from_fn(|c| of(axes[c]));
+        let along = |of: fn(&ReadingResidual) -> f64| {
+            let read = |c: usize| axes.iter().find(|r| r.component == c);
+            std::array::from_fn(|c| read(c).map_or(0.0, |r| of(r)))
+        };
         Position {
             row: axes[0].row,
             pose_deg: row.pose_deg.clone(),
@@ -188,6 +187,7 @@ fn facts(campaign: &Campaign, outcome: &Outcome) -> Vec<(String, String)> {
         named("modal rows", campaign.modal.len().to_string()),
         named("wind-up rows", campaign.windup.len().to_string()),
         named("position rows", campaign.positions.len().to_string()),
+        named("rows of records", campaign.records.iter().map(|r| r.t_s.len()).sum::<usize>().to_string()),
         named("verdict", outcome.verdict.word().to_string()),
         named("tool version", env!("CARGO_PKG_VERSION").into()),
         named("blake3 of the campaign", outcome.hash.clone()),
