@@ -12,7 +12,7 @@ use super::forward::prepared::Forward;
 use super::model::candidates::candidates;
 use super::model::estimate::Interval;
 use super::model::estimate::{Estimate, Finding};
-use super::model::parameters::{Candidate, Model, Nuisance};
+use super::model::parameters::{Candidate, Model, Nuisance, Number};
 use super::readings::campaign::Campaign;
 use super::readings::components::{DISPLACEMENT, FEWEST_ALIKE};
 use super::select::empirical;
@@ -585,16 +585,24 @@ fn dead_instruments(forward: &Forward) -> Vec<String> {
     out
 }
 
-/// A fitted effect's parameters with their intervals.
+/// A fitted effect's parameters with their intervals. A component that is not fitted stands in its place, its ends open.
 fn parameters(effect: &Candidate, u: &[f64], ends: &[Interval]) -> Vec<(String, Vec<Estimate>)> {
+    let mut free = effect.free_parameters.iter().zip(effect.free_values(u)).zip(ends);
     let mut out: Vec<(String, Vec<Estimate>)> = Vec::new();
-    for ((parameter, value), interval) in effect.free_parameters.iter().zip(effect.free_values(u)).zip(ends) {
-        let estimate = parameter.estimate(value, interval);
-        match out.iter_mut().find(|(name, _)| name == parameter.name) {
+    for (name, number) in effect.named_numbers() {
+        let estimate = match number {
+            Number::Free => {
+                let Some(((parameter, value), interval)) = free.next() else { continue };
+                parameter.estimate(value, interval)
+            }
+            Number::Stated(value) => Estimate { value, low: None, high: None },
+        };
+        match out.iter_mut().find(|(known, _)| known == name) {
             Some((_, list)) => list.push(estimate),
-            None => out.push((parameter.name.to_string(), vec![estimate])),
+            None => out.push((name.to_string(), vec![estimate])),
         }
     }
+    out.retain(|(name, _)| effect.free_parameters.iter().any(|parameter| parameter.name == name));
     let stated = |value: f64| Estimate { value, low: Some(value), high: Some(value) };
     out.extend(effect.words().into_iter().map(|(name, number, _)| (name.to_string(), vec![stated(number)])));
     if effect.free_parameters.is_empty() {

@@ -190,15 +190,23 @@ impl Candidate {
         self.words().into_iter().fold(label, |label, (_, _, word)| format!("{label} ({word})"))
     }
 
+    /// Every number with the name of its parameter, in the order of the kind.
+    pub(crate) fn named_numbers(&self) -> Vec<(&'static str, Number)> {
+        // channels may have parameters of their own
+        let is_own = |place: &&Place| matches!(place, Place::Channel(channel) if channel.word() == self.at);
+        let place = self.kind.places.iter().find(is_own).or(self.kind.places.first());
+        let Some(place) = place else { return Vec::new() };
+        let names = (self.kind.parameters)(*place).iter().flat_map(|p| std::iter::repeat_n(p.name, p.count));
+        names.zip(self.numbers.iter().copied()).collect()
+    }
+
     /// Stated parameters that files have as words: name, number and word.
     pub(crate) fn words(&self) -> Vec<(&'static str, f64, &'static str)> {
-        let Some(place) = self.kind.places.first() else { return Vec::new() };
-        let names = (self.kind.parameters)(*place).iter().flat_map(|p| std::iter::repeat_n(p.name, p.count));
-        let word = |(name, number): (&'static str, &Number)| match number {
-            Number::Stated(number) => Some((name, *number, word_of(self.kind.name, name, *number)?)),
+        let word = |(name, number): (&'static str, Number)| match number {
+            Number::Stated(number) => Some((name, number, word_of(self.kind.name, name, number)?)),
             Number::Free => None,
         };
-        names.zip(&self.numbers).filter_map(word).collect()
+        self.named_numbers().into_iter().filter_map(word).collect()
     }
 
     /// Whether another candidate is the same effect at the same place, of which other parameters are fitted.
