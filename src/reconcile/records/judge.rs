@@ -7,6 +7,7 @@ use super::reading::Record;
 use super::ringing::{joined, swings};
 use super::signals::JointRows;
 use super::twist::{CLEARLY, Group, TwistModel, fill};
+use super::wave::Wave;
 use crate::reconcile::model::estimate::Estimate;
 
 /// Blocks of time that are looked for.
@@ -37,14 +38,15 @@ const TELLING_RANGE_RAD: f64 = 2.0;
 
 /// Judges a joint; `None` where it has no rows to judge.
 pub(crate) fn judge(records: &[Record], joint: &str) -> Option<JointRecord> {
-    let rows = JointRows::gather(records, joint, BLOCKS)?;
+    let wave = Wave::find(records, joint);
+    let rows = JointRows::gather(records, joint, BLOCKS, &wave)?;
     let model = TwistModel::find(&rows)?;
     let readings = rows.samples.len() as f64 / model.rows_per_reading / LONG_BLOCK;
     let blocks = (readings as usize).clamp(FEWEST_BLOCKS, BLOCKS);
     if blocks >= BLOCKS {
         return Some(Judged::new(&rows, &model, records).conclude());
     }
-    let rows = JointRows::gather(records, joint, blocks)?;
+    let rows = JointRows::gather(records, joint, blocks, &wave)?;
     let model = TwistModel::find(&rows)?;
     Some(Judged::new(&rows, &model, records).conclude())
 }
@@ -219,6 +221,7 @@ impl<'a> Judged<'a> {
         ]
     }
 
+    /// The effect's numbers are those of the link's angle beyond the motor's; the twist has them with the other sign.
     fn output_error(&self) -> Stated {
         let what = Group::Output.what();
         if !self.model.groups.contains(&Group::Output) {
@@ -227,7 +230,7 @@ impl<'a> Judged<'a> {
         let (low, high) = self.rows.range_rad();
         let columns = self.model.places.output();
         let size = self.error_size(columns, low, high, 1.0);
-        let mut each: Vec<Estimate> = columns.map(|c| self.model.fitted.coefficient(c)).to_vec();
+        let mut each: Vec<Estimate> = columns.map(|c| self.model.fitted.estimate(|of| -of(c))).to_vec();
         let mut words = String::new();
         if high - low < TELLING_RANGE_RAD {
             each.iter_mut().for_each(|e| (e.low, e.high) = (None, None));
@@ -252,7 +255,7 @@ impl<'a> Judged<'a> {
         }
         let columns = self.model.places.input();
         let size = self.error_size(columns, 0.0, std::f64::consts::TAU / ratio, ratio);
-        let each = columns.map(|c| self.model.fitted.coefficient(c)).to_vec();
+        let each = columns.map(|c| self.model.fitted.estimate(|of| -of(c))).to_vec();
         let parameters =
             vec![("peak_to_peak_rad".into(), vec![size]), ("sin_cos_sin2_cos2_rad".into(), each)];
         Stated { what, state: State::Found, parameters, words: String::new() }

@@ -3,6 +3,7 @@
 //!
 //! - [`spec`] reads what `campaign.json` says of records, and [`reading`] reads them.
 //! - `smooth` gives slopes and curvatures; `signals` gathers the rows of one joint and cuts them into blocks of time.
+//!   `wave` takes an error within a turn of the motor from what is differentiated.
 //! - `blocks` fits columns to rows, with intervals and held-out errors by blocks.
 //! - `twist` says which columns the twist needs, `friction` balances the torques, `curve` looks for laws beyond a single
 //!   compliance, and `ringing` for free swings.
@@ -22,3 +23,4 @@ pub(crate) mod signals;
 pub(crate) mod smooth;
 pub mod spec;
 pub(crate) mod twist;
+pub(crate) mod wave;

@@ -3,6 +3,7 @@
 use super::blocks::Blocks;
 use super::reading::{JointSignals, Record};
 use super::smooth::{Smooth, half_width, noise, slope_noise, smooth, usual_step_s};
+use super::wave::Wave;
 
 /// The sign of a speed is taken as smooth below this part of the largest speed, because friction is.
 const SLOW_PART: f64 = 0.002;
@@ -76,7 +77,7 @@ pub(crate) struct Twist {
 
 impl JointRows {
     /// Gathers a joint from the records in which both its sides stand.
-    pub(crate) fn gather(records: &[Record], joint: &str, blocks: usize) -> Option<Self> {
+    pub(crate) fn gather(records: &[Record], joint: &str, blocks: usize, wave: &Wave) -> Option<Self> {
         let whole = |j: &&JointSignals| j.joint == joint && !j.link_rad.is_empty();
         let own: Vec<(&Record, &JointSignals)> =
             records.iter().filter_map(|r| Some((r, r.joints.iter().find(whole)?))).collect();
@@ -96,7 +97,7 @@ impl JointRows {
         };
         for (record, signals) in own {
             let share = (blocks * record.t_s.len()) as f64 / total as f64;
-            out.push(&record.t_s, signals, (share.round() as usize).max(FEWEST_BLOCKS));
+            out.push(&record.t_s, signals, (share.round() as usize).max(FEWEST_BLOCKS), wave);
         }
         out.accelerations_rad_s2 = out.rms_accelerations();
         Some(out)
@@ -123,15 +124,16 @@ impl JointRows {
         })
     }
 
-    fn push(&mut self, t_s: &[f64], signals: &JointSignals, blocks: usize) {
+    fn push(&mut self, t_s: &[f64], signals: &JointSignals, blocks: usize, wave: &Wave) {
         // an error of the gear within a turn of the motor shows on one side and narrows that side's window only
-        let half = half_width(t_s, &signals.motor_rad).max(half_width(t_s, &signals.link_rad));
-        let motor = smooth(t_s, &signals.motor_rad, half);
-        let link = smooth(t_s, &signals.link_rad, half);
+        let [calm_motor_rad, calm_link_rad] = wave.taken_from(signals);
+        let half = half_width(t_s, &calm_motor_rad).max(half_width(t_s, &calm_link_rad));
+        let motor = smooth(t_s, &calm_motor_rad, half);
+        let link = smooth(t_s, &calm_link_rad, half);
 
         let step_s = usual_step_s(t_s);
         let fastest = motor.slope.iter().filter(|w| !w.is_nan()).fold(0.0f64, |m, w| m.max(w.abs()));
-        let doubt = slope_noise(&signals.motor_rad, half, step_s);
+        let doubt = slope_noise(&calm_motor_rad, half, step_s);
         let slow = (SLOW_PART * fastest).max(2.0 * doubt).max(f64::MIN_POSITIVE);
         let sign: Vec<f64> =
             motor.slope.iter().map(|w| if w.is_nan() { 0.0 } else { libm::tanh(w / slow) }).collect();
