@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use crate::arm::file::read_arm;
 use crate::catalog::Catalogs;
-use crate::reconcile::predict::predict;
+use crate::reconcile::predict::{predict, unplaced};
 use crate::reconcile::readings::campaign::{Statement, read_statement};
 use crate::reconcile::readings::placement::Placed;
 use crate::reconcile::readings::placement::Placement;
@@ -67,10 +67,15 @@ pub(crate) fn run(args: &PredictArgs, catalogs: &Catalogs) -> Result<String, Fai
         arms.push(placed(&file, catalogs)?);
     }
     let text = predict(&arms, &statement, Table::read(&args.readings)?)?;
-    let Some(out) = &args.out else { return Ok(text) };
+    let remark = unplaced(&arms, &Table::read(&args.readings)?).map_or(String::new(), |remark| format!("{remark}.\n"));
+    let Some(out) = &args.out else {
+        // the readings are the output; what is said about them must not be among them
+        eprint!("{remark}");
+        return Ok(text);
+    };
     if let Some(folder) = out.parent().filter(|f| !f.as_os_str().is_empty()) {
         fs_err::create_dir_all(folder).map_err(|e| Failure::file(folder, "create", &e))?;
     }
     fs_err::write(out, text).map_err(|e| Failure::file(out, "write", &e))?;
-    Ok(format!("written to {}\n", out.display()))
+    Ok(format!("{remark}written to {}\n", out.display()))
 }
