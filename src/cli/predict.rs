@@ -67,7 +67,8 @@ pub(crate) fn run(args: &PredictArgs, catalogs: &Catalogs) -> Result<String, Fai
         arms.push(placed(&file, catalogs)?);
     }
     let text = predict(&arms, &statement, Table::read(&args.readings)?)?;
-    let remark = unplaced(&arms, &Table::read(&args.readings)?).map_or(String::new(), |remark| format!("{remark}.\n"));
+    let remark =
+        unplaced(&arms, &Table::read(&args.readings)?).map_or(String::new(), |remark| format!("{remark}.\n"));
     let Some(out) = &args.out else {
         // the readings are the output; what is said about them must not be among them
         eprint!("{remark}");

@@ -25,7 +25,6 @@ use super::verdict::next_test;
 use super::verdict::outcome::{Calibrated, Evidence, Located, Outcome, ReadingResidual, Verdict};
 use super::verdict::too_little::{rows, too_little};
 use super::verdict::{caution, correct, locate};
-use crate::arm::effect::channel::Channel;
 use std::cell::OnceCell;
 
 /// Largest number of alternatives with which an effect is still named.
@@ -73,9 +72,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         () if best.model.effects.is_empty() => None,
         () => unnamed::instead(&search, &search.scored(&chosen.effects, &best), &baseline),
     };
-    let is_weak = !best.model.effects.is_empty()
-        && found.selection.best.score - found.selection.baseline.score < WEAK;
-    let without = is_weak.then(|| lack_of_fit(campaign, &forward, &baseline, &weights));
+    let without = is_weak(&found.selection).then(|| lack_of_fit(campaign, &forward, &baseline, &weights));
     let left_out = [&baseline, &best].map(|f| held_out::residuals(&forward, &f.model, &f.point.u, &weights));
     let analysis = Analysis {
         campaign,
@@ -96,6 +93,11 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         left_out,
     };
     analysis.conclude()
+}
+
+/// Whether the evidence for the best effects is weak.
+fn is_weak(selection: &Selection) -> bool {
+    !selection.best.effects.is_empty() && selection.best.score - selection.baseline.score < WEAK
 }
 
 /// Finds the effects and the noise. Where the noise of a channel shows a unit slip, the search is repeated with the

@@ -207,7 +207,8 @@ fn what_no_pose_separates_is_said_and_another_test_proposed() {
 /// Declares in campaign.json that the tip was put back before a row.
 fn declare(folder: &Path, from_row: usize) {
     let file = folder.join("campaign.json");
-    let mut statement: Value = serde_json::from_str(&std::fs::read_to_string(&file).expect("text")).expect("JSON");
+    let mut statement: Value =
+        serde_json::from_str(&std::fs::read_to_string(&file).expect("text")).expect("JSON");
     statement["positions"]["sessions"] = json!([{"from_row": from_row, "moved": "tip"}]);
     std::fs::write(file, statement.to_string()).expect("written");
 }
@@ -217,7 +218,11 @@ fn a_jump_of_millimetres_that_nobody_declared_explains_nothing() {
     let folder = standard().write(&Made::put_back);
     let outcome = reconcile(&read(folder.path()));
     assert_eq!(outcome.verdict, Verdict::InsufficientData, "{}", outcome.to_text());
-    assert!(outcome.reasons.iter().any(|r| r.contains("mm at row 41 and nobody declared it")), "{:?}", outcome.reasons);
+    assert!(
+        outcome.reasons.iter().any(|r| r.contains("mm at row 41 and nobody declared it")),
+        "{:?}",
+        outcome.reasons
+    );
     assert!(outcome.suspects.iter().any(|s| s.label() == "joint_compliance@q2"), "{}", outcome.to_text());
 }
 

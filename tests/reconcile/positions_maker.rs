@@ -149,13 +149,18 @@ impl Made {
 
     /// A campaign folder of a truth whose rows were taken configuration by configuration: first all in which the third joint
     /// is turned backwards.
-    pub fn write_by_configuration(&self, truth: &dyn Fn(&Self, &[f64; 3], usize) -> Truth) -> tempfile::TempDir {
+    pub fn write_by_configuration(
+        &self,
+        truth: &dyn Fn(&Self, &[f64; 3], usize) -> Truth,
+    ) -> tempfile::TempDir {
         let folder = self.write(truth);
         let file = folder.path().join("positions.csv");
         let text = std::fs::read_to_string(&file).expect("text");
         let (head, rows) = text.split_once('\n').expect("rows");
-        let third_deg = |row: &&str| row.split(',').nth(3).expect("a third angle").parse::<f64>().expect("a number");
-        let (forwards, backwards): (Vec<&str>, Vec<&str>) = rows.lines().partition(|row| third_deg(row) > 0.0);
+        let third_deg =
+            |row: &&str| row.split(',').nth(3).expect("a third angle").parse::<f64>().expect("a number");
+        let (forwards, backwards): (Vec<&str>, Vec<&str>) =
+            rows.lines().partition(|row| third_deg(row) > 0.0);
         let numbered = backwards.iter().chain(&forwards).enumerate();
         let rows: String =
             numbered.map(|(i, row)| format!("{i},{}\n", row.split_once(',').expect("cells").1)).collect();

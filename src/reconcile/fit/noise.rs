@@ -99,7 +99,8 @@ impl Noise {
             .into_iter()
             .flat_map(|channel| {
                 let range = forward.range(channel);
-                let own = slips.iter().filter(|slip| slip.0 == channel).map(|slip| (slip.1, slip.2)).collect();
+                let own =
+                    slips.iter().filter(|slip| slip.0 == channel).map(|slip| (slip.1, slip.2)).collect();
                 let kept = without_runs(&forward.data[range.clone()], &residuals[range], own);
                 kept.into_iter().map(move |(row, size)| (channel, row, size))
             })

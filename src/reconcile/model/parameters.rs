@@ -130,6 +130,12 @@ impl FreeParameter {
         self.absent.map(|absent| u - absent)
     }
 
+    /// A value `u` whose difference from that of an absent effect is multiplied by `part`; the same value where the parameter
+    /// is no size.
+    pub(crate) fn scaled(&self, u: f64, part: f64) -> f64 {
+        self.absent.map_or(u, |absent| absent + part * (u - absent))
+    }
+
     /// Whether an interval contains the size at which the effect is absent; `None` where the parameter is no size.
     pub(crate) fn may_be_absent(&self, ends: &Interval) -> Option<bool> {
         let absent = self.absent?;

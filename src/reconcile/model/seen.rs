@@ -8,6 +8,9 @@ use crate::reconcile::forward::prepared::Forward;
 /// sizes that are looked for are a thousand times the usual ones at most.
 const UNSEEN: f64 = 1e-6;
 
+/// Part of its range by which a parameter is moved to see what it does.
+const STEP: f64 = 0.01;
+
 /// The candidates that move at least one reading. On a bench no payload, base or mass does. An effect that moves no
 /// reading fits as well as calibration alone, and would be listed as an alternative to whatever is found.
 pub(crate) fn seen(forward: &Forward, nuisance: &Nuisance, mut candidates: Vec<Candidate>) -> Vec<Candidate> {
@@ -22,13 +25,30 @@ pub(crate) fn seen(forward: &Forward, nuisance: &Nuisance, mut candidates: Vec<C
     }
     candidates.retain(|candidate| {
         let model = bare.with(candidate);
-        candidate.starts.iter().any(|start| {
-            let u = [here.u.as_slice(), start].concat();
+        sizes(candidate).iter().any(|own| {
+            let u = [here.u.as_slice(), own].concat();
             let moved = change(forward, &model, &here, &u);
             moved.iter().zip(&weights.inverse).any(|(delta, weight)| (delta * weight).abs() > UNSEEN)
         })
     });
     candidates
+}
+
+/// Parameters at which an effect would show: where its fits start, and from there each parameter a little further, because
+/// some fits start where the effect is absent.
+fn sizes(candidate: &Candidate) -> Vec<Vec<f64>> {
+    let further = |start: &Vec<f64>, p: usize| {
+        let parameter = &candidate.free_parameters[p];
+        let step = STEP * (parameter.high - parameter.low);
+        let mut out = start.clone();
+        out[p] += if out[p] + step > parameter.high { -step } else { step };
+        out
+    };
+    let of_start = |start: &Vec<f64>| -> Vec<Vec<f64>> {
+        let moved = (0..start.len()).map(|p| further(start, p));
+        std::iter::once(start.clone()).chain(moved).collect()
+    };
+    candidate.starts.iter().flat_map(of_start).collect()
 }
 
 #[cfg(test)]
@@ -59,7 +79,13 @@ mod tests {
         for blind in ["payload", "base_compliance", "extra_mass", "immersion", "bearing_tilt", "harness"] {
             assert!(!on_the_bench.iter().any(|label| label.starts_with(blind)), "{blind}: {on_the_bench:?}");
         }
-        assert!(labels(|_| ()).iter().any(|label| label == "base_compliance@base"));
+        let with_all = labels(|_| ());
+        // a gain, a drift and a payload's centre are fitted from where they are absent
+        for shown in
+            ["base_compliance@base", "sensor_gain@static", "drift@static", "payload_cg_error@payload"]
+        {
+            assert!(with_all.iter().any(|label| label == shown), "{shown}: {with_all:?}");
+        }
     }
 
     /// A joint that the campaign had on the bench.

@@ -104,10 +104,13 @@ pub(crate) fn analyze(campaign: &Campaign) -> Positions {
         late.drop_needless_sessions();
         let others = [late.boundaries(false), reviewed.boundaries(false)];
         let mut again: Vec<Positions> = Vec::new();
-        for own in others.iter().enumerate().filter(|(k, own)| !others[..*k].contains(own)).map(|(_, own)| own) {
+        for own in
+            others.iter().enumerate().filter(|(k, own)| !others[..*k].contains(own)).map(|(_, own)| own)
+        {
             again.extend((*own != found.boundaries(false)).then(|| calibrated.with_sessions(campaign, own)));
         }
-        found = again.into_iter().fold(found, |best, next| if next.score() > best.score() { next } else { best });
+        found =
+            again.into_iter().fold(found, |best, next| if next.score() > best.score() { next } else { best });
     }
     let errors = found.samples.iter().map(|s| found.fitted.error(s).norm()).enumerate();
     let gross = errors.filter(|(_, e)| *e > GROSS * found.fitted.scale_m).map(|(i, e)| (i, 1e3 * e));

@@ -97,7 +97,8 @@ impl Positions {
     /// What else changes where a session begins: a joint's angle or a payload that is on one side of a limit in all rows
     /// before and on the other side in all rows after.
     fn changes_at(&self, campaign: &Campaign, boundary: &Boundary) -> Option<String> {
-        let own = |range: std::ops::Range<usize>| range.filter(|&i| self.is_of(&self.samples[i], boundary.kind));
+        let own =
+            |range: std::ops::Range<usize>| range.filter(|&i| self.is_of(&self.samples[i], boundary.kind));
         let before: Vec<usize> = own(0..boundary.first).rev().take(BESIDE).collect();
         let after: Vec<usize> = own(boundary.first..self.samples.len()).take(BESIDE).collect();
         if before.len().min(after.len()) < FEWEST_BESIDE {
@@ -106,16 +107,21 @@ impl Positions {
         let rows = &campaign.positions;
         let angles = self.tree.driven.iter().enumerate().map(|(j, name)| {
             let of = |i: usize| rows[i].pose_deg[j];
-            (format!("the angle of {name}"), [&before, &after].map(|side| side.iter().map(|&i| of(i)).collect()))
+            (
+                format!("the angle of {name}"),
+                [&before, &after].map(|side| side.iter().map(|&i| of(i)).collect()),
+            )
         });
         let sides = |of: &dyn Fn(usize) -> f64| -> [Vec<f64>; 2] {
             [&before, &after].map(|side| side.iter().map(|&i| of(i)).collect())
         };
         let payload = ("the payload".to_string(), sides(&|i| rows[i].payload.mass_kg));
-        let centre = (0..3).map(|c| ("the payload's centre".to_string(), sides(&|i| rows[i].payload.cg_m[c])));
+        let centre =
+            (0..3).map(|c| ("the payload's centre".to_string(), sides(&|i| rows[i].payload.cg_m[c])));
         let arm = ("the arm that is measured".to_string(), sides(&|i| rows[i].arm as f64));
         let all: Vec<(String, [Vec<f64>; 2])> = angles.chain([payload, arm]).chain(centre).collect();
-        let apart: Vec<String> = all.into_iter().filter(|(_, [a, b])| are_apart(a, b)).map(|(name, _)| name).collect();
+        let apart: Vec<String> =
+            all.into_iter().filter(|(_, [a, b])| are_apart(a, b)).map(|(name, _)| name).collect();
         (!apart.is_empty()).then(|| apart.join(", "))
     }
 

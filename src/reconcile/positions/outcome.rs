@@ -48,8 +48,8 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let lack_of_fit = found.lack_of_fit(campaign);
     let competitors: Vec<Vec<(usize, Fitted)>> =
         (0..found.fitted.effects.len()).map(|i| found.competitors(i)).collect();
-    let yielding =
-        (0..found.fitted.effects.len()).map(|i| found.with_session_instead(campaign, i, found.finding(i, &competitors[i])));
+    let yielding = (0..found.fitted.effects.len())
+        .map(|i| found.with_session_instead(campaign, i, found.finding(i, &competitors[i])));
     let uneven = found.transmissions.iter().map(|&joint| found.transmission_finding(joint));
     let findings: Vec<Finding> = yielding.chain(uneven).collect();
     let (verdict, mut reasons) = found.verdict(campaign, &lack_of_fit, &findings);

@@ -179,7 +179,8 @@ fn read_tolerance(node: &Node) -> Option<Tolerance> {
 fn read_positions(node: &Node) -> Option<PositionsSpec> {
     const KEYS: [&str; 5] =
         ["base_placement", "tool_offset", "joint_offsets", "geometry", "gravity_direction"];
-    let object = node.object(&[KEYS.as_slice(), &["mounts", "sessions", "file", "boundary", "reference"]].concat())?;
+    let object =
+        node.object(&[KEYS.as_slice(), &["mounts", "sessions", "file", "boundary", "reference"]].concat())?;
     let flags = KEYS.map(|key| object.or(key, false, Node::boolean));
     let mounts = object.or("mounts", Vec::new(), read_names);
     let sessions = object.or("sessions", Vec::new(), declared::read);
@@ -265,7 +266,9 @@ impl Campaign {
             }
         }
         let declared = declared::problems(&campaign.statement.positions.sessions, &campaign.positions);
-        faults.extend(declared.into_iter().map(|(what, hint)| campaign.fault("positions.sessions", what, &hint)));
+        faults.extend(
+            declared.into_iter().map(|(what, hint)| campaign.fault("positions.sessions", what, &hint)),
+        );
         campaign.hash = campaign.hash_files();
         if faults.is_empty() { Ok(campaign) } else { Err(Faults(faults).into()) }
     }

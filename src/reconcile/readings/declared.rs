@@ -47,7 +47,10 @@ pub(super) fn problems(sessions: &[DeclaredSession], rows: &[PositionRow]) -> Ve
     let mut out = Vec::new();
     for DeclaredSession { from_row, moved } in sessions {
         if *from_row > rows.len() {
-            out.push((format!("from_row = {from_row} is beyond the {} rows", rows.len()), "count the rows".into()));
+            out.push((
+                format!("from_row = {from_row} is beyond the {} rows", rows.len()),
+                "count the rows".into(),
+            ));
         }
         if moved != BASE && !points.contains(&moved.as_str()) {
             let hint = format!("write \"{BASE}\" or the name of a point: {}", points.join(", "));

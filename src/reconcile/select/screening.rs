@@ -39,6 +39,8 @@ const CONVERGED: f64 = 0.5;
 /// Models whose objective after a few steps is above the best by less than this part of it are fitted further. Far from
 /// an explanation a few steps do not show what a model is worth.
 const UNDECIDED: f64 = 0.1;
+/// Sizes at which candidates are tried where much is missing, as parts of where their fits start.
+const SIZES: [f64; 3] = [0.1, 0.3, 1.0];
 /// A chi-squared below this part of its expectation is far below the declared noise.
 const BELOW: f64 = 0.5;
 /// Number of candidates fitted in full at each stage.
@@ -232,7 +234,9 @@ impl<'a> Search<'a> {
         let mut screened = self.screen(base);
         if !self.may_explain(base) {
             // a calibration that makes up for missing physics is far from where the right effect would leave it
-            screened.extend(self.screen(&self.uncalibrated(base)));
+            let nominal = self.uncalibrated(base);
+            screened.extend(self.screen(&nominal));
+            screened.extend(self.by_size(&nominal));
         }
         let starts = screened.into_iter().map(|(c, u, _)| ([base.effects.as_slice(), &[c]].concat(), u));
         let mut known: Vec<Scored> = Vec::new();
@@ -332,6 +336,31 @@ impl<'a> Search<'a> {
             .filter(|i| !base.effects.contains(i))
             .filter_map(|i| self.best_start(&model, about(i), i))
             .collect();
+        tried.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
+        tried.truncate(FULL_FITS);
+        tried
+    }
+
+    /// The candidates that bring a model closest to the readings at one of a few sizes, each with that start. Where much is
+    /// missing, a model that is linear about the fit so far does not show what a candidate does to the frequencies.
+    fn by_size(&self, base: &Scored) -> Vec<(usize, Vec<f64>, f64)> {
+        let model = self.model(&base.effects);
+        let best_size = |index: usize| {
+            let candidate = &self.candidates[index];
+            let sized = |start: &Vec<f64>, part: f64| -> Vec<f64> {
+                let own = candidate.free_parameters.iter().zip(start);
+                own.map(|(parameter, u)| parameter.scaled(*u, part)).collect()
+            };
+            let starts = candidate.starts.iter().flat_map(|start| SIZES.map(|part| sized(start, part)));
+            let tried = starts.map(|own| {
+                let u = [base.u.as_slice(), &own].concat();
+                let objective = evaluate(self.forward, &model.with(candidate), &u, self.weights).objective;
+                (index, u, -0.5 * objective)
+            });
+            tried.max_by(|a, b| a.2.total_cmp(&b.2))
+        };
+        let open = (0..self.candidates.len()).into_par_iter().filter(|i| !base.effects.contains(i));
+        let mut tried: Vec<(usize, Vec<f64>, f64)> = open.filter_map(best_size).collect();
         tried.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
         tried.truncate(FULL_FITS);
         tried

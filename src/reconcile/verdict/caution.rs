@@ -11,7 +11,7 @@ use crate::reconcile::model::parameters::{Candidate, FreeParameter};
 
 /// Places are neighbours if they are at most this many elements of the chain apart: two joints with a link between them.
 const NEAR: usize = 2;
-/// A calibrated factor is out of its tolerance from this many standard deviations on. The tolerance is two of them.
+/// The tolerance of a calibrated factor in standard deviations of its logarithm.
 const TOLERANCE: f64 = 2.0;
 
 /// Says that two effects of one kind, or two masses, have opposite signs at neighbouring places, if two do. Each takes back
@@ -75,16 +75,15 @@ pub(crate) fn may_be_absent(fit: &Fit, ends: &[Interval]) -> Vec<usize> {
 
 /// Says which calibrated factors leave the tolerance, if any do.
 pub(crate) fn beyond_tolerance(fit: &Fit, calibrated: &[Calibrated]) -> Option<String> {
-    let numbers = fit.model.nuisance.numbers.iter().zip(&fit.point.u).zip(calibrated);
-    let beyond = numbers.filter(|((_, u), _)| u.abs() > TOLERANCE).map(|(((_, sd), _), calibrated)| {
-        let percent = 100.0 * (calibrated.factor.value - 1.0);
-        format!("{} by {percent:+.1} % (tolerance {:.1} %)", calibrated.name, 100.0 * TOLERANCE * sd)
+    let numbers = fit.model.nuisance.numbers.iter().zip(calibrated);
+    let beyond = numbers.filter_map(|((_, sd), calibrated)| {
+        let (part, tolerance) = (calibrated.factor.value - 1.0, TOLERANCE * sd);
+        (part.abs() > tolerance).then(|| {
+            format!("{} by {:+.1} % (tolerance {:.1} %)", calibrated.name, 100.0 * part, 100.0 * tolerance)
+        })
     });
     let beyond: Vec<String> = beyond.collect();
     (!beyond.is_empty()).then(|| {
-        format!(
-            "calibration leaves the tolerance, as one honest part in twenty does: {}. Check these parts",
-            beyond.join(", ")
-        )
+        format!("calibration leaves the tolerance, as one honest part in twenty does: {}", beyond.join(", "))
     })
 }
