@@ -7,14 +7,14 @@ use super::fit::held_out::{HeldOut, rms};
 use super::fit::interval::{deviations, intervals};
 use super::fit::noise::Noise;
 use super::fit::units;
-use super::forward::datum::Datum;
 use super::forward::prepared::Forward;
 use super::model::candidates::candidates;
 use super::model::estimate::Interval;
 use super::model::estimate::{Estimate, Finding};
 use super::model::parameters::{Candidate, Model, Nuisance, Number};
+use super::model::seen::seen;
 use super::readings::campaign::Campaign;
-use super::readings::components::{DISPLACEMENT, FEWEST_ALIKE};
+use super::readings::components::DISPLACEMENT;
 use super::select::empirical;
 use super::select::few_rows;
 use super::select::lack_of_fit::{LackOfFit, lack_of_fit};
@@ -26,16 +26,17 @@ use super::select::unnamed::Better;
 use super::verdict::corrected_model::Choice;
 use super::verdict::next_test;
 use super::verdict::outcome::{Calibrated, Evidence, Law, Located, Outcome, ReadingResidual, Verdict};
-use super::verdict::{correct, corrected_model, locate};
-use crate::arm::effect::channel::Channel;
+use super::verdict::too_little::{rows, too_little};
+use super::verdict::{caution, correct, corrected_model, locate};
 use crate::arm::effect::empirical::KIND;
+use std::cell::OnceCell;
 
 /// Largest number of alternatives with which an effect is still named.
 const MOST_ALTERNATIVES: usize = 3;
-/// A rise of ln of the evidence below this is not yet strong (Kass and Raftery 1995, table of Bayes factors).
+/// With a rise of ln of the evidence below this an effect is only a suspect, because that is not yet strong (Kass and Raftery 1995, table of Bayes factors).
 const WEAK: f64 = 3.0;
-/// Smallest number of poses that can tell effects at different places apart.
-pub(crate) const FEWEST_POSES: usize = 3;
+/// What is said where no effect is needed.
+const NOTHING_MISSING: &str = "noise and calibration within tolerance explain every reading";
 
 /// Reconciles the displacements, frequencies and bench readings of a campaign with its arm.
 pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
@@ -43,6 +44,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
     let mut candidates = candidates(&forward);
     candidates.retain(|c| campaign.statement.considers(c.kind.name));
+    let mut candidates = seen(&forward, &nuisance, candidates);
     let few = rows(campaign) < few_rows::FEWEST_ROWS;
     if few {
         // a handful of readings cannot show what is seldom met
@@ -77,6 +79,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         () if best.model.effects.is_empty() => None,
         () => unnamed::instead(&search, &search.scored(&chosen.effects, &best), &baseline),
     };
+    let without = is_weak(&found.selection).then(|| lack_of_fit(campaign, &forward, &baseline, &weights));
     let left_out = [&baseline, &best].map(|f| held_out::residuals(&forward, &f.model, &f.point.u, &weights));
     let analysis = Analysis {
         campaign,
@@ -93,9 +96,16 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         unnamed,
         alternatives,
         explaining,
+        without,
+        ends: OnceCell::new(),
         left_out,
     };
     analysis.conclude()
+}
+
+/// Whether the evidence for the best effects is weak.
+fn is_weak(selection: &Selection) -> bool {
+    !selection.best.effects.is_empty() && selection.best.score - selection.baseline.score < WEAK
 }
 
 /// Finds the effects and the noise. Where the noise of a channel shows a unit slip, the search is repeated with the
@@ -149,6 +159,10 @@ struct Analysis<'a> {
     alternatives: Vec<Vec<Scored>>,
     /// Every set of effects that explains the readings, if there are few rows.
     explaining: Option<Vec<Scored>>,
+    /// Lack of fit of calibration alone, where the evidence for the effects is weak.
+    without: Option<LackOfFit>,
+    /// Intervals of the parameters of the best model's effects.
+    ends: OnceCell<Vec<Interval>>,
     left_out: [Vec<Option<f64>>; 2],
 }
 
@@ -160,27 +174,34 @@ impl Analysis<'_> {
             reasons.extend(self.at_a_limit());
         }
         reasons.extend(self.remarks.iter().cloned());
+        // the effects of a weak model are suspects where calibration alone is as good
         let findings = match verdict {
-            Verdict::Explained | Verdict::InsufficientData => self.findings(),
-            Verdict::NoGap | Verdict::Unexplained => Vec::new(),
+            Verdict::Unexplained => Vec::new(),
+            _ => self.findings(),
         };
         let (effects, suspects) = match verdict {
             Verdict::Explained => (findings, Vec::new()),
             _ => (Vec::new(), findings),
         };
         let choice = (verdict == Verdict::Unexplained).then(|| self.model_without_explanation());
-        let shown = match &choice {
-            Some(choice) => choice.fit.as_ref().unwrap_or(&self.baseline),
-            None => &self.best,
+        let shown = match (&choice, verdict) {
+            (Some(choice), _) => choice.fit.as_ref().unwrap_or(&self.baseline),
+            (None, Verdict::NoGap) => &self.baseline,
+            (None, _) => &self.best,
         };
         let calibrated = self.calibrated(shown);
+        if matches!(verdict, Verdict::Explained | Verdict::NoGap) {
+            reasons.extend(caution::beyond_tolerance(shown, &calibrated));
+        }
         let written = match (&choice, verdict) {
             (Some(choice), _) => choice.fit.as_ref(),
             (None, Verdict::InsufficientData) => None,
-            (None, _) => Some(&self.best),
+            (None, _) => Some(shown),
         };
         let in_arm = if choice.is_some() {
-            written.map_or(Vec::new(), |fit| self.found_in(fit, &[]))
+            written.map_or(Vec::new(), |fit| {
+                self.found_in(fit, &intervals(self.forward, fit, self.weights), &[])
+            })
         } else {
             effects.clone()
         };
@@ -224,11 +245,16 @@ impl Analysis<'_> {
             return (Verdict::Unexplained, self.left_over());
         }
         if self.best.model.effects.is_empty() {
-            let text = "noise and calibration within tolerance explain every reading".to_string();
-            return (Verdict::NoGap, vec![text]);
+            return (Verdict::NoGap, vec![NOTHING_MISSING.to_string()]);
         }
         if let Some(better) = &self.unnamed {
             return (Verdict::Unexplained, vec![self.beaten(better)]);
+        }
+        if let Some(text) = caution::opposed(self.forward, &self.best) {
+            return (Verdict::Unexplained, vec![text]);
+        }
+        if let Some(without) = &self.without {
+            return self.weak(without);
         }
         for (effect, competitors) in self.best.model.effects.iter().zip(&self.alternatives) {
             if competitors.len() > MOST_ALTERNATIVES {
@@ -245,25 +271,48 @@ impl Analysis<'_> {
             );
             return (Verdict::InsufficientData, vec![text]);
         }
-        (Verdict::Explained, self.gap_sentences())
+        if let Some(&i) = caution::may_be_absent(&self.best, self.ends()).first() {
+            let text = format!(
+                "the 95 % interval of {} contains its absence: it is a suspect and no finding",
+                self.best.model.effects[i].label()
+            );
+            return (Verdict::InsufficientData, vec![text]);
+        }
+        (Verdict::Explained, vec![self.gap_sentence()])
     }
 
-    fn gap_sentences(&self) -> Vec<String> {
+    /// The verdict where the evidence for the best effects is weak: they are suspects. There is no gap if calibration
+    /// alone leaves only noise.
+    fn weak(&self, without: &LackOfFit) -> (Verdict, Vec<String>) {
         let gain = self.selection.best.score - self.selection.baseline.score;
-        let mut out = vec![format!(
-            "with {} ln of the evidence rises by {gain:.1} (chi-squared {:.0} to {:.0} on {} readings)",
+        let suspected = format!(
+            "{} is a suspect: ln of the evidence rises by {gain:.1} with it (chi-squared {:.0} to {:.0}), odds of {:.0} to 1. \
+             Take the next test before relying on it",
             self.best.model.label(),
             self.baseline.point.objective,
             self.best.point.objective,
-            self.forward.data.len()
-        )];
-        if gain < WEAK {
-            let odds = libm::exp(gain);
-            out.push(format!(
-                "that is weak evidence, with odds of {odds:.0} to 1: take the next test before relying on it"
-            ));
+            libm::exp(gain)
+        );
+        match without.fails {
+            true => (Verdict::InsufficientData, [without.sentences(), vec![suspected]].concat()),
+            false => (Verdict::NoGap, vec![NOTHING_MISSING.to_string(), suspected]),
         }
-        out
+    }
+
+    fn gap_sentence(&self) -> String {
+        format!(
+            "with {} ln of the evidence rises by {:.1} (chi-squared {:.0} to {:.0} on {} readings)",
+            self.best.model.label(),
+            self.selection.best.score - self.selection.baseline.score,
+            self.baseline.point.objective,
+            self.best.point.objective,
+            self.forward.data.len()
+        )
+    }
+
+    /// Intervals of the parameters of all effects of the best model.
+    fn ends(&self) -> &[Interval] {
+        self.ends.get_or_init(|| intervals(self.forward, &self.best, self.weights))
     }
 
     /// Says that an effect has reached the largest size that is searched for. It names no effect, because it
@@ -337,12 +386,11 @@ impl Analysis<'_> {
             return few_rows::suspects(self.search, explaining, self.weights);
         }
         let competitors: Vec<_> = (0..self.best.model.effects.len()).map(|i| self.competitors(i)).collect();
-        self.found_in(&self.best, &competitors)
+        self.found_in(&self.best, self.ends(), &competitors)
     }
 
     /// The effects of a model with their intervals, and for each effect those that could replace it.
-    fn found_in(&self, fit: &Fit, competitors: &[Vec<(String, String)>]) -> Vec<Finding> {
-        let ends = intervals(self.forward, fit, self.weights);
+    fn found_in(&self, fit: &Fit, ends: &[Interval], competitors: &[Vec<(String, String)>]) -> Vec<Finding> {
         let mut parameter = 0;
         let effects = fit.model.effects.iter().enumerate();
         effects
@@ -523,66 +571,6 @@ impl Analysis<'_> {
         let name = self.forward.groups.get(group)?;
         Some(name.split(',').filter_map(|a| a.parse().ok()).collect())
     }
-}
-
-/// Number of rows that are not absolute positions.
-pub(crate) fn rows(campaign: &Campaign) -> usize {
-    campaign.statics.len() + campaign.modal.len() + campaign.windup.len()
-}
-
-/// Reasons why the readings cannot settle anything.
-fn too_little(campaign: &Campaign, forward: &Forward) -> Vec<String> {
-    let mut reasons = Vec::new();
-    let rows = rows(campaign);
-    if rows < few_rows::FEWEST_ROWS {
-        reasons.push(format!("{rows} rows are too few: give at least {}", few_rows::FEWEST_ROWS));
-    }
-    let mut poses: Vec<&Vec<f64>> = campaign
-        .statics
-        .iter()
-        .map(|r| &r.pose_deg)
-        .chain(campaign.modal.iter().map(|r| &r.pose_deg))
-        .collect();
-    poses.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
-    poses.dedup();
-    if poses.len() < FEWEST_POSES && !(poses.is_empty() && rows >= few_rows::FEWEST_ROWS) {
-        reasons.push(format!(
-            "{} distinct pose(s): effects at different places look the same; measure at least {FEWEST_POSES}",
-            poses.len()
-        ));
-    }
-    let first = campaign.statics.first();
-    let same_load = |r: &super::readings::rows::StaticRow| {
-        first.is_some_and(|f| f.payload.mass_kg == r.payload.mass_kg && f.force_n == r.force_n)
-    };
-    reasons.extend(dead_instruments(forward));
-    if first.is_some() && campaign.statics.iter().all(same_load) {
-        reasons.push(
-            "every static reading has the same load: an effect that grows with load cannot be told from one that does not"
-                .into(),
-        );
-    }
-    reasons
-}
-
-/// Names channels whose readings are all equal, and says if no reading exceeds the noise.
-fn dead_instruments(forward: &Forward) -> Vec<String> {
-    let mut out = Vec::new();
-    for channel in [Channel::Static, Channel::Modal, Channel::Windup] {
-        let data = &forward.data[forward.range(channel)];
-        let first = [0, 1, 2].map(|component| data.iter().find(|d| d.component == component));
-        let is_first = |d: &Datum| first[d.component].is_some_and(|first| first.value == d.value);
-        if data.last().is_some_and(|d| d.row + 1 >= FEWEST_ALIKE) && data.iter().all(is_first) {
-            out.push(format!(
-                "every {} reading is the same: the instrument did not follow the arm",
-                channel.word()
-            ));
-        }
-    }
-    if !forward.data.is_empty() && forward.data.iter().all(|d| d.value.abs() < 2.0 * d.sigma) {
-        out.push("no reading is twice its standard deviation: there is nothing to compare".into());
-    }
-    out
 }
 
 /// A fitted effect's parameters with their intervals. A component that is not fitted stands in its place, its ends open.

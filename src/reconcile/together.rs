@@ -18,6 +18,7 @@ use super::select::few_rows::FEWEST_ROWS;
 use super::select::lack_of_fit::LackOfFit;
 use super::verdict::outcome::{Outcome, Verdict};
 use super::verdict::stage::Stage;
+use super::verdict::too_little::rows;
 use crate::arm::{Arm, Element};
 use serde_json::json;
 
@@ -55,7 +56,7 @@ fn of_all(campaign: &Campaign) -> Outcome {
 /// Reconciles the readings without time.
 fn of_readings(campaign: &Campaign) -> Outcome {
     let (loaded, placed) = campaign.parted();
-    let (rows, count) = (analysis::rows(&loaded), placed.positions.len());
+    let (rows, count) = (rows(&loaded), placed.positions.len());
     if count == 0 {
         return analysis::reconcile(campaign);
     }
@@ -165,7 +166,8 @@ impl Both<'_> {
         let (effects, suspects) = match verdict {
             Verdict::Explained => (effects, Vec::new()),
             Verdict::InsufficientData => (Vec::new(), [effects, suspects].concat()),
-            Verdict::NoGap | Verdict::Unexplained => (Vec::new(), Vec::new()),
+            Verdict::NoGap => (Vec::new(), suspects),
+            Verdict::Unexplained => (Vec::new(), Vec::new()),
         };
         let (corrected, other_corrected) = match settled(verdict) {
             true => (corrected, placed.other_corrected),

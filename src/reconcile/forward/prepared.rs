@@ -9,6 +9,7 @@ use super::statics::{self, StaticPose, StaticState};
 use crate::arm::JointModel;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::subject::Subject;
+use crate::arm::joint_law::Curve;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::DMatrix;
 
@@ -146,6 +147,23 @@ impl Forward {
             test.modes.iter().for_each(|(datum, _)| out[*datum] = torques.clone());
         }
         out
+    }
+
+    /// Whether the torque of a modal test lies this close to a break point of a gear's curve \[ln of the torque\]. A small
+    /// change of a mass may then change the slope of the curve, and frequencies step.
+    pub(crate) fn is_close_to_a_step(&self, coefficients: &Coefficients, close: f64) -> bool {
+        let breaks = coefficients.laws.iter().map(|law| match law.curve {
+            Curve::Windup(curve) => vec![curve.t1_nm, curve.t2_nm],
+            _ => Vec::new(),
+        });
+        let breaks: Vec<Vec<f64>> = breaks.collect();
+        breaks.iter().any(|own| !own.is_empty())
+            && self.modal.iter().any(|test| {
+                let torques = test.torques_nm(&self.layout, coefficients);
+                torques.iter().zip(&breaks).any(|(torque_nm, own)| {
+                    own.iter().any(|at_nm| libm::log(torque_nm.abs() / at_nm).abs() < close)
+                })
+            })
     }
 
     /// Expresses a subject as compliances, joint laws and masses.

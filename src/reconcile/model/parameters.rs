@@ -132,6 +132,23 @@ impl FreeParameter {
         self.scale == Scale::Stiffness && u <= 1e-6
     }
 
+    /// Difference of `u` from the value at which the effect is absent; `None` where the parameter is no size.
+    pub(crate) fn departure(&self, u: f64) -> Option<f64> {
+        self.absent.map(|absent| u - absent)
+    }
+
+    /// A value `u` whose difference from that of an absent effect is multiplied by `part`; the same value where the parameter
+    /// is no size.
+    pub(crate) fn scaled(&self, u: f64, part: f64) -> f64 {
+        self.absent.map_or(u, |absent| absent + part * (u - absent))
+    }
+
+    /// Whether an interval contains the size at which the effect is absent; `None` where the parameter is no size.
+    pub(crate) fn may_be_absent(&self, ends: &Interval) -> Option<bool> {
+        let absent = self.absent?;
+        Some(ends.low.is_none_or(|low| low <= absent) && ends.high.is_none_or(|high| high >= absent))
+    }
+
     /// Whether the effect has reached the largest size that is searched for.
     fn is_at_its_limit(&self, u: f64) -> bool {
         // the end where the effect is absent is no limit

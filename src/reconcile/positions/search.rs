@@ -105,10 +105,10 @@ impl Positions {
         format!("{}@{}", self.candidates[candidate].effect, self.candidates[candidate].at)
     }
 
-    /// ln of the likelihood minus the price of all effects.
-    fn score(&self) -> f64 {
+    /// ln of the likelihood minus the price of all effects and of the sessions that nobody declared.
+    pub(super) fn score(&self) -> f64 {
         let uneven = self.transmissions.len() as f64 * self.transmission_price();
-        self.fitted.ln_likelihood - self.prices(&self.fitted.effects) - uneven
+        self.fitted.ln_likelihood - self.prices(&self.fitted.effects) - uneven - self.sessions_price()
     }
 
     /// Price of several effects together, in ln of the likelihood.

@@ -2,6 +2,7 @@
 
 use super::cells::Purpose;
 use super::components::{Components, DISPLACEMENT, POSITION, leave_out_idle};
+use super::declared::{self, DeclaredSession};
 use super::rows::{
     ModalRow, PositionRow, StaticRow, WindupRow, modal_rows, position_rows, static_rows, windup_rows,
 };
@@ -45,6 +46,8 @@ pub struct PositionsSpec {
     pub gravity_direction: bool,
     /// Links behind which place and attitude are unknown, as of an arm that is mounted anyhow on a trunk.
     pub mounts: Vec<String>,
+    /// Sessions that are known.
+    pub sessions: Vec<DeclaredSession>,
 }
 
 impl PositionsSpec {
@@ -193,10 +196,12 @@ fn read_tolerance(node: &Node) -> Option<Tolerance> {
 fn read_positions(node: &Node) -> Option<PositionsSpec> {
     const KEYS: [&str; 5] =
         ["base_placement", "tool_offset", "joint_offsets", "geometry", "gravity_direction"];
-    let object =
-        node.object(&[KEYS.as_slice(), &["mounts", "file", "boundary", "reference", "note"]].concat())?;
+    let object = node.object(
+        &[KEYS.as_slice(), &["mounts", "sessions", "file", "boundary", "reference", "note"]].concat(),
+    )?;
     let flags = KEYS.map(|key| object.or(key, false, Node::boolean));
     let mounts = object.or("mounts", Vec::new(), read_names);
+    let sessions = object.or("sessions", Vec::new(), declared::read);
     Some(PositionsSpec {
         base_placement: flags[0]?,
         tool_offset: flags[1]?,
@@ -204,6 +209,7 @@ fn read_positions(node: &Node) -> Option<PositionsSpec> {
         geometry: flags[3]?,
         gravity_direction: flags[4]?,
         mounts: mounts?,
+        sessions: sessions?,
     })
 }
 
@@ -278,6 +284,10 @@ impl Campaign {
         }
         let (names, specs) = (campaign.driven_joint_names(), &campaign.statement.records);
         campaign.records = read_all(folder, specs, &names, &mut faults)?;
+        let declared = declared::problems(&campaign.statement.positions.sessions, &campaign.positions);
+        faults.extend(
+            declared.into_iter().map(|(what, hint)| campaign.fault("positions.sessions", what, &hint)),
+        );
         campaign.hash = campaign.hash_files();
         if faults.is_empty() { Ok(campaign) } else { Err(Faults(faults).into()) }
     }
@@ -444,6 +454,9 @@ impl Campaign {
             self.statics.extend(other.statics);
             self.modal.extend(other.modal);
             self.windup.extend(other.windup);
+            let rows = self.positions.len();
+            let later = other.statement.positions.sessions.into_iter().map(|session| session.after(rows));
+            self.statement.positions.sessions.extend(later);
             self.positions.extend(other.positions);
             self.remarks.extend(other.remarks);
             self.records.extend(other.records);

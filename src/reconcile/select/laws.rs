@@ -122,8 +122,19 @@ impl Builder<'_> {
             let what =
                 format!("a stiffness of {name} that changes with the order of the {} tests", channel.word());
             out.extend(one_or_both(&what, [order(channel, 1), order(channel, 2)]));
+            // a servo holds a joint less firmly than a brake; with one kind of readings this is the joint's stiffness
+            if self.kinds_of_readings() > 1 {
+                let what = format!("a stiffness of {name} that is another in the {} tests", channel.word());
+                out.push(Law { what, effect: None, columns: vec![order(channel, 0)] });
+            }
         }
         out
+    }
+
+    /// Number of channels that have readings.
+    fn kinds_of_readings(&self) -> usize {
+        let channels = [Channel::Static, Channel::Modal, Channel::Windup];
+        channels.into_iter().filter(|channel| !self.forward.range(*channel).is_empty()).count()
     }
 
     /// The change of every reading by an additional twist of a joint.
