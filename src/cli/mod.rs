@@ -10,6 +10,7 @@ pub(crate) mod design;
 pub(crate) mod failure;
 pub(crate) mod finished;
 pub(crate) mod front;
+pub(crate) mod new;
 pub(crate) mod predict;
 pub(crate) mod progress;
 pub(crate) mod reconcile;

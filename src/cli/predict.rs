@@ -1,12 +1,14 @@
 //! `armwright predict`: adds the model's value to every reading.
 
 use super::failure::Failure;
+use crate::arm::effect::channel::Channel;
 use crate::arm::file::read_arm;
 use crate::catalog::Catalogs;
 use crate::reconcile::predict::predict;
 use crate::reconcile::readings::campaign::{Statement, read_statement};
 use crate::reconcile::readings::placement::Placed;
 use crate::reconcile::readings::placement::Placement;
+use crate::reconcile::readings::source::Source;
 use crate::reconcile::readings::table::Table;
 use clap::Args;
 use serde_json::Value;
@@ -56,6 +58,25 @@ fn other_arms(args: &PredictArgs, statement: &Statement) -> Vec<PathBuf> {
     }
 }
 
+/// The readings, with the names of columns that `campaign.json` states for a file of this name, or else for a file
+/// with these columns.
+fn table(file: &Path, statement: &Statement) -> Result<Table, Failure> {
+    let sources = Channel::ALL.map(|channel| statement.source(channel));
+    let is_named = |source: &&Source| source.file.as_ref().is_some_and(|named| file.ends_with(named));
+    if let Some(source) = sources.iter().find(is_named) {
+        return Ok(Table::read_from(file, source)?);
+    }
+    let table = Table::read_from(file, &Source::default())?;
+    let has_all = |source: &&Source| source.columns.iter().all(|(_, shown)| table.columns.contains(shown));
+    match sources.iter().filter(|source| !source.columns.is_empty()).find(has_all) {
+        Some(Source { columns, .. }) => {
+            let source = Source { columns: columns.clone(), ..Source::default() };
+            Ok(Table::read_from(file, &source)?)
+        }
+        None => Ok(table),
+    }
+}
+
 /// The readings with the columns of the model, or the name of the file they were written to.
 ///
 /// # Errors
@@ -66,7 +87,7 @@ pub(crate) fn run(args: &PredictArgs, catalogs: &Catalogs) -> Result<String, Fai
     for file in other_arms(args, &statement) {
         arms.push(placed(&file, catalogs)?);
     }
-    let text = predict(&arms, &statement, Table::read(&args.readings)?)?;
+    let text = predict(&arms, &statement, table(&args.readings, &statement)?)?;
     let Some(out) = &args.out else { return Ok(text) };
     if let Some(folder) = out.parent().filter(|f| !f.as_os_str().is_empty()) {
         fs_err::create_dir_all(folder).map_err(|e| Failure::file(folder, "create", &e))?;

@@ -1,7 +1,7 @@
 //! All verbs: their names, and the functions that execute them.
 
 use super::failure::Failure;
-use super::{analyze, catalog, compare, design, front, predict, reconcile, size};
+use super::{analyze, catalog, compare, design, front, new, predict, reconcile, size};
 use crate::catalog::Catalogs;
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
@@ -44,6 +44,8 @@ enum Verb {
     Front(front::FrontArgs),
     /// Compare fronts: the materials of one study, or several studies
     Compare(compare::CompareArgs),
+    /// Start a campaign of measurements
+    New(new::NewArgs),
     /// Find where an arm and its measurements disagree and which physics is missing
     Reconcile(reconcile::ReconcileArgs),
     /// Add the model's value to every reading of a file
@@ -81,6 +83,7 @@ pub fn run(cli: Cli) -> Result<String, Failure> {
         Verb::Analyze(args) => analyze::run(&args, &catalogs?),
         Verb::Design(args) => design::run(&args, &catalogs?),
         Verb::Front(args) => front::run(&args, &catalogs?),
+        Verb::New(args) => new::run(&args, &catalogs?),
         Verb::Reconcile(args) => reconcile::run(&args, &catalogs?, overlay).map(|(_, text)| text),
         Verb::Predict(args) => predict::run(&args, &catalogs?),
     }

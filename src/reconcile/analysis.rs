@@ -12,8 +12,10 @@ use super::forward::prepared::Forward;
 use super::model::candidates::candidates;
 use super::model::estimate::Interval;
 use super::model::estimate::{Estimate, Finding};
-use super::model::parameters::{Candidate, Model, Nuisance};
+use super::model::parameters::{Candidate, Model, Nuisance, Number};
 use super::readings::campaign::Campaign;
+use super::readings::components::{DISPLACEMENT, FEWEST_ALIKE};
+use super::select::empirical;
 use super::select::few_rows;
 use super::select::lack_of_fit::{LackOfFit, lack_of_fit};
 use super::select::screening::Selection;
@@ -21,17 +23,19 @@ use super::select::search::{Scored, Search};
 use super::select::settle::Settled;
 use super::select::unnamed;
 use super::select::unnamed::Better;
+use super::verdict::corrected_model::Choice;
 use super::verdict::next_test;
-use super::verdict::outcome::{Calibrated, Evidence, Located, Outcome, ReadingResidual, Verdict};
-use super::verdict::{correct, locate};
+use super::verdict::outcome::{Calibrated, Evidence, Law, Located, Outcome, ReadingResidual, Verdict};
+use super::verdict::{correct, corrected_model, locate};
 use crate::arm::effect::channel::Channel;
+use crate::arm::effect::empirical::KIND;
 
 /// Largest number of alternatives with which an effect is still named.
 const MOST_ALTERNATIVES: usize = 3;
 /// A rise of ln of the evidence below this is not yet strong (Kass and Raftery 1995, table of Bayes factors).
 const WEAK: f64 = 3.0;
 /// Smallest number of poses that can tell effects at different places apart.
-const FEWEST_POSES: usize = 3;
+pub(crate) const FEWEST_POSES: usize = 3;
 
 /// Reconciles the displacements, frequencies and bench readings of a campaign with its arm.
 pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
@@ -41,6 +45,8 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     candidates.retain(|c| campaign.statement.considers(c.kind.name));
     let few = rows(campaign) < few_rows::FEWEST_ROWS;
     if few {
+        // a handful of readings cannot show what is seldom met
+        candidates.retain(|c| c.kind.traits.odds >= 1.0);
         candidates = candidates.into_iter().map(Candidate::from_corners).collect();
     }
     let found = settled(campaign, &mut forward, &nuisance, &candidates, few);
@@ -55,6 +61,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         candidates: &candidates,
         weights: &weights,
     };
+    let with_laws = [candidates.as_slice(), &empirical::laws(&forward)].concat();
     let hopeless = found.selection.given_up || !search.may_explain(chosen);
     let best = match hopeless {
         true => search.fit(&chosen.effects, &chosen.u, Effort::default()),
@@ -75,6 +82,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         campaign,
         forward: &forward,
         search: &search,
+        with_laws: &Search { candidates: &with_laws, ..search },
         selection: &found.selection,
         noise: &found.noise,
         remarks: &found.remarks,
@@ -126,6 +134,8 @@ struct Analysis<'a> {
     campaign: &'a Campaign,
     forward: &'a Forward,
     search: &'a Search<'a>,
+    /// The same with laws without a name after its candidates.
+    with_laws: &'a Search<'a>,
     selection: &'a Selection,
     noise: &'a Noise,
     remarks: &'a [String],
@@ -158,16 +168,24 @@ impl Analysis<'_> {
             Verdict::Explained => (findings, Vec::new()),
             _ => (Vec::new(), findings),
         };
-        let shown = if verdict == Verdict::Unexplained { &self.baseline } else { &self.best };
+        let choice = (verdict == Verdict::Unexplained).then(|| self.model_without_explanation());
+        let shown = match &choice {
+            Some(choice) => choice.fit.as_ref().unwrap_or(&self.baseline),
+            None => &self.best,
+        };
         let calibrated = self.calibrated(shown);
-        let (corrected, provenance) = correct::corrected(
-            self.campaign,
-            self.forward,
-            shown,
-            if verdict == Verdict::Explained { &effects } else { &[] },
-            &calibrated,
-            verdict,
-        );
+        let written = match (&choice, verdict) {
+            (Some(choice), _) => choice.fit.as_ref(),
+            (None, Verdict::InsufficientData) => None,
+            (None, _) => Some(&self.best),
+        };
+        let in_arm = if choice.is_some() {
+            written.map_or(Vec::new(), |fit| self.found_in(fit, &[]))
+        } else {
+            effects.clone()
+        };
+        let (corrected, provenance) =
+            correct::corrected(self.campaign, self.forward, written, &in_arm, &calibrated, verdict);
         Outcome {
             campaign: self.campaign.statement.name.clone(),
             hash: self.campaign.hash.clone(),
@@ -176,6 +194,8 @@ impl Analysis<'_> {
             next_tests: next_test::propose(&self.next_question(verdict)),
             effects,
             suspects,
+            empirical: written.map_or(Vec::new(), |fit| self.laws(fit, &in_arm)),
+            models: choice.as_ref().map_or(Vec::new(), |choice| choice.rows.clone()),
             held_out,
             located: self.located(),
             noise: self.noise.clone(),
@@ -255,7 +275,8 @@ impl Analysis<'_> {
 
     /// Says which structure the residuals keep, without naming an effect.
     fn left_over(&self) -> Vec<String> {
-        let mut out = self.lack_of_fit.sentences();
+        let mut out = units::other_signs(self.forward);
+        out.extend(self.lack_of_fit.sentences());
         out.push(format!(
             "the best model leaves {:.2} times the declared variance; no effect of the library explains the rest",
             self.lack_of_fit.chi2_per_dof
@@ -315,21 +336,49 @@ impl Analysis<'_> {
         if let Some(explaining) = &self.explaining {
             return few_rows::suspects(self.search, explaining, self.weights);
         }
-        let ends = intervals(self.forward, &self.best, self.weights);
+        let competitors: Vec<_> = (0..self.best.model.effects.len()).map(|i| self.competitors(i)).collect();
+        self.found_in(&self.best, &competitors)
+    }
+
+    /// The effects of a model with their intervals, and for each effect those that could replace it.
+    fn found_in(&self, fit: &Fit, competitors: &[Vec<(String, String)>]) -> Vec<Finding> {
+        let ends = intervals(self.forward, fit, self.weights);
         let mut parameter = 0;
-        let effects = self.best.model.effects.iter().enumerate();
+        let effects = fit.model.effects.iter().enumerate();
         effects
             .map(|(i, effect)| {
-                let first = self.best.model.first_parameter(i);
+                let first = fit.model.first_parameter(i);
                 let own = first..first + effect.free_parameters.len();
                 let finding = Finding {
                     effect: effect.kind.name.into(),
                     at: effect.at.clone(),
-                    parameters: parameters(effect, &self.best.point.u[own], &ends[parameter..]),
-                    indistinguishable_from: self.competitors(i),
+                    parameters: parameters(effect, &fit.point.u[own], &ends[parameter..]),
+                    indistinguishable_from: competitors.get(i).cloned().unwrap_or_default(),
                 };
                 parameter += effect.free_parameters.len();
                 finding
+            })
+            .collect()
+    }
+
+    /// The model of the corrected arm where nothing explains the gap.
+    fn model_without_explanation(&self) -> Choice<'_> {
+        let first_law = self.search.candidates.len();
+        let again =
+            |fit: &Fit, effects: &[usize]| self.with_laws.fit(effects, &fit.point.u, Effort::default());
+        let chosen = &self.selection.best.effects;
+        let (baseline, named) = (again(&self.baseline, &[]), again(&self.best, chosen));
+        corrected_model::choose(self.with_laws, first_law, self.noise, baseline, named, chosen)
+    }
+
+    /// The laws without a name of a model.
+    fn laws(&self, fit: &Fit, findings: &[Finding]) -> Vec<Law> {
+        let each = fit.model.effects.iter().zip(findings);
+        each.filter(|(effect, _)| effect.kind.name == KIND.name)
+            .map(|(effect, finding)| Law {
+                finding: finding.clone(),
+                law: empirical::in_words(effect),
+                may_be: empirical::may_be(effect),
             })
             .collect()
     }
@@ -393,7 +442,7 @@ impl Analysis<'_> {
         let quantity = |i: usize| -> &'static str {
             let datum = &self.forward.data[i];
             match datum.channel.word() {
-                "static" => ["dx_mm", "dy_mm", "dz_mm"][datum.component],
+                "static" => DISPLACEMENT.values[datum.component],
                 "modal" => "frequency_hz",
                 _ => "windup_arcmin",
             }
@@ -404,6 +453,8 @@ impl Analysis<'_> {
                 ReadingResidual {
                     channel: datum.channel,
                     row: datum.row + 1,
+                    index: datum.index,
+                    component: datum.component,
                     quantity: quantity(i),
                     measured: datum.value,
                     sigma: datum.sigma,
@@ -514,15 +565,13 @@ fn too_little(campaign: &Campaign, forward: &Forward) -> Vec<String> {
     reasons
 }
 
-/// Equal readings are suspicious from this many rows of a channel on.
-const FEWEST_ALIKE: usize = 4;
-
 /// Names channels whose readings are all equal, and says if no reading exceeds the noise.
 fn dead_instruments(forward: &Forward) -> Vec<String> {
     let mut out = Vec::new();
     for channel in [Channel::Static, Channel::Modal, Channel::Windup] {
         let data = &forward.data[forward.range(channel)];
-        let is_first = |d: &Datum| data[d.component].value == d.value;
+        let first = [0, 1, 2].map(|component| data.iter().find(|d| d.component == component));
+        let is_first = |d: &Datum| first[d.component].is_some_and(|first| first.value == d.value);
         if data.last().is_some_and(|d| d.row + 1 >= FEWEST_ALIKE) && data.iter().all(is_first) {
             out.push(format!(
                 "every {} reading is the same: the instrument did not follow the arm",
@@ -536,18 +585,27 @@ fn dead_instruments(forward: &Forward) -> Vec<String> {
     out
 }
 
-/// A fitted effect's parameters with their intervals.
+/// A fitted effect's parameters with their intervals. A component that is not fitted stands in its place, its ends open.
 fn parameters(effect: &Candidate, u: &[f64], ends: &[Interval]) -> Vec<(String, Vec<Estimate>)> {
+    let mut free = effect.free_parameters.iter().zip(effect.free_values(u)).zip(ends);
     let mut out: Vec<(String, Vec<Estimate>)> = Vec::new();
-    for ((parameter, value), interval) in effect.free_parameters.iter().zip(effect.numbers(u)).zip(ends) {
-        let estimate = parameter.estimate(value, interval);
-        match out.iter_mut().find(|(name, _)| name == parameter.name) {
+    for (name, number) in effect.named_numbers() {
+        let estimate = match number {
+            Number::Free => {
+                let Some(((parameter, value), interval)) = free.next() else { continue };
+                parameter.estimate(value, interval)
+            }
+            Number::Stated(value) => Estimate { value, low: None, high: None },
+        };
+        match out.iter_mut().find(|(known, _)| known == name) {
             Some((_, list)) => list.push(estimate),
-            None => out.push((parameter.name.to_string(), vec![estimate])),
+            None => out.push((name.to_string(), vec![estimate])),
         }
     }
+    out.retain(|(name, _)| effect.free_parameters.iter().any(|parameter| parameter.name == name));
+    let stated = |value: f64| Estimate { value, low: Some(value), high: Some(value) };
+    out.extend(effect.words().into_iter().map(|(name, number, _)| (name.to_string(), vec![stated(number)])));
     if effect.free_parameters.is_empty() {
-        let stated = |value: f64| Estimate { value, low: Some(value), high: Some(value) };
         out.push(("factor".into(), effect.numbers(&[]).into_iter().map(stated).collect()));
     }
     out

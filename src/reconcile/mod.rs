@@ -21,6 +21,7 @@ pub mod predict;
 pub mod readings;
 pub mod records;
 pub(crate) mod select;
+pub(crate) mod starter;
 pub(crate) mod together;
 pub mod verdict;
 

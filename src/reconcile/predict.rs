@@ -4,6 +4,8 @@ use super::forward::prepared::make_links_rigid;
 use super::model::exact::Exact;
 use super::positions;
 use super::readings::campaign::{Campaign, Statement, driven_joint_names};
+use super::readings::cells::Purpose;
+use super::readings::components::{DISPLACEMENT, POSITION};
 use super::readings::rows::{modal_rows, position_rows, static_rows, windup_rows};
 use super::readings::table::Table;
 use crate::arm::effect::channel::Channel;
@@ -16,10 +18,10 @@ use crate::reconcile::readings::placement::Placed;
 pub fn channel_of(table: &Table) -> Option<Channel> {
     let has = |name: &str| table.optional(name).is_some();
     match () {
-        () if has("dx_mm") => Some(Channel::Static),
+        () if DISPLACEMENT.values.into_iter().any(has) => Some(Channel::Static),
         () if has("frequency_hz") => Some(Channel::Modal),
         () if has("windup_arcmin") => Some(Channel::Windup),
-        () if has("x_mm") => Some(Channel::Positions),
+        () if POSITION.values.into_iter().any(has) => Some(Channel::Positions),
         () => None,
     }
 }
@@ -35,15 +37,15 @@ pub fn predict(arms: &[Placed], statement: &Statement, table: Table) -> Result<S
     let exact = Exact::new(&subject);
     let (names, columns): (&[&str], Vec<Vec<f64>>) = match channel_of(&table) {
         Some(Channel::Static) => {
-            let rows = exact.statics_mm(&static_rows(&table, arm));
+            let rows = exact.statics_mm(&static_rows(&table, arm, Purpose::Predict));
             (&["model_dx_mm", "model_dy_mm", "model_dz_mm"], rows.iter().map(|r| r.to_vec()).collect())
         }
         Some(Channel::Modal) => {
-            let rows = exact.frequencies_hz(&modal_rows(&table, arm));
+            let rows = exact.frequencies_hz(&modal_rows(&table, arm, Purpose::Predict));
             (&["model_frequency_hz"], rows.iter().map(|f| vec![f.unwrap_or(f64::NAN)]).collect())
         }
         Some(Channel::Windup) => {
-            let rows = exact.windups_arcmin(&windup_rows(&table, arm));
+            let rows = exact.windups_arcmin(&windup_rows(&table, arm, Purpose::Predict));
             (&["model_windup_arcmin"], rows.iter().map(|w| vec![*w]).collect())
         }
         Some(Channel::Positions) => {
@@ -54,7 +56,8 @@ pub fn predict(arms: &[Placed], statement: &Statement, table: Table) -> Result<S
             table.fault(
                 Some(1),
                 "",
-                "none of the columns dx_mm, frequency_hz, windup_arcmin, x_mm is there".into(),
+                "none of the columns dx_mm (or dy_mm, dz_mm), frequency_hz, windup_arcmin, x_mm (or y_mm, z_mm) is there"
+                    .into(),
                 "give a file of static, modal, windup or positions readings",
             );
             (&[], Vec::new())
@@ -87,7 +90,7 @@ fn positions_mm(
 ) -> Result<Vec<[f64; 3]>, Faults> {
     let all: Vec<&Arm> = arms.iter().map(|a| &a.arm).collect();
     let names: Vec<&str> = all.iter().map(|a| a.name.as_str()).collect();
-    let rows = position_rows(table, &names, &driven_joint_names(&all));
+    let rows = position_rows(table, &names, &driven_joint_names(&all), Purpose::Predict);
     match arms {
         [one] => Ok(exact.positions_mm(&rows, &one.placement)),
         several => {
@@ -99,11 +102,11 @@ fn positions_mm(
 }
 
 fn text(table: &Table, names: &[&str], columns: &[Vec<f64>]) -> String {
-    let mut out = table.columns.join(",");
+    let mut out = joined(table.shown());
     names.iter().for_each(|name| out.push_str(&format!(",{name}")));
     out.push('\n');
     for (cells, values) in table.rows.iter().zip(columns) {
-        out.push_str(&cells.join(","));
+        out.push_str(&joined(cells));
         for value in values {
             match value.is_nan() {
                 true => out.push(','),
@@ -113,4 +116,13 @@ fn text(table: &Table, names: &[&str], columns: &[Vec<f64>]) -> String {
         out.push('\n');
     }
     out
+}
+
+/// Cells as a line of CSV.
+fn joined(cells: &[String]) -> String {
+    let quoted = |cell: &String| match cell.contains([',', '"', '\n']) {
+        true => format!("\"{}\"", cell.replace('"', "\"\"")),
+        false => cell.clone(),
+    };
+    cells.iter().map(quoted).collect::<Vec<_>>().join(",")
 }

@@ -37,6 +37,13 @@ use serde_json::json;
 /// assert!(outcome.effects.is_empty());
 /// ```
 pub fn reconcile(campaign: &Campaign) -> Outcome {
+    let mut outcome = of_all(campaign);
+    outcome.reasons.extend(campaign.remarks.iter().cloned());
+    outcome
+}
+
+/// Reconciles what there is of records and of the readings without time.
+fn of_all(campaign: &Campaign) -> Outcome {
     let has_others = campaign.has_displacements() || !campaign.positions.is_empty();
     if campaign.records.is_empty() {
         return of_readings(campaign);
@@ -150,8 +157,8 @@ impl Both<'_> {
         let Self { campaign, calibrated, loaded, mut placed, corrected, .. } = self;
         let mut next_tests = [loaded.next_tests, placed.next_tests].concat();
         next_tests.sort_by(|a, b| b.expected_sigmas.total_cmp(&a.expected_sigmas));
-        for (residual, before) in placed.residuals.iter_mut().zip(calibrated.predicted_mm.iter().flatten()) {
-            residual.before = *before;
+        for residual in &mut placed.residuals {
+            residual.before = calibrated.predicted_mm[residual.index][residual.component];
         }
         let effects = [loaded.effects, placed.effects].concat();
         let suspects = [loaded.suspects, placed.suspects].concat();
@@ -198,6 +205,9 @@ impl Both<'_> {
             calibrated: loaded.calibrated,
             evidence: loaded.evidence,
             records: Vec::new(),
+            // the corrected arm of both is the calibrated one where either is unexplained
+            empirical: Vec::new(),
+            models: Vec::new(),
         }
     }
 

@@ -3,10 +3,12 @@
 mod bad_data;
 mod bearings;
 mod campaigns;
+mod conventions;
 #[path = "scoring/detectability.rs"]
 mod detectability;
 mod few_rows;
 mod forward;
+mod gauge;
 mod generated;
 mod generator;
 #[path = "../../examples/measured/mod.rs"]
@@ -20,5 +22,6 @@ mod records;
 mod scoring;
 mod together;
 mod unusual;
+mod without_a_name;
 #[path = "../witness/mod.rs"]
 mod witness;

@@ -12,6 +12,7 @@ use armwright::catalog::Catalogs;
 use armwright::input::Document;
 use armwright::reconcile::Campaign;
 use armwright::reconcile::model::exact::Exact;
+use armwright::reconcile::readings::components::Component;
 use armwright::reconcile::readings::placement::Placement;
 use armwright::reconcile::reconcile;
 use armwright::reconcile::verdict::page::campaign_page;
@@ -50,8 +51,9 @@ fn predicted_errors_mm(campaign: &Campaign, outcome: &Outcome) -> Vec<f64> {
     let subject = arm.subject(JointModel::ThreeSegment);
     let predicted = Exact::new(&subject).positions_mm(&campaign.positions, &Placement::from_json(&json));
     let rows = predicted.iter().zip(&campaign.positions);
+    let mm = |read: Option<Component>| read.expect("all coordinates are measured").value_mm;
     let mut errors: Vec<f64> =
-        rows.map(|(p, row)| (Vector3::from(*p) - Vector3::from(row.position_mm)).norm()).collect();
+        rows.map(|(p, row)| (Vector3::from(*p) - Vector3::from(row.measured.map(mm))).norm()).collect();
     errors.sort_by(f64::total_cmp);
     errors
 }

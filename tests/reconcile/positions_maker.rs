@@ -176,10 +176,11 @@ fn arm() -> Value {
 }
 
 /// A small generator of pseudo-random numbers (splitmix64).
-struct Noise(u64);
+pub struct Noise(pub u64);
 
 impl Noise {
-    fn part(&mut self) -> f64 {
+    /// From 0 to 1.
+    pub fn part(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -187,7 +188,8 @@ impl Noise {
         ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    fn normal(&mut self) -> f64 {
+    /// Of standard deviation 1.
+    pub fn normal(&mut self) -> f64 {
         (0..12).map(|_| self.part()).sum::<f64>() - 6.0
     }
 }

@@ -10,6 +10,7 @@ use crate::arm::effect::wrong_unit;
 use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::Candidate;
+use crate::reconcile::readings::components::{DISPLACEMENT, FEWEST_ALIKE};
 
 /// Largest distance of the readings of a channel from a slip's factor \[ln\]. It leaves room for missing
 /// physics.
@@ -66,6 +67,35 @@ pub(crate) fn stretches(forward: &Forward, best: &Coefficients) -> Vec<Stretch> 
         (is_slip && median(misses.collect()) > factor.sqrt()).then_some(Stretch { channel, factor })
     };
     [Channel::Static, Channel::Modal, Channel::Windup].into_iter().filter_map(of_channel).collect()
+}
+
+/// Readings and model of opposite sign agree at least so well that a sign was confused: the cosine of the angle between
+/// them.
+const OPPOSITE: f64 = -0.9;
+/// A confusion of signs is said if the readings of the other sign are nearer to the nominal arm by this factor.
+const NEARER: f64 = 3.0;
+
+/// Sentences on components of the displacement that seem to be counted the other way, such as by a gauge whose plunger is
+/// pushed in.
+pub(crate) fn other_signs(forward: &Forward) -> Vec<String> {
+    let nominal = forward.predict(&forward.coefficients(&forward.nominal));
+    let range = forward.range(Channel::Static);
+    let of_component = |c: usize| {
+        let own = range.clone().filter(|i| forward.data[*i].component == c);
+        let own: Vec<(f64, f64)> = own.map(|i| (forward.data[i].value, nominal[i])).collect();
+        let sum = |of: fn(&(f64, f64)) -> f64| own.iter().map(of).sum::<f64>();
+        let cosine = sum(|(d, m)| d * m) / (sum(|(d, _)| d * d) * sum(|(_, m)| m * m)).sqrt();
+        let nearer = (sum(|(d, m)| (d - m).powi(2)) / sum(|(d, m)| (d + m).powi(2))).sqrt();
+        (own.len() >= FEWEST_ALIKE && cosine < OPPOSITE && nearer > NEARER).then(|| {
+            format!(
+                "{} is {} times nearer to the arm as given with the other sign: does the instrument count the other way? \
+                 It was taken as it is",
+                DISPLACEMENT.values[c],
+                crate::report::number::significant(nearer, 2)
+            )
+        })
+    };
+    (0..3).filter_map(of_component).collect()
 }
 
 /// Multiplies the declared standard deviations of these channels by their factors.

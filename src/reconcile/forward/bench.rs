@@ -21,12 +21,13 @@ pub(crate) struct Bench {
 /// Gathers the bench rows of each joint and appends their data.
 pub(crate) fn prepare(campaign: &Campaign, layout: &Layout, data: &mut Vec<Datum>) -> Vec<Bench> {
     let mut bench: Vec<Bench> = Vec::new();
-    for row in &campaign.windup {
+    for (row_index, row) in campaign.windup.iter().enumerate() {
         let Some(joint) = layout.joints.iter().position(|j| j.name == row.joint) else { continue };
         let index = data.len();
         data.push(Datum {
             channel: Channel::Windup,
             row: row.row,
+            index: row_index,
             component: 0,
             group: usize::MAX,
             value: row.windup_arcmin,

@@ -11,6 +11,8 @@ pub struct Datum {
     pub channel: Channel,
     /// Row of its file, from 0.
     pub row: usize,
+    /// Index of its row among the rows of its channel in the campaign.
+    pub index: usize,
     /// Component 0-2 of a vector.
     pub component: usize,
     /// Index of the pose. Data of one pose are held out together.

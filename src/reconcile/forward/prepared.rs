@@ -35,6 +35,8 @@ pub struct Forward {
     pub largest_payload_kg: f64,
     /// The lightest payload that was stated and is not zero \[kg\].
     pub lightest_payload_kg: f64,
+    /// Whether readings of the whole arm have temperatures.
+    pub has_temperatures: bool,
 }
 
 impl Forward {
@@ -67,6 +69,8 @@ impl Forward {
             starts,
             groups: groups.names,
             payload_density_kg_m3: campaign.statement.payload_density_kg_m3,
+            has_temperatures: campaign.statics.iter().any(|r| r.temperature_c.is_some())
+                || campaign.modal.iter().any(|r| r.temperature_c.is_some()),
             largest_payload_kg: payloads_kg.iter().copied().fold(0.0, f64::max),
             lightest_payload_kg: payloads_kg
                 .iter()
@@ -119,6 +123,11 @@ impl Forward {
         }
     }
 
+    /// Number of static rows.
+    pub fn static_rows(&self) -> usize {
+        self.statics.iter().map(StaticPose::count).sum()
+    }
+
     /// Sizes of a joint's torques on the bench \[N m\].
     pub fn bench_torques_nm(&self, joint: usize) -> impl Iterator<Item = f64> + '_ {
         self.bench.iter().filter(move |b| b.joint == joint).flat_map(Bench::sizes_nm)
@@ -127,12 +136,10 @@ impl Forward {
     /// Torque on every joint at each static or modal datum \[N m\].
     pub fn torques_nm(&self, coefficients: &Coefficients) -> Vec<Vec<f64>> {
         let mut out = vec![Vec::new(); self.starts[2]];
-        let statics = self.statics.iter().flat_map(|pose| {
-            let loads = pose.torques_nm(&self.layout, coefficients);
-            loads.into_iter().skip(1)
-        });
-        for (row, torques) in statics.enumerate() {
-            out[3 * row..3 * row + 3].fill(torques);
+        for pose in &self.statics {
+            for (load, torques) in pose.torques_nm(&self.layout, coefficients).iter().skip(1).enumerate() {
+                pose.measured(load).for_each(|(_, datum)| out[datum].clone_from(torques));
+            }
         }
         for test in &self.modal {
             let torques = test.torques_nm(&self.layout, coefficients);
@@ -157,10 +164,26 @@ impl Forward {
         out
     }
 
+    /// Readings of the displacement in every static row, those of components that were not measured included \[mm\].
+    pub fn displacements_mm(&self, coefficients: &Coefficients) -> Vec<[f64; 3]> {
+        let reading = &coefficients.channels[Channel::Static as usize];
+        let mut out = Vec::new();
+        for pose in &self.statics {
+            let state = pose.state(&self.layout, coefficients);
+            for load in 0..pose.count() {
+                let true_mm = pose.displacement_mm(&state, load);
+                // every component of a row is read at the same time
+                let row = pose.measured(load).next().map_or(0, |(_, datum)| self.data[datum].row);
+                out.push(std::array::from_fn(|c| reading.of(true_mm[c], c, row)));
+            }
+        }
+        out
+    }
+
     /// Predicts statics and bench only. The modal entries stay as they are. Returns the state of each static pose.
     pub fn predict_smooth(&self, coefficients: &Coefficients, out: &mut [f64]) -> Vec<StaticState> {
         for bench in &self.bench {
-            bench.predict(&coefficients.laws[bench.joint], out);
+            bench.predict(&coefficients.law(bench.joint, Channel::Windup), out);
         }
         let state = |pose: &StaticPose| {
             let state = pose.state(&self.layout, coefficients);
@@ -180,9 +203,10 @@ impl Forward {
         out: &mut DMatrix<f64>,
     ) {
         let changes: Vec<StaticChanges> = to.iter().map(|to| from.static_changes(to)).collect();
-        for (k, (to, changes)) in to.iter().zip(&changes).enumerate() {
-            for bench in self.bench.iter().filter(|bench| changes.laws[bench.joint]) {
-                bench.predict(&to.laws[bench.joint], out.column_mut(k).as_mut_slice());
+        for (k, to) in to.iter().enumerate() {
+            let law = |c: &Coefficients, bench: &Bench| c.law(bench.joint, Channel::Windup);
+            for bench in self.bench.iter().filter(|bench| law(from, bench) != law(to, bench)) {
+                bench.predict(&law(to, bench), out.column_mut(k).as_mut_slice());
             }
         }
         let changed: Vec<usize> = (0..to.len()).filter(|k| !changes[*k].is_none()).collect();

@@ -12,6 +12,9 @@ use rayon::prelude::*;
 /// Size of the errors that a wrong attitude leaves \[m\].
 const ROUGH_M: f64 = 0.3;
 
+/// Smallest number of positions with all coordinates that place an arm.
+const FEWEST_WHOLE: usize = 10;
+
 /// Places the arms, one by one. Behind a link of unknown mounting the 24 attitudes of a cube are tried, and a fit
 /// starts from each. Without unknown mountings the nearest rigid motion is used.
 pub(crate) fn align(tree: &Tree, spec: &PositionsSpec, samples: &[Sample], geometry: &mut Geometry) {
@@ -71,6 +74,20 @@ fn settle_mount(
     best.expect("24 attitudes").geometry
 }
 
+/// Places the arm by a fit from each attitude of a cube, where too few positions have all coordinates.
+fn nearest_attitude(samples: &[&Sample], geometry: &mut Geometry) {
+    let numbers: Vec<Number> =
+        (0..3).map(Number::BaseRotation).chain((0..3).map(Number::BasePosition)).collect();
+    let from = |rotation| {
+        let mut start = geometry.clone();
+        (start.base, start.origin_m) = (rotation, Vector3::zeros());
+        fit(samples, &numbers, &[], &Fitted::rigid(start, ROUGH_M))
+    };
+    let tried: Vec<Fitted> = cube().into_par_iter().map(from).collect();
+    let best = tried.into_iter().min_by(|a, b| a.scale_m.total_cmp(&b.scale_m));
+    *geometry = best.expect("24 attitudes").geometry;
+}
+
 /// The 24 rotations that map a cube onto itself.
 fn cube() -> Vec<Rotation3<f64>> {
     let axes: Vec<Vector3<f64>> =
@@ -86,7 +103,12 @@ fn cube() -> Vec<Rotation3<f64>> {
 
 /// Finds the rotation and the origin that move nominal points onto measured ones (Kabsch), refined on the
 /// nearest 90 %.
-fn nearest_motion(samples: &[&Sample], geometry: &mut Geometry) {
+pub(super) fn nearest_motion(samples: &[&Sample], geometry: &mut Geometry) {
+    let whole: Vec<&Sample> = samples.iter().copied().filter(|s| s.readings() == 3).collect();
+    if whole.len() < FEWEST_WHOLE.min(samples.len()) {
+        return nearest_attitude(samples, geometry);
+    }
+    let samples = whole.as_slice();
     (geometry.base, geometry.origin_m) = (Rotation3::identity(), Vector3::zeros());
     let mut placer = geometry.placer();
     let nominal: Vec<Vector3<f64>> = samples.iter().map(|s| placer.place_m(s.placing())).collect();

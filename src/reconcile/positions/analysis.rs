@@ -6,12 +6,14 @@ use super::fit::fit;
 use super::fitted::{Fitted, Sample};
 use super::kinematics::{Geometry, Number, Pose, number_groups};
 use super::loads::{Loads, Yielding, candidates};
+use super::play;
 use super::points::{Point, points};
 use super::tree::Tree;
 use crate::arm::Arm;
 use crate::arm::effect::kind::Yields;
 use crate::reconcile::fit::stats::median;
 use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::readings::components::Components;
 use crate::reconcile::readings::rows::pose_key;
 use crate::reconcile::verdict::stage::Stage;
 use nalgebra::{Rotation3, Vector3};
@@ -105,7 +107,9 @@ impl Positions {
         let tree = Tree::new(campaign);
         let points = points(campaign);
         let geometry = Geometry::nominal(&tree, points.len());
-        let candidates = candidates(&tree);
+        let springs = candidates(&tree);
+        let loaded = samples(campaign, &tree, &geometry, &springs, &points);
+        let candidates = play::with_play(springs, &loaded);
         let considered = candidates.iter().map(|c| campaign.statement.considers(c.effect)).collect();
         let samples = samples(campaign, &tree, &geometry, &candidates, &points);
         let fitted = Fitted::rigid(geometry, ROUGH_M);
@@ -220,6 +224,14 @@ impl Positions {
     }
 }
 
+/// How much an error of each coordinate counts in a fit. A coordinate with a larger standard deviation than the best one
+/// of its row counts less, but not below a tenth: what a model misses is often larger than what an instrument does.
+fn precision(measured: &Components) -> Vector3<f64> {
+    const LEAST: f64 = 0.1;
+    let best_mm = measured.iter().flatten().map(|read| read.sigma_mm).fold(f64::INFINITY, f64::min);
+    Vector3::from(measured.map(|read| read.map_or(0.0, |read| (best_mm / read.sigma_mm).max(LEAST))))
+}
+
 /// The measured positions, each with the deflection of its point under gravity.
 pub(super) fn samples(
     campaign: &Campaign,
@@ -247,7 +259,9 @@ pub(super) fn samples(
                 station: 0,
                 index,
                 group,
-                measured_m: Vector3::from(row.position_mm) / 1e3,
+                measured_m: Vector3::from(row.measured.map(|read| read.map_or(0.0, |read| read.value_mm)))
+                    / 1e3,
+                precision: precision(&row.measured),
                 deflection: Arc::new(loads.deflection(row, point)),
             }
         })

@@ -1,16 +1,15 @@
 //! Fits geometry and compliances to absolute positions, robustly.
 //!
 //! The standard deviation of a laser tracker is far below the errors that any model of an arm leaves. So the
-//! scale of the errors is fitted too. The error of each position is a three-dimensional Student variable with
-//! ν = 4 degrees of freedom. Its weight `(ν+3)/(ν + |r|²/s²)` lets gross errors fade. A compliance `c` moves
+//! scale of the errors is fitted too. The error of each position is a Student variable with ν = 4 degrees of freedom, of
+//! as many dimensions `d` as coordinates were measured. Its weight `(ν+d)/(ν + |r|²/s²)` lets gross errors fade. A compliance `c` moves
 //! the point by `c P ĝ`, where `P` is its displacement at unit compliance per direction of gravity
 //! ([`loads`](super::loads)).
 
-use super::fitted::{Fitted, NU, Sample, errors, weight};
+use super::fitted::{Fitted, Miss, NU, Sample, misses, weight};
 use super::kinematics::Number;
 use super::rows::normal;
 use super::springs::{Best, best_springs};
-use nalgebra::Vector3;
 
 const MOST_STEPS: usize = 40;
 /// Largest number of times that a step is halved because the fit is worse after it.
@@ -33,9 +32,9 @@ impl Fitted {
 
     /// The same model with the scale of its errors and its likelihood computed.
     fn judged(mut self, samples: &[&Sample]) -> Self {
-        let errors = errors(samples, &self);
-        self.scale_m = scale(&errors, self.scale_m);
-        self.ln_likelihood = ln_likelihood(&errors, self.scale_m);
+        let misses = misses(samples, &self);
+        self.scale_m = scale(&misses, self.scale_m);
+        self.ln_likelihood = ln_likelihood(&misses, self.scale_m);
         self
     }
 
@@ -98,9 +97,9 @@ pub(crate) fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], st
     if let Some(best) = last {
         here.set_deviations(numbers.len(), &best.deviations());
     }
-    let errors = errors(samples, &here);
+    let misses = misses(samples, &here);
     let free = numbers.len() + here.compliances.iter().map(Vec::len).sum::<usize>();
-    let sandwich_factor = sandwich_factor(&errors, here.scale_m, free);
+    let sandwich_factor = sandwich_factor(&misses, here.scale_m, free);
     here.deviations
         .iter_mut()
         .flatten()
@@ -113,17 +112,18 @@ pub(crate) fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], st
 /// the weighted curvature take the weights as known and are too small by its root, which is returned. It is
 /// the root mean square of the weighted errors over their mean slope, corrected for the number of free
 /// parameters.
-fn sandwich_factor(errors: &[Vector3<f64>], scale_m: f64, free: usize) -> f64 {
-    let count = errors.len() as f64;
+fn sandwich_factor(misses: &[Miss], scale_m: f64, free: usize) -> f64 {
+    let count: f64 = misses.iter().map(|miss| miss.readings).sum();
     let (mut weights, mut squares, mut slopes) = (0.0, 0.0, 0.0);
-    for error in errors {
-        let (w, size) = (weight(error, scale_m), error.norm_squared() / (scale_m * scale_m));
-        weights += w / count;
-        squares += w * w * size / 3.0 / count;
-        slopes += (w - 2.0 / 3.0 * w * size / (NU + size)) / count;
+    for miss in misses {
+        let (w, size) = (weight(miss, scale_m), miss.scaled_m.norm_squared() / (scale_m * scale_m));
+        let part = miss.readings / count;
+        weights += w * part;
+        squares += w * w * size / count;
+        slopes += (w - 2.0 / miss.readings.max(1.0) * w * size / (NU + size)) * part;
     }
-    let left = (3.0 * count - free as f64).max(1.0);
-    (weights * squares * 3.0 * count / left).sqrt() / slopes
+    let left = (count - free as f64).max(1.0);
+    (weights * squares * count / left).sqrt() / slopes
 }
 
 /// Shortens a step that would turn a frame too far for a linearization.
@@ -134,22 +134,24 @@ fn shortened(numbers: &[Number], step: Vec<f64>) -> Vec<f64> {
 }
 
 /// The scale of errors, by fixed-point iteration from a value nearby \[m\].
-pub(crate) fn scale(errors: &[Vector3<f64>], near_m: f64) -> f64 {
+pub(crate) fn scale(misses: &[Miss], near_m: f64) -> f64 {
+    let count: f64 = misses.iter().map(|miss| miss.readings).sum();
     let mut scale_m = near_m;
     for _ in 0..8 {
-        let sum: f64 = errors.iter().map(|e| weight(e, scale_m) * e.norm_squared()).sum();
-        scale_m = (sum / (3.0 * errors.len() as f64)).sqrt().max(1e-7);
+        let sum: f64 = misses.iter().map(|m| weight(m, scale_m) * m.scaled_m.norm_squared()).sum();
+        scale_m = (sum / count).sqrt().max(1e-7);
     }
     scale_m
 }
 
 /// ln of the likelihood of errors with this scale.
-pub(crate) fn ln_likelihood(errors: &[Vector3<f64>], scale_m: f64) -> f64 {
+pub(crate) fn ln_likelihood(misses: &[Miss], scale_m: f64) -> f64 {
     let s2 = scale_m * scale_m;
-    let one = |e: &Vector3<f64>| {
-        -0.5 * (NU + 3.0) * libm::log(1.0 + e.norm_squared() / (NU * s2)) - 3.0 * libm::log(scale_m)
+    let one = |m: &Miss| {
+        let size = m.scaled_m.norm_squared() / (NU * s2);
+        -0.5 * (NU + m.readings) * libm::log(1.0 + size) - m.readings * libm::log(scale_m)
     };
-    errors.iter().map(one).sum()
+    misses.iter().map(one).sum()
 }
 
 /// Takes one weighted Gauss-Newton step: sets the compliances to the best values that springs can have, and returns the

@@ -23,8 +23,10 @@ pub(crate) struct Sample {
     pub index: usize,
     /// Index of its pose. Samples of one pose are held out together.
     pub group: usize,
-    /// Measured position in the instrument's frame \[m\].
+    /// Measured position in the instrument's frame \[m\]; zero where a coordinate was not measured.
     pub measured_m: Vector3<f64>,
+    /// How much an error of each coordinate counts: 0 if it was not measured, 1 if none of the row is known better.
+    pub precision: Vector3<f64>,
     /// The effect of gravity on this position.
     pub deflection: Arc<Deflection>,
 }
@@ -34,6 +36,36 @@ impl Sample {
     pub(crate) fn placing(&self) -> Placing<'_> {
         Placing { arm: self.arm, pose: &self.pose, point: self.point, station: self.station }
     }
+
+    /// Number of coordinates that were measured.
+    pub(crate) fn readings(&self) -> usize {
+        self.precision.iter().filter(|p| **p > 0.0).count()
+    }
+
+    /// Error of this sample at a predicted position, measured minus predicted \[m\]; zero where a coordinate was not
+    /// measured.
+    pub(crate) fn error(&self, predicted_m: Vector3<f64>) -> Vector3<f64> {
+        (self.measured_m - predicted_m).zip_map(&self.precision, |e, p| if p > 0.0 { e } else { 0.0 })
+    }
+
+    /// An error of this sample as a fit sees it.
+    pub(crate) fn miss(&self, error_m: &Vector3<f64>) -> Miss {
+        Miss { scaled_m: error_m.component_mul(&self.precision), readings: self.readings() as f64 }
+    }
+}
+
+/// An error as a fit sees it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Miss {
+    /// Measured minus predicted, times the precision of each coordinate \[m\].
+    pub scaled_m: Vector3<f64>,
+    /// Number of coordinates that were measured.
+    pub readings: f64,
+}
+
+/// Number of coordinates that were measured.
+pub(crate) fn readings(samples: &[Sample]) -> usize {
+    samples.iter().map(Sample::readings).sum()
 }
 
 /// A fitted model.
@@ -83,9 +115,9 @@ impl Fitted {
         rigid + self.geometry.level_to_instrument() * self.displacement(sample)
     }
 
-    /// Error of a sample, measured minus predicted \[m\].
+    /// Error of a sample, measured minus predicted \[m\]; zero where a coordinate was not measured.
     pub(crate) fn error(&self, sample: &Sample) -> Vector3<f64> {
-        sample.measured_m - self.predicted_m(sample)
+        sample.error(self.predicted_m(sample))
     }
 
     /// Displacement of a sample's point by gravity: known deflection, and the effects of the model, in the level
@@ -105,19 +137,29 @@ impl Fitted {
         })
     }
 
+    /// Change of the displacement by the springs of the model as gravity leans along an axis \[m/rad\]. Play is left out: it
+    /// is closed in most poses, and does not follow.
+    pub(crate) fn leaning(&self, sample: &Sample, axis: usize) -> Vector3<f64> {
+        let effects = self.effects.iter().zip(&self.compliances);
+        let springs = effects.filter(|(effect, _)| !sample.deflection.is_play(**effect));
+        springs.fold(Vector3::zeros(), |sum, (&effect, compliances)| {
+            sum + sample.deflection.yielded(effect, compliances, &Vector3::ith(axis, 1.0))
+        })
+    }
+
     /// Weight of a sample with this error \[1/m²\].
-    pub(crate) fn weight(&self, error: &Vector3<f64>) -> f64 {
-        weight(error, self.scale_m) / (self.scale_m * self.scale_m)
+    pub(crate) fn weight(&self, miss: &Miss) -> f64 {
+        weight(miss, self.scale_m) / (self.scale_m * self.scale_m)
     }
 }
 
-/// Errors of samples, measured minus predicted \[m\].
-pub(crate) fn errors(samples: &[&Sample], fitted: &Fitted) -> Vec<Vector3<f64>> {
+/// Errors of samples as a fit sees them.
+pub(crate) fn misses(samples: &[&Sample], fitted: &Fitted) -> Vec<Miss> {
     let mut placer = fitted.geometry.placer();
-    samples.iter().map(|s| s.measured_m - fitted.predicted_by(&mut placer, s)).collect()
+    samples.iter().map(|s| s.miss(&s.error(fitted.predicted_by(&mut placer, s)))).collect()
 }
 
 /// Weight of a sample with this error, in units of the scale.
-pub(crate) fn weight(error: &Vector3<f64>, scale_m: f64) -> f64 {
-    (NU + 3.0) / (NU + error.norm_squared() / (scale_m * scale_m))
+pub(crate) fn weight(miss: &Miss, scale_m: f64) -> f64 {
+    (NU + miss.readings) / (NU + miss.scaled_m.norm_squared() / (scale_m * scale_m))
 }

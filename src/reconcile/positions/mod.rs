@@ -7,11 +7,13 @@
 //!   `rows` sums up, with compliances that are `springs`.
 //! - [`analysis`] is the whole analysis. `sessions` tells sessions apart and `standing` finds where the arm stands in each;
 //!   `search` finds what yields and `transmission` what turns unevenly.
-//! - `structure` asks what is left, `next_test` says what to measure, and [`outcome`] concludes.
+//! - `conventions` asks whether the file was written by another convention, `structure` what is left; `next_test` says
+//!   what to measure, and [`outcome`] concludes.
 //! - [`predict`] gives positions of several arms whose weights load each other's trunk.
 
 pub(crate) mod align;
 pub(crate) mod analysis;
+pub(crate) mod conventions;
 pub(crate) mod fit;
 pub(crate) mod fitted;
 pub(crate) mod kinematics;
@@ -19,6 +21,7 @@ pub(crate) mod loads;
 pub(crate) mod next_test;
 pub(crate) mod normal;
 pub(crate) mod outcome;
+pub(crate) mod play;
 pub(crate) mod points;
 pub(crate) mod predict;
 pub(crate) mod rows;

@@ -51,7 +51,7 @@ impl Positions {
     fn telling_pose(&self, proposed: &Campaign, competitor: &Fitted, names: [String; 2]) -> Option<NextTest> {
         let own = samples(proposed, &self.tree, &self.fitted.geometry, &self.candidates, &self.points);
         let sigma_mm =
-            proposed.positions.iter().map(|r| r.sigma_mm).fold(1e3 * self.fitted.scale_m, f64::max);
+            proposed.positions.iter().map(|r| r.sigma_mm()).fold(1e3 * self.fitted.scale_m, f64::max);
         let gap = own
             .iter()
             .map(|s| 1e3 * (self.fitted.predicted_m(s) - competitor.predicted_m(s)).norm() / sigma_mm);

@@ -5,7 +5,7 @@ use super::fitted::Fitted;
 use super::kinematics::Number;
 use super::loads::FRAME_ENTRIES;
 use super::springs::frame_matrix;
-use super::structure::{MATERIAL_VARIANCE, MEDIAN_LENGTH};
+use super::structure::{MATERIAL_VARIANCE, mean_median_length};
 use super::transmission;
 use crate::arm::Arm;
 use crate::arm::effect::channel::Channel;
@@ -16,6 +16,8 @@ use crate::reconcile::fit::held_out::{HeldOut, rms};
 use crate::reconcile::fit::noise::Noise;
 use crate::reconcile::model::estimate::{Estimate, Finding};
 use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::readings::components::POSITION;
+use crate::reconcile::readings::rows::PositionRow;
 use crate::reconcile::select::lack_of_fit::LackOfFit;
 use crate::reconcile::verdict::correct;
 use crate::reconcile::verdict::files::CORRECTED_FILE;
@@ -50,6 +52,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let findings: Vec<Finding> = yielding.chain(uneven).collect();
     let (verdict, mut reasons) = found.verdict(campaign, &lack_of_fit, &findings);
     reasons.extend(found.sessions.iter().cloned());
+    reasons.extend(found.other_convention(campaign));
     let next_tests = found.next_tests(campaign, verdict, &lack_of_fit, &competitors);
     // a model that predicts held-out poses far better serves a user even if something else is missing
     let [before, after] = found.before_and_after();
@@ -97,6 +100,8 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         other_corrected: corrected[1..].to_vec(),
         stages: found.stages.clone(),
         records: Vec::new(),
+        empirical: Vec::new(),
+        models: Vec::new(),
         effects,
     }
 }
@@ -113,7 +118,7 @@ impl Positions {
             return (Verdict::Unexplained, self.left_over(left));
         }
         let last = &self.stages[self.stages.len() - 1];
-        if last.median_mm > UNSTABLE * last.fitted_median_mm.max(campaign.positions[0].sigma_mm) {
+        if last.median_mm > UNSTABLE * last.fitted_median_mm.max(campaign.positions[0].sigma_mm()) {
             let text = format!(
                 "the median error is {:.3} mm for poses held out of the fit and {:.3} mm for those in it: the poses are too \
                  similar to calibrate everything that is free; turn every joint through more of its range, or free less",
@@ -169,12 +174,13 @@ impl Positions {
 
     fn confirmation(&self, campaign: &Campaign) -> HeldOut {
         let scale_mm = 1e3 * self.fitted.scale_m;
-        let sigma_mm = campaign.positions.first().map_or(1.0, |r| r.sigma_mm);
+        let sigma_mm = campaign.positions.first().map_or(1.0, PositionRow::sigma_mm);
+        let usual = mean_median_length(&self.samples);
         let [before, after] = self.before_and_after();
         HeldOut {
-            rms_before: before.median_mm / scale_mm / MEDIAN_LENGTH,
-            rms_after: after.median_mm / scale_mm / MEDIAN_LENGTH,
-            rms_declared_after: after.median_mm / sigma_mm / MEDIAN_LENGTH,
+            rms_before: before.median_mm / scale_mm / usual,
+            rms_after: after.median_mm / scale_mm / usual,
+            rms_declared_after: after.median_mm / sigma_mm / usual,
             count: campaign.positions.len(),
         }
     }
@@ -183,6 +189,13 @@ impl Positions {
         let candidate = &self.candidates[self.fitted.effects[i]];
         let (c, sd) = (&self.fitted.compliances[i], &self.fitted.deviations[i]);
         let parameters = match candidate.yields {
+            _ if candidate.play_nm.is_some() => {
+                let scale_nm = candidate.play_nm.unwrap_or_default();
+                vec![
+                    ("half_width_rad".into(), vec![within(c[0], sd[0])]),
+                    ("torque_nm".into(), vec![self.play_scale(i, scale_nm)]),
+                ]
+            }
             Yields::Frame => frame_parameters(c, sd),
             Yields::AboutAxis | Yields::Tilt => {
                 vec![("stiffness_nm_per_rad".into(), vec![stiffness(c[0], sd[0])])]
@@ -290,16 +303,19 @@ impl Positions {
         rows.flat_map(|(i, (row, sample))| {
             let [before, after] = [&self.rigid, &self.fitted].map(|f| 1e3 * f.predicted_m(sample));
             let gross = all_gross.contains(&i);
-            let left_out = 1e3 * self.held_out[i] / row.sigma_mm;
-            (0..3).map(move |c| ReadingResidual {
+            let left_out_mm = 1e3 * self.held_out[i];
+            let measured = row.measured.iter().enumerate().filter_map(|(c, read)| Some((c, (*read)?)));
+            measured.map(move |(c, read)| ReadingResidual {
                 channel: Channel::Positions,
                 row: row.row + 1,
-                quantity: ["x_mm", "y_mm", "z_mm"][c],
-                measured: row.position_mm[c],
-                sigma: row.sigma_mm,
+                index: i,
+                component: c,
+                quantity: POSITION.values[c],
+                measured: read.value_mm,
+                sigma: read.sigma_mm,
                 before: before[c],
                 after: after[c],
-                held_out: Some(left_out[c]),
+                held_out: Some(left_out_mm[c] / read.sigma_mm),
                 gross,
             })
         })
@@ -313,7 +329,8 @@ impl Positions {
 pub(crate) fn located(campaign: &Campaign, residuals: &[ReadingResidual]) -> Vec<Located> {
     let mut parts: Vec<(String, Vec<&ReadingResidual>)> = Vec::new();
     let mut known: HashMap<String, usize> = HashMap::new();
-    for (row, own) in campaign.positions.iter().zip(residuals.chunks_exact(3)).filter(|(_, r)| !r[0].gross) {
+    for own in residuals.chunk_by(|a, b| a.index == b.index).filter(|own| !own[0].gross) {
+        let row = &campaign.positions[own[0].index];
         let pose: Vec<String> = row.pose_deg.iter().map(|a| format!("{a}")).collect();
         let names = [
             "positions".to_string(),

@@ -42,12 +42,12 @@ impl<'a> Linearized<'a> {
     pub(crate) fn at(&mut self, sample: &Sample, further: Further) -> Vector3<f64> {
         let here = self.here;
         let at_m = self.placer.place_m(sample.placing());
-        let error = sample.measured_m - at_m - self.from_level * here.displacement(sample);
+        let miss = sample.miss(&sample.error(at_m + self.from_level * here.displacement(sample)));
         self.columns.clear();
         self.placer.slopes(sample.placing(), self.numbers, &mut self.columns);
         for (column, number) in self.columns.iter_mut().zip(self.numbers) {
             if let Number::Gravity(c) = number {
-                let pulled = here.yielded(sample, &Vector3::ith(*c, 1.0));
+                let pulled = here.leaning(sample, *c);
                 *column = self.from_level * (pulled + sample.deflection.known_slopes_m[*c]);
             }
         }
@@ -58,9 +58,10 @@ impl<'a> Linearized<'a> {
         }
         further(sample, &self.placer, &mut self.columns);
         // products of scaled rows have the weight
-        let root = here.weight(&error).sqrt();
-        self.columns.iter_mut().for_each(|column| *column *= root);
-        error * root
+        let root = here.weight(&miss).sqrt();
+        let scales = sample.precision * root;
+        self.columns.iter_mut().for_each(|column| column.component_mul_assign(&scales));
+        miss.scaled_m * root
     }
 }
 

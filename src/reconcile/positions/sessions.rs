@@ -12,7 +12,7 @@
 
 use super::analysis::Positions;
 use super::fit::fit;
-use super::fitted::{Fitted, Sample};
+use super::fitted::{Fitted, Sample, readings};
 use super::kinematics::Number;
 use super::normal::Factor;
 use super::points::Point;
@@ -151,7 +151,7 @@ impl Positions {
         numbers.extend(new.numbers());
         let all: Vec<&Sample> = samples.iter().collect();
         let fitted = fit(&all, &numbers, &start.effects, &start);
-        let readings = 3.0 * samples.len() as f64;
+        let readings = readings(&samples) as f64;
         let price =
             0.5 * new.numbers().len() as f64 * libm::log(readings) + libm::log(readings * kinds as f64) + 3.0;
         let gain = fitted.ln_likelihood - self.fitted.ln_likelihood - price;

@@ -6,13 +6,14 @@
 //! of squares.
 
 use super::analysis::Positions;
-use super::fitted::Sample;
+use super::fitted::{Sample, readings};
 use super::normal::Factor;
 use super::rows::normal;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::kind::Yields;
 use crate::reconcile::fit::stats::{ln_chi_squared_tail, median};
 use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::readings::rows::PositionRow;
 use crate::reconcile::select::lack_of_fit::LackOfFit;
 use crate::reconcile::select::structure::Structure;
 use crate::reconcile::select::waves::{order_functions, waves};
@@ -24,8 +25,8 @@ pub(crate) const MATERIAL_PART: f64 = 0.1;
 pub(crate) const MATERIAL_VARIANCE: f64 = 1.75;
 /// A structure is not chance if it is less probable than this.
 const IMPROBABLE: f64 = 1e-6;
-/// Median length of a vector of three standard normal deviates.
-pub(crate) const MEDIAN_LENGTH: f64 = 1.538;
+/// Median length of a vector of one, two and three standard normal deviates.
+const MEDIAN_LENGTHS: [f64; 3] = [0.6745, 1.1774, 1.538];
 
 /// One question about the errors: what they would follow, in words, and the number of regressors.
 type Question = (String, usize);
@@ -75,7 +76,7 @@ impl Positions {
 
     /// Part of the errors' sum of squares that a structure accounts for.
     pub(crate) fn part(&self, structure: &Structure) -> f64 {
-        structure.statistic / (3 * self.samples.len()) as f64
+        structure.statistic / readings(&self.samples) as f64
     }
 
     /// Whether a structure is real and accounts for enough.
@@ -86,11 +87,28 @@ impl Positions {
     /// Variance of the errors over the declared one, estimated by the median.
     fn variance_ratio(&self, campaign: &Campaign) -> f64 {
         let rows = campaign.positions.iter().zip(&self.samples);
-        let lengths = rows.map(|(row, s)| 1e3 * self.fitted.error(s).norm() / row.sigma_mm).collect();
+        let lengths = rows.map(|(row, s)| declared_length(row, &self.fitted.error(s)) / median_length(s));
         let free = (self.numbers.len() + self.fitted.compliances.iter().map(Vec::len).sum::<usize>()) as f64;
-        let count = (3 * self.samples.len()) as f64;
-        (median(lengths) / MEDIAN_LENGTH).powi(2) * count / (count - free).max(1.0)
+        let count = readings(&self.samples) as f64;
+        median(lengths.collect()).powi(2) * count / (count - free).max(1.0)
     }
+}
+
+/// Length of an error \[declared standard deviations of its coordinates\].
+fn declared_length(row: &PositionRow, error_m: &Vector3<f64>) -> f64 {
+    let parts = row.measured.iter().zip(error_m.iter());
+    let squares = parts.filter_map(|(read, e)| Some((1e3 * e / (*read)?.sigma_mm).powi(2)));
+    squares.sum::<f64>().sqrt()
+}
+
+/// Median length of the error of a sample whose measured coordinates each have the standard deviation 1.
+fn median_length(sample: &Sample) -> f64 {
+    MEDIAN_LENGTHS[sample.readings().clamp(1, 3) - 1]
+}
+
+/// The same for samples of different kinds, on average.
+pub(crate) fn mean_median_length(samples: &[Sample]) -> f64 {
+    samples.iter().map(median_length).sum::<f64>() / samples.len().max(1) as f64
 }
 
 /// The statistic `zᵀ S⁻¹ z` over the directions in which `S` is not singular, and the number of these
@@ -123,7 +141,10 @@ struct Asker<'a> {
 
 impl<'a> Asker<'a> {
     fn new(found: &'a Positions, campaign: &Campaign) -> Self {
-        let joint = |c: &usize| found.candidates[*c].yields == Yields::AboutAxis;
+        let joint = |c: &usize| {
+            let candidate = &found.candidates[*c];
+            candidate.yields == Yields::AboutAxis && candidate.play_nm.is_none()
+        };
         let torque =
             |c: usize| found.samples.iter().map(|s| s.deflection.lever(c).1.abs()).fold(1e-9, f64::max);
         let joints: Vec<(usize, f64)> =

@@ -1,15 +1,18 @@
 //! Reads a campaign: an arm file, what is stated about it, and the readings.
 
+use super::cells::Purpose;
+use super::components::{Components, DISPLACEMENT, POSITION, leave_out_idle};
 use super::rows::{
     ModalRow, PositionRow, StaticRow, WindupRow, modal_rows, position_rows, static_rows, windup_rows,
 };
+use super::source::{DEFAULT_FILES, Source, read_sources};
 use super::table::Table;
 use crate::arm::effect::catalogue::KINDS;
 use crate::arm::effect::channel::Channel;
 use crate::arm::file::read_arm;
 use crate::arm::{Arm, Element};
 use crate::catalog::Catalogs;
-use crate::input::json::{Document, Fault, Faults, InputError, Node, Object};
+use crate::input::json::{Document, Fault, Faults, InputError, Node};
 use crate::reconcile::records::reading::{Record, read_all};
 use crate::reconcile::records::spec::{RecordSpec, STATEMENT_KEYS, read_records};
 use std::path::{Path, PathBuf};
@@ -72,7 +75,8 @@ pub struct Statement {
     arm_file: String,
     /// Files of further arms on the same trunk, next to `campaign.json`.
     pub other_arm_files: Vec<String>,
-    files: [Option<String>; 4],
+    /// Where the readings of each channel are, as far as this is stated.
+    sources: [Option<Source>; 4],
 }
 
 /// A campaign, read and checked.
@@ -94,13 +98,14 @@ pub struct Campaign {
     pub windup: Vec<WindupRow>,
     /// Absolute positions.
     pub positions: Vec<PositionRow>,
+    /// What was read otherwise than it is written, in sentences.
+    pub remarks: Vec<String>,
     /// Records against time.
     pub records: Vec<Record>,
     /// blake3 of all files of the campaign.
     pub hash: String,
 }
 
-const DEFAULT_FILES: [&str; 4] = ["static.csv", "modal.csv", "windup.csv", "positions.csv"];
 const DEFAULT_PAYLOAD_DENSITY_KG_M3: f64 = 7850.0;
 
 /// Reads `campaign.json`.
@@ -124,12 +129,15 @@ fn statement(node: &Node) -> Option<Statement> {
         "modal",
         "windup",
         "positions",
+        "files",
+        "columns",
         "links",
         "effects",
         "description",
         "machine",
         "date",
         "provenance",
+        "note",
     ];
     let root = node.object(&[KEYS, &STATEMENT_KEYS].concat())?;
     let name = root.or("name", "campaign".to_string(), |n| n.string().map(String::from));
@@ -161,7 +169,7 @@ fn statement(node: &Node) -> Option<Statement> {
         records: records?,
         arm_file: arm_file?,
         other_arm_files: other_arm_files?,
-        files: Channel::ALL.map(|c| file_of(&root, c)),
+        sources: read_sources(&root),
     })
 }
 
@@ -170,7 +178,7 @@ const DEFAULT_TOLERANCE: Tolerance =
     Tolerance { joint_stiffness: 0.10, modulus: 0.03, joint_mass: 0.02, bearing_stiffness: 0.0 };
 
 fn read_tolerance(node: &Node) -> Option<Tolerance> {
-    let object = node.object(&["joint_stiffness", "modulus", "joint_mass", "bearing_stiffness"])?;
+    let object = node.object(&["joint_stiffness", "modulus", "joint_mass", "bearing_stiffness", "note"])?;
     let part = |key, default| {
         object.or(key, default, |n| match n.non_negative()? {
             x if x < 1.0 => Some(x),
@@ -185,7 +193,8 @@ fn read_tolerance(node: &Node) -> Option<Tolerance> {
 fn read_positions(node: &Node) -> Option<PositionsSpec> {
     const KEYS: [&str; 5] =
         ["base_placement", "tool_offset", "joint_offsets", "geometry", "gravity_direction"];
-    let object = node.object(&[KEYS.as_slice(), &["mounts", "file", "boundary", "reference"]].concat())?;
+    let object =
+        node.object(&[KEYS.as_slice(), &["mounts", "file", "boundary", "reference", "note"]].concat())?;
     let flags = KEYS.map(|key| object.or(key, false, Node::boolean));
     let mounts = object.or("mounts", Vec::new(), read_names);
     Some(PositionsSpec {
@@ -215,16 +224,12 @@ fn read_names(node: &Node) -> Option<Vec<String>> {
     node.array()?.iter().map(|n| n.string().map(String::from)).collect()
 }
 
-/// The file of a channel that `campaign.json` names.
-fn file_of(root: &Object, channel: Channel) -> Option<String> {
-    let node = root.optional(channel.word())?;
-    match node.value().get("file").and_then(|v| v.as_str()) {
-        Some(file) => Some(file.to_string()),
-        None => Some(DEFAULT_FILES[channel as usize].to_string()),
-    }
-}
-
 impl Statement {
+    /// Where the readings of a channel are.
+    pub(crate) fn source(&self, channel: Channel) -> Source {
+        self.sources[channel as usize].clone().unwrap_or_default()
+    }
+
     /// Whether an effect may be named.
     pub fn considers(&self, effect: &str) -> bool {
         self.effects.as_ref().is_none_or(|list| list.iter().any(|name| name == effect))
@@ -258,13 +263,15 @@ impl Campaign {
             modal: Vec::new(),
             windup: Vec::new(),
             positions: Vec::new(),
+            remarks: Vec::new(),
             records: Vec::new(),
             hash: String::new(),
         };
         faults.extend(campaign.faults());
         for channel in Channel::ALL {
             if let Some(file) = campaign.file(channel) {
-                let table = Table::read(&file)?;
+                let source = campaign.statement.source(channel);
+                let table = Table::read_from(&file, &source)?;
                 campaign.read_channel(channel, &table);
                 faults.extend(table.into_faults());
             }
@@ -277,12 +284,20 @@ impl Campaign {
 
     fn read_channel(&mut self, channel: Channel, table: &Table) {
         match channel {
-            Channel::Static => self.statics = static_rows(table, &self.arm),
-            Channel::Modal => self.modal = modal_rows(table, &self.arm),
-            Channel::Windup => self.windup = windup_rows(table, &self.arm),
+            Channel::Static => {
+                self.statics = static_rows(table, &self.arm, Purpose::Fit);
+                let mut read: Vec<&mut Components> =
+                    self.statics.iter_mut().map(|r| &mut r.measured).collect();
+                self.remarks.extend(leave_out_idle(&table.short_name(), &DISPLACEMENT, &mut read));
+            }
+            Channel::Modal => self.modal = modal_rows(table, &self.arm, Purpose::Fit),
+            Channel::Windup => self.windup = windup_rows(table, &self.arm, Purpose::Fit),
             Channel::Positions => {
                 let names: Vec<&str> = self.arms().iter().map(|a| a.name.as_str()).collect();
-                self.positions = position_rows(table, &names, &self.driven_joint_names());
+                self.positions = position_rows(table, &names, &self.driven_joint_names(), Purpose::Fit);
+                let mut read: Vec<&mut Components> =
+                    self.positions.iter_mut().map(|r| &mut r.measured).collect();
+                self.remarks.extend(leave_out_idle(&table.short_name(), &POSITION, &mut read));
             }
         }
     }
@@ -315,6 +330,7 @@ impl Campaign {
             modal: Vec::new(),
             windup: Vec::new(),
             positions: rows,
+            remarks: Vec::new(),
             records: Vec::new(),
             hash: String::new(),
         };
@@ -392,7 +408,7 @@ impl Campaign {
     /// The file of a channel: the one named in `campaign.json`, or else the usual one if it exists.
     fn file(&self, channel: Channel) -> Option<PathBuf> {
         let usual = self.folder.join(DEFAULT_FILES[channel as usize]);
-        match &self.statement.files[channel as usize] {
+        match self.statement.source(channel).file {
             Some(file) => Some(self.folder.join(file)),
             None => usual.exists().then_some(usual),
         }
@@ -429,6 +445,7 @@ impl Campaign {
             self.modal.extend(other.modal);
             self.windup.extend(other.windup);
             self.positions.extend(other.positions);
+            self.remarks.extend(other.remarks);
             self.records.extend(other.records);
             self.statement.name = format!("{}+{}", self.statement.name, other.statement.name);
             self.hash = blake3::hash(format!("{}{}", self.hash, other.hash).as_bytes()).to_hex().to_string();

@@ -1,6 +1,10 @@
 //! Reads the files of a campaign: its statement, its rows, and where the arm and the points stand.
 
 pub(crate) mod campaign;
+pub(crate) mod cells;
+pub mod components;
 pub mod placement;
 pub(crate) mod rows;
+pub(crate) mod source;
+pub(crate) mod spreadsheet;
 pub mod table;

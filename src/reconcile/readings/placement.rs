@@ -148,10 +148,10 @@ mod tests {
             test: test.into(),
             pose_deg: vec![angle_deg],
             payload: Payload::default(),
+            temperature_c: None,
             arm: 0,
             point: "tip".into(),
-            position_mm: [0.0; 3],
-            sigma_mm: 1.0,
+            measured: [None; 3],
         }
     }
 

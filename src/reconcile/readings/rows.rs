@@ -1,10 +1,13 @@
 //! Reads the rows of `static.csv`, `modal.csv`, `windup.csv` and `positions.csv`.
 
+use super::cells::{ABSURD, Purpose, measured, needed, or_zero, reading_column, sigma};
+use super::components::{Components, DISPLACEMENT, POSITION, VectorColumns};
 use super::table::Table;
 use crate::arm::Arm;
+use crate::arm::effect::warming::Moment;
 use crate::arm::load::Payload;
 use nalgebra::Vector3;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// A key under which equal poses are found. Zero and minus zero are one angle.
 pub(crate) fn pose_key(pose_deg: &[f64]) -> Vec<u64> {
@@ -20,14 +23,14 @@ pub struct StaticRow {
     pub pose_deg: Vec<f64>,
     /// Stated payload.
     pub payload: Payload,
+    /// Temperature of the arm \[°C\], if the file has the column `temperature_c`.
+    pub temperature_c: Option<f64>,
     /// Tip force, world \[N\].
     pub force_n: Vector3<f64>,
     /// Branch of the loading cycle, as the operator labelled it.
     pub branch: String,
-    /// Displacement from the reference state \[mm\].
-    pub d_mm: [f64; 3],
-    /// Standard deviation of each component \[mm\].
-    pub sigma_mm: f64,
+    /// Components of the displacement from the reference state, as far as they were measured.
+    pub measured: Components,
 }
 
 /// A natural frequency.
@@ -39,6 +42,8 @@ pub struct ModalRow {
     pub pose_deg: Vec<f64>,
     /// Stated payload.
     pub payload: Payload,
+    /// Temperature of the arm \[°C\], if the file has the column `temperature_c`.
+    pub temperature_c: Option<f64>,
     /// Number of the mode in its list, from 1.
     pub mode: usize,
     /// Frequency \[Hz\].
@@ -75,20 +80,51 @@ pub struct PositionRow {
     pub pose_deg: Vec<f64>,
     /// Stated payload.
     pub payload: Payload,
+    /// Temperature of the arm \[°C\], if the file has the column `temperature_c`.
+    pub temperature_c: Option<f64>,
     /// Index of the arm that the point is on, in the order of the campaign.
     pub arm: usize,
     /// Name of the point.
     pub point: String,
-    /// Position in the frame of the instrument \[mm\].
-    pub position_mm: [f64; 3],
-    /// Standard deviation of each coordinate \[mm\].
-    pub sigma_mm: f64,
+    /// Coordinates in the frame of the instrument, as far as they were measured.
+    pub measured: Components,
+}
+
+impl PositionRow {
+    /// Standard deviation of a measured coordinate, on average \[mm\].
+    pub(crate) fn sigma_mm(&self) -> f64 {
+        let own = || self.measured.iter().flatten().map(|read| read.sigma_mm);
+        own().sum::<f64>() / own().count().max(1) as f64
+    }
+}
+
+impl StaticRow {
+    /// When it was taken.
+    pub fn moment(&self) -> Moment {
+        Moment { row: self.row, temperature_c: self.temperature_c }
+    }
+}
+
+impl ModalRow {
+    /// When it was taken.
+    pub fn moment(&self) -> Moment {
+        Moment { row: self.row, temperature_c: self.temperature_c }
+    }
+}
+
+impl PositionRow {
+    /// When it was taken.
+    pub fn moment(&self) -> Moment {
+        Moment { row: self.row, temperature_c: self.temperature_c }
+    }
 }
 
 /// The columns that state pose and payload.
 struct StateColumns {
     pose: Vec<usize>,
-    payload: Option<[usize; 4]>,
+    mass: Option<usize>,
+    cg: [Option<usize>; 3],
+    temperature: Option<usize>,
 }
 
 impl StateColumns {
@@ -103,16 +139,16 @@ impl StateColumns {
             );
         }
         let pose: Vec<Option<usize>> = expected.iter().map(|name| table.required(name)).collect();
-        const PAYLOAD: [&str; 4] = ["payload_kg", "payload_cg_x_m", "payload_cg_y_m", "payload_cg_z_m"];
-        let stated = payload_needed || table.optional(PAYLOAD[0]).is_some();
-        let payload = match stated {
-            true => {
-                let found = PAYLOAD.map(|name| table.required(name));
-                Some([found[0]?, found[1]?, found[2]?, found[3]?])
-            }
-            false => None,
+        const CG: [&str; 3] = ["payload_cg_x_m", "payload_cg_y_m", "payload_cg_z_m"];
+        const MASS: &str = "payload_kg";
+        table.check_family("payload", &[MASS, CG[0], CG[1], CG[2]]);
+        let cg = CG.map(|name| table.optional(name));
+        let mass = match payload_needed || cg.iter().any(Option::is_some) {
+            true => Some(table.required(MASS)?),
+            false => table.optional(MASS),
         };
-        Some(Self { pose: pose.into_iter().collect::<Option<_>>()?, payload })
+        let temperature = table.optional("temperature_c");
+        Some(Self { pose: pose.into_iter().collect::<Option<_>>()?, mass, cg, temperature })
     }
 
     fn pose(&self, table: &Table, row: usize) -> Option<Vec<f64>> {
@@ -124,124 +160,120 @@ impl StateColumns {
         angles.into_iter().collect()
     }
 
+    /// The temperature; `None` where it is faulty.
+    fn temperature_c(&self, table: &Table, row: usize) -> Option<Option<f64>> {
+        let Some(column) = self.temperature else { return Some(None) };
+        let is_sound = |c: f64| (-100.0..=200.0).contains(&c);
+        let hint = "an arm in degrees Celsius is between -100 and 200; is it in kelvin or Fahrenheit?";
+        table.number_that(row, column, is_sound, hint).map(Some)
+    }
+
     fn payload(&self, table: &Table, row: usize) -> Option<Payload> {
-        let Some([mass, cg @ ..]) = self.payload else { return Some(Payload::default()) };
+        let Some(mass) = self.mass else { return Some(Payload::default()) };
         let mass_kg = table.number_that(
             row,
             mass,
             |m| (0.0..=1e4).contains(&m),
             "a payload in kg is neither negative nor above 10 t; is it in grams?",
         );
-        let cg = cg.map(|c| {
-            table.number_that(row, c, |x| x.abs() <= 5.0, "more than 5 m from the tip: is it in mm?")
+        let cg = self.cg.map(|column| {
+            or_zero(table, row, column, |table, row, column| {
+                let hint = "more than 5 m from the tip: is it in mm?";
+                table.number_that(row, column, |x| x.abs() <= 5.0, hint)
+            })
         });
         let cg_m = Vector3::new(cg[0]?, cg[1]?, cg[2]?);
         Some(Payload { mass_kg: mass_kg?, cg_m, ..Payload::default() })
     }
 }
 
-const SIGMA: &str = "a standard deviation is greater than 0";
-
-/// No measurement in any unit is larger than this, and no standard deviation smaller than its reciprocal.
-const ABSURD: f64 = 1e9;
-
-fn sigma(table: &Table, row: usize, column: usize) -> Option<f64> {
-    let value = table.number_that(row, column, |s| s > 0.0, SIGMA)?;
-    if (1.0 / ABSURD..ABSURD).contains(&value) {
-        return Some(value);
-    }
-    let hint = "no instrument has this standard deviation; state the one it has";
-    table.row_fault(row, &table.columns[column], format!("= {}", table.text(row, column)), hint);
-    None
-}
-
-/// Reads a cell as a number of a size that can be measured or applied.
-fn measured(table: &Table, row: usize, column: usize) -> Option<f64> {
-    table.number_that(row, column, |x| x.abs() < ABSURD, "too large for any unit: is it a slip?")
-}
-
 /// Reads static rows.
-pub(crate) fn static_rows(table: &Table, arm: &Arm) -> Vec<StaticRow> {
-    let state = StateColumns::find(table, &arm.driven_joint_names(), true);
-    let find = |names: [&str; 3]| names.map(|n| table.required(n));
-    let (force, d) = (find(["force_x_n", "force_y_n", "force_z_n"]), find(["dx_mm", "dy_mm", "dz_mm"]));
-    let (branch, sigma_mm) = (table.optional("branch"), table.required("sigma_mm"));
-    let (Some(state), [Some(fx), Some(fy), Some(fz)], [Some(dx), Some(dy), Some(dz)], Some(sigma_mm)) =
-        (state, force, d, sigma_mm)
-    else {
-        return Vec::new();
-    };
+pub(crate) fn static_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<StaticRow> {
+    const FORCE: [&str; 3] = ["force_x_n", "force_y_n", "force_z_n"];
+    table.check_family("force", &FORCE);
+    let force = FORCE.map(|name| table.optional(name));
+    // an arm that is only pulled at has no payload
+    let loads_needed = force.iter().all(Option::is_none);
+    let state = StateColumns::find(table, &arm.driven_joint_names(), loads_needed);
+    let components = VectorColumns::find(table, &DISPLACEMENT, purpose);
+    let branch = table.optional("branch");
+    let (Some(state), Some(components)) = (state, components) else { return Vec::new() };
     let rows = each_row(table, |row| {
-        let number = |c| measured(table, row, c);
         let (pose_deg, payload) = (state.pose(table, row), state.payload(table, row));
-        let (force, d) = ([fx, fy, fz].map(number), [dx, dy, dz].map(number));
-        let sigma_mm = sigma(table, row, sigma_mm);
+        let force = force.map(|column| or_zero(table, row, column, measured));
+        let read = components.read(row);
+        let temperature_c = state.temperature_c(table, row);
         Some(StaticRow {
             row,
             pose_deg: pose_deg?,
             payload: payload?,
+            temperature_c: temperature_c?,
             force_n: Vector3::new(force[0]?, force[1]?, force[2]?),
             branch: branch.map_or(String::new(), |c| table.text(row, c).to_string()),
-            d_mm: [d[0]?, d[1]?, d[2]?],
-            sigma_mm: sigma_mm?,
+            measured: read?,
         })
     });
+    let coarse = rows.iter().filter(|r| r.measured.contains(&None)).map(|r| r.row);
+    check_duplicates(table, &coarse.collect());
     check_angles(table, rows.iter().map(|r| r.pose_deg.as_slice()));
     rows
 }
 
 /// Reads modal rows.
-pub(crate) fn modal_rows(table: &Table, arm: &Arm) -> Vec<ModalRow> {
-    let state = StateColumns::find(table, &arm.driven_joint_names(), true);
-    let columns = ["mode", "frequency_hz", "sigma_hz"].map(|n| table.required(n));
-    let (Some(state), [Some(mode), Some(frequency), Some(sigma_hz)]) = (state, columns) else {
+pub(crate) fn modal_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<ModalRow> {
+    let state = StateColumns::find(table, &arm.driven_joint_names(), false);
+    let mode = table.required("mode");
+    let readings = ["frequency_hz", "sigma_hz"].map(|name| reading_column(table, name, purpose));
+    let (Some(state), Some(mode), [Some(frequency), Some(sigma_hz)]) = (state, mode, readings) else {
         return Vec::new();
     };
     let rows = each_row(table, |row| {
         let (pose_deg, payload) = (state.pose(table, row), state.payload(table, row));
+        let temperature_c = state.temperature_c(table, row);
         let mode = table.number_that(
             row,
             mode,
             |m| m >= 1.0 && m.fract() == 0.0 && m < 1000.0,
             "modes are numbered 1, 2, 3 ... by rising frequency",
         );
-        let frequency_hz = table.number_that(
-            row,
-            frequency,
-            |f| f > 0.0 && f < ABSURD,
-            "a frequency is greater than 0 and below 1 GHz",
-        );
-        let sigma_hz = sigma(table, row, sigma_hz);
+        let frequency_hz = needed(table, row, frequency, purpose, |table, row, column| {
+            let hint = "a frequency is greater than 0 and below 1 GHz";
+            table.number_that(row, column, |f| f > 0.0 && f < ABSURD, hint)
+        });
+        let sigma_hz = needed(table, row, sigma_hz, purpose, sigma);
         Some(ModalRow {
             row,
             pose_deg: pose_deg?,
             payload: payload?,
+            temperature_c: temperature_c?,
             mode: mode? as usize,
             frequency_hz: frequency_hz?,
             sigma_hz: sigma_hz?,
         })
     });
+    check_duplicates(table, &HashSet::new());
     check_angles(table, rows.iter().map(|r| r.pose_deg.as_slice()));
     rows
 }
 
 /// Reads bench rows.
-pub(crate) fn windup_rows(table: &Table, arm: &Arm) -> Vec<WindupRow> {
-    let columns = ["joint", "torque_nm", "windup_arcmin", "sigma_arcmin"].map(|n| table.required(n));
+pub(crate) fn windup_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<WindupRow> {
+    let columns = ["joint", "torque_nm"].map(|n| table.required(n));
+    let readings = ["windup_arcmin", "sigma_arcmin"].map(|name| reading_column(table, name, purpose));
     let branch = table.optional("branch");
-    let [Some(joint), Some(torque), Some(windup), Some(sigma_arcmin)] = columns else {
+    let ([Some(joint), Some(torque)], [Some(windup), Some(sigma_arcmin)]) = (columns, readings) else {
         return Vec::new();
     };
     let names: Vec<&str> = arm.joints().map(|j| j.name.as_str()).collect();
-    each_row(table, |row| {
+    let rows = each_row(table, |row| {
         let name = table.text(row, joint);
         if !names.contains(&name) {
             let hint = format!("the arm's joints: {}", names.join(", "));
             table.row_fault(row, "joint", format!("\"{name}\" is no joint of the arm"), &hint);
         }
         let torque_nm = measured(table, row, torque);
-        let windup_arcmin = measured(table, row, windup);
-        let sigma_arcmin = sigma(table, row, sigma_arcmin);
+        let windup_arcmin = needed(table, row, windup, purpose, measured);
+        let sigma_arcmin = needed(table, row, sigma_arcmin, purpose, sigma);
         Some(WindupRow {
             row,
             joint: name.to_string(),
@@ -250,39 +282,46 @@ pub(crate) fn windup_rows(table: &Table, arm: &Arm) -> Vec<WindupRow> {
             windup_arcmin: windup_arcmin?,
             sigma_arcmin: sigma_arcmin?,
         })
-    })
+    });
+    check_duplicates(table, &HashSet::new());
+    rows
 }
 
 /// Reads absolute positions. `arms` holds the names of the arms, `driven` the joints that have a column.
-pub(crate) fn position_rows(table: &Table, arms: &[&str], driven: &[String]) -> Vec<PositionRow> {
+pub(crate) fn position_rows(
+    table: &Table,
+    arms: &[&str],
+    driven: &[String],
+    purpose: Purpose,
+) -> Vec<PositionRow> {
     let joints: Vec<&str> = driven.iter().map(String::as_str).collect();
     let state = StateColumns::find(table, &joints, false);
-    let columns = ["x_mm", "y_mm", "z_mm", "sigma_mm"].map(|n| table.required(n));
+    let components = VectorColumns::find(table, &POSITION, purpose);
     let point = table.optional("point");
     let test = table.optional("test");
     let arm = table.optional("arm");
-    let (Some(state), [Some(x), Some(y), Some(z), Some(sigma_mm)]) = (state, columns) else {
-        return Vec::new();
-    };
+    let (Some(state), Some(components)) = (state, components) else { return Vec::new() };
     let rows = each_row(table, |row| {
         let (pose_deg, payload) = (state.pose(table, row), state.payload(table, row));
-        let position = [x, y, z].map(|c| measured(table, row, c));
+        let read = components.read(row);
+        let temperature_c = state.temperature_c(table, row);
         let arm = match arm {
             Some(column) => arm_named(table, row, column, arms),
             None => Some(0),
         };
-        let sigma_mm = sigma(table, row, sigma_mm);
         Some(PositionRow {
             row,
             test: test.map_or(String::new(), |c| table.text(row, c).to_string()),
             pose_deg: pose_deg?,
             payload: payload?,
+            temperature_c: temperature_c?,
             arm: arm?,
             point: point.map_or("tip".to_string(), |c| table.text(row, c).to_string()),
-            position_mm: [position[0]?, position[1]?, position[2]?],
-            sigma_mm: sigma_mm?,
+            measured: read?,
         })
     });
+    let coarse = rows.iter().filter(|r| r.measured.contains(&None)).map(|r| r.row);
+    check_duplicates(table, &coarse.collect());
     check_angles(table, rows.iter().map(|r| r.pose_deg.as_slice()));
     rows
 }
@@ -303,18 +342,23 @@ fn arm_named(table: &Table, row: usize, column: usize, arms: &[&str]) -> Option<
 
 fn each_row<T>(table: &Table, read: impl Fn(usize) -> Option<T>) -> Vec<T> {
     let rows: Vec<Option<T>> = (0..table.rows.len()).map(read).collect();
-    check_duplicates(table);
     rows.into_iter().flatten().collect()
 }
 
 /// Reports rows that repeat an earlier one in everything but the test's label. Such a row is a copying error,
-/// and its noise is not independent.
-fn check_duplicates(table: &Table) {
+/// and its noise is not independent. In `coarse` rows not all components were measured: a gauge may well show the same
+/// digits again, so that the label tells a repeated test from a copy.
+fn check_duplicates(table: &Table, coarse: &HashSet<usize>) {
     let label = table.optional("test");
     let mut seen: HashMap<Vec<&str>, usize> = HashMap::new();
     for (row, cells) in table.rows.iter().enumerate() {
+        let is_coarse = coarse.contains(&row);
+        if is_coarse && label.is_none() {
+            continue;
+        }
+        let counts = |c: &usize| is_coarse || Some(*c) != label;
         let key: Vec<&str> =
-            cells.iter().enumerate().filter(|(c, _)| Some(*c) != label).map(|(_, s)| s.as_str()).collect();
+            cells.iter().enumerate().filter(|(c, _)| counts(c)).map(|(_, s)| s.as_str()).collect();
         if let Some(first) = seen.get(&key) {
             let problem = format!("repeats line {} in every value", table.lines[*first]);
             table.row_fault(row, "", problem, "remove the copy; a repeated test has noise of its own");

@@ -1,5 +1,7 @@
-//! A CSV file as named columns. Every fault is recorded with file, line, column, value and hint.
+//! A CSV file or a sheet of a spreadsheet as named columns. Every fault is recorded with file, line, column, value and hint.
 
+use super::source::Source;
+use super::spreadsheet::{is_spreadsheet, read_sheet};
 use crate::input::csv::{Csv, Record, is_repeated, other_separators};
 use crate::input::json::{Fault, InputError, closest};
 use std::cell::RefCell;
@@ -8,22 +10,28 @@ use std::path::Path;
 /// First character of a comment line.
 const COMMENT: u8 = b'#';
 
-/// A CSV file whose first row names the columns.
+/// A CSV file or a sheet of a spreadsheet, whose first row names the columns.
 #[derive(Debug)]
 pub struct Table {
-    /// File name as given.
+    /// File name as given, with the sheet of a spreadsheet.
     pub file: String,
-    /// Column names.
+    /// Column names of this program.
     pub columns: Vec<String>,
     /// Rows of text.
     pub rows: Vec<Vec<String>>,
     /// Line of each row in the file.
     pub lines: Vec<usize>,
+    /// Line of the column names.
+    header_line: usize,
+    /// Column names as the file has them.
+    shown: Vec<String>,
+    /// Letters of the columns of a spreadsheet.
+    letters: Vec<String>,
     faults: RefCell<Vec<Fault>>,
 }
 
 impl Table {
-    /// Reads a file; rows of the wrong length are faults.
+    /// Reads a CSV file; rows of the wrong length are faults.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -34,36 +42,126 @@ impl Table {
         Ok(Self::parse(&file, &text))
     }
 
-    /// Parses CSV text. Rows of the wrong length are faults.
-    pub fn parse(file: &str, text: &str) -> Self {
-        let mut table = Self {
+    /// Reads a CSV file or a sheet of a spreadsheet, and gives its columns the names of this program.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn read_from(path: &Path, source: &Source) -> Result<Self, InputError> {
+        let mut table = match is_spreadsheet(path) {
+            true => Self::of_spreadsheet(path, source)?,
+            false => Self::read(path)?,
+        };
+        table.rename(&source.columns);
+        Ok(table)
+    }
+
+    /// Reads a sheet of a spreadsheet. What is wrong with the file as a whole is a fault.
+    fn of_spreadsheet(path: &Path, source: &Source) -> Result<Self, InputError> {
+        let file = path.display().to_string();
+        std::fs::metadata(path).map_err(|source| InputError::Unreadable { file: file.clone(), source })?;
+        let mut table = Self::empty(&file);
+        let sheet = match read_sheet(path, source.sheet.as_deref()) {
+            Ok(sheet) => sheet,
+            Err((problem, hint)) => {
+                table.fault(None, "", problem, &hint);
+                return Ok(table);
+            }
+        };
+        table.file = format!("{file}, sheet \"{}\"", sheet.name);
+        table.letters = sheet.letters;
+        let first = source.header_row.unwrap_or(0);
+        for (line, cells) in sheet.rows.into_iter().filter(|(line, _)| *line >= first) {
+            table.push(Record { line, cells });
+        }
+        table.finish();
+        Ok(table)
+    }
+
+    fn empty(file: &str) -> Self {
+        Self {
             file: file.to_string(),
             columns: Vec::new(),
             rows: Vec::new(),
             lines: Vec::new(),
+            header_line: 1,
+            shown: Vec::new(),
+            letters: Vec::new(),
             faults: RefCell::default(),
-        };
+        }
+    }
+
+    /// Parses CSV text. Rows of the wrong length are faults.
+    pub fn parse(file: &str, text: &str) -> Self {
+        let mut table = Self::empty(file);
         let csv = Csv::parse(text.as_bytes(), Some(COMMENT));
         for (_, problem) in &csv.unreadable {
             table.fault(None, "", format!("not valid CSV: {problem}"), "save the table as plain CSV");
         }
         csv.records.into_iter().for_each(|record| table.push(record));
-        table.check_header();
-        if table.columns.is_empty() {
-            table.fault(None, "", "is empty".into(), "the first row names the columns");
-        }
+        table.finish();
         table
+    }
+
+    /// Checks what must be true of a whole table.
+    fn finish(&mut self) {
+        self.shown = self.columns.clone();
+        self.check_header();
+        self.check_units();
+        if self.columns.is_empty() {
+            self.fault(None, "", "is empty".into(), "the first row names the columns");
+        }
+    }
+
+    /// Gives columns the names of this program: pairs of that name and the one in the file.
+    fn rename(&mut self, names: &[(String, String)]) {
+        for (name, shown) in names {
+            match self.shown.iter().position(|column| column == shown) {
+                Some(column) => self.columns[column].clone_from(name),
+                None if self.columns.contains(name) => {}
+                None => {
+                    let hint = format!("campaign.json names it; columns found: {}", self.shown.join(", "));
+                    self.fault(Some(self.header_line), shown, "the column is missing".into(), &hint);
+                }
+            }
+        }
+        for column in 0..self.columns.len() {
+            let name = &self.columns[column];
+            if *name != self.shown[column] && self.columns.iter().filter(|c| *c == name).count() > 1 {
+                let problem = format!("is {name}, and so is another column");
+                let hint = "map one of them, or rename one in the file";
+                self.fault(Some(self.header_line), &self.shown[column], problem, hint);
+            }
+        }
+    }
+
+    /// Reports a row of units below the names of the columns.
+    fn check_units(&mut self) {
+        let is_number = |cell: &String| cell.replace(',', ".").parse::<f64>().is_ok();
+        let [first, second, ..] = self.rows.as_slice() else { return };
+        let given: Vec<&String> = first.iter().filter(|cell| !cell.is_empty()).collect();
+        if given.len() > 1 && !given.into_iter().any(is_number) && second.iter().any(is_number) {
+            let problem = format!("has no numbers ({})", first.join(", "));
+            let line = self.lines[0];
+            self.rows.remove(0);
+            self.lines.remove(0);
+            self.fault(Some(line), "", problem, "remove a row of units: the names of the columns have them");
+        }
     }
 
     /// Reports columns that are separated by something other than commas, or named twice.
     fn check_header(&self) {
         for word in other_separators(&self.columns, 2) {
             let hint = "separate columns with commas and write decimals with a point";
-            self.fault(Some(1), "", format!("its columns are separated by {word}"), hint);
+            self.fault(Some(self.header_line), "", format!("its columns are separated by {word}"), hint);
         }
         for (i, name) in self.columns.iter().enumerate() {
             if !name.is_empty() && is_repeated(&self.columns, i) {
-                self.fault(Some(1), name, "the column is there twice".into(), "keep the one that holds");
+                self.fault(
+                    Some(self.header_line),
+                    name,
+                    "the column is there twice".into(),
+                    "keep the one that holds",
+                );
             }
         }
     }
@@ -75,6 +173,7 @@ impl Table {
 
     fn push(&mut self, Record { line, cells }: Record) {
         if self.columns.is_empty() {
+            self.header_line = line;
             self.columns = cells;
         } else if !self.has_header() || cells.len() == self.columns.len() {
             self.rows.push(cells);
@@ -90,10 +189,26 @@ impl Table {
         self.faults.borrow_mut().push(Fault {
             file: self.file.clone(),
             line,
-            field: column.to_string(),
+            field: self.place(line, column),
             problem,
             hint: hint.to_string(),
         });
+    }
+
+    /// A column as the file shows it: with the name it has there, and with the cell of a spreadsheet.
+    fn place(&self, line: Option<usize>, column: &str) -> String {
+        let known = self.columns.iter().position(|c| c == column).or_else(|| {
+            let shown = self.shown.iter().position(|c| c == column);
+            shown.filter(|_| !column.is_empty())
+        });
+        let Some(index) = known else { return column.to_string() };
+        let (name, shown) = (&self.columns[index], self.shown.get(index).unwrap_or(&self.columns[index]));
+        let named = if name == shown { name.clone() } else { format!("{name} = \"{shown}\"") };
+        match (self.letters.get(index), line) {
+            (Some(letters), Some(line)) => format!("cell {letters}{line} ({named})"),
+            (Some(letters), None) => format!("column {letters} ({named})"),
+            (None, _) => named,
+        }
     }
 
     /// Records a fault of a row.
@@ -117,7 +232,7 @@ impl Table {
                 Some(near) => format!("is it \"{near}\"? columns found: {}", known.join(", ")),
                 None => format!("columns found: {}", known.join(", ")),
             };
-            self.fault(Some(1), name, "the column is missing".into(), &hint);
+            self.fault(Some(self.header_line), name, "the column is missing".into(), &hint);
             None
         })
     }
@@ -125,6 +240,43 @@ impl Table {
     /// Index of a column, if it exists.
     pub fn optional(&self, name: &str) -> Option<usize> {
         self.columns.iter().position(|c| c == name)
+    }
+
+    /// Reports columns that begin like those of a family and are none of them.
+    pub(crate) fn check_family(&self, beginning: &str, family: &[&str]) {
+        let begins = |column: &&String| column.starts_with(beginning) && column.contains('_');
+        for column in self.columns.iter().filter(begins).filter(|column| !family.contains(&column.as_str())) {
+            let hint = format!("the columns of this kind: {}", family.join(", "));
+            self.fault(Some(self.header_line), column, "is not known".into(), &hint);
+        }
+    }
+
+    /// Reports a column whose name is nearly that of one that may be absent. `known` are names that are right.
+    /// Returns whether there is one.
+    pub(crate) fn check_spelling(&self, name: &str, known: &[&str]) -> bool {
+        let others: Vec<&str> =
+            self.columns.iter().map(String::as_str).filter(|column| !known.contains(column)).collect();
+        let near = closest(name, &others);
+        if let Some(near) = near {
+            let hint = "write the name of the column so, or remove it";
+            self.fault(Some(self.header_line), near, format!("is it {name}?"), hint);
+        }
+        near.is_some()
+    }
+
+    /// Name of the file without its folder, with the sheet of a spreadsheet.
+    pub(crate) fn short_name(&self) -> String {
+        self.file.rsplit(['/', '\\']).next().unwrap_or(&self.file).to_string()
+    }
+
+    /// The names of the columns in the file.
+    pub(crate) fn shown(&self) -> &[String] {
+        &self.shown
+    }
+
+    /// Whether a cell is blank.
+    pub(crate) fn is_blank(&self, row: usize, column: usize) -> bool {
+        self.text(row, column).is_empty()
     }
 
     /// A cell's text.

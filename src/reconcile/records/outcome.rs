@@ -74,6 +74,8 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         other_corrected: campaign.other_arms.clone(),
         provenance,
         records: joints,
+        empirical: Vec::new(),
+        models: Vec::new(),
     }
 }
 

@@ -237,7 +237,7 @@ fn stiffness_questions(
         };
         if let Some(j) = driven.iter().position(|n| n == name) {
             let pose = |i: usize| match channel {
-                Channel::Static => &campaign.statics[i / 3].pose_deg,
+                Channel::Static => &campaign.statics[forward.data[i].index].pose_deg,
                 _ => &campaign.modal[i - forward.starts[1]].pose_deg,
             };
             let angle = (0..4).map(|k| times(&|i| waves(pose(i)[j])[k])).collect();
@@ -264,7 +264,7 @@ fn spread(forward: &Forward, channel: Channel, value: impl Fn(usize, usize) -> f
 
 fn static_questions(campaign: &Campaign, forward: &Forward, fit: &Fit, ask: Ask) {
     let rows = &campaign.statics;
-    let row = |i: usize| i / 3;
+    let row = |i: usize| forward.data[i].index;
     let count = rows.len() as f64;
     let channel = Channel::Static;
     // each component on its own, and along the predicted displacement as a changing stiffness would show

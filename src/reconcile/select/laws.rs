@@ -8,6 +8,7 @@
 
 use super::waves::waves;
 use crate::arm::effect::channel::Channel;
+use crate::arm::effect::stiffness_waves;
 use crate::mechanics::beam::Strain;
 use crate::reconcile::fit::descent::{Fit, change_to};
 use crate::reconcile::forward::bench::ARCMIN_PER_RAD;
@@ -22,6 +23,8 @@ use std::f64::consts::TAU;
 pub(crate) struct Law {
     /// The law in words.
     pub what: String,
+    /// The effect of the library that has this law, if there is one.
+    pub effect: Option<&'static str>,
     /// Change of each prediction per unit of each of the law's parameters, in the unit of the file.
     pub columns: Vec<Vec<f64>>,
 }
@@ -111,8 +114,9 @@ impl Builder<'_> {
         ));
         if self.campaign.arm.driven_joint_names().contains(&name.as_str()) {
             let what = format!("a stiffness of {name} that changes with its angle");
-            out.push(Law { what: what.clone(), columns: vec![wave(0), wave(1)] });
-            out.push(Law { what, columns: vec![wave(2), wave(3)] });
+            let effect = Some(stiffness_waves::KIND.name);
+            out.push(Law { what: what.clone(), effect, columns: vec![wave(0), wave(1)] });
+            out.push(Law { what, effect, columns: vec![wave(2), wave(3)] });
         }
         for channel in [Channel::Static, Channel::Modal] {
             let what =
@@ -141,8 +145,8 @@ impl Builder<'_> {
                     channel: Channel::Static,
                 };
                 let twist = shape(&state(torques[load + 1][joint])).0 - shape(&state(torques[0][joint])).0;
-                for c in 0..3 {
-                    truth[3 * row + c] = 1e3 * pose.geometry.joints[joint].tip[c] * compliance * twist;
+                for (c, datum) in pose.measured(load) {
+                    truth[datum] = 1e3 * pose.geometry.joints[joint].tip[c] * compliance * twist;
                 }
                 row += 1;
             }
@@ -176,6 +180,7 @@ impl Builder<'_> {
         let Some(common) = joints.iter().copied().find(|c| *c > 0.0) else { return Vec::new() };
         let law = |what: String, further: &[(usize, f64)]| Law {
             what,
+            effect: None,
             columns: vec![self.yielding_column(further)],
         };
         let tilts = |what: String, first: usize, compliance: f64| {
@@ -221,6 +226,7 @@ impl Builder<'_> {
             };
             let law = |what: &str, changed: &dyn Fn(&mut Coefficients, f64)| Law {
                 what: format!("a {what} of {} other than drawn", link.name),
+                effect: None,
                 columns: vec![self.changed_column(changed)],
             };
             [law("mass", &lighter), law("wall", &thinner)]
@@ -309,12 +315,14 @@ impl Builder<'_> {
             load
         };
         let largest_n = (0..rows.len()).map(|r| load_n(r).amax()).fold(1e-9, f64::max);
-        let largest_mm = rows.iter().flat_map(|r| r.d_mm).fold(0.0f64, |m, d| m.max(d.abs()));
+        let readings = rows.iter().flat_map(|r| r.measured).flatten();
+        let largest_mm = readings.fold(0.0f64, |m, d| m.max(d.value_mm.abs()));
+        let row = |i: usize| self.forward.data[i].index;
         let along = |vertical: bool| {
             column(&|i, _| {
                 let component = self.forward.data[i].component;
                 if (component == 2) == vertical {
-                    largest_mm * load_n(i / 3)[component] / largest_n
+                    largest_mm * load_n(row(i))[component] / largest_n
                 } else {
                     0.0
                 }
@@ -323,15 +331,15 @@ impl Builder<'_> {
         let kept = rows_in_pose(rows.iter().map(|r| r.pose_deg.as_slice()));
         let longest = kept.iter().copied().max().unwrap_or(0).max(1) as f64;
         let is_carrying = |r: usize| rows[r].payload.mass_kg > 0.0;
-        let gain = |carrying: bool| column(&|i, d| if is_carrying(i / 3) == carrying { d } else { 0.0 });
-        let law = |what: &str, columns| Law { what: what.into(), columns };
+        let gain = |carrying: bool| column(&|i, d| if is_carrying(row(i)) == carrying { d } else { 0.0 });
+        let law = |what: &str, columns| Law { what: what.into(), effect: None, columns };
         let mut out = vec![
             law("static readings under payloads with a gain of their own", vec![gain(true)]),
             law("payloads that weigh a factor of what is stated", vec![self.heavier_payloads(gain(true))]),
             law("static readings under tip forces alone with a gain of their own", vec![gain(false)]),
             law(
                 "static readings that grow while a pose is kept",
-                vec![column(&|i, d| d * kept[i / 3] as f64 / longest)],
+                vec![column(&|i, d| d * kept[row(i)] as f64 / longest)],
             ),
         ];
         out.extend(one_or_both(
@@ -364,11 +372,12 @@ impl Builder<'_> {
     fn direction_laws(&self, column: ColumnOf) -> Vec<Law> {
         let data = &self.forward.data;
         let gain = |c: usize| column(&|i, d| if data[i].component == c { d } else { 0.0 });
+        // a turn brings in components that were not measured
+        let readings = self.forward.displacements_mm(&self.fit.point.coefficients);
         let turned = |axis: usize| {
             column(&|i, _| {
                 let c = data[i].component;
-                let first = i - c;
-                let d = |k: usize| self.fit.point.predicted[first + k];
+                let d = |k: usize| readings[data[i].index][k];
                 match (3 + c - axis) % 3 {
                     1 => -d((axis + 2) % 3),
                     2 => d((axis + 1) % 3),
@@ -376,16 +385,21 @@ impl Builder<'_> {
                 }
             })
         };
-        vec![
-            Law {
-                what: "static readings with a gain of their own in each direction".into(),
-                columns: (0..3).map(gain).collect(),
-            },
-            Law {
-                what: "static readings in a frame that is turned".into(),
-                columns: (0..3).map(turned).collect(),
-            },
-        ]
+        let mut turns: Vec<Vec<f64>> = (0..3).map(turned).collect();
+        let range = self.forward.range(Channel::Static);
+        // a single gauge that stands askew sees two of the three turns at most
+        if !(0..3).all(|c| data[range.clone()].iter().any(|d| d.component == c)) {
+            turns.retain(|column| column.iter().any(|x| *x != 0.0));
+        }
+        let law = |what: &str, columns: Vec<Vec<f64>>| Law { what: what.into(), effect: None, columns };
+        let mut out = vec![law(
+            "static readings with a gain of their own in each direction",
+            (0..3).map(gain).collect(),
+        )];
+        if !turns.is_empty() {
+            out.push(law("static readings in a frame that is turned", turns));
+        }
+        out
     }
 }
 
@@ -404,7 +418,7 @@ fn rows_in_pose<'a>(poses: impl Iterator<Item = &'a [f64]>) -> Vec<usize> {
 /// Three laws: with the first column, with the second, and with both.
 fn one_or_both(what: &str, columns: [Vec<f64>; 2]) -> Vec<Law> {
     let [a, b] = columns;
-    let law = |columns| Law { what: what.to_string(), columns };
+    let law = |columns| Law { what: what.to_string(), effect: None, columns };
     vec![law(vec![a.clone()]), law(vec![b.clone()]), law(vec![a, b])]
 }
 

@@ -32,6 +32,8 @@ const PROMISING: f64 = 12.0;
 pub(crate) const MOST_EFFECTS: usize = 3;
 /// If ln of the evidence of a law without a name is higher by this much, the effects found are not the cause.
 const SETTLES: f64 = 12.0;
+/// Number of sets of parameters of one effect among these.
+const MOST_VARIANTS: usize = 2;
 /// Number of candidates fitted in full at each stage.
 const FULL_FITS: usize = 7;
 
@@ -258,10 +260,19 @@ impl<'a> Search<'a> {
         let slopes = jacobian(self.forward, &model, &here);
         let mut tried: Vec<(usize, Vec<f64>, f64)> = (0..self.candidates.len())
             .into_par_iter()
-            .filter(|i| !base.effects.contains(i))
+            .filter(|i| base.effects.iter().all(|e| !self.candidates[*e].is_variant_of(&self.candidates[*i])))
             .filter_map(|i| self.best_start(&model, &here, &slopes, i))
+            .map(|(i, u, score)| (i, u, score - self.price(&[i])))
             .collect();
         tried.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
+        // sets of parameters of one effect must not crowd out other effects
+        let mut variants: Vec<usize> = Vec::new();
+        tried.retain(|(i, ..)| {
+            let own = variants.iter().filter(|v| self.candidates[**v].is_variant_of(&self.candidates[*i]));
+            let is_kept = own.count() < MOST_VARIANTS;
+            variants.push(*i);
+            is_kept
+        });
         tried.truncate(FULL_FITS);
         tried
     }
@@ -280,10 +291,20 @@ impl<'a> Search<'a> {
         // held
         model.held =
             model.break_points().into_iter().filter(|p| *p < base.len()).map(|p| (p, here.u[p])).collect();
+        let held = model.held.clone();
+        let mut at_start = |start: &[f64]| {
+            model.held = held.clone();
+            if candidate.kind.traits.screens_at_starts {
+                let numbers = candidate.free_parameters.iter().zip(start).enumerate();
+                let kept = numbers.filter(|(_, (parameter, _))| !parameter.is_size());
+                model.held.extend(kept.map(|(i, (_, u))| (base.len() + i, *u)));
+            }
+            self.linear(&model, here, slopes, start)
+        };
         candidate
             .starts
             .iter()
-            .map(|start| self.linear(&model, here, slopes, start))
+            .map(|start| at_start(start))
             .max_by(|a, b| a.1.total_cmp(&b.1))
             .map(|(u, score)| (index, u, score))
     }
@@ -344,7 +365,7 @@ impl<'a> Search<'a> {
                 let own = rest.remove(i);
                 let in_its_place = |s: &&Scored| {
                     s.effects.len() == best.effects.len()
-                        && !s.effects.contains(&own)
+                        && s.effects.iter().all(|e| !self.candidates[*e].is_variant_of(&self.candidates[own]))
                         && rest.iter().all(|e| s.effects.contains(e))
                 };
                 let mut competitors: Vec<Scored> = Vec::new();

@@ -61,7 +61,8 @@ impl<'a> Search<'a> {
     /// break points are smoothed at first and then sharpened.
     fn fit_model(&self, mut model: Model<'a>, u: &[f64], effort: Effort) -> Fit<'a> {
         let mut start = u.to_vec();
-        if !self.forward.modal.is_empty() && model.effects.last().is_some_and(|e| e.kind.traits.is_gear_curve)
+        if !self.forward.modal.is_empty()
+            && model.effects.last().is_some_and(|e| e.kind.traits.steps_frequencies())
         {
             for smoothing in [WIDE, 0.03, NARROW] {
                 model.smoothing = smoothing;
@@ -83,7 +84,7 @@ impl<'a> Search<'a> {
         let mut model = self.model(effects);
         let mut start = u.to_vec();
         let few = Effort { steps: 4, tolerance: 0.02 };
-        if model.effects.last().is_some_and(|e| e.kind.traits.is_gear_curve) {
+        if model.effects.last().is_some_and(|e| e.kind.traits.steps_frequencies()) {
             let smoothed = Effort { steps: 6, tolerance: 0.05 };
             model.smoothing = WIDE;
             start = self.descent(&model, &start, smoothed).u;
@@ -165,12 +166,10 @@ impl<'a> Search<'a> {
 
     /// Scores a fit.
     pub(crate) fn scored(&self, effects: &[usize], fit: &Fit) -> Scored {
-        // each effect could have been named at any place, and the price is the logarithm of their number
-        let penalty = effects.len() as f64 * libm::log(self.places() as f64);
         Scored {
             effects: effects.to_vec(),
             u: fit.point.u.clone(),
-            score: fit.evidence - penalty,
+            score: fit.evidence - self.price(effects),
             objective: fit.point.objective,
         }
     }
@@ -180,12 +179,20 @@ impl<'a> Search<'a> {
         scored.objective < BEYOND_HOPE * self.forward.data.len() as f64
     }
 
-    /// Number of places where an effect could be named. All unit slips of a channel count once.
-    pub(crate) fn places(&self) -> usize {
-        let mut labels: Vec<String> = self.candidates.iter().map(|c| c.label()).collect();
-        // all unit slips of a channel have the same label
+    /// Price of effects, in ln of the evidence: each could have been another one at another place. It is minus the
+    /// logarithm of their probability before any reading.
+    pub(crate) fn price(&self, effects: &[usize]) -> f64 {
+        let odds = |effect: &usize| self.candidates[*effect].kind.traits.odds;
+        effects.iter().map(|effect| libm::log(self.places() / odds(effect))).sum()
+    }
+
+    /// Number of places where an effect could be named, each weighed by how likely its effect is. All unit slips of a
+    /// channel count once, and so do all sets of parameters of an effect.
+    pub(crate) fn places(&self) -> f64 {
+        let mut labels: Vec<(String, f64)> =
+            self.candidates.iter().map(|c| (c.label(), c.kind.traits.odds)).collect();
         labels.dedup();
-        labels.len()
+        labels.iter().map(|(_, odds)| odds).sum()
     }
 
     /// A model without one of its effects, and its start.

@@ -55,7 +55,7 @@ fn names(campaign: &Campaign, forward: &Forward, i: usize) -> Vec<String> {
     let mut out = vec![datum.channel.word().to_string()];
     match datum.channel {
         Channel::Static => {
-            let row = &campaign.statics[i / 3];
+            let row = &campaign.statics[datum.index];
             if !row.branch.is_empty() {
                 out.push(format!("static, {}", row.branch));
             }

@@ -1,6 +1,7 @@
 //! The conclusion of a reconciliation, and the files that state it.
 
 pub(crate) mod correct;
+pub(crate) mod corrected_model;
 pub(crate) mod files;
 pub(crate) mod locate;
 pub(crate) mod next_test;

@@ -10,6 +10,7 @@ use crate::arm::effect::subject::Subject;
 use crate::arm::load::Payload;
 use crate::reconcile::model::exact::Exact;
 use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::readings::components::{Component, Components};
 use crate::reconcile::readings::rows::{ModalRow, StaticRow, WindupRow};
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -175,7 +176,7 @@ fn tests(campaign: &Campaign, best: &Exact) -> Vec<Test> {
     let ranges = ranges(campaign);
     let pose = |index: usize| spread_pose(&ranges, index);
     let payload = largest_payload(campaign);
-    let sigma_mm = campaign.statics.first().map_or(DEFAULT_SIGMA_MM, |r| r.sigma_mm);
+    let instrument = instrument(campaign);
     let force = campaign.statics.iter().map(|r| r.force_n.norm()).fold(0.0, f64::max).max(100.0).round();
     let mut out = Vec::new();
     for index in 1..=STATIC_POSES {
@@ -183,10 +184,10 @@ fn tests(campaign: &Campaign, best: &Exact) -> Vec<Test> {
             row,
             pose_deg: pose(index),
             payload,
+            temperature_c: None,
             force_n,
             branch: String::new(),
-            d_mm: [0.0; 3],
-            sigma_mm,
+            measured: instrument,
         };
         out.push(Test::Static(vec![row(0, payload, Vector3::zeros())]));
         for axis in 0..3 {
@@ -202,6 +203,7 @@ fn tests(campaign: &Campaign, best: &Exact) -> Vec<Test> {
                 row: mode - 1,
                 pose_deg: pose(index),
                 payload,
+                temperature_c: None,
                 mode,
                 frequency_hz: 0.0,
                 sigma_hz: 0.0,
@@ -211,6 +213,16 @@ fn tests(campaign: &Campaign, best: &Exact) -> Vec<Test> {
     }
     out.extend(benches(campaign, best, &out));
     out
+}
+
+/// The components that the campaign's instrument reads, each with the standard deviation that it has first.
+fn instrument(campaign: &Campaign) -> Components {
+    let first = |c: usize| campaign.statics.iter().find_map(|row| row.measured[c]);
+    let read = |sigma_mm: f64| Some(Component { value_mm: 0.0, sigma_mm });
+    match campaign.statics.is_empty() {
+        true => [read(DEFAULT_SIGMA_MM); 3],
+        false => [0, 1, 2].map(|c| first(c).and_then(|own| read(own.sigma_mm))),
+    }
 }
 
 /// A bench cycle for each joint that has not been on the bench, up to its largest torque in the static tests.
@@ -256,12 +268,13 @@ fn predict(exact: &Exact, test: &Test) -> Vec<f64> {
 /// Difference of two predictions of a test \[standard deviations\]: the root of the sum of squares, over the
 /// modes that both have.
 fn separation(test: &Test, a: &[f64], b: &[f64]) -> f64 {
-    let sigma = |value: f64| match test {
-        Test::Static(rows) => rows[0].sigma_mm,
-        Test::Modal(_) => DEFAULT_SIGMA_PART * value.abs().max(1e-9),
+    let sigma = |i: usize| match test {
+        // a component that the instrument does not read separates nothing
+        Test::Static(rows) => rows[0].measured[i % 3].map_or(f64::INFINITY, |read| read.sigma_mm),
+        Test::Modal(_) => DEFAULT_SIGMA_PART * a[i].abs().max(1e-9),
         Test::Bench(rows) => rows[0].sigma_arcmin,
     };
-    let squares = a.iter().zip(b).map(|(a, b)| ((a - b) / sigma(*a)).powi(2));
+    let squares = a.iter().zip(b).enumerate().map(|(i, (a, b))| ((a - b) / sigma(i)).powi(2));
     squares.filter(|s| s.is_finite()).sum::<f64>().sqrt()
 }
 

@@ -3,6 +3,7 @@
 use super::outcome::{NextTest, Outcome, ReadingResidual, Verdict};
 use super::stage::Stage;
 use crate::arm::effect::channel::Channel;
+use crate::arm::effect::entry::word_of;
 use crate::reconcile::model::estimate::{Estimate, Finding};
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::records;
@@ -77,18 +78,11 @@ fn is_quality(line: &str) -> bool {
 
 /// The residuals, each with its pose. Rows come channel by channel, in the order of the files.
 fn readings(campaign: &Campaign, outcome: &Outcome) -> Vec<Reading> {
-    let mut seen = [0usize; 2];
     let own = outcome.residuals.iter().filter(|r| r.channel != Channel::Positions);
     own.map(|r| {
         let pose = match r.channel {
-            Channel::Static => {
-                seen[0] += 1;
-                campaign.statics.get((seen[0] - 1) / 3).map(|s| s.pose_deg.clone())
-            }
-            Channel::Modal => {
-                seen[1] += 1;
-                campaign.modal.get(seen[1] - 1).map(|m| m.pose_deg.clone())
-            }
+            Channel::Static => campaign.statics.get(r.index).map(|s| s.pose_deg.clone()),
+            Channel::Modal => campaign.modal.get(r.index).map(|m| m.pose_deg.clone()),
             Channel::Windup | Channel::Positions => None,
         };
         Reading {
@@ -105,13 +99,17 @@ fn readings(campaign: &Campaign, outcome: &Outcome) -> Vec<Reading> {
     .collect()
 }
 
-/// The errors of absolute positions, with their three coordinates combined.
+/// The errors of absolute positions, with their coordinates combined. One that was not measured counts as zero.
 fn positions(campaign: &Campaign, outcome: &Outcome) -> Vec<Position> {
     let own: Vec<&ReadingResidual> =
         outcome.residuals.iter().filter(|r| r.channel == Channel::Positions).collect();
-    let rows = own.chunks_exact(3).zip(&campaign.positions);
+    let rows = own.chunk_by(|a, b| a.index == b.index);
+    let rows = rows.filter_map(|axes| Some((axes, campaign.positions.get(axes[0].index)?)));
     rows.map(|(axes, row)| {
-        let along = |of: fn(&ReadingResidual) -> f64| std::array::from_fn(|c| of(axes[c]));
+        let along = |of: fn(&ReadingResidual) -> f64| {
+            let read = |c: usize| axes.iter().find(|r| r.component == c);
+            std::array::from_fn(|c| read(c).map_or(0.0, |r| of(r)))
+        };
         Position {
             row: axes[0].row,
             pose_deg: row.pose_deg.clone(),
@@ -135,12 +133,19 @@ fn step(stage: &Stage) -> Step {
 }
 
 fn found(finding: &Finding) -> Found {
+    let word = |name: &str, e: &Estimate| word_of(&finding.effect, name, e.value);
     let named = |(name, estimates): &(String, Vec<Estimate>)| -> Vec<Ranged> {
+        // a word is part of the label
+        if estimates.iter().any(|e| word(name, e).is_some()) {
+            return Vec::new();
+        }
         let axis = |i: usize| if estimates.len() > 1 { format!("{name} [{i}]") } else { name.clone() };
         estimates.iter().enumerate().map(|(i, e)| ranged(axis(i), e)).collect()
     };
+    let words: Vec<&str> =
+        finding.parameters.iter().filter_map(|(name, estimates)| word(name, estimates.first()?)).collect();
     Found {
-        label: finding.label(),
+        label: words.iter().fold(finding.label(), |label, word| format!("{label} ({word})")),
         parameters: finding.parameters.iter().flat_map(named).collect(),
         like: finding.indistinguishable_from.iter().map(|(effect, at)| format!("{effect}@{at}")).collect(),
     }

@@ -1,0 +1,307 @@
+//! Asks whether positions that no calibration comes near were written down by another convention: in another unit, in a
+//! frame whose axes are swapped or left-handed, or with joint angles of another sign or zero.
+//!
+//! The search is greedy. From the file as it is, every single change, or every pair, is tried by a quick fit of the
+//! placement alone; the best is kept while it helps. What it finds is then calibrated in full like the file itself, and said if the errors
+//! that are left are several times smaller. Nothing is applied: which convention holds is for the user to say.
+
+use super::align::nearest_motion;
+use super::analysis::{Positions, samples};
+use super::fit::fit;
+use super::fitted::{Fitted, Sample};
+use super::kinematics::{Geometry, Number, Pose, number_groups};
+use super::points::points;
+use crate::reconcile::readings::campaign::{Campaign, PositionsSpec};
+use crate::report::number::significant;
+use nalgebra::Vector3;
+use rayon::prelude::*;
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::Arc;
+
+/// Conventions are asked about where the errors that calibration leaves exceed the declared ones by this factor.
+const FAR: f64 = 5.0;
+/// A convention is said if its calibration leaves errors that are smaller by this factor.
+const TELLING: f64 = 5.0;
+/// A change is kept in the search if it lowers the errors of the quick fit to this part.
+const HELPS: f64 = 0.9;
+/// Conventions whose errors differ by less than this factor cannot be told apart.
+const TIE: f64 = 1.2;
+/// Largest number of conventions that are said beside the best one.
+const MOST_EQUALS: usize = 3;
+/// A fit is far off if its errors are larger than this part of the spread of the positions.
+const FAR_OFF: f64 = 0.01;
+/// Largest number of changes that are made together.
+const MOST_CHANGES: usize = 8;
+/// Number of positions of a quick fit.
+const QUICK: usize = 60;
+/// Size of the errors that another convention leaves \[m\].
+const ROUGH_M: f64 = 0.3;
+/// Units other than the millimetre, each with its length \[mm\].
+const UNITS: [(&str, f64); 4] =
+    [("metres", 1e3), ("micrometres", 1e-3), ("centimetres", 10.0), ("inches", 25.4)];
+
+/// One way in which a file can be written otherwise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Change {
+    /// Positions in a unit, by its index in [`UNITS`].
+    Unit(usize),
+    /// Coordinate of the file, and whether its sign is other, for each axis of the frame.
+    Axes([(usize, bool); 3]),
+    /// An axis points the other way: the frame is left-handed.
+    LeftHanded,
+    /// A joint's angles have the other sign.
+    Sign(usize),
+    /// A joint's zero is elsewhere \[rad\].
+    Zero(usize, f64),
+}
+
+const COORDINATES: [&str; 3] = ["x_mm", "y_mm", "z_mm"];
+
+impl Change {
+    /// Whether both say something of the same thing, so that one replaces the other.
+    fn replaces(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Unit(_), Self::Unit(_)) | (Self::Axes(_), Self::Axes(_)) => true,
+            (Self::Zero(a, _), Self::Zero(b, _)) => a == b,
+            (a, b) => a == b,
+        }
+    }
+
+    /// The sample as it is if the file was written so.
+    fn applied(&self, mut sample: Sample) -> Sample {
+        let turned = |sample: &mut Sample, j: usize, of: &dyn Fn(f64) -> f64| {
+            let mut angles_rad = sample.pose.angles_rad.clone();
+            angles_rad[j] = of(angles_rad[j]);
+            sample.pose = Arc::new(Pose::new(angles_rad));
+        };
+        match *self {
+            Self::Unit(unit) => sample.measured_m *= UNITS[unit].1,
+            Self::Axes(axes) => {
+                let sign = |(_, is_other): (usize, bool)| if is_other { -1.0 } else { 1.0 };
+                let (at_m, precision) = (sample.measured_m, sample.precision);
+                sample.measured_m = Vector3::from(axes.map(|axis| sign(axis) * at_m[axis.0]));
+                sample.precision = Vector3::from(axes.map(|axis| precision[axis.0]));
+            }
+            Self::LeftHanded => sample.measured_m.z *= -1.0,
+            Self::Sign(j) => turned(&mut sample, j, &|angle| -angle),
+            Self::Zero(j, by) => turned(&mut sample, j, &|angle| angle + by),
+        }
+        sample
+    }
+
+    fn words(&self, driven: &[String]) -> String {
+        match *self {
+            Self::Unit(unit) => format!("the positions are in {}", UNITS[unit].0),
+            Self::Axes(axes) => {
+                let axis = |(c, is_other): (usize, bool)| {
+                    format!("{}{}", if is_other { "-" } else { "" }, COORDINATES[c])
+                };
+                format!("the frame's x, y, z are {} of the file", axes.map(axis).join(", "))
+            }
+            Self::LeftHanded => {
+                "the instrument's frame is left-handed (two axes are swapped, or one has the other sign)"
+                    .into()
+            }
+            Self::Sign(j) => format!("the angles of {} have the other sign", driven[j]),
+            Self::Zero(j, by) => {
+                format!("{:.0} degrees are added to the angles of {}", by.to_degrees(), driven[j])
+            }
+        }
+    }
+}
+
+/// The changes that can be made: with a free base a turned frame is no change.
+fn changes(spec: &PositionsSpec, joints: usize) -> Vec<Change> {
+    let mut out: Vec<Change> = (0..UNITS.len()).map(Change::Unit).collect();
+    match spec.base_placement {
+        true => out.push(Change::LeftHanded),
+        false => out.extend(other_axes()),
+    }
+    out.extend((0..joints).map(Change::Sign));
+    out.extend((0..joints).flat_map(|j| [FRAC_PI_2, -FRAC_PI_2, PI].map(|by| Change::Zero(j, by))));
+    out
+}
+
+/// Every two changes of the angles of two joints.
+fn pairs(all: &[Change]) -> Vec<Vec<Change>> {
+    let joint = |change: &Change| match change {
+        Change::Sign(j) | Change::Zero(j, _) => Some(*j),
+        Change::Unit(_) | Change::Axes(_) | Change::LeftHanded => None,
+    };
+    let of_two = |a: &Change, b: &Change| joint(a).zip(joint(b)).is_some_and(|(a, b)| a < b);
+    let with = |a: &Change| all.iter().filter(|b| of_two(a, b)).map(|b| vec![*a, *b]).collect::<Vec<_>>();
+    all.iter().flat_map(with).collect()
+}
+
+/// The 47 ways in which axes can be swapped and turned round.
+fn other_axes() -> Vec<Change> {
+    const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
+    let signed = ORDERS.iter().flat_map(|order| {
+        (0..8).map(move |signs| Change::Axes([0, 1, 2].map(|c| (order[c], (signs >> c) & 1 == 1))))
+    });
+    signed.skip(1).collect()
+}
+
+/// Fits positions as if they were written by other conventions.
+struct Asked<'a> {
+    spec: &'a PositionsSpec,
+    samples: Vec<Sample>,
+    nominal: Geometry,
+    groups: Vec<Vec<Number>>,
+}
+
+impl Asked<'_> {
+    /// Scale of the errors that are left with the first groups of numbers free \[m\].
+    fn scale_m(&self, changes: &[Change], groups: usize, most: usize) -> f64 {
+        let step = self.samples.len().div_ceil(most).max(1);
+        let written = self.samples.iter().step_by(step).cloned();
+        let own: Vec<Sample> = written
+            .map(|sample| changes.iter().fold(sample, |sample, change| change.applied(sample)))
+            .collect();
+        let own: Vec<&Sample> = own.iter().collect();
+        let mut geometry = self.nominal.clone();
+        if self.spec.base_placement {
+            nearest_motion(&own, &mut geometry);
+        }
+        let mut fitted = Fitted::rigid(geometry, ROUGH_M);
+        let mut numbers = Vec::new();
+        for group in &self.groups[..groups] {
+            numbers.extend(group.iter().cloned());
+            fitted = fit(&own, &numbers, &[], &fitted);
+        }
+        fitted.scale_m
+    }
+
+    fn quick_m(&self, changes: &[Change]) -> f64 {
+        self.scale_m(changes, 1, QUICK)
+    }
+
+    fn full_m(&self, changes: &[Change]) -> f64 {
+        self.scale_m(changes, self.groups.len(), usize::MAX)
+    }
+
+    /// The changes that the quick fit needs, from these on. Where no single one helps and the fit is still far off, pairs
+    /// are tried: of two parallel joints that turn the other way, one alone is no better.
+    fn search(&self, all: &[Change], mut made: Vec<Change>) -> Vec<Change> {
+        let singles: Vec<Vec<Change>> = all.iter().map(|change| vec![*change]).collect();
+        let pairs = pairs(all);
+        let mut here_m = self.quick_m(&made);
+        while made.len() < MOST_CHANGES {
+            let better =
+                |added: &[Vec<Change>]| self.best_with(&made, added).filter(|b| b.0 < HELPS * here_m);
+            let found = better(&singles)
+                .or_else(|| (here_m > FAR_OFF * self.spread_m(&made)).then(|| better(&pairs)).flatten());
+            let Some(found) = found else { break };
+            (here_m, made) = found;
+        }
+        self.pruned(made)
+    }
+
+    /// The changes that the quick fit likes best, of these with each of some added, and the scale of its errors \[m\].
+    fn best_with(&self, made: &[Change], added: &[Vec<Change>]) -> Option<(f64, Vec<Change>)> {
+        let with = |new: &Vec<Change>| {
+            let is_kept = |old: &&Change| !new.iter().any(|change| change.replaces(old));
+            let changes: Vec<Change> = made.iter().filter(is_kept).chain(new).copied().collect();
+            (self.quick_m(&changes), changes)
+        };
+        let open: Vec<&Vec<Change>> =
+            added.iter().filter(|new| !new.iter().all(|c| made.contains(c))).collect();
+        let tried: Vec<(f64, Vec<Change>)> = open.into_par_iter().map(with).collect();
+        tried.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// Root mean square distance of the positions from their centre \[m\].
+    fn spread_m(&self, changes: &[Change]) -> f64 {
+        let at_m = |sample: &Sample| {
+            changes.iter().fold(sample.clone(), |sample, change| change.applied(sample)).measured_m
+        };
+        let all: Vec<Vector3<f64>> = self.samples.iter().map(at_m).collect();
+        let count = all.len().max(1) as f64;
+        let centre = all.iter().sum::<Vector3<f64>>() / count;
+        (all.iter().map(|at| (at - centre).norm_squared()).sum::<f64>() / count).sqrt()
+    }
+
+    /// Without the changes that a later one made needless.
+    fn pruned(&self, mut made: Vec<Change>) -> Vec<Change> {
+        let mut at = 0;
+        while at < made.len() {
+            let mut rest = made.clone();
+            rest.remove(at);
+            match self.quick_m(&rest) < self.quick_m(&made) / HELPS {
+                true => made = rest,
+                false => at += 1,
+            }
+        }
+        made
+    }
+
+    /// Sets of changes with one of them replaced by another that leave errors as small as theirs, `scale_m` \[m\].
+    fn equals(&self, all: &[Change], made: &[Change], scale_m: f64) -> Vec<Vec<Change>> {
+        let quick_m = self.quick_m(made);
+        let others = || all.iter().filter(|change| !made.iter().any(|m| m.replaces(change)));
+        let with = |at: usize| {
+            others().map(move |change| {
+                let mut out = made.to_vec();
+                out[at] = *change;
+                out
+            })
+        };
+        let tried: Vec<Vec<Change>> = (0..made.len()).flat_map(with).collect();
+        let is_near = |changes: &Vec<Change>| self.quick_m(changes) < 2.0 * quick_m;
+        let is_equal = |changes: &Vec<Change>| self.full_m(changes) < TIE * scale_m;
+        tried.into_par_iter().filter(is_near).filter(is_equal).collect()
+    }
+}
+
+impl Positions {
+    /// A sentence on the convention by which the positions would fit far better, if calibration does not come near them
+    /// and there is one.
+    pub(super) fn other_convention(&self, campaign: &Campaign) -> Option<String> {
+        let spec = &campaign.statement.positions;
+        let declared_mm: f64 = campaign.positions.iter().map(|row| row.sigma_mm()).sum();
+        let declared_m = 1e-3 * declared_mm / campaign.positions.len().max(1) as f64;
+        // each attitude of an unknown mounting would have to be tried with each convention
+        if self.rigid.scale_m < FAR * declared_m || !spec.mounts.is_empty() {
+            return None;
+        }
+        let points = points(campaign);
+        let nominal = Geometry::nominal(&self.tree, points.len());
+        let samples = samples(campaign, &self.tree, &nominal, &[], &points);
+        let groups = number_groups(&self.tree, spec, points.len()).into_iter().map(|(_, group)| group);
+        let asked = Asked { spec, samples, nominal, groups: groups.collect() };
+        let all = changes(spec, self.tree.driven.len());
+        let is_far_off = self.rigid.scale_m > FAR_OFF * asked.spread_m(&[]);
+        let mut starts = vec![vec![]];
+        if spec.base_placement && is_far_off {
+            starts.push(vec![Change::LeftHanded]);
+        }
+        let found = starts.into_iter().map(|start| asked.search(&all, start)).filter(|made| !made.is_empty());
+        let judged = found.map(|made| (asked.full_m(&made), made));
+        // of two that cannot be told apart, the one with fewer changes
+        let is_better = |a: &(f64, Vec<Change>), b: &(f64, Vec<Change>)| {
+            a.0 < b.0 / TIE || (a.0 < TIE * b.0 && a.1.len() < b.1.len())
+        };
+        let (scale_m, made) =
+            judged.reduce(|best, next| if is_better(&next, &best) { next } else { best })?;
+        let ratio = self.rigid.scale_m / scale_m;
+        // a convention that is far off too is not the right one
+        if ratio < TELLING || scale_m > FAR_OFF * asked.spread_m(&made) {
+            return None;
+        }
+        let words = |changes: &[Change]| {
+            let each = changes.iter().map(|change| change.words(&self.tree.driven));
+            each.collect::<Vec<_>>().join(" and ")
+        };
+        let mut told = words(&made);
+        for equal in asked.equals(&all, &made, scale_m).iter().take(MOST_EQUALS) {
+            told.push_str(&format!(", or just as well if {}", words(equal)));
+        }
+        Some(format!(
+            "the positions fit {} times better if {told} (calibration leaves errors of {} mm, and {} mm as the file is): \
+             correct the file if that is so; it was taken as it is",
+            significant(ratio, 2),
+            significant(1e3 * scale_m, 3),
+            significant(1e3 * self.rigid.scale_m, 3)
+        ))
+    }
+}

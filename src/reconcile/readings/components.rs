@@ -1,0 +1,212 @@
+//! Reads the three components of a displacement or a position, each with its standard deviation.
+//!
+//! An instrument may read fewer than three: a dial gauge one, a level one, a theodolite two. A component that is blank,
+//! or whose column is absent, was not measured. Some programs write zeros there. A column that has one value in all
+//! rows is no reading of an instrument with noise, and neither are zeros in rows that each have a single other value.
+
+use super::cells::{Purpose, measured, sigma};
+use super::table::Table;
+
+/// One component of a vector, as an instrument read it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Component {
+    /// Value \[mm\].
+    pub value_mm: f64,
+    /// Standard deviation \[mm\].
+    pub sigma_mm: f64,
+}
+
+/// The components of a vector that were measured: x, y and z, or along them.
+pub type Components = [Option<Component>; 3];
+
+/// Equal readings are suspicious from this many rows on.
+pub(crate) const FEWEST_ALIKE: usize = 4;
+
+/// Names of the columns of the components.
+pub(crate) struct Names {
+    /// The values.
+    pub values: [&'static str; 3],
+    /// Their standard deviations.
+    pub sigmas: [&'static str; 3],
+}
+
+/// Displacements.
+pub(crate) const DISPLACEMENT: Names =
+    Names { values: ["dx_mm", "dy_mm", "dz_mm"], sigmas: ["sigma_dx_mm", "sigma_dy_mm", "sigma_dz_mm"] };
+
+/// Positions.
+pub(crate) const POSITION: Names =
+    Names { values: ["x_mm", "y_mm", "z_mm"], sigmas: ["sigma_x_mm", "sigma_y_mm", "sigma_z_mm"] };
+
+/// The standard deviation of all components of a row.
+const COMMON_SIGMA: &str = "sigma_mm";
+
+/// The columns of a vector.
+pub(crate) struct VectorColumns<'a> {
+    table: &'a Table,
+    names: &'a Names,
+    values: [Option<usize>; 3],
+    sigmas: [Option<usize>; 3],
+    common: Option<usize>,
+    purpose: Purpose,
+}
+
+impl<'a> VectorColumns<'a> {
+    /// Finds the columns. `None` if one that is needed is missing, which is a fault.
+    pub(crate) fn find(table: &'a Table, names: &'a Names, purpose: Purpose) -> Option<Self> {
+        table.check_family("sigma", &[names.sigmas.as_slice(), &[COMMON_SIGMA]].concat());
+        let values = names.values.map(|name| table.optional(name));
+        let sigmas = names.sigmas.map(|name| table.optional(name));
+        let missing = names.values.iter().zip(&values).filter(|(_, found)| found.is_none());
+        // a misspelt column must not pass for a component that was not measured
+        let misspelt: Vec<bool> =
+            missing.map(|(name, _)| table.check_spelling(name, &names.values)).collect();
+        let mut common = table.optional(COMMON_SIGMA);
+        if purpose == Purpose::Fit {
+            if values.iter().all(Option::is_none) && !misspelt.contains(&true) {
+                table.required(names.values[0]);
+            }
+            let has_own = |c: usize| values[c].is_none() || sigmas[c].is_some();
+            if common.is_none() && !(0..3).all(has_own) {
+                common = Some(table.required(COMMON_SIGMA)?);
+            }
+            if values.iter().all(Option::is_none) || misspelt.contains(&true) {
+                return None;
+            }
+        }
+        Some(Self { table, names, values, sigmas, common, purpose })
+    }
+
+    /// Reads the components of a row. `None` is a fault.
+    pub(crate) fn read(&self, row: usize) -> Option<Components> {
+        let read = [0, 1, 2].map(|component| self.component(row, component));
+        let [Some(x), Some(y), Some(z)] = read else { return None };
+        let out = [x, y, z];
+        if self.purpose == Purpose::Fit && out.iter().all(Option::is_none) {
+            let hint = "give what was measured, or remove the row";
+            self.table.row_fault(row, &self.names.values.join(", "), "no component is given".into(), hint);
+            return None;
+        }
+        Some(out)
+    }
+
+    /// Reads the value of a component. `None` is a fault.
+    fn value(&self, row: usize, column: usize) -> Option<f64> {
+        let text = self.table.text(row, column);
+        if NOTHING.contains(&text.to_lowercase().as_str()) {
+            let problem = format!("\"{text}\" is not a number");
+            let hint = "leave the cell blank if nothing was read";
+            self.table.row_fault(row, &self.table.columns[column], problem, hint);
+            return None;
+        }
+        measured(self.table, row, column)
+    }
+
+    /// Reads a component. The outer `None` is a fault, the inner one a component that was not measured.
+    fn component(&self, row: usize, component: usize) -> Option<Option<Component>> {
+        let is_given = |c: &usize| !self.table.is_blank(row, *c);
+        let Some(value) = self.values[component].filter(is_given) else { return Some(None) };
+        let value_mm = self.value(row, value);
+        let own = self.sigmas[component].filter(is_given).or(self.common).or(self.sigmas[component]);
+        let sigma_mm = match (own, self.purpose) {
+            (Some(column), Purpose::Fit) => sigma(self.table, row, column),
+            (None, Purpose::Fit) => None,
+            // a prediction needs neither
+            (_, Purpose::Predict) => Some(1.0),
+        };
+        Some(Some(Component { value_mm: value_mm?, sigma_mm: sigma_mm? }))
+    }
+}
+
+/// Signs that people write where nothing was read.
+const NOTHING: [&str; 9] = ["-", "--", "\u{2013}", "\u{2014}", "/", "?", "n/a", "na", "none"];
+
+/// Takes away what is written as a reading and is none, and returns a sentence for each.
+pub(crate) fn leave_out_idle(file: &str, names: &Names, rows: &mut [&mut Components]) -> Vec<String> {
+    if rows.len() < FEWEST_ALIKE {
+        return Vec::new();
+    }
+    if let Some(sentence) = leave_out_other_directions(file, names, rows) {
+        return vec![sentence];
+    }
+    let constants = [0, 1, 2].map(|component| constant(component, rows));
+    let is_read = |component: usize| rows.iter().any(|row| row[component].is_some());
+    // where no component varies, the instrument is dead, and the verdict says so
+    if (0..3).all(|component| constants[component].is_some() || !is_read(component)) {
+        return Vec::new();
+    }
+    let idle = constants.into_iter().enumerate().filter_map(|(component, value)| Some((component, value?)));
+    idle.map(|(component, (value_mm, count))| {
+        rows.iter_mut().for_each(|row| row[component] = None);
+        format!(
+            "{file}: {} is {value_mm} in all {count} rows, which no instrument with noise reads: it is taken as not \
+             measured; leave a direction that nothing reads blank",
+            names.values[component]
+        )
+    })
+    .collect()
+}
+
+/// The value that a component has in all rows that have it, and their number, if there are enough of them.
+fn constant(component: usize, rows: &[&mut Components]) -> Option<(f64, usize)> {
+    let mut values = rows.iter().filter_map(|row| row[component]).map(|read| read.value_mm);
+    let first = values.next()?;
+    let others: Vec<f64> = values.collect();
+    let count = others.len() + 1;
+    (count >= FEWEST_ALIKE && others.iter().all(|value| *value == first)).then_some((first, count))
+}
+
+/// Takes away the zeros of a gauge that was turned from one direction to the next: every row has three components, at
+/// least two of which are exactly zero.
+fn leave_out_other_directions(file: &str, names: &Names, rows: &mut [&mut Components]) -> Option<String> {
+    let is_zero = |read: &Option<Component>| read.is_some_and(|read| read.value_mm == 0.0);
+    let has_one =
+        |row: &Components| row.iter().all(Option::is_some) && row.iter().filter(|r| is_zero(r)).count() >= 2;
+    let directions = (0..3).filter(|&c| rows.iter().any(|row| !is_zero(&row[c]))).count();
+    if directions < 2 || !rows.iter().all(|row| has_one(row)) {
+        return None;
+    }
+    for row in rows.iter_mut().filter(|row| row.iter().any(|read| !is_zero(read))) {
+        row.iter_mut().filter(|read| is_zero(read)).for_each(|read| *read = None);
+    }
+    Some(format!(
+        "{file}: every row has at least two zeros among {}: they are taken as not measured; leave a direction that \
+         nothing reads blank",
+        names.values.join(", ")
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn left(rows: &[[f64; 3]]) -> (Vec<Components>, Vec<String>) {
+        let read = |value_mm: f64| Some(Component { value_mm, sigma_mm: 0.01 });
+        let mut all: Vec<Components> = rows.iter().map(|row| row.map(read)).collect();
+        let mut rows: Vec<&mut Components> = all.iter_mut().collect();
+        let said = leave_out_idle("static.csv", &DISPLACEMENT, &mut rows);
+        (all, said)
+    }
+
+    #[test]
+    fn zeros_of_a_direction_that_nothing_reads_are_no_readings() {
+        let (rows, said) = left(&[[0.0, 0.0, -0.1], [0.0, 0.0, -0.2], [0.0, 0.0, 0.0], [0.0, 0.0, -0.4]]);
+        assert!(rows.iter().all(|row| row[0].is_none() && row[1].is_none() && row[2].is_some()));
+        assert!(said.len() == 2 && said[0].contains("dx_mm is 0 in all 4 rows"), "{said:?}");
+    }
+
+    #[test]
+    fn zeros_of_a_gauge_that_is_turned_are_no_readings() {
+        let (rows, said) = left(&[[0.0, 0.0, -0.1], [0.2, 0.0, 0.0], [0.0, 0.3, 0.0], [0.0, 0.0, -0.4]]);
+        assert!(rows.iter().all(|row| row.iter().flatten().count() == 1), "{rows:?}");
+        assert_eq!(said.len(), 1);
+    }
+
+    #[test]
+    fn what_varies_and_what_is_dead_altogether_is_kept() {
+        let (rows, said) = left(&[[0.0, 0.1, -0.1], [0.1, 0.0, -0.2], [0.0, 0.0, -0.3], [0.0, 0.2, -0.4]]);
+        assert!(said.is_empty() && rows.iter().flatten().all(Option::is_some));
+        let (rows, said) = left(&[[0.5, 0.5, 0.5]; 5]);
+        assert!(said.is_empty() && rows.iter().flatten().all(Option::is_some), "the verdict says it");
+    }
+}

@@ -1,0 +1,141 @@
+//! Where the readings of a channel are: the file, the sheet of a spreadsheet, and what its columns are called there.
+
+use crate::arm::effect::channel::Channel;
+use crate::input::json::{Node, Object, closest};
+
+/// The usual files of the channels, in the order of [`Channel::ALL`].
+pub(crate) const DEFAULT_FILES: [&str; 4] = ["static.csv", "modal.csv", "windup.csv", "positions.csv"];
+
+/// The columns of each channel, in the order of [`Channel::ALL`]; angles `q_<joint>_deg` are apart.
+const COLUMNS: [&[&str]; 4] = [
+    &[
+        "test",
+        "payload_kg",
+        "payload_cg_x_m",
+        "payload_cg_y_m",
+        "payload_cg_z_m",
+        "force_x_n",
+        "force_y_n",
+        "force_z_n",
+        "branch",
+        "dx_mm",
+        "dy_mm",
+        "dz_mm",
+        "sigma_mm",
+        "sigma_dx_mm",
+        "sigma_dy_mm",
+        "sigma_dz_mm",
+    ],
+    &[
+        "test",
+        "payload_kg",
+        "payload_cg_x_m",
+        "payload_cg_y_m",
+        "payload_cg_z_m",
+        "mode",
+        "frequency_hz",
+        "sigma_hz",
+    ],
+    &["test", "joint", "torque_nm", "branch", "windup_arcmin", "sigma_arcmin"],
+    &[
+        "test",
+        "payload_kg",
+        "payload_cg_x_m",
+        "payload_cg_y_m",
+        "payload_cg_z_m",
+        "arm",
+        "point",
+        "x_mm",
+        "y_mm",
+        "z_mm",
+        "sigma_mm",
+        "sigma_x_mm",
+        "sigma_y_mm",
+        "sigma_z_mm",
+    ],
+];
+
+/// The columns of a channel's table for an arm with these joints, in the order in which people write them.
+pub(crate) fn columns_for(channel: Channel, joints: &[&str]) -> Vec<String> {
+    let (label, others) = COLUMNS[channel as usize].split_at(1);
+    let angles = joints.iter().map(|joint| format!("q_{joint}_deg"));
+    let angles: Vec<String> = angles.filter(|_| channel != Channel::Windup).collect();
+    let own = |name: &&&str| !OWN_SIGMAS.contains(*name) && **name != "arm";
+    let others = others.iter().filter(own).map(|name| name.to_string());
+    label.iter().map(|name| name.to_string()).chain(angles).chain(others).collect()
+}
+
+/// Standard deviations of single components, which few files have.
+const OWN_SIGMAS: [&str; 6] =
+    ["sigma_dx_mm", "sigma_dy_mm", "sigma_dz_mm", "sigma_x_mm", "sigma_y_mm", "sigma_z_mm"];
+
+/// Where the readings of a channel are.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Source {
+    /// File next to `campaign.json`; `None` for the usual one.
+    pub file: Option<String>,
+    /// Sheet, if the file is a spreadsheet with several.
+    pub sheet: Option<String>,
+    /// Row of a spreadsheet that names the columns, from 1; `None` for the first that is not blank.
+    pub header_row: Option<usize>,
+    /// What columns are called in the file: the name in this program, and that in the file.
+    pub columns: Vec<(String, String)>,
+}
+
+/// Reads what `campaign.json` says of the files of the channels. `None` where it does not name a channel.
+pub(crate) fn read_sources(root: &Object) -> [Option<Source>; 4] {
+    let files = root.optional("files").and_then(|n| n.object(&[WORDS.as_slice(), &["note"]].concat()));
+    let columns = root.optional("columns").and_then(|n| n.object(&[WORDS.as_slice(), &["note"]].concat()));
+    Channel::ALL.map(|channel| {
+        let word = channel.word();
+        let block = root.optional(word);
+        let file = files.as_ref().and_then(|f| f.optional(word));
+        let mut out = match (&block, &file) {
+            (_, Some(node)) => read_file(node).unwrap_or_default(),
+            (Some(node), None) => {
+                let named = node.value().get("file").and_then(|v| v.as_str()).map(String::from);
+                Source { file: named.or(Some(DEFAULT_FILES[channel as usize].into())), ..Source::default() }
+            }
+            (None, None) => Source::default(),
+        };
+        let own = columns.as_ref().and_then(|c| c.optional(word));
+        out.columns = own.and_then(|node| read_columns(&node, channel)).unwrap_or_default();
+        (out != Source::default()).then_some(out)
+    })
+}
+
+const WORDS: [&str; 4] = ["static", "modal", "windup", "positions"];
+
+/// `"m.xlsx"`, or `{"file": "m.xlsx", "sheet": "S1", "header_row": 3}`.
+fn read_file(node: &Node) -> Option<Source> {
+    if node.value().is_string() {
+        return Some(Source { file: Some(node.string()?.into()), ..Source::default() });
+    }
+    let object = node.object(&["file", "sheet", "header_row", "note"])?;
+    let file = object.required("file").and_then(|n| n.string().map(String::from));
+    let sheet = object.or("sheet", None, |n| n.string().map(|s| Some(s.to_string())));
+    let header_row = object.or("header_row", None, |n| match n.number()? {
+        row if row >= 1.0 && row.fract() == 0.0 => Some(Some(row as usize)),
+        row => n.fault(format!("= {row}"), "rows are numbered 1, 2, 3 ... as the spreadsheet shows them"),
+    });
+    Some(Source { file: Some(file?), sheet: sheet?, header_row: header_row?, columns: Vec::new() })
+}
+
+/// `{"dz_mm": "Gauge 1"}`.
+fn read_columns(node: &Node, channel: Channel) -> Option<Vec<(String, String)>> {
+    let known = COLUMNS[channel as usize];
+    let mut out = Vec::new();
+    for (name, value) in node.entries()? {
+        let is_angle = name.starts_with("q_") && name.ends_with("_deg");
+        if name == "note" {
+            continue;
+        }
+        if !known.contains(&name) && !is_angle {
+            let near = closest(name, known).map_or(String::new(), |near| format!("is it \"{near}\"? "));
+            let hint = format!("{near}the columns: q_<joint>_deg, {}", known.join(", "));
+            value.fault::<()>(format!("{} readings have no such column", channel.word()), &hint);
+        }
+        out.push((name.to_string(), value.string()?.trim().to_string()));
+    }
+    Some(out)
+}

@@ -1,0 +1,99 @@
+//! Positions that were written down by another convention: the verdict says which would fit, and changes nothing.
+
+use crate::positions_maker::standard;
+use armwright::catalog::Catalogs;
+use armwright::reconcile::Campaign;
+use armwright::reconcile::reconcile;
+use armwright::reconcile::{Outcome, Verdict};
+use nalgebra::{Rotation3, Vector3};
+use serde_json::json;
+use std::path::Path;
+
+/// A row of positions: the angles of the three joints \[deg\], and the position \[mm\].
+type Row = ([f64; 3], [f64; 3]);
+
+fn outcome(folder: &Path) -> Outcome {
+    reconcile(&Campaign::read(folder, &Catalogs::default()).expect("readable"))
+}
+
+/// What the verdict says of a sagging arm whose file `written` writes otherwise.
+fn said_of(written: &dyn Fn(Row) -> Row) -> (Outcome, Option<String>) {
+    let folder = standard().write(&crate::positions_maker::Made::sagging);
+    rewrite(folder.path(), written);
+    said(folder.path())
+}
+
+fn said(folder: &Path) -> (Outcome, Option<String>) {
+    let outcome = outcome(folder);
+    let said = outcome.reasons.iter().find(|r| r.contains("times better if")).cloned();
+    (outcome, said)
+}
+
+fn rewrite(folder: &Path, written: &dyn Fn(Row) -> Row) {
+    let path = folder.join("positions.csv");
+    let text = std::fs::read_to_string(&path).expect("text");
+    let line = |line: &str| {
+        let cells: Vec<f64> = line.split(',').map(|c| c.parse().expect("a number")).collect();
+        let (angles, at) = written(([cells[1], cells[2], cells[3]], [cells[4], cells[5], cells[6]]));
+        let all = [cells[0]].into_iter().chain(angles).chain(at).chain([cells[7]]);
+        all.map(|x| format!("{x}")).collect::<Vec<_>>().join(",") + "\n"
+    };
+    let rows: String = text.lines().skip(1).map(line).collect();
+    std::fs::write(&path, format!("{}\n{rows}", text.lines().next().expect("a header"))).expect("written");
+}
+
+#[test]
+fn what_is_written_as_asked_is_not_doubted() {
+    let (outcome, said) = said_of(&|row| row);
+    assert_eq!((outcome.verdict, said), (Verdict::Explained, None));
+}
+
+#[test]
+fn metres_are_recognized() {
+    let (_, said) = said_of(&|(angles, at)| (angles, at.map(|x| x / 1e3)));
+    let said = said.expect("said");
+    assert!(said.contains("the positions are in metres"), "{said}");
+}
+
+#[test]
+fn swapped_axes_and_a_mirrored_frame_are_left_handed() {
+    for written in [|[x, y, z]: [f64; 3]| [y, x, z], |[x, y, z]: [f64; 3]| [x, y, -z]] {
+        let (outcome, said) = said_of(&|(angles, at)| (angles, written(at)));
+        let said = said.unwrap_or_else(|| panic!("{}", outcome.to_text()));
+        assert!(said.contains("the instrument's frame is left-handed"), "{said}");
+        assert_eq!(outcome.verdict, Verdict::Unexplained, "nothing is applied");
+    }
+}
+
+#[test]
+fn angles_of_another_sign_or_zero_are_named_by_their_joints() {
+    let (_, said) = said_of(&|([a, b, c], at)| ([a, b, -c], at));
+    let said = said.expect("said");
+    assert!(said.contains("the angles of q3 have the other sign"), "{said}");
+    let (_, said) = said_of(&|([a, b, c], at)| ([a, b - 90.0, c], at));
+    let said = said.expect("said");
+    assert!(said.contains("90 degrees are added to the angles of q2") && !said.contains("-90"), "{said}");
+    let (_, said) = said_of(&|([a, b, c], at)| ([a, -b, -c], at.map(|x| x / 1e3)));
+    let said = said.expect("said");
+    for part in ["metres", "angles of q2 have the other sign", "angles of q3 have the other sign"] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+}
+
+#[test]
+fn an_arm_that_stands_where_it_should_has_its_axes_named() {
+    let folder = standard().write(&crate::positions_maker::Made::sagging);
+    let statement = json!({"name": "made", "positions": {"tool_offset": true, "joint_offsets": true}});
+    std::fs::write(folder.path().join("campaign.json"), statement.to_string()).expect("written");
+    // where the arms of these tests stand
+    let askew = Rotation3::from_euler_angles(0.3, -0.2, 2.1);
+    let own = |at: [f64; 3]| askew.inverse() * (Vector3::from(at) - Vector3::new(1e3, -2e3, 5e2));
+    let written = |(angles, at): Row| {
+        let own = own(at);
+        (angles, [own.y, -own.x, own.z])
+    };
+    rewrite(folder.path(), &written);
+    let (_, said) = said(folder.path());
+    let said = said.expect("said");
+    assert!(said.contains("the frame's x, y, z are -y_mm, x_mm, z_mm of the file"), "{said}");
+}
