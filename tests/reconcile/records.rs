@@ -153,6 +153,31 @@ fn a_vertical_axis_hides_its_compliance_and_a_stated_rotor_shows_it() {
     let stated = blind.records[0].of("compliance").expect("stated");
     assert_eq!(stated.state, State::NotIdentified, "{}", stated.words);
     assert!(!blind.effects.iter().any(|f| f.effect == "joint_compliance"));
+    let rotor = joint.motor_inertia_kgm2 / joint.ratio.powi(2);
+    let statement = json!({"name": "one-joint", "links": "rigid", "torque_at": "output",
+        "records": [{"file": "record.csv", "ratio": joint.ratio, "rotor_inertia_kgm2": {"j1": rotor}}]});
+    std::fs::write(folder.path().join("campaign.json"), statement.to_string()).expect("written");
+    let told = outcome(folder.path());
+    let (value, low, high) = number(&told.records[0], "compliance").expect("a compliance");
+    let truth = joint.stiffness_nm_per_rad;
+    assert!(low <= truth && truth <= high, "{value} ({low} to {high}) for {truth}");
+}
+
+#[test]
+fn an_error_within_a_turn_of_the_motor_is_found_and_does_not_spoil_the_compliance() {
+    for seed in 0..6 {
+        let mut dice = Dice(70 + seed);
+        let joint = Joint { input_error_rad: dice.between(3e-5, 1e-4), ..Joint::random(&mut dice) };
+        let folder = campaign(&joint, &test(), None, &mut dice);
+        let outcome = outcome(folder.path());
+        let found = &outcome.records[0];
+        let (size, ..) = number(found, "input_transmission_error").expect("an error of the input");
+        // from peak to peak it is twice the amplitude; a twentieth is what sampling and resolution leave
+        assert!((size / (2.0 * joint.input_error_rad) - 1.0).abs() < 0.05, "{seed}: {size}");
+        let (stiffness, ..) = number(found, "compliance").expect("a compliance");
+        assert!((stiffness / joint.stiffness_nm_per_rad - 1.0).abs() < 0.01, "{seed}: {stiffness}");
+        assert!(found.found("transmission_error").is_none());
+    }
 }
 
 fn kr300() -> PathBuf {

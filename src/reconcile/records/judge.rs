@@ -202,13 +202,12 @@ impl<'a> Judged<'a> {
                     "the best value drives the motion: the load of the joint is not what is assumed of it";
                 return Stated::one(what, State::Refused, name, estimate, words);
             }
-            Stated::one(
-                what,
-                State::NotIdentified,
-                name,
-                estimate,
-                "the interval contains zero, or held-out blocks are as good without it",
-            )
+            let why = if is_positive(&estimate) {
+                "held-out blocks are as good without it"
+            } else {
+                "the interval contains zero"
+            };
+            Stated::one(what, State::NotIdentified, name, estimate, why)
         };
         let load = match f.load_part {
             Some(part) => Stated::one(names[2], State::Found, "nm_per_nm", part, ""),
