@@ -1,7 +1,9 @@
 //! The reader of the arm file.
 
 use super::bearing::{Bearing, Stated, read_bearing};
+use super::effect::channel::Channel;
 use super::effect::entry::Effect;
+use super::effect::servo_compliance;
 use super::extras::read_extras;
 use super::joint_law::{Curve, Windup};
 use super::load::vector;
@@ -11,6 +13,7 @@ use crate::catalog::Catalogs;
 use crate::catalog::gear::{Gear, GearMass};
 use crate::input::json::{Document, Faults, InputError, Node, Object};
 use nalgebra::{Unit, Vector3};
+use serde_json::Value;
 use std::path::Path;
 
 const DEFAULT_GRAVITY_M_S2: f64 = 9.81;
@@ -417,14 +420,27 @@ fn read_parameters(node: &Node) -> Option<Vec<(String, Vec<f64>)>> {
         .entries()?
         .iter()
         .map(|(name, n)| {
-            let numbers = match n.value().is_array() {
-                true => n.array()?.iter().map(Node::number).collect::<Option<Vec<_>>>()?,
-                false => vec![n.number()?],
+            let numbers = match n.value() {
+                Value::Array(_) => n.array()?.iter().map(Node::number).collect::<Option<Vec<_>>>()?,
+                _ if *name == servo_compliance::CHANNEL => vec![read_channel(n)?],
+                _ => vec![n.number()?],
             };
             Some((name.to_string(), numbers))
         })
         .collect();
     read.into_iter().collect()
+}
+
+/// The number of a channel that is given by its word.
+fn read_channel(node: &Node) -> Option<f64> {
+    let word = node.string()?;
+    match Channel::from_word(word) {
+        Some(channel) => Some(channel as usize as f64),
+        None => {
+            let words = Channel::ALL.map(Channel::word).join(", ");
+            node.fault(format!("\"{word}\" is no channel"), &format!("choose one of: {words}"))
+        }
+    }
 }
 
 /// Checks every effect of the arm against its kind.

@@ -1,6 +1,7 @@
 //! Joint laws: how far a joint twists about its axis under a torque.
 
 use super::JointModel;
+use super::effect::waves::transmission_waves;
 
 /// The three-segment torsion curve of a harmonic-drive gear. It is odd in the torque and has the slope 1/K1 up to T1, 1/K2
 /// up to T2 and 1/K3 beyond.
@@ -187,6 +188,9 @@ impl Curve {
     }
 }
 
+/// Least part of its mean compliance that a joint has at any angle.
+const STIFFEST: f64 = 0.02;
+
 /// Torque below which a joint counts as unloaded \[N m\]: smaller torques are rounding errors.
 const REST_NM: f64 = 1e-9;
 
@@ -208,6 +212,35 @@ impl LostMotion {
     /// Tangent compliance \[rad/(N m)\] at a torque \[N m\]. It falls as the torque grows.
     pub fn tangent_compliance_rad_per_nm(&self, torque_nm: f64) -> f64 {
         self.half_width_rad / self.torque_nm / libm::cosh(torque_nm / self.torque_nm).powi(2)
+    }
+}
+
+/// A further twist found in readings, as a polynomial of the torque: with `p = T / torque_nm` it is
+/// `odd[0] p |p| + odd[1] p³ + even[0] |p| + even[1] p²`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FurtherTwist {
+    /// Coefficients that change sign with the torque \[rad\].
+    pub odd_rad: [f64; 2],
+    /// Coefficients that do not \[rad\].
+    pub even_rad: [f64; 2],
+    /// The torque at which the coefficients are the twist \[N m\].
+    pub torque_nm: f64,
+}
+
+impl FurtherTwist {
+    /// Twist \[rad\] under the total torque \[N m\].
+    pub fn angle_rad(&self, torque_nm: f64) -> f64 {
+        let p = torque_nm / self.torque_nm;
+        let ([a, b], [c, d]) = (self.odd_rad, self.even_rad);
+        a * p * p.abs() + b * p.powi(3) + c * p.abs() + d * p * p
+    }
+
+    /// Tangent compliance \[rad/(N m)\] at a torque \[N m\]. It is negative where the joint stiffens.
+    pub fn tangent_compliance_rad_per_nm(&self, torque_nm: f64) -> f64 {
+        let p = torque_nm / self.torque_nm;
+        let ([a, b], [c, d]) = (self.odd_rad, self.even_rad);
+        let sense = if torque_nm == 0.0 { 0.0 } else { torque_nm.signum() };
+        (2.0 * a * p.abs() + 3.0 * b * p * p + c * sense + 2.0 * d * p) / self.torque_nm
     }
 }
 
@@ -233,26 +266,61 @@ pub struct JointLaw {
     /// Half width of the friction play (hysteresis) \[rad\]; 0 if there is none. Where no history is known, |T| rises from
     /// rest.
     pub hysteresis_rad: f64,
+    /// How the compliance of gear and connection varies with the angle of the joint: parts of it that follow the
+    /// [waves](transmission_waves) of the angle.
+    pub waves: [f64; 4],
+    /// A further twist without a name, found in readings.
+    pub further: Option<FurtherTwist>,
 }
 
 impl From<Curve> for JointLaw {
     fn from(curve: Curve) -> Self {
-        Self { curve, connection_rad_per_nm: 0.0, lost_motion: None, hysteresis_rad: 0.0 }
+        Self {
+            curve,
+            connection_rad_per_nm: 0.0,
+            lost_motion: None,
+            hysteresis_rad: 0.0,
+            waves: [0.0; 4],
+            further: None,
+        }
     }
 }
 
 impl JointLaw {
+    /// The law at an angle of the joint. A law whose compliance varies with the angle is its mean until then.
+    #[must_use]
+    pub fn at_angle(&self, angle_rad: f64) -> Self {
+        if self.waves == [0.0; 4] {
+            return *self;
+        }
+        let waves = transmission_waves(angle_rad);
+        let varied: f64 = waves.iter().zip(&self.waves).map(|(wave, size)| wave * size).sum();
+        let softer = (1.0 + varied).max(STIFFEST);
+        Self {
+            curve: self.curve.stiffened(1.0 / softer),
+            connection_rad_per_nm: self.connection_rad_per_nm * softer,
+            waves: [0.0; 4],
+            ..*self
+        }
+    }
+
     /// Twist \[rad\] under the total torque \[N m\], without the friction play.
     pub fn angle_rad(&self, torque_nm: f64) -> f64 {
         let play = self.lost_motion.map_or(0.0, |lost| lost.angle_rad(torque_nm));
-        self.curve.angle_rad(torque_nm) + self.connection_rad_per_nm * torque_nm + play
+        let further = self.further.map_or(0.0, |twist| twist.angle_rad(torque_nm));
+        self.curve.angle_rad(torque_nm) + self.connection_rad_per_nm * torque_nm + play + further
     }
 
     /// Tangent compliance \[rad/(N m)\] at a torque \[N m\]. The friction play does not move in small oscillations and adds
     /// nothing.
     pub fn tangent_compliance_rad_per_nm(&self, torque_nm: f64) -> f64 {
         let play = self.lost_motion.map_or(0.0, |lost| lost.tangent_compliance_rad_per_nm(torque_nm));
-        self.curve.tangent_compliance_rad_per_nm(torque_nm) + self.connection_rad_per_nm + play
+        let named = self.curve.tangent_compliance_rad_per_nm(torque_nm) + self.connection_rad_per_nm + play;
+        match self.further {
+            None => named,
+            // a joint that stiffens is at most rigid
+            Some(twist) => (named + twist.tangent_compliance_rad_per_nm(torque_nm)).max(0.0),
+        }
     }
 
     /// Gear and connection as one curve, without play and friction.
@@ -273,9 +341,14 @@ impl JointLaw {
         }
     }
 
-    /// Whether the joint has lost motion or friction play in addition to its curve.
+    /// Whether the joint has lost motion, friction play or a further twist in addition to its curve.
     pub fn has_play(&self) -> bool {
-        self.lost_motion.is_some() || self.hysteresis_rad > 0.0
+        self.lost_motion.is_some() || self.hysteresis_rad > 0.0 || self.further.is_some()
+    }
+
+    /// Whether the twist is not in proportion to the torque.
+    pub fn is_curved(&self) -> bool {
+        self.has_play() || matches!(self.curve, Curve::Windup(_) | Curve::WindupK1(_))
     }
 
     /// Twist \[rad\] after the torque has risen from rest to `torque_nm`. The friction play starts at 0 and holds the joint
@@ -315,13 +388,35 @@ impl JointLaw {
 
     /// Whether the joint does not twist under any torque.
     pub fn is_rigid(&self) -> bool {
-        self.curve == Curve::Rigid && self.connection_rad_per_nm == 0.0 && self.lost_motion.is_none()
+        self.curve == Curve::Rigid
+            && self.connection_rad_per_nm == 0.0
+            && self.lost_motion.is_none()
+            && self.further.is_none()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_slope_of_a_further_twist_is_the_derivative_of_its_angle() {
+        let twist = FurtherTwist { odd_rad: [2e-4, -1e-4], even_rad: [5e-5, 3e-5], torque_nm: 80.0 };
+        for torque_nm in [-90.0, -20.0, 7.0, 60.0] {
+            let step = 1e-4;
+            let slope =
+                (twist.angle_rad(torque_nm + step) - twist.angle_rad(torque_nm - step)) / (2.0 * step);
+            assert!((slope - twist.tangent_compliance_rad_per_nm(torque_nm)).abs() < 1e-12, "{torque_nm}");
+        }
+        assert_eq!(twist.angle_rad(0.0), 0.0);
+        assert!(
+            (twist.angle_rad(80.0) - 1.8e-4).abs() < 1e-18 && (twist.angle_rad(-80.0) + 0.2e-4).abs() < 1e-18
+        );
+        // a joint of 1e5 N m/rad that stiffens more than it yields is rigid
+        let stiff = FurtherTwist { odd_rad: [-8e-3, 0.0], even_rad: [0.0; 2], torque_nm: 80.0 };
+        let law = JointLaw { further: Some(stiff), ..Curve::Linear(1e5).into() };
+        assert_eq!(law.tangent_compliance_rad_per_nm(80.0), 0.0);
+    }
 
     const HFUC_58: Windup = Windup {
         k1_nm_per_rad: 400e3,

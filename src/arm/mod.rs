@@ -9,11 +9,13 @@
 //! - [`Structure`] is the arm as the mechanics sees it: effects are applied, and names of parts are gone.
 //! - [`effect`] has the effects, one file each.
 
+pub(crate) mod base_lift;
 pub(crate) mod bearing;
 pub mod effect;
 pub(crate) mod extras;
 pub(crate) mod file;
 pub(crate) mod joint_law;
+pub(crate) mod joint_torque;
 pub(crate) mod linkage;
 pub(crate) mod load;
 pub(crate) mod section;
@@ -25,7 +27,7 @@ pub use bearing::{Bearing, BearingSource};
 pub use effect::entry::Effect;
 pub use extras::{Extras, ExtrasSource};
 pub use file::{read_arm, read_arm_document};
-pub use joint_law::{Curve, JointLaw, LostMotion, Windup};
+pub use joint_law::{Curve, FurtherTwist, JointLaw, LostMotion, Windup};
 pub use linkage::Linkage;
 pub use load::{LoadCase, Payload, Water, read_load_cases};
 pub use section::{LinkMaterial, Section, SectionProperties};

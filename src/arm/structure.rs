@@ -1,6 +1,8 @@
 //! Structures: the arm as the mechanics sees it. Effects are applied to its pieces, and names of parts are gone.
 
+use super::base_lift::BaseLift;
 use super::joint_law::JointLaw;
+use super::joint_torque::JointTorque;
 use super::load::{LoadCase, Water};
 use super::section::{LinkMaterial, Section};
 use super::{Arm, Element, Joint, JointModel, Link, LinkBody};
@@ -13,6 +15,8 @@ pub struct Structure {
     pub gravity_m_s2: f64,
     /// Tilt of the base about world x and y per moment \[rad/(N m)\].
     pub base_tilt_rad_per_nm: f64,
+    /// Feet that lift off.
+    pub base_lift: Option<BaseLift>,
     /// Further compliance of the ground on which the arm stands, about the origin of the chain.
     pub base_frame: FrameCompliance,
     /// The water in which the arm is.
@@ -56,6 +60,8 @@ pub struct JointPiece {
     pub axis: Unit<Vector3<f64>>,
     /// Law of the twist about the axis.
     pub law: JointLaw,
+    /// Torque that acts on the joint beside weight and load.
+    pub torque: JointTorque,
     /// Tilt about both axes across the axis of the joint, per moment \[rad/(N m)\]: that of the nominal bearing, and what
     /// effects add in series.
     pub tilt_rad_per_nm: f64,
@@ -63,6 +69,13 @@ pub struct JointPiece {
     pub mass_kg: f64,
     /// Source of the joint's angle.
     pub angle: JointAngle,
+}
+
+impl JointPiece {
+    /// Whether its angle is an entry of the pose.
+    pub fn is_driven(&self) -> bool {
+        matches!(self.angle, JointAngle::Driven(_))
+    }
 }
 
 /// Source of the angle of a joint.
@@ -171,6 +184,7 @@ impl Structure {
         Self {
             gravity_m_s2,
             base_tilt_rad_per_nm: 0.0,
+            base_lift: None,
             base_frame: FrameCompliance::default(),
             water: None,
             pieces,
@@ -191,6 +205,7 @@ fn joint_piece(joint: &Joint, driven: &[&str], model: JointModel) -> JointPiece 
         name: joint.name.clone(),
         axis: joint.axis,
         law: JointLaw::from(joint.curve.reduced(model)),
+        torque: JointTorque::default(),
         tilt_rad_per_nm: joint.bearing.map_or(0.0, |bearing| bearing.tilt_rad_per_nm()),
         mass_kg: joint.total_mass_kg(),
         angle,

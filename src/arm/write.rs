@@ -1,7 +1,7 @@
 //! Writing the arm file.
 
 use super::bearing::Bearing;
-use super::effect::entry::Effect;
+use super::effect::entry::{Effect, word_of};
 use super::extras::Extras;
 use super::joint_law::Curve;
 use super::section::Section;
@@ -135,7 +135,10 @@ impl Effect {
             .parameters
             .iter()
             .map(|(name, numbers)| match numbers.as_slice() {
-                [one] => (name.clone(), json!(one)),
+                [one] => match word_of(&self.effect, name, *one) {
+                    Some(word) => (name.clone(), json!(word)),
+                    None => (name.clone(), json!(one)),
+                },
                 many => (name.clone(), json!(many)),
             })
             .collect();

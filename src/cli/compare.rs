@@ -37,7 +37,8 @@ pub(crate) struct CompareArgs {
     /// Masses (kg) at which deflections and modes are compared
     #[arg(long, value_name = "KG", value_parser = limits)]
     pub mass_kg: Option<Limits>,
-    /// Lowest modes (Hz) at which masses are compared
+    /// Limits on the lowest mode (Hz), separated by commas. For each, the lightest design of every front whose lowest
+    /// mode is at least the limit is shown
     #[arg(long, value_name = "HZ", value_parser = limits)]
     pub mode_hz: Option<Limits>,
     /// Folder for compare.md, compare.csv, compare.svg and report.html, a page for a browser

@@ -4,7 +4,7 @@ use super::failure::Failure;
 use crate::arm::effect::channel::Channel;
 use crate::arm::file::read_arm;
 use crate::catalog::Catalogs;
-use crate::reconcile::predict::predict;
+use crate::reconcile::predict::{predict, unplaced};
 use crate::reconcile::readings::campaign::{Statement, read_statement};
 use crate::reconcile::readings::placement::Placed;
 use crate::reconcile::readings::placement::Placement;
@@ -88,10 +88,16 @@ pub(crate) fn run(args: &PredictArgs, catalogs: &Catalogs) -> Result<String, Fai
         arms.push(placed(&file, catalogs)?);
     }
     let text = predict(&arms, &statement, table(&args.readings, &statement)?)?;
-    let Some(out) = &args.out else { return Ok(text) };
+    let remark = unplaced(&arms, &table(&args.readings, &statement)?);
+    let remark = remark.map_or(String::new(), |remark| format!("{remark}.\n"));
+    let Some(out) = &args.out else {
+        // the readings are the output; what is said about them must not be among them
+        eprint!("{remark}");
+        return Ok(text);
+    };
     if let Some(folder) = out.parent().filter(|f| !f.as_os_str().is_empty()) {
         fs_err::create_dir_all(folder).map_err(|e| Failure::file(folder, "create", &e))?;
     }
     fs_err::write(out, text).map_err(|e| Failure::file(out, "write", &e))?;
-    Ok(format!("written to {}\n", out.display()))
+    Ok(format!("{remark}written to {}\n", out.display()))
 }

@@ -27,7 +27,7 @@ use std::path::{Path, PathBuf};
     every design of either front under both models, and verdict.json says under \"study\" which picks change.")]
 pub(crate) struct ReconcileArgs {
     /// Folder of a campaign: campaign.json, arm.json and any of static.csv, modal.csv, windup.csv,
-    /// positions.csv. Several campaigns of one arm are reconciled together.
+    /// positions.csv, record.csv. Several campaigns of one arm are reconciled together.
     #[arg(required = true, value_name = "CAMPAIGN")]
     pub campaigns: Vec<PathBuf>,
     /// A built-in study or a study file to run again with the corrected arm; effects apply to the joints and

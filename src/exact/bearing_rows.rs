@@ -182,7 +182,8 @@ fn shares(sums: &Components, places: &[usize]) -> Vec<Share> {
     shares
 }
 
-/// The dot product of two shares; 0 if it is rounding.
+/// The dot product of the coefficients of two weights or inertias; 0 if its size is at most 1e-9 of the sum of the sizes of
+/// its terms, which is rounding.
 fn dot(a: &[f64; COMPONENTS], b: &[f64; COMPONENTS]) -> f64 {
     let product: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
     let scale: f64 = a.iter().zip(b).map(|(a, b)| (a * b).abs()).sum();

@@ -1,6 +1,6 @@
 //! The first gap of a search, long before its first pass is done.
 //!
-//! Short dives find a few designs. A cover of the space by a few thousand boxes ([`cover`](super::cover)) says how near to
+//! Short dives find a few designs. A cover of the space by a thousand boxes ([`cover`](super::cover)) says how near to
 //! every design of the space they are. As more designs are found, the gap of the same boxes falls.
 //!
 //! The result of a search does not depend on these designs. They are listed only if the search is stopped, because then

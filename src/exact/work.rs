@@ -9,7 +9,7 @@ use crate::sizing::demand::JointDemand;
 use crate::sizing::fit::LinkRoom;
 use nalgebra::Vector3;
 
-/// The numbers of one box. A worker keeps them between boxes, so that nothing is allocated.
+/// Working memory for the bound of one box. A worker uses it for box after box, so that no memory is allocated for each.
 #[derive(Default)]
 pub(super) struct Work {
     /// Greatest stiffnesses of each piece.
@@ -142,7 +142,8 @@ impl Work {
         self.curves[row.piece].as_ref().filter(|_| row.coordinate == TORSION)
     }
 
-    /// Whether the box has no width in any number that a mode depends on.
+    /// Whether every inertia, stiffness and torsion curve of the box has a single value, so that all its members have
+    /// the same modes.
     pub(super) fn is_point(&self) -> bool {
         self.light == self.heavy
             && self.stiff == self.soft

@@ -5,6 +5,7 @@
 use super::beam::PreparedBeam;
 use super::{Twist, Wrench, body_inertia, force_wrench, rotation_twist, stack};
 use crate::arm::LinkModel;
+use crate::arm::base_lift::BaseLift;
 use crate::arm::joint_law::JointLaw;
 use crate::arm::linkage::{Linkage, linkages};
 use crate::arm::load::Water;
@@ -44,6 +45,7 @@ use nalgebra::{DMatrix, Matrix3, Matrix6, Matrix6xX, Rotation3, Vector3};
 pub struct Chain {
     gravity_m_s2: f64,
     base_tilt_rad_per_nm: f64,
+    base_lift: Option<BaseLift>,
     base_frame: FrameCompliance,
     water: Option<Water>,
     pub(super) pieces: Vec<Prepared>,
@@ -64,6 +66,8 @@ pub enum Yielding {
     Linear(Vec<f64>),
     /// By the law of a joint, which has one coordinate.
     Joint(JointLaw),
+    /// As feet that lift off, about each of two axes.
+    Lift(BaseLift),
 }
 
 /// One elastic element of an arm in a pose.
@@ -77,6 +81,8 @@ pub struct ElasticElement {
     pub twists: Vec<Twist>,
     /// How the coordinates follow from the forces on them.
     pub yielding: Yielding,
+    /// Torque that acts on the coordinate of a joint beside weight and load \[N m\].
+    pub torque_nm: f64,
     /// The distributed mass of the element, if it is a link.
     pub own: Option<OwnMass>,
 }
@@ -154,6 +160,7 @@ impl Chain {
         Self {
             gravity_m_s2: structure.gravity_m_s2,
             base_tilt_rad_per_nm: structure.base_tilt_rad_per_nm,
+            base_lift: structure.base_lift,
             base_frame: structure.base_frame,
             water: structure.water,
             pieces,
@@ -173,6 +180,7 @@ impl Chain {
         if self.base_tilt_rad_per_nm > 0.0 {
             walk.tilt("base".into(), &[Vector3::x(), Vector3::y()], self.base_tilt_rad_per_nm);
         }
+        walk.lift(self.base_lift);
         walk.frame("base", &self.base_frame);
         for (index, piece) in self.pieces.iter().enumerate() {
             match piece {
@@ -233,7 +241,8 @@ impl Walk {
             name: joint.name.clone(),
             at_m: self.at_m,
             twists: vec![rotation_twist(&axis, &self.at_m)],
-            yielding: Yielding::Joint(joint.law),
+            yielding: Yielding::Joint(joint.law.at_angle(angle_rad)),
+            torque_nm: joint.torque.at(angle_rad),
             own: None,
         }));
         self.rotation *= Rotation3::from_axis_angle(&joint.axis, angle_rad);
@@ -273,6 +282,7 @@ impl Walk {
             at_m: self.at_m,
             twists,
             yielding: Yielding::Linear(beam.compliances.clone()),
+            torque_nm: 0.0,
             own: Some(own_mass(piece, beam, &frame, &self.at_m)),
         }
     }
@@ -284,6 +294,20 @@ impl Walk {
             at_m: self.at_m,
             twists: axes.iter().map(|axis| rotation_twist(axis, &self.at_m)).collect(),
             yielding: Yielding::Linear(vec![compliance; 2]),
+            torque_nm: 0.0,
+            own: None,
+        }));
+    }
+
+    /// Adds feet that lift off about world x and y, if they do.
+    fn lift(&mut self, lift: Option<BaseLift>) {
+        let Some(lift) = lift else { return };
+        self.items.push(Item::Elastic(ElasticElement {
+            name: "base_lift".into(),
+            at_m: self.at_m,
+            twists: [Vector3::x(), Vector3::y()].map(|axis| rotation_twist(&axis, &self.at_m)).to_vec(),
+            yielding: Yielding::Lift(lift),
+            torque_nm: 0.0,
             own: None,
         }));
     }
@@ -300,6 +324,7 @@ impl Walk {
             at_m: self.at_m,
             twists: axes.iter().map(turn).collect(),
             yielding: Yielding::Linear(compliances),
+            torque_nm: 0.0,
             own: None,
         }));
     }

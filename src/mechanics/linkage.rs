@@ -16,7 +16,7 @@ pub struct Transferred {
     pub driver: String,
     /// Motion of everything outboard of the passive joint, per unit of the driver's twist.
     pub twist: Twist,
-    /// Work of the loads on this motion, which is a torque on the driver \[N m\].
+    /// Work of the loads and of the passive joint's own torque on this motion, which is a torque on the driver \[N m\].
     pub torque_nm: f64,
 }
 
@@ -35,7 +35,8 @@ impl Posed<'_> {
                 Item::Elastic(element) => {
                     out.extend(linkages.iter().filter(|l| l.passive == element.name).map(|l| {
                         let twist = element.twists[0] * l.factor;
-                        Transferred { driver: l.driver.clone(), twist, torque_nm: twist.dot(&wrench) }
+                        let torque_nm = twist.dot(&wrench) + element.torque_nm * l.factor;
+                        Transferred { driver: l.driver.clone(), twist, torque_nm }
                     }));
                     if let Some(own) = &element.own {
                         wrench += own.weight;

@@ -125,11 +125,11 @@ fn quick_root<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> Option<f6
     None
 }
 
-/// Secants on the product of all pivots times a power of `x = 1/λ`.
+/// The lowest eigenvalue λ₁ \[1/s²\], by the secant method on the product of all pivots times a power of `x = 1/λ`.
 ///
-/// This product is about `Π (x - x_i)`. Beyond the largest `x_i` it is convex, so secants from above approach this root
-/// without overshooting, however near the next root is. Rounding, or the inner modes of links, may still make one
-/// overshoot; the interval is then bisected.
+/// This product is about `Π (x - x_i)`, where the `x_i` are the reciprocals of the eigenvalues. Beyond the largest `x_i` it
+/// is convex, so secants from above approach this root without overshooting, however near the next root is. Rounding, or the
+/// inner modes of links, may still make a step overshoot; the interval is then bisected.
 fn careful_root<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> f64 {
     let product = |x: f64| {
         let here = pass(steps, 1.0 / x);

@@ -11,7 +11,8 @@ use nalgebra::Vector3;
 /// The static state of an arm in a pose under a load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Statics {
-    /// Torque of gravity and load on each joint about its axis \[N m\] (Eq 7), with the name of the joint.
+    /// Torque on each joint about its axis \[N m\], with the name of the joint: that of gravity and load (Eq 7), and one that
+    /// acts on the joint beside them.
     pub joint_torques_nm: Vec<(String, f64)>,
     /// What the output bearing of each joint carries, in the order of the torques. It is the same whether the bearing
     /// yields or not.
@@ -110,7 +111,7 @@ impl Posed<'_> {
         let (yielded, tangents) = match &element.yielding {
             Yielding::Joint(law) => {
                 // a linkage makes a driver hold the torque of its passive joint as well
-                let mut torque_nm = element.twists[0].dot(wrench);
+                let mut torque_nm = element.twists[0].dot(wrench) + element.torque_nm;
                 let mut passive_twist = Twist::zeros();
                 for passive in transferred.iter().filter(|c| c.driver == element.name) {
                     passive_twist += passive.twist;
@@ -122,6 +123,11 @@ impl Posed<'_> {
                 let axis = angular(&element.twists[0]);
                 out.bearing_loads.push(JointLoad::of(wrench, &axis, &element.at_m));
                 (vec![angle_rad], vec![law.tangent_compliance_rad_per_nm(torque_nm)])
+            }
+            Yielding::Lift(lift) => {
+                let moments_nm: Vec<f64> = element.twists.iter().map(|twist| twist.dot(wrench)).collect();
+                let each = |of: &dyn Fn(f64) -> f64| moments_nm.iter().map(|nm| of(*nm)).collect::<Vec<_>>();
+                (each(&|nm| lift.angle_rad(nm)), each(&|nm| lift.tangent_compliance_rad_per_nm(nm)))
             }
             Yielding::Linear(compliances) => {
                 let work = |i: usize| element.own.as_ref().map_or(0.0, |own| own.weight_work[i]);

@@ -7,14 +7,15 @@ use super::fit::held_out::{HeldOut, rms};
 use super::fit::interval::{deviations, intervals};
 use super::fit::noise::Noise;
 use super::fit::units;
-use super::forward::datum::Datum;
 use super::forward::prepared::Forward;
 use super::model::candidates::candidates;
 use super::model::estimate::Interval;
 use super::model::estimate::{Estimate, Finding};
-use super::model::parameters::{Candidate, Model, Nuisance};
+use super::model::parameters::{Candidate, Model, Nuisance, Number};
+use super::model::seen::seen;
 use super::readings::campaign::Campaign;
-use super::readings::components::{DISPLACEMENT, FEWEST_ALIKE};
+use super::readings::components::DISPLACEMENT;
+use super::select::empirical;
 use super::select::few_rows;
 use super::select::lack_of_fit::{LackOfFit, lack_of_fit};
 use super::select::screening::Selection;
@@ -22,17 +23,20 @@ use super::select::search::{Scored, Search};
 use super::select::settle::Settled;
 use super::select::unnamed;
 use super::select::unnamed::Better;
+use super::verdict::corrected_model::Choice;
 use super::verdict::next_test;
-use super::verdict::outcome::{Calibrated, Evidence, Located, Outcome, ReadingResidual, Verdict};
-use super::verdict::{correct, locate};
-use crate::arm::effect::channel::Channel;
+use super::verdict::outcome::{Calibrated, Evidence, Law, Located, Outcome, ReadingResidual, Verdict};
+use super::verdict::too_little::{rows, too_little};
+use super::verdict::{caution, correct, corrected_model, locate};
+use crate::arm::effect::empirical::KIND;
+use std::cell::OnceCell;
 
 /// Largest number of alternatives with which an effect is still named.
 const MOST_ALTERNATIVES: usize = 3;
-/// A rise of ln of the evidence below this is not yet strong (Kass and Raftery 1995, table of Bayes factors).
+/// With a rise of ln of the evidence below this an effect is only a suspect, because that is not yet strong (Kass and Raftery 1995, table of Bayes factors).
 const WEAK: f64 = 3.0;
-/// Smallest number of poses that can tell effects at different places apart.
-pub(crate) const FEWEST_POSES: usize = 3;
+/// What is said where no effect is needed.
+const NOTHING_MISSING: &str = "noise and calibration within tolerance explain every reading";
 
 /// Reconciles the displacements, frequencies and bench readings of a campaign with its arm.
 pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
@@ -40,8 +44,11 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
     let mut candidates = candidates(&forward);
     candidates.retain(|c| campaign.statement.considers(c.kind.name));
+    let mut candidates = seen(&forward, &nuisance, candidates);
     let few = rows(campaign) < few_rows::FEWEST_ROWS;
     if few {
+        // a handful of readings cannot show what is seldom met
+        candidates.retain(|c| c.kind.traits.odds >= 1.0);
         candidates = candidates.into_iter().map(Candidate::from_corners).collect();
     }
     let found = settled(campaign, &mut forward, &nuisance, &candidates, few);
@@ -56,6 +63,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         candidates: &candidates,
         weights: &weights,
     };
+    let with_laws = [candidates.as_slice(), &empirical::laws(&forward)].concat();
     let hopeless = found.selection.given_up || !search.may_explain(chosen);
     let best = match hopeless {
         true => search.fit(&chosen.effects, &chosen.u, Effort::default()),
@@ -71,11 +79,13 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         () if best.model.effects.is_empty() => None,
         () => unnamed::instead(&search, &search.scored(&chosen.effects, &best), &baseline),
     };
+    let without = is_weak(&found.selection).then(|| lack_of_fit(campaign, &forward, &baseline, &weights));
     let left_out = [&baseline, &best].map(|f| held_out::residuals(&forward, &f.model, &f.point.u, &weights));
     let analysis = Analysis {
         campaign,
         forward: &forward,
         search: &search,
+        with_laws: &Search { candidates: &with_laws, ..search },
         selection: &found.selection,
         noise: &found.noise,
         remarks: &found.remarks,
@@ -86,9 +96,16 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         unnamed,
         alternatives,
         explaining,
+        without,
+        ends: OnceCell::new(),
         left_out,
     };
     analysis.conclude()
+}
+
+/// Whether the evidence for the best effects is weak.
+fn is_weak(selection: &Selection) -> bool {
+    !selection.best.effects.is_empty() && selection.best.score - selection.baseline.score < WEAK
 }
 
 /// Finds the effects and the noise. Where the noise of a channel shows a unit slip, the search is repeated with the
@@ -127,6 +144,8 @@ struct Analysis<'a> {
     campaign: &'a Campaign,
     forward: &'a Forward,
     search: &'a Search<'a>,
+    /// The same with laws without a name after its candidates.
+    with_laws: &'a Search<'a>,
     selection: &'a Selection,
     noise: &'a Noise,
     remarks: &'a [String],
@@ -140,6 +159,10 @@ struct Analysis<'a> {
     alternatives: Vec<Vec<Scored>>,
     /// Every set of effects that explains the readings, if there are few rows.
     explaining: Option<Vec<Scored>>,
+    /// Lack of fit of calibration alone, where the evidence for the effects is weak.
+    without: Option<LackOfFit>,
+    /// Intervals of the parameters of the best model's effects.
+    ends: OnceCell<Vec<Interval>>,
     left_out: [Vec<Option<f64>>; 2],
 }
 
@@ -151,24 +174,39 @@ impl Analysis<'_> {
             reasons.extend(self.at_a_limit());
         }
         reasons.extend(self.remarks.iter().cloned());
+        // the effects of a weak model are suspects where calibration alone is as good
         let findings = match verdict {
-            Verdict::Explained | Verdict::InsufficientData => self.findings(),
-            Verdict::NoGap | Verdict::Unexplained => Vec::new(),
+            Verdict::Unexplained => Vec::new(),
+            _ => self.findings(),
         };
         let (effects, suspects) = match verdict {
             Verdict::Explained => (findings, Vec::new()),
             _ => (Vec::new(), findings),
         };
-        let shown = if verdict == Verdict::Unexplained { &self.baseline } else { &self.best };
+        let choice = (verdict == Verdict::Unexplained).then(|| self.model_without_explanation());
+        let shown = match (&choice, verdict) {
+            (Some(choice), _) => choice.fit.as_ref().unwrap_or(&self.baseline),
+            (None, Verdict::NoGap) => &self.baseline,
+            (None, _) => &self.best,
+        };
         let calibrated = self.calibrated(shown);
-        let (corrected, provenance) = correct::corrected(
-            self.campaign,
-            self.forward,
-            shown,
-            if verdict == Verdict::Explained { &effects } else { &[] },
-            &calibrated,
-            verdict,
-        );
+        if matches!(verdict, Verdict::Explained | Verdict::NoGap) {
+            reasons.extend(caution::beyond_tolerance(shown, &calibrated));
+        }
+        let written = match (&choice, verdict) {
+            (Some(choice), _) => choice.fit.as_ref(),
+            (None, Verdict::InsufficientData) => None,
+            (None, _) => Some(shown),
+        };
+        let in_arm = if choice.is_some() {
+            written.map_or(Vec::new(), |fit| {
+                self.found_in(fit, &intervals(self.forward, fit, self.weights), &[])
+            })
+        } else {
+            effects.clone()
+        };
+        let (corrected, provenance) =
+            correct::corrected(self.campaign, self.forward, written, &in_arm, &calibrated, verdict);
         Outcome {
             campaign: self.campaign.statement.name.clone(),
             hash: self.campaign.hash.clone(),
@@ -177,6 +215,8 @@ impl Analysis<'_> {
             next_tests: next_test::propose(&self.next_question(verdict)),
             effects,
             suspects,
+            empirical: written.map_or(Vec::new(), |fit| self.laws(fit, &in_arm)),
+            models: choice.as_ref().map_or(Vec::new(), |choice| choice.rows.clone()),
             held_out,
             located: self.located(),
             noise: self.noise.clone(),
@@ -184,6 +224,7 @@ impl Analysis<'_> {
             calibrated,
             evidence: if verdict == Verdict::Unexplained { Vec::new() } else { self.evidence() },
             stages: Vec::new(),
+            records: Vec::new(),
             residuals: self.residuals(),
             corrected,
             other_corrected: Vec::new(),
@@ -204,11 +245,16 @@ impl Analysis<'_> {
             return (Verdict::Unexplained, self.left_over());
         }
         if self.best.model.effects.is_empty() {
-            let text = "noise and calibration within tolerance explain every reading".to_string();
-            return (Verdict::NoGap, vec![text]);
+            return (Verdict::NoGap, vec![NOTHING_MISSING.to_string()]);
         }
         if let Some(better) = &self.unnamed {
             return (Verdict::Unexplained, vec![self.beaten(better)]);
+        }
+        if let Some(text) = caution::opposed(self.forward, &self.best) {
+            return (Verdict::Unexplained, vec![text]);
+        }
+        if let Some(without) = &self.without {
+            return self.weak(without);
         }
         for (effect, competitors) in self.best.model.effects.iter().zip(&self.alternatives) {
             if competitors.len() > MOST_ALTERNATIVES {
@@ -225,25 +271,48 @@ impl Analysis<'_> {
             );
             return (Verdict::InsufficientData, vec![text]);
         }
-        (Verdict::Explained, self.gap_sentences())
+        if let Some(&i) = caution::may_be_absent(&self.best, self.ends()).first() {
+            let text = format!(
+                "the 95 % interval of {} contains its absence: it is a suspect and no finding",
+                self.best.model.effects[i].label()
+            );
+            return (Verdict::InsufficientData, vec![text]);
+        }
+        (Verdict::Explained, vec![self.gap_sentence()])
     }
 
-    fn gap_sentences(&self) -> Vec<String> {
+    /// The verdict where the evidence for the best effects is weak: they are suspects. There is no gap if calibration
+    /// alone leaves only noise.
+    fn weak(&self, without: &LackOfFit) -> (Verdict, Vec<String>) {
         let gain = self.selection.best.score - self.selection.baseline.score;
-        let mut out = vec![format!(
-            "with {} ln of the evidence rises by {gain:.1} (chi-squared {:.0} to {:.0} on {} readings)",
+        let suspected = format!(
+            "{} is a suspect: ln of the evidence rises by {gain:.1} with it (chi-squared {:.0} to {:.0}), odds of {:.0} to 1. \
+             Take the next test before relying on it",
             self.best.model.label(),
             self.baseline.point.objective,
             self.best.point.objective,
-            self.forward.data.len()
-        )];
-        if gain < WEAK {
-            let odds = libm::exp(gain);
-            out.push(format!(
-                "that is weak evidence, with odds of {odds:.0} to 1: take the next test before relying on it"
-            ));
+            libm::exp(gain)
+        );
+        match without.fails {
+            true => (Verdict::InsufficientData, [without.sentences(), vec![suspected]].concat()),
+            false => (Verdict::NoGap, vec![NOTHING_MISSING.to_string(), suspected]),
         }
-        out
+    }
+
+    fn gap_sentence(&self) -> String {
+        format!(
+            "with {} ln of the evidence rises by {:.1} (chi-squared {:.0} to {:.0} on {} readings)",
+            self.best.model.label(),
+            self.selection.best.score - self.selection.baseline.score,
+            self.baseline.point.objective,
+            self.best.point.objective,
+            self.forward.data.len()
+        )
+    }
+
+    /// Intervals of the parameters of all effects of the best model.
+    fn ends(&self) -> &[Interval] {
+        self.ends.get_or_init(|| intervals(self.forward, &self.best, self.weights))
     }
 
     /// Says that an effect has reached the largest size that is searched for. It names no effect, because it
@@ -316,21 +385,48 @@ impl Analysis<'_> {
         if let Some(explaining) = &self.explaining {
             return few_rows::suspects(self.search, explaining, self.weights);
         }
-        let ends = intervals(self.forward, &self.best, self.weights);
+        let competitors: Vec<_> = (0..self.best.model.effects.len()).map(|i| self.competitors(i)).collect();
+        self.found_in(&self.best, self.ends(), &competitors)
+    }
+
+    /// The effects of a model with their intervals, and for each effect those that could replace it.
+    fn found_in(&self, fit: &Fit, ends: &[Interval], competitors: &[Vec<(String, String)>]) -> Vec<Finding> {
         let mut parameter = 0;
-        let effects = self.best.model.effects.iter().enumerate();
+        let effects = fit.model.effects.iter().enumerate();
         effects
             .map(|(i, effect)| {
-                let first = self.best.model.first_parameter(i);
+                let first = fit.model.first_parameter(i);
                 let own = first..first + effect.free_parameters.len();
                 let finding = Finding {
                     effect: effect.kind.name.into(),
                     at: effect.at.clone(),
-                    parameters: parameters(effect, &self.best.point.u[own], &ends[parameter..]),
-                    indistinguishable_from: self.competitors(i),
+                    parameters: parameters(effect, &fit.point.u[own], &ends[parameter..]),
+                    indistinguishable_from: competitors.get(i).cloned().unwrap_or_default(),
                 };
                 parameter += effect.free_parameters.len();
                 finding
+            })
+            .collect()
+    }
+
+    /// The model of the corrected arm where nothing explains the gap.
+    fn model_without_explanation(&self) -> Choice<'_> {
+        let first_law = self.search.candidates.len();
+        let again =
+            |fit: &Fit, effects: &[usize]| self.with_laws.fit(effects, &fit.point.u, Effort::default());
+        let chosen = &self.selection.best.effects;
+        let (baseline, named) = (again(&self.baseline, &[]), again(&self.best, chosen));
+        corrected_model::choose(self.with_laws, first_law, self.noise, baseline, named, chosen)
+    }
+
+    /// The laws without a name of a model.
+    fn laws(&self, fit: &Fit, findings: &[Finding]) -> Vec<Law> {
+        let each = fit.model.effects.iter().zip(findings);
+        each.filter(|(effect, _)| effect.kind.name == KIND.name)
+            .map(|(effect, finding)| Law {
+                finding: finding.clone(),
+                law: empirical::in_words(effect),
+                may_be: empirical::may_be(effect),
             })
             .collect()
     }
@@ -477,78 +573,27 @@ impl Analysis<'_> {
     }
 }
 
-/// Number of rows that are not absolute positions.
-pub(crate) fn rows(campaign: &Campaign) -> usize {
-    campaign.statics.len() + campaign.modal.len() + campaign.windup.len()
-}
-
-/// Reasons why the readings cannot settle anything.
-fn too_little(campaign: &Campaign, forward: &Forward) -> Vec<String> {
-    let mut reasons = Vec::new();
-    let rows = rows(campaign);
-    if rows < few_rows::FEWEST_ROWS {
-        reasons.push(format!("{rows} rows are too few: give at least {}", few_rows::FEWEST_ROWS));
-    }
-    let mut poses: Vec<&Vec<f64>> = campaign
-        .statics
-        .iter()
-        .map(|r| &r.pose_deg)
-        .chain(campaign.modal.iter().map(|r| &r.pose_deg))
-        .collect();
-    poses.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
-    poses.dedup();
-    if poses.len() < FEWEST_POSES && !(poses.is_empty() && rows >= few_rows::FEWEST_ROWS) {
-        reasons.push(format!(
-            "{} distinct pose(s): effects at different places look the same; measure at least {FEWEST_POSES}",
-            poses.len()
-        ));
-    }
-    let first = campaign.statics.first();
-    let same_load = |r: &super::readings::rows::StaticRow| {
-        first.is_some_and(|f| f.payload.mass_kg == r.payload.mass_kg && f.force_n == r.force_n)
-    };
-    reasons.extend(dead_instruments(forward));
-    if first.is_some() && campaign.statics.iter().all(same_load) {
-        reasons.push(
-            "every static reading has the same load: an effect that grows with load cannot be told from one that does not"
-                .into(),
-        );
-    }
-    reasons
-}
-
-/// Names channels whose readings are all equal, and says if no reading exceeds the noise.
-fn dead_instruments(forward: &Forward) -> Vec<String> {
-    let mut out = Vec::new();
-    for channel in [Channel::Static, Channel::Modal, Channel::Windup] {
-        let data = &forward.data[forward.range(channel)];
-        let first = [0, 1, 2].map(|component| data.iter().find(|d| d.component == component));
-        let is_first = |d: &Datum| first[d.component].is_some_and(|first| first.value == d.value);
-        if data.last().is_some_and(|d| d.row + 1 >= FEWEST_ALIKE) && data.iter().all(is_first) {
-            out.push(format!(
-                "every {} reading is the same: the instrument did not follow the arm",
-                channel.word()
-            ));
-        }
-    }
-    if !forward.data.is_empty() && forward.data.iter().all(|d| d.value.abs() < 2.0 * d.sigma) {
-        out.push("no reading is twice its standard deviation: there is nothing to compare".into());
-    }
-    out
-}
-
-/// A fitted effect's parameters with their intervals.
+/// A fitted effect's parameters with their intervals. A component that is not fitted stands in its place, its ends open.
 fn parameters(effect: &Candidate, u: &[f64], ends: &[Interval]) -> Vec<(String, Vec<Estimate>)> {
+    let mut free = effect.free_parameters.iter().zip(effect.free_values(u)).zip(ends);
     let mut out: Vec<(String, Vec<Estimate>)> = Vec::new();
-    for ((parameter, value), interval) in effect.free_parameters.iter().zip(effect.numbers(u)).zip(ends) {
-        let estimate = parameter.estimate(value, interval);
-        match out.iter_mut().find(|(name, _)| name == parameter.name) {
+    for (name, number) in effect.named_numbers() {
+        let estimate = match number {
+            Number::Free => {
+                let Some(((parameter, value), interval)) = free.next() else { continue };
+                parameter.estimate(value, interval)
+            }
+            Number::Stated(value) => Estimate { value, low: None, high: None },
+        };
+        match out.iter_mut().find(|(known, _)| known == name) {
             Some((_, list)) => list.push(estimate),
-            None => out.push((parameter.name.to_string(), vec![estimate])),
+            None => out.push((name.to_string(), vec![estimate])),
         }
     }
+    out.retain(|(name, _)| effect.free_parameters.iter().any(|parameter| parameter.name == name));
+    let stated = |value: f64| Estimate { value, low: Some(value), high: Some(value) };
+    out.extend(effect.words().into_iter().map(|(name, number, _)| (name.to_string(), vec![stated(number)])));
     if effect.free_parameters.is_empty() {
-        let stated = |value: f64| Estimate { value, low: Some(value), high: Some(value) };
         out.push(("factor".into(), effect.numbers(&[]).into_iter().map(stated).collect()));
     }
     out

@@ -8,7 +8,7 @@
 //! - [`fit`] fits a model, gives intervals, judges the noise, and predicts held-out poses.
 //! - `select` finds the effects that are missing, and the laws without a name that do better.
 //! - [`verdict`] holds the outcome, its files and its page, and says what to measure next.
-//! - `positions` does all of it for absolute positions.
+//! - `positions` does all of it for absolute positions, and [`records`] for records against time.
 //! - `analysis` draws the conclusion from displacements, frequencies and bench readings, `together` from
 //!   these and positions. [`predict`] writes the model's values next to readings.
 
@@ -19,6 +19,7 @@ pub mod model;
 pub(crate) mod positions;
 pub mod predict;
 pub mod readings;
+pub mod records;
 pub(crate) mod select;
 pub(crate) mod starter;
 pub(crate) mod together;

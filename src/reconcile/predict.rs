@@ -101,6 +101,29 @@ fn positions_mm(
     }
 }
 
+/// Says how many rows of positions belong to no known session, where the arms were placed session by session. They are
+/// predicted from the place that suits all sessions best.
+pub(crate) fn unplaced(arms: &[Placed], table: &Table) -> Option<String> {
+    if channel_of(table) != Some(Channel::Positions) {
+        return None;
+    }
+    let all: Vec<&Arm> = arms.iter().map(|a| &a.arm).collect();
+    let names: Vec<&str> = all.iter().map(|a| a.name.as_str()).collect();
+    let rows = position_rows(table, &names, &driven_joint_names(&all), Purpose::Predict);
+    let count = |(i, placed): (usize, &Placed)| {
+        let strangers = placed.placement.strangers(&rows);
+        strangers.into_iter().filter(|row| rows[*row].arm == i).count()
+    };
+    let unplaced: usize = arms.iter().enumerate().map(count).sum();
+    (unplaced > 0).then(|| {
+        format!(
+            "{unplaced} of {} rows belong to no known session: they are predicted from the place that suits all sessions \
+             best. A session is known by the numbers of its tests",
+            rows.len()
+        )
+    })
+}
+
 fn text(table: &Table, names: &[&str], columns: &[Vec<f64>]) -> String {
     let mut out = joined(table.shown());
     names.iter().for_each(|name| out.push_str(&format!(",{name}")));

@@ -1,10 +1,10 @@
 //! The files of a new campaign: `campaign.json` with a note on each block, tables with the columns of the arm's joints and
 //! no rows, and `STARTER.md`, which says what to measure and what each column is.
 
-use super::analysis::FEWEST_POSES;
 use super::positions::outcome::FEWEST as FEWEST_POSITIONS;
 use super::readings::source::{DEFAULT_FILES, columns_for};
 use super::select::few_rows::FEWEST_ROWS;
+use super::verdict::too_little::FEWEST_POSES;
 use crate::arm::Arm;
 use crate::arm::effect::channel::Channel;
 use serde_json::{Value, json};

@@ -2,7 +2,7 @@
 //!
 //! Absolute positions determine the geometry, which displacements, frequencies and bench readings take as
 //! given. These in turn determine what yields under loads of their own, while positions are loaded by gravity
-//! alone. So each kind is reconciled with the findings of the other.
+//! alone. So each kind is reconciled with the findings of the other. Records against time are judged by themselves.
 
 use super::analysis;
 use super::fit::held_out::HeldOut;
@@ -13,10 +13,12 @@ use super::positions::analysis::Calibrated;
 use super::positions::outcome::FEWEST;
 use super::predict::subject;
 use super::readings::campaign::Campaign;
+use super::records;
 use super::select::few_rows::FEWEST_ROWS;
 use super::select::lack_of_fit::LackOfFit;
 use super::verdict::outcome::{Outcome, Verdict};
 use super::verdict::stage::Stage;
+use super::verdict::too_little::rows;
 use crate::arm::{Arm, Element};
 use serde_json::json;
 
@@ -41,10 +43,20 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     outcome
 }
 
-/// Reconciles what there is of the two kinds of readings.
+/// Reconciles what there is of records and of the readings without time.
 fn of_all(campaign: &Campaign) -> Outcome {
+    let has_others = campaign.has_displacements() || !campaign.positions.is_empty();
+    if campaign.records.is_empty() {
+        return of_readings(campaign);
+    }
+    let recorded = records::outcome::reconcile(campaign);
+    if has_others { records::outcome::joined(of_readings(campaign), recorded) } else { recorded }
+}
+
+/// Reconciles the readings without time.
+fn of_readings(campaign: &Campaign) -> Outcome {
     let (loaded, placed) = campaign.parted();
-    let (rows, count) = (analysis::rows(&loaded), placed.positions.len());
+    let (rows, count) = (rows(&loaded), placed.positions.len());
     if count == 0 {
         return analysis::reconcile(campaign);
     }
@@ -154,7 +166,8 @@ impl Both<'_> {
         let (effects, suspects) = match verdict {
             Verdict::Explained => (effects, Vec::new()),
             Verdict::InsufficientData => (Vec::new(), [effects, suspects].concat()),
-            Verdict::NoGap | Verdict::Unexplained => (Vec::new(), Vec::new()),
+            Verdict::NoGap => (Vec::new(), suspects),
+            Verdict::Unexplained => (Vec::new(), Vec::new()),
         };
         let (corrected, other_corrected) = match settled(verdict) {
             true => (corrected, placed.other_corrected),
@@ -193,6 +206,10 @@ impl Both<'_> {
             hash: loaded.hash,
             calibrated: loaded.calibrated,
             evidence: loaded.evidence,
+            records: Vec::new(),
+            // the corrected arm of both is the calibrated one where either is unexplained
+            empirical: Vec::new(),
+            models: Vec::new(),
         }
     }
 

@@ -12,7 +12,7 @@ pub(super) struct Row {
 }
 
 impl Row {
-    /// Least coefficient of each slot.
+    /// For each slot (a piece of the arm), the least coefficient among its remaining options.
     pub(super) fn least(&self) -> Vec<f64> {
         self.coefficients.iter().map(|c| c.iter().copied().fold(f64::INFINITY, f64::min)).collect()
     }

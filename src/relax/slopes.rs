@@ -80,6 +80,8 @@ mod tests {
                 connection_rad_per_nm: connection,
                 lost_motion: lost.map(|(half_width_rad, torque_nm)| LostMotion { half_width_rad, torque_nm }),
                 hysteresis_rad: play.unwrap_or(0.0),
+                waves: [0.0; 4],
+                further: None,
             },
         )
     }

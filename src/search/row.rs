@@ -52,12 +52,12 @@ pub(crate) struct Row {
     pub rooms: Vec<RowRoom>,
 }
 
-/// A way in which an inner slot yields.
+/// A hinge: one way in which an inner slot yields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Hinge {
     /// Number of the hinge.
     pub number: usize,
-    /// Inner slot in which it stands.
+    /// Inner slot to which the hinge belongs.
     pub slot: usize,
     /// End coordinate of a given tube; `None` for a joint.
     pub end: Option<usize>,

@@ -93,7 +93,7 @@ impl BearingLoad {
 }
 
 impl BearingDemand {
-    /// Whether nothing loads the bearing, or nobody asks.
+    /// Whether every load is zero: nothing loads the bearing, or it is not checked.
     pub fn is_zero(&self) -> bool {
         *self == Self::default()
     }

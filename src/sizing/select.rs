@@ -92,8 +92,8 @@ pub struct DriveTable<'c> {
     /// Indices of the drives that can be a first fit: no lighter drive has all limits as large.
     ladder: Vec<u32>,
     ladder_limits: Vec<DriveLimits>,
-    /// Largest limits of all steps up to each step. The first of these that holds a demand is the earliest step that can
-    /// be the first fit, so a search starts there.
+    /// Entry i has, for each limit, the largest value among the steps 0 to i of the ladder. No step before the first entry
+    /// that holds a demand can hold the demand, so the search for the first fit starts there.
     ladder_reach: Vec<DriveLimits>,
     /// Largest limits of each flight of [`FLIGHT`] steps.
     ladder_flights: Vec<DriveLimits>,

@@ -9,6 +9,7 @@ use crate::arm::Link;
 use crate::arm::bearing::Bearing;
 use crate::arm::effect::subject::Subject;
 use crate::arm::joint_law::{Curve, JointLaw};
+use crate::arm::joint_torque::JointTorque;
 use crate::arm::structure::{JointAngle, JointPiece, LinkPiece, Piece, Structure, link_piece};
 use crate::mechanics::chain::across;
 use nalgebra::{Rotation3, Vector3};
@@ -216,6 +217,7 @@ fn nominal_joint(joint: &SpaceJoint, curve: Curve) -> JointPiece {
         name: joint.name.clone(),
         axis: joint.axis,
         law: JointLaw::from(curve),
+        torque: JointTorque::default(),
         tilt_rad_per_nm: 0.0,
         mass_kg: 0.0,
         angle: JointAngle::Driven(0),

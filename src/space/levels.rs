@@ -52,7 +52,7 @@ pub struct DesignRow<P> {
 }
 
 impl<P> DesignRow<P> {
-    /// Whether another row has the same arm outboard of the row level, and so many levels inboard of it alike.
+    /// Whether another row has the same outboard arm and the same options in the first `levels` entries of `inner`.
     pub(crate) fn begins_like(&self, other: &Self, levels: usize) -> bool {
         self.arm == other.arm && self.inner[..levels] == other.inner[..levels]
     }

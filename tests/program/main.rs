@@ -18,5 +18,6 @@ mod links;
 mod other_poses;
 mod pages;
 mod progress;
+mod same_bytes;
 mod study_effects;
 mod words;

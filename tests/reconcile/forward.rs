@@ -1,6 +1,6 @@
 //! The prepared model that fits use against mechanics itself, for every effect at every place.
 
-use armwright::arm::{Bearing, Element};
+use armwright::arm::{Bearing, Curve, Element, Windup};
 use armwright::catalog::Catalogs;
 use armwright::reconcile::Campaign;
 use armwright::reconcile::fit::descent::{Weights, evaluate, jacobian};
@@ -77,6 +77,38 @@ fn is_mechanics(campaign: Campaign) {
     }
 }
 
+/// The same campaign of an arm whose joints have torsion curves, at temperatures that were measured.
+fn campaign_with_curves() -> Campaign {
+    let mut campaign = campaign();
+    for element in &mut campaign.arm.chain {
+        if let Element::Joint(joint) = element
+            && let Curve::Linear(k) = joint.curve
+        {
+            joint.curve = Curve::Windup(Windup {
+                k1_nm_per_rad: 0.6 * k,
+                k2_nm_per_rad: k,
+                k3_nm_per_rad: 1.2 * k,
+                t1_nm: 2e-4 * k,
+                t2_nm: 6e-4 * k,
+            });
+        }
+    }
+    let warm = |row: usize| Some(18.0 + 0.7 * row as f64);
+    campaign.statics.iter_mut().for_each(|row| row.temperature_c = warm(row.row));
+    campaign.modal.iter_mut().for_each(|row| row.temperature_c = warm(row.row / 4));
+    campaign
+}
+
+#[test]
+fn the_prepared_model_of_an_arm_with_curves_is_mechanics_for_every_effect_at_every_place() {
+    let labels: Vec<String> =
+        candidates(&Forward::new(&campaign_with_curves())).iter().map(|c| c.label()).collect();
+    for name in ["joint_torque@j2", "thermal_modulus@arm", "stiffness_waves@j5", "base_lift@base"] {
+        assert!(labels.iter().any(|label| label == name), "{name} is not looked for");
+    }
+    is_mechanics(campaign_with_curves());
+}
+
 #[test]
 fn sensitivities_are_differences_of_predictions() {
     are_differences(campaign());
@@ -102,6 +134,11 @@ fn are_differences(campaign: Campaign) {
         "payload_cg_error@payload",
         "lost_motion@j3",
         "sensor_gain@modal",
+        "test_mass@modal",
+        "servo_compliance@j3 (modal)",
+        "servo_compliance@j3 (static)",
+        "thermal_modulus@arm",
+        "stiffness_waves@j3",
     ] {
         let candidate = all.iter().find(|c| c.label() == name).expect("candidate");
         let model = Model::baseline(&nuisance).with(candidate);

@@ -108,6 +108,18 @@ fn what_an_arm_of_curved_gears_hides_is_named() {
     assert_eq!(right_of(&score), (4, 4), "{}", score.table());
 }
 
+/// One of each effect that came later to the library: a mass in modal tests, a servo, links that warm up, a stiffness that
+/// varies with the angle, feet that lift off; a torque on a joint only shows where gears have curves.
+#[test]
+fn an_effect_that_came_later_is_named_and_its_intervals_hold() {
+    let plain = score("plain", "later", 91, [0, 1, 3, 4, 5].into_iter());
+    assert_eq!(right_of(&plain), (5, 5), "{}", plain.table());
+    // seven numbers have intervals of 95 %; those of links that warm up leave out the sag of the arm itself
+    assert!(plain.covered.0 + 2 >= plain.covered.1 && plain.covered.1 >= 7, "{}", plain.table());
+    let geared = score("geared", "later", 92, [2, 8].into_iter());
+    assert_eq!(right_of(&geared), (2, 2), "{}", geared.table());
+}
+
 #[test]
 fn an_honest_arm_has_no_gap() {
     for set in ["plain", "hard", "varied", "geared"] {

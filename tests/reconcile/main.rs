@@ -17,8 +17,11 @@ mod other_simulator;
 mod positions;
 mod positions_maker;
 mod positions_other_simulator;
+mod record_simulator;
+mod records;
 mod scoring;
 mod together;
 mod unusual;
+mod without_a_name;
 #[path = "../witness/mod.rs"]
 mod witness;

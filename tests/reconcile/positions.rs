@@ -206,6 +206,52 @@ fn what_no_pose_separates_is_said_and_another_test_proposed() {
     assert!(outcome.next_tests.iter().all(|t| t.kind != "positions" || t.expected_sigmas > 0.1));
 }
 
+/// Declares in campaign.json that the tip was put back before a row.
+fn declare(folder: &Path, from_row: usize) {
+    let file = folder.join("campaign.json");
+    let mut statement: Value =
+        serde_json::from_str(&std::fs::read_to_string(&file).expect("text")).expect("JSON");
+    statement["positions"]["sessions"] = json!([{"from_row": from_row, "moved": "tip"}]);
+    std::fs::write(file, statement.to_string()).expect("written");
+}
+
+#[test]
+fn a_jump_of_millimetres_that_nobody_declared_explains_nothing() {
+    let folder = standard().write(&Made::put_back);
+    let outcome = reconcile(&read(folder.path()));
+    assert_eq!(outcome.verdict, Verdict::InsufficientData, "{}", outcome.to_text());
+    assert!(
+        outcome.reasons.iter().any(|r| r.contains("mm at row 41 and nobody declared it")),
+        "{:?}",
+        outcome.reasons
+    );
+    assert!(outcome.suspects.iter().any(|s| s.label() == "joint_compliance@q2"), "{}", outcome.to_text());
+}
+
+#[test]
+fn play_in_rows_taken_configuration_by_configuration_is_no_session() {
+    let outcome = reconcile(&read(standard().write_by_configuration(&Made::loose).path()));
+    assert!(!outcome.reasons.iter().any(|r| r.contains("a session of its own")), "{}", outcome.to_text());
+    let told = outcome.reasons.iter().any(|r| r.contains("the angle of q3: these readings cannot tell"));
+    assert!(told || outcome.reasons.iter().all(|r| !r.contains("before row")), "{}", outcome.to_text());
+    // the same rows in a random order show that nothing was moved
+    let shuffled = reconcile(&read(standard().write(&Made::loose).path()));
+    assert!(shuffled.reasons.iter().all(|r| !r.contains("before row")), "{}", shuffled.to_text());
+}
+
+#[test]
+fn declared_sessions_that_the_rows_do_not_have_are_faults() {
+    let folder = standard().write(&Made::put_back);
+    declare(folder.path(), 4000);
+    let faults = Campaign::read(folder.path(), &Catalogs::default()).expect_err("faulty").to_string();
+    assert!(faults.contains("from_row = 4000 is beyond the 120 rows"), "{faults}");
+    let file = folder.path().join("campaign.json");
+    let text = std::fs::read_to_string(&file).expect("text");
+    std::fs::write(&file, text.replace("4000", "1").replace("\"tip\"", "\"flange\"")).expect("written");
+    let faults = Campaign::read(folder.path(), &Catalogs::default()).expect_err("faulty").to_string();
+    assert!(faults.contains("begins no session"), "{faults}");
+}
+
 #[test]
 fn a_session_of_seven_rows_is_told_apart() {
     let outcome = reconcile(&read(standard().write(&Made::put_back_soon).path()));
@@ -328,7 +374,9 @@ fn the_lean_of_an_arm_whose_stiffness_is_known_is_found_too() {
 #[test]
 fn a_reflector_that_was_put_back_elsewhere_is_a_session_of_its_own() {
     let made = standard();
-    let mut campaign = read(made.write(&Made::put_back).path());
+    let folder = made.write(&Made::put_back);
+    declare(folder.path(), 41);
+    let mut campaign = read(folder.path());
     let outcome = reconcile(&campaign);
     assert_eq!(outcome.verdict, Verdict::Explained, "{}", outcome.to_text());
     assert!(

@@ -37,6 +37,8 @@ struct Truths {
     wobble_rad: f64,
     pulled_m: f64,
     moved_m: f64,
+    /// The third joint turns by this much further, in the sense in which it is turned.
+    play_rad: f64,
     /// Rotation of the base per moment about its axes \[rad/(N m)\].
     base_rad_per_nm: Matrix3<f64>,
 }
@@ -88,6 +90,11 @@ impl Made {
         self.truth(pose_rad, Truths { base_rad_per_nm, ..Truths::default() })
     }
 
+    /// Joints yield, and the third has play: it rests on one side or the other.
+    pub fn loose(&self, pose_rad: &[f64; 3], _row: usize) -> Truth {
+        self.truth(pose_rad, Truths { sag: true, play_rad: 3e-3, ..Truths::default() })
+    }
+
     /// Joints yield, and the point sat elsewhere in the first seven rows.
     pub fn put_back_soon(&self, pose_rad: &[f64; 3], row: usize) -> Truth {
         self.truth(
@@ -118,7 +125,8 @@ impl Made {
             let axis = Unit::new_normalize(Vector3::from(axis));
             places.push((rotation * axis.into_inner(), at));
             let wobble = if j == 2 { truths.wobble_rad * (2.0 * pose_rad[2]).sin() } else { 0.0 };
-            rotation *= Rotation3::from_axis_angle(&axis, pose_rad[j] + ZEROS_RAD[j] + wobble);
+            let play = if j == 2 { truths.play_rad.copysign(pose_rad[2]) } else { 0.0 };
+            rotation *= Rotation3::from_axis_angle(&axis, pose_rad[j] + ZEROS_RAD[j] + wobble + play);
             let link = rotation * Vector3::from(LINKS_M[j]);
             bodies.push((MASSES_KG[j], at + link / 2.0));
             at += link;
@@ -137,6 +145,27 @@ impl Made {
         sag += (truths.base_rad_per_nm * moment).cross(&point);
         let askew = Rotation3::from_euler_angles(0.3, -0.2, 2.1);
         Truth { position_m: askew * (point + sag) + Vector3::new(1.0, -2.0, 0.5) }
+    }
+
+    /// A campaign folder of a truth whose rows were taken configuration by configuration: first all in which the third joint
+    /// is turned backwards.
+    pub fn write_by_configuration(
+        &self,
+        truth: &dyn Fn(&Self, &[f64; 3], usize) -> Truth,
+    ) -> tempfile::TempDir {
+        let folder = self.write(truth);
+        let file = folder.path().join("positions.csv");
+        let text = std::fs::read_to_string(&file).expect("text");
+        let (head, rows) = text.split_once('\n').expect("rows");
+        let third_deg =
+            |row: &&str| row.split(',').nth(3).expect("a third angle").parse::<f64>().expect("a number");
+        let (forwards, backwards): (Vec<&str>, Vec<&str>) =
+            rows.lines().partition(|row| third_deg(row) > 0.0);
+        let numbered = backwards.iter().chain(&forwards).enumerate();
+        let rows: String =
+            numbered.map(|(i, row)| format!("{i},{}\n", row.split_once(',').expect("cells").1)).collect();
+        std::fs::write(&file, format!("{head}\n{rows}")).expect("written");
+        folder
     }
 
     /// A campaign folder of a truth.

@@ -11,6 +11,8 @@ pub struct Arm {
     pub gravity_m_s2: f64,
     /// Stiffness of the base about world x and y; none is rigid.
     pub base_nm_per_rad: Option<f64>,
+    /// Feet that lift off about world x and y: stiffness beyond a moment, and that moment.
+    pub base_lift: Option<(f64, f64)>,
     pub chain: Vec<Part>,
 }
 
@@ -29,6 +31,8 @@ pub struct Joint {
     /// Stiffness of the output bearing about both axes across the joint's; none is rigid.
     pub tilt_nm_per_rad: Option<f64>,
     pub mass_kg: f64,
+    /// A torque on the joint beside weight and load: constant, with the sine and with the cosine of its angle.
+    pub torque_nm: [f64; 3],
 }
 
 /// A link: a straight tube, or a rigid offset with a point mass at mid-length.
@@ -63,7 +67,12 @@ impl Arm {
     pub fn from_json(file: &Value) -> Self {
         let parts = file["chain"].as_array().expect("an arm has a chain");
         let chain = parts.iter().map(|part| Part::from_json(part, &file["materials"])).collect();
-        Self { gravity_m_s2: file["gravity_m_s2"].as_f64().unwrap_or(9.81), base_nm_per_rad: None, chain }
+        Self {
+            gravity_m_s2: file["gravity_m_s2"].as_f64().unwrap_or(9.81),
+            base_nm_per_rad: None,
+            base_lift: None,
+            chain,
+        }
     }
 
     /// The joint of this name.
@@ -115,6 +124,7 @@ impl Joint {
             law,
             tilt_nm_per_rad: joint["bearing"]["tilt_stiffness_nm_per_rad"].as_f64(),
             mass_kg: joint_mass_kg(joint),
+            torque_nm: [0.0; 3],
         }
     }
 }

@@ -50,6 +50,10 @@ pub struct Effects {
     /// Link: factor on Young's modulus; the shear modulus stays.
     pub modulus_factor: BTreeMap<String, f64>,
     pub immersion: Option<Immersion>,
+    /// Feet that lift off: stiffness beyond a moment about world x or y, and that moment.
+    pub base_lift: Option<(f64, f64)>,
+    /// Joint: a torque beside weight and load, constant, with the sine and with the cosine of the joint's angle.
+    pub joint_torque_nm: BTreeMap<String, [f64; 3]>,
 }
 
 impl Effects {
@@ -93,6 +97,13 @@ impl Effects {
             "modulus_error" => {
                 self.modulus_factor.insert(at, parameter("factor"));
             }
+            "joint_torque" => {
+                let part = |key: &str| parameters[key].as_f64().unwrap_or(0.0);
+                self.joint_torque_nm.insert(at, ["offset_nm", "sin_nm", "cos_nm"].map(part));
+            }
+            "base_lift" => {
+                self.base_lift = Some((parameter("stiffness_nm_per_rad"), parameter("preload_nm")));
+            }
             "immersion" => self.immersion = Some(Immersion::from_json(parameters)),
             other => panic!("the witness does not know the effect {other}"),
         }
@@ -122,6 +133,7 @@ impl Immersion {
 pub fn applied_to_arm(mut arm: Arm, effects: &Effects) -> Arm {
     apply_to_joints(&mut arm, effects);
     arm.base_nm_per_rad = effects.base_compliance_nm_per_rad;
+    arm.base_lift = effects.base_lift;
     for (name, kg_per_m) in &effects.harness_kg_per_m {
         arm.link_mut(name).line.mass_kg_per_m += kg_per_m;
     }
@@ -154,6 +166,9 @@ fn apply_to_joints(arm: &mut Arm, effects: &Effects) {
         // in series with the joint's own bearing
         let own = arm.joint_mut(name).tilt_nm_per_rad.map_or(0.0, |own| 1.0 / own);
         arm.joint_mut(name).tilt_nm_per_rad = Some(1.0 / (own + 1.0 / stiffness_nm_per_rad));
+    }
+    for (name, torque_nm) in &effects.joint_torque_nm {
+        arm.joint_mut(name).torque_nm = *torque_nm;
     }
     for (name, delta_kg) in &effects.extra_mass_kg {
         arm.joint_mut(name).mass_kg += delta_kg;

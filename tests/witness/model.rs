@@ -39,6 +39,8 @@ pub struct Station {
     pub unknown: Option<usize>,
     law: JointLaw,
     axis: Vector3<f64>,
+    /// Torque about the axis beside those of weight and load.
+    own_nm: f64,
     point_m: Vector3<f64>,
     /// The loads from here on are outboard.
     first_load: usize,
@@ -82,13 +84,19 @@ impl Model {
                 .iter()
                 .for_each(|(unknown, column)| generalized[*unknown] += column.dot(&wrench));
         }
+        for station in &self.stations {
+            if let Some(unknown) = station.unknown {
+                generalized[unknown] += station.own_nm;
+            }
+        }
         generalized
     }
 
-    /// The torque about a joint's axis of everything outboard of it, from equilibrium alone.
+    /// The torque about a joint's axis of everything outboard of it and on it, from equilibrium alone.
     pub fn equilibrium_torque_nm(&self, station: &Station) -> f64 {
         let moment = |load: &Load| (load.point_m - station.point_m).cross(&load.force_n) + load.moment_nm;
-        station.axis.dot(&self.loads[station.first_load..].iter().map(moment).sum::<Vector3<f64>>())
+        let loads: Vector3<f64> = self.loads[station.first_load..].iter().map(moment).sum();
+        station.axis.dot(&loads) + station.own_nm
     }
 
     /// Names of what can deform, each once, in the order of the chain.
@@ -117,7 +125,38 @@ struct Walk<'a> {
     frame: Rotation3<f64>,
     point_m: Vector3<f64>,
     node: NodeMap,
+    lifts: Vec<Lift>,
     model: Model,
+}
+
+/// Feet that lift off about one axis through the origin.
+struct Lift {
+    unknown: usize,
+    axis: Vector3<f64>,
+    stiffness_nm_per_rad: f64,
+    preload_nm: f64,
+}
+
+/// How much stiffer feet on the ground are than feet that have lifted off.
+const STANDING: f64 = 1e6;
+
+impl Lift {
+    /// The spring about this axis under all loads: secant and tangent stiffness.
+    fn spring(&self, loads: &[Load]) -> Spring {
+        let moments = loads.iter().map(|load| load.point_m.cross(&load.force_n) + load.moment_nm);
+        let moment_nm = self.axis.dot(&moments.sum::<Vector3<f64>>()).abs();
+        let beyond_nm = moment_nm - self.preload_nm;
+        let (secant, tangent) = match beyond_nm > 0.0 {
+            true => (moment_nm / beyond_nm, 1.0),
+            false => (STANDING, STANDING),
+        };
+        Spring {
+            name: "base_lift".into(),
+            unknown: self.unknown,
+            secant_nm_per_rad: secant * self.stiffness_nm_per_rad,
+            tangent_nm_per_rad: tangent * self.stiffness_nm_per_rad,
+        }
+    }
 }
 
 impl<'a> Walk<'a> {
@@ -137,10 +176,17 @@ impl<'a> Walk<'a> {
             frame: Rotation3::identity(),
             point_m: Vector3::zeros(),
             node: NodeMap::clamped(),
+            lifts: Vec::new(),
             model,
         };
         if let Some(stiffness_nm_per_rad) = arm.base_nm_per_rad {
             walk.tilt("base_compliance", [Vector3::x(), Vector3::y()], stiffness_nm_per_rad);
+        }
+        if let Some((stiffness_nm_per_rad, preload_nm)) = arm.base_lift {
+            for axis in [Vector3::x(), Vector3::y()] {
+                let unknown = walk.hinge(&axis);
+                walk.lifts.push(Lift { unknown, axis, stiffness_nm_per_rad, preload_nm });
+            }
         }
         walk
     }
@@ -149,6 +195,7 @@ impl<'a> Walk<'a> {
         self.body(&joint.name, self.node.clone(), point_mass(joint.mass_kg));
         self.weight(self.node.clone(), self.point_m, joint.mass_kg);
         let axis = self.frame * joint.axis;
+        let [constant, sine, cosine] = joint.torque_nm;
         let has_spring = !joint.law.is_rigid() && (self.is_compliant)(&joint.name);
         let unknown = has_spring.then(|| self.hinge(&axis));
         self.model.stations.push(Station {
@@ -156,6 +203,7 @@ impl<'a> Walk<'a> {
             unknown,
             law: joint.law.clone(),
             axis,
+            own_nm: constant + sine * angle_deg.to_radians().sin() + cosine * angle_deg.to_radians().cos(),
             point_m: self.point_m,
             first_load: self.model.loads.len(),
         });
@@ -179,6 +227,9 @@ impl<'a> Walk<'a> {
             } else {
                 self.rigid_link(link, &beam, &span_m, &axes);
             }
+        } else if link.middle_mass_kg > 0.0 {
+            self.body(&link.name, self.node.clone(), point_mass(link.middle_mass_kg));
+            self.weight(self.node.clone(), self.point_m, link.middle_mass_kg);
         }
         self.point_m += span_m;
     }
@@ -241,8 +292,10 @@ impl<'a> Walk<'a> {
 
     /// Turn the linear or non-linear laws into springs, now that all loads are known.
     fn finished(self) -> Model {
-        let Self { mut model, node, .. } = self;
+        let Self { mut model, node, lifts, .. } = self;
         model.tip = node;
+        let lifted: Vec<Spring> = lifts.iter().map(|lift| lift.spring(&model.loads)).collect();
+        model.springs.extend(lifted);
         let spring = |station: &Station| {
             let torque_nm = model.equilibrium_torque_nm(station);
             Some(Spring {

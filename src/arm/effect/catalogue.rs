@@ -3,20 +3,22 @@
 
 use super::kind::Kind;
 use super::{
-    base_compliance, bearing_tilt, connection_compliance, drift, extra_mass, frame_compliance, harness_mass,
-    hysteresis, immersion, joint_compliance, link_flexibility, lost_motion, modulus_error, outlier,
-    payload_cg_error, payload_mass_error, sensor_bias, sensor_gain, soft_windup, time_shift,
+    base_compliance, base_lift, bearing_tilt, connection_compliance, drift, empirical, extra_mass,
+    frame_compliance, harness_mass, hysteresis, immersion, joint_compliance, joint_torque, link_flexibility,
+    lost_motion, modulus_error, outlier, payload_cg_error, payload_mass_error, sensor_bias, sensor_gain,
+    servo_compliance, soft_windup, stiffness_waves, test_mass, thermal_modulus, time_shift,
     transmission_error, wrong_unit,
 };
 
 /// Every effect, in the order of the documentation.
-pub static KINDS: [&Kind; 22] = [
+pub static KINDS: [&Kind; 29] = [
     &connection_compliance::KIND,
     &soft_windup::KIND,
     &lost_motion::KIND,
     &hysteresis::KIND,
     &bearing_tilt::KIND,
     &base_compliance::KIND,
+    &base_lift::KIND,
     &frame_compliance::KIND,
     &payload_mass_error::KIND,
     &payload_cg_error::KIND,
@@ -24,15 +26,21 @@ pub static KINDS: [&Kind; 22] = [
     &harness_mass::KIND,
     &modulus_error::KIND,
     &immersion::KIND,
+    &joint_torque::KIND,
+    &stiffness_waves::KIND,
     &joint_compliance::KIND,
     &link_flexibility::KIND,
     &transmission_error::KIND,
     &sensor_gain::KIND,
     &sensor_bias::KIND,
     &drift::KIND,
+    &test_mass::KIND,
+    &servo_compliance::KIND,
+    &thermal_modulus::KIND,
     &outlier::KIND,
     &wrong_unit::KIND,
     &time_shift::KIND,
+    &empirical::KIND,
 ];
 
 /// The kind of an effect by its name.

@@ -41,8 +41,8 @@ impl Channel {
     }
 }
 
-/// How a channel turns truth into a reading: `factor x truth + bias + drift x (row - 1)`, in the unit of the
-/// channel's file.
+/// How a channel turns truth into a reading: `bent(factor x gain x truth) + bias + drift x (row - 1)`, in the unit of the
+/// channel's file, where `bent(d) = d + bend[0] d |d| / s + bend[1] d³ / s²` and s is `bend_scale`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
     /// Factor on the truth.
@@ -53,17 +53,34 @@ pub struct Reading {
     pub drift_per_row: [f64; 3],
     /// Rows that are gross errors, counted from 1.
     pub outlier_rows: Vec<usize>,
+    /// Factor on each component beyond `factor`; scalar channels use the first number only.
+    pub gain: [f64; 3],
+    /// How far the reading bends away from a straight line at `bend_scale`, as parts of it.
+    pub bend: [f64; 2],
+    /// The reading at which the numbers of `bend` are its bend, in the unit of the channel's file.
+    pub bend_scale: f64,
 }
 
 impl Default for Reading {
     fn default() -> Self {
-        Self { factor: 1.0, bias: [0.0; 3], drift_per_row: [0.0; 3], outlier_rows: Vec::new() }
+        Self {
+            factor: 1.0,
+            bias: [0.0; 3],
+            drift_per_row: [0.0; 3],
+            outlier_rows: Vec::new(),
+            gain: [1.0; 3],
+            bend: [0.0; 2],
+            bend_scale: 1.0,
+        }
     }
 }
 
 impl Reading {
     /// The reading for a true value. `component` is 0 to 2, `row` counts from 0.
     pub fn of(&self, truth: f64, component: usize, row: usize) -> f64 {
-        self.factor * truth + self.bias[component] + self.drift_per_row[component] * row as f64
+        let straight = self.factor * self.gain[component] * truth;
+        let part = straight / self.bend_scale;
+        let bent = straight * (self.bend[0] * part.abs() + self.bend[1] * part * part);
+        straight + bent + self.bias[component] + self.drift_per_row[component] * row as f64
     }
 }

@@ -1,9 +1,18 @@
 //! One entry of an arm file's `effects`, and how it is applied to an arm.
 
 use super::catalogue::kind;
+use super::channel::Channel;
 use super::kind::{Kind, Parameter, Scope};
 use super::subject::Subject;
 use serde_json::Value;
+
+/// The word that files have for a number of an effect's parameter; `None` if they have the number itself.
+pub(crate) fn word_of(effect: &str, parameter: &str, number: f64) -> Option<&'static str> {
+    let kind = kind(effect)?;
+    let parameters = (kind.parameters)(*kind.places.first()?);
+    let is_channel = parameters.iter().any(|p| p.name == parameter && p.is_channel);
+    is_channel.then(|| Channel::ALL.get(number as usize).map(|c| c.word())).flatten()
+}
 
 /// One effect of an arm, as its file names it.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,9 +55,9 @@ impl Effect {
         self.kind().is_some_and(|k| k.traits.changes_bending)
     }
 
-    /// Whether the effect describes the test and not the product.
+    /// Whether the effect describes the test and not the product. Whatever sits at a channel does.
     pub fn is_of_test(&self) -> bool {
-        self.kind().is_some_and(|k| k.scope == Scope::Test)
+        self.kind().is_some_and(|k| k.scope == Scope::Test) || Channel::from_word(&self.at).is_some()
     }
 }
 

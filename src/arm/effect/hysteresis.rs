@@ -1,10 +1,12 @@
 //! `hysteresis`: by friction play the twist lags a reversal of torque by up to the half width.
 
-use super::kind::{Kind, Needs, Parameter, Place, Scale, Scope, Setting, Traits};
+use super::kind::{Kind, Measure, Needs, Parameter, Place, Scale, Scope, Setting, Traits};
 use super::subject::Subject;
 
-const PARAMETERS: &[Parameter] =
-    &[Parameter::number("half_width_rad", 0.0, 5e-3, 1e-4, Scale::Linear).expected(0.0, 2e-3)];
+const PARAMETERS: &[Parameter] = &[Parameter::number("half_width_rad", 0.0, 0.1, 1e-4, Scale::Linear)
+    .expected(0.0, 2e-3)
+    .sought_up_to(5e-3)
+    .growing_with(Measure::Angle, 1.0)];
 
 /// The effect.
 pub(crate) const KIND: Kind = Kind {

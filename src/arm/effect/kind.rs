@@ -43,6 +43,8 @@ pub enum Scale {
     Reciprocal,
     /// `u` is the natural logarithm of the value.
     Log,
+    /// `u` is the value, a torque, over the largest torque on the joint in the campaign.
+    Torque,
 }
 
 /// The value at which the effect is absent.
@@ -71,6 +73,8 @@ pub enum Measure {
     DisplacementPerRow,
     /// Largest wind-up reading \[arcmin\].
     Twist,
+    /// Largest displacement reading over the length of the links, or largest wind-up reading \[rad\].
+    Angle,
 }
 
 /// A parameter of an effect.
@@ -87,7 +91,7 @@ pub struct Parameter {
     /// A typical value, where a fit starts.
     pub typical: f64,
     /// Where a fit expects it, every value as likely as another. A stiffness is given as the compliance over
-    /// that of its joint, a reciprocal as `1/factor`.
+    /// that of its joint, a reciprocal as `1/factor`, a torque as part of the largest on its joint.
     pub prior: (f64, f64),
     /// How a fit moves it.
     pub scale: Scale,
@@ -95,11 +99,16 @@ pub struct Parameter {
     pub absent: Absent,
     /// The value when it is left out. A parameter with a default is stated and not fitted.
     pub default: Option<f64>,
+    /// Whether it names a channel. Files have the channel's word; here it is the channel's number.
+    pub is_channel: bool,
     /// Another parameter that this one is not below.
     pub not_below: Option<&'static str>,
     /// The measure of the arm or of its readings with which the expected size grows, and the part of it
     /// that is expected.
     pub grows_with: Option<(Measure, f64)>,
+    /// The largest value that a search looks for in an arm and a campaign of usual size, if that is less than the
+    /// largest sensible one.
+    pub sought_up_to: Option<f64>,
     /// The limits of a torque, as parts of the largest torque on its joint in the campaign. A law that changes
     /// where no torque reaches cannot be told from another.
     pub torque_parts: Option<(f64, f64)>,
@@ -109,7 +118,7 @@ impl Parameter {
     /// A single number that must be given.
     pub const fn number(name: &'static str, low: f64, high: f64, typical: f64, scale: Scale) -> Self {
         let absent = match scale {
-            Scale::Linear | Scale::Stiffness => Absent::AtZero,
+            Scale::Linear | Scale::Stiffness | Scale::Torque => Absent::AtZero,
             Scale::Reciprocal => Absent::AtOne,
             Scale::Log => Absent::Never,
         };
@@ -123,8 +132,10 @@ impl Parameter {
             scale,
             absent,
             default: None,
+            is_channel: false,
             not_below: None,
             grows_with: None,
+            sought_up_to: None,
             torque_parts: None,
         }
     }
@@ -154,6 +165,11 @@ impl Parameter {
         Self { grows_with: Some((measure, part)), ..self }
     }
 
+    /// The same parameter, looked for up to this value where arm and readings are of usual size.
+    pub const fn sought_up_to(self, high: f64) -> Self {
+        Self { sought_up_to: Some(high), ..self }
+    }
+
     /// The same torque, within these parts of the largest torque on its joint.
     pub const fn within_torque(self, low: f64, high: f64) -> Self {
         Self { torque_parts: Some((low, high)), ..self }
@@ -169,6 +185,10 @@ pub enum Needs {
     RigidJoint,
     /// A joint that twists: the effect acts in series with its gear.
     TwistingJoint,
+    /// A driven joint that twists.
+    DrivenTwist,
+    /// A driven joint whose twist is not in proportion to its torque.
+    CurvedJoint,
     /// A link that the model holds rigid.
     RigidLink,
     /// A link that bends.
@@ -196,12 +216,20 @@ pub enum Yields {
     Frame,
 }
 
+/// A parameter that a search frees: its name, and one component of it or all.
+pub type Freed = (&'static str, Option<usize>);
+
+/// How likely a search takes an effect to be before any reading, compared with a usual one, if it is seldom met.
+pub const RARE: f64 = 0.3;
+
 /// What is known of a joint in a campaign when an effect there proposes starting points for a fit.
 pub struct Setting<'a> {
     /// Largest torque on the joint in the campaign, at least 1 \[N m\].
     pub torque_nm: f64,
     /// The twist of the joint under that torque \[rad\].
     pub twist_rad: f64,
+    /// Number of rows of the longest file of readings of the whole arm.
+    pub rows: f64,
     /// The value of each fitted number at `u = 1`.
     pub values_at_one: &'a [f64],
 }
@@ -210,6 +238,13 @@ pub struct Setting<'a> {
 pub struct Traits {
     /// Whether a search for effects tries the kind at every place.
     pub is_sought: bool,
+    /// The channels at which, or in which, the search tries a kind of channels; all if there are none here.
+    pub sought_in: &'static [Channel],
+    /// The sets of parameters that the search frees, each a candidate of its own. If there are none, it frees every
+    /// parameter without a default.
+    pub variants: &'static [&'static [Freed]],
+    /// How likely the search takes it to be before any reading, compared with a usual effect at one place.
+    pub odds: f64,
     /// What the nominal model must be like for the search to try it.
     pub needs: Needs,
     /// Where fits start, each a list of `u` by number.
@@ -217,10 +252,16 @@ pub struct Traits {
     /// Whether the readings follow its parameters so crookedly that a confidence interval must follow the
     /// profile of the objective.
     pub is_nonlinear: bool,
+    /// Whether a screening keeps the numbers that say how it acts at their starts: far from there the linear model misleads.
+    pub screens_at_starts: bool,
     /// Whether it replaces the torsion curve of a gear, with break points at which frequencies step.
     pub is_gear_curve: bool,
+    /// Whether it changes the torques at which gears vibrate, so that frequencies step.
+    pub moves_working_points: bool,
     /// Whether it changes how a link bends.
     pub changes_bending: bool,
+    /// Whether studies can have it.
+    pub in_studies: bool,
     /// The mass that it can take away.
     pub removes: Option<Removes>,
     /// What yields under gravity, if absolute positions are searched for it.
@@ -235,16 +276,29 @@ impl Traits {
     /// What most kinds answer.
     pub const USUAL: Self = Self {
         is_sought: true,
+        sought_in: &[],
+        variants: &[],
+        odds: 1.0,
         needs: Needs::Nothing,
         starts: |setting| vec![vec![1.0; setting.values_at_one.len()]],
         is_nonlinear: false,
+        screens_at_starts: false,
         is_gear_curve: false,
+        moves_working_points: false,
         changes_bending: false,
+        in_studies: true,
         removes: None,
         yields: None,
         same_at_vertical_first_joint: None,
         contradiction: |_| None,
     };
+}
+
+impl Traits {
+    /// Whether frequencies step as its parameters change.
+    pub fn steps_frequencies(&self) -> bool {
+        self.is_gear_curve || self.moves_working_points
+    }
 }
 
 /// What is known of an effect before any arm has it.

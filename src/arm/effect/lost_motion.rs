@@ -1,11 +1,14 @@
 //! `lost_motion`: play closes smoothly as the torque grows: `theta += h tanh(T/T_c)`.
 
-use super::kind::{Kind, Needs, Parameter, Place, Scale, Scope, Setting, Traits};
+use super::kind::{Kind, Measure, Needs, Parameter, Place, Scale, Scope, Setting, Traits};
 use super::subject::Subject;
 use crate::arm::joint_law::LostMotion;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter::number("half_width_rad", 0.0, 5e-3, 1.5e-4, Scale::Linear).expected(0.0, 2e-3),
+    Parameter::number("half_width_rad", 0.0, 0.1, 1.5e-4, Scale::Linear)
+        .expected(0.0, 2e-3)
+        .sought_up_to(5e-3)
+        .growing_with(Measure::Angle, 1.0),
     Parameter::number("torque_nm", 0.05, 1e4, 10.0, Scale::Log)
         .expected(0.3, 500.0)
         .within_torque(0.003, 1.0),

@@ -1,9 +1,11 @@
 //! The arm under test: its structure, and how the test deviates from its description. This is what effects change.
 
 use super::channel::{Channel, Reading};
+use super::setup::Setup;
+use super::warming::{Moment, Warming};
 use super::waves::transmission_rad;
 use crate::arm::load::Payload;
-use crate::arm::structure::{JointAngle, Structure};
+use crate::arm::structure::{JointAngle, LinkPiece, Piece, Structure};
 use nalgebra::Vector3;
 
 /// An arm under test: the product, and how the test deviates from its description.
@@ -19,6 +21,10 @@ pub struct Subject {
     pub transmissions_rad: Vec<(String, [f64; 4])>,
     /// How each channel reads, in the order of [`Channel::ALL`].
     pub channels: [Reading; 4],
+    /// What is special about the tests of each channel, in the same order.
+    pub setups: [Setup; 4],
+    /// How the moduli of the links change meanwhile.
+    pub warming: Warming,
 }
 
 impl Subject {
@@ -30,6 +36,8 @@ impl Subject {
             payload_offset_m: Vector3::zeros(),
             transmissions_rad: Vec::new(),
             channels: std::array::from_fn(|_| Reading::default()),
+            setups: std::array::from_fn(|_| Setup::default()),
+            warming: Warming::default(),
         }
     }
 
@@ -48,6 +56,29 @@ impl Subject {
     /// How the channel named `at` reads; `None` if there is no such channel.
     pub fn channel_mut(&mut self, at: &str) -> Option<&mut Reading> {
         Channel::from_word(at).map(|c| &mut self.channels[c as usize])
+    }
+
+    /// What is special about the tests of the channel named `at`; `None` if there is no such channel.
+    pub fn setup_mut(&mut self, at: &str) -> Option<&mut Setup> {
+        Channel::from_word(at).map(|c| &mut self.setups[c as usize])
+    }
+
+    /// The arm as it is in a test of a channel.
+    pub fn structure_in(&self, channel: Channel) -> Structure {
+        self.setups[channel as usize].of(&self.structure)
+    }
+
+    /// The arm as it is in a test of a channel at a moment.
+    pub fn structure_at(&self, channel: Channel, when: &Moment) -> Structure {
+        let mut out = self.structure_in(channel);
+        let factor = self.warming.factor(when);
+        for piece in &mut out.pieces {
+            if let Piece::Link(LinkPiece { beam: Some(beam), .. }) = piece {
+                beam.material.youngs_modulus_pa *= factor;
+                beam.material.shear_modulus_pa *= factor;
+            }
+        }
+        out
     }
 
     /// The true payload where `stated` is stated. A load case without a payload stays without one.

@@ -131,7 +131,13 @@ pub fn fits_nominal(kind: &Kind, at: &str, structure: &Structure) -> bool {
         Needs::Nothing => true,
         Needs::RigidJoint => rigid_joint,
         Needs::TwistingJoint => !rigid_joint,
+        Needs::DrivenTwist => !rigid_joint && structure.joints().any(|j| j.name == at && j.is_driven()),
+        Needs::CurvedJoint => structure.joints().any(|j| j.name == at && j.is_driven() && j.law.is_curved()),
         Needs::RigidLink => rigid_link,
+        // an effect of the whole arm needs a link that bends somewhere
+        Needs::BendingLink if at == "arm" => {
+            structure.links().any(|l| l.beam.is_some_and(|b| b.flexibility > 0.0))
+        }
         Needs::BendingLink => !rigid_link,
     }
 }

@@ -7,4 +7,5 @@ pub(crate) mod held_out;
 pub(crate) mod interval;
 pub mod noise;
 pub(crate) mod stats;
+pub(crate) mod steps;
 pub(crate) mod units;

@@ -94,6 +94,17 @@ impl Noise {
         let mut slips = misses(forward, fit, &self.weights(forward));
         slips.retain(|(_, _, size)| *size > GROSS);
         slips.retain(|slip| !self.outliers.iter().any(|(c, row, _)| (c, row) == (&slip.0, &slip.1)));
+        let residuals = declared_residuals(forward, &fit.point.predicted);
+        let slips: Vec<(Channel, usize, f64)> = CHANNELS
+            .into_iter()
+            .flat_map(|channel| {
+                let range = forward.range(channel);
+                let own =
+                    slips.iter().filter(|slip| slip.0 == channel).map(|slip| (slip.1, slip.2)).collect();
+                let kept = without_runs(&forward.data[range.clone()], &residuals[range], own);
+                kept.into_iter().map(move |(row, size)| (channel, row, size))
+            })
+            .collect();
         if slips.is_empty() || slips.len() > MOST_SLIPS {
             return None;
         }
@@ -144,6 +155,7 @@ impl Noise {
             if gross.len() > at_most(FEW, rows(forward, channel)) {
                 continue;
             }
+            let gross = without_runs(data, own, gross);
             noise.outliers.extend(gross.iter().map(|(row, size)| (channel, *row, *size)));
             let gross: HashSet<usize> = gross.into_iter().map(|(row, _)| row).collect();
             let kept = range.filter(|i| !gross.contains(&forward.data[*i].row));
@@ -223,6 +235,31 @@ fn misses(forward: &Forward, fit: &Fit, weights: &Weights) -> Vec<(Channel, usiz
     out
 }
 
+/// The gross rows of a channel without those that follow each other in one pose, or on the bench, and err in the same
+/// sense. Slips do not come in a row. What does, is a structure: a clamp that gives way at the end of a load.
+fn without_runs(data: &[Datum], residuals: &[f64], gross: Vec<(usize, f64)>) -> Vec<(usize, f64)> {
+    // where and in which sense a row errs most
+    let mut worst: HashMap<usize, (usize, f64, usize)> = HashMap::new();
+    for (datum, residual) in data.iter().zip(residuals) {
+        let own = worst.entry(datum.row).or_insert((datum.component, *residual, datum.group));
+        if residual.abs() > own.1.abs() {
+            *own = (datum.component, *residual, datum.group);
+        }
+    }
+    let is_run = |a: usize, b: usize| match (worst.get(&a), worst.get(&b)) {
+        (Some(a), Some(b)) => a.0 == b.0 && a.2 == b.2 && a.1.signum() == b.1.signum(),
+        _ => false,
+    };
+    // the modes of a list follow each other because they are numbered so
+    let in_order = data.first().is_some_and(|datum| datum.channel != Channel::Modal);
+    let rows: HashSet<usize> = gross.iter().map(|(row, _)| *row).collect();
+    let follows = |row: usize| {
+        let next = rows.contains(&(row + 1)) && is_run(row, row + 1);
+        next || (row > 0 && rows.contains(&(row - 1)) && is_run(row - 1, row))
+    };
+    gross.into_iter().filter(|(row, _)| !(in_order && follows(*row))).collect()
+}
+
 /// The largest size among the data of each row of a channel. Rows come in the order of their first datum.
 fn largest_of_rows<'a>(sizes: impl Iterator<Item = (&'a Datum, f64)>) -> Vec<(usize, f64)> {
     let mut out: Vec<(usize, f64)> = Vec::new();
@@ -276,6 +313,29 @@ mod tests {
         // of 40 squares with a quarter of each taken up by parameters, declared 1, true 1.15
         let readings = (0..40).map(|_| (1.15 * 0.75f64.sqrt(), 0.25));
         assert!((scale(readings) - ((15.0 + 30.0 * 1.15f64.powi(2)) / 45.0).sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn rows_that_slip_one_after_the_other_are_a_structure() {
+        let datum = |row: usize, group: usize| Datum {
+            channel: Channel::Static,
+            row,
+            index: row,
+            component: 0,
+            group,
+            value: 0.0,
+            sigma: 1.0,
+        };
+        let data: Vec<Datum> = [0, 0, 0, 1, 1, 1].into_iter().enumerate().map(|(r, g)| datum(r, g)).collect();
+        let kept = |residuals: [f64; 6]| {
+            let gross = (0..6).filter(|r| residuals[*r].abs() > 5.0).map(|r| (r, residuals[r].abs()));
+            let kept = without_runs(&data, &residuals, gross.collect());
+            kept.into_iter().map(|(row, _)| row).collect::<Vec<_>>()
+        };
+        assert_eq!(kept([0.0, 0.0, 0.0, 0.0, 9.0, 8.0]), [0; 0], "the end of a load");
+        assert_eq!(kept([0.0, 0.0, 0.0, 0.0, 9.0, -8.0]), [4, 5], "in both senses");
+        assert_eq!(kept([0.0, 0.0, 9.0, 8.0, 0.0, 0.0]), [2, 3], "in two poses");
+        assert_eq!(kept([9.0, 0.0, 8.0, 0.0, 0.0, 0.0]), [0, 2], "apart");
     }
 
     #[test]

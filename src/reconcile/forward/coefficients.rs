@@ -1,14 +1,19 @@
 //! Lists the coordinates that an arm can have, and expresses a subject as numbers on these coordinates.
 
 use crate::arm::LinkModel;
-use crate::arm::effect::channel::Reading;
+use crate::arm::base_lift::BaseLift;
+use crate::arm::effect::channel::{Channel, Reading};
+use crate::arm::effect::setup::Setup;
 use crate::arm::effect::subject::Subject;
+use crate::arm::effect::warming::Warming;
 use crate::arm::joint_law::{Curve, JointLaw};
+use crate::arm::joint_torque::JointTorque;
 use crate::arm::load::Water;
 use crate::arm::structure::{FrameCompliance, LinkPiece, Piece, Structure};
 use crate::mechanics::beam::{Strain, compliances, strains};
 use crate::mechanics::chain::Chain;
-use nalgebra::Vector3;
+use crate::mechanics::{Wrench, force_wrench};
+use nalgebra::{Rotation3, Vector3};
 
 /// A joint's coordinates.
 #[derive(Debug, Clone)]
@@ -53,13 +58,46 @@ pub struct Layout {
     pub gravity_m_s2: f64,
 }
 
+/// What is special about the tests of a channel, as numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TestNumbers {
+    /// Mass that hangs at the tip \[kg\].
+    pub mass_kg: f64,
+    /// Centre of gravity of this mass from the tip, in the last frame \[m\].
+    pub cg_m: Vector3<f64>,
+    /// Further compliance of each joint \[rad/(N m)\], base to tip; empty if no joint yields further.
+    pub servo_rad_per_nm: Vec<f64>,
+}
+
+impl TestNumbers {
+    fn of(setup: &Setup, layout: &Layout) -> Self {
+        let servo_rad_per_nm = match setup.servo_rad_per_nm.is_empty() {
+            true => Vec::new(),
+            false => layout.joints.iter().map(|j| setup.servo_of(&j.name)).collect(),
+        };
+        Self { mass_kg: setup.mass_kg, cg_m: setup.cg_m, servo_rad_per_nm }
+    }
+
+    /// Weight of the mass as a wrench about the world's origin; zero if there is none.
+    pub fn weight(&self, tip_m: &Vector3<f64>, rotation: &Rotation3<f64>, gravity_m_s2: f64) -> Wrench {
+        match self.mass_kg {
+            0.0 => Wrench::zeros(),
+            kg => force_wrench(&Vector3::new(0.0, 0.0, -kg * gravity_m_s2), &(tip_m + rotation * self.cg_m)),
+        }
+    }
+}
+
 /// A subject, expressed as numbers on the coordinates.
 #[derive(Debug, Clone)]
 pub struct Coefficients {
     /// Compliance of each coordinate. That of a joint's twist is 0 here, because its law is in `laws`.
     pub linear: Vec<f64>,
+    /// Feet that lift off.
+    pub lift: Option<BaseLift>,
     /// Laws of the joints, base to tip.
     pub laws: Vec<JointLaw>,
+    /// Torques that act on the joints beside weight and load, beyond those of the template.
+    pub torques: Vec<JointTorque>,
     /// Mass beyond the template: of each joint \[kg\], of each link's harness \[kg/m\], and water density
     /// times added-mass coefficient \[kg/m³\].
     pub masses: Vec<f64>,
@@ -73,6 +111,10 @@ pub struct Coefficients {
     pub payload_weight: f64,
     /// How the channels read.
     pub channels: [Reading; 4],
+    /// What is special about the tests of each channel.
+    pub tests: [TestNumbers; 4],
+    /// How the moduli of the links change meanwhile.
+    pub warming: Warming,
     /// Width over which the slope of a gear's curve changes at a break point \[ln of the torque\].
     pub smoothing: f64,
 }
@@ -86,6 +128,8 @@ pub(crate) struct StaticChanges {
     pub weights: bool,
     /// The payload's mass, place or buoyancy.
     pub payload: bool,
+    /// Feet that lift off.
+    pub lift: bool,
     /// The law of each joint.
     pub laws: Vec<bool>,
 }
@@ -93,16 +137,21 @@ pub(crate) struct StaticChanges {
 impl StaticChanges {
     /// Everything differs.
     pub(crate) fn all(joints: usize) -> Self {
-        Self { linear: true, weights: true, payload: true, laws: vec![true; joints] }
+        Self { linear: true, weights: true, payload: true, lift: true, laws: vec![true; joints] }
     }
 
     /// Whether all static readings are the same.
     pub(crate) fn is_none(&self) -> bool {
-        !(self.linear || self.weights || self.payload || self.laws.contains(&true))
+        !(self.linear || self.weights || self.payload || self.lift || self.laws.contains(&true))
     }
 }
 
 impl Layout {
+    /// Whether a coordinate is a strain of a link.
+    pub(crate) fn is_of_link(&self, coordinate: usize) -> bool {
+        self.links.iter().any(|link| (link.first..link.first + link.strains.len()).contains(&coordinate))
+    }
+
     /// Lists the coordinates of an arm.
     pub fn new(structure: &Structure) -> Self {
         let full = with_everything(structure);
@@ -153,6 +202,8 @@ impl Layout {
 fn with_everything(structure: &Structure) -> Structure {
     let mut full = structure.clone();
     full.base_tilt_rad_per_nm = 1.0;
+    // feet that lift off move the coordinates of the base's tilts
+    full.base_lift = None;
     full.water = None;
     for piece in &mut full.pieces {
         match piece {
@@ -198,11 +249,13 @@ impl Coefficients {
         layout.frames.iter().for_each(|(at, compliance)| linear[*at] = *compliance);
         let mut masses = Vec::with_capacity(layout.with_mass.len());
         let mut laws = Vec::with_capacity(layout.joints.len());
+        let mut torques = Vec::with_capacity(layout.joints.len());
         for ((slot, joint), before) in
             layout.joints.iter().zip(structure.joints()).zip(nominal.structure.joints())
         {
             linear[slot.twist - 2..slot.twist].fill(joint.tilt_rad_per_nm);
             laws.push(joint.law);
+            torques.push(joint.torque.beyond(&before.torque));
             masses.push(joint.mass_kg - before.mass_kg);
         }
         for ((slot, link), before) in
@@ -220,46 +273,75 @@ impl Coefficients {
         weights.push(density);
         Self {
             linear,
+            lift: structure.base_lift,
             laws,
+            torques,
             masses,
             weights,
             payload_delta_kg: subject.payload_delta_kg,
             payload_offset_m: subject.payload_offset_m,
             payload_weight,
             channels: subject.channels.clone(),
+            tests: std::array::from_fn(|c| TestNumbers::of(&subject.setups[c], layout)),
+            warming: subject.warming,
             smoothing: 0.0,
         }
     }
 
+    /// The law of a joint at an angle, in a test of a channel.
+    pub(crate) fn law_at(&self, joint: usize, channel: Channel, angle_rad: f64) -> JointLaw {
+        self.law(joint, channel).at_angle(angle_rad)
+    }
+
+    /// The law of a joint in a test of a channel, at its mean over all angles.
+    pub(crate) fn law(&self, joint: usize, channel: Channel) -> JointLaw {
+        let mut law = self.laws[joint];
+        if let Some(servo) = self.tests[channel as usize].servo_rad_per_nm.get(joint) {
+            law.connection_rad_per_nm += servo;
+        }
+        law
+    }
+
     /// What differs between two subjects for static readings.
     pub(crate) fn static_changes(&self, other: &Self) -> StaticChanges {
-        let laws: Vec<bool> = self.laws.iter().zip(&other.laws).map(|(a, b)| a != b).collect();
-        let linear = self.linear != other.linear;
+        let in_test = |c: &Self, joint: usize| c.law(joint, Channel::Static);
+        let laws: Vec<bool> = (0..self.laws.len()).map(|j| in_test(self, j) != in_test(other, j)).collect();
+        let linear = self.linear != other.linear || self.warming != other.warming;
         let payload = self.payload_delta_kg != other.payload_delta_kg
             || self.payload_offset_m != other.payload_offset_m
             || self.payload_weight != other.payload_weight;
         // readings count from the unloaded arm, so where twists are proportional to torques, weights do not show
-        let is_proportional = |law: &JointLaw| {
-            law.lost_motion.is_none() && law.hysteresis_rad == 0.0 && !matches!(law.curve, Curve::Windup(_))
-        };
-        let is_other = linear || payload || laws.contains(&true);
-        let weights = self.weights != other.weights && (is_other || !self.laws.iter().all(is_proportional));
-        StaticChanges { linear, weights, payload, laws }
+        let is_proportional = |law: &JointLaw| !law.has_play() && !matches!(law.curve, Curve::Windup(_));
+        let lift = self.lift != other.lift;
+        let is_other = linear || payload || lift || laws.contains(&true);
+        let [own, others] = [self, other].map(|c| &c.tests[Channel::Static as usize]);
+        let is_heavier = (own.mass_kg, own.cg_m) != (others.mass_kg, others.cg_m)
+            || self.weights != other.weights
+            || self.torques != other.torques;
+        let is_linear = self.lift.is_none() && self.laws.iter().all(is_proportional);
+        let weights = is_heavier && (is_other || !is_linear);
+        StaticChanges { linear, weights, payload, lift, laws }
     }
 
     /// Whether two subjects have the same frequencies and the same modal channel.
     pub fn same_modes(&self, other: &Self) -> bool {
         self.linear == other.linear
+            && self.lift == other.lift
             && self.masses == other.masses
             && self.weights == other.weights
+            && self.torques == other.torques
             && self.payload_delta_kg == other.payload_delta_kg
             && self.payload_offset_m == other.payload_offset_m
             && self.payload_weight == other.payload_weight
             && self.smoothing == other.smoothing
+            && self.warming == other.warming
+            && self.tests[Channel::Modal as usize] == other.tests[Channel::Modal as usize]
             && self.laws.iter().zip(&other.laws).all(|(a, b)| {
                 a.curve == b.curve
                     && a.connection_rad_per_nm == b.connection_rad_per_nm
                     && a.lost_motion == b.lost_motion
+                    && a.waves == b.waves
+                    && a.further == b.further
             })
     }
 }

@@ -8,14 +8,17 @@
 use super::coefficients::{Coefficients, Layout};
 use super::datum::{Datum, Groups};
 use super::statics::PoseGeometry;
+use crate::arm::base_lift::BaseLift;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::subject::Subject;
+use crate::arm::effect::warming::Moment;
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::arm::load::Payload;
 use crate::mechanics::chain::Chain;
 use crate::mechanics::chain::Posed;
-use crate::mechanics::displacement_at;
+use crate::mechanics::{Wrench, displacement_at};
 use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::readings::rows::ModalRow;
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix3xX, SymmetricEigen, Vector3};
 use std::f64::consts::TAU;
 
@@ -36,6 +39,8 @@ const UNMISTAKABLE: f64 = 5.0;
 pub struct ModalTest {
     geometry: PoseGeometry,
     payload: Payload,
+    /// When the first mode of the list was taken.
+    when: Moment,
     /// Index of each datum, and index of the mode it is compared with, from 0.
     pub modes: Vec<(usize, usize)>,
     mass: DMatrix<f64>,
@@ -76,7 +81,7 @@ pub(crate) fn prepare(
             .rposition(|k| *k == key)
             .filter(|&i| tests[i].modes.iter().all(|(_, mode)| *mode != row.mode - 1));
         let index = found.unwrap_or_else(|| {
-            tests.push(ModalTest::new(layout, nominal, &row.pose_deg, &row.payload));
+            tests.push(ModalTest::new(layout, nominal, row));
             keys.push(key);
             tests.len() - 1
         });
@@ -98,8 +103,8 @@ pub(crate) fn prepare(
 }
 
 impl ModalTest {
-    fn new(layout: &Layout, nominal: &Subject, pose_deg: &[f64], payload: &Payload) -> Self {
-        let pose_rad: Vec<f64> = pose_deg.iter().map(|a| a.to_radians()).collect();
+    fn new(layout: &Layout, nominal: &Subject, row: &ModalRow) -> Self {
+        let pose_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
         let empty = Payload::default();
         let posed = layout.template.pose_rad(&pose_rad, &empty, Vector3::zeros());
         let mass = posed.mass_matrix();
@@ -108,8 +113,9 @@ impl ModalTest {
         let (tip, spin) = tip_jacobians(&posed);
         Self {
             factors,
-            geometry: PoseGeometry::new(layout, nominal, pose_deg),
-            payload: *payload,
+            geometry: PoseGeometry::new(layout, nominal, &row.pose_deg),
+            payload: row.payload,
+            when: row.moment(),
             modes: Vec::new(),
             mass,
             tip,
@@ -194,6 +200,10 @@ impl ModalTest {
                 out.rows_mut(0, reach).gemm(*amount, factor, &moved, 1.0);
             }
         }
+        let (hung_kg, jacobian) = self.hung_jacobian(coefficients);
+        if hung_kg != 0.0 {
+            out.gemm_tr(hung_kg, &jacobian, &(&jacobian * shapes), 1.0);
+        }
         let (mass_kg, jacobian) = self.payload_jacobian(coefficients);
         if mass_kg != 0.0 {
             out.gemm_tr(mass_kg, &jacobian, &(&jacobian * shapes), 1.0);
@@ -217,22 +227,48 @@ impl ModalTest {
         (self.payload.mass_kg + coefficients.payload_delta_kg, &self.tip - arm.cross_matrix() * &self.spin)
     }
 
+    /// The mass that hangs at the tip in modal tests \[kg\], and the motion of its centre of gravity per unit of each
+    /// coordinate.
+    fn hung_jacobian(&self, coefficients: &Coefficients) -> (f64, Matrix3xX<f64>) {
+        let test = &coefficients.tests[Channel::Modal as usize];
+        match test.mass_kg {
+            0.0 => (0.0, Matrix3xX::zeros(0)),
+            kg => (kg, &self.tip - (self.geometry.rotation * test.cg_m).cross_matrix() * &self.spin),
+        }
+    }
+
     /// Compliance of every coordinate. That of a joint is the slope of its law at the torque of this test.
     fn compliances(&self, layout: &Layout, coefficients: &Coefficients) -> Vec<f64> {
         let mut out = coefficients.linear.clone();
-        let dead = self.geometry.dead_torques_nm(coefficients);
+        if !coefficients.warming.is_none() {
+            let factor = coefficients.warming.factor(&self.when);
+            let strains = layout.links.iter().flat_map(|link| link.first..link.first + link.strains.len());
+            strains.for_each(|i| out[i] /= factor);
+        }
+        let dead = self.geometry.dead_torques_nm(coefficients, layout, Channel::Modal);
         let wrench =
             self.geometry.wrench(&self.payload, &Vector3::zeros(), layout.gravity_m_s2, coefficients);
+        if let Some(lift) = coefficients.lift {
+            let moments_nm = self.base_moments_nm(layout, coefficients, &wrench);
+            (0..2).for_each(|i| out[i] += lifted_tangent(&lift, moments_nm[i], coefficients.smoothing));
+        }
         for (j, slot) in layout.joints.iter().enumerate() {
             let torque = dead[j] + self.geometry.joints[j].twist.dot(&wrench);
-            out[slot.twist] = tangent(&coefficients.laws[j], torque, coefficients.smoothing);
+            let law = coefficients.law_at(j, Channel::Modal, self.geometry.angles_rad[j]);
+            out[slot.twist] = tangent(&law, torque, coefficients.smoothing);
         }
         out
     }
 
+    /// Moments on the base about world x and y at this test, with the wrench of its payload \[N m\].
+    fn base_moments_nm(&self, layout: &Layout, coefficients: &Coefficients, wrench: &Wrench) -> [f64; 2] {
+        let dead = self.geometry.dead_base_nm(coefficients, layout, Channel::Modal);
+        [0, 1].map(|i| dead[i] + self.geometry.base[i].twist.dot(wrench))
+    }
+
     /// Torques of the joints at this test \[N m\].
     pub fn torques_nm(&self, layout: &Layout, coefficients: &Coefficients) -> Vec<f64> {
-        let dead = self.geometry.dead_torques_nm(coefficients);
+        let dead = self.geometry.dead_torques_nm(coefficients, layout, Channel::Modal);
         let wrench =
             self.geometry.wrench(&self.payload, &Vector3::zeros(), layout.gravity_m_s2, coefficients);
         self.geometry.joints.iter().zip(dead).map(|(m, t)| t + m.twist.dot(&wrench)).collect()
@@ -272,6 +308,7 @@ impl ModalTest {
         from.masses == to.masses
             && from.payload_delta_kg == to.payload_delta_kg
             && from.payload_offset_m == to.payload_offset_m
+            && from.tests[Channel::Modal as usize] == to.tests[Channel::Modal as usize]
             && self.compliances(layout, from) == self.compliances(layout, to)
     }
 
@@ -384,6 +421,13 @@ impl ModalTest {
         let payload_moves =
             from.payload_delta_kg != to.payload_delta_kg || from.payload_offset_m != to.payload_offset_m;
         let payloads = payload_moves.then(|| (self.payload_jacobian(from), self.payload_jacobian(to)));
+        let tests = [from, to].map(|c| &c.tests[Channel::Modal as usize]);
+        let hung = (tests[0] != tests[1]).then(|| (self.hung_jacobian(from), self.hung_jacobian(to)));
+        // twice the kinetic energy of a mass at unit frequency
+        let swing = |(kg, jacobian): &(f64, Matrix3xX<f64>), x: &DVector<f64>| match *kg {
+            0.0 => 0.0,
+            kg => kg * (jacobian * x).norm_squared(),
+        };
         for &(datum, mode) in &self.modes {
             let Some(s) = solved.get(mode) else { continue };
             // first-order perturbation of the eigenvalue; the shape itself need not be solved again
@@ -398,6 +442,9 @@ impl ModalTest {
             }
             if let Some(((m0, j0), (m1, j1))) = payloads.as_ref().filter(|((m0, _), _)| *m0 != 0.0) {
                 d_mu += m1 * (j1 * &s.x).norm_squared() - m0 * (j0 * &s.x).norm_squared();
+            }
+            if let Some((before, after)) = &hung {
+                d_mu += swing(after, &s.x) - swing(before, &s.x);
             }
             out[datum] = -0.5 * d_mu / s.mu / (TAU * s.mu.sqrt());
         }
@@ -480,6 +527,15 @@ fn factor(matrix: &DMatrix<f64>) -> DMatrix<f64> {
         true => DMatrix::zeros(0, 0),
         false => DMatrix::from_columns(&columns).rows(0, leading(matrix)).into_owned(),
     }
+}
+
+/// Slope of the tilt of feet that lift off \[rad/(N m)\]. Its step is smoothed over `width` \[ln of the moment\].
+fn lifted_tangent(lift: &BaseLift, moment_nm: f64, width: f64) -> f64 {
+    if width == 0.0 {
+        return lift.tangent_compliance_rad_per_nm(moment_nm);
+    }
+    let beyond = libm::log(moment_nm.abs().max(1e-12) / lift.preload_nm) / width;
+    0.5 * (1.0 + libm::tanh(beyond)) / lift.stiffness_nm_per_rad
 }
 
 /// Slope of a joint's law \[rad/(N m)\]. The steps of a gear's curve are smoothed over `width` \[ln of the

@@ -9,6 +9,7 @@ use super::statics::{self, StaticPose, StaticState};
 use crate::arm::JointModel;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::subject::Subject;
+use crate::arm::joint_law::Curve;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::DMatrix;
 
@@ -35,6 +36,8 @@ pub struct Forward {
     pub largest_payload_kg: f64,
     /// The lightest payload that was stated and is not zero \[kg\].
     pub lightest_payload_kg: f64,
+    /// Whether readings of the whole arm have temperatures.
+    pub has_temperatures: bool,
 }
 
 impl Forward {
@@ -67,6 +70,8 @@ impl Forward {
             starts,
             groups: groups.names,
             payload_density_kg_m3: campaign.statement.payload_density_kg_m3,
+            has_temperatures: campaign.statics.iter().any(|r| r.temperature_c.is_some())
+                || campaign.modal.iter().any(|r| r.temperature_c.is_some()),
             largest_payload_kg: payloads_kg.iter().copied().fold(0.0, f64::max),
             lightest_payload_kg: payloads_kg
                 .iter()
@@ -144,6 +149,23 @@ impl Forward {
         out
     }
 
+    /// Whether the torque of a modal test lies this close to a break point of a gear's curve \[ln of the torque\]. A small
+    /// change of a mass may then change the slope of the curve, and frequencies step.
+    pub(crate) fn is_close_to_a_step(&self, coefficients: &Coefficients, close: f64) -> bool {
+        let breaks = coefficients.laws.iter().map(|law| match law.curve {
+            Curve::Windup(curve) => vec![curve.t1_nm, curve.t2_nm],
+            _ => Vec::new(),
+        });
+        let breaks: Vec<Vec<f64>> = breaks.collect();
+        breaks.iter().any(|own| !own.is_empty())
+            && self.modal.iter().any(|test| {
+                let torques = test.torques_nm(&self.layout, coefficients);
+                torques.iter().zip(&breaks).any(|(torque_nm, own)| {
+                    own.iter().any(|at_nm| libm::log(torque_nm.abs() / at_nm).abs() < close)
+                })
+            })
+    }
+
     /// Expresses a subject as compliances, joint laws and masses.
     pub fn coefficients(&self, subject: &Subject) -> Coefficients {
         Coefficients::new(&self.layout, &self.nominal, subject)
@@ -179,7 +201,7 @@ impl Forward {
     /// Predicts statics and bench only. The modal entries stay as they are. Returns the state of each static pose.
     pub fn predict_smooth(&self, coefficients: &Coefficients, out: &mut [f64]) -> Vec<StaticState> {
         for bench in &self.bench {
-            bench.predict(&coefficients.laws[bench.joint], out);
+            bench.predict(&coefficients.law(bench.joint, Channel::Windup), out);
         }
         let state = |pose: &StaticPose| {
             let state = pose.state(&self.layout, coefficients);
@@ -199,9 +221,10 @@ impl Forward {
         out: &mut DMatrix<f64>,
     ) {
         let changes: Vec<StaticChanges> = to.iter().map(|to| from.static_changes(to)).collect();
-        for (k, (to, changes)) in to.iter().zip(&changes).enumerate() {
-            for bench in self.bench.iter().filter(|bench| changes.laws[bench.joint]) {
-                bench.predict(&to.laws[bench.joint], out.column_mut(k).as_mut_slice());
+        for (k, to) in to.iter().enumerate() {
+            let law = |c: &Coefficients, bench: &Bench| c.law(bench.joint, Channel::Windup);
+            for bench in self.bench.iter().filter(|bench| law(from, bench) != law(to, bench)) {
+                bench.predict(&law(to, bench), out.column_mut(k).as_mut_slice());
             }
         }
         let changed: Vec<usize> = (0..to.len()).filter(|k| !changes[*k].is_none()).collect();

@@ -8,10 +8,11 @@ use super::coefficients::{Coefficients, Layout, StaticChanges};
 use super::datum::{Datum, Groups};
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::subject::Subject;
+use crate::arm::effect::warming::Moment;
 use crate::arm::joint_law::JointLaw;
 use crate::arm::load::Payload;
 use crate::mechanics::chain::{Item, Posed};
-use crate::mechanics::{Twist, Wrench, displacement_at, force_wrench};
+use crate::mechanics::{Twist, Wrench, angular, displacement_at, force_wrench};
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::components::Component;
 use nalgebra::{Matrix3x6, Rotation3, Vector3};
@@ -38,10 +39,17 @@ pub struct PoseGeometry {
     pub linear: Vec<Mover>,
     /// Twists of the joints, base to tip.
     pub joints: Vec<Mover>,
-    /// Torque of the template's dead weight on each joint \[N m\].
+    /// Angle of each joint \[rad\].
+    pub angles_rad: Vec<f64>,
+    /// Torque of the template's dead weight on each joint \[N m\], with the torque that acts on the joint beside it.
     pub dead_nm: Vec<f64>,
     /// The same torques for a unit of each mass.
     pub dead_per_mass_nm: Vec<Vec<f64>>,
+    /// Tilts of the base about world x and y.
+    pub base: [Mover; 2],
+    /// Moments of the template's dead weight about these axes \[N m\], and those of a unit of each mass.
+    dead_base_nm: [f64; 2],
+    dead_base_per_mass_nm: Vec<[f64; 2]>,
 }
 
 /// One load in a pose.
@@ -51,6 +59,7 @@ struct Load {
     force_n: Vector3<f64>,
     /// Index of the datum of each component that was measured.
     data: [Option<usize>; 3],
+    when: Moment,
 }
 
 /// A pose with its loads in the order of the file.
@@ -65,8 +74,15 @@ pub struct StaticPose {
 /// change of few coefficients, as for a derivative, costs little.
 #[derive(Debug, Clone, Default)]
 pub struct StaticState {
-    /// Displacement of the tip per wrench by all linear compliances together.
+    /// Displacement of the tip per wrench by all linear compliances together; without those of the links if their moduli
+    /// change.
     compliance: Matrix3x6<f64>,
+    /// Displacement per wrench by the links alone, if their moduli change.
+    bending: Matrix3x6<f64>,
+    /// Factor on the compliance of the links under each load; empty if their moduli stay.
+    softness: Vec<f64>,
+    /// Tilt of a base whose feet lift off under each load \[rad\], from that of the unloaded arm; empty if none lift off.
+    lifted_rad: Vec<[f64; 2]>,
     /// Torque of the dead weight on each joint \[N m\].
     dead_nm: Vec<f64>,
     /// Room for these torques under other weights \[N m\].
@@ -83,6 +99,9 @@ impl StaticState {
     /// Becomes a copy of another state, in the same memory.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.compliance = other.compliance;
+        self.bending = other.bending;
+        self.softness.clone_from(&other.softness);
+        self.lifted_rad.clone_from(&other.lifted_rad);
         self.dead_nm.clone_from(&other.dead_nm);
         self.wrenches.clone_from(&other.wrenches);
         self.loaded_nm.clone_from(&other.loaded_nm);
@@ -108,7 +127,8 @@ pub(crate) fn prepare(
             poses.push(StaticPose { geometry, loads: Vec::new() });
             last = Some(&row.pose_deg);
         }
-        let mut load = Load { payload: row.payload, force_n: row.force_n, data: [None; 3] };
+        let mut load =
+            Load { payload: row.payload, force_n: row.force_n, data: [None; 3], when: row.moment() };
         for (component, read) in row.measured.iter().enumerate() {
             let Some(Component { value_mm, sigma_mm }) = *read else { continue };
             load.data[component] = Some(data.len());
@@ -130,7 +150,7 @@ pub(crate) fn prepare(
 
 impl PoseGeometry {
     /// Computes the geometry of a pose by mechanics.
-    pub fn new(layout: &Layout, _nominal: &Subject, pose_deg: &[f64]) -> Self {
+    pub fn new(layout: &Layout, nominal: &Subject, pose_deg: &[f64]) -> Self {
         let pose_rad: Vec<f64> = pose_deg.iter().map(|a| a.to_radians()).collect();
         let empty = Payload::default();
         let posed = layout.template.pose_rad(&pose_rad, &empty, Vector3::zeros());
@@ -141,16 +161,17 @@ impl PoseGeometry {
             tip: displacement_at(&twists[index], &posed.tip_m),
         };
         let is_joint = |i: usize| layout.joints.iter().any(|j| j.twist == i);
-        let dead_nm = dead_torques(&posed);
+        let (dead_nm, dead_base_nm) = dead_torques(&posed);
         // torques are linear in the masses, so one unit of each is enough
-        let dead_per_mass_nm = layout
+        let (dead_per_mass_nm, dead_base_per_mass_nm) = layout
             .with_mass
             .iter()
             .map(|chain| {
-                let with = dead_torques(&chain.pose_rad(&pose_rad, &empty, Vector3::zeros()));
-                with.iter().zip(&dead_nm).map(|(a, b)| a - b).collect()
+                let (with, base) = dead_torques(&chain.pose_rad(&pose_rad, &empty, Vector3::zeros()));
+                let joints: Vec<f64> = with.iter().zip(&dead_nm).map(|(a, b)| a - b).collect();
+                (joints, [0, 1].map(|i| base[i] - dead_base_nm[i]))
             })
-            .collect();
+            .unzip();
         Self {
             tip_m: posed.tip_m,
             rotation: posed.tip_rotation,
@@ -159,15 +180,30 @@ impl PoseGeometry {
                 .map(mover)
                 .collect(),
             joints: layout.joints.iter().map(|j| mover(j.twist)).collect(),
+            angles_rad: nominal.structure.joints().map(|joint| joint.angle.of(&pose_rad)).collect(),
             dead_nm,
             dead_per_mass_nm,
+            base: [0, 1].map(mover),
+            dead_base_nm,
+            dead_base_per_mass_nm,
         }
     }
 
-    /// Displacement of the tip per wrench by all linear compliances together.
-    fn compliance(&self, coefficients: &Coefficients) -> Matrix3x6<f64> {
+    /// Moments about world x and y on the base of what hangs on it in every test of a channel \[N m\].
+    pub fn dead_base_nm(&self, coefficients: &Coefficients, layout: &Layout, channel: Channel) -> [f64; 2] {
+        let masses = self.dead_base_per_mass_nm.iter().zip(&coefficients.weights);
+        let test =
+            coefficients.tests[channel as usize].weight(&self.tip_m, &self.rotation, layout.gravity_m_s2);
+        [0, 1].map(|i| {
+            let further: f64 = masses.clone().map(|(per_mass, weight)| per_mass[i] * weight).sum();
+            self.dead_base_nm[i] + further + self.base[i].twist.dot(&test)
+        })
+    }
+
+    /// Displacement of the tip per wrench by the linear compliances whose coordinates are chosen.
+    fn compliance(&self, coefficients: &Coefficients, is_chosen: impl Fn(usize) -> bool) -> Matrix3x6<f64> {
         let mut out = Matrix3x6::zeros();
-        for mover in &self.linear {
+        for mover in self.linear.iter().filter(|mover| is_chosen(mover.index)) {
             let compliance = coefficients.linear[mover.index];
             if compliance != 0.0 {
                 out += mover.tip * (compliance * mover.twist.transpose());
@@ -176,20 +212,43 @@ impl PoseGeometry {
         out
     }
 
-    /// Torque of the dead weight on each joint \[N m\].
-    pub fn dead_torques_nm(&self, coefficients: &Coefficients) -> Vec<f64> {
+    /// Torque on each joint of what hangs on it in every test of a channel \[N m\].
+    pub fn dead_torques_nm(
+        &self,
+        coefficients: &Coefficients,
+        layout: &Layout,
+        channel: Channel,
+    ) -> Vec<f64> {
         let mut torques_nm = Vec::new();
-        self.add_up_dead_torques(coefficients, &mut torques_nm);
+        self.add_up_dead_torques(coefficients, layout, channel, &mut torques_nm);
         torques_nm
     }
 
-    /// Replaces `torques_nm` by the torques of the dead weight \[N m\].
-    fn add_up_dead_torques(&self, coefficients: &Coefficients, torques_nm: &mut Vec<f64>) {
+    /// Replaces `torques_nm` by the torques of what hangs on the joints in every test of a channel \[N m\].
+    fn add_up_dead_torques(
+        &self,
+        coefficients: &Coefficients,
+        layout: &Layout,
+        channel: Channel,
+        torques_nm: &mut Vec<f64>,
+    ) {
         torques_nm.clone_from(&self.dead_nm);
         for (per_mass, weight) in self.dead_per_mass_nm.iter().zip(&coefficients.weights) {
             if *weight != 0.0 {
                 torques_nm.iter_mut().zip(per_mass).for_each(|(t, p)| *t += weight * p);
             }
+        }
+        for ((torque_nm, further), angle_rad) in
+            torques_nm.iter_mut().zip(&coefficients.torques).zip(&self.angles_rad)
+        {
+            if !further.is_none() {
+                *torque_nm += further.at(*angle_rad);
+            }
+        }
+        let test = &coefficients.tests[channel as usize];
+        if test.mass_kg != 0.0 {
+            let weight = test.weight(&self.tip_m, &self.rotation, layout.gravity_m_s2);
+            torques_nm.iter_mut().zip(&self.joints).for_each(|(t, m)| *t += m.twist.dot(&weight));
         }
     }
 
@@ -222,7 +281,8 @@ fn follow(law: &JointLaw, dead_nm: f64, loaded_nm: &[f64], twists_rad: &mut [f64
     }
 }
 
-fn dead_torques(posed: &Posed) -> Vec<f64> {
+/// Torque of the dead weight on each joint, and its moments about world x and y on the base \[N m\].
+fn dead_torques(posed: &Posed) -> (Vec<f64>, [f64; 2]) {
     let mut wrench = Wrench::zeros();
     let mut torques = Vec::new();
     let carried = posed.transferred();
@@ -233,7 +293,7 @@ fn dead_torques(posed: &Posed) -> Vec<f64> {
                 if let crate::mechanics::chain::Yielding::Joint(_) = element.yielding {
                     let passive = carried.iter().filter(|c| c.driver == element.name);
                     let passive_nm: f64 = passive.map(|c| c.torque_nm).sum();
-                    torques.push(element.twists[0].dot(&wrench) + passive_nm);
+                    torques.push(element.twists[0].dot(&wrench) + element.torque_nm + passive_nm);
                 }
                 if let Some(own) = &element.own {
                     wrench += own.weight;
@@ -242,7 +302,8 @@ fn dead_torques(posed: &Posed) -> Vec<f64> {
         }
     }
     torques.reverse();
-    torques
+    let moment = angular(&wrench);
+    (torques, [moment.x, moment.y])
 }
 
 impl StaticPose {
@@ -263,7 +324,15 @@ impl StaticPose {
     ) {
         let geometry = &self.geometry;
         if changes.linear {
-            state.compliance = geometry.compliance(coefficients);
+            let warming = &coefficients.warming;
+            state.softness.clear();
+            if warming.is_none() {
+                state.compliance = geometry.compliance(coefficients, |_| true);
+            } else {
+                state.compliance = geometry.compliance(coefficients, |i| !layout.is_of_link(i));
+                state.bending = geometry.compliance(coefficients, |i| layout.is_of_link(i));
+                state.softness.extend(self.loads.iter().map(|load| 1.0 / warming.factor(&load.when)));
+            }
         }
         let joints = geometry.joints.len();
         let count = self.loads.len();
@@ -279,11 +348,14 @@ impl StaticPose {
             state.loaded_nm.extend(torques_nm);
         }
         if changes.weights {
-            geometry.add_up_dead_torques(coefficients, &mut state.moved_dead_nm);
+            geometry.add_up_dead_torques(coefficients, layout, Channel::Static, &mut state.moved_dead_nm);
             state.dead_nm.resize(joints, f64::NAN);
         }
+        if changes.lift || changes.weights || changes.payload {
+            self.lift(layout, coefficients, state);
+        }
         state.twists_rad.resize(joints * count, 0.0);
-        for (j, law) in coefficients.laws.iter().enumerate() {
+        for j in 0..joints {
             // a weight loads the joints inboard of it only
             let is_loaded_otherwise = changes.weights && state.moved_dead_nm[j] != state.dead_nm[j];
             if is_loaded_otherwise {
@@ -291,14 +363,22 @@ impl StaticPose {
             }
             if is_loaded_otherwise || changes.payload || changes.laws[j] {
                 let own = j * count..(j + 1) * count;
-                follow(law, state.dead_nm[j], &state.loaded_nm[own.clone()], &mut state.twists_rad[own]);
+                let law = coefficients.law_at(j, Channel::Static, geometry.angles_rad[j]);
+                follow(&law, state.dead_nm[j], &state.loaded_nm[own.clone()], &mut state.twists_rad[own]);
             }
         }
     }
 
     /// Displacement of the tip under a load, by its index \[mm\].
     pub(crate) fn displacement_mm(&self, state: &StaticState, load: usize) -> Vector3<f64> {
-        let mut tip = state.compliance * state.wrenches[load];
+        let wrench = state.wrenches[load];
+        let mut tip = state.compliance * wrench;
+        if let Some(softness) = state.softness.get(load) {
+            tip += state.bending * wrench * *softness;
+        }
+        if let Some(lifted_rad) = state.lifted_rad.get(load) {
+            self.geometry.base.iter().zip(lifted_rad).for_each(|(m, angle)| tip += m.tip * *angle);
+        }
         for (j, mover) in self.geometry.joints.iter().enumerate() {
             tip += mover.tip * state.twists_rad[j * self.loads.len() + load];
         }
@@ -317,6 +397,19 @@ impl StaticPose {
             .into_iter()
             .enumerate()
             .filter_map(|(component, datum)| Some((component, datum?)))
+    }
+
+    /// Brings the tilts of a base whose feet lift off up to date.
+    fn lift(&self, layout: &Layout, coefficients: &Coefficients, state: &mut StaticState) {
+        state.lifted_rad.clear();
+        let Some(lift) = coefficients.lift else { return };
+        let dead_nm = self.geometry.dead_base_nm(coefficients, layout, Channel::Static);
+        let base = &self.geometry.base;
+        let lifted = |wrench: &Wrench| {
+            [0, 1]
+                .map(|i| lift.angle_rad(dead_nm[i] + base[i].twist.dot(wrench)) - lift.angle_rad(dead_nm[i]))
+        };
+        state.lifted_rad.extend(state.wrenches.iter().map(lifted));
     }
 
     /// Writes the displacements of all loads \[mm\], as far as they were measured.
@@ -349,9 +442,20 @@ impl StaticPose {
         }
     }
 
+    /// Largest moment on the base about world x or y, under the dead weight or in a load \[N m\].
+    pub fn largest_base_nm(&self, layout: &Layout, coefficients: &Coefficients) -> f64 {
+        let dead = self.geometry.dead_base_nm(coefficients, layout, Channel::Static);
+        let loads = self.loads.iter().map(|load| {
+            self.geometry.wrench(&load.payload, &load.force_n, layout.gravity_m_s2, coefficients)
+        });
+        let base = &self.geometry.base;
+        let loaded = loads.map(|w| [0, 1].map(|i| (dead[i] + base[i].twist.dot(&w)).abs()));
+        loaded.flatten().chain(dead.map(f64::abs)).fold(0.0, f64::max)
+    }
+
     /// Torque on each joint \[N m\]: first under the dead weight alone, then in every load.
     pub fn torques_nm(&self, layout: &Layout, coefficients: &Coefficients) -> Vec<Vec<f64>> {
-        let dead = self.geometry.dead_torques_nm(coefficients);
+        let dead = self.geometry.dead_torques_nm(coefficients, layout, Channel::Static);
         let mut out = vec![dead.clone()];
         for load in &self.loads {
             let wrench =

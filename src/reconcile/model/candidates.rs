@@ -2,13 +2,14 @@
 //! and where fits start.
 
 use super::expected::Sizes;
-use super::parameters::{Candidate, FreeParameter};
+use super::parameters::{Candidate, FreeParameter, Number};
 use crate::arm::effect::catalogue::KINDS;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::immersion::PAYLOAD_DENSITY;
-use crate::arm::effect::kind::{Kind, Parameter, Place, Removes, Setting, Yields};
+use crate::arm::effect::kind::{Freed, Kind, Parameter, Place, Removes, Scale, Setting, Yields};
 use crate::arm::effect::validate::fits_nominal;
 use crate::arm::effect::wrong_unit;
+use crate::arm::effect::{connection_compliance, servo_compliance, thermal_modulus};
 use crate::arm::joint_law::Curve;
 use crate::arm::structure::Piece;
 use crate::reconcile::forward::prepared::Forward;
@@ -21,14 +22,15 @@ pub fn candidates(forward: &Forward) -> Vec<Candidate> {
     for kind in KINDS.iter().filter(|kind| kind.traits.is_sought) {
         for place in kind.places {
             for at in structure.places(*place) {
-                if fits_nominal(kind, &at, structure) && channel_is_read(forward, *place) {
-                    out.push(candidate(forward, &sizes, kind, *place, at));
+                if fits_nominal(kind, &at, structure) && channel_is_sought(forward, kind, *place) {
+                    out.extend(variants(forward, &sizes, kind, *place, &at));
                 }
             }
         }
     }
     // two names for the same thing would count as two places and as an alternative
     merge_twins(forward, &mut out);
+    name_servos(forward, &mut out);
     out.extend(unit_slips(forward));
     out
 }
@@ -48,14 +50,95 @@ fn merge_twins(forward: &Forward, candidates: &mut Vec<Candidate>) {
     }
 }
 
-fn channel_is_read(forward: &Forward, place: Place) -> bool {
+/// Where only one channel shows how a joint twists, a joint that is softer there only is one that is softer everywhere.
+fn name_servos(forward: &Forward, candidates: &mut [Candidate]) {
+    for candidate in candidates.iter_mut().filter(|c| c.kind.name == connection_compliance::KIND.name) {
+        let shown = channels_of_joint(forward, &candidate.at);
+        if shown.len() == 1 && servo_compliance::KIND.traits.sought_in.contains(&shown[0]) {
+            candidate.twins.push((servo_compliance::KIND.name.into(), candidate.at.clone()));
+        }
+    }
+}
+
+fn channel_is_sought(forward: &Forward, kind: &Kind, place: Place) -> bool {
+    let is_tried = |channel| kind.traits.sought_in.is_empty() || kind.traits.sought_in.contains(&channel);
     match place {
-        Place::Channel(channel) => !forward.range(channel).is_empty(),
+        Place::Channel(channel) => !forward.range(channel).is_empty() && is_tried(channel),
         _ => true,
     }
 }
 
-fn candidate(forward: &Forward, sizes: &Sizes, kind: &'static Kind, place: Place, at: String) -> Candidate {
+/// The candidates of a kind at a place: one for each set of parameters that is freed.
+fn variants(forward: &Forward, sizes: &Sizes, kind: &'static Kind, place: Place, at: &str) -> Vec<Candidate> {
+    let asked = Asked { kind, place, at, freed: None, channel: None };
+    let candidate = |asked: Asked| candidate(forward, sizes, asked);
+    if (kind.parameters)(place).iter().any(|p| p.is_channel) {
+        let channels = channels_apart(forward, kind, at).into_iter();
+        return channels.map(|channel| candidate(Asked { channel: Some(channel), ..asked })).collect();
+    }
+    match kind.traits.variants {
+        [] => vec![candidate(asked)],
+        several => {
+            let several = several.iter().filter(|freed| is_measured(forward, freed));
+            several.map(|freed| candidate(Asked { freed: Some(freed), ..asked })).collect()
+        }
+    }
+}
+
+/// Whether the readings have what a set of parameters refers to.
+fn is_measured(forward: &Forward, freed: &[Freed]) -> bool {
+    forward.has_temperatures || freed.iter().all(|(name, _)| *name != thermal_modulus::PER_K)
+}
+
+/// An effect at a place, and which of its parameters are fitted.
+#[derive(Clone, Copy)]
+struct Asked<'a> {
+    kind: &'static Kind,
+    place: Place,
+    at: &'a str,
+    /// The parameters of a variant; without it those that have no default.
+    freed: Option<&'static [Freed]>,
+    /// The channel of an effect that has one as a parameter.
+    channel: Option<Channel>,
+}
+
+/// The channels in which a joint that is softer there only is no joint that is softer everywhere.
+fn channels_apart(forward: &Forward, kind: &Kind, joint: &str) -> Vec<Channel> {
+    let shown = channels_of_joint(forward, joint);
+    let sought = kind.traits.sought_in.iter().filter(|channel| shown.contains(channel));
+    sought.copied().filter(|_| shown.len() > 1).collect()
+}
+
+/// The channels of the campaign that show how a joint twists.
+fn channels_of_joint(forward: &Forward, joint: &str) -> Vec<Channel> {
+    let index = forward.layout.joints.iter().position(|slot| slot.name == joint);
+    let on_bench = index.is_some_and(|index| forward.bench_torques_nm(index).next().is_some());
+    let is_shown = |channel: &Channel| match channel {
+        Channel::Windup => on_bench,
+        other => !forward.range(*other).is_empty(),
+    };
+    Channel::ALL.into_iter().filter(is_shown).collect()
+}
+
+/// Whether a component of a parameter is fitted. `freed` are the parameters of a variant.
+fn is_free(parameter: &Parameter, component: usize, freed: Option<&[Freed]>) -> bool {
+    let Some(freed) = freed else { return parameter.default.is_none() && !parameter.is_channel };
+    let is_own = |(name, one): &Freed| *name == parameter.name && one.is_none_or(|one| one == component);
+    freed.iter().any(is_own)
+}
+
+/// The value of a parameter that is not fitted.
+fn stated(forward: &Forward, parameter: &Parameter, channel: Option<Channel>) -> f64 {
+    match parameter.name {
+        _ if parameter.is_channel => channel.map_or(0.0, |channel| channel as usize as f64),
+        PAYLOAD_DENSITY => forward.payload_density_kg_m3,
+        _ => parameter.default.unwrap_or_default(),
+    }
+}
+
+fn candidate(forward: &Forward, sizes: &Sizes, asked: Asked) -> Candidate {
+    let Asked { kind, place, freed, channel, .. } = asked;
+    let at = asked.at.to_string();
     let joint_stiffness = reference_stiffness(forward, &at);
     let bearing = nominal_bearing_nm_per_rad(forward, kind, &at);
     let reference = match kind.traits.is_gear_curve {
@@ -65,16 +148,19 @@ fn candidate(forward: &Forward, sizes: &Sizes, kind: &'static Kind, place: Place
     // at least 1 N m, so that logarithms exist for a joint without torque
     let torque_nm = largest_torque_nm(forward, &at).max(1.0);
     let mut free_parameters = Vec::new();
-    let mut fixed = Vec::new();
+    let mut numbers = Vec::new();
     for parameter in (kind.parameters)(place) {
-        match parameter.default {
-            None => {
-                let sized = &of_size(parameter, sizes);
-                let free = (0..sized.count).map(|component| FreeParameter::new(sized, component, reference));
-                free_parameters.extend(free.map(|free| within_torque(free, parameter, torque_nm)));
+        let sized = &of_size(parameter, sizes);
+        for component in 0..parameter.count {
+            if is_free(parameter, component, freed) {
+                let reference = if parameter.scale == Scale::Torque { torque_nm } else { reference };
+                let free = FreeParameter::new(sized, component, reference);
+                let free = within_torque(free, parameter, torque_nm);
+                free_parameters.push(within_rows(free, rows_of_campaign(forward)));
+                numbers.push(Number::Free);
+            } else {
+                numbers.push(Number::Stated(stated(forward, parameter, channel)));
             }
-            Some(_) if parameter.name == PAYLOAD_DENSITY => fixed.push(forward.payload_density_kg_m3),
-            Some(default) => fixed.push(default),
         }
     }
     if let Some(stiffness) = bearing {
@@ -87,9 +173,11 @@ fn candidate(forward: &Forward, sizes: &Sizes, kind: &'static Kind, place: Place
             free_parameters[0].low.max(-0.999 * least_kg / free_parameters[0].value(1.0));
     }
     let values_at_one: Vec<f64> = free_parameters.iter().map(|free| free.value(1.0)).collect();
-    let setting = Setting { torque_nm, twist_rad: torque_nm / reference, values_at_one: &values_at_one };
+    let rows = rows_of_campaign(forward);
+    let setting =
+        Setting { torque_nm, twist_rad: torque_nm / reference, rows, values_at_one: &values_at_one };
     let starts = (kind.traits.starts)(&setting);
-    Candidate { kind, at, free_parameters, fixed, starts, twins: Vec::new() }
+    Candidate { kind, at, free_parameters, numbers, starts, twins: Vec::new() }
 }
 
 /// Limits a torque to parts of the largest torque of the campaign. A law that changes where no torque reaches
@@ -98,6 +186,19 @@ fn within_torque(free: FreeParameter, parameter: &Parameter, torque_nm: f64) -> 
     match parameter.torque_parts {
         Some((low, high)) => free.within(libm::log(low * torque_nm), libm::log(high * torque_nm)),
         None => free,
+    }
+}
+
+/// Number of rows of the longest file of readings of the whole arm.
+fn rows_of_campaign(forward: &Forward) -> f64 {
+    (forward.range(Channel::Static).len() / 3).max(forward.range(Channel::Modal).len()) as f64
+}
+
+/// Limits a number of rows to parts of the campaign. A change that is over at once or hardly begins is none of the order.
+fn within_rows(free: FreeParameter, rows: f64) -> FreeParameter {
+    match free.name == thermal_modulus::ROWS && rows > 0.0 {
+        true => free.within(libm::log(0.02 * rows), libm::log(3.0 * rows)),
+        false => free,
     }
 }
 
@@ -112,6 +213,7 @@ fn lightest_kg(forward: &Forward, kind: &Kind, at: &str) -> Option<f64> {
 
 /// Widens the range of a parameter where the arm or its readings are large.
 fn of_size(parameter: &Parameter, sizes: &Sizes) -> Parameter {
+    let parameter = &Parameter { high: parameter.sought_up_to.unwrap_or(parameter.high), ..*parameter };
     let Some((measure, part)) = parameter.grows_with else { return *parameter };
     let size = sizes.expected(measure, part);
     let wider = (size / parameter.prior.1).max(1.0);
@@ -147,8 +249,13 @@ fn middle_stiffness(forward: &Forward, at: &str) -> f64 {
     }
 }
 
-/// Largest torque on a joint in the campaign, including the bench \[N m\].
+/// Largest torque on a joint in the campaign, including the bench, or largest moment on the base in static tests \[N m\].
 fn largest_torque_nm(forward: &Forward, at: &str) -> f64 {
+    if at == "base" {
+        let nominal = forward.coefficients(&forward.nominal);
+        let moments = forward.statics.iter().map(|p| p.largest_base_nm(&forward.layout, &nominal));
+        return moments.fold(0.0, f64::max);
+    }
     let Some(j) = forward.layout.joints.iter().position(|s| s.name == at) else { return 0.0 };
     let nominal = forward.coefficients(&forward.nominal);
     let statics = forward.statics.iter().flat_map(|p| p.torques_nm(&forward.layout, &nominal));
@@ -164,7 +271,7 @@ fn unit_slips(forward: &Forward) -> Vec<Candidate> {
         kind: &wrong_unit::KIND,
         at: channel.word().into(),
         free_parameters: Vec::new(),
-        fixed: vec![factor],
+        numbers: vec![Number::Stated(factor)],
         starts: vec![Vec::new()],
         twins: Vec::new(),
     };

@@ -1,5 +1,6 @@
 //! Values with their 95 % intervals, and effects found with such values.
 
+use crate::arm::effect::entry::word_of;
 use serde_json::{Map, Value, json};
 
 /// An interval of a fitted parameter, in `u`. An end is `None` where the data do not bound it.
@@ -69,7 +70,9 @@ impl Finding {
             .parameters
             .iter()
             .map(|(name, estimates)| {
+                let word = |one: &Estimate| word_of(&self.effect, name, one.value);
                 let value = match estimates.as_slice() {
+                    [one] if word(one).is_some() => json!({"value": word(one), "low": null, "high": null}),
                     [one] => one.json(),
                     many => {
                         let part = |f: fn(&Estimate) -> Option<f64>| many.iter().map(f).collect::<Vec<_>>();

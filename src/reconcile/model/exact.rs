@@ -4,6 +4,7 @@
 use crate::arm::LinkModel;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::subject::Subject;
+use crate::arm::effect::warming::Moment;
 use crate::arm::joint_law::JointLaw;
 use crate::arm::load::Payload;
 use crate::arm::structure::{FrameCompliance, LinkPiece, Piece, Structure};
@@ -14,17 +15,25 @@ use crate::reconcile::forward::bench::{ARCMIN_PER_RAD, bench_twists_rad};
 use crate::reconcile::readings::placement::Placement;
 use crate::reconcile::readings::rows::{ModalRow, PositionRow, StaticRow, WindupRow};
 use nalgebra::Vector3;
+use std::borrow::Cow;
 
 /// A subject prepared for prediction.
 pub struct Exact<'a> {
     subject: &'a Subject,
     chain: Chain,
+    /// The arm as it is in the tests of each channel, where that is special.
+    special: [Option<Chain>; 4],
 }
 
 impl<'a> Exact<'a> {
     /// Prepares a subject.
     pub fn new(subject: &'a Subject) -> Self {
-        Self { subject, chain: Chain::new(&subject.structure, LinkModel::Full) }
+        let chain = |structure: &Structure| Chain::new(structure, LinkModel::Full);
+        let special = Channel::ALL.map(|channel| {
+            let is_plain = subject.setups[channel as usize].is_plain();
+            (!is_plain).then(|| chain(&subject.structure_in(channel)))
+        });
+        Self { subject, chain: chain(&subject.structure), special }
     }
 
     /// Displacement readings \[mm\], with the rows in the order of their file.
@@ -32,16 +41,19 @@ impl<'a> Exact<'a> {
         let reading = &self.subject.channels[Channel::Static as usize];
         let mut out = Vec::with_capacity(rows.len());
         let mut pose: &[f64] = &[];
-        let (mut play, mut reference) = (Vec::new(), Vector3::zeros());
+        let (mut play, mut lag) = (Vec::new(), Vector3::zeros());
         for row in rows {
+            let chain = self.chain_at(Channel::Static, &row.moment());
+            // the reference is as warm as the reading
+            let unloaded = self.posed(&chain, &row.pose_deg, &Payload::default(), Vector3::zeros());
+            let unloaded_m = unloaded.statics().tip_displacement_m;
             if row.pose_deg != pose || out.is_empty() {
                 pose = &row.pose_deg;
-                let unloaded = self.posed(pose, &Payload::default(), Vector3::zeros());
                 play = rest(&unloaded);
-                reference = tip_m(&unloaded, &mut play);
+                lag = tip_m(&unloaded, &mut play) - unloaded_m;
             }
-            let loaded = self.posed(pose, &row.payload, row.force_n);
-            let d = tip_m(&loaded, &mut play) - reference;
+            let loaded = self.posed(&chain, pose, &row.payload, row.force_n);
+            let d = tip_m(&loaded, &mut play) - (unloaded_m + lag);
             out.push(std::array::from_fn(|c| reading.of(1e3 * d[c], c, row.row)));
         }
         out
@@ -53,11 +65,12 @@ impl<'a> Exact<'a> {
         let mut last: Option<(&ModalRow, Vec<f64>)> = None;
         rows.iter()
             .map(|row| {
-                let again = last
-                    .as_ref()
-                    .is_some_and(|(r, _)| r.pose_deg == row.pose_deg && r.payload == row.payload);
-                if !again {
-                    let posed = self.posed(&row.pose_deg, &row.payload, Vector3::zeros());
+                let is_of_list = |first: &ModalRow| {
+                    first.pose_deg == row.pose_deg && first.payload == row.payload && first.mode != row.mode
+                };
+                if !last.as_ref().is_some_and(|(first, _)| is_of_list(first)) {
+                    let chain = self.chain_at(Channel::Modal, &row.moment());
+                    let posed = self.posed(&chain, &row.pose_deg, &row.payload, Vector3::zeros());
                     let modes = posed.solve_modes(&posed.statics());
                     last = Some((row, modes.finite().map(|(_, f)| f).collect()));
                 }
@@ -71,7 +84,8 @@ impl<'a> Exact<'a> {
     pub fn windups_arcmin(&self, rows: &[WindupRow]) -> Vec<f64> {
         let reading = &self.subject.channels[Channel::Windup as usize];
         let mut out = vec![0.0; rows.len()];
-        for joint in self.subject.structure.joints() {
+        let structure = self.subject.structure_in(Channel::Windup);
+        for joint in structure.joints() {
             let own: Vec<usize> = (0..rows.len()).filter(|&i| rows[i].joint == joint.name).collect();
             let torques: Vec<f64> = own.iter().map(|&i| rows[i].torque_nm).collect();
             for (i, twist) in own.into_iter().zip(bench_twists_rad(&joint.law, &torques)) {
@@ -89,8 +103,12 @@ impl<'a> Exact<'a> {
         let mut out = Vec::with_capacity(rows.len());
         for (row, stand) in rows.iter().zip(placement.stands(rows)) {
             let tool_m = stand.point_m(&row.point);
+            if !self.subject.warming.is_none() {
+                chains.clear(); // no chain serves another row
+            }
             if !chains.iter().any(|(at_m, _)| *at_m == tool_m) {
-                let structure = with_tool(&self.subject.structure, tool_m);
+                let structure = self.subject.structure_at(Channel::Positions, &row.moment());
+                let structure = with_tool(&structure, tool_m);
                 chains.push((tool_m, Chain::new(&structure, LinkModel::Full)));
             }
             let known = chains.iter().find(|(at_m, _)| *at_m == tool_m);
@@ -108,14 +126,29 @@ impl<'a> Exact<'a> {
 
     /// Torque on every joint, with the joint's name \[N m\].
     pub fn torques_nm(&self, row: &StaticRow) -> Vec<(String, f64)> {
-        let posed = self.posed(&row.pose_deg, &row.payload, row.force_n);
+        let chain = self.chain_at(Channel::Static, &row.moment());
+        let posed = self.posed(&chain, &row.pose_deg, &row.payload, row.force_n);
         let torques = posed.statics().joint_torques_nm;
         torques.into_iter().map(|(joint, torque_nm)| (joint.to_string(), torque_nm)).collect()
     }
 
-    fn posed(&self, pose_deg: &[f64], stated: &Payload, force_n: Vector3<f64>) -> Posed<'_> {
+    /// The arm as it is in a test of a channel at a moment.
+    fn chain_at(&self, channel: Channel, when: &Moment) -> Cow<'_, Chain> {
+        if self.subject.warming.is_none() {
+            return Cow::Borrowed(self.special[channel as usize].as_ref().unwrap_or(&self.chain));
+        }
+        Cow::Owned(Chain::new(&self.subject.structure_at(channel, when), LinkModel::Full))
+    }
+
+    fn posed<'c>(
+        &self,
+        chain: &'c Chain,
+        pose_deg: &[f64],
+        stated: &Payload,
+        force_n: Vector3<f64>,
+    ) -> Posed<'c> {
         let pose_rad: Vec<f64> = pose_deg.iter().map(|a| a.to_radians()).collect();
-        self.chain.pose_rad(&pose_rad, &self.subject.payload(stated), force_n)
+        chain.pose_rad(&pose_rad, &self.subject.payload(stated), force_n)
     }
 }
 
@@ -147,7 +180,7 @@ fn joints(posed: &Posed) -> Vec<(JointLaw, Twist, f64)> {
         let own: Vec<Twist> = twists.by_ref().take(element.twists.len()).collect();
         match element.yielding {
             Yielding::Joint(law) => Some((law, own[0])),
-            Yielding::Linear(_) => None,
+            Yielding::Linear(_) | Yielding::Lift(_) => None,
         }
     });
     laws.zip(torques).map(|((law, twist), (_, torque))| (law, twist, torque)).collect()

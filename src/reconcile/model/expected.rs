@@ -3,6 +3,7 @@
 
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::kind::Measure;
+use crate::reconcile::forward::bench::ARCMIN_PER_RAD;
 use crate::reconcile::forward::prepared::Forward;
 
 /// Measures of an arm and of its campaign.
@@ -44,6 +45,10 @@ impl Sizes {
             Measure::ArmMassPerLength => part * self.arm_kg / self.arm_m,
             Measure::Displacement => part * self.displacement_mm,
             Measure::Twist => part * self.twist_arcmin,
+            Measure::Angle => {
+                let turned_rad = 1e-3 * self.displacement_mm / self.arm_m;
+                part * turned_rad.max(self.twist_arcmin / ARCMIN_PER_RAD)
+            }
             Measure::DisplacementPerRow => part * self.displacement_mm / self.static_rows,
         }
     }

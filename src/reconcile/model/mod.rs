@@ -6,3 +6,4 @@ pub(crate) mod estimate;
 pub mod exact;
 pub(crate) mod expected;
 pub mod parameters;
+pub(crate) mod seen;

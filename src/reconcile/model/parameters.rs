@@ -2,7 +2,7 @@
 
 use super::estimate::Estimate;
 use super::estimate::Interval;
-use crate::arm::effect::entry::Effect;
+use crate::arm::effect::entry::{Effect, word_of};
 use crate::arm::effect::kind::{Absent, Kind, Parameter, Place, Scale};
 use crate::arm::effect::subject::Subject;
 use crate::arm::joint_law::Curve;
@@ -46,11 +46,13 @@ const RIGID_NM_PER_RAD: f64 = 1e15;
 
 impl FreeParameter {
     /// A component of a parameter. Compliances are expressed in that of a joint of this stiffness \[N
-    /// m/rad\].
+    /// m/rad\]; for a torque it is the largest torque on the joint \[N m\].
     pub(crate) fn new(parameter: &Parameter, component: usize, joint_stiffness: f64) -> Self {
         let expected = parameter.prior;
         let (low, high) = (parameter.low, parameter.high);
         let (reference, (low, high), expected, absent) = match parameter.scale {
+            // the reference of a torque is the largest on its joint; a torque is looked for up to twice what is expected
+            Scale::Torque => (joint_stiffness, (2.0 * expected.0, 2.0 * expected.1), expected, Some(0.0)),
             Scale::Linear => {
                 let size = parameter.typical.abs().max(1e-12);
                 let by_size = |(a, b): (f64, f64)| (a / size, b / size);
@@ -88,7 +90,7 @@ impl FreeParameter {
     /// The parameter's value.
     pub fn value(&self, u: f64) -> f64 {
         match self.scale {
-            Scale::Linear => u * self.reference,
+            Scale::Linear | Scale::Torque => u * self.reference,
             Scale::Stiffness if u <= self.reference / RIGID_NM_PER_RAD => RIGID_NM_PER_RAD,
             Scale::Stiffness => self.reference / u,
             Scale::Reciprocal => 1.0 / u,
@@ -99,7 +101,7 @@ impl FreeParameter {
     /// The `u` of a value.
     pub fn u(&self, value: f64) -> f64 {
         match self.scale {
-            Scale::Linear => value / self.reference,
+            Scale::Linear | Scale::Torque => value / self.reference,
             Scale::Stiffness => self.reference / value,
             Scale::Reciprocal => 1.0 / value,
             Scale::Log => libm::log(value),
@@ -120,9 +122,31 @@ impl FreeParameter {
         matches!(self.scale, Scale::Stiffness | Scale::Reciprocal)
     }
 
+    /// Whether it says how large the effect is, and not only how it acts.
+    pub(crate) fn is_size(&self) -> bool {
+        self.absent.is_some()
+    }
+
     /// Whether `u` means an absent effect, so that this end of an interval is no bound.
     pub fn unbounded(&self, u: f64) -> bool {
         self.scale == Scale::Stiffness && u <= 1e-6
+    }
+
+    /// Difference of `u` from the value at which the effect is absent; `None` where the parameter is no size.
+    pub(crate) fn departure(&self, u: f64) -> Option<f64> {
+        self.absent.map(|absent| u - absent)
+    }
+
+    /// A value `u` whose difference from that of an absent effect is multiplied by `part`; the same value where the parameter
+    /// is no size.
+    pub(crate) fn scaled(&self, u: f64, part: f64) -> f64 {
+        self.absent.map_or(u, |absent| absent + part * (u - absent))
+    }
+
+    /// Whether an interval contains the size at which the effect is absent; `None` where the parameter is no size.
+    pub(crate) fn may_be_absent(&self, ends: &Interval) -> Option<bool> {
+        let absent = self.absent?;
+        Some(ends.low.is_none_or(|low| low <= absent) && ends.high.is_none_or(|high| high >= absent))
     }
 
     /// Whether the effect has reached the largest size that is searched for.
@@ -150,6 +174,15 @@ impl FreeParameter {
     }
 }
 
+/// A number of a candidate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Number {
+    /// It is fitted: the next of the candidate's free parameters.
+    Free,
+    /// It is stated.
+    Stated(f64),
+}
+
 /// An effect at a place, as a candidate.
 #[derive(Clone)]
 pub struct Candidate {
@@ -159,8 +192,8 @@ pub struct Candidate {
     pub at: String,
     /// Its fitted parameters.
     pub free_parameters: Vec<FreeParameter>,
-    /// Parameters that are stated and not fitted. They follow the fitted ones.
-    pub(crate) fixed: Vec<f64>,
+    /// Every number of the kind, in its order.
+    pub(crate) numbers: Vec<Number>,
     /// Starting points of fits, each a list of `u`.
     pub starts: Vec<Vec<f64>>,
     /// Name and place of effects that are the same thing in this arm by construction.
@@ -168,9 +201,34 @@ pub struct Candidate {
 }
 
 impl Candidate {
-    /// Its label in reports.
+    /// Its label in reports: `effect@place`, and the channel if it is of one.
     pub fn label(&self) -> String {
-        format!("{}@{}", self.kind.name, self.at)
+        let label = format!("{}@{}", self.kind.name, self.at);
+        self.words().into_iter().fold(label, |label, (_, _, word)| format!("{label} ({word})"))
+    }
+
+    /// Every number with the name of its parameter, in the order of the kind.
+    pub(crate) fn named_numbers(&self) -> Vec<(&'static str, Number)> {
+        // channels may have parameters of their own
+        let is_own = |place: &&Place| matches!(place, Place::Channel(channel) if channel.word() == self.at);
+        let place = self.kind.places.iter().find(is_own).or(self.kind.places.first());
+        let Some(place) = place else { return Vec::new() };
+        let names = (self.kind.parameters)(*place).iter().flat_map(|p| std::iter::repeat_n(p.name, p.count));
+        names.zip(self.numbers.iter().copied()).collect()
+    }
+
+    /// Stated parameters that files have as words: name, number and word.
+    pub(crate) fn words(&self) -> Vec<(&'static str, f64, &'static str)> {
+        let word = |(name, number): (&'static str, Number)| match number {
+            Number::Stated(number) => Some((name, number, word_of(self.kind.name, name, number)?)),
+            Number::Free => None,
+        };
+        self.named_numbers().into_iter().filter_map(word).collect()
+    }
+
+    /// Whether another candidate is the same effect at the same place, of which other parameters are fitted.
+    pub(crate) fn is_variant_of(&self, other: &Self) -> bool {
+        self.kind.name == other.kind.name && self.at == other.at && self.words() == other.words()
     }
 
     /// Adds starting points in every corner of a vector's range, for campaigns with few readings.
@@ -179,9 +237,18 @@ impl Candidate {
         self
     }
 
-    /// Values of all parameters in the order of the kind. A parameter that must not be below another is
-    /// raised to it.
+    /// Values of all parameters in the order of the kind.
     pub fn numbers(&self, u: &[f64]) -> Vec<f64> {
+        let mut free = self.free_values(u).into_iter();
+        let number = |number: &Number| match number {
+            Number::Free => free.next().unwrap_or_default(),
+            Number::Stated(value) => *value,
+        };
+        self.numbers.iter().map(number).collect()
+    }
+
+    /// Values of the fitted parameters. A parameter that must not be below another is raised to it.
+    pub fn free_values(&self, u: &[f64]) -> Vec<f64> {
         let mut out: Vec<f64> = self.free_parameters.iter().zip(u).map(|(k, u)| k.value(*u)).collect();
         for (i, parameter) in self.free_parameters.iter().enumerate() {
             if let Some(least) = self.free_parameters.iter().position(|k| Some(k.name) == parameter.not_below)
@@ -189,7 +256,6 @@ impl Candidate {
                 out[i] = out[i].max(out[least]);
             }
         }
-        out.extend(&self.fixed);
         out
     }
 

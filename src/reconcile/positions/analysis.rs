@@ -6,6 +6,8 @@ use super::fit::fit;
 use super::fitted::{Fitted, Sample};
 use super::kinematics::{Geometry, Number, Pose, number_groups};
 use super::loads::{Loads, Yielding, candidates};
+use super::moved::{Boundary, Kind};
+use super::play;
 use super::points::{Point, points};
 use super::tree::Tree;
 use crate::arm::Arm;
@@ -13,6 +15,7 @@ use crate::arm::effect::kind::Yields;
 use crate::reconcile::fit::stats::median;
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::components::Components;
+use crate::reconcile::readings::declared::BASE;
 use crate::reconcile::readings::rows::pose_key;
 use crate::reconcile::verdict::stage::Stage;
 use nalgebra::{Rotation3, Vector3};
@@ -55,8 +58,8 @@ pub(crate) struct Positions {
     pub(super) tree: Tree,
     /// The points on the tools. A point that sat elsewhere in another session counts as a separate point.
     pub(super) points: Vec<Point>,
-    /// One sentence for every session that was found, with its first row.
-    pub(super) sessions: Vec<String>,
+    /// The boundaries between sessions.
+    pub(super) sessions: Vec<Boundary>,
     /// Held-out errors of the last stage, by row \[m\].
     pub(super) held_out: Vec<Vector3<f64>>,
 }
@@ -83,17 +86,33 @@ pub(crate) fn calibrated(campaign: &Campaign) -> Calibrated {
     }
 }
 
-/// Calibrates the geometry, and finds what yields and which joints have a transmission error.
+/// Calibrates the geometry, tells sessions apart, and finds what yields and which joints have a transmission error.
+///
+/// What yields can look like a session where the rows were taken configuration by configuration. So sessions are asked
+/// again once the effects are in the model. Where one no longer pays, or begins where something else changes in the rows,
+/// everything is done once more with the sessions that are needed beside effects that were found without any.
 pub(crate) fn analyze(campaign: &Campaign) -> Positions {
-    let mut found = Positions::on_its_geometry(campaign);
-    // An uneven joint can hide what yields, so the search begins again after each.
-    loop {
-        for class in CLASSES {
-            while found.add(campaign, class) {}
+    let calibrated = Positions::in_declared_sessions(campaign);
+    let mut found = calibrated.clone();
+    found.tell_sessions(campaign);
+    found.rigid = found.fitted.clone();
+    found.find_effects(campaign);
+    let mut reviewed = found.clone();
+    let is_other = reviewed.drop_needless_sessions();
+    if is_other || found.has_doubtful_session(campaign) {
+        let mut late = calibrated.clone();
+        late.find_effects(campaign);
+        late.tell_sessions(campaign);
+        late.drop_needless_sessions();
+        let others = [late.boundaries(false), reviewed.boundaries(false)];
+        let mut again: Vec<Positions> = Vec::new();
+        for own in
+            others.iter().enumerate().filter(|(k, own)| !others[..*k].contains(own)).map(|(_, own)| own)
+        {
+            again.extend((*own != found.boundaries(false)).then(|| calibrated.with_sessions(campaign, own)));
         }
-        if !found.add_transmission(campaign) {
-            break;
-        }
+        found =
+            again.into_iter().fold(found, |best, next| if next.score() > best.score() { next } else { best });
     }
     let errors = found.samples.iter().map(|s| found.fitted.error(s).norm()).enumerate();
     let gross = errors.filter(|(_, e)| *e > GROSS * found.fitted.scale_m).map(|(i, e)| (i, 1e3 * e));
@@ -106,7 +125,9 @@ impl Positions {
         let tree = Tree::new(campaign);
         let points = points(campaign);
         let geometry = Geometry::nominal(&tree, points.len());
-        let candidates = candidates(&tree);
+        let springs = candidates(&tree);
+        let loaded = samples(campaign, &tree, &geometry, &springs, &points);
+        let candidates = play::with_play(springs, &loaded);
         let considered = candidates.iter().map(|c| campaign.statement.considers(c.effect)).collect();
         let samples = samples(campaign, &tree, &geometry, &candidates, &points);
         let fitted = Fitted::rigid(geometry, ROUGH_M);
@@ -127,17 +148,72 @@ impl Positions {
         }
     }
 
-    /// Fits all that is unknown in the geometry, and tells sessions apart.
-    fn on_its_geometry(campaign: &Campaign) -> Self {
+    /// Fits all that is unknown in the geometry, in the sessions that campaign.json declares.
+    fn in_declared_sessions(campaign: &Campaign) -> Self {
         let mut found = Self::new(campaign);
         found.calibrate(campaign);
-        let spec = &campaign.statement.positions;
-        found.sessions = found.find_sessions(spec.tool_offset, spec.base_placement);
+        found.divide(&found.declared(campaign), true);
         if !found.sessions.is_empty() {
-            found.stage("sessions".into(), Vec::new());
+            found.stage("declared sessions".into(), Vec::new());
         }
         found.rigid = found.fitted.clone();
         found
+    }
+
+    /// Fits all that is unknown in the geometry, and tells sessions apart.
+    fn on_its_geometry(campaign: &Campaign) -> Self {
+        let mut found = Self::in_declared_sessions(campaign);
+        found.tell_sessions(campaign);
+        found.rigid = found.fitted.clone();
+        found
+    }
+
+    /// The sessions that campaign.json declares: what was moved, and the first row after.
+    fn declared(&self, campaign: &Campaign) -> Vec<(Kind, usize)> {
+        let declared = campaign.statement.positions.sessions.iter();
+        let boundaries = declared.flat_map(|session| {
+            let first = session.from_row - 1;
+            let points = (0..self.points.len()).filter(|&p| self.points[p].name == session.moved);
+            let kinds: Vec<Kind> = match session.moved.as_str() {
+                BASE => vec![Kind::Station],
+                _ => points.map(Kind::Point).collect(),
+            };
+            kinds.into_iter().map(move |kind| (kind, first))
+        });
+        boundaries.collect()
+    }
+
+    /// Looks for sessions that nobody declared.
+    fn tell_sessions(&mut self, campaign: &Campaign) {
+        let spec = &campaign.statement.positions;
+        if self.find_sessions(spec.tool_offset, spec.base_placement) > 0 {
+            self.stage("sessions".into(), Vec::new());
+        }
+    }
+
+    /// The calibrated arm in given sessions, with the effects that it then has.
+    fn with_sessions(&self, campaign: &Campaign, boundaries: &[(Kind, usize)]) -> Self {
+        let mut out = self.clone();
+        out.divide(boundaries, false);
+        if !boundaries.is_empty() {
+            out.stage("sessions".into(), Vec::new());
+        }
+        out.rigid = out.fitted.clone();
+        out.find_effects(campaign);
+        out
+    }
+
+    /// Finds what yields and which joints have a transmission error.
+    fn find_effects(&mut self, campaign: &Campaign) {
+        // An uneven joint can hide what yields, so the search begins again after each.
+        loop {
+            for class in CLASSES {
+                while self.add(campaign, class) {}
+            }
+            if !self.add_transmission(campaign) {
+                break;
+            }
+        }
     }
 
     /// Places the arm, and frees one group of numbers after the other.

@@ -137,6 +137,16 @@ impl Fitted {
         })
     }
 
+    /// Change of the displacement by the springs of the model as gravity leans along an axis \[m/rad\]. Play is left out: it
+    /// is closed in most poses, and does not follow.
+    pub(crate) fn leaning(&self, sample: &Sample, axis: usize) -> Vector3<f64> {
+        let effects = self.effects.iter().zip(&self.compliances);
+        let springs = effects.filter(|(effect, _)| !sample.deflection.is_play(**effect));
+        springs.fold(Vector3::zeros(), |sum, (&effect, compliances)| {
+            sum + sample.deflection.yielded(effect, compliances, &Vector3::ith(axis, 1.0))
+        })
+    }
+
     /// Weight of a sample with this error \[1/m²\].
     pub(crate) fn weight(&self, miss: &Miss) -> f64 {
         weight(miss, self.scale_m) / (self.scale_m * self.scale_m)

@@ -36,6 +36,9 @@ pub(crate) struct Yielding {
     pub yields: Yields,
     /// Name of the place.
     pub at: String,
+    /// The torque scale of play, if the joint has play and is no spring: its one number is then the half width \[rad\] and
+    /// not a compliance \[N m\].
+    pub play_nm: Option<f64>,
 }
 
 /// The effect of gravity on one measured position, in the level frame.
@@ -65,6 +68,8 @@ struct Slot {
     first: usize,
     swings: usize,
     compliances: usize,
+    /// The torque scale of play \[N m\].
+    play_nm: Option<f64>,
 }
 
 impl Deflection {
@@ -76,6 +81,11 @@ impl Deflection {
     /// Number of compliances of a candidate.
     pub(crate) fn count(&self, candidate: usize) -> usize {
         self.slots[candidate].compliances
+    }
+
+    /// Whether a candidate is play, whose motion is not in proportion to the weight.
+    pub(crate) fn is_play(&self, candidate: usize) -> bool {
+        self.slots[candidate].play_nm.is_some()
     }
 
     fn swings(&self, candidate: usize) -> &[Swing] {
@@ -95,6 +105,9 @@ impl Deflection {
         let mut torques_nm = [0.0; 3];
         torques_nm.iter_mut().zip(own).for_each(|(nm, swing)| *nm = swing.pull_nm.dot(gravity));
         let along = |i: usize, j: usize| own[i].motion_m * torques_nm[j];
+        if let Some(scale_nm) = self.slots[candidate].play_nm {
+            return each(own[0].motion_m * libm::tanh(torques_nm[0] / scale_nm));
+        }
         match self.count(candidate) {
             1 => each((0..own.len()).fold(Vector3::zeros(), |sum, i| sum + along(i, i))),
             count => FRAME_ENTRIES[..count].iter().for_each(|&(i, j)| {
@@ -160,6 +173,7 @@ impl Tree {
         };
         frame.yields == Yields::Frame
             && other.yields != Yields::Frame
+            && other.play_nm.is_none()
             && (frame.at == other.at || self.arms.iter().any(|chain| chain.windows(2).any(is_behind)))
     }
 }
@@ -167,7 +181,7 @@ impl Tree {
 impl Yielding {
     /// The candidate of an effect at a place; `None` if positions do not show that the effect yields.
     fn new(kind: &'static Kind, at: &str) -> Option<Self> {
-        kind.traits.yields.map(|yields| Self { effect: kind.name, yields, at: at.into() })
+        kind.traits.yields.map(|yields| Self { effect: kind.name, yields, at: at.into(), play_nm: None })
     }
 
     /// Number of compliances of the candidate. A frame has xx, yy, xy, xz, yz, and zz where weights can turn it about
@@ -251,7 +265,8 @@ impl<'a> Loads<'a> {
             .collect();
         let mut first = 0;
         let slot = |candidate: &Yielding| {
-            let slot = Slot { first, swings: candidate.axes(), compliances: candidate.count() };
+            let (swings, compliances) = (candidate.axes(), candidate.count());
+            let slot = Slot { first, swings, compliances, play_nm: candidate.play_nm };
             first += slot.swings;
             slot
         };

@@ -5,7 +5,8 @@
 //! - [`kinematics`] says where a point is, and [`loads`] how gravity moves it.
 //! - `align` places the arm from nothing. [`fit`](mod@fit) fits a model (`fitted`), by the equations in `normal` that
 //!   `rows` sums up, with compliances that are `springs`.
-//! - [`analysis`] is the whole analysis. `sessions` tells sessions apart and `standing` finds where the arm stands in each;
+//! - [`analysis`] is the whole analysis. `sessions` tells sessions apart, `boundary` judges each boundary
+//!   between two of them (`moved`), and `standing` finds where the arm stands in each;
 //!   `search` finds what yields and `transmission` what turns unevenly.
 //! - `conventions` asks whether the file was written by another convention, `structure` what is left; `next_test` says
 //!   what to measure, and [`outcome`] concludes.
@@ -13,14 +14,17 @@
 
 pub(crate) mod align;
 pub(crate) mod analysis;
+pub(crate) mod boundary;
 pub(crate) mod conventions;
 pub(crate) mod fit;
 pub(crate) mod fitted;
 pub(crate) mod kinematics;
 pub(crate) mod loads;
+pub(crate) mod moved;
 pub(crate) mod next_test;
 pub(crate) mod normal;
 pub(crate) mod outcome;
+pub(crate) mod play;
 pub(crate) mod points;
 pub(crate) mod predict;
 pub(crate) mod rows;

@@ -2,8 +2,8 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// Weighted normal equations of a model. Their columns are the numbers of the geometry, then the compliances, then
-/// additional columns.
+/// Weighted normal equations of a model. There is one column for each parameter of the geometry, then one for each
+/// compliance, then those that the caller adds, which belong to no parameter of the model.
 pub(crate) struct Normal {
     /// Curvature, with the priors included.
     pub curvature: DMatrix<f64>,

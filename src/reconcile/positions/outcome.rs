@@ -4,6 +4,7 @@ use super::analysis::{Positions, analyze};
 use super::fitted::Fitted;
 use super::kinematics::Number;
 use super::loads::FRAME_ENTRIES;
+use super::search::TIE;
 use super::springs::frame_matrix;
 use super::structure::{MATERIAL_VARIANCE, mean_median_length};
 use super::transmission;
@@ -38,6 +39,8 @@ const MOST_ALTERNATIVES: usize = 3;
 /// Effects are written into the corrected arm, even if they do not explain everything, if they lower the error of
 /// held-out poses to this part or less.
 const HELPFUL: f64 = 0.8;
+/// What a session is called among the alternatives of an effect.
+const SESSION: &str = "session";
 /// Number of poses that are listed.
 const WORST_POSES: usize = 3;
 
@@ -47,11 +50,12 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let lack_of_fit = found.lack_of_fit(campaign);
     let competitors: Vec<Vec<(usize, Fitted)>> =
         (0..found.fitted.effects.len()).map(|i| found.competitors(i)).collect();
-    let yielding = (0..found.fitted.effects.len()).map(|i| found.finding(i, &competitors[i]));
+    let yielding = (0..found.fitted.effects.len())
+        .map(|i| found.with_session_instead(campaign, i, found.finding(i, &competitors[i])));
     let uneven = found.transmissions.iter().map(|&joint| found.transmission_finding(joint));
     let findings: Vec<Finding> = yielding.chain(uneven).collect();
     let (verdict, mut reasons) = found.verdict(campaign, &lack_of_fit, &findings);
-    reasons.extend(found.sessions.iter().cloned());
+    reasons.extend(found.session_sentences(campaign));
     reasons.extend(found.other_convention(campaign));
     let next_tests = found.next_tests(campaign, verdict, &lack_of_fit, &competitors);
     // a model that predicts held-out poses far better serves a user even if something else is missing
@@ -99,6 +103,9 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         corrected: corrected[0].clone(),
         other_corrected: corrected[1..].to_vec(),
         stages: found.stages.clone(),
+        records: Vec::new(),
+        empirical: Vec::new(),
+        models: Vec::new(),
         effects,
     }
 }
@@ -137,6 +144,15 @@ impl Positions {
             let text = "the effects do not predict poses that they were not fitted to".to_string();
             return (Verdict::InsufficientData, vec![text]);
         }
+        let jumps = self.large_jumps();
+        if !jumps.is_empty() {
+            let text = format!(
+                "the measured points jump by {} and nobody declared it: state positions.sessions in campaign.json if \
+                 something was moved there; if not, something that this model lacks changes at that row",
+                jumps.join(", ")
+            );
+            return (Verdict::InsufficientData, vec![text]);
+        }
         let mut reasons = vec![format!(
             "on poses held out of the fit the median error falls from {:.3} to {:.3} mm",
             before.median_mm, after.median_mm
@@ -145,6 +161,13 @@ impl Positions {
             reasons.extend(self.left_over(left));
         }
         (Verdict::Explained, reasons)
+    }
+
+    /// A finding with the session that would explain as much, if there is one, among its alternatives.
+    fn with_session_instead(&self, campaign: &Campaign, i: usize, mut finding: Finding) -> Finding {
+        let row = self.session_instead(campaign, self.fitted.effects[i], TIE);
+        finding.indistinguishable_from.extend(row.map(|row| (SESSION.into(), format!("before row {row}"))));
+        finding
     }
 
     /// Says in words which structure is left in the errors, without naming an effect.
@@ -186,6 +209,13 @@ impl Positions {
         let candidate = &self.candidates[self.fitted.effects[i]];
         let (c, sd) = (&self.fitted.compliances[i], &self.fitted.deviations[i]);
         let parameters = match candidate.yields {
+            _ if candidate.play_nm.is_some() => {
+                let scale_nm = candidate.play_nm.unwrap_or_default();
+                vec![
+                    ("half_width_rad".into(), vec![within(c[0], sd[0])]),
+                    ("torque_nm".into(), vec![self.play_scale(i, scale_nm)]),
+                ]
+            }
             Yields::Frame => frame_parameters(c, sd),
             Yields::AboutAxis | Yields::Tilt => {
                 vec![("stiffness_nm_per_rad".into(), vec![stiffness(c[0], sd[0])])]

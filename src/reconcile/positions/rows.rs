@@ -47,7 +47,7 @@ impl<'a> Linearized<'a> {
         self.placer.slopes(sample.placing(), self.numbers, &mut self.columns);
         for (column, number) in self.columns.iter_mut().zip(self.numbers) {
             if let Number::Gravity(c) = number {
-                let pulled = here.yielded(sample, &Vector3::ith(*c, 1.0));
+                let pulled = here.leaning(sample, *c);
                 *column = self.from_level * (pulled + sample.deflection.known_slopes_m[*c]);
             }
         }

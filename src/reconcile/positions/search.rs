@@ -105,10 +105,10 @@ impl Positions {
         format!("{}@{}", self.candidates[candidate].effect, self.candidates[candidate].at)
     }
 
-    /// ln of the likelihood minus the price of all effects.
-    fn score(&self) -> f64 {
+    /// ln of the likelihood minus the price of all effects and of the sessions that nobody declared.
+    pub(super) fn score(&self) -> f64 {
         let uneven = self.transmissions.len() as f64 * self.transmission_price();
-        self.fitted.ln_likelihood - self.prices(&self.fitted.effects) - uneven
+        self.fitted.ln_likelihood - self.prices(&self.fitted.effects) - uneven - self.sessions_price()
     }
 
     /// Price of several effects together, in ln of the likelihood.
@@ -118,8 +118,18 @@ impl Positions {
 
     /// Price of one candidate, in ln of the likelihood.
     fn price_of(&self, candidate: usize) -> f64 {
-        let places = self.considered.iter().filter(|considered| **considered).count();
-        self.price(self.candidates[candidate].count(), places)
+        let springs = self.candidates.iter().zip(&self.considered);
+        let places = springs.filter(|(c, considered)| **considered && c.play_nm.is_none()).count();
+        let candidate = &self.candidates[candidate];
+        // the torque scale of play was chosen too
+        let numbers = candidate.count() + usize::from(candidate.play_nm.is_some());
+        self.price(numbers, places.max(1))
+    }
+
+    /// Whether two candidates are the same effect at the same place.
+    fn is_same(&self, a: usize, b: usize) -> bool {
+        let [a, b] = [a, b].map(|c| &self.candidates[c]);
+        (a.effect, &a.at) == (b.effect, &b.at)
     }
 
     /// Price of `numbers` parameters in ln of the likelihood. It charges for the parameters, and for having looked at
@@ -134,9 +144,17 @@ impl Positions {
     fn best_additions(&self, base: &Fitted, allowed: impl Fn(usize) -> bool) -> Vec<(usize, Fitted)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let mut gains = self.gains(base);
-        let is_open = |c: usize| self.considered[c] && allowed(c) && !base.effects.contains(&c);
+        let is_in = |c: usize| base.effects.iter().any(|e| self.is_same(*e, c));
+        let is_open = |c: usize| self.considered[c] && allowed(c) && !is_in(c);
         gains.retain(|(c, gain)| is_open(*c) && *gain > 0.0);
         gains.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        // of all torque scales of a joint's play the best
+        let mut seen: Vec<usize> = Vec::new();
+        gains.retain(|(c, _)| {
+            let is_first = !seen.iter().any(|s| self.is_same(*s, *c));
+            seen.push(*c);
+            is_first
+        });
         gains.truncate(FULL_FITS);
         let models = gains.into_iter().flat_map(|(c, _)| self.with(base, c).into_iter().map(move |m| (c, m)));
         let models: Vec<(usize, Vec<usize>)> = models.collect();
@@ -198,10 +216,12 @@ impl Positions {
     pub(crate) fn competitors(&self, position: usize) -> Vec<(usize, Fitted)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let own = self.fitted.effects[position];
-        let count = self.candidates[own].count();
+        let numbers =
+            |c: usize| self.candidates[c].count() + usize::from(self.candidates[c].play_nm.is_some());
         let rest: Vec<usize> = self.fitted.effects.iter().copied().filter(|e| *e != own).collect();
         let without = fit(&all, &self.numbers, &rest, &self.fitted);
-        let mut tried = self.best_additions(&without, |c| c != own && self.candidates[c].count() <= count);
+        let is_other = |c: usize| !self.is_same(c, own) && numbers(c) <= numbers(own);
+        let mut tried = self.best_additions(&without, is_other);
         tried.retain(|(_, f)| f.ln_likelihood > self.fitted.ln_likelihood - TIE);
         tried
     }

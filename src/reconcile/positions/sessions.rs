@@ -14,6 +14,7 @@ use super::analysis::Positions;
 use super::fit::fit;
 use super::fitted::{Fitted, Sample, readings};
 use super::kinematics::Number;
+use super::moved::{Boundary, Kind, Moved};
 use super::normal::Factor;
 use super::points::Point;
 use super::rows::{Linearized, normal};
@@ -25,90 +26,88 @@ const FEWEST: usize = 5;
 /// Largest number of sessions beyond the first.
 const MOST: usize = 6;
 
-/// What is placed differently in another session.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Moved {
-    /// A point on the tool, by its index.
-    Point(usize),
-    /// The instrument or the base: the session with this index is divided.
-    Station(usize),
-}
-
-impl Moved {
-    fn has(self, sample: &Sample) -> bool {
-        match self {
-            Moved::Point(p) => sample.point == p,
-            Moved::Station(s) => sample.station == s,
-        }
-    }
-
-    /// Gives the rows before `first` to `new`.
-    fn relabel(self, samples: &mut [Sample], first: usize, new: Moved) {
-        for sample in samples[..first].iter_mut().filter(|s| self.has(s)) {
-            match new {
-                Moved::Point(p) => sample.point = p,
-                Moved::Station(s) => sample.station = s,
-            }
-        }
-    }
-
-    fn numbers(self) -> Vec<Number> {
-        match self {
-            Moved::Point(p) => (0..3).map(|c| Number::Tool(p, c)).collect(),
-            Moved::Station(s) => {
-                let turns = (0..3).map(move |c| Number::SessionRotation(s, c));
-                turns.chain((0..3).map(move |c| Number::SessionPosition(s, c))).collect()
-            }
-        }
-    }
-}
-
 /// A model with one more session.
-struct Split {
+pub(super) struct Split {
     samples: Vec<Sample>,
     numbers: Vec<Number>,
-    fitted: Fitted,
+    pub fitted: Fitted,
     moved: Moved,
-    first: usize,
+    new: Moved,
+    pub first: usize,
     gain: f64,
 }
 
 /// The model that is divided, factorized.
-struct Whole {
+pub(super) struct Whole {
     factor: Factor,
     gradient: DVector<f64>,
 }
 
 impl Positions {
-    /// Finds sessions, as long as another session is worth its price. Returns one sentence for each.
-    pub(crate) fn find_sessions(&mut self, tools_free: bool, base_free: bool) -> Vec<String> {
-        let mut out = Vec::new();
-        while out.len() < MOST {
-            let points = (0..self.points.len()).filter(|_| tools_free).map(Moved::Point);
-            let stations = (0..self.fitted.geometry.stations.len()).filter(|_| base_free).map(Moved::Station);
-            let kinds: Vec<Moved> = points.chain(stations).collect();
+    /// Finds sessions, as long as another session is worth its price. Returns how many were found.
+    pub(crate) fn find_sessions(&mut self, tools_free: bool, base_free: bool) -> usize {
+        let mut found = 0;
+        while found < MOST {
+            let kinds = self.kinds(tools_free, base_free);
             let Some(whole) = self.whole() else { break };
             let splits = kinds.iter().filter_map(|&moved| {
-                let first = self.best_first(moved, &whole)?;
+                let (first, _) = self.best_first(moved, &whole)?;
                 Some(self.split(moved, first, kinds.len()))
             });
             let Some(best) = splits.filter(|s| s.gain > 0.0).max_by(|a, b| a.gain.total_cmp(&b.gain)) else {
                 break;
             };
-            out.push(self.take(best));
+            self.take(best, false);
+            found += 1;
         }
-        out
+        found
     }
 
-    fn whole(&self) -> Option<Whole> {
+    /// Divides the rows at given boundaries, whatever that gains. `declared` says whether campaign.json states them.
+    pub(crate) fn divide(&mut self, at: &[(Kind, usize)], declared: bool) {
+        for &(kind, first) in at {
+            let of_kind = |s: &&Sample| s.index >= first && self.is_of(s, kind);
+            let Some(moved) = self.samples.iter().find(of_kind).map(|s| kind.label(s)) else { continue };
+            if self.samples[..first].iter().any(|s| moved.has(s)) {
+                let split = self.split(moved, first, 1);
+                self.take(split, declared);
+            }
+        }
+    }
+
+    /// Whether a sample can show that something of this kind was moved.
+    pub(super) fn is_of(&self, sample: &Sample, kind: Kind) -> bool {
+        let same = |a: &Point, b: &Point| (a.arm, &a.name) == (b.arm, &b.name);
+        match kind {
+            Kind::Point(p) => same(&self.points[sample.point], &self.points[p]),
+            Kind::Station => true,
+        }
+    }
+
+    /// What may have been moved.
+    pub(super) fn kinds(&self, tools_free: bool, base_free: bool) -> Vec<Moved> {
+        let points = (0..self.points.len()).filter(|_| tools_free).map(Moved::Point);
+        let stations = (0..self.fitted.geometry.stations.len()).filter(|_| base_free).map(Moved::Station);
+        points.chain(stations).collect()
+    }
+
+    /// Price of a session in ln of the likelihood, where so many kinds of sessions could be found: for the numbers of its
+    /// placement and for having looked at every row.
+    pub(super) fn session_price(&self, numbers: usize, kinds: usize) -> f64 {
+        let readings = readings(&self.samples) as f64;
+        0.5 * numbers as f64 * libm::log(readings) + libm::log(readings * kinds as f64) + 3.0
+    }
+
+    pub(super) fn whole(&self) -> Option<Whole> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let normal = normal(&all, &self.numbers, &self.fitted, &mut |_, _, _| {});
         let own: Vec<usize> = (0..normal.own).collect();
         Some(Whole { factor: Factor::new(&normal.curvature, &own)?, gradient: normal.gradient })
     }
 
-    /// The row that is best as the first of a new session, if there are enough rows before and after it.
-    fn best_first(&self, moved: Moved, whole: &Whole) -> Option<usize> {
+    /// The row that is best as the first of a new session, with the linearized gain in ln of the likelihood, if there are
+    /// enough rows before and after it.
+    pub(super) fn best_first(&self, moved: Moved, whole: &Whole) -> Option<(usize, f64)> {
         let rows = self.samples.iter().filter(|s| moved.has(s)).count();
         let inside = FEWEST..rows.saturating_sub(FEWEST);
         let own = moved.numbers();
@@ -127,12 +126,11 @@ impl Positions {
             });
             earlier.add(&linearized.columns, &error);
         }
-        best.map(|(first, _)| first)
+        best
     }
 
-    /// The model in which the rows before `first` have their own placement. Its likelihood is charged for the numbers
-    /// of this placement and for having looked at every row.
-    fn split(&self, moved: Moved, first: usize, kinds: usize) -> Split {
+    /// The model in which the rows before `first` have their own placement. Its gain is charged with its price.
+    pub(super) fn split(&self, moved: Moved, first: usize, kinds: usize) -> Split {
         let mut start = self.fitted.clone();
         let geometry = &mut start.geometry;
         let new = match moved {
@@ -151,33 +149,21 @@ impl Positions {
         numbers.extend(new.numbers());
         let all: Vec<&Sample> = samples.iter().collect();
         let fitted = fit(&all, &numbers, &start.effects, &start);
-        let readings = readings(&samples) as f64;
-        let price =
-            0.5 * new.numbers().len() as f64 * libm::log(readings) + libm::log(readings * kinds as f64) + 3.0;
+        let price = self.session_price(new.numbers().len(), kinds);
         let gain = fitted.ln_likelihood - self.fitted.ln_likelihood - price;
-        Split { samples, numbers, fitted, moved, first, gain }
+        Split { samples, numbers, fitted, moved, new, first, gain }
     }
 
-    fn take(&mut self, split: Split) -> String {
+    fn take(&mut self, split: Split, declared: bool) {
         (self.samples, self.numbers, self.fitted) = (split.samples, split.numbers, split.fitted);
-        let geometry = &self.fitted.geometry;
-        let row = split.first + 1;
-        match split.moved {
+        let kind = match split.moved {
             Moved::Point(p) => {
-                let offset_m = geometry.tools_m[p] - geometry.tools_m[geometry.tools_m.len() - 1];
-                self.points.push(Point { before_row: Some(row), ..self.points[p].clone() });
-                let (name, mm) = (self.points[p].label(), 1e3 * offset_m.norm());
-                format!("{name} sat {mm:.2} mm away on the tool before row {row}: a session of its own")
+                self.points.push(Point { before_row: Some(split.first + 1), ..self.points[p].clone() });
+                Kind::Point(p)
             }
-            Moved::Station(s) => {
-                let (turn, shift_m) = geometry.stations[geometry.stations.len() - 1];
-                let (own_turn, own_shift_m) = geometry.stations[s];
-                let (mm, mrad) = (1e3 * (shift_m - own_shift_m).norm(), 1e3 * turn.angle_to(&own_turn));
-                format!(
-                    "before row {row} the instrument or the base stood {mm:.2} mm and {mrad:.2} mrad elsewhere: a session of its own"
-                )
-            }
-        }
+            Moved::Station(_) => Kind::Station,
+        };
+        self.sessions.push(Boundary { kind, earlier: split.new, first: split.first, declared });
     }
 }
 

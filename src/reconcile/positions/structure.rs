@@ -141,7 +141,10 @@ struct Asker<'a> {
 
 impl<'a> Asker<'a> {
     fn new(found: &'a Positions, campaign: &Campaign) -> Self {
-        let joint = |c: &usize| found.candidates[*c].yields == Yields::AboutAxis;
+        let joint = |c: &usize| {
+            let candidate = &found.candidates[*c];
+            candidate.yields == Yields::AboutAxis && candidate.play_nm.is_none()
+        };
         let torque =
             |c: usize| found.samples.iter().map(|s| s.deflection.lever(c).1.abs()).fold(1e-9, f64::max);
         let joints: Vec<(usize, f64)> =

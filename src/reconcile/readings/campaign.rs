@@ -2,6 +2,7 @@
 
 use super::cells::Purpose;
 use super::components::{Components, DISPLACEMENT, POSITION, leave_out_idle};
+use super::declared::{self, DeclaredSession};
 use super::rows::{
     ModalRow, PositionRow, StaticRow, WindupRow, modal_rows, position_rows, static_rows, windup_rows,
 };
@@ -13,6 +14,8 @@ use crate::arm::file::read_arm;
 use crate::arm::{Arm, Element};
 use crate::catalog::Catalogs;
 use crate::input::json::{Document, Fault, Faults, InputError, Node};
+use crate::reconcile::records::reading::{Record, read_all};
+use crate::reconcile::records::spec::{RecordSpec, STATEMENT_KEYS, read_records};
 use std::path::{Path, PathBuf};
 
 /// The tolerance of parts: 95 % limits as fractions of the nominal value.
@@ -43,6 +46,8 @@ pub struct PositionsSpec {
     pub gravity_direction: bool,
     /// Links behind which place and attitude are unknown, as of an arm that is mounted anyhow on a trunk.
     pub mounts: Vec<String>,
+    /// Sessions that are known.
+    pub sessions: Vec<DeclaredSession>,
 }
 
 impl PositionsSpec {
@@ -68,6 +73,8 @@ pub struct Statement {
     pub effects: Option<Vec<String>>,
     /// What is unknown in absolute positions.
     pub positions: PositionsSpec,
+    /// Records against time.
+    pub records: Vec<RecordSpec>,
     arm_file: String,
     /// Files of further arms on the same trunk, next to `campaign.json`.
     pub other_arm_files: Vec<String>,
@@ -96,6 +103,8 @@ pub struct Campaign {
     pub positions: Vec<PositionRow>,
     /// What was read otherwise than it is written, in sentences.
     pub remarks: Vec<String>,
+    /// Records against time.
+    pub records: Vec<Record>,
     /// blake3 of all files of the campaign.
     pub hash: String,
 }
@@ -113,7 +122,7 @@ pub(crate) fn read_statement(path: &Path) -> Result<Statement, InputError> {
 }
 
 fn statement(node: &Node) -> Option<Statement> {
-    let root = node.object(&[
+    const KEYS: &[&str] = &[
         "name",
         "arm",
         "other_arms",
@@ -132,7 +141,8 @@ fn statement(node: &Node) -> Option<Statement> {
         "date",
         "provenance",
         "note",
-    ])?;
+    ];
+    let root = node.object(&[KEYS, &STATEMENT_KEYS].concat())?;
     let name = root.or("name", "campaign".to_string(), |n| n.string().map(String::from));
     let arm_file = root.or("arm", "arm.json".to_string(), |n| n.string().map(String::from));
     let other_arm_files = root.or("other_arms", Vec::new(), read_names);
@@ -151,6 +161,7 @@ fn statement(node: &Node) -> Option<Statement> {
     });
     let effects = root.or("effects", None, |n| read_effect_names(n).map(Some));
     let positions = root.or("positions", PositionsSpec::default(), read_positions);
+    let records = read_records(&root);
     Some(Statement {
         name: name?,
         tolerance: tolerance?,
@@ -158,6 +169,7 @@ fn statement(node: &Node) -> Option<Statement> {
         rigid_links: rigid_links?,
         effects: effects?,
         positions: positions?,
+        records: records?,
         arm_file: arm_file?,
         other_arm_files: other_arm_files?,
         sources: read_sources(&root),
@@ -184,10 +196,12 @@ fn read_tolerance(node: &Node) -> Option<Tolerance> {
 fn read_positions(node: &Node) -> Option<PositionsSpec> {
     const KEYS: [&str; 5] =
         ["base_placement", "tool_offset", "joint_offsets", "geometry", "gravity_direction"];
-    let object =
-        node.object(&[KEYS.as_slice(), &["mounts", "file", "boundary", "reference", "note"]].concat())?;
+    let object = node.object(
+        &[KEYS.as_slice(), &["mounts", "sessions", "file", "boundary", "reference", "note"]].concat(),
+    )?;
     let flags = KEYS.map(|key| object.or(key, false, Node::boolean));
     let mounts = object.or("mounts", Vec::new(), read_names);
+    let sessions = object.or("sessions", Vec::new(), declared::read);
     Some(PositionsSpec {
         base_placement: flags[0]?,
         tool_offset: flags[1]?,
@@ -195,6 +209,7 @@ fn read_positions(node: &Node) -> Option<PositionsSpec> {
         geometry: flags[3]?,
         gravity_direction: flags[4]?,
         mounts: mounts?,
+        sessions: sessions?,
     })
 }
 
@@ -255,6 +270,7 @@ impl Campaign {
             windup: Vec::new(),
             positions: Vec::new(),
             remarks: Vec::new(),
+            records: Vec::new(),
             hash: String::new(),
         };
         faults.extend(campaign.faults());
@@ -266,6 +282,12 @@ impl Campaign {
                 faults.extend(table.into_faults());
             }
         }
+        let (names, specs) = (campaign.driven_joint_names(), &campaign.statement.records);
+        campaign.records = read_all(folder, specs, &names, &mut faults)?;
+        let declared = declared::problems(&campaign.statement.positions.sessions, &campaign.positions);
+        faults.extend(
+            declared.into_iter().map(|(what, hint)| campaign.fault("positions.sessions", what, &hint)),
+        );
         campaign.hash = campaign.hash_files();
         if faults.is_empty() { Ok(campaign) } else { Err(Faults(faults).into()) }
     }
@@ -319,6 +341,7 @@ impl Campaign {
             windup: Vec::new(),
             positions: rows,
             remarks: Vec::new(),
+            records: Vec::new(),
             hash: String::new(),
         };
         let faults = campaign.faults();
@@ -368,10 +391,17 @@ impl Campaign {
         out
     }
 
-    /// Splits the campaign in two: the readings other than absolute positions, and the positions.
+    /// Splits the campaign in two: the readings other than absolute positions, and the positions. Records are in neither.
     pub fn parted(&self) -> (Self, Self) {
-        let loaded = Self { positions: Vec::new(), other_arms: Vec::new(), ..self.clone() };
-        let placed = Self { statics: Vec::new(), modal: Vec::new(), windup: Vec::new(), ..self.clone() };
+        let loaded =
+            Self { positions: Vec::new(), records: Vec::new(), other_arms: Vec::new(), ..self.clone() };
+        let placed = Self {
+            statics: Vec::new(),
+            modal: Vec::new(),
+            windup: Vec::new(),
+            records: Vec::new(),
+            ..self.clone()
+        };
         (loaded, placed)
     }
 
@@ -400,7 +430,8 @@ impl Campaign {
         let named = ["campaign.json", &self.statement.arm_file].into_iter().chain(others.map(String::as_str));
         let files =
             named.map(|f| self.folder.join(f)).chain(Channel::ALL.into_iter().filter_map(|c| self.file(c)));
-        for file in files {
+        let records = self.records.iter().map(|r| PathBuf::from(&r.file));
+        for file in files.chain(records) {
             hasher.update(&std::fs::read(file).unwrap_or_default());
         }
         hasher.finalize().to_hex().to_string()
@@ -423,8 +454,12 @@ impl Campaign {
             self.statics.extend(other.statics);
             self.modal.extend(other.modal);
             self.windup.extend(other.windup);
+            let rows = self.positions.len();
+            let later = other.statement.positions.sessions.into_iter().map(|session| session.after(rows));
+            self.statement.positions.sessions.extend(later);
             self.positions.extend(other.positions);
             self.remarks.extend(other.remarks);
+            self.records.extend(other.records);
             self.statement.name = format!("{}+{}", self.statement.name, other.statement.name);
             self.hash = blake3::hash(format!("{}{}", self.hash, other.hash).as_bytes()).to_hex().to_string();
         }

@@ -3,6 +3,7 @@
 pub(crate) mod campaign;
 pub(crate) mod cells;
 pub mod components;
+pub(crate) mod declared;
 pub mod placement;
 pub(crate) mod rows;
 pub(crate) mod source;

@@ -110,6 +110,14 @@ impl Placement {
         numbers.into_iter().map(|number| of(number).unwrap_or(&self.usual)).collect()
     }
 
+    /// The rows, by index, that belong to no known session though there are sessions: they have no number, or are numbered
+    /// anew.
+    pub(crate) fn strangers(&self, rows: &[PositionRow]) -> Vec<usize> {
+        let is_usual = |stand: &Stand| !self.sessions.is_empty() && std::ptr::eq(stand, &self.usual);
+        let stands = self.stands(rows).into_iter().enumerate();
+        stands.filter(|(_, stand)| is_usual(stand)).map(|(i, _)| i).collect()
+    }
+
     /// Whether a row can be the test of the same name that defined the sessions: the poses must agree.
     fn agrees(&self, row: &PositionRow) -> bool {
         self.tests.get(&row.test).is_none_or(|mark| *mark == pose_mark(&row.pose_deg))
@@ -148,6 +156,7 @@ mod tests {
             test: test.into(),
             pose_deg: vec![angle_deg],
             payload: Payload::default(),
+            temperature_c: None,
             arm: 0,
             point: "tip".into(),
             measured: [None; 3],
@@ -180,6 +189,15 @@ mod tests {
     fn tests_that_are_numbered_anew_or_not_at_all_have_the_usual_place() {
         assert_eq!(places(&[row("3", 5.0), row("4", 31.0)]), [1.5, 1.5], "test 4 is another");
         assert_eq!(places(&[row("3", 5.0), row("b", 30.0)]), [1.5, 1.5]);
+    }
+
+    #[test]
+    fn rows_of_no_known_session_are_counted() {
+        let placement = placement();
+        assert_eq!(placement.strangers(&[row("4", 30.0), row("11", -7.0)]), [0; 0]);
+        assert_eq!(placement.strangers(&[row("3", 5.0), row("4", 31.0)]), [0, 1], "numbered anew");
+        let undivided = Placement { sessions: Vec::new(), ..placement };
+        assert_eq!(undivided.strangers(&[row("b", 31.0)]), [0; 0]);
     }
 
     #[test]

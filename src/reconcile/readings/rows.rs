@@ -4,6 +4,7 @@ use super::cells::{ABSURD, Purpose, measured, needed, or_zero, reading_column, s
 use super::components::{Components, DISPLACEMENT, POSITION, VectorColumns};
 use super::table::Table;
 use crate::arm::Arm;
+use crate::arm::effect::warming::Moment;
 use crate::arm::load::Payload;
 use nalgebra::Vector3;
 use std::collections::{HashMap, HashSet};
@@ -22,6 +23,8 @@ pub struct StaticRow {
     pub pose_deg: Vec<f64>,
     /// Stated payload.
     pub payload: Payload,
+    /// Temperature of the arm \[°C\], if the file has the column `temperature_c`.
+    pub temperature_c: Option<f64>,
     /// Tip force, world \[N\].
     pub force_n: Vector3<f64>,
     /// Branch of the loading cycle, as the operator labelled it.
@@ -39,6 +42,8 @@ pub struct ModalRow {
     pub pose_deg: Vec<f64>,
     /// Stated payload.
     pub payload: Payload,
+    /// Temperature of the arm \[°C\], if the file has the column `temperature_c`.
+    pub temperature_c: Option<f64>,
     /// Number of the mode in its list, from 1.
     pub mode: usize,
     /// Frequency \[Hz\].
@@ -75,6 +80,8 @@ pub struct PositionRow {
     pub pose_deg: Vec<f64>,
     /// Stated payload.
     pub payload: Payload,
+    /// Temperature of the arm \[°C\], if the file has the column `temperature_c`.
+    pub temperature_c: Option<f64>,
     /// Index of the arm that the point is on, in the order of the campaign.
     pub arm: usize,
     /// Name of the point.
@@ -91,11 +98,33 @@ impl PositionRow {
     }
 }
 
+impl StaticRow {
+    /// When it was taken.
+    pub fn moment(&self) -> Moment {
+        Moment { row: self.row, temperature_c: self.temperature_c }
+    }
+}
+
+impl ModalRow {
+    /// When it was taken.
+    pub fn moment(&self) -> Moment {
+        Moment { row: self.row, temperature_c: self.temperature_c }
+    }
+}
+
+impl PositionRow {
+    /// When it was taken.
+    pub fn moment(&self) -> Moment {
+        Moment { row: self.row, temperature_c: self.temperature_c }
+    }
+}
+
 /// The columns that state pose and payload.
 struct StateColumns {
     pose: Vec<usize>,
     mass: Option<usize>,
     cg: [Option<usize>; 3],
+    temperature: Option<usize>,
 }
 
 impl StateColumns {
@@ -118,7 +147,8 @@ impl StateColumns {
             true => Some(table.required(MASS)?),
             false => table.optional(MASS),
         };
-        Some(Self { pose: pose.into_iter().collect::<Option<_>>()?, mass, cg })
+        let temperature = table.optional("temperature_c");
+        Some(Self { pose: pose.into_iter().collect::<Option<_>>()?, mass, cg, temperature })
     }
 
     fn pose(&self, table: &Table, row: usize) -> Option<Vec<f64>> {
@@ -128,6 +158,14 @@ impl StateColumns {
             .map(|&c| table.number_that(row, c, |a| a.abs() <= 720.0, "an angle in degrees is below 720"))
             .collect();
         angles.into_iter().collect()
+    }
+
+    /// The temperature; `None` where it is faulty.
+    fn temperature_c(&self, table: &Table, row: usize) -> Option<Option<f64>> {
+        let Some(column) = self.temperature else { return Some(None) };
+        let is_sound = |c: f64| (-100.0..=200.0).contains(&c);
+        let hint = "an arm in degrees Celsius is between -100 and 200; is it in kelvin or Fahrenheit?";
+        table.number_that(row, column, is_sound, hint).map(Some)
     }
 
     fn payload(&self, table: &Table, row: usize) -> Option<Payload> {
@@ -164,10 +202,12 @@ pub(crate) fn static_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Sta
         let (pose_deg, payload) = (state.pose(table, row), state.payload(table, row));
         let force = force.map(|column| or_zero(table, row, column, measured));
         let read = components.read(row);
+        let temperature_c = state.temperature_c(table, row);
         Some(StaticRow {
             row,
             pose_deg: pose_deg?,
             payload: payload?,
+            temperature_c: temperature_c?,
             force_n: Vector3::new(force[0]?, force[1]?, force[2]?),
             branch: branch.map_or(String::new(), |c| table.text(row, c).to_string()),
             measured: read?,
@@ -189,6 +229,7 @@ pub(crate) fn modal_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Moda
     };
     let rows = each_row(table, |row| {
         let (pose_deg, payload) = (state.pose(table, row), state.payload(table, row));
+        let temperature_c = state.temperature_c(table, row);
         let mode = table.number_that(
             row,
             mode,
@@ -204,6 +245,7 @@ pub(crate) fn modal_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Moda
             row,
             pose_deg: pose_deg?,
             payload: payload?,
+            temperature_c: temperature_c?,
             mode: mode? as usize,
             frequency_hz: frequency_hz?,
             sigma_hz: sigma_hz?,
@@ -262,6 +304,7 @@ pub(crate) fn position_rows(
     let rows = each_row(table, |row| {
         let (pose_deg, payload) = (state.pose(table, row), state.payload(table, row));
         let read = components.read(row);
+        let temperature_c = state.temperature_c(table, row);
         let arm = match arm {
             Some(column) => arm_named(table, row, column, arms),
             None => Some(0),
@@ -271,6 +314,7 @@ pub(crate) fn position_rows(
             test: test.map_or(String::new(), |c| table.text(row, c).to_string()),
             pose_deg: pose_deg?,
             payload: payload?,
+            temperature_c: temperature_c?,
             arm: arm?,
             point: point.map_or("tip".to_string(), |c| table.text(row, c).to_string()),
             measured: read?,

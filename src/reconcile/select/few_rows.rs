@@ -339,7 +339,7 @@ fn estimates(search: &Search, set: &Scored, weights: &Weights) -> Vec<(usize, Ve
     let of = |(position, &e): (usize, &usize)| {
         let candidate = &search.candidates[e];
         let first = fit.model.first_parameter(position);
-        let values = candidate.numbers(&fit.point.u[first..first + candidate.free_parameters.len()]);
+        let values = candidate.free_values(&fit.point.u[first..first + candidate.free_parameters.len()]);
         let free_parameters = candidate.free_parameters.iter().zip(values).zip(ends.by_ref());
         (e, free_parameters.map(|((parameter, value), end)| parameter.estimate(value, &end)).collect())
     };

@@ -8,6 +8,7 @@
 
 use super::waves::waves;
 use crate::arm::effect::channel::Channel;
+use crate::arm::effect::stiffness_waves;
 use crate::mechanics::beam::Strain;
 use crate::reconcile::fit::descent::{Fit, change_to};
 use crate::reconcile::forward::bench::ARCMIN_PER_RAD;
@@ -22,6 +23,8 @@ use std::f64::consts::TAU;
 pub(crate) struct Law {
     /// The law in words.
     pub what: String,
+    /// The effect of the library that has this law, if there is one.
+    pub effect: Option<&'static str>,
     /// Change of each prediction per unit of each of the law's parameters, in the unit of the file.
     pub columns: Vec<Vec<f64>>,
 }
@@ -111,15 +114,27 @@ impl Builder<'_> {
         ));
         if self.campaign.arm.driven_joint_names().contains(&name.as_str()) {
             let what = format!("a stiffness of {name} that changes with its angle");
-            out.push(Law { what: what.clone(), columns: vec![wave(0), wave(1)] });
-            out.push(Law { what, columns: vec![wave(2), wave(3)] });
+            let effect = Some(stiffness_waves::KIND.name);
+            out.push(Law { what: what.clone(), effect, columns: vec![wave(0), wave(1)] });
+            out.push(Law { what, effect, columns: vec![wave(2), wave(3)] });
         }
         for channel in [Channel::Static, Channel::Modal] {
             let what =
                 format!("a stiffness of {name} that changes with the order of the {} tests", channel.word());
             out.extend(one_or_both(&what, [order(channel, 1), order(channel, 2)]));
+            // a servo holds a joint less firmly than a brake; with one kind of readings this is the joint's stiffness
+            if self.kinds_of_readings() > 1 {
+                let what = format!("a stiffness of {name} that is another in the {} tests", channel.word());
+                out.push(Law { what, effect: None, columns: vec![order(channel, 0)] });
+            }
         }
         out
+    }
+
+    /// Number of channels that have readings.
+    fn kinds_of_readings(&self) -> usize {
+        let channels = [Channel::Static, Channel::Modal, Channel::Windup];
+        channels.into_iter().filter(|channel| !self.forward.range(*channel).is_empty()).count()
     }
 
     /// The change of every reading by an additional twist of a joint.
@@ -176,6 +191,7 @@ impl Builder<'_> {
         let Some(common) = joints.iter().copied().find(|c| *c > 0.0) else { return Vec::new() };
         let law = |what: String, further: &[(usize, f64)]| Law {
             what,
+            effect: None,
             columns: vec![self.yielding_column(further)],
         };
         let tilts = |what: String, first: usize, compliance: f64| {
@@ -221,6 +237,7 @@ impl Builder<'_> {
             };
             let law = |what: &str, changed: &dyn Fn(&mut Coefficients, f64)| Law {
                 what: format!("a {what} of {} other than drawn", link.name),
+                effect: None,
                 columns: vec![self.changed_column(changed)],
             };
             [law("mass", &lighter), law("wall", &thinner)]
@@ -326,7 +343,7 @@ impl Builder<'_> {
         let longest = kept.iter().copied().max().unwrap_or(0).max(1) as f64;
         let is_carrying = |r: usize| rows[r].payload.mass_kg > 0.0;
         let gain = |carrying: bool| column(&|i, d| if is_carrying(row(i)) == carrying { d } else { 0.0 });
-        let law = |what: &str, columns| Law { what: what.into(), columns };
+        let law = |what: &str, columns| Law { what: what.into(), effect: None, columns };
         let mut out = vec![
             law("static readings under payloads with a gain of their own", vec![gain(true)]),
             law("payloads that weigh a factor of what is stated", vec![self.heavier_payloads(gain(true))]),
@@ -385,7 +402,7 @@ impl Builder<'_> {
         if !(0..3).all(|c| data[range.clone()].iter().any(|d| d.component == c)) {
             turns.retain(|column| column.iter().any(|x| *x != 0.0));
         }
-        let law = |what: &str, columns: Vec<Vec<f64>>| Law { what: what.into(), columns };
+        let law = |what: &str, columns: Vec<Vec<f64>>| Law { what: what.into(), effect: None, columns };
         let mut out = vec![law(
             "static readings with a gain of their own in each direction",
             (0..3).map(gain).collect(),
@@ -412,7 +429,7 @@ fn rows_in_pose<'a>(poses: impl Iterator<Item = &'a [f64]>) -> Vec<usize> {
 /// Three laws: with the first column, with the second, and with both.
 fn one_or_both(what: &str, columns: [Vec<f64>; 2]) -> Vec<Law> {
     let [a, b] = columns;
-    let law = |columns| Law { what: what.to_string(), columns };
+    let law = |columns| Law { what: what.to_string(), effect: None, columns };
     vec![law(vec![a.clone()]), law(vec![b.clone()]), law(vec![a, b])]
 }
 

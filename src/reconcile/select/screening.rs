@@ -7,10 +7,12 @@
 
 use super::search::{Scored, Search};
 use super::unnamed::{self, Better};
+use crate::arm::joint_law::{Curve, JointLaw};
 use crate::reconcile::fit::descent::{
     Effort, Fit, Normal, Point, Slopes, bounded_step, change, descent, evaluate, fit, jacobian, normal,
     objective,
 };
+use crate::reconcile::fit::steps::WIDE;
 use crate::reconcile::model::parameters::Model;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -32,6 +34,17 @@ const PROMISING: f64 = 12.0;
 pub(crate) const MOST_EFFECTS: usize = 3;
 /// If ln of the evidence of a law without a name is higher by this much, the effects found are not the cause.
 const SETTLES: f64 = 12.0;
+/// Number of sets of parameters of one effect among these.
+const MOST_VARIANTS: usize = 2;
+/// Two fits of one model whose objectives differ by more than this did not both converge.
+const CONVERGED: f64 = 0.5;
+/// Models whose objective after a few steps is above the best by less than this part of it are fitted further. Far from
+/// an explanation a few steps do not show what a model is worth.
+const UNDECIDED: f64 = 0.1;
+/// Sizes at which candidates are tried where much is missing, as parts of where their fits start.
+const SIZES: [f64; 3] = [0.1, 0.3, 1.0];
+/// A chi-squared below this part of its expectation is far below the declared noise.
+const BELOW: f64 = 0.5;
 /// Number of candidates fitted in full at each stage.
 const FULL_FITS: usize = 7;
 
@@ -47,19 +60,19 @@ pub(crate) struct Selection {
     pub given_up: bool,
 }
 
+/// A model, linearized at a point.
+struct Linearized {
+    here: Point,
+    slopes: DMatrix<f64>,
+}
+
 impl<'a> Search<'a> {
     /// Searches for the effects. `before` is a model from an earlier search; if it has two effects or more, it is a
     /// better start than none.
     pub(crate) fn run(&self, before: Option<&Scored>) -> Selection {
         let baseline_model = self.model(&[]);
-        let baseline_fit = fit(
-            self.forward,
-            &baseline_model,
-            &vec![0.0; baseline_model.len()],
-            self.weights,
-            Effort::default(),
-        );
-        let baseline = self.scored(&[], &baseline_fit);
+        let mut baseline_fit = self.fit(&[], &vec![0.0; baseline_model.len()], Effort::default());
+        let mut baseline = self.scored(&[], &baseline_fit);
         let mut seen: Vec<Scored> = Vec::new();
         let mut best = baseline.clone();
         if let Some(known) = before.filter(|b| b.effects.len() > 1) {
@@ -71,17 +84,29 @@ impl<'a> Search<'a> {
             }
         }
         // the law is computed only if a first effect is found
-        let law = OnceCell::new();
+        let mut law = OnceCell::new();
         let mut given_up = false;
         while best.effects.len() < MOST_EFFECTS {
-            let law = || law.get_or_init(|| unnamed::better_than_calibration(self, &baseline_fit));
+            if self.is_below_noise(&best) {
+                break;
+            }
             let tried = self.extend(&best, &seen);
             seen.extend(tried.iter().cloned());
             // several missing effects are less probable than one
             let worth = if best.effects.is_empty() { FIRST_WORTH } else { WORTH };
             let Some(next) = better(&tried, best.score + worth) else { break };
             best = self.settled(next);
-            given_up = self.is_settled_by(law(), &baseline, &best);
+            if let Some(lower) = self.lower_baseline(&best, &baseline) {
+                baseline = self.scored(&[], &lower);
+                (baseline_fit, law) = (lower, OnceCell::new());
+                seen.clear(); // their descents began where that of the baseline had stopped
+                if best.score < baseline.score + FIRST_WORTH {
+                    best = baseline.clone();
+                    continue;
+                }
+            }
+            let law = law.get_or_init(|| unnamed::better_than_calibration(self, &baseline_fit));
+            given_up = self.is_settled_by(law, &baseline, &best);
             if given_up {
                 break;
             }
@@ -91,6 +116,17 @@ impl<'a> Search<'a> {
         }
         seen.sort_by(|a, b| b.score.total_cmp(&a.score));
         Selection { best, baseline, others: seen, given_up }
+    }
+
+    /// A fit of the calibration alone that begins at the calibration of the model with its first effect, if it is lower
+    /// than the fit so far. Then that fit had not converged, and the effect may only make good what it had left.
+    fn lower_baseline(&self, best: &Scored, baseline: &Scored) -> Option<Fit<'a>> {
+        if best.effects.len() != 1 {
+            return None;
+        }
+        let (effects, u) = self.without(best, 0);
+        let again = self.fit(&effects, &u, Effort::default());
+        (again.point.objective < baseline.objective - CONVERGED).then_some(again)
     }
 
     /// Whether the search is over because a law without a name is far better than the best model. With one effect so
@@ -130,10 +166,28 @@ impl<'a> Search<'a> {
             n => FIRST_WORTH + (n - 1) as f64 * WORTH,
         };
         let net = |s: &&Scored| s.score - worth(s);
-        let best = seen.iter().chain([&baseline]).max_by(|a, b| net(a).total_cmp(&net(b)));
+        let is_more = |s: &&Scored| {
+            let is_part = |part: &Scored| {
+                part.effects.len() < s.effects.len() && part.effects.iter().all(|e| s.effects.contains(e))
+            };
+            !seen.iter().any(|part| is_part(part) && self.is_below_noise(part))
+        };
+        let open = seen.iter().filter(is_more);
+        let best = open.chain([&baseline]).max_by(|a, b| net(a).total_cmp(&net(b)));
         let best = best.cloned().unwrap_or_else(|| baseline.clone());
         seen.sort_by(|a, b| b.score.total_cmp(&a.score));
         Selection { best, baseline, others: seen, given_up: before.given_up }
+    }
+
+    /// Whether a model with effects leaves far less than the declared noise: half of it or less, and by more than chance.
+    /// A further effect would then only describe errors that are smaller than the readings are said to have.
+    fn is_below_noise(&self, scored: &Scored) -> bool {
+        let counted = self.weights.inverse.iter().filter(|w| **w > 0.0).count() as f64;
+        let fitted = self.model(&scored.effects).free_parameters().count() as f64;
+        let expected = (counted - fitted).max(1.0);
+        !scored.effects.is_empty()
+            && scored.objective < BELOW * expected
+            && scored.objective < expected - 3.0 * (2.0 * expected).sqrt()
     }
 
     /// Drops and exchanges effects until nothing improves.
@@ -179,7 +233,13 @@ impl<'a> Search<'a> {
 
     /// The best models with one more effect. A model that was fitted before is taken from `seen`.
     fn extend(&self, base: &Scored, seen: &[Scored]) -> Vec<Scored> {
-        let screened = self.screen(base);
+        let mut screened = self.screen(base);
+        if !self.may_explain(base) {
+            // a calibration that makes up for missing physics is far from where the right effect would leave it
+            let nominal = self.uncalibrated(base);
+            screened.extend(self.screen(&nominal));
+            screened.extend(self.by_size(&nominal));
+        }
         let starts = screened.into_iter().map(|(c, u, _)| ([base.effects.as_slice(), &[c]].concat(), u));
         let mut known: Vec<Scored> = Vec::new();
         let mut fresh: Vec<(Vec<usize>, Vec<f64>)> = Vec::new();
@@ -193,8 +253,9 @@ impl<'a> Search<'a> {
         let first: Vec<Scored> = fresh.into_par_iter().map(rough).collect();
         let top = first.iter().chain(&known).map(|f| f.score).fold(f64::NEG_INFINITY, f64::max);
         // a few steps show which models are hopeless; only the others are worth a full fit
+        let lowest = first.iter().map(|f| f.objective).fold(f64::INFINITY, f64::min);
         let (near, far): (Vec<Scored>, Vec<Scored>) =
-            first.into_iter().partition(|s| s.score > top - HOPELESS);
+            first.into_iter().partition(|s| s.score > top - HOPELESS.max(UNDECIDED * lowest / 2.0));
         let effort = Effort { steps: 14, tolerance: 0.02 };
         let in_full = |s: Scored| self.scored(&s.effects, &self.fit(&s.effects, &s.u, effort));
         let mut fits: Vec<Scored> = near.into_par_iter().map(in_full).collect();
@@ -203,6 +264,13 @@ impl<'a> Search<'a> {
         fits.extend(far);
         fits.extend(known);
         fits
+    }
+
+    /// The same model with the nominal calibration.
+    fn uncalibrated(&self, scored: &Scored) -> Scored {
+        let mut out = scored.clone();
+        out.u[..self.model(&[]).len()].fill(0.0);
+        out
     }
 
     /// Searches the break points of promising gear curves over a grid, at first without the frequencies. This
@@ -254,36 +322,95 @@ impl<'a> Search<'a> {
     /// model.
     fn screen(&self, base: &Scored) -> Vec<(usize, Vec<f64>, f64)> {
         let model = self.model(&base.effects);
-        let here = evaluate(self.forward, &model, &base.u, self.weights);
-        let slopes = jacobian(self.forward, &model, &here);
+        let sharp = self.linearized(&model, &base.u);
+        // both ends of a change must be smoothed alike: the nominal curves of other joints step too
+        let is_curved = |law: &JointLaw| matches!(law.curve, Curve::Windup(_));
+        let smooth = sharp.here.coefficients.laws.iter().any(is_curved).then(|| {
+            let model = Model { smoothing: WIDE, ..model.clone() };
+            self.linearized(&model, &base.u)
+        });
+        let about = |candidate: usize| match self.candidates[candidate].kind.traits.steps_frequencies() {
+            true => smooth.as_ref().unwrap_or(&sharp),
+            false => &sharp,
+        };
         let mut tried: Vec<(usize, Vec<f64>, f64)> = (0..self.candidates.len())
             .into_par_iter()
-            .filter(|i| !base.effects.contains(i))
-            .filter_map(|i| self.best_start(&model, &here, &slopes, i))
+            .filter(|i| base.effects.iter().all(|e| !self.candidates[*e].is_variant_of(&self.candidates[*i])))
+            .filter_map(|i| self.best_start(&model, about(i), i))
+            .map(|(i, u, score)| (i, u, score - self.price(&[i])))
             .collect();
+        tried.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
+        // sets of parameters of one effect must not crowd out other effects
+        let mut variants: Vec<usize> = Vec::new();
+        tried.retain(|(i, ..)| {
+            let own = variants.iter().filter(|v| self.candidates[**v].is_variant_of(&self.candidates[*i]));
+            let is_kept = own.count() < MOST_VARIANTS;
+            variants.push(*i);
+            is_kept
+        });
+        tried.truncate(FULL_FITS);
+        tried
+    }
+
+    /// The candidates that bring a model closest to the readings at one of a few sizes, each with that start. Where much is
+    /// missing, a model that is linear about the fit so far does not show what a candidate does to the frequencies.
+    fn by_size(&self, base: &Scored) -> Vec<(usize, Vec<f64>, f64)> {
+        let model = self.model(&base.effects);
+        let best_size = |index: usize| {
+            let candidate = &self.candidates[index];
+            let sized = |start: &Vec<f64>, part: f64| -> Vec<f64> {
+                let own = candidate.free_parameters.iter().zip(start);
+                own.map(|(parameter, u)| parameter.scaled(*u, part)).collect()
+            };
+            let starts = candidate.starts.iter().flat_map(|start| SIZES.map(|part| sized(start, part)));
+            let tried = starts.map(|own| {
+                let u = [base.u.as_slice(), &own].concat();
+                let objective = evaluate(self.forward, &model.with(candidate), &u, self.weights).objective;
+                (index, u, -0.5 * objective)
+            });
+            tried.max_by(|a, b| a.2.total_cmp(&b.2))
+        };
+        let open = (0..self.candidates.len()).into_par_iter().filter(|i| !base.effects.contains(i));
+        let mut tried: Vec<(usize, Vec<f64>, f64)> = open.filter_map(best_size).collect();
         tried.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
         tried.truncate(FULL_FITS);
         tried
     }
 
+    fn linearized(&self, model: &Model, u: &[f64]) -> Linearized {
+        let here = evaluate(self.forward, model, u, self.weights);
+        let slopes = jacobian(self.forward, model, &here);
+        Linearized { here, slopes }
+    }
+
     fn best_start(
         &self,
         base: &Model<'a>,
-        here: &Point,
-        slopes: &DMatrix<f64>,
+        about: &Linearized,
         index: usize,
     ) -> Option<(usize, Vec<f64>, f64)> {
+        let Linearized { here, slopes } = about;
         let candidate = &self.candidates[index];
         let mut model = base.with(candidate);
-        model.smoothing = 0.1;
+        model.smoothing = if candidate.kind.traits.steps_frequencies() { WIDE } else { 0.0 };
         // the linearized model does not contain the steps of the frequencies at break points, so they are
         // held
         model.held =
             model.break_points().into_iter().filter(|p| *p < base.len()).map(|p| (p, here.u[p])).collect();
+        let held = model.held.clone();
+        let mut at_start = |start: &[f64]| {
+            model.held = held.clone();
+            if candidate.kind.traits.screens_at_starts {
+                let numbers = candidate.free_parameters.iter().zip(start).enumerate();
+                let kept = numbers.filter(|(_, (parameter, _))| !parameter.is_size());
+                model.held.extend(kept.map(|(i, (_, u))| (base.len() + i, *u)));
+            }
+            self.linear(&model, here, slopes, start)
+        };
         candidate
             .starts
             .iter()
-            .map(|start| self.linear(&model, here, slopes, start))
+            .map(|start| at_start(start))
             .max_by(|a, b| a.1.total_cmp(&b.1))
             .map(|(u, score)| (index, u, score))
     }
@@ -344,7 +471,7 @@ impl<'a> Search<'a> {
                 let own = rest.remove(i);
                 let in_its_place = |s: &&Scored| {
                     s.effects.len() == best.effects.len()
-                        && !s.effects.contains(&own)
+                        && s.effects.iter().all(|e| !self.candidates[*e].is_variant_of(&self.candidates[own]))
                         && rest.iter().all(|e| s.effects.contains(e))
                 };
                 let mut competitors: Vec<Scored> = Vec::new();

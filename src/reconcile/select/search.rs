@@ -4,15 +4,12 @@
 //! therefore begin with the steps smoothed, and end with the break points moved by hand.
 
 use crate::reconcile::fit::descent::{Effort, Fit, Point, Weights, descent, evaluate_near, fit};
+use crate::reconcile::fit::steps::{self, NARROW, WIDE};
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::{Candidate, Model, Nuisance};
 use crate::reconcile::readings::campaign::Campaign;
 use rayon::prelude::*;
 
-/// Widths of smoothing of a gear's curve \[ln of the torque\]. The wide one lets a descent see past the steps
-/// of the frequencies. The narrow one leaves the steps nearly sharp.
-const WIDE: f64 = 0.1;
-const NARROW: f64 = 0.01;
 /// A break point is not moved further where the objective has risen by more than this.
 const RULED_OUT: f64 = 14.0;
 /// A model with a larger objective per datum cannot become the explanation, whatever the declared standard
@@ -57,20 +54,15 @@ impl<'a> Search<'a> {
         self.fit_model(self.model(effects), u, effort)
     }
 
-    /// Fits a model from `u`. Where the last effect is a gear's curve, the steps of the frequencies at its
-    /// break points are smoothed at first and then sharpened.
-    fn fit_model(&self, mut model: Model<'a>, u: &[f64], effort: Effort) -> Fit<'a> {
-        let mut start = u.to_vec();
-        if !self.forward.modal.is_empty() && model.effects.last().is_some_and(|e| e.kind.traits.is_gear_curve)
-        {
-            for smoothing in [WIDE, 0.03, NARROW] {
-                model.smoothing = smoothing;
-                let steps = Effort { steps: 8, tolerance: 0.05 };
-                start = self.descent(&model, &start, steps).u;
-            }
-            model.smoothing = 0.0;
+    /// Fits a model from `u`. Where a gear's curve makes the frequencies step, the steps are smoothed at first and then
+    /// sharpened. A new curve is fitted so in any case, because its break points are not yet known.
+    fn fit_model(&self, model: Model<'a>, u: &[f64], effort: Effort) -> Fit<'a> {
+        let is_new_curve = model.effects.last().is_some_and(|e| e.kind.traits.steps_frequencies());
+        if is_new_curve && !self.forward.modal.is_empty() {
+            let start = steps::smoothed_start(self.forward, &model, u, self.weights);
+            return fit(self.forward, &model, &start, self.weights, effort);
         }
-        fit(self.forward, &model, &start, self.weights, effort)
+        steps::best_fit(self.forward, &model, &[u.to_vec()], self.weights, effort)
     }
 
     pub(super) fn descent(&self, model: &Model, u: &[f64], effort: Effort) -> Point {
@@ -83,7 +75,7 @@ impl<'a> Search<'a> {
         let mut model = self.model(effects);
         let mut start = u.to_vec();
         let few = Effort { steps: 4, tolerance: 0.02 };
-        if model.effects.last().is_some_and(|e| e.kind.traits.is_gear_curve) {
+        if model.effects.last().is_some_and(|e| e.kind.traits.steps_frequencies()) {
             let smoothed = Effort { steps: 6, tolerance: 0.05 };
             model.smoothing = WIDE;
             start = self.descent(&model, &start, smoothed).u;
@@ -165,12 +157,10 @@ impl<'a> Search<'a> {
 
     /// Scores a fit.
     pub(crate) fn scored(&self, effects: &[usize], fit: &Fit) -> Scored {
-        // each effect could have been named at any place, and the price is the logarithm of their number
-        let penalty = effects.len() as f64 * libm::log(self.places() as f64);
         Scored {
             effects: effects.to_vec(),
             u: fit.point.u.clone(),
-            score: fit.evidence - penalty,
+            score: fit.evidence - self.price(effects),
             objective: fit.point.objective,
         }
     }
@@ -180,12 +170,20 @@ impl<'a> Search<'a> {
         scored.objective < BEYOND_HOPE * self.forward.data.len() as f64
     }
 
-    /// Number of places where an effect could be named. All unit slips of a channel count once.
-    pub(crate) fn places(&self) -> usize {
-        let mut labels: Vec<String> = self.candidates.iter().map(|c| c.label()).collect();
-        // all unit slips of a channel have the same label
+    /// Price of effects, in ln of the evidence: each could have been another one at another place. It is minus the
+    /// logarithm of their probability before any reading.
+    pub(crate) fn price(&self, effects: &[usize]) -> f64 {
+        let odds = |effect: &usize| self.candidates[*effect].kind.traits.odds;
+        effects.iter().map(|effect| libm::log(self.places() / odds(effect))).sum()
+    }
+
+    /// Number of places where an effect could be named, each weighed by how likely its effect is. All unit slips of a
+    /// channel count once, and so do all sets of parameters of an effect.
+    pub(crate) fn places(&self) -> f64 {
+        let mut labels: Vec<(String, f64)> =
+            self.candidates.iter().map(|c| (c.label(), c.kind.traits.odds)).collect();
         labels.dedup();
-        labels.len()
+        labels.iter().map(|(_, odds)| odds).sum()
     }
 
     /// A model without one of its effects, and its start.

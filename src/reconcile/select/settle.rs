@@ -6,8 +6,9 @@
 use super::few_rows;
 use super::screening::Selection;
 use super::search::{Scored, Search};
-use crate::reconcile::fit::descent::{Effort, Fit, Weights, fit};
+use crate::reconcile::fit::descent::{Effort, Fit, Weights};
 use crate::reconcile::fit::noise::{Noise, gross_lists};
+use crate::reconcile::fit::steps::best_fit;
 use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::{Candidate, Model, Nuisance};
@@ -137,7 +138,8 @@ impl Settling<'_> {
         let calibrated = |noise: Noise| {
             let baseline = Model::baseline(self.nuisance);
             let weights = noise.weights(self.forward);
-            (fit(self.forward, &baseline, &vec![0.0; baseline.len()], &weights, Effort::default()), weights)
+            let nominal = vec![0.0; baseline.len()];
+            (best_fit(self.forward, &baseline, &[nominal], &weights, Effort::default()), weights)
         };
         let (with_all, declared) = calibrated(Noise::default());
         if Noise::is_close(self.forward, &with_all) {

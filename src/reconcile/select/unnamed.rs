@@ -54,7 +54,7 @@ pub(crate) fn law_questions(
     fit: &Fit,
     weights: &Weights,
 ) -> Vec<Structure> {
-    let competitors = competitors(campaign, forward, fit, weights);
+    let competitors = of_every_law(campaign, forward, fit, |law| competitor(forward, fit, law, weights));
     // Bonferroni: one of many laws fits better by chance
     let asked = libm::log((competitors.len() as f64).max(1.0));
     competitors
@@ -69,25 +69,22 @@ pub(crate) fn law_questions(
 
 /// The law that, added to calibration alone, explains the readings better than calibration does.
 pub(crate) fn better_than_calibration(search: &Search, baseline: &Fit) -> Option<Better> {
-    let places = search.places() as f64;
-    let competitors = competitors(search.campaign, search.forward, baseline, search.weights);
-    best_of(competitors, baseline.evidence, places)
+    let places = search.places();
+    best_of(competitors(search, baseline), baseline.evidence, places)
 }
 
 /// The law that explains the readings better in place of one named effect, or of all of them.
 pub(crate) fn instead(search: &Search, best: &Scored, baseline: &Fit) -> Option<Better> {
-    let (named, places) = (best.effects.len(), search.places() as f64);
+    let (named, places) = (best.effects.len(), search.places());
     // with one effect, the model without it is the baseline, which is tried anyway
     let single = (0..named).filter(|_| named > 1).map(|i| {
         let (effects, u) = search.without(best, i);
-        search.fit(&effects, &u, Effort::default())
+        (search.price(&effects), search.fit(&effects, &u, Effort::default()))
     });
-    let fits: Vec<Fit> = single.collect();
-    let better = |fit: &Fit| {
-        let evidence = best.score + fit.model.effects.len() as f64 * libm::log(places);
-        best_of(competitors(search.campaign, search.forward, fit, search.weights), evidence, places)
-    };
-    fits.iter().chain([baseline]).filter_map(better).max_by(|a, b| a.gain.total_cmp(&b.gain))
+    let fits: Vec<(f64, Fit)> = single.collect();
+    let better = |(price, fit): (f64, &Fit)| best_of(competitors(search, fit), best.score + price, places);
+    let fits = fits.iter().map(|(price, fit)| (*price, fit));
+    fits.chain([(0.0, baseline)]).filter_map(better).max_by(|a, b| a.gain.total_cmp(&b.gain))
 }
 
 /// The best competing model, if its evidence is higher than `evidence`. That evidence is not charged for the places
@@ -100,9 +97,15 @@ fn best_of(competitors: Vec<Competitor>, evidence: f64, places: f64) -> Option<B
     (better.gain > BETTER).then_some(better)
 }
 
-/// Fits each law together with the parameters of a fit.
-fn competitors(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &Weights) -> Vec<Competitor> {
-    of_every_law(campaign, forward, fit, |law| competitor(forward, fit, law, weights))
+/// Fits each law that no effect of the search has together with the parameters of a fit.
+fn competitors(search: &Search, fit: &Fit) -> Vec<Competitor> {
+    let is_sought = |effect: &str| search.candidates.iter().any(|c| c.kind.name == effect);
+    let fitted = of_every_law(search.campaign, search.forward, fit, |law| {
+        // the effect competes by itself, under its name
+        let has_no_name = !law.effect.is_some_and(is_sought);
+        has_no_name.then(|| competitor(search.forward, fit, law, search.weights))
+    });
+    fitted.into_iter().flatten().collect()
 }
 
 /// Fits a model and a law, linearized.

@@ -11,21 +11,18 @@ use crate::reconcile::model::parameters::Calibration;
 use crate::reconcile::readings::campaign::Campaign;
 use serde_json::{Value, json};
 
-/// The corrected arm, and the provenance of its values. Where nothing explains the gap, the arm stays as it
-/// was. A calibration that makes up for missing physics would be wrong.
+/// The corrected arm, and the provenance of its values. Without a fit the arm stays as it was.
 pub(crate) fn corrected(
     campaign: &Campaign,
     forward: &Forward,
-    fit: &Fit,
+    fit: Option<&Fit>,
     findings: &[Finding],
     calibrated: &[Calibrated],
     verdict: Verdict,
 ) -> (Arm, Value) {
     let mut arm = campaign.arm.clone();
-    // an arm that is not explained must not be changed by calibration
-    let keep = matches!(verdict, Verdict::Explained | Verdict::NoGap);
     let mut values = Vec::new();
-    if keep {
+    if let Some(fit) = fit {
         for ((calibration, _), c) in fit.model.nuisance.numbers.iter().zip(calibrated) {
             calibrate(&mut arm, calibration, c.factor.value);
             values.push(json!({

@@ -1,6 +1,8 @@
 //! The conclusion of a reconciliation, and the files that state it.
 
+pub(crate) mod caution;
 pub(crate) mod correct;
+pub(crate) mod corrected_model;
 pub(crate) mod files;
 pub(crate) mod locate;
 pub(crate) mod next_test;
@@ -8,3 +10,4 @@ pub(crate) mod outcome;
 pub mod page;
 pub(crate) mod report;
 pub(crate) mod stage;
+pub(crate) mod too_little;

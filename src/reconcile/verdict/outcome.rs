@@ -1,5 +1,6 @@
 //! The outcome of a reconciliation.
 
+use super::corrected_model::Row;
 use super::files::{CORRECTED_FILE, corrected_file};
 use super::stage::Stage;
 use crate::arm::Arm;
@@ -7,6 +8,7 @@ use crate::arm::effect::channel::Channel;
 use crate::reconcile::fit::held_out::HeldOut;
 use crate::reconcile::fit::noise::Noise;
 use crate::reconcile::model::estimate::{Estimate, Finding};
+use crate::reconcile::records::finding::JointRecord;
 use crate::reconcile::select::lack_of_fit::LackOfFit;
 use serde_json::{Value, json};
 
@@ -121,6 +123,17 @@ pub struct Evidence {
     pub objective: f64,
 }
 
+/// A law without a name in the corrected arm.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Law {
+    /// Its place and numbers with their intervals.
+    pub finding: Finding,
+    /// The law in words.
+    pub law: String,
+    /// What it may be, in a sentence.
+    pub may_be: &'static str,
+}
+
 /// Everything `reconcile` found.
 #[derive(Debug, Clone)]
 pub struct Outcome {
@@ -136,6 +149,11 @@ pub struct Outcome {
     pub effects: Vec<Finding>,
     /// Suspected effects, if the readings cannot tell.
     pub suspects: Vec<Finding>,
+    /// The laws without a name in the corrected arm.
+    pub empirical: Vec<Law>,
+    /// Where nothing explains the gap: the models that the corrected arm could have, and how well each predicts held-out
+    /// poses. Empty for other verdicts.
+    pub models: Vec<Row>,
     /// The confirmation on held-out poses.
     pub held_out: Option<HeldOut>,
     /// The location of the gap.
@@ -152,6 +170,8 @@ pub struct Outcome {
     pub evidence: Vec<Evidence>,
     /// Absolute positions: how the error falls as each effect is added.
     pub stages: Vec<Stage>,
+    /// Records against time: what they say about each joint.
+    pub records: Vec<JointRecord>,
     /// Readings and residuals.
     pub residuals: Vec<ReadingResidual>,
     /// The corrected arm.
@@ -211,6 +231,8 @@ impl Outcome {
             "reasons": self.reasons,
             "effects": self.effects.iter().map(Finding::json).collect::<Vec<_>>(),
             "suspects": self.suspects.iter().map(Finding::json).collect::<Vec<_>>(),
+            "empirical": self.empirical_json(),
+            "corrected_models": self.models.iter().map(Row::json).collect::<Vec<_>>(),
             "kept_out": held_out.unwrap_or(json!({})),
             "located": {"parts": located},
             "next_test": next,
@@ -220,11 +242,25 @@ impl Outcome {
             "calibrated": self.calibrated.iter().map(|c| json!({
                 "name": c.name, "factor": c.factor.json(), "learnt": c.learnt,
             })).collect::<Vec<_>>(),
+            "records": self.records.iter().map(JointRecord::json).collect::<Vec<_>>(),
             "stages": self.stages.iter().map(Stage::json).collect::<Vec<_>>(),
             "evidence": self.evidence.iter().map(|e| json!({
                 "model": e.model, "score": e.score, "chi_squared": e.objective,
             })).collect::<Vec<_>>(),
         })
+    }
+
+    /// The laws without a name, each with the held-out error of the model that has it.
+    fn empirical_json(&self) -> Vec<Value> {
+        let written = self.models.iter().find(|row| row.is_written);
+        let laws = self.empirical.iter().map(|law| {
+            let mut out = law.finding.json();
+            out["law"] = json!(law.law);
+            out["may_be"] = json!(law.may_be);
+            out["kept_out"] = written.map_or(json!(null), Row::json);
+            out
+        });
+        laws.collect()
     }
 
     fn noise_json(&self) -> Value {

@@ -3,8 +3,10 @@
 use super::outcome::{NextTest, Outcome, ReadingResidual, Verdict};
 use super::stage::Stage;
 use crate::arm::effect::channel::Channel;
+use crate::arm::effect::entry::word_of;
 use crate::reconcile::model::estimate::{Estimate, Finding};
 use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::records;
 use crate::report::html::campaign::{CampaignPage, Compared, Found, Ranged, Reading, Test, Weighed};
 use crate::report::html::pick::degrees;
 use crate::report::html::positions::{Position, Step};
@@ -44,6 +46,7 @@ pub fn campaign_page(campaign: &Campaign, outcome: &Outcome) -> CampaignPage {
         kept_out: outcome.held_out.map(|k| (k.count, k.rms_before, k.rms_after)),
         quality: text.lines().filter(|l| is_quality(l)).map(|l| l.trim().to_string()).collect(),
         tests: outcome.next_tests.iter().map(test).collect(),
+        records: records::report::sections(&outcome.records),
         optimum: None,
         facts: facts(campaign, outcome),
     }
@@ -130,12 +133,19 @@ fn step(stage: &Stage) -> Step {
 }
 
 fn found(finding: &Finding) -> Found {
+    let word = |name: &str, e: &Estimate| word_of(&finding.effect, name, e.value);
     let named = |(name, estimates): &(String, Vec<Estimate>)| -> Vec<Ranged> {
+        // a word is part of the label
+        if estimates.iter().any(|e| word(name, e).is_some()) {
+            return Vec::new();
+        }
         let axis = |i: usize| if estimates.len() > 1 { format!("{name} [{i}]") } else { name.clone() };
         estimates.iter().enumerate().map(|(i, e)| ranged(axis(i), e)).collect()
     };
+    let words: Vec<&str> =
+        finding.parameters.iter().filter_map(|(name, estimates)| word(name, estimates.first()?)).collect();
     Found {
-        label: finding.label(),
+        label: words.iter().fold(finding.label(), |label, word| format!("{label} ({word})")),
         parameters: finding.parameters.iter().flat_map(named).collect(),
         like: finding.indistinguishable_from.iter().map(|(effect, at)| format!("{effect}@{at}")).collect(),
     }
@@ -177,6 +187,7 @@ fn facts(campaign: &Campaign, outcome: &Outcome) -> Vec<(String, String)> {
         named("modal rows", campaign.modal.len().to_string()),
         named("wind-up rows", campaign.windup.len().to_string()),
         named("position rows", campaign.positions.len().to_string()),
+        named("rows of records", campaign.records.iter().map(|r| r.t_s.len()).sum::<usize>().to_string()),
         named("verdict", outcome.verdict.word().to_string()),
         named("tool version", env!("CARGO_PKG_VERSION").into()),
         named("blake3 of the campaign", outcome.hash.clone()),

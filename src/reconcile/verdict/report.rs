@@ -2,7 +2,9 @@
 
 use super::files::{CORRECTED_FILE, corrected_file};
 use super::outcome::{Outcome, Verdict};
+use crate::arm::effect::entry::word_of;
 use crate::reconcile::model::estimate::{Estimate, Finding};
+use crate::reconcile::records;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -27,7 +29,9 @@ impl Outcome {
                 k.count, k.rms_before, k.rms_after
             );
         }
+        self.models_table(&mut out);
         self.stages_table(&mut out);
+        out.push_str(&records::report::text(&self.records));
         self.quality(&mut out);
         if let Some(test) = self.next_tests.first() {
             let angles = |p: &Vec<f64>| p.iter().map(|a| format!("{a:.1}")).collect::<Vec<_>>().join(", ");
@@ -63,6 +67,21 @@ impl Outcome {
                 "UNEXPLAINED: no effect of the library explains where the model is wrong".into()
             }
             Verdict::InsufficientData => "the readings are insufficient to tell".into(),
+        }
+    }
+
+    /// How well each model that the corrected arm could have predicts held-out poses, and the laws in it.
+    fn models_table(&self, out: &mut String) {
+        if self.models.is_empty() {
+            return;
+        }
+        out.push_str("  error on held-out poses [sigma]; * is in arm.corrected.json, which predicts better but explains nothing\n");
+        for row in &self.models {
+            let mark = if row.is_written { '*' } else { ' ' };
+            let _ = writeln!(out, "  {mark} {:>8.2}  {}", row.kept_out_rms_sigma, row.model);
+        }
+        for law in &self.empirical {
+            let _ = writeln!(out, "  {}: {}", law.law, law.may_be);
         }
     }
 
@@ -130,7 +149,11 @@ fn describe(finding: &Finding, verdict: Verdict) -> String {
     let word = if verdict == Verdict::Explained { "" } else { "suspect " };
     let mut out = format!("  {word}{}:", finding.label());
     for (name, estimates) in &finding.parameters {
-        let values: Vec<String> = estimates.iter().map(value).collect();
+        let said = |e: &Estimate| match word_of(&finding.effect, name, e.value) {
+            Some(word) => word.to_string(),
+            None => value(e),
+        };
+        let values: Vec<String> = estimates.iter().map(said).collect();
         let _ = write!(out, " {name} = {}", values.join("; "));
     }
     out.push('\n');

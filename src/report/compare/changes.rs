@@ -65,7 +65,7 @@ pub(crate) struct PickChange {
     pub corrected: Option<Values>,
 }
 
-/// Both fronts side by side.
+/// All designs of the nominal and of the corrected front of a study, each with its objectives under both models.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Changes {
     /// Every design of either front: those of the nominal front first.

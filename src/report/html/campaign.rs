@@ -137,6 +137,8 @@ pub struct CampaignPage {
     pub quality: Vec<String>,
     /// Tests worth making, best first.
     pub tests: Vec<Test>,
+    /// What records against time say, joint by joint.
+    pub records: Vec<PageSection>,
     /// What the corrected arm changes in the study's optimum.
     pub optimum: Option<PageSection>,
     /// Facts: names and values.
@@ -159,6 +161,7 @@ impl CampaignPage {
             .flatten()
             .map(|f| gallery.show(&f))
             .collect();
+        let records: Vec<Value> = self.records.iter().map(|r| gallery.extra(r)).collect();
         let (evidence, intervals, kept_out) = (self.evidence(), self.intervals(), self.kept_out_figure());
         let content = json!({
             "name": self.name,
@@ -176,6 +179,7 @@ impl CampaignPage {
             "kept_out_words": self.kept_out_words(),
             "quality": self.quality,
             "tests": self.tests.iter().map(test).collect::<Vec<_>>(),
+            "records": records,
             "optimum": self.optimum.as_ref().map(|e| gallery.extra(e)),
             "facts": self.facts,
         });

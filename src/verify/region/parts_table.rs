@@ -71,7 +71,8 @@ pub(super) mod place {
         stiffness(waters, STIFFNESSES + which)
     }
 
-    /// How many of a tube's numbers may have a price. The stresses come after these and have none.
+    /// Number of leading entries in a tube's list that can have a price. The entries after them (stresses, shape,
+    /// width, room) never have one.
     pub(crate) fn priced(waters: usize) -> usize {
         stiffness(waters, 2 * STIFFNESSES)
     }

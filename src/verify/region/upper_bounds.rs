@@ -19,8 +19,9 @@ pub(super) struct UpperBounds(Vec<Node>);
 type Node = (UpperBound, Option<[usize; 2]>);
 
 impl UpperBounds {
-    /// The upper bounds that the designs of a front leave open within the limits. Designs closer to each other than
-    /// `apart` (relative) may be left out; fewer designs leave more open.
+    /// The local upper bounds of a front within the limits: every feasible design that no design of the front dominates
+    /// lies below one of them. Only one design is used for each cell of a logarithmic grid of the step `apart` (relative;
+    /// 0 uses all). Fewer designs give looser bounds, so nothing is missed.
     pub(super) fn new(front: &[Objectives], limits: UpperBound, apart: f64) -> Self {
         let mut uppers = left_open(&thinned(front, apart), limits);
         let mut nodes = Vec::new();

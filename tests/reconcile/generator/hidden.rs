@@ -102,3 +102,62 @@ pub fn effect(dice: &mut Dice, specimen: &Specimen, name: &str, at: &str, size: 
     };
     json!({"effect": name, "at": at, "parameters": parameters})
 }
+
+/// Effects that came later than those of [`everything`], whose order seeds depend on.
+const LATER: [&str; 6] =
+    ["test_mass", "servo_compliance", "joint_torque", "thermal_modulus", "stiffness_waves", "base_lift"];
+
+/// One of the effects that came later, by its number, at a random place that can have it and of a random size.
+pub fn later(dice: &mut Dice, specimen: &Specimen, number: usize, size: f64) -> Value {
+    let typical = &specimen.rig.sizes;
+    let curved = |joint: &String| specimen.joint(joint)["windup"].is_object();
+    let joints = specimen.named("joint");
+    let any = dice.pick(&joints).clone();
+    let k = |joint: &str| stiffness_nm_per_rad(specimen.joint(joint)).expect("stiffness");
+    let s = size * dice.between(0.7, 1.4);
+    let sign = if dice.uniform() < 0.5 { -1.0 } else { 1.0 };
+    let geared: Vec<String> = joints.iter().filter(|joint| curved(joint)).cloned().collect();
+    let name = match LATER[number % LATER.len()] {
+        "joint_torque" if geared.is_empty() => "servo_compliance",
+        name => name,
+    };
+    let (at, parameters) = match name {
+        "test_mass" => {
+            let cg_m: [f64; 3] = std::array::from_fn(|_| typical.cg_m * dice.between(-1.5, 1.5));
+            let at_the_tip = dice.uniform() < 0.5;
+            let cg_m = if at_the_tip { [0.0; 3] } else { cg_m };
+            ("modal".into(), json!({"mass_kg": 0.3 * typical.extra_kg * s, "cg_m": cg_m}))
+        }
+        "servo_compliance" => {
+            let channel = *dice.pick(&["static", "modal"]);
+            let stiffness = k(&any) / (0.35 * s);
+            (any, json!({"stiffness_nm_per_rad": stiffness, "channel": channel}))
+        }
+        "joint_torque" => {
+            let at = dice.pick(&geared).clone();
+            let nm = 3e-4 * k(&at) * s;
+            let parameters = match (dice.uniform() * 3.0) as usize {
+                0 => json!({"offset_nm": sign * nm}),
+                1 => json!({"sin_nm": sign * nm, "cos_nm": 0.3 * nm}),
+                _ => json!({"sin_nm": 0.2 * nm, "cos_nm": sign * nm}),
+            };
+            (at, parameters)
+        }
+        "thermal_modulus" => {
+            ("arm".into(), json!({"change": sign * 0.06 * s, "rows": dice.rounded(10.0, 60.0, 0)}))
+        }
+        "stiffness_waves" => {
+            let phases: [f64; 2] = std::array::from_fn(|_| dice.between(-3.0, 3.0));
+            let sizes = *dice.pick(&[[0.2, 0.0], [0.0, 0.2], [0.15, 0.1]]);
+            let parameters = json!({"once": sizes[0] * s, "twice": sizes[1] * s, "phases_rad": phases});
+            (any, parameters)
+        }
+        "base_lift" => {
+            let moment_nm = 9.81 * specimen.rig.payloads_kg[2] * dice.between(0.3, 1.0);
+            let stiffness = typical.base_nm_per_rad / (0.5 * s);
+            ("base".into(), json!({"stiffness_nm_per_rad": stiffness, "preload_nm": moment_nm}))
+        }
+        other => panic!("no size for {other}"),
+    };
+    json!({"effect": name, "at": at, "parameters": parameters})
+}

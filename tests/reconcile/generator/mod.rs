@@ -4,6 +4,7 @@
 //! Friction play, which the witness lacks, is added here from its torques and from kinematics written
 //! for this file.
 
+mod conditions;
 mod dice;
 mod hidden;
 mod positions;
@@ -11,6 +12,7 @@ mod specimen;
 pub mod unknown;
 
 use super::witness::{self, Effects, LoadCase, Options, Payload, ThreeSegment};
+use conditions::Conditions;
 use nalgebra::{Rotation3, Unit, Vector3};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -89,8 +91,8 @@ impl Plan {
 }
 
 /// Makes one campaign below `out`: `set` is `plain` or `hard`, of six-axis arms, `varied`, of all kinds, or `geared`,
-/// of all kinds with torsion curves; `class` is `one`, `two`, `none` or
-/// `unknown`; numbers go through all effects in turn. `eased` makes an effect that nobody could see
+/// of all kinds with torsion curves; `class` is `one`, `two`, `none`,
+/// `unknown`, or `later` for one of the effects that came later; numbers go through all effects in turn. `eased` makes an effect that nobody could see
 /// larger, by 40 % a step, and from the third step on leaves no file out. Returns the campaign's name
 /// and what is hidden in it.
 pub fn make(
@@ -128,13 +130,14 @@ pub fn make(
     };
     let hidden = match class {
         "none" => Vec::new(),
+        "later" => vec![hidden::later(&mut dice, &specimen, number, plan.size)],
         "one" => vec![draw(0)],
         "two" => vec![draw(0), draw(1)],
         "unknown" => {
             let (name, at) = strange[number % strange.len()];
             vec![unknown::effect(&mut dice, name, at, plan.size)]
         }
-        other => panic!("{other} is none of one, two, none, unknown"),
+        other => panic!("{other} is none of one, two, none, later, unknown"),
     };
     let name = format!("{set}-{class}-{seed}-{number:03}");
     std::fs::create_dir_all(out.join("keys")).expect("folder");
@@ -151,6 +154,7 @@ struct Beyond {
     modal_gain: f64,
     bias_mm: [f64; 3],
     drift_mm: [f64; 3],
+    conditions: Conditions,
     unknown: Unknown,
 }
 
@@ -164,6 +168,9 @@ fn split(hidden: &[Value]) -> (Value, Beyond) {
     for effect in hidden {
         if let Some(unknown) = Unknown::from_json(effect) {
             beyond.unknown = unknown;
+            continue;
+        }
+        if beyond.conditions.takes(effect) {
             continue;
         }
         let p = &effect["parameters"];
@@ -294,9 +301,26 @@ impl Built {
         self.rig.ranges_deg.iter().map(|r| dice.rounded(-r, *r, 1)).collect()
     }
 
-    /// The arm in a pose when `part` of the tests are done.
-    fn arm_during(&self, pose_deg: &[f64], part: f64) -> Value {
-        self.with_stiffness(|j, name, k| k * self.beyond.unknown.stiffness_factor(name, pose_deg[j], part))
+    /// The arm in a pose when `part` of the tests are done, `row` rows of a channel among them.
+    fn arm_during(&self, channel: &str, pose_deg: &[f64], part: f64, row: usize) -> Value {
+        let arm = self.with_stiffness(|j, name, k| k * self.stiffness_factor(name, pose_deg[j], part));
+        self.beyond.conditions.of(channel, arm, row)
+    }
+
+    /// Factor on the stiffness of a joint at an angle when `part` of the tests are done.
+    fn stiffness_factor(&self, name: &str, angle_deg: f64, part: f64) -> f64 {
+        let Beyond { unknown, conditions, .. } = &self.beyond;
+        unknown.stiffness_factor(name, angle_deg, part) * conditions.stiffness_factor(name, angle_deg)
+    }
+
+    /// The effects as they are in the tests of a channel.
+    fn options_in(&self, channel: &str, modes: usize) -> Options {
+        let mut options = self.options(modes);
+        for (joint, k) in self.beyond.conditions.servos(channel) {
+            let own = options.effects.connection_compliance_nm_per_rad.get(joint).map_or(0.0, |c| 1.0 / c);
+            options.effects.connection_compliance_nm_per_rad.insert(joint.clone(), 1.0 / (own + 1.0 / k));
+        }
+        options
     }
 
     /// The arm with other stiffnesses of its joints: number, name and stiffness of each are given.
@@ -304,20 +328,29 @@ impl Built {
         let mut arm = self.arm.clone();
         let parts = arm["chain"].as_array_mut().expect("chain").iter_mut();
         for (j, part) in parts.filter(|p| p["type"] == "joint").enumerate() {
-            let Some(k) = part["stiffness_nm_per_rad"].as_f64() else { continue };
-            part["stiffness_nm_per_rad"] = json!(of(j, part["name"].as_str().expect("name"), k));
+            let name = part["name"].as_str().expect("name").to_string();
+            if let Some(k) = part["stiffness_nm_per_rad"].as_f64() {
+                part["stiffness_nm_per_rad"] = json!(of(j, &name, k));
+            } else if part["windup"].is_object() {
+                for key in ["k1_nm_per_rad", "k2_nm_per_rad", "k3_nm_per_rad"] {
+                    let k = part["windup"][key].as_f64().expect("stiffness");
+                    part["windup"][key] = json!(of(j, &name, k));
+                }
+            }
         }
         arm
     }
 
     /// The arm with the stiffness its joints have for small motions about a load.
-    fn arm_about(&self, pose_deg: &[f64], case: &LoadCase, part: f64) -> Value {
+    fn arm_about(&self, pose_deg: &[f64], case: &LoadCase, part: f64, row: usize) -> Value {
         let unknown = &self.beyond.unknown;
-        let answer = witness::analyze(&self.arm_during(pose_deg, part), case, &self.options(0));
-        self.with_stiffness(|j, name, k| {
+        let arm = self.arm_during("modal", pose_deg, part, row);
+        let answer = witness::analyze(&arm, case, &self.options_in("modal", 0));
+        let arm = self.with_stiffness(|j, name, k| {
             let further = unknown.further_twist(name, torque(&answer, name), k).1;
-            k * unknown.stiffness_factor(name, pose_deg[j], part) / (1.0 + k * further)
-        })
+            k * self.stiffness_factor(name, pose_deg[j], part) / (1.0 + k * further)
+        });
+        self.beyond.conditions.of("modal", arm, row)
     }
 
     /// Where the tip is, and its motion per radian of each joint.
@@ -373,7 +406,7 @@ impl Built {
                     }
                 })
                 .collect();
-            for (i, d) in self.displacements_mm(&pose, &cases, part).into_iter().enumerate() {
+            for (i, d) in self.displacements_mm(&pose, &cases, part, row).into_iter().enumerate() {
                 let (kg, branch) = loads[i];
                 let f = if kg > 0.0 { [0.0; 3] } else { force };
                 let gross =
@@ -400,12 +433,20 @@ impl Built {
         out
     }
 
-    /// Displacements from the unloaded reference, friction play following the order of the loads.
-    fn displacements_mm(&self, pose: &[f64], cases: &[LoadCase], part: f64) -> Vec<Vector3<f64>> {
-        let options = self.options(0);
+    /// Displacements from the unloaded reference, friction play following the order of the loads. `first` rows were taken
+    /// before.
+    fn displacements_mm(
+        &self,
+        pose: &[f64],
+        cases: &[LoadCase],
+        part: f64,
+        first: usize,
+    ) -> Vec<Vector3<f64>> {
+        let options = self.options_in("static", 0);
         let unknown = &self.beyond.unknown;
-        let reference = witness::analyze(&self.arm_during(pose, 0.0), &LoadCase::unloaded(pose), &options);
-        let arm = self.arm_during(pose, part);
+        let unloaded = |arm: &Value| witness::analyze(arm, &LoadCase::unloaded(pose), &options);
+        // friction follows the reference before the first load
+        let reference = unloaded(&self.arm_during("static", pose, 0.0, first));
         let (tip_m, levers) = self.levers(pose);
         let mut play: Vec<(usize, f64, f64, f64)> = Vec::new();
         for (j, (name, _, k)) in self.joints().iter().enumerate() {
@@ -435,7 +476,9 @@ impl Built {
         let zero = reference.tip_displacement_m + lag(&mut play, &reference) + further(&reference);
         cases
             .iter()
-            .map(|case| {
+            .enumerate()
+            .map(|(row, case)| {
+                let arm = self.arm_during("static", pose, part, first + row);
                 let answer = witness::analyze(&arm, case, &options);
                 let moved = answer.tip_displacement_m + lag(&mut play, &answer) + further(&answer);
                 unknown.reading_mm(1e3 * (moved - zero), tip_m, part)
@@ -450,15 +493,16 @@ impl Built {
         );
         let (payload_kg, cg_m) = self.rig.modal_payload;
         let cg = self.rig.cg_along.map(|along| along * cg_m);
-        let mut test = 0;
+        let (mut test, mut row) = (0, 0);
         for number in 0..plan.modal_poses {
             let part = number as f64 / plan.modal_poses as f64;
             let pose = self.pose(dice);
             for kg in [0.0, payload_kg] {
                 test += 1;
                 let case = LoadCase::unloaded(&pose).with_payload(Payload::point(kg, cg));
-                let arm = self.arm_about(&pose, &case, part);
-                let answer = witness::analyze(&arm, &case, &self.options(self.rig.modes));
+                let arm = self.arm_about(&pose, &case, part, row);
+                let answer = witness::analyze(&arm, &case, &self.options_in("modal", self.rig.modes));
+                row += answer.modes.len();
                 for (m, mode) in answer.modes.iter().enumerate() {
                     let f = mode.frequency_hz * self.beyond.modal_gain;
                     let sigma = self.rig.modal_sigma * f;

@@ -1,0 +1,46 @@
+//! Warming: how the moduli of the links change while an arm is tested, with its temperature or with the order of the tests.
+
+/// When a reading was taken.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Moment {
+    /// Row of its file, from 0.
+    pub row: usize,
+    /// Temperature of the arm \[°C\], if it was measured.
+    pub temperature_c: Option<f64>,
+}
+
+/// Temperature at which moduli are as drawn \[°C\].
+pub(crate) const DRAWN_AT_C: f64 = 20.0;
+/// Least factor on a modulus: a law that is carried far beyond its readings must not turn a link around.
+const LEAST: f64 = 0.05;
+
+/// How the moduli of all links change.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Warming {
+    /// Change of the factor on the moduli with the temperature \[1/K\].
+    pub per_k: f64,
+    /// Change of the factor after many rows.
+    pub change: f64,
+    /// Number of rows after which 63 % of this change is reached.
+    pub rows: f64,
+}
+
+impl Default for Warming {
+    fn default() -> Self {
+        Self { per_k: 0.0, change: 0.0, rows: 1.0 }
+    }
+}
+
+impl Warming {
+    /// Whether moduli stay as they are.
+    pub fn is_none(&self) -> bool {
+        self.per_k == 0.0 && self.change == 0.0
+    }
+
+    /// Factor on the moduli of elasticity and shear.
+    pub fn factor(&self, when: &Moment) -> f64 {
+        let warmer_k = when.temperature_c.map_or(0.0, |c| c - DRAWN_AT_C);
+        let done = 1.0 - libm::exp(-(when.row as f64) / self.rows);
+        (1.0 + self.per_k * warmer_k + self.change * done).max(LEAST)
+    }
+}

@@ -1,0 +1,195 @@
+//! The boundaries between sessions: how far something jumps there, what else changes at the same row, and whether the
+//! session still pays once the effects are in the model.
+
+use super::analysis::Positions;
+use super::fit::fit;
+use super::fitted::Sample;
+use super::kinematics::{Number, Placing};
+use super::moved::{Boundary, Kind, Moved};
+use crate::reconcile::fit::stats::median;
+use crate::reconcile::readings::campaign::Campaign;
+
+/// A jump of the measured points from this size on is no small change of a reflector \[mm\].
+const LARGE_MM: f64 = 1.0;
+/// Number of rows on each side of a boundary that are compared.
+const BESIDE: usize = 15;
+/// Smallest number of rows on each side of a boundary that say whether something changes there.
+const FEWEST_BESIDE: usize = 4;
+
+impl Positions {
+    /// The boundaries, each as what was moved and the first row of the later session.
+    pub(crate) fn boundaries(&self, declared: bool) -> Vec<(Kind, usize)> {
+        self.sessions.iter().filter(|b| b.declared == declared).map(|b| (b.kind, b.first)).collect()
+    }
+
+    /// Price of all sessions that nobody declared, in ln of the likelihood.
+    pub(super) fn sessions_price(&self) -> f64 {
+        let kinds = self.kinds(true, true).len();
+        let undeclared = self.sessions.iter().filter(|b| !b.declared);
+        undeclared.map(|b| self.session_price(b.earlier.numbers().len(), kinds)).sum()
+    }
+
+    /// One sentence for each boundary, by the final model.
+    pub(crate) fn session_sentences(&self, campaign: &Campaign) -> Vec<String> {
+        let mut in_order: Vec<&Boundary> = self.sessions.iter().collect();
+        in_order.sort_by_key(|b| b.first);
+        in_order.into_iter().map(|b| self.sentence(campaign, b)).collect()
+    }
+
+    fn sentence(&self, campaign: &Campaign, boundary: &Boundary) -> String {
+        let row = boundary.first + 1;
+        let geometry = &self.fitted.geometry;
+        let mm = self.jump_mm(boundary);
+        let what = match (self.labels(boundary), boundary.kind) {
+            (Some((Moved::Point(before), Moved::Point(_))), _) => {
+                format!("{} sat {mm:.2} mm away on the tool before row {row}", self.points[before].name)
+            }
+            (Some((Moved::Station(before), Moved::Station(after))), _) => {
+                let ((turn, _), (own_turn, _)) = (&geometry.stations[before], &geometry.stations[after]);
+                let mrad = 1e3 * turn.angle_to(own_turn);
+                format!(
+                    "before row {row} the instrument or the base stood elsewhere, turned by {mrad:.2} mrad: the measured \
+                     points jump by {mm:.2} mm"
+                )
+            }
+            _ => format!("something jumps before row {row}"),
+        };
+        match (boundary.declared, self.changes_at(campaign, boundary)) {
+            (true, _) => format!("{what} (declared in campaign.json)"),
+            (false, None) => format!("{what}: a session of its own"),
+            (false, Some(change)) => format!(
+                "{what}, or something depends on {change}: these readings cannot tell a session from that, because both \
+                 change at the same row"
+            ),
+        }
+    }
+
+    /// The labels of the sessions on the two sides of a boundary.
+    fn labels(&self, boundary: &Boundary) -> Option<(Moved, Moved)> {
+        let (before, after) = self.samples.split_at(boundary.first);
+        let is_own = |s: &&Sample| self.is_of(s, boundary.kind);
+        let before = before.iter().rev().find(is_own)?;
+        let after = after.iter().find(is_own)?;
+        Some((boundary.kind.label(before), boundary.kind.label(after)))
+    }
+
+    /// Median distance by which the measured points jump at a boundary \[mm\].
+    fn jump_mm(&self, boundary: &Boundary) -> f64 {
+        let Some((before, after)) = self.labels(boundary) else { return 0.0 };
+        let mut placer = self.fitted.geometry.placer();
+        let mut at_m = |sample: &Sample, label: Moved| {
+            let own = sample.placing();
+            placer.place_m(match label {
+                Moved::Point(point) => Placing { point, ..own },
+                Moved::Station(station) => Placing { station, ..own },
+            })
+        };
+        let own = self.samples.iter().filter(|s| before.has(s) || after.has(s));
+        median(own.map(|s| 1e3 * (at_m(s, before) - at_m(s, after)).norm()).collect())
+    }
+
+    /// Sessions that nobody declared and at which the measured points jump by millimetres, in words.
+    pub(crate) fn large_jumps(&self) -> Vec<String> {
+        let large = self.sessions.iter().filter(|b| !b.declared).map(|b| (b.first + 1, self.jump_mm(b)));
+        large.filter(|(_, mm)| *mm >= LARGE_MM).map(|(row, mm)| format!("{mm:.2} mm at row {row}")).collect()
+    }
+
+    /// What else changes where a session begins: a joint's angle or a payload that is on one side of a limit in all rows
+    /// before and on the other side in all rows after.
+    fn changes_at(&self, campaign: &Campaign, boundary: &Boundary) -> Option<String> {
+        let own =
+            |range: std::ops::Range<usize>| range.filter(|&i| self.is_of(&self.samples[i], boundary.kind));
+        let before: Vec<usize> = own(0..boundary.first).rev().take(BESIDE).collect();
+        let after: Vec<usize> = own(boundary.first..self.samples.len()).take(BESIDE).collect();
+        if before.len().min(after.len()) < FEWEST_BESIDE {
+            return None;
+        }
+        let rows = &campaign.positions;
+        let angles = self.tree.driven.iter().enumerate().map(|(j, name)| {
+            let of = |i: usize| rows[i].pose_deg[j];
+            (
+                format!("the angle of {name}"),
+                [&before, &after].map(|side| side.iter().map(|&i| of(i)).collect()),
+            )
+        });
+        let sides = |of: &dyn Fn(usize) -> f64| -> [Vec<f64>; 2] {
+            [&before, &after].map(|side| side.iter().map(|&i| of(i)).collect())
+        };
+        let payload = ("the payload".to_string(), sides(&|i| rows[i].payload.mass_kg));
+        let centre =
+            (0..3).map(|c| ("the payload's centre".to_string(), sides(&|i| rows[i].payload.cg_m[c])));
+        let arm = ("the arm that is measured".to_string(), sides(&|i| rows[i].arm as f64));
+        let all: Vec<(String, [Vec<f64>; 2])> = angles.chain([payload, arm]).chain(centre).collect();
+        let apart: Vec<String> =
+            all.into_iter().filter(|(_, [a, b])| are_apart(a, b)).map(|(name, _)| name).collect();
+        (!apart.is_empty()).then(|| apart.join(", "))
+    }
+
+    /// Whether a session that nobody declared begins where something else changes in the rows.
+    pub(crate) fn has_doubtful_session(&self, campaign: &Campaign) -> bool {
+        self.sessions.iter().any(|b| !b.declared && self.changes_at(campaign, b).is_some())
+    }
+
+    /// Drops the sessions that no longer pay next to the effects, the least useful first. Returns whether any was.
+    pub(crate) fn drop_needless_sessions(&mut self) -> bool {
+        let before = self.sessions.len();
+        loop {
+            let kinds = self.kinds(true, true).len();
+            let open = (0..self.sessions.len()).filter(|&k| !self.sessions[k].declared);
+            let tried = open.map(|k| {
+                let price = self.session_price(self.sessions[k].earlier.numbers().len(), kinds);
+                let without = self.without_session(k);
+                (without.fitted.ln_likelihood + price - self.fitted.ln_likelihood, without)
+            });
+            let needless = tried.filter(|(gain, _)| *gain > 0.0);
+            let Some((_, without)) = needless.max_by(|a, b| a.0.total_cmp(&b.0)) else { break };
+            *self = without;
+        }
+        self.sessions.len() < before
+    }
+
+    /// The model in which the rows on both sides of a boundary are one session.
+    fn without_session(&self, index: usize) -> Self {
+        let mut out = self.clone();
+        let boundary = out.sessions.remove(index);
+        let Some((_, after)) = self.labels(&boundary) else { return out };
+        let all = out.samples.len();
+        boundary.earlier.relabel(&mut out.samples, all, after);
+        let gone = boundary.earlier.numbers();
+        let kept = |n: &&Number| !gone.contains(n);
+        let moved = self.numbers.iter().zip(&self.fitted.moved);
+        out.fitted.moved = moved.filter(|(n, _)| kept(n)).map(|(_, moved)| *moved).collect();
+        out.numbers.retain(|n| kept(&n));
+        let samples: Vec<&Sample> = out.samples.iter().collect();
+        out.fitted = fit(&samples, &out.numbers, &out.fitted.effects, &out.fitted);
+        out
+    }
+
+    /// The session that would fit as well in place of an effect, if one would: the row before which it is.
+    pub(crate) fn session_instead(&self, campaign: &Campaign, effect: usize, tie: f64) -> Option<usize> {
+        let spec = &campaign.statement.positions;
+        let kinds = self.kinds(spec.tool_offset, spec.base_placement);
+        let mut without = self.clone();
+        let rest: Vec<usize> = self.fitted.effects.iter().copied().filter(|e| *e != effect).collect();
+        let samples: Vec<&Sample> = self.samples.iter().collect();
+        without.fitted = fit(&samples, &self.numbers, &rest, &self.fitted);
+        let missing = self.fitted.ln_likelihood - tie - without.fitted.ln_likelihood;
+        let whole = without.whole()?;
+        let best = kinds.iter().filter_map(|&moved| {
+            let (first, gain) = without.best_first(moved, &whole)?;
+            // a robust fit gains at most a few times what the linearized one promises
+            (3.0 * gain > missing).then(|| without.split(moved, first, kinds.len()))
+        });
+        let as_good = best.filter(|s| s.fitted.ln_likelihood > self.fitted.ln_likelihood - tie);
+        as_good.max_by(|a, b| a.fitted.ln_likelihood.total_cmp(&b.fitted.ln_likelihood)).map(|s| s.first + 1)
+    }
+}
+
+/// Whether a limit separates two lists of numbers.
+fn are_apart(a: &[f64], b: &[f64]) -> bool {
+    let ends = |list: &[f64]| {
+        list.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)))
+    };
+    let ((a_low, a_high), (b_low, b_high)) = (ends(a), ends(b));
+    a_high < b_low || b_high < a_low
+}

@@ -1,0 +1,74 @@
+//! What is placed differently in another session, and the boundary at which a session begins.
+
+use super::fitted::Sample;
+use super::kinematics::Number;
+
+/// What is placed differently in another session.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Moved {
+    /// A point on the tool, by its index.
+    Point(usize),
+    /// The instrument or the base: the session with this index is divided.
+    Station(usize),
+}
+
+impl Moved {
+    pub(super) fn has(self, sample: &Sample) -> bool {
+        match self {
+            Moved::Point(p) => sample.point == p,
+            Moved::Station(s) => sample.station == s,
+        }
+    }
+
+    /// Gives the rows before `first` to `new`.
+    pub(super) fn relabel(self, samples: &mut [Sample], first: usize, new: Moved) {
+        for sample in samples[..first].iter_mut().filter(|s| self.has(s)) {
+            match new {
+                Moved::Point(p) => sample.point = p,
+                Moved::Station(s) => sample.station = s,
+            }
+        }
+    }
+
+    pub(super) fn numbers(self) -> Vec<Number> {
+        match self {
+            Moved::Point(p) => (0..3).map(|c| Number::Tool(p, c)).collect(),
+            Moved::Station(s) => {
+                let turns = (0..3).map(move |c| Number::SessionRotation(s, c));
+                turns.chain((0..3).map(move |c| Number::SessionPosition(s, c))).collect()
+            }
+        }
+    }
+}
+
+/// What was moved between two sessions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Kind {
+    /// A point on the tool, by the index of one of its sessions.
+    Point(usize),
+    /// The instrument or the base.
+    Station,
+}
+
+impl Kind {
+    /// The label of a sample's session.
+    pub(super) fn label(self, sample: &Sample) -> Moved {
+        match self {
+            Kind::Point(_) => Moved::Point(sample.point),
+            Kind::Station => Moved::Station(sample.station),
+        }
+    }
+}
+
+/// The boundary between two sessions.
+#[derive(Debug, Clone)]
+pub(crate) struct Boundary {
+    /// What was moved.
+    pub kind: Kind,
+    /// The label of the rows before.
+    pub earlier: Moved,
+    /// First row of the later session, counted from 0.
+    pub first: usize,
+    /// Whether campaign.json declares it.
+    pub declared: bool,
+}

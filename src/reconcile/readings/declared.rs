@@ -1,0 +1,61 @@
+//! Sessions that `campaign.json` declares: rows from which a point sits elsewhere on the tool, or the arm or the
+//! instrument stands elsewhere.
+
+use super::rows::PositionRow;
+use crate::input::json::Node;
+
+/// The word for the arm's base and the instrument, of which one was moved.
+pub(crate) const BASE: &str = "base";
+
+/// A session that `campaign.json` declares.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DeclaredSession {
+    /// The first row of the session, counted from 1 without the line of the column names.
+    pub from_row: usize,
+    /// What was moved before that row: the name of a point, or `base` for the arm's base or the instrument.
+    pub moved: String,
+}
+
+impl DeclaredSession {
+    /// The same session of a campaign whose rows follow others.
+    pub(super) fn after(self, rows: usize) -> Self {
+        Self { from_row: self.from_row + rows, ..self }
+    }
+}
+
+/// Reads the list `positions.sessions`.
+pub(super) fn read(node: &Node) -> Option<Vec<DeclaredSession>> {
+    let session = |n: &Node| {
+        let object = n.object(&["from_row", "moved"])?;
+        let row = object.required("from_row")?;
+        let from_row = match row.number()? {
+            x if x >= 2.0 && x.fract() == 0.0 => Some(x as usize),
+            x => row.fault(format!("= {x} begins no session"), "give the number of a row, 2 or more"),
+        };
+        let moved = object.required("moved")?.string().map(String::from);
+        Some(DeclaredSession { from_row: from_row?, moved: moved? })
+    };
+    let sessions: Vec<Option<DeclaredSession>> = node.array()?.iter().map(session).collect();
+    sessions.into_iter().collect()
+}
+
+/// What is wrong with declared sessions beside the rows, each problem with what to try.
+pub(super) fn problems(sessions: &[DeclaredSession], rows: &[PositionRow]) -> Vec<(String, String)> {
+    let mut points: Vec<&str> = rows.iter().map(|row| row.point.as_str()).collect();
+    points.sort_unstable();
+    points.dedup();
+    let mut out = Vec::new();
+    for DeclaredSession { from_row, moved } in sessions {
+        if *from_row > rows.len() {
+            out.push((
+                format!("from_row = {from_row} is beyond the {} rows", rows.len()),
+                "count the rows".into(),
+            ));
+        }
+        if moved != BASE && !points.contains(&moved.as_str()) {
+            let hint = format!("write \"{BASE}\" or the name of a point: {}", points.join(", "));
+            out.push((format!("moved = \"{moved}\" is no point"), hint));
+        }
+    }
+    out
+}

@@ -1,0 +1,376 @@
+//! What the twist does under torque beyond a single compliance: three segments, lost motion, hysteresis.
+//!
+//! The torque of the spring is what the fit of the twist leaves of the motor's torque without friction and rotor. Each law
+//! is a few columns of it over a grid of its torques; the best of the grid is improved by the derivative with respect to
+//! these torques, whose columns also carry their doubt into the intervals.
+//!
+//! - three segments: `clip(T, T1)` and `clip(T, T2)` beside `T`, slopes falling;
+//! - lost motion: `tanh(T / T_c)`;
+//! - hysteresis: `s - T`, where `s` is dragged so that it stays within `r` of `T`.
+
+use super::blocks::{Blocks, Fitted};
+use super::twist::{Group, Places, TwistModel, columns, fill};
+use crate::reconcile::model::estimate::Estimate;
+
+/// Break points that are tried, as parts of the largest torque.
+const BREAKS: [f64; 11] = [0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
+/// Torques of lost motion, as parts of the largest torque.
+const CLOSING: [f64; 6] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.4];
+/// Half widths of the play in torque, as parts of the largest torque.
+const PLAYS: [f64; 8] = [0.005, 0.01, 0.02, 0.04, 0.07, 0.12, 0.2, 0.3];
+/// Standard errors by which held-out blocks must be better: the best of a grid is chosen.
+const CLEARLY_OF_GRID: f64 = 3.0;
+/// A law must change the twist by this part of its root mean square.
+const MATERIAL: f64 = 0.02;
+/// Rounds of improvement of the torques of a law.
+const ROUNDS: usize = 5;
+/// Largest change of a torque in one round, as a part of it.
+const LARGEST_STEP: f64 = 0.3;
+
+/// A law with its torques \[N m\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Law {
+    /// Three segments with two break points.
+    Segments(f64, f64),
+    /// Lost motion that closes at a torque.
+    LostMotion(f64),
+    /// A play of a half width in torque.
+    Play(f64),
+}
+
+/// The laws that a twist needs, and the fit with them.
+pub(crate) struct Curve {
+    /// The laws in the order in which they were found.
+    pub laws: Vec<Law>,
+    /// Laws whose best coefficients are impossible, with the reason.
+    pub refused: Vec<(&'static str, &'static str)>,
+    /// A law that held-out blocks cannot tell from the one that was chosen.
+    pub rival: Option<&'static str>,
+    /// The fit with the laws and the derivatives with respect to their torques.
+    pub fitted: Fitted,
+    /// Errors on held-out blocks as each law was added \[rad\].
+    pub steps: Vec<(String, f64)>,
+    first: usize,
+    /// Torque of the spring, row by row \[N m\].
+    pub spring_nm: Vec<f64>,
+}
+
+impl Law {
+    /// As `verdict.json` names it.
+    pub(crate) fn what(self) -> &'static str {
+        match self {
+            Law::Segments(..) => "torsion_curve",
+            Law::LostMotion(_) => "lost_motion",
+            Law::Play(_) => "hysteresis",
+        }
+    }
+
+    /// How many torques it has.
+    fn torques(self) -> usize {
+        if matches!(self, Law::Segments(..)) { 2 } else { 1 }
+    }
+
+    /// Its columns at a torque, shapes first and then the derivatives with respect to the torques of the law. `drag` is the
+    /// state of a play of this width and of one a hundredth wider.
+    fn columns(self, t: f64, drag: [f64; 2]) -> [f64; 4] {
+        let beyond = |edge: f64| if t.abs() > edge { t.signum() } else { 0.0 };
+        match self {
+            Law::Segments(a, b) => [t.clamp(-a, a), t.clamp(-b, b), beyond(a), beyond(b)],
+            Law::LostMotion(closing) => {
+                let tanh = libm::tanh(t / closing);
+                [tanh, 0.0, -t / closing.powi(2) * (1.0 - tanh * tanh), 0.0]
+            }
+            Law::Play(width) => [drag[0] - t, 0.0, (drag[1] - drag[0]) / (WIDER * width), 0.0],
+        }
+    }
+
+    fn moved(self, step: [f64; 2]) -> Self {
+        let by = |torque: f64, step: f64| torque + step.clamp(-LARGEST_STEP * torque, LARGEST_STEP * torque);
+        match self {
+            Law::Segments(a, b) => {
+                let (a, b) = (by(a, step[0]), by(b, step[1]));
+                if a < b { Law::Segments(a, b) } else { self }
+            }
+            Law::LostMotion(c) => Law::LostMotion(by(c, step[0])),
+            Law::Play(w) => Law::Play(by(w, step[0])),
+        }
+    }
+}
+
+/// A play is compared with one that is wider by this part, for its derivative.
+const WIDER: f64 = 0.01;
+
+/// States of a play along the rows: it begins anew with every record.
+fn dragged(spring_nm: &[f64], record: impl Fn(usize) -> usize, width: f64) -> Vec<f64> {
+    let mut state = f64::NAN;
+    let mut of = usize::MAX;
+    let drag = |(i, t): (usize, &f64)| {
+        if record(i) != of {
+            (state, of) = (*t, record(i));
+        }
+        state = state.clamp(t - width, t + width);
+        state
+    };
+    spring_nm.iter().enumerate().map(drag).collect()
+}
+
+/// Torque of the spring at each row: the motor's, less friction and rotor as the fit of the twist says.
+pub(crate) fn spring_torque(model: &TwistModel, viscous_nms_per_rad: f64) -> Vec<f64> {
+    let p = model.places;
+    let compliance = model.fitted.value(p.torque());
+    let mut row = vec![0.0; p.further() + 1];
+    let parts = [p.torque(), p.acceleration(), p.sense(), p.load_sense(), p.rate()];
+    (0..model.rows.samples.len())
+        .map(|i| {
+            row.fill(0.0);
+            fill(model.rows, i, model.shift_s, &mut row);
+            let twist: f64 = parts.iter().map(|c| row[*c] * model.fitted.value(*c)).sum();
+            twist / compliance - viscous_nms_per_rad * model.rows.samples[i].speed_rad_s
+        })
+        .collect()
+}
+
+/// Looks for laws beyond a single compliance.
+pub(crate) fn curve(model: &TwistModel, viscous_nms_per_rad: f64) -> Option<Curve> {
+    let spring_nm = spring_torque(model, viscous_nms_per_rad);
+    let first = model.places.further();
+    let own = columns(model.rows, &model.groups);
+    let mut out = Curve {
+        laws: Vec::new(),
+        refused: Vec::new(),
+        rival: None,
+        fitted: model.fitted.clone(),
+        steps: Vec::new(),
+        first,
+        spring_nm,
+    };
+    let largest_nm = out.spring_nm.iter().fold(0.0f64, |m, t| m.max(t.abs()));
+    for _ in 0..2 {
+        let tried = out.best_of_grids(model, &own, largest_nm)?;
+        let clear = |fit: &Fitted| fit.better_than(&out.fitted) > CLEARLY_OF_GRID;
+        let Some((law, fit)) = tried.iter().find(|(_, fit)| clear(fit)).cloned() else { break };
+        if !is_material(&fit, law, first + 4 * out.laws.len(), &out.spring_nm, model.places.torque()) {
+            break;
+        }
+        if let Some(reason) = impossible(&fit, law, first, out.laws.len(), model.places.torque()) {
+            out.refused.push((law.what(), reason));
+            break;
+        }
+        let alike =
+            tried.iter().find(|(l, f)| l.what() != law.what() && clear(f) && fit.better_than(f) < 2.0);
+        out.rival = out.rival.or(alike.map(|(l, _)| l.what()));
+        let laws = [out.laws.as_slice(), &[law]].concat();
+        let Some((laws, fit)) = out.improved(model, &own, laws) else { break };
+        out.steps.push((law.what().replace('_', " "), fit.held_out_rms()));
+        (out.laws, out.fitted) = (laws, fit);
+    }
+    Some(out)
+}
+
+/// Whether a law changes the twist by so much that it is no matter of how friction is written.
+fn is_material(fit: &Fitted, law: Law, at: usize, spring_nm: &[f64], torque: usize) -> bool {
+    let squares: f64 = spring_nm.iter().map(|t| t * t).sum();
+    let twist_rad = fit.value(torque).abs() * (squares / spring_nm.len() as f64).sqrt();
+    let size_rad = match law {
+        Law::Segments(a, b) => fit.value(at).abs() * a + fit.value(at + 1).abs() * b,
+        Law::LostMotion(_) => fit.value(at).abs(),
+        Law::Play(width) => fit.value(at).abs() * width,
+    };
+    size_rad > MATERIAL * twist_rad
+}
+
+/// Why a law cannot be what its coefficients say.
+fn impossible(fit: &Fitted, law: Law, first: usize, before: usize, torque: usize) -> Option<&'static str> {
+    let size = fit.value(first + 4 * before);
+    let second = fit.value(first + 4 * before + 1);
+    let end = fit.value(torque);
+    match law {
+        Law::Play(_) if size <= 0.0 => Some(
+            "the best value has the wrong sign: the twist would lead a reversal of torque, and play can only lag",
+        ),
+        Law::LostMotion(_) if size <= 0.0 => {
+            Some("the best value is negative: the joint is stiffer near zero torque")
+        }
+        Law::Segments(..) if size < 0.0 || second < 0.0 || end <= 0.0 => {
+            Some("the joint softens as the torque grows, and a gear stiffens")
+        }
+        _ => None,
+    }
+}
+
+impl Curve {
+    /// The best of each law's grid beside the laws found before, best first.
+    fn best_of_grids(
+        &self,
+        model: &TwistModel,
+        own: &[usize],
+        largest_nm: f64,
+    ) -> Option<Vec<(Law, Fitted)>> {
+        let has = |what: &str| self.laws.iter().any(|l| l.what() == what);
+        let is_shaped = has("torsion_curve") || has("lost_motion");
+        let mut grids: Vec<Vec<Law>> = Vec::new();
+        if !is_shaped {
+            let pairs =
+                BREAKS.iter().enumerate().flat_map(|(i, a)| BREAKS[i + 1..].iter().map(move |b| (*a, *b)));
+            grids.push(pairs.map(|(a, b)| Law::Segments(a * largest_nm, b * largest_nm)).collect());
+            grids.push(CLOSING.iter().map(|c| Law::LostMotion(c * largest_nm)).collect());
+        }
+        if !has("hysteresis") {
+            grids.push(PLAYS.iter().map(|w| Law::Play(w * largest_nm)).collect());
+        }
+        let mut out: Vec<(Law, Fitted)> = Vec::new();
+        for grid in grids {
+            let single = self.singles(&grid);
+            let laws = [self.laws.as_slice(), &single].concat();
+            let fitted =
+                |columns: &[usize], sums: &Blocks, target| sums.fit(columns, target, |c| model.prior(c));
+            let (sums, target) = self.sums(model, &laws);
+            let known = self.laws.len();
+            let old: Vec<usize> = (0..known).flat_map(|i| self.law_columns(i, self.laws[i])).collect();
+            let tried = grid.iter().filter_map(|law| {
+                let new = self.shapes_of(*law, known, &single);
+                Some((*law, fitted(&[own, &old, &new].concat(), &sums, target)?))
+            });
+            // refitted in the order of a single law, so that its shapes stand right behind those found before
+            let best = tried.min_by(|a, b| a.1.held_out_rms().total_cmp(&b.1.held_out_rms()));
+            let Some((law, _)) = best else { continue };
+            let laws = [self.laws.as_slice(), &[law]].concat();
+            let (sums, target) = self.sums(model, &laws);
+            let new = &self.law_columns(known, law)[..law.torques()];
+            out.extend(fitted(&[own, &old, new].concat(), &sums, target).map(|fit| (law, fit)));
+        }
+        out.sort_by(|a, b| a.1.held_out_rms().total_cmp(&b.1.held_out_rms()));
+        Some(out)
+    }
+
+    /// The grid's laws with each torque once: pairs of break points share their columns.
+    fn singles(&self, grid: &[Law]) -> Vec<Law> {
+        let mut out: Vec<Law> = Vec::new();
+        for law in grid {
+            let one = match *law {
+                Law::Segments(a, b) => vec![Law::Segments(a, a), Law::Segments(b, b)],
+                other => vec![other],
+            };
+            for law in one {
+                if !out.contains(&law) {
+                    out.push(law);
+                }
+            }
+        }
+        out
+    }
+
+    /// Columns of the shapes of a law among those of single torques.
+    fn shapes_of(&self, law: Law, known: usize, singles: &[Law]) -> Vec<usize> {
+        let place = |law: Law| singles.iter().position(|s| *s == law).map(|i| self.first + 4 * (known + i));
+        match law {
+            Law::Segments(a, b) => {
+                [place(Law::Segments(a, a)), place(Law::Segments(b, b))].into_iter().flatten().collect()
+            }
+            other => place(other).into_iter().collect(),
+        }
+    }
+
+    /// Columns of a law at its place: shapes, then derivatives.
+    fn law_columns(&self, place: usize, law: Law) -> Vec<usize> {
+        let at = self.first + 4 * place;
+        let n = law.torques();
+        (at..at + n).chain(at + 2..at + 2 + n).collect()
+    }
+
+    /// Sums with four columns for each law.
+    fn sums(&self, model: &TwistModel, laws: &[Law]) -> (Blocks, usize) {
+        let record = |i: usize| model.rows.samples[i].record;
+        let plays: Vec<Option<[Vec<f64>; 2]>> = laws
+            .iter()
+            .map(|law| match law {
+                Law::Play(w) => Some([*w, w * (1.0 + WIDER)].map(|w| dragged(&self.spring_nm, record, w))),
+                _ => None,
+            })
+            .collect();
+        let target = self.first + 4 * laws.len();
+        let sums = model.rows.sums(target + 1, |i, _, row| {
+            if !fill(model.rows, i, model.shift_s, row) {
+                return false;
+            }
+            for (k, law) in laws.iter().enumerate() {
+                let drag = plays[k].as_ref().map_or([0.0; 2], |p| [p[0][i], p[1][i]]);
+                let at = self.first + 4 * k;
+                row[at..at + 4].copy_from_slice(&law.columns(self.spring_nm[i], drag));
+            }
+            true
+        });
+        (sums, target)
+    }
+
+    /// Improves the torques of all laws, and fits with the derivatives.
+    fn improved(&self, model: &TwistModel, own: &[usize], mut laws: Vec<Law>) -> Option<(Vec<Law>, Fitted)> {
+        let mut best: Option<(Vec<Law>, Fitted)> = None;
+        for _ in 0..ROUNDS {
+            let (sums, target) = self.sums(model, &laws);
+            let extra = laws.iter().enumerate().flat_map(|(i, l)| self.law_columns(i, *l));
+            let all: Vec<usize> = own.iter().copied().chain(extra).collect();
+            let fit = sums.fit(&all, target, |c| model.prior(c))?;
+            let step = |i: usize, k: usize| {
+                let at = self.first + 4 * i;
+                let size = fit.value(at + k);
+                if size == 0.0 { 0.0 } else { fit.value(at + 2 + k) / size }
+            };
+            let next: Vec<Law> =
+                laws.iter().enumerate().map(|(i, l)| l.moved([step(i, 0), step(i, 1)])).collect();
+            let is_better = best.as_ref().is_none_or(|(_, b)| fit.squares <= b.squares * (1.0 + 1e-9));
+            if is_better {
+                best = Some((laws.clone(), fit));
+            }
+            laws = next;
+        }
+        best
+    }
+
+    /// Numbers of a law with intervals.
+    pub(crate) fn parameters(&self, law: Law, places: Places) -> Vec<(String, Vec<Estimate>)> {
+        let Some(place) = self.laws.iter().position(|l| *l == law) else { return Vec::new() };
+        let at = self.first + 4 * place;
+        let named = |name: &str, estimate: Estimate| (name.to_string(), vec![estimate]);
+        let torque = places.torque();
+        match law {
+            Law::Segments(t1, t2) => vec![
+                named("k1_nm_per_rad", self.fitted.estimate(|c| 1.0 / (c(torque) + c(at) + c(at + 1)))),
+                named("k2_nm_per_rad", self.fitted.estimate(|c| 1.0 / (c(torque) + c(at + 1)))),
+                named("k3_nm_per_rad", self.fitted.estimate(|c| 1.0 / c(torque))),
+                named("t1_nm", self.fitted.estimate(|c| t1 + c(at + 2) / c(at))),
+                named("t2_nm", self.fitted.estimate(|c| t2 + c(at + 3) / c(at + 1))),
+            ],
+            Law::LostMotion(closing) => vec![
+                named("half_width_rad", self.fitted.coefficient(at)),
+                named("torque_nm", self.fitted.estimate(|c| closing + c(at + 2) / c(at))),
+            ],
+            Law::Play(width) => {
+                vec![named("half_width_rad", self.fitted.estimate(|c| c(at) * width + c(at + 2)))]
+            }
+        }
+    }
+
+    /// Twist of the spring at a row by the compliance and the laws, without derivatives \[rad\].
+    pub(crate) fn spring_twist_rad(&self, places: Places, records: impl Fn(usize) -> usize) -> Vec<f64> {
+        let compliance = self.fitted.value(places.torque());
+        let mut out: Vec<f64> = self.spring_nm.iter().map(|t| compliance * t).collect();
+        for (k, law) in self.laws.iter().enumerate() {
+            let drag = match law {
+                Law::Play(w) => dragged(&self.spring_nm, &records, *w),
+                _ => vec![0.0; out.len()],
+            };
+            let at = self.first + 4 * k;
+            for (i, twist) in out.iter_mut().enumerate() {
+                let shape = law.columns(self.spring_nm[i], [drag[i]; 2]);
+                *twist += shape[0] * self.fitted.value(at) + shape[1] * self.fitted.value(at + 1);
+            }
+        }
+        out
+    }
+
+    /// Whether the model of the twist has compliance at all.
+    pub(crate) fn applies(model: &TwistModel) -> bool {
+        model.groups.contains(&Group::Compliance)
+    }
+}

@@ -1,0 +1,211 @@
+//! Friction from the balance of torques: what the motor gives is what the load takes and what friction takes.
+//!
+//! `T_m = T_0 + J a_m + I a_l + A sin q_l + B cos q_l + (coupling with other joints) + (F_c + f |T_l|) sgn w + F_v w`
+//!
+//! The load of a joint also depends on how the other joints stand and move. Their angles, speeds and accelerations enter as
+//! free columns, joint by joint, where held-out blocks become better with them. `T_l`, the torque of the load, is what the
+//! fit before says without friction.
+
+use super::blocks::Fitted;
+use super::reading::Record;
+use super::signals::{JointRows, Sample};
+use super::smooth::{half_width, smooth};
+use super::twist::CLEARLY;
+use crate::reconcile::model::estimate::Estimate;
+
+/// Columns of the joint itself after the offsets of the records: acceleration of motor and link, sine and cosine of the
+/// link's angle once and twice a turn.
+const OWN_LOAD: usize = 6;
+/// Columns of friction: sign of the speed, speed, and sign of the speed times the size of the load.
+const FRICTION: usize = 3;
+/// Standard errors by which held-out blocks must be better for the link's acceleration, one column that is surely there.
+const SLIGHTLY: f64 = 1.0;
+/// Rows count in the balance where the smoothed sign of the speed is one within this.
+const TURNING: f64 = 0.5;
+/// Columns of another joint.
+const OTHER: usize = 8;
+
+/// Friction of a joint; each with its interval.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Friction {
+    /// Coulomb friction \[N m\].
+    pub coulomb_nm: Estimate,
+    /// Viscous friction \[N m s/rad\].
+    pub viscous_nms_per_rad: Estimate,
+    /// Friction for each newton metre of load, if held-out blocks are better with it.
+    pub load_part: Option<Estimate>,
+    /// Whether held-out blocks are better with Coulomb and with viscous friction.
+    pub clearly: [bool; 2],
+    /// Whether the viscous friction stays below the largest torque of the motor.
+    pub is_possible: bool,
+    /// The part of the torque's variance that neither load nor friction explains.
+    pub left_share: f64,
+}
+
+/// Sine and cosine of an angle, both zero at zero so that they do not compete with an offset.
+fn wave(angle_rad: f64) -> [f64; 2] {
+    let (sin, cos) = libm::sincos(angle_rad);
+    [sin, cos - 1.0]
+}
+
+/// Motion of another joint at the rows of this one: angle, speed, acceleration.
+type Motion = Vec<Option<[f64; 3]>>;
+
+struct Balance<'a> {
+    rows: &'a JointRows,
+    shift_s: f64,
+    others: Vec<Motion>,
+    load_nm: Vec<f64>,
+}
+
+impl Balance<'_> {
+    fn friction(&self) -> [usize; FRICTION] {
+        std::array::from_fn(|i| self.rows.record_count() + OWN_LOAD + i)
+    }
+
+    fn other(&self, joint: usize) -> Vec<usize> {
+        let first = self.rows.record_count() + OWN_LOAD + FRICTION + OTHER * joint;
+        (first..first + OTHER).collect()
+    }
+
+    /// Acceleration of the link.
+    fn link(&self) -> usize {
+        self.rows.record_count() + 1
+    }
+
+    fn load(&self) -> Vec<usize> {
+        (0..self.rows.record_count() + OWN_LOAD).filter(|c| *c != self.link()).collect()
+    }
+
+    /// What may be added to the load where held-out blocks become better: the link's own acceleration, and the motion of each
+    /// other joint.
+    fn candidates(&self) -> Vec<Vec<usize>> {
+        let others = (0..self.others.len()).map(|k| self.other(k));
+        std::iter::once(vec![self.link()]).chain(others).collect()
+    }
+
+    fn target(&self) -> usize {
+        self.rows.record_count() + OWN_LOAD + FRICTION + OTHER * self.others.len()
+    }
+
+    fn fill(&self, i: usize, sample: &Sample, row: &mut [f64]) -> bool {
+        // where the joint turns back, friction has no formula
+        if (sample.sense.abs() - 1.0).abs() > TURNING {
+            return false;
+        }
+        let read = self.rows.link(sample, self.shift_s).zip(self.rows.accelerations(sample, self.shift_s));
+        let Some(([q, _], [of_motor, of_link])) = read else { return false };
+        let first = self.rows.record_count();
+        let w = sample.speed_rad_s;
+        row[sample.record] = 1.0;
+        let [[sin, cos], [sin2, cos2]] = [wave(q), wave(2.0 * q)];
+        let own = [of_motor, of_link, sin, cos, sin2, cos2];
+        row[first..first + OWN_LOAD].copy_from_slice(&own);
+        let [sense, speed, load] = self.friction();
+        row[sense] = sample.sense;
+        row[speed] = w;
+        row[load] = sample.sense * self.load_nm[i].abs();
+        for (k, motion) in self.others.iter().enumerate() {
+            let Some([angle, other_speed, acceleration]) = motion[i] else { return false };
+            let first = self.other(k)[0];
+            let waves = [wave(angle), wave(q + angle), wave(q - angle)];
+            row[first..first + 2].copy_from_slice(&[acceleration, other_speed.powi(2)]);
+            row[first + 2..first + OTHER].copy_from_slice(waves.as_flattened());
+        }
+        let last = row.len() - 1;
+        row[last] = sample.torque_nm;
+        true
+    }
+
+    /// The load that a fit says, row by row: everything but friction.
+    fn load_of(&self, fitted: &Fitted) -> Vec<f64> {
+        let friction = self.friction();
+        let mut row = vec![0.0; self.target() + 1];
+        let rows = self.rows.samples.iter().enumerate();
+        rows.map(|(i, sample)| {
+            row.fill(0.0);
+            self.fill(i, sample, &mut row);
+            let parts = fitted.columns.iter().zip(&fitted.values).filter(|(c, _)| !friction.contains(c));
+            parts.map(|(c, v)| row[*c] * v).sum()
+        })
+        .collect()
+    }
+}
+
+/// Angle, speed and acceleration of the other joints at the rows of this one.
+fn motions(rows: &JointRows, records: &[Record]) -> Vec<Motion> {
+    let own: Vec<&Record> = records
+        .iter()
+        .filter(|r| r.joints.iter().any(|j| j.joint == rows.joint && !j.link_rad.is_empty()))
+        .collect();
+    let Some(first) = own.first() else { return Vec::new() };
+    let names = first.joints.iter().map(|j| &j.joint).filter(|name| **name != rows.joint);
+    let in_all = names.filter(|name| own.iter().all(|r| r.joints.iter().any(|j| j.joint == **name)));
+    in_all
+        .map(|name| {
+            let signals = own.iter().filter_map(|r| Some((r, r.joints.iter().find(|j| j.joint == *name)?)));
+            let smoothed: Vec<_> = signals
+                .map(|(r, j)| smooth(&r.t_s, &j.motor_rad, half_width(&r.t_s, &j.motor_rad)))
+                .collect();
+            let at = |s: &Sample| {
+                let m = smoothed.get(s.record)?;
+                (!m.value[s.row].is_nan()).then(|| [m.value[s.row], m.slope[s.row], m.curvature[s.row]])
+            };
+            rows.samples.iter().map(at).collect()
+        })
+        .collect()
+}
+
+/// Finds the friction of a joint. `None` where the joint has no torque or nothing moves.
+pub(crate) fn friction(rows: &JointRows, records: &[Record], shift_s: f64) -> Option<Friction> {
+    if !rows.has_torque {
+        return None;
+    }
+    let mut balance =
+        Balance { rows, shift_s, others: motions(rows, records), load_nm: vec![0.0; rows.samples.len()] };
+    let target = balance.target();
+    let sums = rows.sums(target + 1, |i, s, row| balance.fill(i, s, row));
+    let [sense, speed, load_sense] = balance.friction();
+    let mut columns = [balance.load(), vec![sense, speed]].concat();
+    let mut best = sums.fit(&columns, target, |_| None)?;
+    let mut left = balance.candidates();
+    loop {
+        let tried = left.iter().enumerate().filter_map(|(k, group)| {
+            let more = [columns.as_slice(), group].concat();
+            Some((k, sums.fit(&more, target, |_| None)?))
+        });
+        let asked = |k: usize| if left[k].len() == 1 { SLIGHTLY } else { CLEARLY };
+        let better = tried.filter(|(k, fit)| fit.better_than(&best) > asked(*k));
+        let rms = |fit: &Fitted| fit.held_out_rms();
+        let Some((k, fit)) = better.min_by(|a, b| rms(&a.1).total_cmp(&rms(&b.1))) else { break };
+        columns.extend(left.remove(k));
+        best = fit;
+    }
+    balance.load_nm = balance.load_of(&best);
+    let sums = rows.sums(target + 1, |i, s, row| balance.fill(i, s, row));
+    let fit = |columns: &[usize]| sums.fit(columns, target, |_| None);
+    let with_load = fit(&[columns.clone(), vec![load_sense]].concat())?;
+    let has_load = with_load.better_than(&best) > CLEARLY && is_positive(&with_load.coefficient(load_sense));
+    let chosen = if has_load { with_load } else { best };
+    let without = |column: usize| {
+        let others: Vec<usize> = chosen.columns.iter().copied().filter(|c| *c != column).collect();
+        fit(&others).is_some_and(|other| chosen.better_than(&other) > CLEARLY)
+    };
+    // more friction than the motor ever gave is a load that was taken for friction
+    let largest_nm = rows.samples.iter().fold(0.0f64, |m, s| m.max(s.torque_nm.abs()));
+    let fastest = rows.samples.iter().fold(0.0f64, |m, s| m.max(s.speed_rad_s.abs()));
+    let is_possible = chosen.value(speed) * fastest < largest_nm;
+    Some(Friction {
+        coulomb_nm: chosen.coefficient(sense),
+        viscous_nms_per_rad: chosen.coefficient(speed),
+        load_part: has_load.then(|| chosen.coefficient(load_sense)),
+        clearly: [without(sense), without(speed) && is_possible],
+        is_possible,
+        left_share: chosen.squares / fit(&(0..rows.record_count()).collect::<Vec<_>>())?.squares.max(1e-300),
+    })
+}
+
+/// Whether a whole interval lies above zero.
+pub(crate) fn is_positive(estimate: &Estimate) -> bool {
+    estimate.low.is_some_and(|low| low > 0.0)
+}

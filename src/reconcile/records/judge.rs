@@ -1,0 +1,462 @@
+//! Judges one joint's record: what is found, what is absent, what the record cannot tell.
+
+use super::curve::{Curve, Law, curve};
+use super::finding::{JointRecord, State, Stated, Step, Traced};
+use super::friction::{Friction, friction, is_positive};
+use super::reading::Record;
+use super::ringing::{joined, swings};
+use super::signals::JointRows;
+use super::twist::{CLEARLY, Group, TwistModel, fill};
+use super::wave::Wave;
+use crate::reconcile::model::estimate::Estimate;
+
+/// Blocks of time that are looked for.
+const BLOCKS: usize = 30;
+/// Fewest blocks.
+const FEWEST_BLOCKS: usize = 10;
+/// A block is at least this many times as long as errors follow each other.
+const LONG_BLOCK: f64 = 3.0;
+/// The part of the torque's variance that the joint's own motion must leave for its compliance to be told from the inertia
+/// of the rotor and from friction, unless friction follows its formula closely.
+const OWN_SHARE: f64 = 0.1;
+/// A smaller part will do if it is so many times what the balance of torques leaves unexplained.
+const WELL_BALANCED: f64 = 20.0;
+/// A compliance whose interval spans more than this factor is not identified.
+const WIDE: f64 = 5.0;
+/// No interval is narrower than this part of its value on either side: scales of sensors are not known better.
+const LEAST_PART: f64 = 5e-3;
+/// The same for friction, which no joint has constant.
+const LEAST_FRICTION_PART: f64 = 0.01;
+/// The same for the numbers of a law, which no gear follows exactly.
+const LEAST_LAW_PART: f64 = 0.05;
+/// A time shift is not known better than this part of the time between rows.
+const LEAST_STEP_PART: f64 = 0.01;
+/// Points of a picture.
+const POINTS: usize = 600;
+/// A joint must turn through so much for once and twice a turn to be told apart \[rad\].
+const TELLING_RANGE_RAD: f64 = 2.0;
+
+/// Judges a joint; `None` where it has no rows to judge.
+pub(crate) fn judge(records: &[Record], joint: &str) -> Option<JointRecord> {
+    let wave = Wave::find(records, joint);
+    let rows = JointRows::gather(records, joint, BLOCKS, &wave)?;
+    let model = TwistModel::find(&rows)?;
+    let readings = rows.samples.len() as f64 / model.rows_per_reading / LONG_BLOCK;
+    let blocks = (readings as usize).clamp(FEWEST_BLOCKS, BLOCKS);
+    if blocks >= BLOCKS {
+        return Some(Judged::new(&rows, &model, records).conclude());
+    }
+    let rows = JointRows::gather(records, joint, blocks, &wave)?;
+    let model = TwistModel::find(&rows)?;
+    Some(Judged::new(&rows, &model, records).conclude())
+}
+
+struct Judged<'a> {
+    rows: &'a JointRows,
+    model: &'a TwistModel<'a>,
+    records: &'a [Record],
+    friction: Option<Friction>,
+    compliance: Stated,
+    curve: Option<Curve>,
+}
+
+impl<'a> Judged<'a> {
+    fn new(rows: &'a JointRows, model: &'a TwistModel<'a>, records: &'a [Record]) -> Self {
+        let friction = balanced(rows, model, records);
+        let compliance = compliance(model, friction.map_or(1.0, |f| f.left_share));
+        let is_found = compliance.state == State::Found && Curve::applies(model);
+        let viscous = friction.filter(|f| f.clearly[1] && is_positive(&f.viscous_nms_per_rad));
+        let viscous = viscous.map_or(0.0, |f| f.viscous_nms_per_rad.value);
+        let curve = if is_found { curve(model, viscous) } else { None };
+        Self { rows, model, records, friction, compliance, curve }
+    }
+
+    fn conclude(self) -> JointRecord {
+        let mut stated = vec![self.time_shift(), self.compliance.clone()];
+        stated.extend(self.laws());
+        stated.extend(self.frictions());
+        stated.push(self.output_error());
+        stated.push(self.input_error());
+        stated.push(self.first_mode());
+        let fitted = self.curve.as_ref().map_or(&self.model.fitted, |c| &c.fitted);
+        let (low, high) = self.rows.range_rad();
+        let further = self.curve.iter().flat_map(|c| c.steps.iter());
+        let steps = self.model.steps.iter().chain(further);
+        JointRecord {
+            joint: self.rows.joint.clone(),
+            rows: self.rows.samples.len(),
+            effective_rows: self.rows.samples.len() as f64 / self.model.rows_per_reading,
+            blocks: self.rows.blocks,
+            range_rad: high - low,
+            noise_rad: self.rows.noise_rad(),
+            before_rad: self.model.steps.first().map_or(0.0, |s| s.1),
+            after_rad: fitted.held_out_rms(),
+            steps: steps.map(|(added, rad)| Step { added: added.clone(), held_out_rad: *rad }).collect(),
+            trace: self.trace(),
+            remarks: self.remarks(),
+            stated,
+        }
+    }
+
+    /// The part of friction that sits on the motor's side, as the loop of twist against torque shows it: 1 if its width is
+    /// that of all of the friction.
+    fn motor_part(&self) -> (f64, f64) {
+        let p = self.model.places;
+        let Some(f) = self.friction.filter(|f| f.clearly[0] && is_positive(&f.coulomb_nm)) else {
+            return (0.0, 1.0);
+        };
+        let total = f.coulomb_nm;
+        let part = self.model.fitted.estimate(|c| -c(p.sense()) / c(p.torque()) / total.value);
+        let spread = half(&total) / total.value;
+        let ends = (part.low.unwrap_or(0.0) - spread, part.high.unwrap_or(1.0) + spread);
+        (ends.0.clamp(0.0, 1.0), ends.1.clamp(0.0, 1.0))
+    }
+
+    /// The time shift. Viscous friction between motor and spring looks like one; the balance of torques says how much of the
+    /// speed's coefficient it is.
+    fn time_shift(&self) -> Stated {
+        let p = self.model.places;
+        let fitted = self.curve.as_ref().map_or(&self.model.fitted, |c| &c.fitted);
+        let plain = match self.model.groups.contains(&Group::Shift) {
+            true => fitted.coefficient(p.shift()),
+            false => {
+                let all = [self.model.groups.as_slice(), &[Group::Shift]].concat();
+                match self.model.fit(&all) {
+                    Some(fit) => fit.coefficient(p.shift()),
+                    None => return Stated::none("time_shift", State::NotIdentified, "nothing moves"),
+                }
+            }
+        };
+        let (shift, words) = self.with_friction(plain);
+        let shift = widened(shift, LEAST_STEP_PART * self.rows.step_s);
+        let is_clear = self.model.groups.contains(&Group::Shift) && excludes_zero(&shift);
+        let absent = "held-out blocks are not predicted better with a shift, or friction explains it as well";
+        let state = if is_clear { State::Found } else { State::Absent };
+        Stated::one("time_shift", state, "seconds", shift, if is_clear { &words } else { absent })
+    }
+
+    /// The shift with the part of viscous friction put back. Where the compliance is not identified, the interval has what
+    /// any compliance that it allows could hide.
+    fn with_friction(&self, plain: Estimate) -> (Estimate, String) {
+        let Some(f) = self.friction.filter(|f| f.is_possible && is_positive(&f.viscous_nms_per_rad)) else {
+            return (plain, String::new());
+        };
+        let c = self.model.fitted.coefficient(self.model.places.torque());
+        let is_known = is_positive(&c);
+        let compliance = if is_known { c.value } else { 0.0 };
+        let most_compliant = c.high.unwrap_or(0.0).max(0.0);
+        let (least, most) = if is_known { self.motor_part() } else { (0.0, 1.0) };
+        let viscous = f.viscous_nms_per_rad;
+        let by_friction = |part: f64| part * compliance * viscous.value;
+        let spread = |part: f64| {
+            let (by_viscous, by_compliance) =
+                (compliance * half(&viscous), (most_compliant - compliance) * viscous.value);
+            libm::hypot(half(&plain), part * libm::hypot(by_viscous, by_compliance))
+        };
+        let value = plain.value + by_friction(most);
+        let out = Estimate {
+            value,
+            low: Some((plain.value + by_friction(least) - spread(least)).min(value - spread(most))),
+            high: Some(value + spread(most)),
+        };
+        let words = format!(
+            "viscous friction counts for {:.2} ms of it ({:.2} ms if a part of the friction sits behind the spring)",
+            1e3 * by_friction(most),
+            1e3 * by_friction(least)
+        );
+        (out, words)
+    }
+
+    fn laws(&self) -> Vec<Stated> {
+        let all = ["torsion_curve", "hysteresis", "lost_motion"];
+        let Some(curve) = &self.curve else {
+            return all
+                .map(|w| Stated::none(w, State::NotIdentified, "compliance is not identified"))
+                .to_vec();
+        };
+        let state = |what: &'static str| {
+            if let Some(law) = curve.laws.iter().find(|l| l.what() == what) {
+                return law_stated(curve, *law, self.model);
+            }
+            if let Some((_, reason)) = curve.refused.iter().find(|(w, _)| *w == what) {
+                return Stated::none(what, State::Refused, *reason);
+            }
+            Stated::none(what, State::Absent, "held-out blocks are not predicted better with it")
+        };
+        all.map(state).to_vec()
+    }
+
+    fn frictions(&self) -> Vec<Stated> {
+        let names = ["coulomb_friction", "viscous_friction", "load_friction"];
+        let Some(f) = self.friction else {
+            let words = if self.rows.has_torque { "nothing moves" } else { "the torque is not recorded" };
+            return names.map(|n| Stated::none(n, State::NotIdentified, words)).to_vec();
+        };
+        let one = |what, name, estimate: Estimate, clearly: bool| {
+            let estimate = widened(estimate, LEAST_FRICTION_PART * estimate.value.abs());
+            if clearly && is_positive(&estimate) {
+                return Stated::one(what, State::Found, name, estimate, "");
+            }
+            if clearly && estimate.high.is_some_and(|h| h < 0.0) {
+                let words =
+                    "the best value drives the motion: the load of the joint is not what is assumed of it";
+                return Stated::one(what, State::Refused, name, estimate, words);
+            }
+            Stated::one(
+                what,
+                State::NotIdentified,
+                name,
+                estimate,
+                "the interval contains zero, or held-out blocks are as good without it",
+            )
+        };
+        let load = match f.load_part {
+            Some(part) => Stated::one(names[2], State::Found, "nm_per_nm", part, ""),
+            None => Stated::none(names[2], State::Absent, "held-out blocks are not predicted better with it"),
+        };
+        vec![
+            one(names[0], "torque_nm", f.coulomb_nm, f.clearly[0]),
+            one(names[1], "nms_per_rad", f.viscous_nms_per_rad, f.clearly[1]),
+            load,
+        ]
+    }
+
+    /// The effect's numbers are those of the link's angle beyond the motor's; the twist has them with the other sign.
+    fn output_error(&self) -> Stated {
+        let what = Group::Output.what();
+        if !self.model.groups.contains(&Group::Output) {
+            return Stated::none(what, State::Absent, "held-out blocks are not predicted better with it");
+        }
+        let (low, high) = self.rows.range_rad();
+        let columns = self.model.places.output();
+        let size = self.error_size(columns, low, high, 1.0);
+        let mut each: Vec<Estimate> = columns.map(|c| self.model.fitted.estimate(|of| -of(c))).to_vec();
+        let mut words = String::new();
+        if high - low < TELLING_RANGE_RAD {
+            each.iter_mut().for_each(|e| (e.low, e.high) = (None, None));
+            words = format!(
+                "the joint turned through {:.0} deg only: once and twice a turn cannot be told apart; over that range the \
+                 error is what is given from peak to peak",
+                (high - low).to_degrees()
+            );
+        }
+        let parameters =
+            vec![("peak_to_peak_rad".into(), vec![size]), ("sin_cos_sin2_cos2_rad".into(), each)];
+        Stated { what, state: State::Found, parameters, words }
+    }
+
+    fn input_error(&self) -> Stated {
+        let what = Group::Input.what();
+        let Some(ratio) = self.rows.ratio.filter(|n| *n > 1.0) else {
+            return Stated::none(what, State::NotIdentified, "the ratio is not stated in campaign.json");
+        };
+        if !self.model.groups.contains(&Group::Input) {
+            return Stated::none(what, State::Absent, "held-out blocks are not predicted better with it");
+        }
+        let columns = self.model.places.input();
+        let size = self.error_size(columns, 0.0, std::f64::consts::TAU / ratio, ratio);
+        let each = columns.map(|c| self.model.fitted.estimate(|of| -of(c))).to_vec();
+        let parameters =
+            vec![("peak_to_peak_rad".into(), vec![size]), ("sin_cos_sin2_cos2_rad".into(), each)];
+        Stated { what, state: State::Found, parameters, words: String::new() }
+    }
+
+    /// Transmission error from peak to peak over a range of angles.
+    fn error_size(&self, columns: [usize; 4], low: f64, high: f64, ratio: f64) -> Estimate {
+        const STEPS: usize = 60;
+        self.model.fitted.estimate(|c| {
+            let ends = (f64::INFINITY, f64::NEG_INFINITY);
+            let (least, most) = (0..=STEPS).fold(ends, |(least, most), i| {
+                let (sin, cos) = libm::sincos(ratio * (low + (high - low) * i as f64 / STEPS as f64));
+                let shapes = [sin, cos, 2.0 * sin * cos, cos * cos - sin * sin];
+                let error: f64 = shapes.iter().zip(columns).map(|(s, k)| s * c(k)).sum();
+                (least.min(error), most.max(error))
+            });
+            most - least
+        })
+    }
+
+    fn first_mode(&self) -> Stated {
+        let found = self.records.iter().flat_map(|r| {
+            let own = r.joints.iter().filter(|j| j.joint == self.rows.joint && !j.link_rad.is_empty());
+            own.flat_map(|j| swings(&r.t_s, &j.motor_rad, &j.link_rad)).collect::<Vec<_>>()
+        });
+        let found: Vec<_> = found.collect();
+        match joined(&found) {
+            Some(r) => {
+                let words = format!(
+                    "damping {:.2} % of critical, from {} stretch(es) in which the motor rests",
+                    100.0 * r.damping,
+                    r.stretches
+                );
+                Stated::one("first_mode", State::Found, "frequency_hz", r.frequency_hz, &words)
+            }
+            None => Stated::none("first_mode", State::Absent, "no free ringing while the motor rests"),
+        }
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        let mut out = Vec::new();
+        if let Some(rival) = self.curve.as_ref().and_then(|c| c.rival) {
+            out.push(format!(
+                "held-out blocks cannot tell the law of the twist from {}",
+                rival.replace('_', " ")
+            ));
+        }
+        let refused = self.model.fitted.value(self.model.places.torque()) < 0.0;
+        if refused && self.compliance.state == State::Refused {
+            out.push("the link runs ahead of the motor as the torque grows: is the sign of the torque that of the angles?".into());
+        }
+        out
+    }
+
+    /// Twist against torque, thinned: as recorded, and what is left of it for the spring.
+    fn trace(&self) -> Vec<Traced> {
+        let model = self.model;
+        let p = model.places;
+        let mut row = vec![0.0; p.further() + 1];
+        let fitted = self.curve.as_ref().map_or(&model.fitted, |c| &c.fitted);
+        let record = |i: usize| self.rows.samples[i].record;
+        let spring = self.curve.as_ref().map(|c| (c.spring_twist_rad(p, record), &c.spring_nm));
+        let elastic = [p.torque(), p.sense(), p.load_sense(), p.acceleration(), p.rate()];
+        let every = (self.rows.samples.len() / POINTS).max(1);
+        let mut out = Vec::new();
+        for i in (0..self.rows.samples.len()).step_by(every) {
+            row.fill(0.0);
+            if !fill(self.rows, i, model.shift_s, &mut row) {
+                continue;
+            }
+            let part = |c: &usize| row[*c] * fitted.value(*c);
+            let linear: f64 = elastic.iter().map(part).sum();
+            let others: f64 = model.fitted.columns.iter().filter(|c| !elastic.contains(c)).map(part).sum();
+            let y = row[row.len() - 1];
+            let offset = row[..p.records].iter().zip(0..).map(|(x, c)| x * fitted.value(c)).sum::<f64>();
+            let (torque_nm, model_rad) = match &spring {
+                Some((twist, torque)) => (torque[i], twist[i]),
+                None => (self.rows.samples[i].torque_nm, linear),
+            };
+            out.push(Traced { torque_nm, before_rad: y - offset, after_rad: y - others, model_rad });
+        }
+        out
+    }
+}
+
+/// Friction, with the link read at its own time: the shift that the twist shows lacks what viscous friction hides of it.
+fn balanced(rows: &JointRows, model: &TwistModel, records: &[Record]) -> Option<Friction> {
+    const ROUNDS: usize = 5;
+    let compliance = model.fitted.value(model.places.torque()).max(0.0);
+    let mut out = friction(rows, records, model.shift_s)?;
+    for _ in 1..ROUNDS {
+        let is_sure = out.clearly[1] && is_positive(&out.viscous_nms_per_rad);
+        let hidden_s = if is_sure { compliance * out.viscous_nms_per_rad.value } else { 0.0 };
+        out = friction(rows, records, model.shift_s + hidden_s)?;
+    }
+    Some(out)
+}
+
+fn half(estimate: &Estimate) -> f64 {
+    estimate.high.zip(estimate.low).map_or(0.0, |(high, low)| 0.5 * (high - low))
+}
+
+/// The interval, at least so wide on either side of the value.
+fn widened(estimate: Estimate, least: f64) -> Estimate {
+    Estimate {
+        low: estimate.low.map(|low| low.min(estimate.value - least)),
+        high: estimate.high.map(|high| high.max(estimate.value + least)),
+        ..estimate
+    }
+}
+
+fn excludes_zero(estimate: &Estimate) -> bool {
+    is_positive(estimate) || estimate.high.is_some_and(|h| h < 0.0)
+}
+
+/// Whether the compliance is identified, and how large it is.
+fn compliance(model: &TwistModel, left_share: f64) -> Stated {
+    const WHAT: &str = "compliance";
+    const NAME: &str = "stiffness_nm_per_rad";
+    if !model.rows.has_torque {
+        return Stated::none(WHAT, State::NotIdentified, "the torque is not recorded");
+    }
+    let share = model.own_share_of_torque();
+    let c = model.fitted.coefficient(model.places.torque());
+    if share < OWN_SHARE.min(WELL_BALANCED * left_share) {
+        let known = if model.rows.rotor_inertia_kgm2.is_none() {
+            " and the rotor's inertia is not stated"
+        } else {
+            ""
+        };
+        let words = format!(
+            "insufficient excitation: {:.0} % of the torque's variance is the joint's own acceleration and friction{known}; \
+             {:.1} % are explained by neither friction nor load, so that compliance cannot be told from them",
+            100.0 * (1.0 - share),
+            100.0 * left_share
+        );
+        return Stated { parameters: open(&c), ..Stated::none(WHAT, State::NotIdentified, words) };
+    }
+    if c.high.is_some_and(|high| high < 0.0) {
+        return Stated::none(WHAT, State::Refused, "the twist falls as the torque grows");
+    }
+    let c = widened(c, LEAST_PART * c.value.abs());
+    let (low, high) = (c.low.unwrap_or(0.0), c.high.unwrap_or(f64::INFINITY));
+    if low <= 0.0 || high / low > WIDE || model.gain(Group::Compliance) < CLEARLY {
+        let words = "the interval of the compliance contains zero or spans a factor of more than 5: the record hardly loads the joint";
+        return Stated { parameters: open(&c), ..Stated::none(WHAT, State::NotIdentified, words) };
+    }
+    let (low, high, mut words) = with_gear_error(model, low, high);
+    let stiffness = Estimate { value: 1.0 / c.value, low: Some(1.0 / high), high: Some(1.0 / low) };
+    let p = model.places;
+    let plain =
+        model.fit_with(&[p.offsets(), vec![p.torque()]].concat()).map_or(0.0, |f| f.value(p.torque()));
+    if model.groups.contains(&Group::Shift) && plain > 0.0 && plain / c.value > 1.1 {
+        words.push(format!(
+            "without time shift and friction it would come out {:.1} times too soft",
+            plain / c.value
+        ));
+    }
+    Stated::one(WHAT, State::Found, NAME, stiffness, &words.join("; "))
+}
+
+/// Limits of the compliance, wide enough for it to be right with and without an error of the gear: gravity turns with the
+/// joint, and so does such an error.
+fn with_gear_error(model: &TwistModel, low: f64, high: f64) -> (f64, f64, Vec<String>) {
+    if !model.groups.contains(&Group::Output) {
+        return (low, high, Vec::new());
+    }
+    let others: Vec<Group> = model.groups.iter().copied().filter(|g| *g != Group::Output).collect();
+    let without = model.fit(&others).map(|f| f.coefficient(model.places.torque()));
+    let Some(c) = without.filter(is_positive) else { return (low, high, Vec::new()) };
+    let words = format!(
+        "{:.3e} Nm/rad without the transmission error, which turns with the joint as gravity does; the interval has both",
+        1.0 / c.value
+    );
+    (low.min(c.low.unwrap_or(low)), high.max(c.high.unwrap_or(high)), vec![words])
+}
+
+/// The stiffness that belongs to a compliance which is not identified: an end where the compliance may be zero is open.
+fn open(c: &Estimate) -> Vec<(String, Vec<Estimate>)> {
+    let stiffness = |c: Option<f64>| c.filter(|c| *c > 0.0).map(|c| 1.0 / c);
+    let Some(low) = stiffness(c.high) else { return Vec::new() };
+    let value = if c.value > 0.0 { 1.0 / c.value } else { f64::MAX };
+    if value == f64::MAX {
+        return Vec::new();
+    }
+    vec![("stiffness_nm_per_rad".into(), vec![Estimate { value, low: Some(low), high: stiffness(c.low) }])]
+}
+
+fn law_stated(curve: &Curve, law: Law, model: &TwistModel) -> Stated {
+    let wide = |e: &Estimate| widened(*e, LEAST_LAW_PART * e.value.abs());
+    let parameters: Vec<(String, Vec<Estimate>)> = curve
+        .parameters(law, model.places)
+        .into_iter()
+        .map(|(name, list)| (name, list.iter().map(wide).collect()))
+        .collect();
+    // a size whose interval contains zero is no finding
+    let is_bounded = match law {
+        Law::Segments(..) => true,
+        _ => parameters.first().and_then(|(_, list)| list.first()).is_some_and(is_positive),
+    };
+    let state = if is_bounded { State::Found } else { State::NotIdentified };
+    let words = if is_bounded { "" } else { "the interval of its size contains zero" };
+    Stated { what: law.what(), state, parameters, words: words.into() }
+}

@@ -1,0 +1,351 @@
+//! Draws the conclusion from records: effects of the library, what is calibrated, the corrected arm.
+
+use super::finding::{JointRecord, Stated};
+use super::judge::judge;
+use crate::arm::effect::entry::Effect;
+use crate::arm::effect::kind::Scope;
+use crate::arm::{Arm, Element};
+use crate::reconcile::fit::held_out::HeldOut;
+use crate::reconcile::fit::noise::Noise;
+use crate::reconcile::model::estimate::{Estimate, Finding};
+use crate::reconcile::predict::subject;
+use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::verdict::correct::provenance;
+use crate::reconcile::verdict::files::CORRECTED_FILE;
+use crate::reconcile::verdict::outcome::{Calibrated, Located, NextTest, Outcome, Verdict};
+use serde_json::json;
+
+/// What may be left of the twist on held-out blocks, as a part of its root mean square: 2.5 % of the squares.
+const LEFT: f64 = 0.158;
+/// Or else this many times the noise from row to row.
+const NOISY: f64 = 1.5;
+/// Effects that say how a joint twists. Where other readings name one at a joint, records add none.
+const OF_TWIST: [&str; 5] =
+    ["joint_compliance", "connection_compliance", "soft_windup", "lost_motion", "hysteresis"];
+
+/// What the nominal arm says of a joint's twist, and what the record makes of it.
+struct Stiffness {
+    finding: Option<Finding>,
+    calibrated: Option<Calibrated>,
+    /// Factor on the nominal stiffness for the corrected arm.
+    factor: Option<f64>,
+    remark: Option<String>,
+}
+
+/// Reconciles the records of a campaign with its arm, by themselves.
+pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
+    let joints: Vec<JointRecord> =
+        campaign.driven_joint_names().iter().filter_map(|joint| judge(&campaign.records, joint)).collect();
+    let stiffnesses: Vec<Stiffness> = joints.iter().map(|j| stiffness(campaign, j)).collect();
+    let mut findings: Vec<Finding> = Vec::new();
+    for (joint, stiffness) in joints.iter().zip(&stiffnesses) {
+        findings.extend(named(joint));
+        findings.extend(stiffness.finding.clone());
+    }
+    let (verdict, mut reasons) = verdict(&joints, &findings, &stiffnesses);
+    reasons.extend(stiffnesses.iter().filter_map(|s| s.remark.clone()));
+    reasons.extend(joints.iter().flat_map(|j| j.remarks.iter().map(|r| format!("{}: {r}", j.joint))));
+    let (effects, suspects) = match verdict {
+        Verdict::Explained => (findings.clone(), Vec::new()),
+        _ => (Vec::new(), Vec::new()),
+    };
+    let calibrated: Vec<Calibrated> = stiffnesses.iter().filter_map(|s| s.calibrated.clone()).collect();
+    let sources = calibrated.iter().map(|c| {
+        json!({"value": c.name, "factor": c.factor.value, "low": c.factor.low, "high": c.factor.high, "source": "record against time"})
+    });
+    let provenance = provenance(campaign, verdict, sources.collect());
+    Outcome {
+        campaign: campaign.statement.name.clone(),
+        hash: campaign.hash.clone(),
+        verdict,
+        reasons,
+        effects,
+        suspects,
+        held_out: held_out(&joints),
+        located: located(&joints),
+        next_tests: next_tests(&joints),
+        noise: Noise { scale: [1.0; 3], outliers: Vec::new() },
+        lack_of_fit: None,
+        calibrated,
+        evidence: Vec::new(),
+        stages: Vec::new(),
+        residuals: Vec::new(),
+        corrected: corrected(campaign, &findings, &joints, &stiffnesses),
+        other_corrected: campaign.other_arms.clone(),
+        provenance,
+        records: joints,
+        empirical: Vec::new(),
+        models: Vec::new(),
+    }
+}
+
+/// Whether what is left of a joint's twist is noise, or little.
+fn is_explained(joint: &JointRecord) -> bool {
+    joint.after_rad <= (LEFT * joint.before_rad).max(NOISY * joint.noise_rad)
+}
+
+fn verdict(
+    joints: &[JointRecord],
+    findings: &[Finding],
+    stiffnesses: &[Stiffness],
+) -> (Verdict, Vec<String>) {
+    if joints.is_empty() {
+        let text = "no joint of the records could be judged: nothing moves, or nearly all rows stand at gaps in time";
+        return (Verdict::InsufficientData, vec![text.into()]);
+    }
+    let open: Vec<&JointRecord> = joints.iter().filter(|j| !is_explained(j)).collect();
+    if !open.is_empty() {
+        let left = open.iter().map(|j| {
+            format!(
+                "{}: {:.4} of {:.4} mrad of the twist are left on held-out blocks, and the noise of a row is {:.4} mrad",
+                j.joint,
+                1e3 * j.after_rad,
+                1e3 * j.before_rad,
+                1e3 * j.noise_rad
+            )
+        });
+        return (Verdict::Unexplained, left.collect());
+    }
+    if !findings.is_empty() {
+        let fall = joints.iter().map(|j| {
+            format!(
+                "{}: on held-out blocks the error of the twist falls from {:.4} to {:.4} mrad",
+                j.joint,
+                1e3 * j.before_rad,
+                1e3 * j.after_rad
+            )
+        });
+        return (Verdict::Explained, fall.collect());
+    }
+    if stiffnesses.iter().any(|s| s.remark.is_some()) {
+        let text = "no effect of the library explains a joint that is stiffer than its nominal one";
+        return (Verdict::Unexplained, vec![text.into()]);
+    }
+    (Verdict::NoGap, vec!["noise and the tolerance of the joints explain the records".into()])
+}
+
+/// Effects of the library that a joint shows, its compliance apart.
+fn named(joint: &JointRecord) -> Vec<Finding> {
+    let like = |what: &str| -> Vec<(String, String)> {
+        // once a turn and gravity look alike where no other joint changes the torque
+        let is_compliance = joint.found("compliance").is_some();
+        match what {
+            "transmission_error" if is_compliance => {
+                vec![("connection_compliance".into(), joint.joint.clone())]
+            }
+            _ => Vec::new(),
+        }
+    };
+    let of = |what: &str, effect: &str, keep: &[&str]| {
+        let stated = joint.found(what)?;
+        let parameters = stated.parameters.iter().filter(|(name, _)| keep.contains(&name.as_str()));
+        Some(Finding {
+            effect: effect.into(),
+            at: joint.joint.clone(),
+            parameters: parameters.cloned().collect(),
+            indistinguishable_from: like(effect),
+        })
+    };
+    const CURVE: [&str; 5] = ["k1_nm_per_rad", "k2_nm_per_rad", "k3_nm_per_rad", "t1_nm", "t2_nm"];
+    [
+        of("time_shift", "time_shift", &["seconds"]),
+        of("torsion_curve", "soft_windup", &CURVE),
+        of("hysteresis", "hysteresis", &["half_width_rad"]),
+        of("lost_motion", "lost_motion", &["half_width_rad", "torque_nm"]),
+        of("transmission_error", "transmission_error", &["sin_cos_sin2_cos2_rad"]),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+/// Compares the stiffness that a record shows with the nominal one.
+fn stiffness(campaign: &Campaign, joint: &JointRecord) -> Stiffness {
+    let nothing = Stiffness { finding: None, calibrated: None, factor: None, remark: None };
+    // a curve replaces the number
+    if joint.found("torsion_curve").is_some() {
+        return nothing;
+    }
+    let Some(measured) = joint.found("compliance").and_then(|s| Some(s.parameters.first()?.1[0])) else {
+        return nothing;
+    };
+    let torque_nm = joint.trace.iter().fold(0.0f64, |m, t| m.max(t.torque_nm.abs()));
+    let nominal_rad_per_nm = nominal_compliance(campaign, &joint.joint, torque_nm);
+    let finding = |effect: &str, value: Estimate| Finding {
+        effect: effect.into(),
+        at: joint.joint.clone(),
+        parameters: vec![("stiffness_nm_per_rad".into(), vec![value])],
+        indistinguishable_from: Vec::new(),
+    };
+    if nominal_rad_per_nm <= 0.0 {
+        return Stiffness { finding: Some(finding("joint_compliance", measured)), ..nothing };
+    }
+    let factor = |k: f64| k * nominal_rad_per_nm;
+    let ends = (factor(measured.low.unwrap_or(0.0)), factor(measured.high.unwrap_or(f64::INFINITY)));
+    let tolerance = campaign.statement.tolerance.joint_stiffness;
+    if ends.1 < 1.0 - tolerance {
+        let series = |k: f64| 1.0 / (1.0 / k - nominal_rad_per_nm);
+        let value = Estimate {
+            value: series(measured.value),
+            low: measured.low.map(series),
+            high: measured.high.map(series),
+        };
+        return Stiffness { finding: Some(finding("connection_compliance", value)), ..nothing };
+    }
+    let own = Estimate {
+        value: factor(measured.value),
+        low: measured.low.map(factor),
+        high: measured.high.map(factor),
+    };
+    let spread = 0.25 * libm::log(ends.1 / ends.0.max(1e-9));
+    let calibrated = Calibrated {
+        name: format!("{}.stiffness", joint.joint),
+        factor: own,
+        learnt: (2.0 * spread / tolerance.max(1e-9)).min(1.0),
+    };
+    let remark = (ends.0 > 1.0 + tolerance).then(|| {
+        format!(
+            "{} is {:.2} times as stiff as its nominal joint ({:.2} to {:.2}), beyond the tolerance of {:.0} %",
+            joint.joint,
+            own.value,
+            ends.0,
+            ends.1,
+            100.0 * tolerance
+        )
+    });
+    Stiffness { calibrated: Some(calibrated), factor: Some(own.value), remark, finding: None }
+}
+
+/// Secant compliance of the nominal joint, known effects included \[rad/(N m)\].
+fn nominal_compliance(campaign: &Campaign, joint: &str, torque_nm: f64) -> f64 {
+    let mut subject = subject(&campaign.arm, &campaign.statement);
+    let law = subject.structure.joint_mut(joint).map(|j| j.law);
+    law.map_or(0.0, |law| law.angle_rad(torque_nm) / torque_nm.max(1e-9))
+}
+
+/// The corrected arm: what belongs to the joints is written into it even where another joint stays unexplained.
+fn corrected(
+    campaign: &Campaign,
+    findings: &[Finding],
+    joints: &[JointRecord],
+    stiffnesses: &[Stiffness],
+) -> Arm {
+    let mut arm = campaign.arm.clone();
+    for (joint, stiffness) in joints.iter().zip(stiffnesses) {
+        let Some(factor) = stiffness.factor.filter(|_| is_explained(joint)) else { continue };
+        for element in &mut arm.chain {
+            if let Element::Joint(own) = element
+                && own.name == joint.joint
+            {
+                own.curve = own.curve.stiffened(factor);
+            }
+        }
+    }
+    let explained = |f: &&Finding| joints.iter().any(|j| j.joint == f.at && is_explained(j));
+    arm.effects.extend(findings.iter().filter(explained).filter_map(|f| as_effect(campaign, f)));
+    arm
+}
+
+/// A finding as an entry of the arm file. A shift of a sensor's clock belongs to the record and not to the arm.
+fn as_effect(campaign: &Campaign, finding: &Finding) -> Option<Effect> {
+    let kind = crate::arm::effect::catalogue::kind(&finding.effect)?;
+    if kind.name == "time_shift" && kind.scope == Scope::Test {
+        return None;
+    }
+    let numbers = |list: &[Estimate]| list.iter().map(|e| e.value).collect();
+    let parameters = finding.parameters.iter().map(|(name, list)| (name.clone(), numbers(list))).collect();
+    let source = json!({"campaign": campaign.statement.name, "campaign_blake3": campaign.hash, "reading": "record against time"});
+    Some(Effect { effect: finding.effect.clone(), at: finding.at.clone(), parameters, source: Some(source) })
+}
+
+/// Errors in noise of a row, all joints together.
+fn held_out(joints: &[JointRecord]) -> Option<HeldOut> {
+    let count: usize = joints.iter().map(|j| j.rows).sum();
+    let mean = |of: fn(&JointRecord) -> f64| {
+        let sum: f64 = joints.iter().map(|j| j.rows as f64 * (of(j) / j.noise_rad.max(1e-12)).powi(2)).sum();
+        (sum / count as f64).sqrt()
+    };
+    let after = mean(|j| j.after_rad);
+    (count > 0).then(|| HeldOut {
+        rms_before: mean(|j| j.before_rad),
+        rms_after: after,
+        rms_declared_after: after,
+        count,
+    })
+}
+
+fn located(joints: &[JointRecord]) -> Vec<Located> {
+    let all = held_out(joints).map(|h| Located {
+        part: "record".into(),
+        count: h.count,
+        rms_before: h.rms_before,
+        rms_after: h.rms_after,
+    });
+    let each = joints.iter().map(|j| Located {
+        part: format!("record, {}", j.joint),
+        count: j.rows,
+        rms_before: j.before_rad / j.noise_rad.max(1e-12),
+        rms_after: j.after_rad / j.noise_rad.max(1e-12),
+    });
+    all.into_iter().chain(each).collect()
+}
+
+/// A joint whose compliance the record does not show needs other motion.
+fn next_tests(joints: &[JointRecord]) -> Vec<NextTest> {
+    let blind = joints.iter().filter(|j| {
+        j.of("compliance").is_some_and(|s: &Stated| s.words.starts_with("insufficient excitation"))
+    });
+    let names: Vec<&str> = blind.map(|j| j.joint.as_str()).collect();
+    if names.is_empty() {
+        return Vec::new();
+    }
+    vec![NextTest::of_another_kind(format!(
+        "compliance of {}: state rotor_inertia_kgm2, or load the joint with its output locked",
+        names.join(", ")
+    ))]
+}
+
+/// Joins what the records say to the outcome of the other readings. Each is judged by itself.
+pub(crate) fn joined(mut other: Outcome, records: Outcome) -> Outcome {
+    let order = [Verdict::Unexplained, Verdict::InsufficientData, Verdict::Explained];
+    let said = [other.verdict, records.verdict];
+    let verdict = order.into_iter().find(|v| said.contains(v)).unwrap_or(Verdict::NoGap);
+    let words = |what: &str, outcome: &Outcome| -> Vec<String> {
+        outcome.reasons.iter().map(|r| format!("{what}: {r}")).collect()
+    };
+    let mut reasons = [words("the other readings", &other), words("the records", &records)].concat();
+    reasons.push(
+        "records and other readings are each judged by itself, and the verdict is the less favourable one"
+            .into(),
+    );
+    let known: Vec<Finding> = [other.effects.as_slice(), &other.suspects].concat();
+    let is_told = |at: &str| known.iter().any(|f| f.at == at && OF_TWIST.contains(&f.effect.as_str()));
+    let is_new = |f: &&Finding| !(OF_TWIST.contains(&f.effect.as_str()) && is_told(&f.at));
+    let new: Vec<Finding> = records.effects.iter().filter(is_new).cloned().collect();
+    for at in records.effects.iter().filter(|f| !is_new(f)).map(Finding::label) {
+        reasons.push(format!("the records show {at}; the value of the other readings stands"));
+    }
+    let all = [other.effects, new.clone()].concat();
+    (other.effects, other.suspects) = match verdict {
+        Verdict::Explained => (all, Vec::new()),
+        Verdict::InsufficientData => (Vec::new(), [all, other.suspects].concat()),
+        Verdict::NoGap | Verdict::Unexplained => (Vec::new(), Vec::new()),
+    };
+    if verdict == Verdict::Explained {
+        let added = records
+            .corrected
+            .effects
+            .iter()
+            .filter(|e| new.iter().any(|f| f.effect == e.effect && f.at == e.at));
+        other.corrected.effects.extend(added.cloned());
+    } else if records.verdict == Verdict::Explained {
+        reasons.push(format!(
+            "{CORRECTED_FILE} has nothing of the records, because the other readings are not explained"
+        ));
+    }
+    other.verdict = verdict;
+    other.reasons = reasons;
+    other.located.extend(records.located);
+    other.records = records.records;
+    other
+}

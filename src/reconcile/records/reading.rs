@@ -1,0 +1,324 @@
+//! Reads a record: angles on both sides of each gear and the motor's torque, against time.
+//!
+//! Everything leaves in SI units at the output: a shaft's angle divided by the ratio, a shaft's torque multiplied by it. A
+//! record may have a hundred thousand rows, so that only the columns that are used are turned into numbers.
+
+use super::spec::RecordSpec;
+use crate::input::json::{Fault, InputError, closest};
+use csv::{ReaderBuilder, Trim};
+use std::path::Path;
+
+/// Faults of one file that are listed; further ones are counted.
+const MOST_FAULTS: usize = 10;
+/// Fewest rows from which anything is found.
+pub(crate) const FEWEST_ROWS: usize = 200;
+
+/// The signals of one joint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointSignals {
+    /// Name of the joint.
+    pub joint: String,
+    /// Turns of the motor for one of the output, if stated.
+    pub ratio: Option<f64>,
+    /// Rotor's inertia at the output, if stated \[kg m²\].
+    pub rotor_inertia_kgm2: Option<f64>,
+    /// Angle of the motor, at the output \[rad\].
+    pub motor_rad: Vec<f64>,
+    /// Angle of the link; empty if it is not recorded \[rad\].
+    pub link_rad: Vec<f64>,
+    /// Torque of the motor, at the output; empty if it is not recorded \[N m\].
+    pub torque_nm: Vec<f64>,
+}
+
+/// A record of one or several joints.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Record {
+    /// File name.
+    pub file: String,
+    /// Time of each row, rising \[s\].
+    pub t_s: Vec<f64>,
+    /// Joints that have a motor angle.
+    pub joints: Vec<JointSignals>,
+}
+
+/// Where the signals of a joint stand in a file, with the factors that make them SI at the output.
+struct Columns {
+    joint: String,
+    motor: (usize, f64),
+    link: Option<usize>,
+    torque: Option<(usize, f64)>,
+}
+
+struct Reader<'a> {
+    file: String,
+    spec: &'a RecordSpec,
+    header: Vec<String>,
+    faults: Vec<Fault>,
+}
+
+/// Reads all records of a campaign. A record that `campaign.json` does not name is read if its usual file exists.
+///
+/// # Errors
+/// A file cannot be read. Faults are added to `faults`.
+pub(crate) fn read_all(
+    folder: &Path,
+    specs: &[RecordSpec],
+    joints: &[String],
+    faults: &mut Vec<Fault>,
+) -> Result<Vec<Record>, InputError> {
+    let mut out = Vec::new();
+    for spec in specs {
+        let path = folder.join(&spec.file);
+        if spec.is_named || path.exists() {
+            out.extend(read_record(&path, spec, joints, faults)?);
+        }
+    }
+    Ok(out)
+}
+
+/// Reads a record.
+///
+/// # Errors
+/// The file cannot be read, or its faults.
+fn read_record(
+    path: &Path,
+    spec: &RecordSpec,
+    joints: &[String],
+    faults: &mut Vec<Fault>,
+) -> Result<Option<Record>, InputError> {
+    let file = path.display().to_string();
+    let text = std::fs::read(path).map_err(|source| InputError::Unreadable { file: file.clone(), source })?;
+    let mut reader = Reader { file, spec, header: Vec::new(), faults: Vec::new() };
+    let record = reader.read(&text, joints);
+    let is_sound = reader.faults.is_empty();
+    let listed = reader.faults.len();
+    faults.extend(reader.faults.into_iter().take(MOST_FAULTS));
+    if listed > MOST_FAULTS {
+        let problem = format!("{} further faults of this kind", listed - MOST_FAULTS);
+        faults.push(Fault {
+            file: reader.file,
+            line: None,
+            field: String::new(),
+            problem,
+            hint: String::new(),
+        });
+    }
+    Ok(record.filter(|_| is_sound))
+}
+
+impl Reader<'_> {
+    fn read(&mut self, text: &[u8], joints: &[String]) -> Option<Record> {
+        let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+        let mut csv = ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .trim(Trim::All)
+            .comment(Some(b'#'))
+            .from_reader(text);
+        let mut records = csv.byte_records();
+        let first = records.next().and_then(Result::ok);
+        let as_text = |cell: &[u8]| String::from_utf8_lossy(cell).into_owned();
+        self.header = first.iter().flatten().map(as_text).collect();
+        self.check_names(joints);
+        let time = self.required("t_s");
+        let columns: Vec<Columns> = joints.iter().filter_map(|j| self.columns_of(j)).collect();
+        if !columns.iter().any(|c| c.link.is_some()) && self.faults.is_empty() {
+            let hint = format!(
+                "for a joint j1 a record has j1_motor_deg, j1_link_deg and j1_motor_torque_nm; joints of the arm: {}; columns \
+                 found: {}; other names are mapped by \"columns\" of campaign.json",
+                joints.join(", "),
+                self.header.join(", ")
+            );
+            self.fault(Some(1), "", "no joint has both a motor's and a link's angle".into(), &hint);
+        }
+        let time = time.filter(|_| self.faults.is_empty())?;
+        let mut out = self.empty(&columns);
+        for record in records {
+            match record {
+                Ok(record) => self.push(&mut out, &columns, time, &record),
+                Err(e) => self.fault(None, "", format!("not valid CSV: {e}"), "save the table as plain CSV"),
+            }
+        }
+        self.finish(&mut out);
+        Some(out)
+    }
+
+    fn fault(&mut self, line: Option<usize>, field: &str, problem: String, hint: &str) {
+        self.faults.push(Fault {
+            file: self.file.clone(),
+            line,
+            field: field.into(),
+            problem,
+            hint: hint.into(),
+        });
+    }
+
+    /// The file's name of a column.
+    fn name_of(&self, column: &str) -> String {
+        let mapped = self.spec.columns.iter().find(|(ours, _)| ours == column);
+        mapped.map_or(column, |(_, theirs)| theirs).to_string()
+    }
+
+    fn index(&self, column: &str) -> Option<usize> {
+        let name = self.name_of(column);
+        self.header.iter().position(|c| *c == name)
+    }
+
+    fn required(&mut self, column: &str) -> Option<usize> {
+        self.index(column).or_else(|| {
+            let name = self.name_of(column);
+            let known: Vec<&str> = self.header.iter().map(String::as_str).collect();
+            let near = closest(&name, &known).map_or(String::new(), |n| format!("is it \"{n}\"? "));
+            let hint = format!("{near}columns found: {}", self.header.join(", "));
+            self.fault(Some(1), &name, "the column is missing".into(), &hint);
+            None
+        })
+    }
+
+    /// Columns that `campaign.json` names must be there, and the joints that it names must be in the arm.
+    fn check_names(&mut self, joints: &[String]) {
+        for (ours, theirs) in self.spec.columns.clone() {
+            if !self.header.contains(&theirs) {
+                let hint = format!("columns found: {}", self.header.join(", "));
+                let problem = format!("campaign.json gives it for {ours}, but the file has no such column");
+                self.fault(Some(1), &theirs, problem, &hint);
+            }
+            let suffixes = ["_motor_deg", "_motor_shaft_deg", "_link_deg", "_motor_torque_nm", "_current_a"];
+            let of_joint =
+                suffixes.iter().any(|s| ours.strip_suffix(s).is_some_and(|j| joints.iter().any(|k| k == j)));
+            if ours != "t_s" && !of_joint {
+                let hint = format!(
+                    "known are t_s and, for each joint ({}), the joint's name followed by one of: {}",
+                    joints.join(", "),
+                    suffixes.join(", ")
+                );
+                self.fault(None, &ours, "\"columns\" of campaign.json maps an unknown name".into(), &hint);
+            }
+        }
+        let spec = self.spec;
+        let stated = [&spec.ratio, &spec.torque_constant_nm_per_a, &spec.rotor_inertia_kgm2];
+        for name in stated.iter().flat_map(|p| p.joints()).filter(|n| !joints.iter().any(|j| j == n)) {
+            let hint = format!("joints of the arm: {}", joints.join(", "));
+            self.fault(
+                None,
+                name,
+                "campaign.json states a constant of this joint, which the arm lacks".into(),
+                &hint,
+            );
+        }
+    }
+
+    fn columns_of(&mut self, joint: &str) -> Option<Columns> {
+        let ratio = self.spec.ratio.of(joint);
+        let at_output = self.index(&format!("{joint}_motor_deg")).map(|c| (c, 1.0));
+        let shaft = format!("{joint}_motor_shaft_deg");
+        let at_shaft = self.index(&shaft).filter(|_| at_output.is_none());
+        if at_shaft.is_some() && ratio.is_none() {
+            let hint = format!("add \"ratio\": {{\"{joint}\": 100}} to campaign.json");
+            self.fault(Some(1), &shaft, "an angle of the shaft needs the ratio".into(), &hint);
+        }
+        let motor = at_output.or_else(|| Some((at_shaft?, 1.0 / ratio?)))?;
+        let to_output = if self.spec.torque_at_output { 1.0 } else { ratio.unwrap_or(1.0) };
+        let torque = self.index(&format!("{joint}_motor_torque_nm")).map(|c| (c, to_output));
+        let current = format!("{joint}_current_a");
+        let by_current = self.index(&current).filter(|_| torque.is_none());
+        let constant = self.spec.torque_constant_nm_per_a.of(joint);
+        if by_current.is_some() && constant.is_none() {
+            let hint = format!("add \"torque_constant_nm_per_a\": {{\"{joint}\": 0.1}} to campaign.json");
+            self.fault(Some(1), &current, "a current needs the torque constant".into(), &hint);
+        }
+        Some(Columns {
+            joint: joint.into(),
+            motor,
+            link: self.index(&format!("{joint}_link_deg")),
+            torque: torque.or_else(|| Some((by_current?, constant? * to_output))),
+        })
+    }
+
+    fn empty(&self, columns: &[Columns]) -> Record {
+        let signals = |c: &Columns| {
+            let ratio = self.spec.ratio.of(&c.joint);
+            JointSignals {
+                joint: c.joint.clone(),
+                ratio: ratio.map(f64::abs),
+                rotor_inertia_kgm2: self
+                    .spec
+                    .rotor_inertia_kgm2
+                    .of(&c.joint)
+                    .map(|inertia| inertia * ratio.unwrap_or(1.0).powi(2)),
+                motor_rad: Vec::new(),
+                link_rad: Vec::new(),
+                torque_nm: Vec::new(),
+            }
+        };
+        Record { file: self.file.clone(), t_s: Vec::new(), joints: columns.iter().map(signals).collect() }
+    }
+
+    fn push(&mut self, out: &mut Record, columns: &[Columns], time: usize, cells: &csv::ByteRecord) {
+        let line = cells.position().map(|p| p.line() as usize);
+        if cells.len() != self.header.len() {
+            let problem = format!("has {} cells, the header has {}", cells.len(), self.header.len());
+            return self.fault(line, "", problem, "give every row a value for every column");
+        }
+        let before = self.faults.len();
+        let t_s = self.number(cells, line, time);
+        if out.t_s.last().is_some_and(|last| t_s <= *last) {
+            let problem = format!("{t_s} s does not come after {} s", out.t_s[out.t_s.len() - 1]);
+            self.fault(
+                line,
+                "t_s",
+                problem,
+                "sort the rows by time and give each time once; cut records apart",
+            );
+        }
+        for (c, signals) in columns.iter().zip(&mut out.joints) {
+            signals.motor_rad.push(self.number(cells, line, c.motor.0).to_radians() * c.motor.1);
+            if let Some(link) = c.link {
+                signals.link_rad.push(self.number(cells, line, link).to_radians());
+            }
+            if let Some((torque, factor)) = c.torque {
+                signals.torque_nm.push(self.number(cells, line, torque) * factor);
+            }
+        }
+        if self.faults.len() == before {
+            out.t_s.push(t_s);
+        }
+    }
+
+    fn number(&mut self, cells: &csv::ByteRecord, line: Option<usize>, column: usize) -> f64 {
+        let text = String::from_utf8_lossy(&cells[column]);
+        match text.parse::<f64>() {
+            Ok(x) if x.is_finite() => x,
+            _ => {
+                let problem = match text.is_empty() {
+                    true => "the cell is empty".to_string(),
+                    false => format!("\"{text}\" is not a finite number"),
+                };
+                let name = self.header[column].clone();
+                self.fault(line, &name, problem, "remove the row, or give the value that was measured");
+                0.0
+            }
+        }
+    }
+
+    fn finish(&mut self, out: &mut Record) {
+        if self.faults.is_empty() && out.t_s.len() < FEWEST_ROWS {
+            let problem = format!("has {} rows", out.t_s.len());
+            self.fault(None, "", problem, &format!("a record against time needs at least {FEWEST_ROWS}"));
+        }
+        for signals in &mut out.joints {
+            unwrap(&mut signals.motor_rad);
+            unwrap(&mut signals.link_rad);
+        }
+    }
+}
+
+/// Removes jumps of a whole turn, where an encoder begins again.
+fn unwrap(angles_rad: &mut [f64]) {
+    let mut turns = 0.0;
+    for i in 1..angles_rad.len() {
+        let step = angles_rad[i] + turns - angles_rad[i - 1];
+        turns -= (step / std::f64::consts::TAU).round() * std::f64::consts::TAU;
+        angles_rad[i] += turns;
+    }
+}

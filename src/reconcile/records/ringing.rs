@@ -1,0 +1,260 @@
+//! Free ringing: after the motor has stopped, the link swings at the first mode of the arm on its locked motors.
+//!
+//! A stretch in which the motor rests is fitted by a line and one damped swing,
+//! `a + b t + exp(-d t) (C cos 2 pi f t + S sin 2 pi f t)`: the frequency starts at the peak of the spectrum and is improved
+//! by Gauss-Newton together with the decay.
+
+use super::blocks::{rows_per_reading, student_quantile};
+use super::smooth::{half_width, noise, slope_noise, smooth, usual_step_s};
+use crate::reconcile::model::estimate::Estimate;
+use nalgebra::{DMatrix, DVector};
+use std::f64::consts::TAU;
+
+/// The motor rests below this part of its largest speed.
+const AT_REST: f64 = 0.02;
+/// Fewest rows of a stretch.
+const FEWEST_ROWS: usize = 60;
+/// Rows after a stop that are looked at; the swing has decayed by then.
+const MOST_ROWS: usize = 4000;
+/// Fewest periods in a stretch.
+const FEWEST_PERIODS: f64 = 4.0;
+/// Highest frequency that is looked for, for each row per second.
+const HIGHEST_PART: f64 = 0.2;
+/// The part of the squares of a stretch that the swing must explain.
+const TELLING: f64 = 0.6;
+/// The swing's amplitude at least, over the noise of a row.
+const LOUD: f64 = 4.0;
+/// Rounds of Gauss-Newton.
+const ROUNDS: usize = 30;
+
+/// Frequency and damping of a free swing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Ringing {
+    /// Frequency of the damped swing \[Hz\].
+    pub frequency_hz: Estimate,
+    /// Part of critical damping.
+    pub damping: f64,
+    /// Stretches that show it.
+    pub stretches: usize,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Swing {
+    frequency_hz: f64,
+    decay_per_s: f64,
+    deviation_hz: f64,
+}
+
+/// Looks for a free swing in the signals of one joint in one record: times, angle of the motor, angle of the link.
+pub(crate) fn swings(t_s: &[f64], motor_rad: &[f64], link_rad: &[f64]) -> Vec<(f64, f64, f64)> {
+    let half = half_width(t_s, motor_rad);
+    let speed = smooth(t_s, motor_rad, half).slope;
+    let fastest = speed.iter().filter(|w| !w.is_nan()).fold(0.0f64, |m, w| m.max(w.abs()));
+    let slow = (AT_REST * fastest).max(4.0 * slope_noise(motor_rad, half, usual_step_s(t_s)));
+    let level = libm::hypot(noise(motor_rad), noise(link_rad));
+    let mut out = Vec::new();
+    let mut begin = 0;
+    for i in 0..=t_s.len() {
+        let rests = i < t_s.len() && !speed[i].is_nan() && speed[i].abs() <= slow;
+        if rests {
+            continue;
+        }
+        if i - begin >= FEWEST_ROWS {
+            let end = i.min(begin + MOST_ROWS);
+            let twist: Vec<f64> = (begin..end).map(|k| motor_rad[k] - link_rad[k]).collect();
+            out.extend(swing(&t_s[begin..end], &twist, level));
+        }
+        begin = i + 1;
+    }
+    out.into_iter().map(|s| (s.frequency_hz, s.decay_per_s, s.deviation_hz)).collect()
+}
+
+/// Joins the swings of all stretches. Their scatter, if there are several, decides how sure the frequency is.
+pub(crate) fn joined(swings: &[(f64, f64, f64)]) -> Option<Ringing> {
+    let median = crate::reconcile::fit::stats::median(swings.iter().map(|s| s.0).collect());
+    let alike: Vec<_> = swings.iter().filter(|s| (s.0 / median - 1.0).abs() < 0.2).collect();
+    if alike.is_empty() || 2 * alike.len() < swings.len() {
+        return None;
+    }
+    let weight = |s: &&(f64, f64, f64)| 1.0 / s.2.powi(2);
+    let total: f64 = alike.iter().map(|s| weight(s)).sum();
+    let mean = |of: fn(&(f64, f64, f64)) -> f64| alike.iter().map(|s| weight(s) * of(s)).sum::<f64>() / total;
+    let (frequency_hz, decay) = (mean(|s| s.0), mean(|s| s.1));
+    let count = alike.len() as f64;
+    let scatter: f64 = alike.iter().map(|s| weight(s) * (s.0 - frequency_hz).powi(2)).sum::<f64>();
+    let by_scatter = if count > 1.5 { scatter / (count - 1.0) } else { 1.0 };
+    let dof = if count > 1.5 && by_scatter > 1.0 { count - 1.0 } else { 30.0 };
+    let half = student_quantile(dof) * (by_scatter.max(1.0) / total).sqrt();
+    let ends = |sign: f64| Some(frequency_hz + sign * half);
+    Some(Ringing {
+        frequency_hz: Estimate { value: frequency_hz, low: ends(-1.0), high: ends(1.0) },
+        damping: decay / libm::hypot(TAU * frequency_hz, decay),
+        stretches: alike.len(),
+    })
+}
+
+/// The swing of one stretch, if it has a telling one.
+fn swing(t_s: &[f64], twist_rad: &[f64], noise_rad: f64) -> Option<Swing> {
+    let step = usual_step_s(t_s);
+    let t: Vec<f64> = t_s.iter().map(|t| t - t_s[0]).collect();
+    let duration = t[t.len() - 1];
+    let mut guess = peak(&t, twist_rad, FEWEST_PERIODS / duration, HIGHEST_PART / step)?;
+    let mut best: Option<(f64, [f64; 2])> = None;
+    for decay in [0.0, 1.0 / duration, 4.0 / duration] {
+        let (squares, end) = descend(&t, twist_rad, [guess, decay]);
+        if best.is_none_or(|(b, _)| squares < b) {
+            best = Some((squares, end));
+        }
+    }
+    let (squares, [frequency, decay]) = best?;
+    guess = frequency;
+    let straight = squares_of(&t, twist_rad, &[]).0;
+    let amplitude = ((straight - squares).max(0.0) / t.len() as f64).sqrt();
+    let in_range =
+        guess * duration >= FEWEST_PERIODS && guess < HIGHEST_PART / step && decay >= -0.5 / duration;
+    if !in_range || squares > (1.0 - TELLING) * straight || amplitude < LOUD * noise_rad {
+        return None;
+    }
+    // periods before the swing has fallen to a third
+    let periods = guess * duration.min(1.1 / decay.max(1e-9));
+    (periods > 2.0).then(|| Swing {
+        frequency_hz: guess,
+        decay_per_s: decay,
+        deviation_hz: deviation_hz(&t, twist_rad, [guess, decay]),
+    })
+}
+
+/// The frequency at the peak of the spectrum of the signal about its line.
+fn peak(t: &[f64], x: &[f64], low_hz: f64, high_hz: f64) -> Option<f64> {
+    let (_, errors) = squares_of(t, x, &[]);
+    let duration = t[t.len() - 1];
+    let count = ((high_hz - low_hz) * duration * 2.0).max(0.0) as usize;
+    let turn = |f: f64| t.iter().map(move |t| libm::sincos(TAU * f * t));
+    // each row's sine and cosine are turned on from one frequency to the next
+    let mut now: Vec<(f64, f64)> = turn(low_hz).collect();
+    let on: Vec<(f64, f64)> = turn(0.5 / duration).collect();
+    let mut best = (0.0, None);
+    for i in 0..=count {
+        let sum =
+            now.iter().zip(&errors).fold((0.0, 0.0), |(s, c), ((sin, cos), e)| (s + e * sin, c + e * cos));
+        let power = sum.0 * sum.0 + sum.1 * sum.1;
+        if power > best.0 {
+            best = (power, Some(low_hz + 0.5 * i as f64 / duration));
+        }
+        for ((sin, cos), (ds, dc)) in now.iter_mut().zip(&on) {
+            (*sin, *cos) = (*sin * dc + *cos * ds, *cos * dc - *sin * ds);
+        }
+    }
+    best.1
+}
+
+/// Squares left by a line and further columns, and the errors.
+fn squares_of(t: &[f64], x: &[f64], columns: &[Vec<f64>]) -> (f64, Vec<f64>) {
+    let (errors, _) = solved(t, x, columns);
+    (errors.iter().map(|e| e * e).sum(), errors)
+}
+
+/// Errors of the fit of a line and further columns, and the coefficients of these.
+fn solved(t: &[f64], x: &[f64], columns: &[Vec<f64>]) -> (Vec<f64>, Vec<f64>) {
+    let n = t.len();
+    let p = 2 + columns.len();
+    let mean = x.iter().sum::<f64>() / n as f64;
+    let a = DMatrix::from_fn(n, p, |i, j| match j {
+        0 => 1.0,
+        1 => t[i] / t[n - 1],
+        _ => columns[j - 2][i],
+    });
+    let b = DVector::from_iterator(n, x.iter().map(|x| x - mean));
+    let mut normal = a.tr_mul(&a);
+    for i in 0..p {
+        normal[(i, i)] *= 1.0 + 1e-12;
+    }
+    let Some(c) = normal.cholesky().map(|c| c.solve(&a.tr_mul(&b))) else {
+        return (b.as_slice().to_vec(), Vec::new());
+    };
+    let errors = b - a * &c;
+    (errors.as_slice().to_vec(), c.as_slice()[2..].to_vec())
+}
+
+fn swing_columns(t: &[f64], [f, d]: [f64; 2]) -> [Vec<f64>; 2] {
+    let column = |part: fn(f64) -> f64| t.iter().map(|t| libm::exp(-d * t) * part(TAU * f * t)).collect();
+    [column(libm::cos), column(libm::sin)]
+}
+
+/// Gauss-Newton from a guess: at each step amplitudes, frequency and decay are solved for together.
+fn descend(t: &[f64], x: &[f64], mut at: [f64; 2]) -> (f64, [f64; 2]) {
+    let squares = |at: [f64; 2]| squares_of(t, x, &swing_columns(t, at)).0;
+    let mut now = squares(at);
+    for _ in 0..ROUNDS {
+        let (_, c) = solved(t, x, &tangents(t, x, at));
+        let [Some(df), Some(dd)] = [c.get(2), c.get(3)].map(|c| c.copied()) else { break };
+        let mut part = 1.0;
+        let mut moved = false;
+        while part > 1e-3 && !moved {
+            let next = [at[0] + part * df, at[1] + part * dd];
+            let then = squares(next);
+            moved = next[0] > 0.0 && then < now * (1.0 - 1e-12);
+            if moved {
+                (at, now) = (next, then);
+            }
+            part *= 0.5;
+        }
+        if !moved {
+            break;
+        }
+    }
+    (now, at)
+}
+
+/// Columns of the swing and of its change with frequency and decay.
+fn tangents(t: &[f64], x: &[f64], at: [f64; 2]) -> [Vec<f64>; 4] {
+    let [cos, sin] = swing_columns(t, at);
+    let (_, c) = solved(t, x, &[cos.clone(), sin.clone()]);
+    let (a, b) = (c.first().copied().unwrap_or_default(), c.get(1).copied().unwrap_or_default());
+    let by_frequency = (0..t.len()).map(|i| TAU * t[i] * (b * cos[i] - a * sin[i])).collect();
+    let by_decay = (0..t.len()).map(|i| -t[i] * (a * cos[i] + b * sin[i])).collect();
+    [cos, sin, by_frequency, by_decay]
+}
+
+/// Standard deviation of the frequency, with the errors counted by how they follow each other.
+fn deviation_hz(t: &[f64], x: &[f64], at: [f64; 2]) -> f64 {
+    let columns = tangents(t, x, at);
+    let (errors, _) = solved(t, x, &columns);
+    let a = DMatrix::from_fn(t.len(), 6, |i, j| match j {
+        0 => 1.0,
+        1 => t[i] / t[t.len() - 1],
+        _ => columns[j - 2][i],
+    });
+    let scale: Vec<f64> = (0..6).map(|j| a.column(j).norm().max(1e-300)).collect();
+    let scaled = DMatrix::from_fn(t.len(), 6, |i, j| a[(i, j)] / scale[j]);
+    let inverse = scaled.tr_mul(&scaled).try_inverse();
+    let variance =
+        errors.iter().map(|e| e * e).sum::<f64>() / (t.len() - 6) as f64 * rows_per_reading(&errors);
+    inverse.map_or(f64::INFINITY, |m| (m[(4, 4)].max(0.0) * variance).sqrt() / scale[4]).max(1e-9)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_damped_swing_after_a_stop_is_found() {
+        let t: Vec<f64> = (0..3000).map(|i| 0.001 * i as f64).collect();
+        let motor: Vec<f64> =
+            t.iter().map(|t| if *t < 1.0 { 0.5 * t * t * (3.0 - 2.0 * t) } else { 0.5 }).collect();
+        let swing = |t: f64| 1e-3 * libm::exp(-1.5 * (t - 1.0)) * libm::cos(TAU * 11.3 * (t - 1.0));
+        let link: Vec<f64> =
+            t.iter().zip(&motor).map(|(t, m)| m - if *t > 1.0 { swing(*t) } else { 0.0 }).collect();
+        let found = joined(&swings(&t, &motor, &link)).expect("a swing");
+        assert!((found.frequency_hz.value - 11.3).abs() < 0.01, "{found:?}");
+        assert!((found.damping - 1.5 / (TAU * 11.3)).abs() < 1e-3, "{found:?}");
+    }
+
+    #[test]
+    fn a_resting_joint_without_a_swing_has_none() {
+        let t: Vec<f64> = (0..3000).map(|i| 0.001 * i as f64).collect();
+        let noise = |i: usize| 1e-6 * ((i * 7919) % 101) as f64;
+        let link: Vec<f64> = (0..3000).map(noise).collect();
+        assert!(joined(&swings(&t, &vec![0.0; 3000], &link)).is_none());
+    }
+}

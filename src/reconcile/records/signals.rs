@@ -1,0 +1,236 @@
+//! One joint's signals from all records: smoothed, differentiated, cut into blocks of time.
+
+use super::blocks::Blocks;
+use super::reading::{JointSignals, Record};
+use super::smooth::{Smooth, half_width, noise, slope_noise, smooth, usual_step_s};
+use super::wave::Wave;
+
+/// The sign of a speed is taken as smooth below this part of the largest speed, because friction is.
+const SLOW_PART: f64 = 0.002;
+/// An acceleration that is so much larger than that of the gear's other side is no real one.
+const RESTLESS: f64 = 1.2;
+/// Fewest blocks of a record, so that no record stands or falls with one.
+const FEWEST_BLOCKS: usize = 4;
+
+/// One row of one record.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Sample {
+    /// Which record.
+    pub record: usize,
+    /// Which row of it.
+    pub row: usize,
+    /// Which block of time.
+    pub block: usize,
+    /// Angle of the motor at the output \[rad\].
+    pub angle_rad: f64,
+    /// Its speed \[rad/s\].
+    pub speed_rad_s: f64,
+    /// Its acceleration \[rad/s²\].
+    pub acceleration_rad_s2: f64,
+    /// Sign of the speed, smoothed as the torque is.
+    pub sense: f64,
+    /// Sign of the speed times the size of the torque, smoothed in the same way \[N m\].
+    pub load_sense_nm: f64,
+    /// Torque of the motor at the output; 0 if it is not recorded \[N m\].
+    pub torque_nm: f64,
+    /// Its rate \[N m/s\].
+    pub torque_rate_nm_s: f64,
+}
+
+struct Signals {
+    t_s: Vec<f64>,
+    motor_rad: Vec<f64>,
+    link_rad: Vec<f64>,
+    link: Smooth,
+    step_s: f64,
+}
+
+/// The rows of one joint.
+pub(crate) struct JointRows {
+    /// Joint.
+    pub joint: String,
+    /// Turns of the motor for one of the output.
+    pub ratio: Option<f64>,
+    /// Rotor's inertia at the output \[kg m²\].
+    pub rotor_inertia_kgm2: Option<f64>,
+    /// Whether torques are recorded.
+    pub has_torque: bool,
+    /// Rows at which all derivatives are known.
+    pub samples: Vec<Sample>,
+    /// Number of blocks.
+    pub blocks: usize,
+    /// Rows between samples \[s\].
+    pub step_s: f64,
+    /// Root mean squares of the accelerations of motor and link \[rad/s²\].
+    accelerations_rad_s2: [f64; 2],
+    records: Vec<Signals>,
+}
+
+/// Twist at a row when the link's signal is read later, and what a further second would change.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Twist {
+    /// Motor less link \[rad\].
+    pub twist_rad: f64,
+    /// Speed of the link \[rad/s\].
+    pub link_speed_rad_s: f64,
+}
+
+impl JointRows {
+    /// Gathers a joint from the records in which both its sides stand.
+    pub(crate) fn gather(records: &[Record], joint: &str, blocks: usize, wave: &Wave) -> Option<Self> {
+        let whole = |j: &&JointSignals| j.joint == joint && !j.link_rad.is_empty();
+        let own: Vec<(&Record, &JointSignals)> =
+            records.iter().filter_map(|r| Some((r, r.joints.iter().find(whole)?))).collect();
+        let first = own.first()?.1;
+        let has_torque = own.iter().all(|(_, j)| !j.torque_nm.is_empty());
+        let total: usize = own.iter().map(|(r, _)| r.t_s.len()).sum();
+        let mut out = Self {
+            joint: joint.into(),
+            ratio: first.ratio,
+            rotor_inertia_kgm2: first.rotor_inertia_kgm2,
+            has_torque,
+            samples: Vec::new(),
+            blocks: 0,
+            step_s: usual_step_s(&own[0].0.t_s),
+            accelerations_rad_s2: [0.0; 2],
+            records: Vec::new(),
+        };
+        for (record, signals) in own {
+            let share = (blocks * record.t_s.len()) as f64 / total as f64;
+            out.push(&record.t_s, signals, (share.round() as usize).max(FEWEST_BLOCKS), wave);
+        }
+        out.accelerations_rad_s2 = out.rms_accelerations();
+        Some(out)
+    }
+
+    fn rms_accelerations(&self) -> [f64; 2] {
+        let of_link = |s: &Sample| self.records[s.record].link.curvature[s.row];
+        let mean = |of: &dyn Fn(&Sample) -> f64| {
+            let sum: f64 = self.samples.iter().map(|s| of(s).powi(2)).sum();
+            (sum / self.samples.len().max(1) as f64).sqrt()
+        };
+        [mean(&|s| s.acceleration_rad_s2), mean(&of_link)]
+    }
+
+    /// Acceleration of motor and link. An error of the gear within a turn of the motor shows in the acceleration of one of
+    /// them, as large as any real one; the calmer side then stands for both \[rad/s²\].
+    pub(crate) fn accelerations(&self, sample: &Sample, shift_s: f64) -> Option<[f64; 2]> {
+        let both = [sample.acceleration_rad_s2, self.link(sample, shift_s)?[1]];
+        let [motor, link] = self.accelerations_rad_s2;
+        Some(match () {
+            () if motor > RESTLESS * link => [both[1]; 2],
+            () if link > RESTLESS * motor => [both[0]; 2],
+            () => both,
+        })
+    }
+
+    fn push(&mut self, t_s: &[f64], signals: &JointSignals, blocks: usize, wave: &Wave) {
+        // an error of the gear within a turn of the motor shows on one side and narrows that side's window only
+        let [calm_motor_rad, calm_link_rad] = wave.taken_from(signals);
+        let half = half_width(t_s, &calm_motor_rad).max(half_width(t_s, &calm_link_rad));
+        let motor = smooth(t_s, &calm_motor_rad, half);
+        let link = smooth(t_s, &calm_link_rad, half);
+
+        let step_s = usual_step_s(t_s);
+        let fastest = motor.slope.iter().filter(|w| !w.is_nan()).fold(0.0f64, |m, w| m.max(w.abs()));
+        let doubt = slope_noise(&calm_motor_rad, half, step_s);
+        let slow = (SLOW_PART * fastest).max(2.0 * doubt).max(f64::MIN_POSITIVE);
+        let sign: Vec<f64> =
+            motor.slope.iter().map(|w| if w.is_nan() { 0.0 } else { libm::tanh(w / slow) }).collect();
+        let none = vec![0.0; t_s.len()];
+        let (torque_nm, torque_half) = match self.has_torque {
+            true => (&signals.torque_nm, half_width(t_s, &signals.torque_nm)),
+            false => (&none, half),
+        };
+        // friction jumps where the joint turns back, and so does the torque: both are smoothed alike
+        let torque = smooth(t_s, torque_nm, torque_half);
+        let sense = smooth(t_s, &sign, torque_half).value;
+        let loaded: Vec<f64> = sign.iter().zip(torque_nm).map(|(s, t)| s * t.abs()).collect();
+        let load_sense_nm = smooth(t_s, &loaded, torque_half).value;
+        let record = self.records.len();
+        for row in 0..t_s.len() {
+            let sample = Sample {
+                record,
+                row,
+                block: self.blocks + row * blocks / t_s.len(),
+                angle_rad: signals.motor_rad[row],
+                speed_rad_s: motor.slope[row],
+                acceleration_rad_s2: motor.curvature[row],
+                sense: sense[row],
+                load_sense_nm: load_sense_nm[row],
+                torque_nm: torque.value[row],
+                torque_rate_nm_s: torque.slope[row],
+            };
+            if !(sample.speed_rad_s.is_nan() || sample.torque_nm.is_nan() || link.value[row].is_nan()) {
+                self.samples.push(sample);
+            }
+        }
+        self.blocks += blocks;
+        let (motor_rad, link_rad) = (signals.motor_rad.clone(), signals.link_rad.clone());
+        self.records.push(Signals { t_s: t_s.to_vec(), motor_rad, link_rad, link, step_s });
+    }
+
+    /// Number of records.
+    pub(crate) fn record_count(&self) -> usize {
+        self.records.len()
+    }
+
+    /// The twist at a row if the link's signal is late by `shift_s`: the link is read so much later, by the nearest row and
+    /// the second-order series about it. `None` beyond the ends.
+    pub(crate) fn twist(&self, sample: &Sample, shift_s: f64) -> Option<Twist> {
+        let signals = &self.records[sample.record];
+        let steps = (shift_s / signals.step_s).round() as isize;
+        let row = sample.row.checked_add_signed(steps).filter(|r| *r < signals.t_s.len())?;
+        let rest_s = signals.t_s[sample.row] + shift_s - signals.t_s[row];
+        let (slope, curvature) = (signals.link.slope[row], signals.link.curvature[row]);
+        // across a gap the nearest row is none
+        if slope.is_nan() || rest_s.abs() > 1.5 * signals.step_s {
+            return None;
+        }
+        let link_rad = signals.link_rad[row] + rest_s * slope + 0.5 * rest_s.powi(2) * curvature;
+        let twist_rad = signals.motor_rad[sample.row] - link_rad;
+        Some(Twist { twist_rad, link_speed_rad_s: slope + rest_s * curvature })
+    }
+
+    /// Angle and acceleration of the link at a row if its signal is late by `shift_s`, between the rows on either side. An
+    /// error of half a row here would be taken for viscous friction \[rad, rad/s²\].
+    pub(crate) fn link(&self, sample: &Sample, shift_s: f64) -> Option<[f64; 2]> {
+        let signals = &self.records[sample.record];
+        let place = sample.row as f64 + shift_s / signals.step_s;
+        let (row, part) = (place.floor(), place - place.floor());
+        if row < 0.0 || row as usize + 1 >= signals.t_s.len() {
+            return None;
+        }
+        let between = |x: &[f64]| x[row as usize] * (1.0 - part) + x[row as usize + 1] * part;
+        let out = [between(&signals.link.value), between(&signals.link.curvature)];
+        (!out[0].is_nan()).then_some(out)
+    }
+
+    /// Noise of the twist from row to row \[rad\].
+    pub(crate) fn noise_rad(&self) -> f64 {
+        let squares: f64 =
+            self.records.iter().map(|r| noise(&r.motor_rad).powi(2) + noise(&r.link_rad).powi(2)).sum();
+        (squares / self.records.len() as f64).sqrt()
+    }
+
+    /// Smallest and largest angle \[rad\].
+    pub(crate) fn range_rad(&self) -> (f64, f64) {
+        let ends = (f64::INFINITY, f64::NEG_INFINITY);
+        self.samples.iter().fold(ends, |(low, high), s| (low.min(s.angle_rad), high.max(s.angle_rad)))
+    }
+
+    /// Sums products of columns over all rows, block by block.
+    pub(crate) fn sums(&self, width: usize, fill: impl Fn(usize, &Sample, &mut [f64]) -> bool) -> Blocks {
+        // a row that cannot be filled counts with nothing but zeros
+        Blocks::new(
+            self.samples.len(),
+            width,
+            |i| Some(self.samples[i].block),
+            |i, row| {
+                if !fill(i, &self.samples[i], row) {
+                    row.fill(0.0);
+                }
+            },
+        )
+    }
+}

@@ -1,0 +1,128 @@
+//! Value, slope and curvature of a sampled signal, by a cubic fitted to the rows around each row.
+//!
+//! The window is as wide as the noise asks for and no wider than the signal allows: the widest one whose misfit is the
+//! signal's own noise. The noise is what fourth differences show, to which a smooth signal adds nothing.
+
+use nalgebra::{Matrix4, Vector4};
+
+/// Half widths that are tried \[rows\].
+const HALF_WIDTHS: [usize; 9] = [3, 4, 6, 8, 12, 16, 24, 32, 48];
+/// Misfit of a window that is still noise, over the noise: what a window adds then is a third of the noise.
+const STILL_NOISE: f64 = 1.05;
+/// Times further apart than this many usual steps are a gap.
+const GAP_STEPS: f64 = 2.5;
+/// Sum of the squares of the weights of a fourth difference (1, -4, 6, -4, 1).
+const FOURTH_DIFFERENCE_VARIANCE: f64 = 70.0;
+
+/// A signal's smoothed value and its derivatives. Rows too near to an end or a gap have none and hold NaN.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Smooth {
+    /// Value.
+    pub value: Vec<f64>,
+    /// First derivative \[1/s\].
+    pub slope: Vec<f64>,
+    /// Second derivative \[1/s²\].
+    pub curvature: Vec<f64>,
+}
+
+/// Usual time between rows \[s\].
+pub(crate) fn usual_step_s(t_s: &[f64]) -> f64 {
+    crate::reconcile::fit::stats::median(t_s.windows(2).map(|w| w[1] - w[0]).collect())
+}
+
+/// Standard deviation of the part of a signal that differs from row to row.
+pub(crate) fn noise(x: &[f64]) -> f64 {
+    let squares: f64 =
+        x.windows(5).map(|w| (w[0] - 4.0 * w[1] + 6.0 * w[2] - 4.0 * w[3] + w[4]).powi(2)).sum();
+    (squares / FOURTH_DIFFERENCE_VARIANCE / x.len().saturating_sub(4).max(1) as f64).sqrt()
+}
+
+/// Standard deviation of the slope that [`smooth`] finds of a signal, by the noise of its rows \[1/s\]. The slope of a
+/// cubic in the middle of its window scatters 2.5 times as much as that of a line.
+pub(crate) fn slope_noise(x: &[f64], half: usize, step_s: f64) -> f64 {
+    2.5 * noise(x) * (12.0 / ((2 * half + 1) as f64).powi(3)).sqrt() / step_s
+}
+
+/// The half width that suits a signal \[rows\].
+pub(crate) fn half_width(t_s: &[f64], x: &[f64]) -> usize {
+    let noise = noise(x);
+    let fits = |half: &&usize| {
+        let smooth = smooth(t_s, x, **half);
+        let left = x.iter().zip(&smooth.value).filter(|(_, v)| !v.is_nan());
+        let (sum, count) = left.fold((0.0, 0usize), |(s, n), (x, v)| (s + (x - v).powi(2), n + 1));
+        // a cubic takes this part of the noise in the middle of its window
+        let taken = 9.0 / (4.0 * (2 * **half + 1) as f64);
+        count > x.len() / 2 && (sum / count as f64).sqrt() <= STILL_NOISE * noise * (1.0 - taken).sqrt()
+    };
+    HALF_WIDTHS
+        .iter()
+        .take_while(|h| **h == HALF_WIDTHS[0] || fits(h))
+        .last()
+        .copied()
+        .unwrap_or(HALF_WIDTHS[0])
+}
+
+/// Fits a cubic around each row.
+pub(crate) fn smooth(t_s: &[f64], x: &[f64], half: usize) -> Smooth {
+    let n = x.len();
+    let step = usual_step_s(t_s);
+    let nan = vec![f64::NAN; n];
+    let mut out = Smooth { value: nan.clone(), slope: nan.clone(), curvature: nan };
+    for i in half..n.saturating_sub(half) {
+        let window = i - half..=i + half;
+        let width = t_s[i + half] - t_s[i - half];
+        if width > step * (2 * half) as f64 * GAP_STEPS.min(1.5) {
+            continue;
+        }
+        let scale = 0.5 * width;
+        let (mut normal, mut right) = (Matrix4::zeros(), Vector4::zeros());
+        for j in window {
+            let u = (t_s[j] - t_s[i]) / scale;
+            let powers = Vector4::new(1.0, u, u * u, u * u * u);
+            normal += powers * powers.transpose();
+            right += powers * (x[j] - x[i]);
+        }
+        if let Some(c) = normal.cholesky().map(|c| c.solve(&right)) {
+            out.value[i] = c[0] + x[i];
+            out.slope[i] = c[1] / scale;
+            out.curvature[i] = 2.0 * c[2] / scale.powi(2);
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Noise that repeats: a linear congruential generator summed to a nearly normal deviate.
+    fn deviates(n: usize) -> Vec<f64> {
+        let mut state = 1u64;
+        let mut uniform = move || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+        };
+        (0..n).map(|_| (0..12).map(|_| uniform()).sum()).collect()
+    }
+
+    #[test]
+    fn a_cubic_is_met_exactly_at_uneven_times() {
+        let t: Vec<f64> = (0..60).map(|i| 0.01 * i as f64 + 0.002 * libm::sin(i as f64)).collect();
+        let x: Vec<f64> = t.iter().map(|t| 1.0 + 2.0 * t - 3.0 * t * t + 4.0 * t * t * t).collect();
+        let s = smooth(&t, &x, 6);
+        let at = t[30];
+        assert!((s.slope[30] - (2.0 - 6.0 * at + 12.0 * at * at)).abs() < 1e-9);
+        assert!((s.curvature[30] - (-6.0 + 24.0 * at)).abs() < 1e-7);
+        assert!(s.value[5].is_nan() && !s.value[6].is_nan());
+    }
+
+    #[test]
+    fn the_noise_of_a_smooth_signal_is_found_and_widens_the_window() {
+        let t: Vec<f64> = (0..4000).map(|i| 0.001 * i as f64).collect();
+        let with = |size: f64| -> Vec<f64> {
+            t.iter().zip(deviates(4000)).map(|(t, e)| libm::sin(9.0 * t) + size * e).collect()
+        };
+        assert!((noise(&with(0.01)) / 0.01 - 1.0).abs() < 0.05);
+        assert!(half_width(&t, &with(1e-2)) > half_width(&t, &with(1e-7)));
+    }
+}

@@ -1,0 +1,105 @@
+//! What `campaign.json` says about records: which file, which column is what, and the constants of each drive.
+
+use crate::input::json::{Node, Object};
+
+/// The file that is read where `campaign.json` names none.
+pub(crate) const DEFAULT_FILE: &str = "record.csv";
+
+/// Keys of one entry of `records`; the constants may also stand in `campaign.json` itself, for every record.
+const KEYS: [&str; 6] =
+    ["file", "columns", "ratio", "torque_constant_nm_per_a", "rotor_inertia_kgm2", "torque_at"];
+
+/// A constant of the drives: one number for all joints, or one for each.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PerJoint(Vec<(Option<String>, f64)>);
+
+impl PerJoint {
+    /// The constant of a joint; `None` where nothing is stated.
+    pub fn of(&self, joint: &str) -> Option<f64> {
+        let own = self.0.iter().find(|(name, _)| name.as_deref() == Some(joint));
+        own.or_else(|| self.0.iter().find(|(name, _)| name.is_none())).map(|(_, value)| *value)
+    }
+
+    /// Names of the joints that have a number of their own.
+    pub fn joints(&self) -> impl Iterator<Item = &str> {
+        self.0.iter().filter_map(|(name, _)| name.as_deref())
+    }
+}
+
+/// One record: a file and what its columns mean.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RecordSpec {
+    /// File name, next to `campaign.json`.
+    pub file: String,
+    /// Whether `campaign.json` names the file; else it need not exist.
+    pub is_named: bool,
+    /// Names of the columns of this format with the names that the file gives them.
+    pub columns: Vec<(String, String)>,
+    /// Turns of the motor for one of the output.
+    pub ratio: PerJoint,
+    /// Torque at the motor shaft for each ampere \[N m/A\].
+    pub torque_constant_nm_per_a: PerJoint,
+    /// Inertia of rotor and wave generator at the motor shaft; at the output where no ratio is stated \[kg m²\].
+    pub rotor_inertia_kgm2: PerJoint,
+    /// Whether torques are at the output although a ratio is stated.
+    pub torque_at_output: bool,
+}
+
+/// Keys of `campaign.json` that concern records.
+pub(crate) const STATEMENT_KEYS: [&str; 5] =
+    ["records", "ratio", "torque_constant_nm_per_a", "rotor_inertia_kgm2", "torque_at"];
+
+/// Reads `records` of `campaign.json`. An absent list means one record in [`DEFAULT_FILE`], if that file exists.
+pub(crate) fn read_records(root: &Object) -> Option<Vec<RecordSpec>> {
+    let common = read_constants(root, &RecordSpec { file: DEFAULT_FILE.into(), ..RecordSpec::default() })?;
+    let Some(node) = root.optional("records") else { return Some(vec![common]) };
+    let read: Vec<Option<RecordSpec>> = node.array()?.iter().map(|n| read_record(n, &common)).collect();
+    read.into_iter().collect()
+}
+
+fn read_record(node: &Node, common: &RecordSpec) -> Option<RecordSpec> {
+    let object = node.object(&KEYS)?;
+    let file = object.or("file", common.file.clone(), |n| n.string().map(String::from));
+    let columns = object.or("columns", Vec::new(), read_columns);
+    let constants = read_constants(&object, common);
+    Some(RecordSpec { file: file?, is_named: true, columns: columns?, ..constants? })
+}
+
+fn read_constants(object: &Object, common: &RecordSpec) -> Option<RecordSpec> {
+    let ratio = object.or("ratio", common.ratio.clone(), |n| read_per_joint(n, |x| x != 0.0));
+    let constant = object.or("torque_constant_nm_per_a", common.torque_constant_nm_per_a.clone(), |n| {
+        read_per_joint(n, |x| x != 0.0)
+    });
+    let inertia = object
+        .or("rotor_inertia_kgm2", common.rotor_inertia_kgm2.clone(), |n| read_per_joint(n, |x| x >= 0.0));
+    let at_output = object.or("torque_at", common.torque_at_output, |n| match n.string()? {
+        "output" => Some(true),
+        "shaft" => Some(false),
+        other => n.fault(format!("\"{other}\" is not known"), "choose one of: shaft, output"),
+    });
+    Some(RecordSpec {
+        ratio: ratio?,
+        torque_constant_nm_per_a: constant?,
+        rotor_inertia_kgm2: inertia?,
+        torque_at_output: at_output?,
+        ..common.clone()
+    })
+}
+
+fn read_columns(node: &Node) -> Option<Vec<(String, String)>> {
+    let read = node.entries()?.into_iter().map(|(name, n)| Some((name.to_string(), n.string()?.to_string())));
+    read.collect()
+}
+
+/// Reads one number for all joints, or `{"j1": 100, ...}`.
+fn read_per_joint(node: &Node, allowed: fn(f64) -> bool) -> Option<PerJoint> {
+    let number = |n: &Node| match n.number()? {
+        x if allowed(x) => Some(x),
+        x => n.fault(format!("= {x} is not possible"), "check sign and unit"),
+    };
+    if !node.value().is_object() {
+        return Some(PerJoint(vec![(None, number(node)?)]));
+    }
+    let each = node.entries()?.into_iter().map(|(name, n)| Some((Some(name.to_string()), number(&n)?)));
+    Some(PerJoint(each.collect::<Option<Vec<_>>>()?))
+}

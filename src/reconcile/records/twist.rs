@@ -1,0 +1,364 @@
+//! The twist of a joint as a sum of columns, and which of them the record needs.
+//!
+//! The recorded twist is the motor's angle less the link's, `y = theta_m(t) - theta_l(t - s)`. Written as a sum,
+//!
+//! `y = offset + s w_l + c (T_m - J a - (F_c + f |T_m|) sgn w - F_v w) + e(q) + g(N q)`
+//!
+//! | symbol | what it is | unit |
+//! |---|---|---|
+//! | `s` | time by which the link's reading is late | s |
+//! | `c` | compliance | rad/(N m) |
+//! | `T_m` | torque of the motor at the output | N m |
+//! | `J` | inertia on the motor's side of the spring | kg m² |
+//! | `F_c`, `f`, `F_v` | Coulomb, load-dependent and viscous friction on the motor's side | N m, 1, N m s/rad |
+//! | `e`, `g` | transmission error once and twice a turn of the output and of the input | rad |
+//!
+//! The coefficients of `a` and `sgn w` are free, because neither the rotor's inertia nor the side on which friction sits is
+//! known, and so is that of the rate of `T_m`, which stands for a filter in the torque's sensor and for damping in the
+//! spring. The coefficient of `w` is `s - c F_v`: a lag and viscous friction look alike in the twist, and only the balance of
+//! torques (`friction`) separates them.
+
+use super::blocks::{Blocks, Fitted, rows_per_reading};
+use super::signals::JointRows;
+
+/// Standard deviation of a transmission error before it is measured \[rad\].
+const USUAL_ERROR_RAD: f64 = 1.5e-3;
+/// Standard errors by which held-out blocks must be better for one column to be named.
+pub(crate) const CLEARLY: f64 = 2.0;
+/// The same for four columns.
+const CLEARLY_MANY: f64 = 2.5;
+/// A transmission error of the output must lower the error on held-out blocks to this part.
+const MATERIAL: f64 = 0.8;
+/// Most rounds in which the time shift is improved.
+const ROUNDS: usize = 12;
+
+/// Places of the columns. Offsets of the records come first.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Places {
+    /// Number of records.
+    pub records: usize,
+}
+
+impl Places {
+    /// Speed of the link.
+    pub(crate) fn shift(self) -> usize {
+        self.records
+    }
+    /// Torque of the motor, less the rotor's where its inertia is stated.
+    pub(crate) fn torque(self) -> usize {
+        self.records + 1
+    }
+    /// Acceleration of the motor.
+    pub(crate) fn acceleration(self) -> usize {
+        self.records + 2
+    }
+    /// Sign of the speed.
+    pub(crate) fn sense(self) -> usize {
+        self.records + 3
+    }
+    /// Sign of the speed times the size of the torque.
+    pub(crate) fn load_sense(self) -> usize {
+        self.records + 4
+    }
+    /// Rate of the torque: a filter of the torque's sensor, and damping in the spring.
+    pub(crate) fn rate(self) -> usize {
+        self.records + 5
+    }
+    /// Sine and cosine, once and twice a turn of the output.
+    pub(crate) fn output(self) -> [usize; 4] {
+        std::array::from_fn(|i| self.records + 6 + i)
+    }
+    /// The same for the input.
+    pub(crate) fn input(self) -> [usize; 4] {
+        std::array::from_fn(|i| self.records + 10 + i)
+    }
+    /// The first column after these.
+    pub(crate) fn further(self) -> usize {
+        self.records + 14
+    }
+    /// Offsets of the records.
+    pub(crate) fn offsets(self) -> Vec<usize> {
+        (0..self.records).collect()
+    }
+}
+
+/// What can be added to the model of a twist.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Group {
+    /// The time shift.
+    Shift,
+    /// Compliance, with the friction and the inertia that act beside it.
+    Compliance,
+    /// Transmission error of the output.
+    Output,
+    /// Transmission error of the input.
+    Input,
+}
+
+impl Group {
+    /// As `verdict.json` names it.
+    pub(crate) fn what(self) -> &'static str {
+        match self {
+            Group::Shift => "time_shift",
+            Group::Compliance => "compliance",
+            Group::Output => "transmission_error",
+            Group::Input => "input_transmission_error",
+        }
+    }
+
+    /// As the table of steps names it.
+    fn step(self) -> &'static str {
+        match self {
+            Group::Shift => "time shift",
+            Group::Compliance => "torque, friction and inertia",
+            Group::Output => "transmission error",
+            Group::Input => "transmission error of the input",
+        }
+    }
+
+    /// Whether it is a transmission error.
+    fn is_of_gear(self) -> bool {
+        matches!(self, Group::Output | Group::Input)
+    }
+
+    /// Whether a fit with the group is so much better on held-out blocks than one without that it is named.
+    fn pays(self, with: &Fitted, without: &Fitted) -> bool {
+        let clearly = with.better_than(without);
+        match self {
+            Group::Shift | Group::Compliance => clearly > CLEARLY,
+            // the waves of a gear's error can follow whatever else is slightly wrong under gravity
+            Group::Output => {
+                clearly > CLEARLY_MANY && with.held_out_rms() < MATERIAL * without.held_out_rms()
+            }
+            Group::Input => clearly > CLEARLY_MANY,
+        }
+    }
+}
+
+/// The model of a joint's twist.
+pub(crate) struct TwistModel<'a> {
+    /// The rows.
+    pub rows: &'a JointRows,
+    /// Places of the columns.
+    pub places: Places,
+    /// The shift about which the series is taken \[s\].
+    pub shift_s: f64,
+    /// Sums of all columns; the twist is the last.
+    pub sums: Blocks,
+    /// Standard deviation of an independent reading \[rad\].
+    pub sigma_rad: f64,
+    /// What is in the model.
+    pub groups: Vec<Group>,
+    /// The fit with it.
+    pub fitted: Fitted,
+    /// Rows that count as one.
+    pub rows_per_reading: f64,
+    /// Errors on held-out blocks as each thing was added \[rad\].
+    pub steps: Vec<(String, f64)>,
+}
+
+/// Fills the columns of a row; `false` where the shifted link has no reading.
+pub(crate) fn fill(rows: &JointRows, i: usize, shift_s: f64, row: &mut [f64]) -> bool {
+    let sample = &rows.samples[i];
+    let (Some(twist), Some([acceleration, _])) =
+        (rows.twist(sample, shift_s), rows.accelerations(sample, shift_s))
+    else {
+        return false;
+    };
+    let places = Places { records: rows.record_count() };
+    row[sample.record] = 1.0;
+    row[places.shift()] = twist.link_speed_rad_s;
+    let rotor_nm = rows.rotor_inertia_kgm2.unwrap_or_default() * acceleration;
+    row[places.torque()] = sample.torque_nm - rotor_nm;
+    row[places.acceleration()] = acceleration;
+    row[places.sense()] = sample.sense;
+    row[places.load_sense()] = sample.load_sense_nm;
+    row[places.rate()] = sample.torque_rate_nm_s;
+    for (columns, ratio) in [(places.output(), 1.0), (places.input(), rows.ratio.unwrap_or_default())] {
+        let (sin, cos) = libm::sincos(ratio * sample.angle_rad);
+        // once and twice a turn; without a ratio the columns of the input are constant and get nothing
+        row[columns[0]] = sin;
+        row[columns[1]] = cos - 1.0;
+        row[columns[2]] = 2.0 * sin * cos;
+        row[columns[3]] = cos * cos - sin * sin - 1.0;
+    }
+    // the shift about which the series is taken is put back, so that the coefficient of the speed is the whole shift
+    let last = row.len() - 1;
+    row[last] = twist.twist_rad + shift_s * twist.link_speed_rad_s;
+    true
+}
+
+/// Columns of a set of groups, offsets first.
+pub(crate) fn columns(rows: &JointRows, groups: &[Group]) -> Vec<usize> {
+    let places = Places { records: rows.record_count() };
+    let mut out = places.offsets();
+    for group in groups {
+        match group {
+            Group::Shift => out.push(places.shift()),
+            Group::Compliance => {
+                out.extend([places.torque(), places.sense(), places.load_sense(), places.rate()]);
+                // a stated inertia is already taken from the torque
+                out.extend(rows.rotor_inertia_kgm2.is_none().then_some(places.acceleration()));
+            }
+            Group::Output => out.extend(places.output()),
+            Group::Input => out.extend(places.input()),
+        }
+    }
+    out
+}
+
+impl<'a> TwistModel<'a> {
+    /// Finds the time shift and what else the twist needs. `None` where a fit is impossible.
+    pub(crate) fn find(rows: &'a JointRows) -> Option<Self> {
+        let places = Places { records: rows.record_count() };
+        let shift_s = time_shift_s(rows)?;
+        let sums = rows.sums(places.further() + 1, |i, _, row| fill(rows, i, shift_s, row));
+        let smooth = if rows.has_torque { vec![Group::Shift, Group::Compliance] } else { vec![Group::Shift] };
+        let target = places.further();
+        let fitted = sums.fit(&columns(rows, &smooth), target, |_| None)?;
+        let steps = Vec::new();
+        let mut out = Self {
+            rows,
+            places,
+            shift_s,
+            sums,
+            sigma_rad: 0.0,
+            groups: smooth,
+            fitted,
+            rows_per_reading: 1.0,
+            steps,
+        };
+        out.judge_errors();
+        out.select()?;
+        out.judge_errors();
+        Some(out)
+    }
+
+    /// The errors of the present fit, row by row \[rad\].
+    pub(crate) fn errors(&self) -> Vec<f64> {
+        let mut row = vec![0.0; self.places.further() + 1];
+        let error = |i: usize| {
+            row.fill(0.0);
+            let is_filled = fill(self.rows, i, self.shift_s, &mut row);
+            let modelled: f64 =
+                self.fitted.columns.iter().zip(&self.fitted.values).map(|(c, v)| row[*c] * v).sum();
+            is_filled.then(|| row[row.len() - 1] - modelled)
+        };
+        (0..self.rows.samples.len()).filter_map(error).collect()
+    }
+
+    fn judge_errors(&mut self) {
+        self.rows_per_reading = rows_per_reading(&self.errors());
+        let variance = self.fitted.squares / self.fitted.rows as f64;
+        self.sigma_rad = (variance * self.rows_per_reading).sqrt();
+    }
+
+    /// Fits a set of groups, transmission errors with what is known of them before.
+    pub(crate) fn fit(&self, groups: &[Group]) -> Option<Fitted> {
+        self.fit_with(&columns(self.rows, groups))
+    }
+
+    /// Fits a set of columns.
+    pub(crate) fn fit_with(&self, columns: &[usize]) -> Option<Fitted> {
+        self.sums.fit(columns, self.places.further(), |c| self.prior(c))
+    }
+
+    /// What is known of a column's coefficient before, over the standard deviation of an independent reading.
+    pub(crate) fn prior(&self, column: usize) -> Option<f64> {
+        let errors = [self.places.output(), self.places.input()].concat();
+        errors.contains(&column).then_some(USUAL_ERROR_RAD / self.sigma_rad.max(1e-12))
+    }
+
+    fn candidates(&self) -> Vec<Group> {
+        let all = [
+            (Group::Shift, true),
+            (Group::Compliance, self.rows.has_torque),
+            (Group::Output, true),
+            (Group::Input, self.rows.ratio.is_some_and(|n| n > 1.0)),
+        ];
+        all.into_iter().filter(|(_, possible)| *possible).map(|(group, _)| group).collect()
+    }
+
+    /// Adds what makes held-out blocks better, best first. Compliance is in the model in any case, so that it takes its
+    /// share of the doubt. Then takes out what the others made unnecessary.
+    fn select(&mut self) -> Option<()> {
+        let mut groups: Vec<Group> = Vec::new();
+        let mut best = self.fit(&groups)?;
+        self.steps = vec![("nothing but an offset".into(), best.held_out_rms())];
+        loop {
+            let left = self.candidates().into_iter().filter(|g| !groups.contains(g));
+            let tried = left.filter_map(|g| Some((g, self.fit(&[groups.as_slice(), &[g]].concat())?)));
+            let better = tried.filter(|(g, fit)| g.pays(fit, &best));
+            // gravity turns with the joint as an error of its gear would: compliance goes first where it is enough
+            let order = |(group, fit): &(Group, Fitted)| (group.is_of_gear(), fit.held_out_rms());
+            let next =
+                better.min_by(|a, b| order(a).0.cmp(&order(b).0).then(order(a).1.total_cmp(&order(b).1)));
+            match next {
+                Some((group, fit)) => {
+                    groups.push(group);
+                    self.steps.push((group.step().into(), fit.held_out_rms()));
+                    best = fit;
+                }
+                None if self.rows.has_torque && !groups.contains(&Group::Compliance) => {
+                    groups.push(Group::Compliance);
+                    best = self.fit(&groups)?;
+                }
+                None => break,
+            }
+        }
+        groups = self.thinned(groups, &mut best);
+        (self.groups, self.fitted) = (groups, best);
+        Some(())
+    }
+
+    /// Takes out groups without which held-out blocks are as good.
+    fn thinned(&mut self, mut groups: Vec<Group>, best: &mut Fitted) -> Vec<Group> {
+        for group in [Group::Input, Group::Output, Group::Shift] {
+            let without: Vec<Group> = groups.iter().copied().filter(|g| *g != group).collect();
+            if without.len() == groups.len() {
+                continue;
+            }
+            if let Some(fit) = self.fit(&without).filter(|fit| !group.pays(best, fit)) {
+                self.steps.push((format!("without {}", group.step()), fit.held_out_rms()));
+                (groups, *best) = (without, fit);
+            }
+        }
+        groups
+    }
+
+    /// By how many standard errors held-out blocks are better with a group than without it.
+    pub(crate) fn gain(&self, group: Group) -> f64 {
+        let others: Vec<Group> = self.groups.iter().copied().filter(|g| *g != group).collect();
+        let all: Vec<Group> = others.iter().copied().chain([group]).collect();
+        match (self.fit(&all), self.fit(&others)) {
+            (Some(with), Some(without)) => with.better_than(&without),
+            _ => 0.0,
+        }
+    }
+
+    /// The part of the torque that the joint's own motion does not explain, over its variance.
+    pub(crate) fn own_share_of_torque(&self) -> f64 {
+        let p = self.places;
+        let mut own = vec![p.shift(), p.sense()];
+        own.extend(self.rows.rotor_inertia_kgm2.is_none().then_some(p.acceleration()));
+        self.sums.own_share(p.torque(), &p.offsets(), &own)
+    }
+}
+
+/// The time shift at which a further one would change nothing: each round reads the link at the shift found so far.
+fn time_shift_s(rows: &JointRows) -> Option<f64> {
+    let places = Places { records: rows.record_count() };
+    let groups = if rows.has_torque { vec![Group::Shift, Group::Compliance] } else { vec![Group::Shift] };
+    let target = places.further();
+    let mut shift_s = 0.0;
+    for _ in 0..ROUNDS {
+        let sums = rows.sums(target + 1, |i, _, row| fill(rows, i, shift_s, row));
+        let next_s = sums.fit(&columns(rows, &groups), target, |_| None)?.value(places.shift());
+        let step_s = next_s - shift_s;
+        shift_s = next_s;
+        if step_s.abs() < 1e-3 * rows.step_s {
+            return Some(shift_s);
+        }
+    }
+    Some(shift_s)
+}

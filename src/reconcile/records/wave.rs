@@ -1,0 +1,102 @@
+//! An error of the gear within a turn of the motor, taken from the signals before they are differentiated.
+//!
+//! Such an error is fast: its acceleration is as large as any real one and would pass for inertia. It is found in what is fast of
+//! the twist, `y - smooth(y)`, by columns that are made fast in the same way, so that neither torque nor inertia takes part.
+
+use super::reading::{JointSignals, Record};
+use super::smooth::smooth;
+use nalgebra::{Matrix4, Vector4};
+
+/// Half width of the window that divides fast from slow \[rows\].
+const HALF: usize = 16;
+/// The part of the squares of the fast twist that the error must explain.
+const TELLING: f64 = 0.1;
+
+/// Twist once and twice a turn of the input.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Wave {
+    /// Amplitudes of sine and cosine, once and twice a turn \[rad\].
+    waves_rad: [f64; 4],
+    /// Whether the motor's reading has it; else the link's.
+    is_of_motor: bool,
+}
+
+fn shapes(phase: f64) -> [f64; 4] {
+    let (sin, cos) = libm::sincos(phase);
+    [sin, cos, 2.0 * sin * cos, cos * cos - sin * sin]
+}
+
+/// What a smoothing leaves of a signal; zero near ends and gaps.
+fn fast(t_s: &[f64], x: &[f64]) -> Vec<f64> {
+    let slow = smooth(t_s, x, HALF).value;
+    x.iter().zip(slow).map(|(x, slow)| if slow.is_nan() { 0.0 } else { x - slow }).collect()
+}
+
+impl Wave {
+    /// The wave of a joint; zero where the ratio is not stated or the twist has none.
+    pub(crate) fn find(records: &[Record], joint: &str) -> Self {
+        let own: Vec<(&[f64], &JointSignals)> = records
+            .iter()
+            .flat_map(|r| r.joints.iter().map(move |j| (r.t_s.as_slice(), j)))
+            .filter(|(_, j)| j.joint == joint && !j.link_rad.is_empty() && j.ratio.is_some_and(|n| n > 1.0))
+            .collect();
+        let (mut normal, mut right, mut total) = (Matrix4::zeros(), Vector4::zeros(), 0.0);
+        for (t_s, signals) in &own {
+            let twist: Vec<f64> =
+                signals.motor_rad.iter().zip(&signals.link_rad).map(|(m, l)| m - l).collect();
+            let phases = signals.motor_rad.iter().map(|q| shapes(signals.ratio.unwrap_or(1.0) * q));
+            let waves: Vec<[f64; 4]> = phases.collect();
+            let columns: [Vec<f64>; 4] =
+                std::array::from_fn(|k| fast(t_s, &waves.iter().map(|w| w[k]).collect::<Vec<_>>()));
+            for (i, y) in fast(t_s, &twist).into_iter().enumerate() {
+                let row = Vector4::from_fn(|k, _| columns[k][i]);
+                normal += row * row.transpose();
+                right += row * y;
+                total += y * y;
+            }
+        }
+        let Some(found) = normal.cholesky().map(|c| c.solve(&right)) else { return Self::default() };
+        if found.dot(&right) < TELLING * total {
+            return Self::default();
+        }
+        let waves_rad = [found[0], found[1], found[2], found[3]];
+        let calmed = [true, false].map(|is_of_motor| Self { waves_rad, is_of_motor }.calms(&own));
+        Self { waves_rad, is_of_motor: calmed[0] < calmed[1] }
+    }
+
+    /// Acceleration of the side that has the wave without it, over that with it.
+    fn calms(&self, own: &[(&[f64], &JointSignals)]) -> f64 {
+        let size = |t_s: &[f64], x: &[f64]| -> f64 {
+            smooth(t_s, x, HALF).curvature.iter().filter(|a| !a.is_nan()).map(|a| a * a).sum()
+        };
+        let (mut without, mut with) = (0.0, 0.0);
+        for (t_s, signals) in own {
+            let [motor_rad, link_rad] = self.taken_from(signals);
+            let (calm, raw) = if self.is_of_motor {
+                (motor_rad, &signals.motor_rad)
+            } else {
+                (link_rad, &signals.link_rad)
+            };
+            without += size(t_s, &calm);
+            with += size(t_s, raw);
+        }
+        if with > 0.0 { without / with } else { 1.0 }
+    }
+
+    /// Motor and link with the wave taken from the one that has it \[rad\].
+    pub(crate) fn taken_from(&self, signals: &JointSignals) -> [Vec<f64>; 2] {
+        let [mut motor_rad, mut link_rad] = [signals.motor_rad.clone(), signals.link_rad.clone()];
+        let Some(ratio) = signals.ratio.filter(|_| self.waves_rad != [0.0; 4]) else {
+            return [motor_rad, link_rad];
+        };
+        for (motor, link) in motor_rad.iter_mut().zip(&mut link_rad) {
+            let twist: f64 = shapes(ratio * *motor).iter().zip(self.waves_rad).map(|(s, a)| s * a).sum();
+            if self.is_of_motor {
+                *motor -= twist;
+            } else {
+                *link += twist;
+            }
+        }
+        [motor_rad, link_rad]
+    }
+}

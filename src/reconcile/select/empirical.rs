@@ -1,0 +1,148 @@
+//! Laws without a name as pieces of a model: found one after the other, each fitted in full together with all others.
+//!
+//! [`unnamed`](super::unnamed) asks whether a law competes with named effects, with the model made linear. Here a law
+//! becomes an effect of the arm, so that a corrected arm can have it: a further twist of a joint as a polynomial of its
+//! torque, or readings that bend or have a gain in each direction.
+
+use super::search::{Scored, Search};
+use crate::arm::effect::channel::Channel;
+use crate::arm::effect::empirical::{BEND, EVEN_TWIST, GAIN, KIND, ODD_TWIST};
+use crate::arm::effect::kind::{Absent, Parameter, Scale};
+use crate::reconcile::fit::descent::{Effort, Fit};
+use crate::reconcile::forward::coefficients::Coefficients;
+use crate::reconcile::forward::prepared::Forward;
+use crate::reconcile::model::parameters::Number::{Free, Stated};
+use crate::reconcile::model::parameters::{Candidate, FreeParameter};
+use rayon::prelude::*;
+
+/// Largest number of laws in one model.
+const MOST_LAWS: usize = 3;
+/// A law is taken if ln of the evidence, less the price of its place, rises by more than this.
+const BETTER: f64 = 2.0;
+/// A joint with less of the largest torque on any joint is not tried.
+const UNLOADED: f64 = 1e-3;
+/// Largest further twist that is looked for, as a multiple of the twist of the joint at the largest torque.
+const LARGEST: f64 = 3.0;
+
+/// Every law at every place where the readings could show it.
+pub(crate) fn laws(forward: &Forward) -> Vec<Candidate> {
+    let nominal = forward.coefficients(&forward.nominal);
+    let torques_nm: Vec<f64> =
+        (0..forward.layout.joints.len()).map(|j| largest_nm(forward, &nominal, j)).collect();
+    let largest = torques_nm.iter().copied().fold(0.0, f64::max);
+    let mut out = Vec::new();
+    for ((slot, law), torque_nm) in forward.layout.joints.iter().zip(&nominal.laws).zip(torques_nm) {
+        if !law.is_rigid() && torque_nm > UNLOADED * largest {
+            out.extend(twists(&slot.name, torque_nm, law.angle_rad(torque_nm).abs()));
+        }
+    }
+    for channel in [Channel::Static, Channel::Modal, Channel::Windup] {
+        let sizes = forward.data[forward.range(channel)].iter().map(|d| d.value.abs());
+        let largest = sizes.fold(0.0, f64::max);
+        if largest > 0.0 {
+            out.extend(readings(channel, largest));
+        }
+    }
+    out
+}
+
+/// What a law may be, in a sentence.
+pub(crate) fn may_be(candidate: &Candidate) -> &'static str {
+    match candidate.free_parameters.first().map(|free| free.name) {
+        Some(ODD_TWIST) => "it may be a gear or a connection that stiffens or softens as it is loaded",
+        Some(EVEN_TWIST) => {
+            "it may be play, a preload, a cable or a spring: the twist differs between the senses of the torque"
+        }
+        Some(BEND) => {
+            "it may be an instrument that is not straight, or a displacement too large for a straight law"
+        }
+        _ => "it may be an instrument whose axes have gains of their own, or are not square",
+    }
+}
+
+/// The law in words.
+pub(crate) fn in_words(candidate: &Candidate) -> String {
+    let at = &candidate.at;
+    match candidate.free_parameters.first().map(|free| free.name) {
+        Some(ODD_TWIST) => format!("a further twist of {at} that is odd in its torque"),
+        Some(EVEN_TWIST) => format!("a further twist of {at} that is even in its torque"),
+        Some(BEND) => format!("{at} readings that bend"),
+        _ => format!("{at} readings with a gain of their own in each direction"),
+    }
+}
+
+/// A fit, and the laws that earn their place in it, added one after the other. `search` has the laws among its candidates,
+/// from `first` on. `None` if no law does.
+pub(crate) fn with_laws<'a>(search: &Search<'a>, first: usize, from: &Scored) -> Option<(Scored, Fit<'a>)> {
+    let mut best: Option<(Scored, Fit)> = None;
+    for _ in 0..MOST_LAWS {
+        let here = best.as_ref().map_or(from, |(scored, _)| scored);
+        let Some(next) = next_law(search, first, here) else { break };
+        best = Some(next);
+    }
+    best
+}
+
+/// The law that raises the evidence most, in the model fitted to the end.
+fn next_law<'a>(search: &Search<'a>, first: usize, from: &Scored) -> Option<(Scored, Fit<'a>)> {
+    let laws: Vec<usize> =
+        (first..search.candidates.len()).filter(|law| !from.effects.contains(law)).collect();
+    let tried: Vec<Scored> = laws
+        .into_par_iter()
+        .map(|law| {
+            let effects = [from.effects.as_slice(), &[law]].concat();
+            let u = [from.u.as_slice(), &search.candidates[law].starts[0]].concat();
+            search.scored(&effects, &search.rough(&effects, &u))
+        })
+        .collect();
+    let promising = tried.into_iter().max_by(|a, b| a.score.total_cmp(&b.score))?;
+    let fit = search.fit(&promising.effects, &promising.u, Effort::default());
+    let scored = search.scored(&promising.effects, &fit);
+    (scored.score > from.score + BETTER).then_some((scored, fit))
+}
+
+/// The further twists of a joint, odd and even in its torque.
+fn twists(joint: &str, torque_nm: f64, twist_rad: f64) -> [Candidate; 2] {
+    let most = LARGEST * twist_rad;
+    let sized =
+        |name| Parameter { count: 2, ..Parameter::number(name, -most, most, twist_rad, Scale::Linear) };
+    let odd = law(joint, sized(ODD_TWIST), 0.0);
+    let even = law(joint, sized(EVEN_TWIST), 0.0);
+    [
+        Candidate { numbers: vec![Free, Free, Stated(0.0), Stated(0.0), Stated(torque_nm)], ..odd },
+        Candidate { numbers: vec![Stated(0.0), Stated(0.0), Free, Free, Stated(torque_nm)], ..even },
+    ]
+}
+
+/// The laws of a channel's readings: they bend, or have a gain in each direction.
+fn readings(channel: Channel, largest: f64) -> Vec<Candidate> {
+    let bend = Parameter { count: 2, ..Parameter::number(BEND, -1.0, 1.0, 0.1, Scale::Linear) };
+    let bent = law(channel.word(), bend, 0.0);
+    let mut out = vec![Candidate {
+        numbers: [vec![Free, Free, Stated(largest)], vec![Stated(1.0); 3]].concat(),
+        ..bent
+    }];
+    if channel.components() == 3 {
+        let gain = Parameter::vector(GAIN, 0.5, 2.0, 1.0).absent(Absent::AtOne);
+        let gains = law(channel.word(), gain, 1.0);
+        out.push(Candidate {
+            numbers: [vec![Stated(0.0), Stated(0.0), Stated(1.0)], vec![Free; 3]].concat(),
+            ..gains
+        });
+    }
+    out
+}
+
+/// A law with one free parameter, whose fits start where it changes nothing. Its numbers are still to be given.
+fn law(at: &str, parameter: Parameter, absent: f64) -> Candidate {
+    let free = (0..parameter.count).map(|component| FreeParameter::new(&parameter, component, 1.0));
+    let free_parameters: Vec<FreeParameter> = free.collect();
+    let starts = vec![free_parameters.iter().map(|free| free.u(absent)).collect()];
+    Candidate { kind: &KIND, at: at.into(), free_parameters, numbers: Vec::new(), starts, twins: Vec::new() }
+}
+
+/// Largest torque on a joint in the campaign, including the bench \[N m\].
+fn largest_nm(forward: &Forward, nominal: &Coefficients, joint: usize) -> f64 {
+    let poses = forward.torques_nm(nominal).into_iter().filter_map(|torques| torques.get(joint).copied());
+    poses.map(f64::abs).chain(forward.bench_torques_nm(joint)).fold(0.0, f64::max)
+}

@@ -1,0 +1,137 @@
+//! Which model the corrected arm has where no known effect explains the readings: of the arm as it was given, the calibrated
+//! one, the one with the best known effects, and those with laws without a name, the one that predicts held-out poses best.
+//!
+//! The verdict stays `unexplained`: a model that predicts better is no explanation.
+
+use crate::arm::effect::empirical::KIND;
+use crate::reconcile::fit::descent::Fit;
+use crate::reconcile::fit::held_out::{self, rms};
+use crate::reconcile::fit::noise::Noise;
+use crate::reconcile::model::parameters::Candidate;
+use crate::reconcile::select::empirical;
+use crate::reconcile::select::search::Search;
+use serde_json::{Value, json};
+
+/// A model with more numbers must lower the held-out error by this part, or the simpler one is taken.
+const WORTHWHILE: f64 = 0.02;
+
+/// A model that the corrected arm could have.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// The model in words.
+    pub model: String,
+    /// Root mean square of its residuals on held-out poses \[standard deviations\].
+    pub kept_out_rms_sigma: f64,
+    /// Whether `arm.corrected.json` is this model.
+    pub is_written: bool,
+}
+
+impl Row {
+    /// As JSON of `verdict.json`.
+    pub(crate) fn json(&self) -> Value {
+        json!({
+            "model": self.model, "kept_out_rms_sigma": self.kept_out_rms_sigma, "is_written": self.is_written,
+        })
+    }
+}
+
+/// The table of the models, and the fit of the one that was chosen; `None` if that is the arm as it was given.
+pub(crate) struct Choice<'a> {
+    /// Every model that was weighed, simplest first.
+    pub rows: Vec<Row>,
+    /// The fit of the chosen model.
+    pub fit: Option<Fit<'a>>,
+}
+
+/// Chooses the model of the corrected arm. `search` has laws among its candidates from `first_law` on; `named` is the model
+/// with the best known effects.
+pub(crate) fn choose<'a>(
+    search: &Search<'a>,
+    first_law: usize,
+    noise: &Noise,
+    baseline: Fit<'a>,
+    named: Fit<'a>,
+    named_effects: &[usize],
+) -> Choice<'a> {
+    let mut rows = vec![row("the arm as it was given".into(), nominal_rms(search, noise))];
+    let mut fits = vec![None];
+    let mut add = |fit: Fit<'a>| {
+        rows.push(row(in_words(&fit), fit_rms(search, noise, &fit)));
+        fits.push(Some(fit));
+    };
+    let starts = [search.scored(&[], &baseline), search.scored(named_effects, &named)];
+    add(baseline);
+    let has_names = !named_effects.is_empty();
+    if has_names {
+        add(named);
+    }
+    for start in starts.iter().take(if has_names { 2 } else { 1 }) {
+        if let Some((_, fit)) = empirical::with_laws(search, first_law, start) {
+            add(fit);
+        }
+    }
+    let chosen = simplest_of_the_best(&rows);
+    rows[chosen].is_written = true;
+    Choice { rows, fit: fits.swap_remove(chosen) }
+}
+
+fn row(model: String, kept_out_rms_sigma: f64) -> Row {
+    Row { model, kept_out_rms_sigma, is_written: false }
+}
+
+/// Index of the first row that no later one betters by a worthwhile part.
+fn simplest_of_the_best(rows: &[Row]) -> usize {
+    let mut chosen = 0;
+    for (i, row) in rows.iter().enumerate() {
+        if row.kept_out_rms_sigma < (1.0 - WORTHWHILE) * rows[chosen].kept_out_rms_sigma {
+            chosen = i;
+        }
+    }
+    chosen
+}
+
+/// Calibration, and the effects and laws of a model.
+fn in_words(fit: &Fit) -> String {
+    let effect = |candidate: &&Candidate| match candidate.kind.name {
+        name if name == KIND.name => empirical::in_words(candidate),
+        _ => candidate.label(),
+    };
+    let effects: Vec<String> = fit.model.effects.iter().map(effect).collect();
+    match effects.is_empty() {
+        true => "calibrated within tolerance".into(),
+        false => format!("calibrated, with {}", effects.join(" and ")),
+    }
+}
+
+/// Root mean square of the residuals of the arm as it was given \[standard deviations\], over the same readings as those of
+/// the fits.
+fn nominal_rms(search: &Search, noise: &Noise) -> f64 {
+    let forward = search.forward;
+    let predicted = forward.predict(&forward.coefficients(&forward.nominal));
+    let counted = (0..forward.data.len())
+        .filter(|&i| forward.data[i].group != usize::MAX && search.weights.inverse[i] > 0.0);
+    rms(counted.map(|i| {
+        let datum = &forward.data[i];
+        (datum.value - predicted[i]) / datum.sigma / noise.scale[datum.channel as usize]
+    }))
+}
+
+/// Root mean square of the residuals of a model on held-out poses \[standard deviations\].
+fn fit_rms(search: &Search, noise: &Noise, fit: &Fit) -> f64 {
+    let residuals = held_out::residuals(search.forward, &fit.model, &fit.point.u, search.weights);
+    let each = residuals.iter().zip(&search.forward.data);
+    rms(each.filter_map(|(r, d)| Some((*r)? / noise.scale[d.channel as usize])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_models_that_predict_alike_the_simplest_is_written() {
+        let rows = |rms: &[f64]| rms.iter().map(|r| row(String::new(), *r)).collect::<Vec<_>>();
+        assert_eq!(simplest_of_the_best(&rows(&[5.0, 4.0, 3.95, 1.2, 1.19])), 3);
+        // a model that predicts worse than the arm as it was given is not written
+        assert_eq!(simplest_of_the_best(&rows(&[1.0, 3.0, 0.99])), 0);
+    }
+}

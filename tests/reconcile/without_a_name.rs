@@ -1,0 +1,83 @@
+//! Physics that the library has no effect for: the verdict stays `unexplained`, and the corrected arm has laws without a name
+//! and predicts poses better that nobody fitted.
+
+use crate::generator::{self, Dice, Plan, Specimen};
+use armwright::catalog::Catalogs;
+use armwright::reconcile::{Campaign, Outcome, Verdict, reconcile};
+use serde_json::{Value, json};
+use std::path::Path;
+use std::process::Command;
+
+/// Two campaigns of one six-axis arm with the same hidden physics, in different poses: `fitted` and `other`.
+fn campaigns(hidden: &Value) -> tempfile::TempDir {
+    let out = tempfile::tempdir().expect("temporary folder");
+    let specimen = Specimen::six_axis(&mut Dice(11));
+    let plan = Plan { static_poses: 24, modal_poses: 6, ..Plan::plain() };
+    for (seed, name) in [(21, "fitted"), (22, "other")] {
+        let (folder, key) = (out.path().join(name), out.path().join(format!("{name}.json")));
+        generator::write(&mut Dice(seed), &folder, &key, &specimen, std::slice::from_ref(hidden), &plan);
+    }
+    out
+}
+
+fn outcome(folder: &Path) -> Outcome {
+    let outcome = reconcile(&Campaign::read(&folder.join("fitted"), &Catalogs::default()).expect("sound"));
+    outcome.write(&folder.join("verdict")).expect("written");
+    outcome
+}
+
+/// Root mean square of the displacements of the other campaign from those that an arm predicts \[mm\].
+fn error_mm(folder: &Path, arm: &Path) -> f64 {
+    let (out, other) = (folder.join("predicted.csv"), folder.join("other"));
+    let status = Command::new(env!("CARGO_BIN_EXE_armwright"))
+        .arg("predict")
+        .args([arm, &other.join("static.csv")])
+        .args([Path::new("--campaign"), &other.join("campaign.json"), Path::new("--out"), &out])
+        .status();
+    assert!(status.expect("it runs").success());
+    let text = std::fs::read_to_string(&out).expect("a table");
+    let mut rows = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let head = rows.next().expect("a head");
+    let at = |name: &str| head.iter().position(|cell| *cell == name).expect("a column");
+    let columns = ["dx_mm", "dy_mm", "dz_mm"].map(|name| (at(name), at(&format!("model_{name}"))));
+    let number = |cell: &str| cell.parse::<f64>().expect("a number");
+    let squares: Vec<f64> = rows
+        .flat_map(|row| columns.map(|(read, model)| (number(row[read]) - number(row[model])).powi(2)))
+        .collect();
+    (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+}
+
+#[test]
+fn a_law_without_a_name_predicts_poses_that_nobody_fitted() {
+    for (hidden, at) in [
+        (json!({"effect": "cubic_stiffness", "at": "j2", "amount": 0.5}), "j2"),
+        (json!({"effect": "one_sided_stiffness", "at": "j3", "amount": 0.3}), "j3"),
+        (json!({"effect": "crooked_sensor", "at": "static", "amount": 0.25}), "static"),
+    ] {
+        let folder = campaigns(&hidden);
+        let outcome = outcome(folder.path());
+        assert_eq!(outcome.verdict, Verdict::Unexplained, "{hidden}: {}", outcome.to_text());
+        assert!(outcome.effects.is_empty() && outcome.suspects.is_empty());
+        let law = outcome.empirical.iter().find(|law| law.finding.at == at);
+        assert!(law.is_some(), "{hidden}: {}", outcome.to_text());
+        let nominal_mm = error_mm(folder.path(), &folder.path().join("fitted/arm.json"));
+        let corrected_mm = error_mm(folder.path(), &folder.path().join("verdict/arm.corrected.json"));
+        println!("{hidden}: {nominal_mm:.4} mm as given, {corrected_mm:.4} mm corrected");
+        assert!(
+            corrected_mm < nominal_mm / 1.5,
+            "{hidden}: {corrected_mm} of {nominal_mm} mm\n{}",
+            outcome.to_text()
+        );
+    }
+}
+
+#[test]
+fn the_written_model_is_the_one_that_predicts_held_out_poses_best() {
+    let folder = campaigns(&json!({"effect": "cubic_stiffness", "at": "j3", "amount": 0.5}));
+    let outcome = outcome(folder.path());
+    let written: Vec<_> = outcome.models.iter().filter(|row| row.is_written).collect();
+    assert_eq!(written.len(), 1, "{}", outcome.to_text());
+    let best = outcome.models.iter().map(|row| row.kept_out_rms_sigma).fold(f64::INFINITY, f64::min);
+    assert!(written[0].kept_out_rms_sigma <= 1.03 * best, "{}", outcome.to_text());
+    assert!(outcome.to_text().contains("* is in arm.corrected.json"));
+}
