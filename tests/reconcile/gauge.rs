@@ -318,15 +318,18 @@ fn predict_fills_what_was_not_measured() {
     assert!(column(&text, "dy_mm").iter().all(String::is_empty));
 }
 
-fn spreadsheet(file: &str, sheet: Value) -> tempfile::TempDir {
-    let statement = json!({
+fn spreadsheet(file: &str, sheet: Option<&str>) -> tempfile::TempDir {
+    let mut statement = json!({
         "name": "gauge", "tolerance": TOLERANCE.clone(),
-        "files": {"static": {"file": file, "sheet": sheet, "header_row": 3, "note": "a title is above"}},
+        "files": {"static": {"file": file, "header_row": 3, "note": "a title is above"}},
         "columns": {"static": {
             "test": "No", "q_j2_deg": "Shoulder", "q_j3_deg": "Elbow", "payload_kg": "Mass", "dz_mm": "Gauge 1",
             "sigma_mm": "Gauge sd"
         }}
     });
+    if let Some(sheet) = sheet {
+        statement["files"]["static"]["sheet"] = json!(sheet);
+    }
     let folder = folder(&Bench::standing(true).arm(), &statement, &[]);
     std::fs::copy(data("spreadsheets").join(file), folder.path().join(file)).expect("copied");
     folder
@@ -336,7 +339,7 @@ fn spreadsheet(file: &str, sheet: Value) -> tempfile::TempDir {
 fn spreadsheets_are_read_like_tables() {
     let table = outcome(&data("dial_gauge/z0_conn")).residuals_csv();
     for file in ["gauge.xlsx", "gauge.ods"] {
-        let folder = spreadsheet(file, json!("May"));
+        let folder = spreadsheet(file, Some("May"));
         let outcome = outcome(folder.path());
         assert_connection(&outcome);
         // rows are numbered from the names of the columns on
@@ -350,7 +353,7 @@ fn spreadsheets_are_read_like_tables() {
 
 #[test]
 fn faults_of_a_spreadsheet_name_sheet_row_and_column_as_it_shows_them() {
-    let text = faults(spreadsheet("faulty.xlsx", Value::Null).path());
+    let text = faults(spreadsheet("faulty.xlsx", None).path());
     for expected in [
         "faulty.xlsx, sheet \"May\":6: cell F6 (dz_mm = \"Gauge 1\"): \"n/a\" is not a number",
         "faulty.xlsx, sheet \"May\":8: cell D8 (q_j3_deg = \"Elbow\"): \"x\" is not a number",
@@ -358,9 +361,9 @@ fn faults_of_a_spreadsheet_name_sheet_row_and_column_as_it_shows_them() {
     ] {
         assert!(text.contains(expected), "{expected}\n{text}");
     }
-    let text = faults(spreadsheet("gauge.xlsx", json!("June")).path());
+    let text = faults(spreadsheet("gauge.xlsx", Some("June")).path());
     assert!(text.contains("has no sheet \"June\"; its sheets: Notes, May"), "{text}");
-    let text = faults(spreadsheet("gauge.ods", Value::Null).path());
+    let text = faults(spreadsheet("gauge.ods", None).path());
     assert!(text.contains("has 2 sheets; name one in campaign.json"), "{text}");
 }
 
@@ -372,9 +375,9 @@ fn a_mapping_that_does_not_fit_is_named() {
         faults(folder(&Bench::standing(true).arm(), &statement, &[("static.csv", text.into())]).path())
     };
     assert!(mapped(json!({"dz_mm": "Gage"})).contains("Gage: the column is missing; campaign.json names it"));
-    let text = mapped(json!({"dz": "Gauge"}));
+    let text = mapped(json!({"dz_m": "Gauge"}));
     assert!(
-        text.contains("columns.static.dz: static readings have no such column; is it \"dz_mm\"?"),
+        text.contains("columns.static.dz_m: static readings have no such column; is it \"dz_mm\"?"),
         "{text}"
     );
     let text = mapped(json!({"dz_mm": "Gauge", "payload_kg": "sigma_mm"}));
