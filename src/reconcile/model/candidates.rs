@@ -191,7 +191,7 @@ fn within_torque(free: FreeParameter, parameter: &Parameter, torque_nm: f64) -> 
 
 /// Number of rows of the longest file of readings of the whole arm.
 fn rows_of_campaign(forward: &Forward) -> f64 {
-    (forward.range(Channel::Static).len() / 3).max(forward.range(Channel::Modal).len()) as f64
+    forward.static_rows().max(forward.range(Channel::Modal).len()) as f64
 }
 
 /// Limits a number of rows to parts of the campaign. A change that is over at once or hardly begins is none of the order.
