@@ -11,7 +11,8 @@ use super::forward::prepared::Forward;
 use super::model::candidates::candidates;
 use super::model::estimate::Interval;
 use super::model::estimate::{Estimate, Finding};
-use super::model::parameters::{Candidate, Model, Nuisance, Number};
+use super::model::fitted_parameters::fitted_parameters;
+use super::model::parameters::{Candidate, Model, Nuisance};
 use super::model::seen::seen;
 use super::readings::campaign::Campaign;
 use super::readings::components::DISPLACEMENT;
@@ -28,7 +29,9 @@ use super::verdict::next_test;
 use super::verdict::outcome::{Calibrated, Evidence, Law, Located, Outcome, ReadingResidual, Verdict};
 use super::verdict::too_little::{rows, too_little};
 use super::verdict::{caution, correct, corrected_model, locate};
+use crate::arm::Arm;
 use crate::arm::effect::empirical::KIND;
+use serde_json::Value;
 use std::cell::OnceCell;
 
 /// Largest number of alternatives with which an effect is still named.
@@ -42,15 +45,8 @@ const NOTHING_MISSING: &str = "noise and calibration within tolerance explain ev
 pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let mut forward = Forward::new(campaign);
     let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
-    let mut candidates = candidates(&forward);
-    candidates.retain(|c| campaign.statement.considers(c.kind.name));
-    let mut candidates = seen(&forward, &nuisance, candidates);
     let few = rows(campaign) < few_rows::FEWEST_ROWS;
-    if few {
-        // a handful of readings cannot show what is seldom met
-        candidates.retain(|c| c.kind.traits.odds >= 1.0);
-        candidates = candidates.into_iter().map(Candidate::from_corners).collect();
-    }
+    let candidates = sought(campaign, &forward, &nuisance, few);
     let found = settled(campaign, &mut forward, &nuisance, &candidates, few);
     let weights = found.noise.weights(&forward);
     let chosen = &found.selection.best;
@@ -101,6 +97,19 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         left_out,
     };
     analysis.conclude()
+}
+
+/// What is looked for: every effect that the campaign admits and the readings could show.
+fn sought(campaign: &Campaign, forward: &Forward, nuisance: &Nuisance, few: bool) -> Vec<Candidate> {
+    let mut candidates = candidates(forward);
+    candidates.retain(|c| campaign.statement.considers(c.kind.name));
+    let mut candidates = seen(forward, nuisance, candidates);
+    if few {
+        // a handful of readings cannot show what is seldom met
+        candidates.retain(|c| c.kind.traits.odds >= 1.0);
+        candidates = candidates.into_iter().map(Candidate::from_corners).collect();
+    }
+    candidates
 }
 
 /// Whether the evidence for the best effects is weak.
@@ -166,6 +175,15 @@ struct Analysis<'a> {
     left_out: [Vec<Option<f64>>; 2],
 }
 
+/// The corrected arm, and what it has beyond the arm as it was given.
+struct Corrections {
+    calibrated: Vec<Calibrated>,
+    empirical: Vec<Law>,
+    models: Vec<corrected_model::Row>,
+    corrected: Arm,
+    provenance: Value,
+}
+
 impl Analysis<'_> {
     fn conclude(self) -> Outcome {
         let held_out = self.held_out();
@@ -183,30 +201,12 @@ impl Analysis<'_> {
             Verdict::Explained => (findings, Vec::new()),
             _ => (Vec::new(), findings),
         };
-        let choice = (verdict == Verdict::Unexplained).then(|| self.model_without_explanation());
-        let shown = match (&choice, verdict) {
-            (Some(choice), _) => choice.fit.as_ref().unwrap_or(&self.baseline),
-            (None, Verdict::NoGap) => &self.baseline,
-            (None, _) => &self.best,
-        };
-        let calibrated = self.calibrated(shown);
+        let Corrections { calibrated, empirical, models, corrected, provenance } =
+            self.corrections(verdict, &effects);
         if matches!(verdict, Verdict::Explained | Verdict::NoGap) {
+            let shown = if verdict == Verdict::NoGap { &self.baseline } else { &self.best };
             reasons.extend(caution::beyond_tolerance(shown, &calibrated));
         }
-        let written = match (&choice, verdict) {
-            (Some(choice), _) => choice.fit.as_ref(),
-            (None, Verdict::InsufficientData) => None,
-            (None, _) => Some(shown),
-        };
-        let in_arm = if choice.is_some() {
-            written.map_or(Vec::new(), |fit| {
-                self.found_in(fit, &intervals(self.forward, fit, self.weights), &[])
-            })
-        } else {
-            effects.clone()
-        };
-        let (corrected, provenance) =
-            correct::corrected(self.campaign, self.forward, written, &in_arm, &calibrated, verdict);
         Outcome {
             campaign: self.campaign.statement.name.clone(),
             hash: self.campaign.hash.clone(),
@@ -215,8 +215,8 @@ impl Analysis<'_> {
             next_tests: next_test::propose(&self.next_question(verdict)),
             effects,
             suspects,
-            empirical: written.map_or(Vec::new(), |fit| self.laws(fit, &in_arm)),
-            models: choice.as_ref().map_or(Vec::new(), |choice| choice.rows.clone()),
+            empirical,
+            models,
             held_out,
             located: self.located(),
             noise: self.noise.clone(),
@@ -230,6 +230,28 @@ impl Analysis<'_> {
             other_corrected: Vec::new(),
             provenance,
         }
+    }
+
+    /// What the corrected arm has, given the verdict and the effects that are named.
+    fn corrections(&self, verdict: Verdict, named: &[Finding]) -> Corrections {
+        let choice = (verdict == Verdict::Unexplained).then(|| self.model_without_explanation());
+        let written = match (&choice, verdict) {
+            (Some(choice), _) => choice.fit.as_ref(),
+            (None, Verdict::InsufficientData) => None,
+            (None, Verdict::NoGap) => Some(&self.baseline),
+            (None, _) => Some(&self.best),
+        };
+        let in_arm = match (&choice, written) {
+            (Some(_), Some(fit)) => self.found_in(fit, &intervals(self.forward, fit, self.weights), &[]),
+            _ => named.to_vec(),
+        };
+        let unwritten = if choice.is_some() { &self.baseline } else { &self.best };
+        let calibrated = self.calibrated(written.unwrap_or(unwritten));
+        let (corrected, provenance) =
+            correct::corrected(self.campaign, self.forward, written, &in_arm, &calibrated, verdict);
+        let empirical = written.map_or(Vec::new(), |fit| self.laws(fit, &in_arm));
+        let models = choice.map_or(Vec::new(), |choice| choice.rows);
+        Corrections { calibrated, empirical, models, corrected, provenance }
     }
 
     fn verdict(&self, held_out: &Option<HeldOut>) -> (Verdict, Vec<String>) {
@@ -400,7 +422,7 @@ impl Analysis<'_> {
                 let finding = Finding {
                     effect: effect.kind.name.into(),
                     at: effect.at.clone(),
-                    parameters: parameters(effect, &fit.point.u[own], &ends[parameter..]),
+                    parameters: fitted_parameters(effect, &fit.point.u[own], &ends[parameter..]),
                     indistinguishable_from: competitors.get(i).cloned().unwrap_or_default(),
                 };
                 parameter += effect.free_parameters.len();
@@ -571,30 +593,4 @@ impl Analysis<'_> {
         let name = self.forward.groups.get(group)?;
         Some(name.split(',').filter_map(|a| a.parse().ok()).collect())
     }
-}
-
-/// A fitted effect's parameters with their intervals. A component that is not fitted stands in its place, its ends open.
-fn parameters(effect: &Candidate, u: &[f64], ends: &[Interval]) -> Vec<(String, Vec<Estimate>)> {
-    let mut free = effect.free_parameters.iter().zip(effect.free_values(u)).zip(ends);
-    let mut out: Vec<(String, Vec<Estimate>)> = Vec::new();
-    for (name, number) in effect.named_numbers() {
-        let estimate = match number {
-            Number::Free => {
-                let Some(((parameter, value), interval)) = free.next() else { continue };
-                parameter.estimate(value, interval)
-            }
-            Number::Stated(value) => Estimate { value, low: None, high: None },
-        };
-        match out.iter_mut().find(|(known, _)| known == name) {
-            Some((_, list)) => list.push(estimate),
-            None => out.push((name.to_string(), vec![estimate])),
-        }
-    }
-    out.retain(|(name, _)| effect.free_parameters.iter().any(|parameter| parameter.name == name));
-    let stated = |value: f64| Estimate { value, low: Some(value), high: Some(value) };
-    out.extend(effect.words().into_iter().map(|(name, number, _)| (name.to_string(), vec![stated(number)])));
-    if effect.free_parameters.is_empty() {
-        out.push(("factor".into(), effect.numbers(&[]).into_iter().map(stated).collect()));
-    }
-    out
 }

@@ -5,5 +5,6 @@ pub mod candidates;
 pub(crate) mod estimate;
 pub mod exact;
 pub(crate) mod expected;
+pub(crate) mod fitted_parameters;
 pub mod parameters;
 pub(crate) mod seen;
