@@ -117,7 +117,7 @@ pub fn record(joint: &Joint, test: &Test, dice: &mut Dice) -> String {
         .map(|i| {
             let hz = [0.13, 0.31, 0.57, 0.93, 1.41][i] * dice.between(0.85, 1.15);
             let size = [1.0, 0.5, 0.25, 0.12, 0.06][i];
-            (size, std::f64::consts::TAU * hz, dice.between(0.0, 6.28))
+            (size, std::f64::consts::TAU * hz, dice.between(0.0, std::f64::consts::TAU))
         })
         .collect();
     let end = test.rows as f64 * test.step_s;

@@ -1,5 +1,6 @@
 //! Judges one joint's record: what is found, what is absent, what the record cannot tell.
 
+use super::blocks::Fitted;
 use super::curve::{Curve, Law, curve};
 use super::finding::{JointRecord, State, Stated, Step, Traced};
 use super::friction::{Friction, friction, is_positive};
@@ -71,14 +72,34 @@ impl<'a> Judged<'a> {
         Self { rows, model, records, friction, compliance, curve }
     }
 
+    /// The last fit: with the laws beyond a single compliance, if any was found.
+    fn fitted(&self) -> &Fitted {
+        self.curve.as_ref().map_or(&self.model.fitted, |c| &c.fitted)
+    }
+
+    /// The compliance beside play or lost motion, which a fit without them takes for a part of it. A torsion curve has its own
+    /// numbers, and the single one is then the mean over the record.
+    fn compliance_beside_laws(&self) -> Stated {
+        let laws = self.curve.iter().flat_map(|c| &c.laws);
+        let is_changed = !laws.clone().any(|l| matches!(l, Law::Segments(..))) && laws.count() > 0;
+        let c = self.fitted().coefficient(self.model.places.torque());
+        let c = widened(c, LEAST_LAW_PART * c.value.abs());
+        let (Some(low), Some(high)) = (c.low.filter(|low| is_changed && *low > 0.0), c.high) else {
+            return self.compliance.clone();
+        };
+        let stiffness = Estimate { value: 1.0 / c.value, low: Some(1.0 / high), high: Some(1.0 / low) };
+        let parameters = vec![("stiffness_nm_per_rad".into(), vec![stiffness])];
+        Stated { parameters, ..self.compliance.clone() }
+    }
+
     fn conclude(self) -> JointRecord {
-        let mut stated = vec![self.time_shift(), self.compliance.clone()];
+        let mut stated = vec![self.time_shift(), self.compliance_beside_laws()];
         stated.extend(self.laws());
         stated.extend(self.frictions());
         stated.push(self.output_error());
         stated.push(self.input_error());
         stated.push(self.first_mode());
-        let fitted = self.curve.as_ref().map_or(&self.model.fitted, |c| &c.fitted);
+        let fitted = self.fitted();
         let (low, high) = self.rows.range_rad();
         let further = self.curve.iter().flat_map(|c| c.steps.iter());
         let steps = self.model.steps.iter().chain(further);
@@ -106,7 +127,7 @@ impl<'a> Judged<'a> {
             return (0.0, 1.0);
         };
         let total = f.coulomb_nm;
-        let part = self.model.fitted.estimate(|c| -c(p.sense()) / c(p.torque()) / total.value);
+        let part = self.fitted().estimate(|c| -c(p.sense()) / c(p.torque()) / total.value);
         let spread = half(&total) / total.value;
         let ends = (part.low.unwrap_or(0.0) - spread, part.high.unwrap_or(1.0) + spread);
         (ends.0.clamp(0.0, 1.0), ends.1.clamp(0.0, 1.0))
@@ -116,7 +137,7 @@ impl<'a> Judged<'a> {
     /// speed's coefficient it is.
     fn time_shift(&self) -> Stated {
         let p = self.model.places;
-        let fitted = self.curve.as_ref().map_or(&self.model.fitted, |c| &c.fitted);
+        let fitted = self.fitted();
         let plain = match self.model.groups.contains(&Group::Shift) {
             true => fitted.coefficient(p.shift()),
             false => {
@@ -141,7 +162,8 @@ impl<'a> Judged<'a> {
         let Some(f) = self.friction.filter(|f| f.is_possible && is_positive(&f.viscous_nms_per_rad)) else {
             return (plain, String::new());
         };
-        let c = self.model.fitted.coefficient(self.model.places.torque());
+        // the columns of a law have the torque without viscous friction, so that the linear part alone meets it
+        let c = self.fitted().coefficient(self.model.places.torque());
         let is_known = is_positive(&c);
         let compliance = if is_known { c.value } else { 0.0 };
         let most_compliant = c.high.unwrap_or(0.0).max(0.0);

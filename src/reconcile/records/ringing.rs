@@ -53,18 +53,17 @@ pub(crate) fn swings(t_s: &[f64], motor_rad: &[f64], link_rad: &[f64]) -> Vec<(f
     let slow = (AT_REST * fastest).max(4.0 * slope_noise(motor_rad, half, usual_step_s(t_s)));
     let level = libm::hypot(noise(motor_rad), noise(link_rad));
     let mut out = Vec::new();
-    let mut begin = 0;
-    for i in 0..=t_s.len() {
-        let rests = i < t_s.len() && !speed[i].is_nan() && speed[i].abs() <= slow;
-        if rests {
-            continue;
-        }
-        if i - begin >= FEWEST_ROWS {
+    let mut begin = 0usize;
+    // the end of the record ends a stretch as motion does
+    let moves = speed.iter().map(|w| w.is_nan() || w.abs() > slow).chain([true]);
+    for (i, _) in moves.enumerate().filter(|(_, moves)| *moves) {
+        if i.saturating_sub(begin) >= FEWEST_ROWS {
             let end = i.min(begin + MOST_ROWS);
             let twist: Vec<f64> = (begin..end).map(|k| motor_rad[k] - link_rad[k]).collect();
             out.extend(swing(&t_s[begin..end], &twist, level));
         }
-        begin = i + 1;
+        // rows this near to motion are still part of the stop
+        begin = i + 1 + half;
     }
     out.into_iter().map(|s| (s.frequency_hz, s.decay_per_s, s.deviation_hz)).collect()
 }
@@ -77,7 +76,7 @@ pub(crate) fn joined(swings: &[(f64, f64, f64)]) -> Option<Ringing> {
         return None;
     }
     let weight = |s: &&(f64, f64, f64)| 1.0 / s.2.powi(2);
-    let total: f64 = alike.iter().map(|s| weight(s)).sum();
+    let total: f64 = alike.iter().map(&weight).sum();
     let mean = |of: fn(&(f64, f64, f64)) -> f64| alike.iter().map(|s| weight(s) * of(s)).sum::<f64>() / total;
     let (frequency_hz, decay) = (mean(|s| s.0), mean(|s| s.1));
     let count = alike.len() as f64;
