@@ -189,8 +189,12 @@ fn each_direction_may_have_a_sigma_of_its_own_and_a_row_its_own_blanks() {
     let header = "payload_kg,payload_cg_x_m,dx_mm,dz_mm,sigma_mm,sigma_dx_mm";
     let write = |row: usize, _: [f64; 2], kg: f64, d: [f64; 3]| {
         let mut coarse = Noise(row as u64);
-        let x = if row % 3 == 0 { String::new() } else { format!("{:.2}", d[0] + 0.05 * coarse.normal()) };
-        let z = if row % 4 == 1 && row % 3 != 0 { String::new() } else { format!("{:.3}", d[2]) };
+        let x = if row.is_multiple_of(3) {
+            String::new()
+        } else {
+            format!("{:.2}", d[0] + 0.05 * coarse.normal())
+        };
+        let z = if row % 4 == 1 && !row.is_multiple_of(3) { String::new() } else { format!("{:.3}", d[2]) };
         format!("{kg},,{x},{z},{SIGMA_MM},0.051")
     };
     let folder = Bench::standing(true).campaign(header, &write);

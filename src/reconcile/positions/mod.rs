@@ -25,6 +25,7 @@ pub(crate) mod next_test;
 pub(crate) mod normal;
 pub(crate) mod outcome;
 pub(crate) mod play;
+pub(crate) mod play_scale;
 pub(crate) mod points;
 pub(crate) mod predict;
 pub(crate) mod rows;
