@@ -52,6 +52,6 @@ fn the_front_of_a_sweep_has_the_same_bytes_without_fused_multiply_add() {
 
 #[test]
 fn a_verdict_has_the_same_bytes_without_fused_multiply_add() {
-    let campaign = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/campaigns/plain-0251e");
+    let campaign = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/dial_gauge/full_conn");
     same_file(&["reconcile", campaign.to_str().expect("a name")], "verdict.json");
 }

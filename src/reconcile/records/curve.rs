@@ -45,7 +45,7 @@ pub(crate) struct Curve {
     /// Laws whose best coefficients are impossible, with the reason.
     pub refused: Vec<(&'static str, &'static str)>,
     /// A law that held-out blocks cannot tell from the one that was chosen.
-    pub rival: Option<&'static str>,
+    pub competing: Option<&'static str>,
     /// The fit with the laws and the derivatives with respect to their torques.
     pub fitted: Fitted,
     /// Errors on held-out blocks as each law was added \[rad\].
@@ -138,7 +138,7 @@ pub(crate) fn curve(model: &TwistModel, viscous_nms_per_rad: f64) -> Option<Curv
     let mut out = Curve {
         laws: Vec::new(),
         refused: Vec::new(),
-        rival: None,
+        competing: None,
         fitted: model.fitted.clone(),
         steps: Vec::new(),
         first,
@@ -158,7 +158,7 @@ pub(crate) fn curve(model: &TwistModel, viscous_nms_per_rad: f64) -> Option<Curv
         }
         let alike =
             tried.iter().find(|(l, f)| l.what() != law.what() && clear(f) && fit.better_than(f) < 2.0);
-        out.rival = out.rival.or(alike.map(|(l, _)| l.what()));
+        out.competing = out.competing.or(alike.map(|(l, _)| l.what()));
         let laws = [out.laws.as_slice(), &[law]].concat();
         let Some((laws, fit)) = out.improved(model, &own, laws) else { break };
         out.steps.push((law.what().replace('_', " "), fit.held_out_rms()));

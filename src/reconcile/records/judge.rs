@@ -318,10 +318,10 @@ impl<'a> Judged<'a> {
 
     fn remarks(&self) -> Vec<String> {
         let mut out = Vec::new();
-        if let Some(rival) = self.curve.as_ref().and_then(|c| c.rival) {
+        if let Some(competing) = self.curve.as_ref().and_then(|c| c.competing) {
             out.push(format!(
                 "held-out blocks cannot tell the law of the twist from {}",
-                rival.replace('_', " ")
+                competing.replace('_', " ")
             ));
         }
         let refused = self.model.fitted.value(self.model.places.torque()) < 0.0;
