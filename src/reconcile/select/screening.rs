@@ -329,7 +329,8 @@ impl<'a> Search<'a> {
             let model = Model { smoothing: WIDE, ..model.clone() };
             self.linearized(&model, &base.u)
         });
-        let about = |candidate: usize| match self.candidates[candidate].kind.traits.steps_frequencies() {
+        // a further effect moves torques across the break points that were found, and the linear model sees no steps
+        let about = |candidate: usize| match self.is_smoothed(&model, candidate) {
             true => smooth.as_ref().unwrap_or(&sharp),
             false => &sharp,
         };
@@ -383,6 +384,12 @@ impl<'a> Search<'a> {
         Linearized { here, slopes }
     }
 
+    /// Whether a candidate is screened with smoothed steps of the frequencies: it makes them step, or the model before it has
+    /// break points that were found.
+    fn is_smoothed(&self, base: &Model, candidate: usize) -> bool {
+        self.candidates[candidate].kind.traits.steps_frequencies() || !base.break_points().is_empty()
+    }
+
     fn best_start(
         &self,
         base: &Model<'a>,
@@ -392,7 +399,7 @@ impl<'a> Search<'a> {
         let Linearized { here, slopes } = about;
         let candidate = &self.candidates[index];
         let mut model = base.with(candidate);
-        model.smoothing = if candidate.kind.traits.steps_frequencies() { WIDE } else { 0.0 };
+        model.smoothing = if self.is_smoothed(base, index) { WIDE } else { 0.0 };
         // the linearized model does not contain the steps of the frequencies at break points, so they are
         // held
         model.held =
