@@ -180,17 +180,19 @@ impl Asked<'_> {
         self.scale_m(changes, self.groups.len(), usize::MAX)
     }
 
-    /// The changes that the quick fit needs, from these on. While the fit is far off, pairs are tried too: of two parallel
-    /// joints that turn the other way, one alone is no better.
+    /// The changes that the quick fit needs, from these on. Where no single one helps and the fit is still far off, pairs
+    /// are tried: of two parallel joints that turn the other way, one alone is no better.
     fn search(&self, all: &[Change], mut made: Vec<Change>) -> Vec<Change> {
         let singles: Vec<Vec<Change>> = all.iter().map(|change| vec![*change]).collect();
-        let more = [singles.clone(), pairs(all)].concat();
+        let pairs = pairs(all);
         let mut here_m = self.quick_m(&made);
         while made.len() < MOST_CHANGES {
-            let is_far_off = here_m > FAR_OFF * self.spread_m(&made);
-            let best = self.best_with(&made, if is_far_off { &more } else { &singles });
-            let Some(better) = best.filter(|(scale_m, _)| *scale_m < HELPS * here_m) else { break };
-            (here_m, made) = better;
+            let better =
+                |added: &[Vec<Change>]| self.best_with(&made, added).filter(|b| b.0 < HELPS * here_m);
+            let found = better(&singles)
+                .or_else(|| (here_m > FAR_OFF * self.spread_m(&made)).then(|| better(&pairs)).flatten());
+            let Some(found) = found else { break };
+            (here_m, made) = found;
         }
         self.pruned(made)
     }
