@@ -6,6 +6,7 @@ use super::beam::PreparedBeam;
 use super::{Twist, Wrench, body_inertia, force_wrench, rotation_twist, stack};
 use crate::arm::LinkModel;
 use crate::arm::base_lift::BaseLift;
+use crate::arm::effect::base_lift;
 use crate::arm::joint_law::JointLaw;
 use crate::arm::linkage::{Linkage, linkages};
 use crate::arm::load::Water;
@@ -303,7 +304,7 @@ impl Walk {
     fn lift(&mut self, lift: Option<BaseLift>) {
         let Some(lift) = lift else { return };
         self.items.push(Item::Elastic(ElasticElement {
-            name: "base_lift".into(),
+            name: base_lift::KIND.name.into(),
             at_m: self.at_m,
             twists: [Vector3::x(), Vector3::y()].map(|axis| rotation_twist(&axis, &self.at_m)).to_vec(),
             yielding: Yielding::Lift(lift),

@@ -1,11 +1,12 @@
 //! Cables and hoses along the links of a study.
 
 use crate::arm::effect::entry::Effect;
+use crate::arm::effect::harness_mass;
 use crate::space::design_space::{DesignSpace, SpacePiece};
 use serde_json::json;
 
 /// Name of the effect that adds them.
-const EFFECT: &str = "harness_mass";
+const EFFECT: &str = harness_mass::KIND.name;
 
 /// A harness of a mass per length \[kg/m\] along every link, as effects. A link for which the study has an effect of its own keeps
 /// that.
@@ -67,7 +68,7 @@ mod tests {
 
     #[test]
     fn cables_along_every_link_are_the_effect_at_every_link() {
-        let effect = |at: &str, kg_per_m: f64| json!({"effect": "harness_mass", "at": at, "parameters": {"kg_per_m": kg_per_m}});
+        let effect = |at: &str, kg_per_m: f64| json!({"effect": EFFECT, "at": at, "parameters": {"kg_per_m": kg_per_m}});
         let catalogs = Catalogs::builtin();
         let judge =
             |extra: Value| evaluate(&ArmProblem::new(&read(extra).space, &catalogs), 0).unwrap().objectives;

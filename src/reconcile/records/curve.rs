@@ -10,6 +10,7 @@
 
 use super::blocks::{Blocks, Fitted};
 use super::twist::{Group, Places, TwistModel, columns, fill};
+use crate::arm::effect::{hysteresis, lost_motion};
 use crate::reconcile::model::estimate::Estimate;
 
 /// Break points that are tried, as parts of the largest torque.
@@ -55,13 +56,16 @@ pub(crate) struct Curve {
     pub spring_nm: Vec<f64>,
 }
 
+/// What `verdict.json` calls the three segments of a gear.
+pub(crate) const TORSION_CURVE: &str = "torsion_curve";
+
 impl Law {
     /// As `verdict.json` names it.
     pub(crate) fn what(self) -> &'static str {
         match self {
-            Law::Segments(..) => "torsion_curve",
-            Law::LostMotion(_) => "lost_motion",
-            Law::Play(_) => "hysteresis",
+            Law::Segments(..) => TORSION_CURVE,
+            Law::LostMotion(_) => lost_motion::KIND.name,
+            Law::Play(_) => hysteresis::KIND.name,
         }
     }
 
@@ -207,7 +211,7 @@ impl Curve {
         largest_nm: f64,
     ) -> Option<Vec<(Law, Fitted)>> {
         let has = |what: &str| self.laws.iter().any(|l| l.what() == what);
-        let is_shaped = has("torsion_curve") || has("lost_motion");
+        let is_shaped = has(TORSION_CURVE) || has(lost_motion::KIND.name);
         let mut grids: Vec<Vec<Law>> = Vec::new();
         if !is_shaped {
             let pairs =
@@ -215,7 +219,7 @@ impl Curve {
             grids.push(pairs.map(|(a, b)| Law::Segments(a * largest_nm, b * largest_nm)).collect());
             grids.push(CLOSING.iter().map(|c| Law::LostMotion(c * largest_nm)).collect());
         }
-        if !has("hysteresis") {
+        if !has(hysteresis::KIND.name) {
             grids.push(PLAYS.iter().map(|w| Law::Play(w * largest_nm)).collect());
         }
         let mut out: Vec<(Law, Fitted)> = Vec::new();

@@ -1,7 +1,7 @@
 //! Judges one joint's record: what is found, what is absent, what the record cannot tell.
 
 use super::blocks::Fitted;
-use super::curve::{Curve, Law, curve};
+use super::curve::{Curve, Law, TORSION_CURVE, curve};
 use super::finding::{JointRecord, State, Stated, Step, Traced};
 use super::friction::{Friction, friction, is_positive};
 use super::reading::Record;
@@ -9,6 +9,7 @@ use super::ringing::{joined, swings};
 use super::signals::JointRows;
 use super::twist::{CLEARLY, Group, TwistModel, fill};
 use super::wave::Wave;
+use crate::arm::effect::{hysteresis, lost_motion};
 use crate::reconcile::model::estimate::Estimate;
 
 /// Blocks of time that are looked for.
@@ -144,7 +145,7 @@ impl<'a> Judged<'a> {
                 let all = [self.model.groups.as_slice(), &[Group::Shift]].concat();
                 match self.model.fit(&all) {
                     Some(fit) => fit.coefficient(p.shift()),
-                    None => return Stated::none("time_shift", State::NotIdentified, "nothing moves"),
+                    None => return Stated::none(Group::Shift.what(), State::NotIdentified, "nothing moves"),
                 }
             }
         };
@@ -153,7 +154,7 @@ impl<'a> Judged<'a> {
         let is_clear = self.model.groups.contains(&Group::Shift) && excludes_zero(&shift);
         let absent = "held-out blocks are not predicted better with a shift, or friction explains it as well";
         let state = if is_clear { State::Found } else { State::Absent };
-        Stated::one("time_shift", state, "seconds", shift, if is_clear { &words } else { absent })
+        Stated::one(Group::Shift.what(), state, "seconds", shift, if is_clear { &words } else { absent })
     }
 
     /// The shift with the part of viscous friction put back. Where the compliance is not identified, the interval has what
@@ -190,7 +191,7 @@ impl<'a> Judged<'a> {
     }
 
     fn laws(&self) -> Vec<Stated> {
-        let all = ["torsion_curve", "hysteresis", "lost_motion"];
+        let all = [TORSION_CURVE, hysteresis::KIND.name, lost_motion::KIND.name];
         let Some(curve) = &self.curve else {
             return all
                 .map(|w| Stated::none(w, State::NotIdentified, "compliance is not identified"))

@@ -1,9 +1,15 @@
 //! Draws the conclusion from records: effects of the library, what is calibrated, the corrected arm.
 
+use super::curve::TORSION_CURVE;
 use super::finding::{JointRecord, Stated};
 use super::judge::judge;
+use super::twist::Group;
 use crate::arm::effect::entry::Effect;
-use crate::arm::effect::kind::Scope;
+use crate::arm::effect::kind::Place;
+use crate::arm::effect::{
+    connection_compliance, hysteresis, joint_compliance, lost_motion, soft_windup, time_shift,
+    transmission_error,
+};
 use crate::arm::{Arm, Element};
 use crate::reconcile::fit::held_out::HeldOut;
 use crate::reconcile::fit::noise::Noise;
@@ -20,8 +26,13 @@ const LEFT: f64 = 0.158;
 /// Or else this many times the noise from row to row.
 const NOISY: f64 = 1.5;
 /// Effects that say how a joint twists. Where other readings name one at a joint, records add none.
-const OF_TWIST: [&str; 5] =
-    ["joint_compliance", "connection_compliance", "soft_windup", "lost_motion", "hysteresis"];
+const OF_TWIST: [&str; 5] = [
+    joint_compliance::KIND.name,
+    connection_compliance::KIND.name,
+    soft_windup::KIND.name,
+    lost_motion::KIND.name,
+    hysteresis::KIND.name,
+];
 
 /// What the nominal arm says of a joint's twist, and what the record makes of it.
 struct Stiffness {
@@ -127,13 +138,10 @@ fn verdict(
 /// Effects of the library that a joint shows, its compliance apart.
 fn named(joint: &JointRecord) -> Vec<Finding> {
     let like = |what: &str| -> Vec<(String, String)> {
-        // once a turn and gravity look alike where no other joint changes the torque
-        let is_compliance = joint.found("compliance").is_some();
-        match what {
-            "transmission_error" if is_compliance => {
-                vec![("connection_compliance".into(), joint.joint.clone())]
-            }
-            _ => Vec::new(),
+        // once a turn and gravity look the same where no other joint changes the torque
+        match what == transmission_error::KIND.name && joint.found("compliance").is_some() {
+            true => vec![(connection_compliance::KIND.name.into(), joint.joint.clone())],
+            false => Vec::new(),
         }
     };
     let of = |what: &str, effect: &str, keep: &[&str]| {
@@ -148,11 +156,11 @@ fn named(joint: &JointRecord) -> Vec<Finding> {
     };
     const CURVE: [&str; 5] = ["k1_nm_per_rad", "k2_nm_per_rad", "k3_nm_per_rad", "t1_nm", "t2_nm"];
     [
-        of("time_shift", "time_shift", &["seconds"]),
-        of("torsion_curve", "soft_windup", &CURVE),
-        of("hysteresis", "hysteresis", &["half_width_rad"]),
-        of("lost_motion", "lost_motion", &["half_width_rad", "torque_nm"]),
-        of("transmission_error", "transmission_error", &["sin_cos_sin2_cos2_rad"]),
+        of(Group::Shift.what(), time_shift::KIND.name, &["seconds"]),
+        of(TORSION_CURVE, soft_windup::KIND.name, &CURVE),
+        of(hysteresis::KIND.name, hysteresis::KIND.name, &["half_width_rad"]),
+        of(lost_motion::KIND.name, lost_motion::KIND.name, &["half_width_rad", "torque_nm"]),
+        of(Group::Output.what(), transmission_error::KIND.name, &["sin_cos_sin2_cos2_rad"]),
     ]
     .into_iter()
     .flatten()
@@ -163,7 +171,7 @@ fn named(joint: &JointRecord) -> Vec<Finding> {
 fn stiffness(campaign: &Campaign, joint: &JointRecord) -> Stiffness {
     let nothing = Stiffness { finding: None, calibrated: None, factor: None, remark: None };
     // a curve replaces the number
-    if joint.found("torsion_curve").is_some() {
+    if joint.found(TORSION_CURVE).is_some() {
         return nothing;
     }
     let Some(measured) = joint.found("compliance").and_then(|s| Some(s.parameters.first()?.1[0])) else {
@@ -178,7 +186,7 @@ fn stiffness(campaign: &Campaign, joint: &JointRecord) -> Stiffness {
         indistinguishable_from: Vec::new(),
     };
     if nominal_rad_per_nm <= 0.0 {
-        return Stiffness { finding: Some(finding("joint_compliance", measured)), ..nothing };
+        return Stiffness { finding: Some(finding(joint_compliance::KIND.name, measured)), ..nothing };
     }
     let factor = |k: f64| k * nominal_rad_per_nm;
     let ends = (factor(measured.low.unwrap_or(0.0)), factor(measured.high.unwrap_or(f64::INFINITY)));
@@ -190,7 +198,7 @@ fn stiffness(campaign: &Campaign, joint: &JointRecord) -> Stiffness {
             low: measured.low.map(series),
             high: measured.high.map(series),
         };
-        return Stiffness { finding: Some(finding("connection_compliance", value)), ..nothing };
+        return Stiffness { finding: Some(finding(connection_compliance::KIND.name, value)), ..nothing };
     }
     let own = Estimate {
         value: factor(measured.value),
@@ -246,10 +254,11 @@ fn corrected(
     arm
 }
 
-/// A finding as an entry of the arm file. A shift of a sensor's clock belongs to the record and not to the arm.
+/// A finding as an entry of the arm file. An effect that cannot sit at a joint, such as the shift of
+/// a sensor's clock, belongs to the record and not to the arm.
 fn as_effect(campaign: &Campaign, finding: &Finding) -> Option<Effect> {
     let kind = crate::arm::effect::catalogue::kind(&finding.effect)?;
-    if kind.name == "time_shift" && kind.scope == Scope::Test {
+    if !kind.places.contains(&Place::Joint) {
         return None;
     }
     let numbers = |list: &[Estimate]| list.iter().map(|e| e.value).collect();

@@ -20,6 +20,7 @@
 
 use super::blocks::{Blocks, Fitted, rows_per_reading};
 use super::signals::JointRows;
+use crate::arm::effect::{time_shift, transmission_error};
 
 /// Standard deviation of a transmission error before it is measured \[rad\].
 const USUAL_ERROR_RAD: f64 = 1.5e-3;
@@ -99,9 +100,9 @@ impl Group {
     /// As `verdict.json` names it.
     pub(crate) fn what(self) -> &'static str {
         match self {
-            Group::Shift => "time_shift",
+            Group::Shift => time_shift::KIND.name,
             Group::Compliance => "compliance",
-            Group::Output => "transmission_error",
+            Group::Output => transmission_error::KIND.name,
             Group::Input => "input_transmission_error",
         }
     }
