@@ -47,6 +47,7 @@ pub(super) fn harness_remark(space: &DesignSpace, kg_per_m: f64) -> Option<Strin
 
 #[cfg(test)]
 mod tests {
+    use super::harness_mass;
     use crate::catalog::Catalogs;
     use crate::input::json::Document;
     use crate::space::evaluate;
@@ -68,7 +69,7 @@ mod tests {
 
     #[test]
     fn cables_along_every_link_are_the_effect_at_every_link() {
-        let effect = |at: &str, kg_per_m: f64| json!({"effect": EFFECT, "at": at, "parameters": {"kg_per_m": kg_per_m}});
+        let effect = |at: &str, kg_per_m: f64| json!({"effect": harness_mass::KIND.name, "at": at, "parameters": {"kg_per_m": kg_per_m}});
         let catalogs = Catalogs::builtin();
         let judge =
             |extra: Value| evaluate(&ArmProblem::new(&read(extra).space, &catalogs), 0).unwrap().objectives;
