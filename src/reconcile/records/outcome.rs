@@ -95,6 +95,17 @@ fn is_explained(joint: &JointRecord) -> bool {
     joint.after_rad <= (LEFT * joint.before_rad).max(NOISY * joint.noise_rad)
 }
 
+/// Says where more than noise is left of a joint's twist, although it is little of what there was.
+fn left_beyond_noise(joint: &JointRecord) -> String {
+    match joint.after_rad > NOISY * joint.noise_rad {
+        true => format!(
+            ", of which the noise of a row explains {:.4}: little is left, but not only noise",
+            1e3 * joint.noise_rad
+        ),
+        false => String::new(),
+    }
+}
+
 fn verdict(
     joints: &[JointRecord],
     findings: &[Finding],
@@ -120,10 +131,11 @@ fn verdict(
     if !findings.is_empty() {
         let fall = joints.iter().map(|j| {
             format!(
-                "{}: on held-out blocks the error of the twist falls from {:.4} to {:.4} mrad",
+                "{}: on held-out blocks the error of the twist falls from {:.4} to {:.4} mrad{}",
                 j.joint,
                 1e3 * j.before_rad,
-                1e3 * j.after_rad
+                1e3 * j.after_rad,
+                left_beyond_noise(j)
             )
         });
         return (Verdict::Explained, fall.collect());
