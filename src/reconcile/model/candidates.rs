@@ -250,7 +250,7 @@ fn middle_stiffness(forward: &Forward, at: &str) -> f64 {
 }
 
 /// Largest torque on a joint in the campaign, including the bench, or largest moment on the base in static tests \[N m\].
-fn largest_torque_nm(forward: &Forward, at: &str) -> f64 {
+pub(crate) fn largest_torque_nm(forward: &Forward, at: &str) -> f64 {
     if at == "base" {
         let nominal = forward.coefficients(&forward.nominal);
         let moments = forward.statics.iter().map(|p| p.largest_base_nm(&forward.layout, &nominal));

@@ -9,8 +9,8 @@ use crate::arm::effect::channel::Channel;
 use crate::arm::effect::empirical::{BEND, EVEN_TWIST, GAIN, KIND, ODD_TWIST};
 use crate::arm::effect::kind::{Absent, Parameter, Scale};
 use crate::reconcile::fit::descent::{Effort, Fit};
-use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::prepared::Forward;
+use crate::reconcile::model::candidates::largest_torque_nm;
 use crate::reconcile::model::parameters::Number::{Free, Stated};
 use crate::reconcile::model::parameters::{Candidate, FreeParameter};
 use rayon::prelude::*;
@@ -28,7 +28,7 @@ const LARGEST: f64 = 3.0;
 pub(crate) fn laws(forward: &Forward) -> Vec<Candidate> {
     let nominal = forward.coefficients(&forward.nominal);
     let torques_nm: Vec<f64> =
-        (0..forward.layout.joints.len()).map(|j| largest_nm(forward, &nominal, j)).collect();
+        forward.layout.joints.iter().map(|slot| largest_torque_nm(forward, &slot.name)).collect();
     let largest = torques_nm.iter().copied().fold(0.0, f64::max);
     let mut out = Vec::new();
     for ((slot, law), torque_nm) in forward.layout.joints.iter().zip(&nominal.laws).zip(torques_nm) {
@@ -139,10 +139,4 @@ fn law(at: &str, parameter: Parameter, absent: f64) -> Candidate {
     let free_parameters: Vec<FreeParameter> = free.collect();
     let starts = vec![free_parameters.iter().map(|free| free.u(absent)).collect()];
     Candidate { kind: &KIND, at: at.into(), free_parameters, numbers: Vec::new(), starts, twins: Vec::new() }
-}
-
-/// Largest torque on a joint in the campaign, including the bench \[N m\].
-fn largest_nm(forward: &Forward, nominal: &Coefficients, joint: usize) -> f64 {
-    let poses = forward.torques_nm(nominal).into_iter().filter_map(|torques| torques.get(joint).copied());
-    poses.map(f64::abs).chain(forward.bench_torques_nm(joint)).fold(0.0, f64::max)
 }
