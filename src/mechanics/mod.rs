@@ -25,6 +25,7 @@ pub(crate) mod linkage;
 pub(crate) mod lowest;
 pub(crate) mod lowest_lanes;
 pub(crate) mod modes;
+pub(crate) mod product;
 pub(crate) mod response;
 pub(crate) mod statics;
 

@@ -3,6 +3,7 @@
 
 use crate::generator::{self, Dice, Plan, Specimen};
 use armwright::catalog::Catalogs;
+use armwright::reconcile::verdict::page::campaign_page;
 use armwright::reconcile::{Campaign, Outcome, Verdict, reconcile};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -85,5 +86,10 @@ fn the_written_model_is_the_one_that_predicts_held_out_poses_best() {
         let given = outcome.models[0].kept_out_rms_sigma;
         assert!(written[0].kept_out_rms_sigma < given / 1.5, "{}", outcome.to_text());
         assert!(outcome.to_text().contains("* is in arm.corrected.json"));
+        let campaign = Campaign::read(&folder.path().join("fitted"), &Catalogs::default()).expect("sound");
+        let page = campaign_page(&campaign, &outcome).page().html;
+        for row in &outcome.models {
+            assert!(page.contains(&row.model), "the page does not show the model: {}", row.model);
+        }
     }
 }

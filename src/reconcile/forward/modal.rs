@@ -16,6 +16,7 @@ use crate::arm::joint_law::{Curve, JointLaw};
 use crate::arm::load::Payload;
 use crate::mechanics::chain::Chain;
 use crate::mechanics::chain::Posed;
+use crate::mechanics::product::{Panels, transposed_product};
 use crate::mechanics::{Wrench, displacement_at};
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::rows::ModalRow;
@@ -43,7 +44,8 @@ pub struct ModalTest {
     when: Moment,
     /// Index of each datum, and index of the mode it is compared with, from 0.
     pub modes: Vec<(usize, usize)>,
-    mass: DMatrix<f64>,
+    /// Mass matrix of the nominal arm without payload.
+    mass: Panels,
     /// Factors `L` of the matrix `L Lᵀ` that a unit of each added mass contributes. They have few columns,
     /// and only the rows of coordinates inboard of the mass.
     factors: Vec<DMatrix<f64>>,
@@ -117,7 +119,7 @@ impl ModalTest {
             payload: row.payload,
             when: row.moment(),
             modes: Vec::new(),
-            mass,
+            mass: Panels::of_rows(&mass),
             tip,
             spin,
             forces: DMatrix::zeros(layout.n, 0),
@@ -192,7 +194,7 @@ impl ModalTest {
     /// The mass matrix times shapes. The parts that parameters change have a low rank, so the matrix itself
     /// need not be assembled.
     fn momenta(&self, coefficients: &Coefficients, shapes: &DMatrix<f64>) -> DMatrix<f64> {
-        let mut out = &self.mass * shapes;
+        let mut out = self.mass.times(shapes);
         for (factor, amount) in self.factors.iter().zip(&coefficients.masses) {
             if *amount != 0.0 {
                 let reach = factor.nrows();
@@ -285,9 +287,8 @@ impl ModalTest {
             column.iter_mut().zip(&compliances).for_each(|(f, c)| *f *= c);
         }
         let momenta = self.momenta(coefficients, &shapes);
-        // products with a transpose written out are the fast ones
-        let reduced_mass = shapes.transpose() * &momenta;
-        let strain = self.forces.transpose() * &shapes;
+        let reduced_mass = transposed_product(&shapes, &momenta);
+        let strain = transposed_product(&self.forces, &shapes);
         let Some((amounts, a)) = unit_strains(strain, &reduced_mass) else { return Vec::new() };
         // symmetric but for rounding: the mean with the transpose makes it exactly so
         let eigen = SymmetricEigen::new((&a + a.transpose()) * 0.5);
@@ -582,7 +583,8 @@ mod tests {
         let added = test.momenta(&coefficients, &identity) - before;
         let pose_rad: Vec<f64> = campaign.modal[0].pose_deg.iter().map(|a| a.to_radians()).collect();
         let matrix = |chain: &Chain| {
-            chain.pose_rad(&pose_rad, &Payload::default(), Vector3::zeros()).mass_matrix() - &test.mass
+            chain.pose_rad(&pose_rad, &Payload::default(), Vector3::zeros()).mass_matrix()
+                - test.mass.times(&identity)
         };
         let direct: DMatrix<f64> =
             amounts.iter().map(|(mass, amount)| matrix(&layout.with_mass[*mass]) * *amount).sum();

@@ -9,8 +9,8 @@ use super::search::{Scored, Search};
 use super::unnamed::{self, Better};
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::reconcile::fit::descent::{
-    Effort, Fit, Normal, Point, Slopes, bounded_step, change, descent, evaluate, fit, jacobian, normal,
-    objective,
+    Effort, Fit, Normal, Point, Slopes, Weights, bounded_step, change, descent, evaluate, fit, jacobian,
+    normal, objective,
 };
 use crate::reconcile::fit::steps::WIDE;
 use crate::reconcile::model::parameters::Model;
@@ -357,19 +357,27 @@ impl<'a> Search<'a> {
     /// missing, a model that is linear about the fit so far does not show what a candidate does to the frequencies.
     fn by_size(&self, base: &Scored) -> Vec<(usize, Vec<f64>, f64)> {
         let model = self.model(&base.effects);
+        // frequencies are slow to solve for: displacements choose the start, frequencies the size
+        let smooth = self.weights.without_modes(self.forward);
         let best_size = |index: usize| {
             let candidate = &self.candidates[index];
+            let with = model.with(candidate);
             let sized = |start: &Vec<f64>, part: f64| -> Vec<f64> {
                 let own = candidate.free_parameters.iter().zip(start);
-                own.map(|(parameter, u)| parameter.scaled(*u, part)).collect()
+                let own = own.map(|(parameter, u)| parameter.scaled(*u, part));
+                base.u.iter().copied().chain(own).collect()
             };
-            let starts = candidate.starts.iter().flat_map(|start| SIZES.map(|part| sized(start, part)));
-            let tried = starts.map(|own| {
-                let u = [base.u.as_slice(), &own].concat();
-                let objective = evaluate(self.forward, &model.with(candidate), &u, self.weights).objective;
-                (index, u, -0.5 * objective)
-            });
-            tried.max_by(|a, b| a.2.total_cmp(&b.2))
+            let misfit = |u: &[f64], weights: &Weights| evaluate(self.forward, &with, u, weights).objective;
+            let best_start = |part: f64| {
+                let starts = candidate.starts.iter().map(|start| sized(start, part));
+                match candidate.starts.len() {
+                    0 | 1 => starts.last(),
+                    _ => least(starts.map(|u| (misfit(&u, &smooth), u))).map(|(_, u)| u),
+                }
+            };
+            let tried = SIZES.into_iter().filter_map(best_start);
+            let (objective, u) = least(tried.map(|u| (misfit(&u, self.weights), u)))?;
+            Some((index, u, -0.5 * objective))
         };
         let open = (0..self.candidates.len()).into_par_iter().filter(|i| !base.effects.contains(i));
         let mut tried: Vec<(usize, Vec<f64>, f64)> = open.filter_map(best_size).collect();
@@ -500,6 +508,11 @@ impl<'a> Search<'a> {
             })
             .collect()
     }
+}
+
+/// The parameters with the least misfit.
+fn least(tried: impl Iterator<Item = (f64, Vec<f64>)>) -> Option<(f64, Vec<f64>)> {
+    tried.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 fn by_score(a: &&Scored, b: &&Scored) -> std::cmp::Ordering {

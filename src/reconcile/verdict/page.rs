@@ -10,7 +10,9 @@ use crate::reconcile::records;
 use crate::report::html::campaign::{CampaignPage, Compared, Found, Ranged, Reading, Test, Weighed};
 use crate::report::html::pick::degrees;
 use crate::report::html::positions::{Position, Step};
-use crate::report::number::shortest;
+use crate::report::number::{fixed, shortest};
+use crate::report::section::PageSection;
+use crate::report::table::{Column, Table};
 
 /// The page of a campaign and its outcome.
 pub fn campaign_page(campaign: &Campaign, outcome: &Outcome) -> CampaignPage {
@@ -47,6 +49,7 @@ pub fn campaign_page(campaign: &Campaign, outcome: &Outcome) -> CampaignPage {
         quality: text.lines().filter(|l| is_quality(l)).map(|l| l.trim().to_string()).collect(),
         tests: outcome.next_tests.iter().map(test).collect(),
         records: records::report::sections(&outcome.records),
+        corrected_models: corrected_models(outcome),
         optimum: None,
         facts: facts(campaign, outcome),
     }
@@ -69,6 +72,32 @@ fn sentence(outcome: &Outcome) -> String {
         Verdict::Unexplained => "The model is wrong in a way that no known effect explains.".into(),
         Verdict::InsufficientData => "The readings do not suffice to tell what is behind the gap.".into(),
     }
+}
+
+/// The models that the corrected arm could have, where nothing explains the gap, and the laws without a name in them.
+fn corrected_models(outcome: &Outcome) -> Option<PageSection> {
+    if outcome.models.is_empty() {
+        return None;
+    }
+    let mut table = Table::new(vec![
+        Column::left("model"),
+        Column::unit("error on held-out poses", "sigma"),
+        Column::left("in arm.corrected.json"),
+    ]);
+    for row in &outcome.models {
+        let mark = if row.is_written { "yes" } else { "" };
+        table.row([row.model.clone(), fixed(row.kept_out_rms_sigma, 2), mark.into()]);
+    }
+    let laws = outcome.empirical.iter().map(|law| format!("{}: {}", law.law, law.may_be));
+    Some(PageSection {
+        title: "The corrected arm".into(),
+        words: ["The model in arm.corrected.json predicts held-out poses best. It explains nothing.".into()]
+            .into_iter()
+            .chain(laws)
+            .collect(),
+        tables: vec![("The models from which it was chosen.".into(), table)],
+        figures: Vec::new(),
+    })
 }
 
 /// Lines of the verdict about the readings themselves.

@@ -139,6 +139,8 @@ pub struct CampaignPage {
     pub tests: Vec<Test>,
     /// What records against time say, joint by joint.
     pub records: Vec<PageSection>,
+    /// The models that the corrected arm could have, where nothing explains the gap.
+    pub corrected_models: Option<PageSection>,
     /// What the corrected arm changes in the study's optimum.
     pub optimum: Option<PageSection>,
     /// Facts: names and values.
@@ -180,6 +182,7 @@ impl CampaignPage {
             "quality": self.quality,
             "tests": self.tests.iter().map(test).collect::<Vec<_>>(),
             "records": records,
+            "corrected_models": self.corrected_models.as_ref().map(|e| gallery.extra(e)),
             "optimum": self.optimum.as_ref().map(|e| gallery.extra(e)),
             "facts": self.facts,
         });

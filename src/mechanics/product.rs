@@ -1,0 +1,174 @@
+//! Products of dense matrices, in lanes: every sum runs in the order of its terms, on every machine.
+//!
+//! A library that chooses its kernel by the processor would give other last digits on another machine, and a plain loop
+//! over columns reads and writes every sum once a term. Here a block of eight rows by four columns stays in registers.
+
+use super::lanes::{Eight, LANES, LaneWork, Lanes, in_lanes};
+use nalgebra::{DMatrix, DMatrixView};
+
+/// Columns of the right factor that are taken at a time.
+const COLUMNS: usize = 4;
+
+/// The product `AᵀB`.
+///
+/// # Panics
+/// If the factors differ in their number of rows.
+pub(crate) fn transposed_product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut out = DMatrix::zeros(a.ncols(), b.ncols());
+    add_transposed_product(&mut out, a.as_view(), b.as_view());
+    out
+}
+
+/// Adds `AᵀB` to a matrix. Parts of tall factors that are added one after the other give the same sums as the whole.
+///
+/// # Panics
+/// If the sizes do not fit.
+pub(crate) fn add_transposed_product(out: &mut DMatrix<f64>, a: DMatrixView<f64>, b: DMatrixView<f64>) {
+    add(out, &Panels::of_columns(a), b);
+}
+
+/// The left factor of a product, eight of its rows side by side. Rows that fill up the last panel are zero.
+pub(crate) struct Panels {
+    /// For each panel, one entry a term of the sums.
+    eights: Vec<Eight>,
+    rows: usize,
+    terms: usize,
+}
+
+impl Panels {
+    /// A matrix, as a left factor.
+    pub(crate) fn of_rows(a: &DMatrix<f64>) -> Self {
+        let (rows, terms) = a.shape();
+        let mut eights = vec![[0.0; LANES]; rows.div_ceil(LANES) * terms];
+        for (term, column) in a.column_iter().enumerate() {
+            for (panel, part) in column.as_slice().chunks(LANES).enumerate() {
+                eights[panel * terms + term][..part.len()].copy_from_slice(part);
+            }
+        }
+        Self { eights, rows, terms }
+    }
+
+    /// The product with a right factor.
+    ///
+    /// # Panics
+    /// If the right factor has not as many rows as this one has columns.
+    pub(crate) fn times(&self, b: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut out = DMatrix::zeros(self.rows, b.ncols());
+        add(&mut out, self, b.as_view());
+        out
+    }
+
+    fn of_columns(a: DMatrixView<f64>) -> Self {
+        let (terms, rows) = a.shape();
+        let mut eights = vec![[0.0; LANES]; rows.div_ceil(LANES) * terms];
+        for (row, column) in a.column_iter().enumerate() {
+            let panel = &mut eights[row / LANES * terms..][..terms];
+            panel.iter_mut().zip(column.as_slice()).for_each(|(eight, x)| eight[row % LANES] = *x);
+        }
+        Self { eights, rows, terms }
+    }
+}
+
+fn add(out: &mut DMatrix<f64>, a: &Panels, b: DMatrixView<f64>) {
+    assert_eq!(a.terms, b.nrows(), "as many terms on either side");
+    assert_eq!(out.shape(), (a.rows, b.ncols()), "a place for every sum");
+    if a.terms > 0 {
+        let columns: Vec<_> = b.column_iter().collect();
+        let columns: Vec<&[f64]> = columns.iter().map(|column| column.as_slice()).collect();
+        in_lanes(Sums { out: out.as_mut_slice(), a, columns: &columns });
+    }
+}
+
+struct Sums<'a> {
+    out: &'a mut [f64],
+    a: &'a Panels,
+    columns: &'a [&'a [f64]],
+}
+
+impl LaneWork for Sums<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) {
+        let rows = self.a.rows;
+        for (panel, terms) in self.a.eights.chunks_exact(self.a.terms).enumerate() {
+            let first = panel * LANES;
+            let mut j = 0;
+            while j + COLUMNS <= self.columns.len() {
+                let to = &mut self.out[j * rows..(j + COLUMNS) * rows];
+                add_block::<V, COLUMNS>(to, first, rows, terms, &self.columns[j..j + COLUMNS]);
+                j += COLUMNS;
+            }
+            while j < self.columns.len() {
+                let to = &mut self.out[j * rows..(j + 1) * rows];
+                add_block::<V, 1>(to, first, rows, terms, &self.columns[j..j + 1]);
+                j += 1;
+            }
+        }
+    }
+}
+
+/// Adds the products of eight rows with `K` columns to the places from row `first` on.
+#[inline(always)]
+fn add_block<V: Lanes, const K: usize>(
+    to: &mut [f64],
+    first: usize,
+    rows: usize,
+    terms: &[Eight],
+    columns: &[&[f64]],
+) {
+    let count = LANES.min(rows - first);
+    let mut sums = [V::zero(); K];
+    for k in 0..K {
+        let mut own = [0.0; LANES];
+        own[..count].copy_from_slice(&to[k * rows + first..][..count]);
+        sums[k] = V::load(&own);
+    }
+    let mut factors: [&[f64]; K] = [&[]; K];
+    for k in 0..K {
+        factors[k] = &columns[k][..terms.len()];
+    }
+    for (term, eight) in terms.iter().enumerate() {
+        let x = V::load(eight);
+        for k in 0..K {
+            sums[k] = sums[k] + x * V::splat(factors[k][term]);
+        }
+    }
+    for k in 0..K {
+        to[k * rows + first..][..count].copy_from_slice(&sums[k].store()[..count]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers(rows: usize, columns: usize, seed: usize) -> DMatrix<f64> {
+        DMatrix::from_fn(rows, columns, |i, j| ((7 * i + 3 * j + seed) % 11) as f64 / 7.0 - 0.6)
+    }
+
+    #[test]
+    fn products_are_sums_of_products_for_every_size() {
+        for (rows, terms, columns) in
+            [(1, 1, 1), (8, 3, 4), (9, 5, 7), (23, 40, 16), (5, 0, 3), (0, 4, 2), (17, 2, 0)]
+        {
+            let (a, b) = (numbers(rows, terms, 1), numbers(terms, columns, 5));
+            let direct = DMatrix::from_fn(rows, columns, |i, j| {
+                (0..terms).fold(0.0, |sum, k| sum + a[(i, k)] * b[(k, j)])
+            });
+            // equal to the last bit: the order of the terms is that of the plain sum
+            assert_eq!(Panels::of_rows(&a).times(&b), direct);
+            assert_eq!(transposed_product(&a.transpose(), &b), direct);
+        }
+    }
+
+    #[test]
+    fn parts_that_are_added_up_give_the_whole() {
+        let (a, b) = (numbers(50, 9, 2), numbers(50, 6, 3));
+        let mut parts = DMatrix::zeros(9, 6);
+        for (first, count) in [(0, 13), (13, 37)] {
+            add_transposed_product(&mut parts, a.rows(first, count).into(), b.rows(first, count).into());
+        }
+        assert_eq!(parts, transposed_product(&a, &b));
+    }
+}
