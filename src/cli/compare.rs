@@ -2,8 +2,8 @@
 
 use super::failure::Failure;
 use super::finished::front_of_material;
-use super::values::number_list;
 use super::results::Results;
+use super::values::number_list;
 use super::write::write_all;
 use crate::report::compare::comparison::{Comparison, compare};
 use crate::report::compare::contender::Contender;

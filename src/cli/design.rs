@@ -49,7 +49,8 @@ pub(super) fn run(args: &DesignArgs, catalogs: &Catalogs) -> Result<String, Fail
     arm.name = format!("{} {}", study.name, args.id);
     let cases = problem.load_cases();
     let objectives = full_objectives(&arm, &cases);
-    let dir = args.out.clone().unwrap_or_else(|| args.results.join(format!("design-{}", file_name(&args.id))));
+    let dir =
+        args.out.clone().unwrap_or_else(|| args.results.join(format!("design-{}", file_name(&args.id))));
     let cases: Vec<Value> = cases.iter().map(crate::arm::load::LoadCase::to_json).collect();
     write_all(
         &dir,

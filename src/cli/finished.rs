@@ -1,7 +1,7 @@
 //! The output of a finished search: files, page and terminal text.
 
-use super::corrections;
 use super::beside::{Beside, another_stands, say_missing};
+use super::corrections;
 use super::failure::Failure;
 use super::manifest::{Files, RUN};
 use super::progress::Progress;
@@ -12,8 +12,8 @@ use crate::pareto::hypervolume::front_hypervolume;
 use crate::report::budget::{PickBudget, budget_csv};
 use crate::report::caveats::Caveats;
 use crate::report::certificate::certificate_section;
-use crate::report::file_names::file_names;
 use crate::report::facts::{SummaryFacts, constraint_words};
+use crate::report::file_names::file_names;
 use crate::report::front_svg::{FrontPicture, PlottedFront, designs_of, mixed_designs};
 use crate::report::front_table::FrontTable;
 use crate::report::html::gallery::Page;
@@ -65,7 +65,8 @@ pub(super) struct Written {
 }
 
 /// What `run.json` says is missing while only the front is kept.
-const NOTHING_ELSE: &str = "what goes with the front: budget.csv, summary.md, report.html, plots, ties and supplements";
+const NOTHING_ELSE: &str =
+    "what goes with the front: budget.csv, summary.md, report.html, plots, ties and supplements";
 
 /// The file that holds the front of one material.
 pub(super) fn front_of_material(file: &str) -> String {

@@ -6,6 +6,7 @@ use super::search::stopped_by_signal;
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::report::certificate::gap_words;
+use crate::report::front_table::FrontTable;
 use crate::report::words::{TERMINAL, wrap};
 use crate::study::check::{Claim, Completeness, check_front};
 use crate::study::read::read_study;
@@ -54,7 +55,9 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<String, Failu
     let run = &results.run;
     let (file, text) = results.text("study.json")?;
     let study = read_study(Document::parse(&file, &text)?, catalogs)?;
-    let table = results.front("front.csv")?;
+    let front = args.results.join("front.csv");
+    let table = FrontTable::parse(&front, &results.with_todays_ids("front.csv")?)
+        .map_err(|e| Failure::File(e.to_string()))?;
     let mut faults = Vec::new();
     if run["study_hash"].as_str() != Some(blake3::hash(text.as_bytes()).to_hex().as_str()) {
         faults.push("study.json is not the study that was run".to_string());
@@ -74,7 +77,10 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<String, Failu
     let stop = stopped_by_signal();
     let deadline = args.time_limit.map(|s| Instant::now() + Duration::from_secs_f64(s));
     // a file that is not there has none
-    let ties_csv = results.read_if_there(ties::FILE)?.unwrap_or_default();
+    let ties_csv = match results.is_there(ties::FILE) {
+        true => results.with_todays_ids(ties::FILE)?,
+        false => Vec::new(),
+    };
     let claim = Claim { table: &table, gap, ties_listed, ties_csv: &ties_csv };
     let check = check_front(&study, catalogs, &claim, stop, deadline);
     if stop.load(Ordering::Relaxed) {

@@ -108,6 +108,9 @@ mod tests {
     #[test]
     fn a_list_never_names_a_file_outside_its_folder() {
         let list = json!({"files": {"front.csv": "a", "plots/x.svg": "b", "../x": "c", "/etc/x": "d", "a/../../x": "e", "": "f"}});
-        assert_eq!(listed(&list).expect("a list").into_keys().collect::<Vec<_>>(), ["front.csv", "plots/x.svg"]);
+        assert_eq!(
+            listed(&list).expect("a list").into_keys().collect::<Vec<_>>(),
+            ["front.csv", "plots/x.svg"]
+        );
     }
 }

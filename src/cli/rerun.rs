@@ -81,7 +81,8 @@ pub(super) fn rerun(
         let results = dir.join("study").join(folder);
         let supplements = &SupplementArgs::default();
         let keep = &|files: &[(String, Vec<u8>)]| keep(&[kept.clone(), placed(files, folder)?].concat());
-        match search(asked, &With { catalogs, overlay, dir: &results, keep, how, supplements, record: None }) {
+        match search(asked, &With { catalogs, overlay, dir: &results, keep, how, supplements, record: None })
+        {
             Ok(written) => {
                 kept.extend(placed(&written.files, folder)?);
                 found.push(written);

@@ -158,7 +158,8 @@ fn roll_forward(folder: &Path) -> io::Result<()> {
     }
     // without a manifest all was moved already
     if let Some(manifest) = [RUN, VERDICT].into_iter().find(|name| ready.join(name).is_file()) {
-        let read = |folder: &Path| Earlier::read(folder, manifest).map_err(|e| io::Error::other(e.to_string()));
+        let read =
+            |folder: &Path| Earlier::read(folder, manifest).map_err(|e| io::Error::other(e.to_string()));
         let (new, old) = (read(&ready)?, read(folder)?);
         let mut changed = BTreeSet::new();
         for name in new.names().filter(|name| ready.join(name).exists()) {

@@ -97,12 +97,9 @@ impl Results {
         self.files.as_ref().is_none_or(|files| files.contains_key(name))
     }
 
-    /// A file of the result, if the result has it.
-    ///
-    /// # Errors
-    /// It is there and cannot be read.
-    pub(super) fn read_if_there(&self, name: &str) -> Result<Option<Vec<u8>>, Failure> {
-        (self.has(name) && self.folder.join(name).exists()).then(|| self.read(name)).transpose()
+    /// Whether the result has a file of this name, and it is there.
+    pub(super) fn is_there(&self, name: &str) -> bool {
+        self.has(name) && self.folder.join(name).exists()
     }
 
     /// A text of the result and the name that messages use for it.

@@ -76,7 +76,11 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failur
     let json = serde_json::to_string_pretty(&rows).expect("rows of numbers and strings serialize");
     if let Some(dir) = &args.out {
         let files = [("sizing.json", &json), ("sizing.txt", &text)];
-        write_all(dir, &files.map(|(name, text)| (name.to_string(), text.as_bytes().to_vec())), &[Path::new(&args.study)])?;
+        write_all(
+            dir,
+            &files.map(|(name, text)| (name.to_string(), text.as_bytes().to_vec())),
+            &[Path::new(&args.study)],
+        )?;
     }
     Ok(if args.json { json } else { text })
 }

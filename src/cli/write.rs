@@ -40,11 +40,7 @@ pub fn say(text: &str) {
 ///
 /// # Errors
 /// A file cannot be written, is one of the `inputs`, or belongs to a result.
-pub(super) fn write_all(
-    folder: &Path,
-    files: &[(String, Vec<u8>)],
-    inputs: &[&Path],
-) -> Result<(), Failure> {
+pub(super) fn write_all(folder: &Path, files: &[(String, Vec<u8>)], inputs: &[&Path]) -> Result<(), Failure> {
     let targets: Vec<PathBuf> = files.iter().map(|(name, _)| folder.join(name)).collect();
     refuse_overwriting(&targets, inputs)?;
     targets.iter().zip(files).try_for_each(|(target, (_, bytes))| write_file(target, bytes, inputs))
@@ -101,7 +97,8 @@ pub(super) fn is_same_file(a: &Path, b: &Path) -> bool {
 
 /// The file that lists a path as part of a result in the same folder.
 fn result_of(path: &Path) -> Result<Option<PathBuf>, Failure> {
-    let (folder, name) = (folder_of(path), path.file_name().and_then(|name| name.to_str()).unwrap_or_default());
+    let (folder, name) =
+        (folder_of(path), path.file_name().and_then(|name| name.to_str()).unwrap_or_default());
     for manifest in [RUN, VERDICT] {
         if let listed @ Earlier::Listed(_) = Earlier::read(&folder, manifest)?
             && listed.has(name, manifest)

@@ -79,7 +79,9 @@ mod tests {
     fn file_names_of_any_names_are_plain_short_and_different() {
         let long = "m".repeat(300);
         let longer = "m".repeat(301);
-        let names = ["PA6+X", "PA6 X", "pa6-x 2", "PA6/X", "", "..", "../..", "鋼", "鉄", "con", &long, &longer, "\n"];
+        let names = [
+            "PA6+X", "PA6 X", "pa6-x 2", "PA6/X", "", "..", "../..", "鋼", "鉄", "con", &long, &longer, "\n",
+        ];
         let made = file_names(names);
         assert_eq!(made.iter().collect::<HashSet<_>>().len(), names.len(), "{made:?}");
         for name in &made {

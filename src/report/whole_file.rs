@@ -71,7 +71,8 @@ fn sweep(folder: &Path) {
 fn is_left_behind(path: &Path) -> bool {
     let Ok(file) = File::open(path) else { return false };
     let age = file.metadata().and_then(|m| m.modified()).map(|at| at.elapsed().unwrap_or_default());
-    age.is_ok_and(|age| age > LEFT_BEHIND_AFTER) && !matches!(file.try_lock(), Err(std::fs::TryLockError::WouldBlock))
+    age.is_ok_and(|age| age > LEFT_BEHIND_AFTER)
+        && !matches!(file.try_lock(), Err(std::fs::TryLockError::WouldBlock))
 }
 
 /// Makes a folder and its parents.
@@ -175,7 +176,8 @@ mod tests {
             .map(|entry| entry.expect("an entry").file_name().into_string().expect("text"))
             .collect();
         names.sort();
-        let stay = [".armwright-new.tmp", ".armwright-notes.txt", ".armwright-used.tmp", "june.csv", "readings.tmp"];
+        let stay =
+            [".armwright-new.tmp", ".armwright-notes.txt", ".armwright-used.tmp", "june.csv", "readings.tmp"];
         assert_eq!(names, stay);
     }
 }
