@@ -2,6 +2,7 @@
 
 use super::failure::Failure;
 use super::finished::front_of_material;
+use super::result_folder::complete;
 use super::results::Results;
 use super::values::number_list;
 use super::write::write_all;
@@ -12,6 +13,7 @@ use crate::report::compare::thresholds::Thresholds;
 use crate::report::front_svg::{FrontPicture, PlottedFront};
 use crate::report::front_table::{FrontTable, FrontTableError};
 use crate::report::html::comparison::page as comparison_page;
+use crate::report::whole_file::folder_of;
 use clap::Args;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -129,6 +131,9 @@ struct Loaded {
 }
 
 fn load(results: &[PathBuf]) -> Result<Loaded, Failure> {
+    for path in results {
+        complete(&if path.is_dir() { path.clone() } else { folder_of(path) })?;
+    }
     if let [one] = results
         && one.is_dir()
     {
