@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 /// Writes a design of a result as an arm file, with every part resolved to numbers, and the cases in which it
 /// was judged. `analyze` reproduces its objectives from both files.
 #[derive(Debug, Args)]
-#[command(after_help = "Example: armwright design results/compare-materials 3k9 --out my-arm\n         \
+#[command(after_help = "Example: armwright design results/compare-materials x3k9 --out my-arm\n         \
                         armwright analyze my-arm/arm.json --cases my-arm/cases.json")]
 pub(crate) struct DesignArgs {
     /// Result folder of a study

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 pub(super) struct Lock {
     path: PathBuf,
     // closed, and with it unlocked, when dropped
-    _file: File,
+    file: File,
 }
 
 impl Lock {
@@ -20,7 +20,7 @@ impl Lock {
     pub(super) fn take(path: &Path, folder: &Path) -> Result<Self, Failure> {
         let failure = |e: &std::io::Error| Failure::file(path, "write", e);
         loop {
-            let mut file = File::options()
+            let file = File::options()
                 .create(true)
                 .truncate(false)
                 .read(true)
@@ -37,9 +37,10 @@ impl Lock {
             if !is_the_file_at(&file, path) {
                 continue;
             }
+            let mut lock = Self { path: path.to_path_buf(), file };
             let text = format!("process {}\n", std::process::id());
-            file.set_len(0).and_then(|()| file.write_all(text.as_bytes())).map_err(|e| failure(&e))?;
-            return Ok(Self { path: path.to_path_buf(), _file: file });
+            let told = lock.file.set_len(0).and_then(|()| lock.file.write_all(text.as_bytes()));
+            return told.map(|()| lock).map_err(|e| failure(&e));
         }
     }
 }

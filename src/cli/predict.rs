@@ -1,6 +1,7 @@
 //! `armwright predict`: adds the model's value to every reading.
 
 use super::failure::Failure;
+use super::result_folder::complete;
 use super::write::{say, write_file};
 use crate::arm::effect::channel::Channel;
 use crate::arm::file::read_arm;
@@ -11,6 +12,7 @@ use crate::reconcile::readings::placement::Placed;
 use crate::reconcile::readings::placement::Placement;
 use crate::reconcile::readings::source::Source;
 use crate::reconcile::readings::table::Table;
+use crate::report::whole_file::folder_of;
 use clap::Args;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -83,6 +85,7 @@ fn table(file: &Path, statement: &Statement) -> Result<Table, Failure> {
 /// # Errors
 /// All faults of the input files, or a file that cannot be written.
 pub(crate) fn run(args: &PredictArgs, catalogs: &Catalogs) -> Result<String, Failure> {
+    complete(&folder_of(&args.arm))?;
     let statement = read_statement(&args.campaign)?;
     let mut arms = vec![placed(&args.arm, catalogs)?];
     for file in other_arms(args, &statement) {

@@ -40,8 +40,9 @@ impl ResultFolder {
     ) -> Result<Self, Failure> {
         let state = folder.join(STATE);
         create_folder(&state).map_err(|e| Failure::file(folder, "create", &e))?;
-        let lock = Lock::take(&state.join("lock"), folder)?;
-        let out = Self { folder: folder.to_path_buf(), manifest, lock: Some(lock) };
+        // made first: whatever fails from here on, empty folders are removed again
+        let mut out = Self { folder: folder.to_path_buf(), manifest, lock: None };
+        out.lock = Some(Lock::take(&state.join("lock"), folder)?);
         roll_forward(folder).map_err(|e| Failure::file(folder, "complete", &e))?;
         sweep(&state.join("next")).map_err(|e| Failure::file(folder, "write in", &e))?;
         let earlier = Earlier::read(folder, manifest)?;
