@@ -8,7 +8,8 @@ from .sequence import around, unequal_pieces
 from .text import masked, numbers, words
 
 # Keys of JSON that may differ from run to run or from build to build.
-IGNORED_KEYS = {"elapsed_s", "designs_per_s", "threads", "tool_version", "platform", "tool"}
+# Hashes of files that have times in them differ too; the files themselves are compared.
+IGNORED_KEYS = {"elapsed_s", "designs_per_s", "threads", "tool_version", "platform", "tool", "files"}
 # Keys of JSON whose strings are sentences for people: their words may change, the numbers in them may not.
 SENTENCE_KEYS = {"question", "notes", "constraints", "reading", "reason", "reasons", "description", "separates", "follows", "why",
                  "words", "what"}

@@ -1,8 +1,10 @@
 //! `armwright compare`: fronts side by side.
 
 use super::failure::Failure;
+use super::finished::front_of_material;
+use super::result_folder::complete;
+use super::results::Results;
 use super::values::number_list;
-use super::version::refuse_earlier;
 use super::write::write_all;
 use crate::report::compare::comparison::{Comparison, compare};
 use crate::report::compare::contender::Contender;
@@ -11,6 +13,7 @@ use crate::report::compare::thresholds::Thresholds;
 use crate::report::front_svg::{FrontPicture, PlottedFront};
 use crate::report::front_table::{FrontTable, FrontTableError};
 use crate::report::html::comparison::page as comparison_page;
+use crate::report::whole_file::folder_of;
 use clap::Args;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -76,7 +79,8 @@ pub(crate) fn run(args: &CompareArgs) -> Result<String, Failure> {
     }
     let mut out = if args.json { json_text(&comparison) } else { comparison.to_text() };
     if let Some(dir) = &args.out {
-        write_all(dir, &files(&comparison, &loaded.contenders))?;
+        let inputs: Vec<&Path> = args.results.iter().map(PathBuf::as_path).collect();
+        write_all(dir, &files(&comparison, &loaded.contenders), &inputs)?;
         if !args.json {
             out.push_str(&format!(
                 "\nwritten to {}: compare.md, compare.csv, compare.svg, report.html\n",
@@ -127,39 +131,30 @@ struct Loaded {
 }
 
 fn load(results: &[PathBuf]) -> Result<Loaded, Failure> {
+    for path in results {
+        complete(&if path.is_dir() { path.clone() } else { folder_of(path) })?;
+    }
     if let [one] = results
         && one.is_dir()
     {
-        refuse_earlier_run(one)?;
         return Ok(Loaded { contenders: materials_of(one)?, one_study: false });
     }
     let labels = labels(results);
     let contenders = results
         .iter()
         .zip(&labels)
-        .map(|(path, label)| {
-            refuse_earlier_run(path)?;
-            Ok(Contender::new(label, front_at(path)?))
-        })
+        .map(|(path, label)| Ok(Contender::new(label, front_at(path)?)))
         .collect::<Result<Vec<_>, Failure>>()?;
     Ok(Loaded { contenders, one_study: results.len() > 1 && is_one_study(results) })
 }
 
-/// Refuses a result folder, or a front file in one, that an earlier version made. A front without a run.json beside it does
-/// not say what made it.
-fn refuse_earlier_run(path: &Path) -> Result<(), Failure> {
-    let dir = if path.is_dir() { path } else { path.parent().unwrap_or(path) };
-    let file = dir.join("run.json");
-    if !file.is_file() {
-        return Ok(());
-    }
-    refuse_earlier(&file, &run_json(dir)?)
-}
-
-/// The front of a result folder or a front file.
+/// The front of a result folder or a front file. A front without a `run.json` beside it does not say what made it.
 fn front_at(path: &Path) -> Result<FrontTable, Failure> {
     if path.is_dir() {
-        return read_front(&front_file(path)?);
+        return match Results::around(&front_file(path)?)? {
+            Some(results) => results.front("front.csv"),
+            None => read_front(&front_file(path)?),
+        };
     }
     if !path.exists() {
         return Err(Failure::File(format!(
@@ -167,7 +162,10 @@ fn front_at(path: &Path) -> Result<FrontTable, Failure> {
             path.display()
         )));
     }
-    read_front(path)
+    match (Results::around(path)?, path.file_name().and_then(|name| name.to_str())) {
+        (Some(results), Some(name)) if results.has(name) => results.front(name),
+        _ => read_front(path),
+    }
 }
 
 /// The overall front of a result folder.
@@ -189,33 +187,27 @@ fn read_front(file: &Path) -> Result<FrontTable, Failure> {
 
 /// The fronts of the materials of one result, after the overall front.
 fn materials_of(dir: &Path) -> Result<Vec<Contender>, Failure> {
-    let overall = read_front(&front_file(dir)?)?;
-    let mut out = vec![Contender { reference: true, ..Contender::new("all", overall) }];
-    for (name, slug) in listed_materials(dir)? {
-        out.push(Contender::new(&name, read_front(&dir.join(format!("front.{slug}.csv")))?));
+    front_file(dir)?;
+    let results = Results::open(dir)?;
+    let mut out = vec![Contender { reference: true, ..Contender::new("all", results.front("front.csv")?) }];
+    for (name, file) in listed_materials(&results.run) {
+        out.push(Contender::new(&name, results.front(&front_of_material(&file))?));
     }
     // the only front there is competes with nobody and answers for itself
     out[0].reference = out.len() > 1;
     Ok(out)
 }
 
-/// Name and slug of every material in run.json.
-fn listed_materials(dir: &Path) -> Result<Vec<(String, String)>, Failure> {
-    let run = run_json(dir)?;
+/// Every material of `run.json`, with what stands for it in the names of files.
+fn listed_materials(run: &Value) -> Vec<(String, String)> {
     let entries = run["materials"].as_array().cloned().unwrap_or_default();
     let text = |entry: &Value, key: &str| entry[key].as_str().map(String::from);
-    Ok(entries.iter().filter_map(|e| Some((text(e, "name")?, text(e, "slug")?))).collect())
-}
-
-fn run_json(dir: &Path) -> Result<Value, Failure> {
-    let path = dir.join("run.json");
-    let text = fs_err::read_to_string(&path).map_err(|e| Failure::File(e.to_string()))?;
-    serde_json::from_str(&text).map_err(|e| Failure::File(format!("{} is not JSON: {e}", path.display())))
+    entries.iter().filter_map(|e| Some((text(e, "name")?, text(e, "slug")?))).collect()
 }
 
 /// Whether all are result folders of the same study.
 fn is_one_study(results: &[PathBuf]) -> bool {
-    let study = |path: &PathBuf| run_json(path).ok()?["study"].as_str().map(String::from);
+    let study = |path: &PathBuf| Results::open(path).ok()?.run["study"].as_str().map(String::from);
     let first = results.first().and_then(study);
     first.is_some() && results.iter().all(|r| study(r) == first)
 }

@@ -2,10 +2,12 @@
 
 use super::asked::Asked;
 use super::failure::Failure;
+use super::result_folder::complete;
 use crate::arm::Arm;
 use crate::arm::file::read_arm_document;
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
+use crate::report::whole_file::folder_of;
 use crate::report::words::{TERMINAL, wrap};
 use crate::study::definition::Study;
 use crate::study::effects::{Correction, apply_corrections};
@@ -24,6 +26,7 @@ pub(super) fn from_arm_file(
     text: &str,
     catalogs: &Catalogs,
 ) -> Result<Asked, Failure> {
+    complete(&folder_of(path))?;
     let name = path.display().to_string();
     let arm_text = fs_err::read_to_string(path).map_err(|e| Failure::File(e.to_string()))?;
     let arm = read_arm_document(Document::parse(&name, &arm_text)?, catalogs)?;

@@ -2,11 +2,12 @@
 
 use super::failure::Failure;
 use super::finished::{catalogs_hash, pretty};
-use super::version::refuse_earlier;
+use super::results::Results;
 use super::write::write_all;
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
-use crate::space::design::{full_objectives, number_of};
+use crate::report::file_names::file_name;
+use crate::space::design::full_objectives;
 use crate::space::problem::ArmProblem;
 use crate::study::read::read_study;
 use clap::Args;
@@ -16,7 +17,7 @@ use std::path::{Path, PathBuf};
 /// Writes a design of a result as an arm file, with every part resolved to numbers, and the cases in which it
 /// was judged. `analyze` reproduces its objectives from both files.
 #[derive(Debug, Args)]
-#[command(after_help = "Example: armwright design results/compare-materials 3k9 --out my-arm\n         \
+#[command(after_help = "Example: armwright design results/compare-materials x3k9 --out my-arm\n         \
                         armwright analyze my-arm/arm.json --cases my-arm/cases.json")]
 pub(crate) struct DesignArgs {
     /// Result folder of a study
@@ -30,8 +31,9 @@ pub(crate) struct DesignArgs {
 
 /// Executes the verb.
 pub(super) fn run(args: &DesignArgs, catalogs: &Catalogs) -> Result<String, Failure> {
-    check_catalogs(&args.results, catalogs)?;
-    let study = read_study(Document::read(&args.results.join("study.json"))?, catalogs)?;
+    let results = open_results(&args.results, catalogs)?;
+    let (file, text) = results.text("study.json")?;
+    let study = read_study(Document::parse(&file, &text)?, catalogs)?;
     let unknown = || {
         Failure::Usage(format!(
             "{} has no design \"{}\": take a design_id from its front.csv",
@@ -39,7 +41,7 @@ pub(super) fn run(args: &DesignArgs, catalogs: &Catalogs) -> Result<String, Fail
             args.id
         ))
     };
-    let number = number_of(&args.id).ok_or_else(unknown)?;
+    let number = results.number_of(&args.id).ok_or_else(unknown)?;
     let space = study.space.excerpt(catalogs, &[number]).ok_or_else(unknown)?;
     let problem = ArmProblem::new(&space, catalogs);
     let chosen = problem.options_of_whole(number).ok_or_else(unknown)?;
@@ -47,11 +49,13 @@ pub(super) fn run(args: &DesignArgs, catalogs: &Catalogs) -> Result<String, Fail
     arm.name = format!("{} {}", study.name, args.id);
     let cases = problem.load_cases();
     let objectives = full_objectives(&arm, &cases);
-    let dir = args.out.clone().unwrap_or_else(|| args.results.join(format!("design-{}", args.id)));
+    let dir =
+        args.out.clone().unwrap_or_else(|| args.results.join(format!("design-{}", file_name(&args.id))));
     let cases: Vec<Value> = cases.iter().map(crate::arm::load::LoadCase::to_json).collect();
     write_all(
         &dir,
         &[("arm.json".into(), pretty(&arm.to_json())), ("cases.json".into(), pretty(&json!(cases)))],
+        &[],
     )?;
     Ok(format!(
         "design {} of {}: tip deflection {:.4} mm, mass {:.3} kg, lowest mode {:.3} Hz\n\
@@ -68,20 +72,17 @@ pub(super) fn run(args: &DesignArgs, catalogs: &Catalogs) -> Result<String, Fail
     ))
 }
 
-/// Reads the facts of a result's run. Fails if an earlier version made the result, or if it was made with other
-/// catalogs, because an id would then name another design.
-pub(super) fn check_catalogs(results: &Path, catalogs: &Catalogs) -> Result<Value, Failure> {
-    let path = results.join("run.json");
-    let text = fs_err::read_to_string(&path).map_err(|e| Failure::File(e.to_string()))?;
-    let run: Value =
-        serde_json::from_str(&text).map_err(|e| Failure::File(format!("{}: {e}", path.display())))?;
-    refuse_earlier(&path, &run)?;
+/// Opens the result of a study. Fails if it is not one whole result, if an earlier version made it, or if it was made with
+/// other catalogs, because an id would then name another design.
+pub(super) fn open_results(folder: &Path, catalogs: &Catalogs) -> Result<Results, Failure> {
+    let results = Results::open(folder)?;
+    let run = &results.run;
     if run["catalogs_hash"].as_str() == Some(&catalogs_hash(catalogs)) {
-        return Ok(run);
+        return Ok(results);
     }
     let hint = match run["catalogs"].as_str() {
         Some(folder) => format!("it used --catalogs {folder}; give the same folder, unchanged"),
         None => "it used the built-in catalogs of another version; run the study again".into(),
     };
-    Err(Failure::Check(format!("{} was made with other catalogs: {hint}", results.display())))
+    Err(Failure::Check(format!("{} was made with other catalogs: {hint}", folder.display())))
 }

@@ -33,6 +33,9 @@ pub enum Failure {
     /// A check found a difference.
     #[error("{0}")]
     Check(String),
+    /// Another process is writing the same results.
+    #[error("{0}")]
+    Locked(String),
 }
 
 impl Failure {
@@ -48,6 +51,7 @@ impl Failure {
             Failure::File(_) => 7,
             Failure::Interrupted(_) => 8,
             Failure::Check(_) => 9,
+            Failure::Locked(_) => 12,
         }
     }
 

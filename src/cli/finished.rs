@@ -1,10 +1,11 @@
 //! The output of a finished search: files, page and terminal text.
 
+use super::beside::{Beside, another_stands, say_missing};
 use super::corrections;
 use super::failure::Failure;
+use super::manifest::{Files, RUN};
 use super::progress::Progress;
-use super::supplements::{FILES, Found, SupplementArgs};
-use super::write::write_all;
+use super::supplements::{Found, SupplementArgs};
 use crate::arm::effect::entry::Effect;
 use crate::catalog::Catalogs;
 use crate::pareto::hypervolume::front_hypervolume;
@@ -12,10 +13,10 @@ use crate::report::budget::{PickBudget, budget_csv};
 use crate::report::caveats::Caveats;
 use crate::report::certificate::certificate_section;
 use crate::report::facts::{SummaryFacts, constraint_words};
+use crate::report::file_names::file_names;
 use crate::report::front_svg::{FrontPicture, PlottedFront, designs_of, mixed_designs};
 use crate::report::front_table::FrontTable;
 use crate::report::html::gallery::Page;
-use crate::report::html::render::PLOTS;
 use crate::report::html::study::StudyPage;
 use crate::report::number::significant;
 use crate::report::picks;
@@ -33,16 +34,20 @@ use crate::study::effects::Correction;
 use crate::study::outcome::StudyOutcome;
 use crate::study::page::study_page;
 use crate::study::range::range_words;
-use crate::study::table::{front_table, slug};
+use crate::study::table::front_table;
 use crate::study::ties::ties;
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-/// The output of a finished search.
+/// Keeps files as a result, which replaces what was kept before; returns the names of those that could not be kept because
+/// other files stand there.
+pub(super) type Keep<'a> = dyn Fn(&[(String, Vec<u8>)]) -> Result<Vec<String>, Failure> + Sync + 'a;
+
+/// A finished search whose files are kept.
 pub(super) struct Written {
     /// Files by name.
-    pub files: Vec<(String, Vec<u8>)>,
+    pub files: Files,
     /// Text for the terminal.
     pub terminal: String,
     /// The front of all designs.
@@ -59,40 +64,13 @@ pub(super) struct Written {
     pub elapsed_s: f64,
 }
 
-impl Written {
-    /// Writes the files, and removes files of an earlier run that this run does not write: they would belong
-    /// to another front.
-    ///
-    /// # Errors
-    /// A file cannot be written or removed.
-    pub(super) fn write(&self, dir: &Path) -> Result<(), Failure> {
-        let earlier = match dir.join("run.json").exists() {
-            true => of_some_runs(dir),
-            false => Vec::new(),
-        };
-        write_all(dir, &self.files)?;
-        for name in earlier.iter().filter(|name| self.files.iter().all(|(own, _)| own != *name)) {
-            let path = dir.join(name);
-            fs_err::remove_file(&path).map_err(|e| Failure::file(&path, "remove", &e))?;
-        }
-        Ok(())
-    }
-}
+/// What `run.json` says is missing while only the front is kept.
+const NOTHING_ELSE: &str =
+    "what goes with the front: budget.csv, summary.md, report.html, plots, ties and supplements";
 
-/// Names of the files in a folder of results that not every run writes.
-fn of_some_runs(dir: &Path) -> Vec<String> {
-    let names = |dir: &Path| -> Vec<String> {
-        let entries = std::fs::read_dir(dir).into_iter().flatten().flatten();
-        entries.filter_map(|entry| entry.file_name().into_string().ok()).collect()
-    };
-    let is_plot = |name: &str| name.ends_with(".svg") || name.ends_with(".csv");
-    let is_of_material =
-        |name: &str| is_front_of_material(name) || name.starts_with("ties.") && name.ends_with(".csv");
-    let is_of_some = |name: &String| is_of_material(name) || FILES.contains(&name.as_str());
-    let mut out: Vec<String> = names(dir).into_iter().filter(is_of_some).collect();
-    let plots = names(&dir.join(PLOTS)).into_iter().filter(|name| is_plot(name));
-    out.extend(plots.map(|name| format!("{PLOTS}/{name}")));
-    out
+/// The file that holds the front of one material.
+pub(super) fn front_of_material(file: &str) -> String {
+    format!("front.{file}.csv")
 }
 
 /// Whether a file holds the front of one material.
@@ -130,46 +108,97 @@ pub(super) struct Finished<'a> {
 }
 
 impl Finished<'_> {
-    /// All that is written and said of it, with the supplements that were asked for.
+    /// Keeps the front and says how it was found; then works out what goes with it, and keeps that too. A part that fails
+    /// is left out, with a warning: the front stands.
     ///
     /// # Errors
-    /// A supplement cannot be worked out.
-    pub(super) fn files(&self, asked: &SupplementArgs, stop: &AtomicBool) -> Result<Written, Failure> {
-        let summary = self.summary();
-        let Self { problem, catalogs, outcome, near, .. } = *self;
-        let (is_exact, ties_listed) = (self.exact.is_some(), self.ties_listed());
-        let found = Found { problem, catalogs, outcome, near, is_exact, ties_listed, stop };
-        let supplements = asked.work_out(&found, &summary.overall);
-        // succeeds only on an empty folder: earlier results stay
-        let supplements = supplements.inspect_err(|_| drop(std::fs::remove_dir(self.dir)))?;
-        let mut files = self.tables(&summary);
-        let picture = picture(&summary);
-        files.push(("front.svg".into(), picture.clone().into_bytes()));
-        files.push(("budget.csv".into(), budget_csv(&summary.budgets).into_bytes()));
-        let listed = supplements.iter().filter_map(|s| s.file.clone());
-        files.extend(listed.map(|(name, bytes)| (name.to_string(), bytes)));
-        let markdown: String = supplements.iter().map(|s| s.markdown.as_str()).collect();
-        files.push(("summary.md".into(), (summary_md(&summary) + &markdown).into_bytes()));
-        let run = self.run_json(&summary, &supplements);
-        files.push(("run.json".into(), pretty(&run)));
-        let sections = supplements.iter().filter_map(|s| s.section.clone()).collect();
-        files.extend(self.page(&summary, picture, sections, &run).into_files());
-        files.push(("study.json".into(), self.text.as_bytes().to_vec()));
+    /// The front cannot be written, or the user stops what follows it.
+    pub(super) fn keep(
+        &self,
+        asked: &SupplementArgs,
+        stop: &AtomicBool,
+        keep: &Keep,
+    ) -> Result<Written, Failure> {
+        let mut summary = self.summary();
+        let tables = self.tables(&summary);
+        let mut first = tables.clone();
+        first.push((RUN.into(), pretty(&self.run_json(&summary, &[], &[NOTHING_ELSE.to_string()]))));
+        let mut left_out = keep(&first)?;
+        let mut beside = Beside::default();
+        let (problem, catalogs) = (self.problem, self.catalogs);
+        let budgets = beside.make("budget.csv", || budgets(problem, self.whole, catalogs, &summary.overall));
+        summary.budgets = budgets.unwrap_or_default();
+        let supplements = self.supplements(asked, stop, &summary, &mut beside)?;
+        let run = self.fill(&summary, &supplements, &mut beside);
+        let terminal = beside.make("the summary on the terminal", || terminal_summary(&summary));
+        let mut files = [tables, beside.files].concat();
+        files.push((RUN.into(), pretty(&run)));
+        match keep(&files) {
+            Ok(names) => left_out = names,
+            Err(e) => {
+                beside.missing.push(format!("what goes with the front: {e}"));
+                files = first;
+            }
+        }
+        beside.missing.extend(left_out.iter().map(|name| another_stands(name)));
+        say_missing(&beside.missing);
+        files.retain(|(name, _)| !left_out.contains(name));
         let paragraphs = supplements.iter().map(|s| &s.terminal).filter(|text| !text.is_empty());
         let paragraphs: String = paragraphs.map(|text| format!("\n{text}")).collect();
-        let terminal = terminal_summary(&summary) + &paragraphs;
-        let (status, gap) = (self.outcome.sweep.status, summary.facts.gap);
         Ok(Written {
             files,
-            terminal,
-            status,
-            gap,
+            terminal: terminal.unwrap_or_default() + &paragraphs,
+            status: self.outcome.sweep.status,
+            gap: summary.facts.gap,
             is_whole: summary.facts.is_whole(),
             proved_to_mass_kg: self.proved_to_mass_kg(&summary.facts),
             progress: self.progress(&summary.facts),
             elapsed_s: self.elapsed_s,
             front: summary.overall,
         })
+    }
+
+    /// The supplements that were asked for, with their files.
+    ///
+    /// # Errors
+    /// The user stops it.
+    fn supplements(
+        &self,
+        asked: &SupplementArgs,
+        stop: &AtomicBool,
+        summary: &SummaryInput,
+        beside: &mut Beside,
+    ) -> Result<Vec<Supplement>, Failure> {
+        let Self { problem, catalogs, outcome, near, .. } = *self;
+        let (is_exact, ties_listed) = (self.exact.is_some(), self.ties_listed());
+        let found = Found { problem, catalogs, outcome, near, is_exact, ties_listed, stop };
+        let what = "what was asked for in addition to the front";
+        let supplements = beside.make(what, || asked.work_out(&found, &summary.overall));
+        let supplements = supplements.transpose()?.unwrap_or_default();
+        let listed = supplements.iter().filter_map(|s| s.file.clone());
+        beside.files.extend(listed.map(|(name, bytes)| (name.to_string(), bytes)));
+        Ok(supplements)
+    }
+
+    /// Makes tables, picture, summary and page, and the facts of the run.
+    fn fill(&self, summary: &SummaryInput, supplements: &[Supplement], beside: &mut Beside) -> Value {
+        for (file, of) in self.file_names().iter().zip(&self.outcome.by_material) {
+            if !of.ties_listed {
+                beside.file(&format!("ties.{file}.csv"), || ties(self.problem, &of.front).to_csv());
+            }
+        }
+        beside.file("budget.csv", || budget_csv(&summary.budgets).into_bytes());
+        let picture = beside.make("front.svg", || picture(summary)).unwrap_or_default();
+        if !picture.is_empty() {
+            beside.files.push(("front.svg".into(), picture.clone().into_bytes()));
+        }
+        let markdown: String = supplements.iter().map(|s| s.markdown.as_str()).collect();
+        beside.file("summary.md", || (summary_md(summary) + &markdown).into_bytes());
+        let run = self.run_json(summary, supplements, &beside.missing);
+        let sections = supplements.iter().filter_map(|s| s.section.clone()).collect();
+        let page = beside.make("report.html and plots", || self.page(summary, picture, sections, &run));
+        beside.files.extend(page.map(Page::into_files).unwrap_or_default());
+        self.run_json(summary, supplements, &beside.missing)
     }
 
     /// The mass up to which the front is proved whole: the study's limit of mass, if no design within it is missing.
@@ -189,25 +218,29 @@ impl Finished<'_> {
         }
     }
 
-    /// The front, and the front and ties of every material.
-    fn tables(&self, summary: &SummaryInput) -> Vec<(String, Vec<u8>)> {
-        let mut files = vec![("front.csv".to_string(), summary.overall.to_csv())];
-        for (material, of) in summary.materials.iter().zip(&self.outcome.by_material) {
-            let slug = slug(&material.name);
-            files.push((format!("front.{slug}.csv"), material.front.to_csv()));
-            if !of.ties_listed {
-                files.push((format!("ties.{slug}.csv"), ties(self.problem, &of.front).to_csv()));
-            }
-        }
+    /// The study, its front, and the front of every material.
+    fn tables(&self, summary: &SummaryInput) -> Files {
+        let mut files = vec![
+            ("front.csv".to_string(), summary.overall.to_csv()),
+            ("study.json".to_string(), self.text.as_bytes().to_vec()),
+        ];
+        let fronts = self.file_names().into_iter().zip(&summary.materials);
+        files.extend(fronts.map(|(file, of)| (front_of_material(&file), of.front.to_csv())));
         files
     }
 
+    /// What stands for each material in the names of files.
+    fn file_names(&self) -> Vec<String> {
+        file_names(self.outcome.by_material.iter().map(|of| of.name.as_str()))
+    }
+
+    /// Fronts and facts; what a kilogram buys is worked out later.
     fn summary(&self) -> SummaryInput {
         let (study, sweep) = (self.study, &self.outcome.sweep);
         let cost = |name: &str| self.catalogs.materials.iter().find(|m| m.name == name)?.cost_eur_per_kg;
         let overall = front_table(self.problem, self.catalogs, &self.outcome.front);
         SummaryInput {
-            budgets: budgets(self.problem, self.whole, self.catalogs, &overall),
+            budgets: Vec::new(),
             facts: SummaryFacts {
                 study: study.name.clone(),
                 question: study.question.clone(),
@@ -276,14 +309,15 @@ impl Finished<'_> {
         space.judged_cases.iter().map(|&i| space.cases[i].name.clone()).collect()
     }
 
-    fn run_json(&self, summary: &SummaryInput, supplements: &[Supplement]) -> Value {
+    fn run_json(&self, summary: &SummaryInput, supplements: &[Supplement], not_written: &[String]) -> Value {
         let (study, sweep) = (self.study, &self.outcome.sweep);
         let materials: Vec<Value> = summary
             .materials
             .iter()
-            .map(|m| {
+            .zip(self.file_names())
+            .map(|(m, file)| {
                 json!({
-                    "name": m.name, "slug": slug(&m.name), "status": m.status,
+                    "name": m.name, "slug": file, "status": m.status,
                     "front_size": m.front.rows.len(), "cost_eur_per_kg": m.cost_eur_per_kg,
                     "ties_listed": m.ties_listed,
                 })
@@ -323,6 +357,7 @@ impl Finished<'_> {
             "gap": self.exact.and_then(|exact| exact.gap),
             "proved_to_mass_kg": self.proved_to_mass_kg(&summary.facts),
             "ties_listed": self.ties_listed(),
+            "not_written": not_written,
         });
         for (key, value) in supplements.iter().filter_map(|s| s.run.as_ref()) {
             run[*key] = value.clone();

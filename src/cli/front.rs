@@ -1,6 +1,6 @@
 //! `armwright front check`: is a finished front correct and complete?
 
-use super::design::check_catalogs;
+use super::design::open_results;
 use super::failure::Failure;
 use super::search::stopped_by_signal;
 use crate::catalog::Catalogs;
@@ -51,12 +51,13 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<String, Failu
     if args.time_limit.is_some_and(|s| s.is_nan() || s <= 0.0) {
         return Err(Failure::Usage("--time-limit is a number of seconds above zero".into()));
     }
-    let run = check_catalogs(&args.results, catalogs)?;
-    let file = args.results.join("study.json");
-    let text = fs_err::read_to_string(&file).map_err(|e| Failure::File(e.to_string()))?;
-    let study = read_study(Document::parse(&file.display().to_string(), &text)?, catalogs)?;
-    let table =
-        FrontTable::read(&args.results.join("front.csv")).map_err(|e| Failure::File(e.to_string()))?;
+    let results = open_results(&args.results, catalogs)?;
+    let run = &results.run;
+    let (file, text) = results.text("study.json")?;
+    let study = read_study(Document::parse(&file, &text)?, catalogs)?;
+    let front = args.results.join("front.csv");
+    let table = FrontTable::parse(&front, &results.with_todays_ids("front.csv")?)
+        .map_err(|e| Failure::File(e.to_string()))?;
     let mut faults = Vec::new();
     if run["study_hash"].as_str() != Some(blake3::hash(text.as_bytes()).to_hex().as_str()) {
         faults.push("study.json is not the study that was run".to_string());
@@ -76,7 +77,10 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<String, Failu
     let stop = stopped_by_signal();
     let deadline = args.time_limit.map(|s| Instant::now() + Duration::from_secs_f64(s));
     // a file that is not there has none
-    let ties_csv = fs_err::read(args.results.join(ties::FILE)).unwrap_or_default();
+    let ties_csv = match results.is_there(ties::FILE) {
+        true => results.with_todays_ids(ties::FILE)?,
+        false => Vec::new(),
+    };
     let claim = Claim { table: &table, gap, ties_listed, ties_csv: &ties_csv };
     let check = check_front(&study, catalogs, &claim, stop, deadline);
     if stop.load(Ordering::Relaxed) {

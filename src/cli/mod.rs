@@ -3,6 +3,7 @@
 
 pub(crate) mod analyze;
 pub(crate) mod asked;
+pub(crate) mod beside;
 pub(crate) mod catalog;
 pub(crate) mod compare;
 pub(crate) mod corrections;
@@ -10,11 +11,15 @@ pub(crate) mod design;
 pub(crate) mod failure;
 pub(crate) mod finished;
 pub(crate) mod front;
+pub(crate) mod lock;
+pub(crate) mod manifest;
 pub(crate) mod new;
 pub(crate) mod predict;
 pub(crate) mod progress;
 pub(crate) mod reconcile;
 pub(crate) mod rerun;
+pub(crate) mod result_folder;
+pub(crate) mod results;
 pub(crate) mod run;
 pub(crate) mod search;
 pub(crate) mod size;
@@ -26,4 +31,4 @@ pub(crate) mod write;
 
 pub use failure::Failure;
 pub use verbs::{Cli, run};
-pub use write::print;
+pub use write::{print, printed, say};

@@ -52,7 +52,7 @@ pub(crate) fn run(args: &NewArgs, catalogs: &Catalogs) -> Result<String, Failure
         let there = args.out.join(name);
         return Err(Failure::Usage(format!("{} is there already: choose another folder", there.display())));
     }
-    write_all(&args.out, &files)?;
+    write_all(&args.out, &files, &[&args.arm])?;
     let out = args.out.display();
     Ok(format!(
         "written to {out}\n\nRead {}, fill in the tables, and run: armwright reconcile {out}\n",

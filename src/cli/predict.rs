@@ -1,6 +1,8 @@
 //! `armwright predict`: adds the model's value to every reading.
 
 use super::failure::Failure;
+use super::result_folder::complete;
+use super::write::{say, write_file};
 use crate::arm::effect::channel::Channel;
 use crate::arm::file::read_arm;
 use crate::catalog::Catalogs;
@@ -10,6 +12,7 @@ use crate::reconcile::readings::placement::Placed;
 use crate::reconcile::readings::placement::Placement;
 use crate::reconcile::readings::source::Source;
 use crate::reconcile::readings::table::Table;
+use crate::report::whole_file::folder_of;
 use clap::Args;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -82,6 +85,7 @@ fn table(file: &Path, statement: &Statement) -> Result<Table, Failure> {
 /// # Errors
 /// All faults of the input files, or a file that cannot be written.
 pub(crate) fn run(args: &PredictArgs, catalogs: &Catalogs) -> Result<String, Failure> {
+    complete(&folder_of(&args.arm))?;
     let statement = read_statement(&args.campaign)?;
     let mut arms = vec![placed(&args.arm, catalogs)?];
     for file in other_arms(args, &statement) {
@@ -92,12 +96,12 @@ pub(crate) fn run(args: &PredictArgs, catalogs: &Catalogs) -> Result<String, Fai
     let remark = remark.map_or(String::new(), |remark| format!("{remark}.\n"));
     let Some(out) = &args.out else {
         // the readings are the output; what is said about them must not be among them
-        eprint!("{remark}");
+        say(&remark);
         return Ok(text);
     };
-    if let Some(folder) = out.parent().filter(|f| !f.as_os_str().is_empty()) {
-        fs_err::create_dir_all(folder).map_err(|e| Failure::file(folder, "create", &e))?;
-    }
-    fs_err::write(out, text).map_err(|e| Failure::file(out, "write", &e))?;
+    let others = other_arms(args, &statement);
+    let inputs = [&args.arm, &args.readings, &args.campaign].into_iter().chain(&others);
+    let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
+    write_file(out, text.as_bytes(), &inputs)?;
     Ok(format!("{remark}written to {}\n", out.display()))
 }

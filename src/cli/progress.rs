@@ -2,6 +2,7 @@
 //! `--progress FILE` asks for.
 
 use super::failure::Failure;
+use super::write::say;
 use crate::exact::Known;
 use crate::report::number::percent_rounded;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -117,7 +118,7 @@ impl<'r> Watch<'r> {
             self.look(finished, now, |_| bar.set_position(visited()));
             bar.finish_and_clear();
         } else {
-            let line = |elapsed: Duration| eprintln!("{}", visited_line(total, visited(), elapsed));
+            let line = |elapsed: Duration| say(&format!("{}\n", visited_line(total, visited(), elapsed)));
             self.look(finished, now, in_lines(line));
         }
     }
@@ -131,7 +132,7 @@ impl<'r> Watch<'r> {
             self.look(finished, now, |elapsed| spinner.set_message(line(elapsed)));
             spinner.finish_and_clear();
         } else {
-            self.look(finished, now, in_lines(|elapsed| eprintln!("{}", line(elapsed))));
+            self.look(finished, now, in_lines(|elapsed| say(&format!("{}\n", line(elapsed)))));
         }
     }
 }

@@ -1,14 +1,20 @@
 //! `armwright reconcile`: where model and measurement disagree, what is missing, and what that changes.
 
+use super::asked::load_study;
+use super::beside::{Beside, another_stands, say_missing};
 use super::failure::Failure;
-use super::rerun::{Rerun, rerun};
+use super::manifest::{Files, VERDICT};
+use super::rerun::{CHANGES, Rerun, rerun};
+use super::result_folder::ResultFolder;
 use super::search::SearchArgs;
-use super::write::write_all;
+use super::write::refuse_inputs;
 use crate::catalog::Catalogs;
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::together::reconcile;
+use crate::reconcile::verdict::files::{CORRECTED_FILE, corrected_files};
 use crate::reconcile::verdict::outcome::Outcome;
 use crate::reconcile::verdict::page::campaign_page;
+use crate::report::file_names::file_name;
 use crate::report::words::{TERMINAL, wrap};
 use clap::Args;
 use serde_json::Value;
@@ -53,7 +59,7 @@ pub(crate) fn run(
 ) -> Result<(Outcome, String), Failure> {
     match &args.study {
         // a study that does not read, or a search that does not suit it, fails now and not after the fits
-        Some(study) => drop(args.how.check(&super::asked::load_study(study, catalogs)?.0, catalogs)?),
+        Some(study) => drop(args.how.check(&load_study(study, catalogs)?.0, catalogs)?),
         None if !args.how.is_default() => {
             return Err(Failure::Usage("--search and --time-limit are for the runs of --study".into()));
         }
@@ -63,26 +69,68 @@ pub(crate) fn run(
     for folder in &args.campaigns {
         read.push(Campaign::read(folder, catalogs)?);
     }
+    let mut inputs: Vec<PathBuf> = read.iter().flat_map(Campaign::input_files).collect();
+    inputs.extend(args.study.iter().map(PathBuf::from));
     let first = read.remove(0);
     let campaign = first.join(read).map_err(Failure::Usage)?;
-    let out = args.out.clone().unwrap_or_else(|| Path::new("results").join(&campaign.statement.name));
+    let folder = file_name(&campaign.statement.name);
+    let out = args.out.clone().unwrap_or_else(|| Path::new("results").join(folder));
+    let planned = planned(args, &campaign, catalogs)?;
+    refuse_inputs(&planned.iter().map(|name| out.join(name)).collect::<Vec<_>>(), &inputs)?;
+    let folder = ResultFolder::open(&out, VERDICT, &planned)?;
     let outcome = reconcile(&campaign);
-    let mut files: Vec<(String, Vec<u8>)> =
-        outcome.files().into_iter().map(|(name, text)| (name, text.into_bytes())).collect();
-    let page = campaign_page(&campaign, &outcome);
-    files.extend(page.page().into_files());
-    write_all(&out, &files)?;
-    let mut text = format!("{}{}", narrow(&outcome.to_text()), page.terminal());
+    let (mut files, terminal) = keep(&campaign, &outcome, &folder)?;
+    let mut text = format!("{}{terminal}", narrow(&outcome.to_text()));
     if let Some(study) = &args.study {
-        let rerun = rerun(&outcome, (study, &args.how), catalogs, overlay, &out)?;
+        let keep = |more: &[(String, Vec<u8>)]| folder.publish(&[&files, more].concat());
+        let rerun = rerun(&outcome, (study, &args.how), catalogs, overlay, (&out, &keep))?;
         text.push_str(&rerun.text);
         add(&mut files, &outcome, rerun);
-        write_all(&out, &files)?;
+        let left_out = folder.publish(&files)?;
+        say_missing(&left_out.iter().map(|name| another_stands(name)).collect::<Vec<_>>());
     }
     Ok((outcome, format!("{text}written to {}\n", out.display())))
 }
 
-/// Adds the result of the second run of the study to the verdict, and its table to the files.
+/// The files that will be written, as far as they are known before the fits.
+fn planned(args: &ReconcileArgs, campaign: &Campaign, catalogs: &Catalogs) -> Result<Vec<String>, Failure> {
+    let always = [VERDICT, "verdict.txt", CORRECTED_FILE, "residuals.csv", "report.html"];
+    let mut out: Vec<String> = always.into_iter().map(String::from).collect();
+    out.extend(corrected_files(&campaign.other_arms));
+    if let Some(study) = &args.study {
+        let of_run = super::run::planned(&load_study(study, catalogs)?.0);
+        let place = |folder: &'static str| of_run.iter().map(move |name| format!("study/{folder}/{name}"));
+        out.extend(place("nominal").chain(place("corrected")));
+        out.push(CHANGES.into());
+    }
+    Ok(out)
+}
+
+/// Keeps the verdict, then the page. Returns the files and the page's words for the terminal. A page that fails is left out,
+/// with a warning: the verdict stands.
+fn keep(campaign: &Campaign, outcome: &Outcome, folder: &ResultFolder) -> Result<(Files, String), Failure> {
+    let texts = outcome.files().into_iter().map(|(name, text)| (name, text.into_bytes()));
+    let mut files: Files = texts.collect();
+    let mut left_out = folder.publish(&files)?;
+    let mut beside = Beside::default();
+    let page = beside.make("report.html and plots", || {
+        let page = campaign_page(campaign, outcome);
+        (page.page().into_files(), page.terminal())
+    });
+    let (of_page, terminal) = page.unwrap_or_default();
+    match folder.publish(&[files.clone(), of_page.clone()].concat()) {
+        Ok(names) => {
+            files.extend(of_page);
+            left_out = names;
+        }
+        Err(e) => beside.missing.push(format!("the page: {e}")),
+    }
+    beside.missing.extend(left_out.iter().map(|name| another_stands(name)));
+    say_missing(&beside.missing);
+    Ok((files, terminal))
+}
+
+/// Adds the result of the second run of the study to the verdict, and its files.
 fn add(files: &mut Vec<(String, Vec<u8>)>, outcome: &Outcome, rerun: Rerun) {
     for (name, bytes) in files.iter_mut() {
         match name.as_str() {
@@ -95,7 +143,7 @@ fn add(files: &mut Vec<(String, Vec<u8>)>, outcome: &Outcome, rerun: Rerun) {
             _ => {}
         }
     }
-    files.extend(rerun.csv.map(|csv| ("study_changes.csv".to_string(), csv.into_bytes())));
+    files.extend(rerun.files);
 }
 
 /// Breaks lines at 80 columns; continued lines keep the indent. Tables are not touched.

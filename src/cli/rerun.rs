@@ -3,7 +3,8 @@
 use super::asked::{Asked, load_study};
 use super::corrections;
 use super::failure::Failure;
-use super::finished::Written;
+use super::finished::{Keep, Written};
+use super::manifest::{Files, RUN, sealed};
 use super::search::{SearchArgs, With, search};
 use super::supplements::SupplementArgs;
 use crate::catalog::Catalogs;
@@ -20,14 +21,17 @@ use crate::space::problem::ArmProblem;
 use serde_json::{Value, json};
 use std::path::Path;
 
+/// The file of all designs of either front under both models.
+pub(super) const CHANGES: &str = "study_changes.csv";
+
 /// What the second run changes.
 pub(super) struct Rerun {
     /// For the terminal.
     pub text: String,
     /// For `verdict.json`.
     pub json: Value,
-    /// `study_changes.csv`, where both runs have a front.
-    pub csv: Option<String>,
+    /// The results of both runs, in `study/nominal` and `study/corrected`, and `study_changes.csv`, where both have a front.
+    pub files: Files,
 }
 
 impl Rerun {
@@ -36,12 +40,13 @@ impl Rerun {
         Self {
             text: format!("\nstudy {study}: {why}\n"),
             json: json!({"study": study, "status": status, "why": why}),
-            csv: None,
+            files: Vec::new(),
         }
     }
 }
 
-/// Runs the study without and with the outcome's corrections, each as `how` says; both results go into `dir`.
+/// Runs the study without and with the outcome's corrections, each as `how` says. What is finished is kept in `dir` at once:
+/// `keep` gets it with its path there.
 ///
 /// # Errors
 /// The study does not read, its results cannot be written, or the user stops it.
@@ -50,7 +55,7 @@ pub(super) fn rerun(
     (study, how): (&str, &SearchArgs),
     catalogs: &Catalogs,
     overlay: Option<&Path>,
-    dir: &Path,
+    (dir, keep): (&Path, &Keep),
 ) -> Result<Rerun, Failure> {
     if outcome.verdict != Verdict::Explained {
         let why = format!(
@@ -71,27 +76,34 @@ pub(super) fn rerun(
         return Ok(rerun);
     }
     let nominal = Asked { study: nominal, text, corrections: Vec::new() };
-    let mut found = Vec::new();
+    let (mut found, mut kept) = (Vec::new(), Files::new());
     for (asked, folder) in [(&nominal, "nominal"), (&corrected, "corrected")] {
         let results = dir.join("study").join(folder);
-        let supplements = SupplementArgs::default();
-        match search(
-            asked,
-            &With { catalogs, overlay, dir: &results, how, supplements: &supplements, record: None },
-        ) {
+        let supplements = &SupplementArgs::default();
+        let keep = &|files: &[(String, Vec<u8>)]| keep(&[kept.clone(), placed(files, folder)?].concat());
+        match search(asked, &With { catalogs, overlay, dir: &results, keep, how, supplements, record: None })
+        {
             Ok(written) => {
-                written.write(&results)?;
+                kept.extend(placed(&written.files, folder)?);
                 found.push(written);
             }
             Err(Failure::Infeasible(why)) => {
                 let words = format!("the {folder} model finds no design: {why}");
-                return Ok(Rerun::without(&name, "infeasible", &words));
+                return Ok(Rerun { files: kept, ..Rerun::without(&name, "infeasible", &words) });
             }
             Err(other) => return Err(other),
         }
     }
     let changes = changes([&nominal, &corrected], &found, catalogs);
-    Ok(told(&name, &corrected, &found, &changes))
+    let mut rerun = told(&name, &corrected, &found, &changes);
+    rerun.files.extend(kept);
+    Ok(rerun)
+}
+
+/// The files of a run with their list and their paths in the folder of the campaign's result.
+fn placed(files: &[(String, Vec<u8>)], folder: &str) -> Result<Files, Failure> {
+    let whole = sealed(files.to_vec(), RUN)?;
+    Ok(whole.into_iter().map(|(name, bytes)| (format!("study/{folder}/{name}"), bytes)).collect())
 }
 
 fn changes(asked: [&Asked; 2], found: &[Written], catalogs: &Catalogs) -> Changes {
@@ -134,7 +146,7 @@ fn told(name: &str, corrected: &Asked, found: &[Written], changes: &Changes) -> 
         changes.to_text(),
         if all_whole { String::new() } else { lacking_words(found) }
     );
-    Rerun { text, json, csv: Some(changes.to_csv()) }
+    Rerun { text, json, files: vec![(CHANGES.into(), changes.to_csv().into_bytes())] }
 }
 
 /// A caution for fronts that are not complete.

@@ -1,16 +1,20 @@
 //! `armwright run`: finds the front of a study and writes it.
 
 use super::asked::{Asked, load_study};
+use super::beside::{another_stands, say_missing};
 use super::corrections;
 use super::failure::Failure;
-use super::finished::{catalogs_hash, facts_of, is_front_of_material, pretty};
+use super::finished::{catalogs_hash, facts_of, front_of_material, is_front_of_material, pretty};
+use super::manifest::RUN;
 use super::progress::Record;
+use super::result_folder::ResultFolder;
 use super::search::{SearchArgs, With, search};
-use super::supplements::SupplementArgs;
-use super::write::write_all;
+use super::supplements::{FILES, SupplementArgs};
+use super::write::{is_same_file, refuse_overwriting};
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::paper::names::{NAMES, question};
+use crate::report::file_names::{file_name, file_names};
 use crate::report::html::document::DocumentPage;
 use crate::report::html::render::PLOTS;
 use crate::report::section::Figure;
@@ -20,7 +24,6 @@ use crate::search::sweep::Status;
 use crate::study::definition::Study;
 use crate::study::effects::left_out;
 use crate::study::read::read_study;
-use crate::study::table::slug;
 use clap::Args;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -73,12 +76,43 @@ impl RunArgs {
         }
     }
 
+    /// The files that the run will write, as far as they are known before it.
+    ///
+    /// # Errors
+    /// One of them is an input and would change.
+    fn planned(&self, dir: &Path, asked: &Asked) -> Result<Vec<String>, Failure> {
+        let study = Path::new(&self.study);
+        let inputs = [Some(study), self.effects.as_deref()];
+        let inputs: Vec<&Path> = inputs.into_iter().flatten().collect();
+        let record = self.progress.as_slice();
+        refuse_overwriting(record, &inputs)?;
+        let own = dir.join("study.json");
+        let is_same = is_same_file(study, &own);
+        let stays = is_same && std::fs::read(&own).is_ok_and(|bytes| bytes == asked.text.as_bytes());
+        if is_same && !stays {
+            return Err(Failure::Usage(format!(
+                "{} is the study that is asked for and would be replaced by another one; choose another --out",
+                own.display()
+            )));
+        }
+        Ok(planned(&asked.study).into_iter().filter(|name| !stays || name != "study.json").collect())
+    }
+
     /// Name of the folder of results, if none is given.
     fn folder(&self, study: &Study) -> String {
         let up_to = self.mass_max_kg.map_or(String::new(), |kg| format!("-up-to-{kg}-kg"));
         let effects = if self.effects.is_some() { "-with-effects" } else { "" };
-        format!("{}{up_to}{effects}", slug(&study.name))
+        format!("{}{up_to}{effects}", file_name(&study.name))
     }
+}
+
+/// The files of a study's result, without those in `plots`.
+pub(super) fn planned(study: &Study) -> Vec<String> {
+    let materials = study.space.material_names();
+    let of_materials = file_names(materials.iter().map(String::as_str)).into_iter();
+    let of_materials = of_materials.flat_map(|file| [front_of_material(&file), format!("ties.{file}.csv")]);
+    let always = ["front.csv", "study.json", RUN, "front.svg", "budget.csv", "summary.md", "report.html"];
+    always.into_iter().chain(FILES).map(String::from).chain(of_materials).collect()
 }
 
 /// A study that asks for arms of at most this mass. If it has a lower limit already, nothing changes.
@@ -111,10 +145,14 @@ pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -
     }
     let asked = args.asked(catalogs)?;
     let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(args.folder(&asked.study)));
+    let planned = args.planned(&dir, &asked)?;
     let record = args.progress.as_deref().map(Record::create).transpose()?;
+    // a folder that cannot be written fails now, not after the search
+    let folder = ResultFolder::open(&dir, RUN, &planned)?;
     let (how, supplements, record) = (&args.search, &args.supplements, record.as_ref());
-    let written = search(&asked, &With { catalogs, overlay, dir: &dir, how, supplements, record })?;
-    written.write(&dir)?;
+    let keep = |files: &[(String, Vec<u8>)]| folder.publish(files);
+    let written =
+        search(&asked, &With { catalogs, overlay, dir: &dir, keep: &keep, how, supplements, record })?;
     let applied = corrections::to_text(&asked.corrections);
     Ok(format!("{}{applied}\n{}", written.terminal, told(&dir, &written.files)))
 }
@@ -122,7 +160,8 @@ pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -
 /// Runs one of the paper's studies, which are computed without a search.
 fn run_paper(args: &RunArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(&args.study));
-    write_all(&dir, &[])?;
+    let planned = [RUN, "summary.md", "report.html"];
+    let folder = ResultFolder::open(&dir, RUN, &planned)?;
     let started = Instant::now();
     let output = crate::paper::run::run(&args.study, catalogs).map_err(|e| Failure::Usage(e.to_string()))?;
     let run = json!({
@@ -135,9 +174,11 @@ fn run_paper(args: &RunArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     });
     let mut files = output.files;
     let page = paper_page(&args.study, &files, &run).page();
-    files.push(("run.json".into(), pretty(&run)));
+    files.push((RUN.into(), pretty(&run)));
     files.extend(page.into_files());
-    write_all(&dir, &files)?;
+    let left_out = folder.publish(&files)?;
+    say_missing(&left_out.iter().map(|name| another_stands(name)).collect::<Vec<_>>());
+    files.retain(|(name, _)| !left_out.contains(name));
     Ok(format!("{}\n{}", output.terminal, told(&dir, &files)))
 }
 

@@ -2,10 +2,10 @@
 
 use super::asked::Asked;
 use super::failure::Failure;
-use super::finished::{Finished, FoundExactly, Written};
+use super::finished::{Finished, FoundExactly, Keep, Written};
 use super::progress::{Record, Watch};
 use super::supplements::SupplementArgs;
-use super::write::write_all;
+use super::write::say;
 use crate::catalog::Catalogs;
 use crate::report::certificate::certificate_words;
 use crate::report::words::{TERMINAL, wrap};
@@ -106,7 +106,7 @@ impl SearchArgs {
 fn cheaper(study: &Study, catalogs: &Catalogs, designs: f64) -> SearchKind {
     let cost = SearchCost::of(&study.space, catalogs, designs);
     if let Some(words) = cost.words() {
-        eprint!("{}", wrap(&words, TERMINAL, ""));
+        say(&wrap(&words, TERMINAL, ""));
     }
     if cost.speaks_for_exact() { SearchKind::Exact } else { SearchKind::Exhaustive }
 }
@@ -126,6 +126,8 @@ pub(super) struct With<'a> {
     pub overlay: Option<&'a Path>,
     /// Where the results go.
     pub dir: &'a Path,
+    /// How they are kept.
+    pub keep: &'a Keep<'a>,
     pub how: &'a SearchArgs,
     /// What is asked for in addition to the front.
     pub supplements: &'a SupplementArgs,
@@ -133,10 +135,10 @@ pub(super) struct With<'a> {
     pub record: Option<&'a Record>,
 }
 
-/// Searches a study; nothing is written yet.
+/// Searches a study and keeps its result.
 ///
 /// # Errors
-/// The search that is asked for does not suit the study, finds nothing, or is interrupted.
+/// The search that is asked for does not suit the study, finds nothing, is interrupted, or its front cannot be written.
 pub(super) fn search(asked: &Asked, with: &With) -> Result<Written, Failure> {
     let written = match with.how.kind(&asked.study, with.catalogs)? {
         SearchKind::Exhaustive => visit_all(asked, with),
@@ -150,31 +152,24 @@ pub(super) fn search(asked: &Asked, with: &With) -> Result<Written, Failure> {
 
 /// Visits every design of a study.
 fn visit_all(Asked { study, text, corrections }: &Asked, with: &With) -> Result<Written, Failure> {
-    let With { catalogs, overlay, dir, supplements, .. } = *with;
+    let With { catalogs, overlay, dir, keep, supplements, record, .. } = *with;
     let problem = ArmProblem::new(&study.space, catalogs);
     refuse_empty(study, &problem)?;
-    // a folder that cannot be written fails now, not after the search
-    write_all(dir, &[])?;
     let stop = stopped_by_signal();
     let started = Instant::now();
     let outcome = run_study(study, catalogs, stop, |total, visited, finished| {
-        Watch::new(started, with.record).designs(total, visited, finished);
+        Watch::new(started, record).designs(total, visited, finished);
     });
     let elapsed_s = started.elapsed().as_secs_f64();
     match outcome.sweep.status {
         Status::Interrupted => {
-            let _ = std::fs::remove_dir(dir);
             let done = u128::from(outcome.sweep.designs_evaluated) + outcome.sweep.designs_excluded;
             Err(Failure::Interrupted(format!(
                 "stopped after {done} of {} designs; nothing was written, run again to start over",
                 outcome.sweep.designs_total
             )))
         }
-        Status::Infeasible => {
-            // succeeds only on an empty folder: earlier results stay
-            let _ = std::fs::remove_dir(dir);
-            Err(Failure::Infeasible(why_infeasible(study, catalogs, &outcome)))
-        }
+        Status::Infeasible => Err(Failure::Infeasible(why_infeasible(study, catalogs, &outcome))),
         _ => {
             let finished = Finished {
                 study,
@@ -190,7 +185,7 @@ fn visit_all(Asked { study, text, corrections }: &Asked, with: &With) -> Result<
                 catalogs,
                 dir,
             };
-            finished.files(supplements, stop)
+            finished.keep(supplements, stop, keep)
         }
     }
 }
@@ -213,8 +208,7 @@ pub(super) fn stopped_by_signal() -> &'static AtomicBool {
 
 /// Finds the front of a study without visiting every design.
 fn search_exactly(Asked { study, text, corrections }: &Asked, with: &With) -> Result<Written, Failure> {
-    let With { catalogs, overlay, dir, how, supplements, .. } = *with;
-    write_all(dir, &[])?;
+    let With { catalogs, overlay, dir, keep, how, supplements, record } = *with;
     let stop = stopped_by_signal();
     let started = Instant::now();
     let extent = Extent {
@@ -224,25 +218,21 @@ fn search_exactly(Asked { study, text, corrections }: &Asked, with: &With) -> Re
     };
     let ExactStudy { study: part, outcome, boxes, gap, near, ties_listed } =
         run_exact(study, catalogs, stop, extent, |known, finished| {
-            Watch::new(started, with.record).search(known, finished);
+            Watch::new(started, record).search(known, finished);
         });
     // what was found is written; a further signal stops that too
     stop.store(false, Ordering::Relaxed);
-    let nothing = |problem: String| {
-        let _ = std::fs::remove_dir(dir);
-        problem
-    };
     let designs = outcome.sweep.designs_total as f64;
     match outcome.sweep.status {
-        Status::Infeasible => Err(Failure::Infeasible(nothing(format!(
+        Status::Infeasible => Err(Failure::Infeasible(format!(
             "none of the {designs:.3e} designs of the study \"{}\" meets its constraints (proved by {} boxes); \
              loosen one, or run a coarser grid with --search exhaustive to see which of them it is",
             study.name, boxes[0]
-        )))),
-        Status::Partial if outcome.front.is_empty() => Err(Failure::Interrupted(nothing(format!(
+        ))),
+        Status::Partial if outcome.front.is_empty() => Err(Failure::Interrupted(format!(
             "no design was found before the search was stopped ({} boxes); nothing was written, allow more time",
             boxes[0]
-        )))),
+        ))),
         _ => {
             let problem = ArmProblem::new(&part.space, catalogs);
             let finished = Finished {
@@ -259,7 +249,7 @@ fn search_exactly(Asked { study, text, corrections }: &Asked, with: &With) -> Re
                 catalogs,
                 dir,
             };
-            let mut written = finished.files(supplements, stop)?;
+            let mut written = finished.keep(supplements, stop, keep)?;
             written.terminal.push_str(&certificate_words(boxes, gap, written.proved_to_mass_kg));
             Ok(written)
         }

@@ -21,7 +21,7 @@ use crate::study::definition::Study;
 use crate::study::table::sizing_rows;
 use clap::Args;
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Sizes every joint of a study's arm from the tip inward: torques (Eqs 7-12), speed, the chosen gear and
 /// motor, the binding check, margin, life, and the mass that the next joint inward carries.
@@ -76,7 +76,11 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failur
     let json = serde_json::to_string_pretty(&rows).expect("rows of numbers and strings serialize");
     if let Some(dir) = &args.out {
         let files = [("sizing.json", &json), ("sizing.txt", &text)];
-        write_all(dir, &files.map(|(name, text)| (name.to_string(), text.as_bytes().to_vec())))?;
+        write_all(
+            dir,
+            &files.map(|(name, text)| (name.to_string(), text.as_bytes().to_vec())),
+            &[Path::new(&args.study)],
+        )?;
     }
     Ok(if args.json { json } else { text })
 }

@@ -69,7 +69,10 @@ impl SupplementArgs {
     /// # Errors
     /// The user stops it.
     pub(super) fn work_out(&self, found: &Found, front: &FrontTable) -> Result<Vec<Supplement>, Failure> {
-        let stopped = || Failure::Interrupted("stopped after the search; nothing was written".into());
+        let stopped = || {
+            let words = "stopped after the search: the front is written, what goes with it is not";
+            Failure::Interrupted(words.into())
+        };
         let mut out = vec![
             picks_in_poses(found.problem, front).supplement(),
             picks_on_same_drives(found.problem, front).supplement(),

@@ -14,7 +14,7 @@ use std::path::PathBuf;
     max_term_width = 100,
     after_help = "Exit codes: 0 done; 1 internal error; 2 wrong usage; 3 faulty input file; 4 faulty catalog; \
                   5 empty design space; 6 infeasible; 7 file cannot be read or written; 8 interrupted; \
-                  9 a check failed.\n\nStart with: armwright run compare-materials"
+                  9 a check failed; 12 the results are being written by another process.\n\nStart with: armwright run compare-materials"
 )]
 pub struct Cli {
     /// Folder with your own catalog rows (gears.csv, motors.csv, materials.csv, profiles.csv), added to the

@@ -1,44 +1,110 @@
-//! Output: text to standard output, files to a folder of results.
+//! Output: text to standard output and standard error, and files that are no result of a study or a campaign.
 
 use super::failure::Failure;
-use std::io::Write;
-use std::path::Path;
+use super::manifest::{Earlier, RUN, VERDICT};
+use crate::report::whole_file::{create_folder, folder_of, write_whole};
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
 
 /// Writes a verb's text to standard output; a closed pipe is no error.
-pub fn print(text: &str) {
+///
+/// # Errors
+/// Standard output cannot be written, such as a file on a full disk.
+pub fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
-    let _ = out.write_all(text.as_bytes());
-    if !text.is_empty() && !text.ends_with('\n') {
-        let _ = out.write_all(b"\n");
+    let end = if text.is_empty() || text.ends_with('\n') { "" } else { "\n" };
+    let written = out.write_all(text.as_bytes()).and_then(|()| out.write_all(end.as_bytes()));
+    printed(written.and_then(|()| out.flush()))
+}
+
+/// What the result of a writing to standard output means.
+///
+/// # Errors
+/// It failed, and not because nobody reads any more.
+pub fn printed(written: std::io::Result<()>) -> Result<(), Failure> {
+    match written {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::File(format!("cannot write standard output: {e}")))
+        }
+        _ => Ok(()),
     }
 }
 
-/// Writes files into a folder, all or none: temporary files first, which are then renamed.
-pub(crate) fn write_all(dir: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Failure> {
-    fs_err::create_dir_all(dir).map_err(|e| Failure::file(dir, "create", &e))?;
-    let mut staged = Vec::with_capacity(files.len());
-    for (name, bytes) in files {
-        let path = dir.join(name);
-        let folder = path.parent().unwrap_or(dir);
-        fs_err::create_dir_all(folder).map_err(|e| Failure::file(folder, "create", &e))?;
-        let mut file =
-            tempfile::NamedTempFile::new_in(folder).map_err(|e| Failure::file(dir, "write in", &e))?;
-        file.write_all(bytes).map_err(|e| Failure::file(dir, "write in", &e))?;
-        staged.push((file, path));
-    }
-    for (file, path) in staged {
-        file.persist(&path).map_err(|e| Failure::file(&path, "write", &e.error))?;
-        make_readable(&path);
+/// Writes text to standard error. Where that cannot be written nothing is said, because work must go on.
+pub fn say(text: &str) {
+    let mut out = std::io::stderr().lock();
+    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+}
+
+/// Writes files into a folder, which is made if it is missing. Each file is replaced as a whole.
+///
+/// # Errors
+/// A file cannot be written, is one of the `inputs`, or belongs to a result.
+pub(super) fn write_all(folder: &Path, files: &[(String, Vec<u8>)], inputs: &[&Path]) -> Result<(), Failure> {
+    let targets: Vec<PathBuf> = files.iter().map(|(name, _)| folder.join(name)).collect();
+    refuse_overwriting(&targets, inputs)?;
+    targets.iter().zip(files).try_for_each(|(target, (_, bytes))| write_file(target, bytes, inputs))
+}
+
+/// Writes a file, and its folder if that is missing. The file is replaced as a whole.
+///
+/// # Errors
+/// It cannot be written, is one of the `inputs`, or belongs to a result.
+pub(super) fn write_file(target: &Path, bytes: &[u8], inputs: &[&Path]) -> Result<(), Failure> {
+    refuse_overwriting(&[target.to_path_buf()], inputs)?;
+    let folder = folder_of(target);
+    create_folder(&folder).map_err(|e| Failure::file(&folder, "create", &e))?;
+    write_whole(target, bytes).map_err(|e| Failure::file(target, "write", &e))
+}
+
+/// Refuses to write over an input, or over a file of a result.
+///
+/// # Errors
+/// One of the targets is such a file.
+pub(super) fn refuse_overwriting(targets: &[PathBuf], inputs: &[&Path]) -> Result<(), Failure> {
+    refuse_inputs(targets, inputs)?;
+    for target in targets {
+        if let Some(manifest) = result_of(target)? {
+            return Err(Failure::Usage(format!(
+                "{} is a file of the result that {} lists and would be overwritten; choose another place to write to",
+                target.display(),
+                manifest.display()
+            )));
+        }
     }
     Ok(())
 }
 
-/// Temporary files are private to their owner; results are not.
-#[cfg(unix)]
-fn make_readable(path: &Path) {
-    use std::os::unix::fs::PermissionsExt;
-    let _ = std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o644));
+/// Refuses to write over an input, by whatever path it is reached.
+///
+/// # Errors
+/// One of the targets is an input.
+pub(super) fn refuse_inputs(targets: &[PathBuf], inputs: &[impl AsRef<Path>]) -> Result<(), Failure> {
+    let is_input = |target: &&PathBuf| inputs.iter().any(|input| is_same_file(input.as_ref(), target));
+    match targets.iter().find(is_input) {
+        None => Ok(()),
+        Some(target) => Err(Failure::Usage(format!(
+            "{} is an input of this command and would be overwritten; choose another place to write to",
+            target.display()
+        ))),
+    }
 }
 
-#[cfg(not(unix))]
-fn make_readable(_: &Path) {}
+/// Whether two paths lead to one file that exists.
+pub(super) fn is_same_file(a: &Path, b: &Path) -> bool {
+    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
+}
+
+/// The file that lists a path as part of a result in the same folder.
+fn result_of(path: &Path) -> Result<Option<PathBuf>, Failure> {
+    let (folder, name) =
+        (folder_of(path), path.file_name().and_then(|name| name.to_str()).unwrap_or_default());
+    for manifest in [RUN, VERDICT] {
+        if let listed @ Earlier::Listed(_) = Earlier::read(&folder, manifest)?
+            && listed.has(name, manifest)
+        {
+            return Ok(Some(folder.join(manifest)));
+        }
+    }
+    Ok(None)
+}

@@ -6,6 +6,7 @@
 
 pub use super::lines::LineCounter;
 
+use super::names::visible;
 use super::path::join;
 use serde_json::{Map, Value};
 use std::cell::RefCell;
@@ -29,14 +30,14 @@ pub struct Fault {
 
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.file)?;
+        write!(f, "{}", visible(&self.file))?;
         if let Some(line) = self.line {
             write!(f, ":{line}")?;
         }
         if !self.field.is_empty() {
-            write!(f, ": {}", self.field)?;
+            write!(f, ": {}", visible(&self.field))?;
         }
-        write!(f, ": {}", self.problem)?;
+        write!(f, ": {}", visible(&self.problem))?;
         if !self.hint.is_empty() {
             write!(f, "; {}", self.hint)?;
         }
@@ -126,6 +127,9 @@ impl Document {
             Self { file: file.to_string(), text: text.to_string(), value, faults: RefCell::default() };
         for path in super::duplicates::duplicate_keys(text) {
             document.fault(&path, "is given more than once".into(), "keep the one that holds");
+        }
+        for (path, (problem, hint)) in super::texts::unfit_texts(&document.value) {
+            document.fault(&path, problem, hint);
         }
         Ok(document)
     }
@@ -399,6 +403,14 @@ fn line_of(text: &str, path: &str) -> Option<usize> {
     Some(1 + text.as_bytes()[..offset].iter().filter(|&&b| b == b'\n').count())
 }
 
+/// Whether a JSON string, which may be written with escapes, is this key.
+fn is_key(quoted: &[u8], wanted: &str) -> bool {
+    match quoted.contains(&b'\\') {
+        true => serde_json::from_slice::<String>(quoted).is_ok_and(|key| key == wanted),
+        false => quoted.get(1..quoted.len() - 1) == Some(wanted.as_bytes()),
+    }
+}
+
 enum Segment<'a> {
     Key(&'a str),
     Index(usize),
@@ -435,7 +447,7 @@ impl Locator<'_> {
                     (Segment::Key(wanted), b'{') => {
                         let start = self.at;
                         self.skip();
-                        let found = self.bytes.get(start + 1..self.at - 1)? == wanted.as_bytes();
+                        let found = is_key(self.bytes.get(start..self.at)?, wanted);
                         self.space();
                         self.at += 1;
                         self.space();

@@ -4,6 +4,8 @@ pub(crate) mod csv;
 pub(crate) mod duplicates;
 pub(crate) mod json;
 pub(crate) mod lines;
+pub(crate) mod names;
 pub(crate) mod path;
+pub(crate) mod texts;
 
 pub use json::*;

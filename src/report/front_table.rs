@@ -50,9 +50,22 @@ impl FrontTable {
     /// # Errors
     /// The file is missing, is not CSV, or lacks a column that every front has.
     pub fn read(path: &Path) -> Result<Self, FrontTableError> {
+        let bytes = std::fs::read(path);
+        let unreadable = |e: std::io::Error| FrontTableError::Unreadable {
+            file: path.display().to_string(),
+            source: e.into(),
+        };
+        Self::parse(path, &bytes.map_err(unreadable)?)
+    }
+
+    /// A front from the bytes of its file; `path` is named in messages.
+    ///
+    /// # Errors
+    /// It is not CSV, or lacks a column that every front has.
+    pub fn parse(path: &Path, bytes: &[u8]) -> Result<Self, FrontTableError> {
         let file = path.display().to_string();
         let unreadable = |source| FrontTableError::Unreadable { file: file.clone(), source };
-        let mut reader = csv::Reader::from_path(path).map_err(unreadable)?;
+        let mut reader = csv::Reader::from_reader(bytes);
         let columns: Vec<String> = reader.headers().map_err(unreadable)?.iter().map(String::from).collect();
         for column in OBJECTIVE_COLUMNS.into_iter().chain(["design_id"]) {
             if !columns.iter().any(|c| c == column) {

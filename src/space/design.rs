@@ -49,18 +49,29 @@ pub fn options(level_sizes: &[u32], mut number: u128) -> Option<Vec<u32>> {
     (number == 0).then_some(out)
 }
 
-/// Name of a design in files: its number in base 36.
+/// What the name of a design begins with. Spreadsheets take names such as `463e8` and `0012` for numbers, but none that
+/// begins with a letter.
+pub const ID_PREFIX: char = 'x';
+
+/// Name of a design in files: `x` and its number in base 36.
 pub fn id_of(mut number: u128) -> String {
     let mut digits = Vec::new();
     while digits.is_empty() || number > 0 {
         digits.push(char::from_digit((number % 36) as u32, 36).unwrap_or('?'));
         number /= 36;
     }
+    digits.push(ID_PREFIX);
     digits.iter().rev().collect()
 }
 
-/// Number of the design with this name; `None` if the name is not a number in base 36.
+/// Number of the design with this name; `None` if it is no name of a design. The names in results of earlier versions
+/// lack the `x` and are read too, unless they begin with an `x` of their own: [`number_of_earlier`].
 pub fn number_of(id: &str) -> Option<u128> {
+    number_of_earlier(id.strip_prefix(ID_PREFIX).unwrap_or(id))
+}
+
+/// Number of the design with this name in a result of an earlier version: a number in base 36.
+pub fn number_of_earlier(id: &str) -> Option<u128> {
     if id.is_empty() {
         return None;
     }

@@ -46,7 +46,7 @@ pub use page::study_page;
 pub use pick_poses::{PicksInPoses, picks_in_poses};
 pub use read::read_study;
 pub use same_drives::{PicksOnSameDrives, picks_on_same_drives};
-pub use table::{front_table, slug};
+pub use table::front_table;
 pub use ties::{Ties, ties};
 pub use tolerance::{Sampling, Tolerance, part, scatter_front};
 pub use worst_pose::{WorstPose, WorstPoses, worst_poses};

@@ -12,19 +12,6 @@ use crate::space::design_space::{DriveChoice, LinkOption, SpacePiece};
 use crate::space::levels::OutwardIn;
 use crate::space::problem::{ArmProblem, Partial};
 
-/// A name in lower case; every run of other characters than letters and digits becomes one `-`.
-pub fn slug(name: &str) -> String {
-    let mut out = String::new();
-    for c in name.chars() {
-        match c.is_ascii_alphanumeric() {
-            true => out.push(c.to_ascii_lowercase()),
-            false if !out.is_empty() && !out.ends_with('-') => out.push('-'),
-            false => {}
-        }
-    }
-    out.trim_end_matches('-').to_string()
-}
-
 /// The table of a front.
 pub fn front_table(problem: &ArmProblem, catalogs: &Catalogs, front: &Front) -> FrontTable {
     FrontTable {

@@ -57,6 +57,8 @@ fn replace(dir: &TempDir, lines: &[String]) {
     let file = dir.path().join("run.json");
     let mut run: Value = serde_json::from_str(&std::fs::read_to_string(&file).expect("a run")).expect("JSON");
     run["front_size"] = (lines.len() - 1).into();
+    let bytes = std::fs::read(dir.path().join("front.csv")).expect("a front");
+    run["files"]["front.csv"] = blake3::hash(&bytes).to_hex().to_string().into();
     std::fs::write(&file, run.to_string()).expect("written");
 }
 

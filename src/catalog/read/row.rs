@@ -5,6 +5,7 @@ use super::log::Log;
 use crate::catalog::schema::{CatalogFile, Cell};
 use crate::catalog::{Confidence, Provenance};
 use crate::input::json::closest;
+use crate::input::names::{unfit_cell, unfit_name};
 
 /// One row: the cells in the order of the file's known columns, `None` where the column is absent.
 pub(crate) struct Row<'a> {
@@ -77,6 +78,12 @@ impl<'a> Row<'a> {
                 Some("") if column.required => self.fault(column.name, "is blank", "every row needs it"),
                 Some("") | None => {}
                 Some(text) => {
+                    let is_name = self.file.key().contains(&column.name);
+                    let unfit = if is_name { unfit_name(text) } else { unfit_cell(text) };
+                    if let Some((problem, hint)) = unfit {
+                        self.fault(column.name, problem, hint);
+                        continue;
+                    }
                     if let Err(Refusal { problem, hint }) = check_cell(column.cell, text) {
                         self.fault(column.name, problem, &hint);
                     }

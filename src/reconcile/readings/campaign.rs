@@ -424,14 +424,19 @@ impl Campaign {
         }
     }
 
-    fn hash_files(&self) -> String {
-        let mut hasher = blake3::Hasher::new();
+    /// The files that were read.
+    pub fn input_files(&self) -> Vec<PathBuf> {
         let others = self.statement.other_arm_files.iter();
         let named = ["campaign.json", &self.statement.arm_file].into_iter().chain(others.map(String::as_str));
         let files =
             named.map(|f| self.folder.join(f)).chain(Channel::ALL.into_iter().filter_map(|c| self.file(c)));
         let records = self.records.iter().map(|r| PathBuf::from(&r.file));
-        for file in files.chain(records) {
+        files.chain(records).collect()
+    }
+
+    fn hash_files(&self) -> String {
+        let mut hasher = blake3::Hasher::new();
+        for file in self.input_files() {
             hasher.update(&std::fs::read(file).unwrap_or_default());
         }
         hasher.finalize().to_hex().to_string()

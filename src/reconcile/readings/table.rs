@@ -4,11 +4,15 @@ use super::source::Source;
 use super::spreadsheet::{is_spreadsheet, read_sheet};
 use crate::input::csv::{Csv, Record, is_repeated, other_separators};
 use crate::input::json::{Fault, InputError, closest};
+use crate::input::names::{unfit_cell, unfit_name};
 use std::cell::RefCell;
 use std::path::Path;
 
 /// First character of a comment line.
 const COMMENT: u8 = b'#';
+
+/// Columns whose cells are names.
+const NAMES: [&str; 3] = ["test", "joint", "point"];
 
 /// A CSV file or a sheet of a spreadsheet, whose first row names the columns.
 #[derive(Debug)]
@@ -154,6 +158,11 @@ impl Table {
             let hint = "separate columns with commas and write decimals with a point";
             self.fault(Some(self.header_line), "", format!("its columns are separated by {word}"), hint);
         }
+        for name in &self.columns {
+            if let Some((problem, hint)) = unfit_name(name) {
+                self.fault(Some(self.header_line), name, problem, hint);
+            }
+        }
         for (i, name) in self.columns.iter().enumerate() {
             if !name.is_empty() && is_repeated(&self.columns, i) {
                 self.fault(
@@ -176,6 +185,12 @@ impl Table {
             self.header_line = line;
             self.columns = cells;
         } else if !self.has_header() || cells.len() == self.columns.len() {
+            for (column, cell) in self.columns.iter().zip(&cells) {
+                let is_name = NAMES.contains(&column.as_str());
+                if let Some((problem, hint)) = if is_name { unfit_name(cell) } else { unfit_cell(cell) } {
+                    self.fault(Some(line), column, problem, hint);
+                }
+            }
             self.rows.push(cells);
             self.lines.push(line);
         } else {

@@ -1,7 +1,7 @@
 //! The outcome of a reconciliation.
 
 use super::corrected_model::Row;
-use super::files::{CORRECTED_FILE, corrected_file};
+use super::files::{CORRECTED_FILE, corrected_files};
 use super::stage::Stage;
 use crate::arm::Arm;
 use crate::arm::effect::channel::Channel;
@@ -316,9 +316,11 @@ impl Outcome {
         let mut out = arm.to_json();
         out["provenance"] = self.provenance.clone();
         out["provenance"]["placement"] = self.provenance["other_placements"][&arm.name].clone();
-        let others = self.other_corrected.iter().filter(|o| o.name != arm.name).map(corrected_file);
+        let files = corrected_files(&self.other_corrected);
+        let others = self.other_corrected.iter().zip(files).filter(|(other, _)| other.name != arm.name);
+        let others = others.map(|(_, file)| file);
         out["provenance"]["other_arms"] =
-            json!([vec![CORRECTED_FILE.to_string()], others.collect()].concat());
+            json!(std::iter::once(CORRECTED_FILE.to_string()).chain(others).collect::<Vec<_>>());
         out
     }
 
@@ -327,8 +329,7 @@ impl Outcome {
         let mut arm = self.corrected.to_json();
         arm["provenance"] = self.provenance.clone();
         if !self.other_corrected.is_empty() {
-            let others: Vec<String> = self.other_corrected.iter().map(corrected_file).collect();
-            arm["provenance"]["other_arms"] = json!(others);
+            arm["provenance"]["other_arms"] = json!(corrected_files(&self.other_corrected));
         }
         arm
     }

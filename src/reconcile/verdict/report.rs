@@ -1,10 +1,11 @@
 //! Writes the verdict in words, and the files of the outcome.
 
-use super::files::{CORRECTED_FILE, corrected_file};
+use super::files::{CORRECTED_FILE, corrected_files};
 use super::outcome::{Outcome, Verdict};
 use crate::arm::effect::entry::word_of;
 use crate::reconcile::model::estimate::{Estimate, Finding};
 use crate::reconcile::records;
+use crate::report::whole_file::{create_folder, write_whole};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -130,8 +131,8 @@ impl Outcome {
             (CORRECTED_FILE.to_string(), json(&self.corrected_json())),
             ("residuals.csv".to_string(), self.residuals_csv()),
         ];
-        let others = self.other_corrected.iter();
-        out.extend(others.map(|arm| (corrected_file(arm), json(&self.other_json(arm)))));
+        let others = self.other_corrected.iter().zip(corrected_files(&self.other_corrected));
+        out.extend(others.map(|(arm, file)| (file, json(&self.other_json(arm)))));
         out
     }
 
@@ -140,8 +141,8 @@ impl Outcome {
     /// # Errors
     /// The folder or a file cannot be written.
     pub fn write(&self, folder: &Path) -> std::io::Result<()> {
-        fs_err::create_dir_all(folder)?;
-        self.files().into_iter().try_for_each(|(name, text)| fs_err::write(folder.join(name), text))
+        create_folder(folder)?;
+        self.files().into_iter().try_for_each(|(name, text)| write_whole(&folder.join(name), text.as_bytes()))
     }
 }
 

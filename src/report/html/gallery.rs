@@ -1,9 +1,11 @@
 //! The pictures of a page, numbered and kept as files, and tables as templates show them.
 
 use super::render::{PLOTS, render};
+use crate::report::file_names::unique_file_name;
 use crate::report::section::{Figure, PageSection};
 use crate::report::table::{Align, Table};
 use serde_json::{Value, json};
+use std::collections::HashSet;
 
 /// A page and the files that go with it.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -26,13 +28,14 @@ impl Page {
 /// Collects the figures of a page: hands out their places on it and keeps their files.
 #[derive(Debug, Default)]
 pub(super) struct Gallery {
+    names: HashSet<String>,
     files: Vec<(String, Vec<u8>)>,
 }
 
 impl Gallery {
     /// A figure as its template shows it; its files are kept.
     pub(super) fn show(&mut self, figure: &Figure) -> Value {
-        let name = &figure.name;
+        let name = unique_file_name(&figure.name, &mut self.names);
         self.files.push((format!("{name}.svg"), figure.svg.clone().into_bytes()));
         if !figure.csv.is_empty() {
             self.files.push((format!("{name}.csv"), figure.csv.clone().into_bytes()));

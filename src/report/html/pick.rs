@@ -7,6 +7,7 @@ use crate::mechanics::centre_line::Station;
 use crate::mechanics::chain::{Chain, Posed};
 use crate::mechanics::modes::Mode;
 use crate::mechanics::statics::Statics;
+use crate::report::file_names::file_name;
 use crate::report::number::{cost_words, fixed, percent, shortest, significant};
 use crate::report::picks::Pick;
 use crate::report::section::Figure;
@@ -77,7 +78,7 @@ impl PickedArm {
 
     /// The pick's name in the names of its files.
     fn slug(&self) -> String {
-        self.pick.names[0].replace(' ', "-")
+        file_name(self.pick.names[0])
     }
 
     /// The case with the largest tip deflection, solved.

@@ -171,10 +171,9 @@ impl ArmSketch {
         }
         for ((x, y), names) in labels {
             let words = names.join(" ");
-            let x = x.clamp(
-                8.0 + text_px(&words, FONT_PX) / 2.0,
-                self.width_px - 8.0 - text_px(&words, FONT_PX) / 2.0,
-            );
+            // a label that is wider than the picture begins at its left edge
+            let half = text_px(&words, FONT_PX) / 2.0;
+            let x = x.min(self.width_px - 8.0 - half).max(8.0 + half);
             let rim = " font-size=\"12\" paint-order=\"stroke\" stroke=\"#FFFFFF\" stroke-width=\"3\"";
             text(out, (x, (y - raised).max(TOP_PX - 2.0)), "middle", rim, &words);
         }

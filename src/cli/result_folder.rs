@@ -1,0 +1,222 @@
+//! A folder of results that one process writes. A result replaces the one before it as a whole.
+//!
+//! Files are staged in `.armwright/next`. Renaming that folder to `.armwright/ready` decides that the new result holds: its
+//! files are then moved to their places, files that only the earlier result had are removed, and the manifest is moved
+//! last. A process that dies before the decision leaves the old result, and one that dies after it leaves the rest of the
+//! work to whoever next reads or writes the folder ([`complete`]).
+
+use super::failure::Failure;
+use super::lock::Lock;
+use super::manifest::{Earlier, Files, RUN, VERDICT, sealed};
+use crate::report::whole_file::{create_folder, folder_of, remove_file, rename, sync_folder, write_staged};
+use std::collections::BTreeSet;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Folder of what is in work, in a folder of results.
+const STATE: &str = ".armwright";
+/// How often, and after which time each, a reader looks whether a writer is done.
+const READER_WAITS: (u32, Duration) = (20, Duration::from_millis(100));
+
+/// A folder of results that this process alone writes.
+pub(super) struct ResultFolder {
+    folder: PathBuf,
+    manifest: &'static str,
+    lock: Option<Lock>,
+}
+
+impl ResultFolder {
+    /// Opens a folder for a result whose files `manifest` lists. The folder is made if it is missing, and what an earlier
+    /// process left unfinished is completed or swept.
+    ///
+    /// # Errors
+    /// Another process writes the folder, it cannot be written, or files under some of the names `planned` are no part of
+    /// an earlier result.
+    pub(super) fn open(
+        folder: &Path,
+        manifest: &'static str,
+        planned: &[impl AsRef<str>],
+    ) -> Result<Self, Failure> {
+        let state = folder.join(STATE);
+        create_folder(&state).map_err(|e| Failure::file(folder, "create", &e))?;
+        // made first: whatever fails from here on, empty folders are removed again
+        let mut out = Self { folder: folder.to_path_buf(), manifest, lock: None };
+        out.lock = Some(Lock::take(&state.join("lock"), folder)?);
+        roll_forward(folder).map_err(|e| Failure::file(folder, "complete", &e))?;
+        sweep(&state.join("next")).map_err(|e| Failure::file(folder, "write in", &e))?;
+        let earlier = Earlier::read(folder, manifest)?;
+        let foreign: Vec<&str> = planned
+            .iter()
+            .map(AsRef::as_ref)
+            .filter(|name| is_foreign(folder, name, &earlier, manifest))
+            .collect();
+        match foreign.is_empty() {
+            true => Ok(out),
+            false => Err(Failure::Usage(format!(
+                "{} has files that are no part of an earlier result and would be overwritten: {}; move them, or choose \
+                 another folder with --out",
+                folder.display(),
+                foreign.join(", ")
+            ))),
+        }
+    }
+
+    /// Replaces the result in the folder by these files, the manifest among them. Returns the names of files that were not
+    /// written because other files stand there.
+    ///
+    /// # Errors
+    /// The folder cannot be written. The earlier result then stands, or the new one holds and the next reader completes it.
+    pub(super) fn publish(&self, files: &[(String, Vec<u8>)]) -> Result<Vec<String>, Failure> {
+        let earlier = Earlier::read(&self.folder, self.manifest)?;
+        let is_foreign = |(name, bytes): &(String, Vec<u8>)| {
+            is_foreign(&self.folder, name, &earlier, self.manifest) && !self.has(name, bytes)
+        };
+        let (foreign, own): (Files, Files) = files.iter().cloned().partition(is_foreign);
+        let state = self.folder.join(STATE);
+        let staged = self.stage(&sealed(own, self.manifest)?).and_then(|()| {
+            // from here on the new result holds
+            rename(&state.join("next"), &state.join("ready"))
+        });
+        if let Err(e) = staged {
+            let _ = sweep(&state.join("next"));
+            return Err(Failure::file(&self.folder, "write in", &e));
+        }
+        let moved = sync_folder(&state).and_then(|()| roll_forward(&self.folder));
+        moved.map_err(|e| Failure::file(&self.folder, "complete", &e))?;
+        Ok(foreign.into_iter().map(|(name, _)| name).collect())
+    }
+
+    /// Whether a file of this name and content is there already.
+    fn has(&self, name: &str, bytes: &[u8]) -> bool {
+        let path = self.folder.join(name);
+        !path.is_symlink() && std::fs::read(path).is_ok_and(|there| there == bytes)
+    }
+
+    /// Writes the files that are new or differ, and the manifest.
+    fn stage(&self, files: &[(String, Vec<u8>)]) -> io::Result<()> {
+        let next = self.folder.join(STATE).join("next");
+        sweep(&next)?;
+        create_folder(&next)?;
+        let mut folders = BTreeSet::from([next.clone()]);
+        for (name, bytes) in files {
+            if self.has(name, bytes) && name != self.manifest {
+                continue;
+            }
+            let path = next.join(name);
+            if folders.insert(folder_of(&path)) {
+                create_folder(&folder_of(&path))?;
+            }
+            write_staged(&path, bytes)?;
+        }
+        folders.iter().try_for_each(|folder| sync_folder(folder))
+    }
+}
+
+impl Drop for ResultFolder {
+    fn drop(&mut self) {
+        // the lock's file goes first; folders go only when they are empty, so that no result and no other lock is lost
+        self.lock = None;
+        let _ = std::fs::remove_dir(self.folder.join(STATE));
+        let _ = std::fs::remove_dir(&self.folder);
+    }
+}
+
+/// Completes a result whose writer died after the new files were decided on. A reader calls this first.
+///
+/// # Errors
+/// A living process is writing the folder, or the folder cannot be written.
+pub(super) fn complete(folder: &Path) -> Result<(), Failure> {
+    let state = folder.join(STATE);
+    let (mut waits, wait) = READER_WAITS;
+    while state.join("ready").exists() {
+        match Lock::take(&state.join("lock"), folder) {
+            Ok(_lock) => {
+                return roll_forward(folder).map_err(|e| {
+                    Failure::File(format!(
+                        "{}: the writing of this result was interrupted and cannot be completed: {e}; make the folder \
+                         writable and try again",
+                        folder.display()
+                    ))
+                });
+            }
+            Err(Failure::Locked(_)) if waits > 0 => {
+                waits -= 1;
+                std::thread::sleep(wait);
+            }
+            Err(failure) => return Err(failure),
+        }
+    }
+    Ok(())
+}
+
+/// Moves the files of a decided result to their places. What was moved before is not there any more, so that this may be
+/// interrupted and begun again at any point.
+fn roll_forward(folder: &Path) -> io::Result<()> {
+    let ready = folder.join(STATE).join("ready");
+    if !ready.exists() {
+        return Ok(());
+    }
+    // without a manifest all was moved already
+    if let Some(manifest) = [RUN, VERDICT].into_iter().find(|name| ready.join(name).is_file()) {
+        let read =
+            |folder: &Path| Earlier::read(folder, manifest).map_err(|e| io::Error::other(e.to_string()));
+        let (new, old) = (read(&ready)?, read(folder)?);
+        let mut changed = BTreeSet::new();
+        for name in new.names().filter(|name| ready.join(name).exists()) {
+            let target = folder.join(name);
+            create_folder(&folder_of(&target))?;
+            rename(&ready.join(name), &target)?;
+            changed.insert(folder_of(&target));
+        }
+        for name in old.names().filter(|name| !new.has(name, manifest)) {
+            remove_listed(folder, name)?;
+        }
+        changed.iter().try_for_each(|folder| sync_folder(folder))?;
+        rename(&ready.join(manifest), &folder.join(manifest))?;
+        sync_folder(folder)?;
+    }
+    sweep(&ready)
+}
+
+/// Removes a file of an earlier result, and its folders if they are empty then. A symbolic link on the way leads to files
+/// that are not the result's: nothing is removed there.
+fn remove_listed(folder: &Path, name: &str) -> io::Result<()> {
+    let path = folder.join(name);
+    if has_strange_parent(folder, name) || !is_there(&path) || path.is_dir() && !path.is_symlink() {
+        return Ok(());
+    }
+    remove_file(&path)?;
+    let parents = Path::new(name).ancestors().skip(1).filter(|parent| !parent.as_os_str().is_empty());
+    for parent in parents {
+        let _ = std::fs::remove_dir(folder.join(parent));
+    }
+    Ok(())
+}
+
+/// Whether something other than a file of the earlier result stands under a name.
+fn is_foreign(folder: &Path, name: &str, earlier: &Earlier, manifest: &str) -> bool {
+    let path = folder.join(name);
+    let is_folder = path.is_dir() && !path.is_symlink();
+    has_strange_parent(folder, name) || is_folder || is_there(&path) && !earlier.has(name, manifest)
+}
+
+/// Whether a folder on the way to a file is a symbolic link or no folder.
+fn has_strange_parent(folder: &Path, name: &str) -> bool {
+    let parents = Path::new(name).ancestors().skip(1).filter(|parent| !parent.as_os_str().is_empty());
+    let mut parents = parents.map(|parent| folder.join(parent));
+    parents.any(|parent| is_there(&parent) && (parent.is_symlink() || !parent.is_dir()))
+}
+
+/// Whether there is anything under a path, a broken symbolic link too.
+fn is_there(path: &Path) -> bool {
+    path.symlink_metadata().is_ok()
+}
+
+/// Removes a folder of what is in work, if it is there; symbolic links in it are not followed.
+fn sweep(folder: &Path) -> io::Result<()> {
+    match fs_err::remove_dir_all(folder) {
+        Err(e) if e.kind() != io::ErrorKind::NotFound => Err(e),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,163 @@
+//! A folder of results as a reader sees it: one result, whole, or a reason why it is none.
+
+use super::failure::Failure;
+use super::manifest::{RUN, hash, listed};
+use super::result_folder::complete;
+use super::version::refuse_earlier;
+use crate::report::front_table::FrontTable;
+use crate::space::design::{ID_PREFIX, number_of, number_of_earlier};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// How often a folder is read again that is being replaced at the moment, and after which time.
+const AGAIN: (u32, Duration) = (3, Duration::from_millis(200));
+
+/// The result of a study.
+pub(super) struct Results {
+    folder: PathBuf,
+    /// `run.json`.
+    pub run: Value,
+    /// The files with their hashes; `None` in results of versions that listed none.
+    files: Option<BTreeMap<String, String>>,
+}
+
+impl Results {
+    /// Reads what is in a folder. Files may be missing, as from a copy, until they are asked for.
+    ///
+    /// # Errors
+    /// There is no `run.json`; an earlier version made it; a file is not the one that `run.json` lists; or a process is
+    /// writing the folder at the moment.
+    pub(super) fn open(folder: &Path) -> Result<Self, Failure> {
+        let (mut again, wait) = AGAIN;
+        loop {
+            complete(folder)?;
+            let results = Self::read_run(folder)?;
+            let strange = results.strange_files();
+            if strange.is_empty() {
+                return Ok(results);
+            }
+            if again == 0 {
+                return Err(mixture(folder, &strange));
+            }
+            again -= 1;
+            std::thread::sleep(wait);
+        }
+    }
+
+    /// The result that a file is part of, if the file is in a folder of results.
+    ///
+    /// # Errors
+    /// As of [`Results::open`].
+    pub(super) fn around(file: &Path) -> Result<Option<Self>, Failure> {
+        let folder = crate::report::whole_file::folder_of(file);
+        folder.join(RUN).is_file().then(|| Self::open(&folder)).transpose()
+    }
+
+    fn read_run(folder: &Path) -> Result<Self, Failure> {
+        let path = folder.join(RUN);
+        let text = fs_err::read_to_string(&path).map_err(|e| Failure::File(e.to_string()))?;
+        let run: Value = serde_json::from_str(&text)
+            .map_err(|e| Failure::File(format!("{} is not JSON: {e}", path.display())))?;
+        refuse_earlier(&path, &run)?;
+        Ok(Self { folder: folder.to_path_buf(), files: listed(&run), run })
+    }
+
+    /// Names of the files that are there and are not those that `run.json` lists.
+    fn strange_files(&self) -> Vec<&str> {
+        let files = self.files.iter().flatten();
+        let differs = |name: &str, listed: &str| match std::fs::read(self.folder.join(name)) {
+            Ok(bytes) => hash(&bytes) != listed,
+            Err(_) => false,
+        };
+        files.filter(|(name, listed)| differs(name, listed)).map(|(name, _)| name.as_str()).collect()
+    }
+
+    /// A file of the result.
+    ///
+    /// # Errors
+    /// It cannot be read, or has been replaced since the folder was opened.
+    pub(super) fn read(&self, name: &str) -> Result<Vec<u8>, Failure> {
+        let path = self.folder.join(name);
+        let bytes = fs_err::read(&path).map_err(|e| Failure::File(e.to_string()))?;
+        match self.files.as_ref().map(|files| files.get(name)) {
+            Some(Some(listed)) if *listed != hash(&bytes) => Err(mixture(&self.folder, &[name])),
+            Some(None) => Err(Failure::Check(format!(
+                "{} is no file of this result: {} does not list it",
+                path.display(),
+                self.folder.join(RUN).display()
+            ))),
+            _ => Ok(bytes),
+        }
+    }
+
+    /// Whether a file is one of the result's.
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.files.as_ref().is_none_or(|files| files.contains_key(name))
+    }
+
+    /// Whether the result has a file of this name, and it is there.
+    pub(super) fn is_there(&self, name: &str) -> bool {
+        self.has(name) && self.folder.join(name).exists()
+    }
+
+    /// A text of the result and the name that messages use for it.
+    ///
+    /// # Errors
+    /// As of [`Results::read`], or it is not UTF-8.
+    pub(super) fn text(&self, name: &str) -> Result<(String, String), Failure> {
+        let file = self.folder.join(name).display().to_string();
+        let text = String::from_utf8(self.read(name)?);
+        Ok((file.clone(), text.map_err(|e| Failure::File(format!("{file}: {e}")))?))
+    }
+
+    /// A front of the result.
+    ///
+    /// # Errors
+    /// As of [`Results::read`], or it is no front.
+    pub(super) fn front(&self, name: &str) -> Result<FrontTable, Failure> {
+        let file = self.folder.join(name);
+        FrontTable::parse(&file, &self.read(name)?).map_err(|e| Failure::File(e.to_string()))
+    }
+
+    /// A table of designs, whose first column names them, with the names that designs have today.
+    ///
+    /// # Errors
+    /// As of [`Results::read`].
+    pub(super) fn with_todays_ids(&self, name: &str) -> Result<Vec<u8>, Failure> {
+        let bytes = self.read(name)?;
+        let is_line_end = |at: usize| bytes[at] == b'\n' && at + 1 < bytes.len();
+        if !self.has_earlier_ids() {
+            return Ok(bytes);
+        }
+        let mut out = Vec::with_capacity(bytes.len());
+        for (at, byte) in bytes.iter().enumerate() {
+            out.push(*byte);
+            if is_line_end(at) {
+                out.push(ID_PREFIX as u8);
+            }
+        }
+        Ok(out)
+    }
+
+    /// Number of the design with this name; `None` if it is no name of a design.
+    pub(super) fn number_of(&self, id: &str) -> Option<u128> {
+        if self.has_earlier_ids() { number_of_earlier(id) } else { number_of(id) }
+    }
+
+    /// Whether names of designs lack the `x`, as in results of versions that listed no files.
+    fn has_earlier_ids(&self) -> bool {
+        self.files.is_none()
+    }
+}
+
+fn mixture(folder: &Path, names: &[&str]) -> Failure {
+    Failure::Check(format!(
+        "{} is not one result: {} {} not what its {RUN} lists, so that files of different runs may be mixed or a file was \
+         edited; run the study again, or restore the folder",
+        folder.display(),
+        names.join(", "),
+        if names.len() == 1 { "is" } else { "are" }
+    ))
+}

@@ -1,0 +1,88 @@
+//! What a name, and any other text of an input file, may hold.
+//!
+//! Names go into tables, pages and messages. Control characters and characters that turn the direction of writing would make
+//! them show something else than what they are, so that no text may hold them. A spreadsheet runs a cell that begins with
+//! `=`, `+`, `-` or `@` as a formula, so that no name may begin with one of these, unless it is a number.
+
+/// What is wrong with a text, and what to try.
+pub(crate) type Unfit = (String, &'static str);
+
+/// Why a text cannot be taken; line breaks and tabs are allowed.
+pub(crate) fn unfit_text(text: &str) -> Option<Unfit> {
+    unfit_character(text, |c| !matches!(c, '\n' | '\r' | '\t'))
+}
+
+/// Why a text cannot be a cell of a table; line breaks and tabs are allowed inside it.
+pub(crate) fn unfit_cell(text: &str) -> Option<Unfit> {
+    unfit_text(text).or_else(|| would_run(text))
+}
+
+/// Why a text cannot be a name.
+pub(crate) fn unfit_name(text: &str) -> Option<Unfit> {
+    unfit_character(text, |_| true).or_else(|| would_run(text))
+}
+
+/// A character that does not show as what it is, among those that `counts` looks at.
+fn unfit_character(text: &str, counts: impl Fn(char) -> bool) -> Option<Unfit> {
+    let hidden = text.chars().filter(|c| counts(*c)).find(|c| is_hidden(*c))?;
+    let what = if hidden.is_control() {
+        "a control character"
+    } else {
+        "a character that turns the direction of writing"
+    };
+    Some((format!("has U+{:04X}, {what}", u32::from(hidden)), "remove it"))
+}
+
+/// Control characters, and the marks, embeddings, overrides and isolates of bidirectional text.
+fn is_hidden(c: char) -> bool {
+    let turns =
+        matches!(c, '\u{061c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    c.is_control() || turns
+}
+
+/// A text that a spreadsheet would run as a formula. A sign alone is none.
+fn would_run(text: &str) -> Option<Unfit> {
+    let begins = text.chars().count() > 1 && text.starts_with(['=', '+', '-', '@']);
+    let is_number = text.replace(',', ".").parse::<f64>().is_ok();
+    (begins && !is_number).then(|| {
+        let problem = format!("\"{}\" would run as a formula in a spreadsheet", visible(text));
+        (problem, "begin it with another character than =, +, - and @")
+    })
+}
+
+/// A text with its hidden characters written out, for messages.
+pub(crate) fn visible(text: &str) -> String {
+    let shown = |c: char| match is_hidden(c) && c != '\n' {
+        true => c.escape_unicode().to_string(),
+        false => c.to_string(),
+    };
+    text.chars().map(shown).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_that_deceive_or_run_are_unfit() {
+        for name in [
+            "a\u{7}b",
+            "a\nb",
+            "a\tb",
+            "\u{202e}gpj.exe",
+            "a\u{2066}b",
+            "=1+1",
+            "+x",
+            "@SUM(A1)",
+            "-x",
+            "-1e",
+        ] {
+            assert!(unfit_name(name).is_some(), "{name:?}");
+        }
+        for name in ["PA6+X", "j-1", "-30", "+90", "-1e-3", "-3,5", "-", "Größe", "鋼", "a=b", ""] {
+            assert!(unfit_name(name).is_none(), "{name:?}");
+        }
+        assert!(unfit_text("two\nlines, = 1\tcm").is_none() && unfit_text("\u{1b}[2J").is_some());
+        assert_eq!(visible("a\u{1b}b\nc"), "a\\u{1b}b\nc");
+    }
+}

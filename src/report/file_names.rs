@@ -1,0 +1,102 @@
+//! File names made from names: of a study, a campaign, a material, a pose, a joint, a picture.
+//!
+//! A name may hold anything; the file name that is made of it holds lower-case letters, digits and `-` alone. It is never
+//! empty, has at most [`MOST_LETTERS`] letters, and is unique among those that are made together.
+
+use std::collections::HashSet;
+
+/// The most letters of a file name, without what stands before and behind it. File systems allow 255 bytes.
+const MOST_LETTERS: usize = 64;
+/// Letters of a hash, which stands for what a file name cannot hold.
+const HASH_LETTERS: usize = 8;
+/// Names that Windows keeps for devices.
+const DEVICES: [&str; 4] = ["aux", "con", "nul", "prn"];
+
+/// The file names of things with these names, each different from all others, in their order.
+///
+/// The first of several names with the same letters and digits keeps them; the next ones get a number behind them.
+///
+/// ```
+/// use armwright::report::file_names::file_names;
+///
+/// assert_eq!(file_names(["Aluminium 6082-T6", "PA6+X", "PA6 X"]), ["aluminium-6082-t6", "pa6-x", "pa6-x-2"]);
+/// assert_eq!(file_names(["../../etc"]), ["etc"]);
+/// ```
+pub fn file_names<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<String> {
+    let mut taken = HashSet::new();
+    names.into_iter().map(|name| unique_file_name(name, &mut taken)).collect()
+}
+
+/// The file name of one thing with this name.
+pub fn file_name(name: &str) -> String {
+    unique_file_name(name, &mut HashSet::new())
+}
+
+/// The file name of a thing, different from those that are taken; it is taken from now on.
+pub(crate) fn unique_file_name(name: &str, taken: &mut HashSet<String>) -> String {
+    let plain = not_empty_and_short(name);
+    let numbered = (2..).map(|number: u64| format!("{plain}-{number}"));
+    let mut candidates = std::iter::once(plain.clone()).chain(numbered);
+    // numbers do not end, so that one is free
+    let free = candidates.find(|candidate| !taken.contains(candidate)).unwrap_or(plain);
+    taken.insert(free.clone());
+    free
+}
+
+/// Letters and digits of a name. A hash of the whole name stands for what is cut off, and for a name without any.
+fn not_empty_and_short(name: &str) -> String {
+    let plain = letters_and_digits(name);
+    let hash = || blake3::hash(name.as_bytes()).to_hex()[..HASH_LETTERS].to_string();
+    match plain.len() {
+        0 => format!("name-{}", hash()),
+        _ if DEVICES.contains(&plain.as_str()) => format!("{plain}-{}", hash()),
+        1..=MOST_LETTERS => plain,
+        _ => {
+            let kept = plain[..MOST_LETTERS - HASH_LETTERS - 1].trim_end_matches('-');
+            format!("{kept}-{}", hash())
+        }
+    }
+}
+
+/// A name in lower case; every run of other characters than ASCII letters and digits becomes one `-`.
+fn letters_and_digits(name: &str) -> String {
+    let mut out = String::new();
+    for c in name.chars() {
+        match c.is_ascii_alphanumeric() {
+            true => out.push(c.to_ascii_lowercase()),
+            false if !out.is_empty() && !out.ends_with('-') => out.push('-'),
+            false => {}
+        }
+    }
+    out.trim_end_matches('-').to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn file_names_of_any_names_are_plain_short_and_different() {
+        let long = "m".repeat(300);
+        let longer = "m".repeat(301);
+        let names = [
+            "PA6+X", "PA6 X", "pa6-x 2", "PA6/X", "", "..", "../..", "鋼", "鉄", "con", &long, &longer, "\n",
+        ];
+        let made = file_names(names);
+        assert_eq!(made.iter().collect::<HashSet<_>>().len(), names.len(), "{made:?}");
+        for name in &made {
+            assert!((1..=MOST_LETTERS + 3).contains(&name.len()), "{name}");
+            assert!(name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-'), "{name}");
+            assert!(!DEVICES.contains(&name.as_str()) && !name.starts_with('-'), "{name}");
+        }
+        // the next one gives way: no name takes what another was given
+        assert_eq!(made[..3], ["pa6-x", "pa6-x-2", "pa6-x-2-2"]);
+    }
+
+    #[test]
+    fn the_file_name_of_a_long_name_does_not_depend_on_what_else_is_there() {
+        let long = |end: &str| format!("{}{end}", "a long name ".repeat(20));
+        assert_ne!(file_name(&long("1")), file_name(&long("2")));
+        assert_eq!(file_name(&long("1")), file_names([long("1").as_str(), "b"])[0]);
+    }
+}
