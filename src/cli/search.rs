@@ -1,6 +1,6 @@
 //! Searches a study: chooses the method and stops when asked.
 
-use super::asked::Asked;
+use super::asked::{Asked, refuse_empty};
 use super::failure::Failure;
 use super::finished::{Finished, FoundExactly, Written};
 use super::progress::{Record, Watch};
@@ -12,7 +12,7 @@ use crate::report::words::{TERMINAL, wrap};
 use crate::search::sweep::Status;
 use crate::space::problem::ArmProblem;
 use crate::study::definition::Study;
-use crate::study::diagnose::{empty_pieces, why_infeasible};
+use crate::study::diagnose::why_infeasible;
 use crate::study::outcome::{ExactStudy, Extent, run_exact, run_study};
 use crate::study::search_cost::SearchCost;
 use crate::study::tolerance::part;
@@ -138,6 +138,7 @@ pub(super) struct With<'a> {
 /// # Errors
 /// The search that is asked for does not suit the study, finds nothing, or is interrupted.
 pub(super) fn search(asked: &Asked, with: &With) -> Result<Written, Failure> {
+    refuse_empty(&asked.study, with.catalogs)?;
     let written = match with.how.kind(&asked.study, with.catalogs)? {
         SearchKind::Exhaustive => visit_all(asked, with),
         SearchKind::Exact => search_exactly(asked, with),
@@ -152,7 +153,6 @@ pub(super) fn search(asked: &Asked, with: &With) -> Result<Written, Failure> {
 fn visit_all(Asked { study, text, corrections }: &Asked, with: &With) -> Result<Written, Failure> {
     let With { catalogs, overlay, dir, supplements, .. } = *with;
     let problem = ArmProblem::new(&study.space, catalogs);
-    refuse_empty(study, &problem)?;
     // a folder that cannot be written fails now, not after the search
     write_all(dir, &[])?;
     let stop = stopped_by_signal();
@@ -173,7 +173,7 @@ fn visit_all(Asked { study, text, corrections }: &Asked, with: &With) -> Result<
         Status::Infeasible => {
             // succeeds only on an empty folder: earlier results stay
             let _ = std::fs::remove_dir(dir);
-            Err(Failure::Infeasible(why_infeasible(study, catalogs, &outcome)))
+            Err(Failure::Infeasible(why_infeasible(study, catalogs, stop, None)))
         }
         _ => {
             let finished = Finished {
@@ -232,13 +232,10 @@ fn search_exactly(Asked { study, text, corrections }: &Asked, with: &With) -> Re
         let _ = std::fs::remove_dir(dir);
         problem
     };
-    let designs = outcome.sweep.designs_total as f64;
     match outcome.sweep.status {
-        Status::Infeasible => Err(Failure::Infeasible(nothing(format!(
-            "none of the {designs:.3e} designs of the study \"{}\" meets its constraints (proved by {} boxes); \
-             loosen one, or run a coarser grid with --search exhaustive to see which of them it is",
-            study.name, boxes[0]
-        )))),
+        Status::Infeasible => {
+            Err(Failure::Infeasible(nothing(why_infeasible(study, catalogs, stop, extent.deadline))))
+        }
         Status::Partial if outcome.front.is_empty() => Err(Failure::Interrupted(nothing(format!(
             "no design was found before the search was stopped ({} boxes); nothing was written, allow more time",
             boxes[0]
@@ -263,16 +260,5 @@ fn search_exactly(Asked { study, text, corrections }: &Asked, with: &With) -> Re
             written.terminal.push_str(&certificate_words(boxes, gap, written.proved_to_mass_kg));
             Ok(written)
         }
-    }
-}
-
-fn refuse_empty(study: &Study, problem: &ArmProblem) -> Result<(), Failure> {
-    match empty_pieces(problem).as_slice() {
-        [] => Ok(()),
-        pieces => Err(Failure::EmptySpace(format!(
-            "the study \"{}\" has nothing to choose from\n  {}",
-            study.name,
-            pieces.join("\n  ")
-        ))),
     }
 }

@@ -183,7 +183,8 @@ impl<'p> Exact<'p> {
         // Tied kinds may stand for the same design.
         front.dedup_by_key(|c| c.number);
         ExactOutcome {
-            designs_total: whole.as_ref().map_or(0, Problem::designs),
+            // Also of a space of which nothing was compiled because no option of a level can hold.
+            designs_total: self.space.designs(self.catalogs).unwrap_or(u128::MAX),
             designs_evaluated,
             boxes: self.budget.boxes(),
             boxes_open: ended.open.len() as u64,

@@ -75,9 +75,6 @@ pub struct SweepOutcome {
     pub front: Vec<Candidate>,
     /// Candidates of the front of each group (material).
     pub groups: Vec<Vec<Candidate>>,
-    /// Near misses: the best value of each objective (deflection \[m\], mass \[kg\], negative mode \[Hz\]) among the designs
-    /// that break only the limit on it. A limit relaxed to this value would let the first design in.
-    pub near_misses: [Option<f64>; 3],
 }
 
 /// A sweep that other threads can watch and stop.
@@ -176,37 +173,14 @@ fn clear_dominated(candidates: &mut Vec<Candidate>) {
 struct Tally {
     evaluated: u64,
     excluded: u128,
-    near_misses: [Option<f64>; 3],
 }
 
 impl Tally {
     fn merge(mut self, other: Tally) -> Tally {
         self.evaluated += other.evaluated;
         self.excluded += other.excluded;
-        for (mine, theirs) in self.near_misses.iter_mut().zip(other.near_misses) {
-            if let Some(x) = theirs {
-                note(mine, x);
-            }
-        }
         self
     }
-
-    /// Whether a design meets every constraint. A design that breaks exactly one is noted as a near miss.
-    fn meets(&mut self, constraints: &Constraints, o: &Objectives) -> bool {
-        let broken = constraints.broken(o);
-        if broken.iter().filter(|b| **b).count() == 1 {
-            let values = [o.tip_deflection_m, o.mass_kg, -o.lowest_mode_hz];
-            for (k, _) in broken.iter().enumerate().filter(|(_, b)| **b) {
-                note(&mut self.near_misses[k], values[k]);
-            }
-        }
-        !broken.contains(&true)
-    }
-}
-
-/// Keeps the smaller of two values.
-fn note(best: &mut Option<f64>, x: f64) {
-    *best = Some(best.map_or(x, |b| b.min(x)));
 }
 
 impl<'p, P: FinishRows> Sweep<'p, P> {
@@ -263,7 +237,6 @@ impl<'p, P: FinishRows> Sweep<'p, P> {
             designs_excluded: tally.excluded,
             front,
             groups: groups.into_iter().map(Pool::finish).collect(),
-            near_misses: tally.near_misses,
         }
     }
 }
@@ -281,7 +254,7 @@ struct Worker<'s> {
 impl Keep for Worker<'_> {
     fn complete(&mut self, number: u128, Finished { objectives, group }: Finished) {
         self.tally.evaluated += 1;
-        if !self.tally.meets(self.constraints, &objectives) {
+        if self.constraints.broken(&objectives).contains(&true) {
             return;
         }
         let candidate = Candidate { number, objectives };
@@ -298,8 +271,7 @@ impl Keep for Worker<'_> {
     }
 
     // A design of a group is of interest for two fronts. One that its own group dominates is dominated in both, so the
-    // bar of the group is the one to use. The bar comes from designs that meet the constraints. Once there is one, near
-    // misses no longer matter, and designs below the bar need not be examined for them.
+    // bar of the group is the one to use.
     fn bar_hz(&self, group: Option<usize>, mass_kg: f64, tip_deflection_m: f64) -> f64 {
         let pool = group.map_or(self.overall, |group| &self.groups[group]);
         pool.archive.bar_hz(mass_kg, tip_deflection_m)

@@ -210,7 +210,6 @@ impl Searched {
                 designs_excluded: whole.designs_total.saturating_sub(u128::from(whole.designs_evaluated)),
                 front,
                 groups,
-                near_misses: [None; 3],
             },
         };
         (outcome, near)
