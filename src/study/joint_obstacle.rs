@@ -167,7 +167,7 @@ fn no_legal_drive(table: &DriveTable, demand: &JointDemand) -> String {
     let needed_rad_s = table.motion().speed_rad_s;
     match fastest(table).filter(|(rad_s, _)| *rad_s < needed_rad_s) {
         Some((rad_s, drive)) => format!(
-            "joint {joint}: {} rad/s needed, {} rad/s allowed by the fastest drive, {drive} (short by {} rad/s); slow \
+            "joint {joint}: {} rad/s needed, {} allowed by the fastest drive, {drive} (short by {} rad/s); slow \
              the joint to {} rad/s (tip_speed_m_s, min_lever_m, max_speed_rad_s) or widen \"drives\"",
             short(needed_rad_s),
             short(rad_s),

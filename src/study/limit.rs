@@ -1,6 +1,6 @@
 //! The limits of a study that a design can break, one by one: what each is on, what is asked, and what a design reaches.
 
-use crate::pareto::objectives::Objectives;
+use crate::pareto::objectives::{Objective, Objectives};
 use crate::report::number::significant;
 use crate::space::constraint::Constraints;
 use crate::space::problem::{ArmProblem, Partial};
@@ -58,6 +58,16 @@ impl Quantity {
             Self::Stress => Some(problem.stress_safety_factor(arm).unwrap_or(f64::INFINITY)),
             Self::Slenderness => Some(problem.wall_slenderness(arm)),
             Self::Cost => problem.material_cost_eur(arm),
+        }
+    }
+
+    /// The objective that is limited, if it is one.
+    pub(super) fn objective(self) -> Option<Objective> {
+        match self {
+            Self::Deflection => Some(Objective::TipDeflection),
+            Self::Mode => Some(Objective::LowestMode),
+            Self::Mass => Some(Objective::Mass),
+            Self::Stress | Self::Slenderness | Self::Cost => None,
         }
     }
 

@@ -1,8 +1,9 @@
 //! Which limits stand in the way of every design, and how far they have to be relaxed.
 //!
-//! A limit is dropped, and an exact search is asked for any one design that meets all else. If there is one, the limit
-//! is bisected between what is asked and what that design reaches: each step asks whether a design meets the middle. The
-//! search may end with its first design, so a step is short. If no limit helps alone, pairs are tried, then triples.
+//! A limit is dropped, and an exact search is asked for the best design in the limited quantity that meets all else. If the
+//! quantity is no objective, the search is asked for any design, and the limit is bisected between what is asked and what
+//! that design reaches; each step asks for any design that meets the middle. If no limit helps alone, pairs are tried,
+//! then triples.
 
 use super::limit::Quantity;
 use crate::catalog::Catalogs;
@@ -16,7 +17,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// A limit is known well enough when it is bracketed to this (relative).
-const CLOSE: f64 = 1e-6;
+const CLOSE: f64 = 2e-6;
 /// A limit of zero is bisected from this part of what is reached: the middle is a geometric mean.
 const LEAST: f64 = 1e-12;
 /// A gap that any design closes.
@@ -49,7 +50,7 @@ pub(super) struct Limited<'a> {
 impl Limited<'_> {
     /// Whether some design holds if all limits are dropped; `None` if time ran out before this was known.
     pub(super) fn holds_without_limits(&self) -> Option<bool> {
-        match self.find(&Constraints::default(), Quantity::Mass) {
+        match self.find(&Constraints::default(), Quantity::Mass, |search| search.to_gap(ANY)) {
             Answer::Yes(_) => Some(true),
             Answer::No => Some(false),
             Answer::Unknown => None,
@@ -83,38 +84,44 @@ impl Limited<'_> {
         set.iter().for_each(|quantity| quantity.set(&mut constraints, None));
         let (mut limits, mut is_smallest) = (Vec::new(), true);
         for &quantity in set {
-            let reached = match self.find(&constraints, quantity) {
-                Answer::Yes(reached) => reached,
+            let (reached, is_least) = match self.best(&constraints, quantity) {
+                Answer::Yes(best) => best,
                 Answer::No => return Answer::No,
                 Answer::Unknown => return Answer::Unknown,
             };
-            let Some(asked) = quantity.asked(&self.space.constraints) else { return Answer::No };
-            let (reached, is_least) = self.bisected(&constraints, quantity, asked, reached);
-            quantity.set(&mut constraints, Some(reached));
+            // a little room, so that rounding does not exclude the design that reaches it
+            let roomy = if quantity.is_least() { reached / (1.0 + CLOSE) } else { reached * (1.0 + CLOSE) };
+            quantity.set(&mut constraints, Some(roomy));
             limits.push((quantity, reached));
             is_smallest &= is_least;
         }
         Answer::Yes(Relaxation { limits, is_smallest })
     }
 
-    /// The value of a limit nearest to what is asked that some design reaches, between a value that is asked in vain and
-    /// one that is reached; with `false` if time ran out.
-    fn bisected(
-        &self,
-        constraints: &Constraints,
-        quantity: Quantity,
-        asked: f64,
-        reached: f64,
-    ) -> (f64, bool) {
+    /// The best value of a quantity under some limits, with `false` if time ran out before none was known to be better.
+    fn best(&self, constraints: &Constraints, quantity: Quantity) -> Answer<(f64, bool)> {
+        if let Some(objective) = quantity.objective() {
+            return self.find(constraints, quantity, |search| search.toward(objective));
+        }
+        match self.find(constraints, quantity, |search| search.to_gap(ANY)) {
+            Answer::Yes((reached, _)) => Answer::Yes(self.bisected(constraints, quantity, reached)),
+            other => other,
+        }
+    }
+
+    /// The value of a limit nearest to what is asked that some design reaches, between what is asked, in vain, and what is
+    /// reached; with `false` if time ran out.
+    fn bisected(&self, constraints: &Constraints, quantity: Quantity, reached: f64) -> (f64, bool) {
         // what a limit costs rises from the value asked to the value reached, for minima from the reciprocals
         let cost = |value: f64| if quantity.is_least() { value.recip() } else { value };
+        let asked = quantity.asked(&self.space.constraints).unwrap_or_default();
         let (mut in_vain, mut enough) = (cost(asked).max(cost(reached) * LEAST), cost(reached));
         while enough > in_vain * (1.0 + CLOSE) {
             let middle = (in_vain * enough).sqrt();
             let mut tried = *constraints;
             quantity.set(&mut tried, Some(cost(middle)));
-            match self.find(&tried, quantity) {
-                Answer::Yes(reached) => enough = cost(reached).min(middle),
+            match self.find(&tried, quantity, |search| search.to_gap(ANY)) {
+                Answer::Yes((reached, _)) => enough = cost(reached).min(middle),
                 Answer::No => in_vain = middle,
                 Answer::Unknown => return (cost(enough), false),
             }
@@ -122,11 +129,17 @@ impl Limited<'_> {
         (cost(enough), true)
     }
 
-    /// The best value of a quantity among the first designs that an exact search finds under some limits.
-    fn find(&self, constraints: &Constraints, quantity: Quantity) -> Answer<f64> {
+    /// The best value of a quantity among the designs that an exact search finds under some limits, and whether the search
+    /// was done. `how` says what it is to find.
+    fn find(
+        &self,
+        constraints: &Constraints,
+        quantity: Quantity,
+        how: impl for<'p> Fn(Exact<'p>) -> Exact<'p>,
+    ) -> Answer<(f64, bool)> {
         let space = DesignSpace { constraints: *constraints, ..self.space.clone() };
         let search = Exact::new(&space, self.catalogs, self.stop, Some(self.deadline));
-        let found = search.to_gap(ANY).by_regions_from(f64::INFINITY).run(&[]);
+        let found = how(search.by_regions_from(f64::INFINITY)).run(&[]);
         let numbers: Vec<u128> = found.front.iter().map(|candidate| candidate.number).collect();
         let best = space.excerpt(self.catalogs, &numbers).and_then(|part| {
             let problem = ArmProblem::new(&part, self.catalogs);
@@ -134,7 +147,7 @@ impl Limited<'_> {
             values.reduce(if quantity.is_least() { f64::max } else { f64::min })
         });
         match (best, found.boxes_open) {
-            (Some(value), _) => Answer::Yes(value),
+            (Some(value), open) => Answer::Yes((value, open == 0)),
             (None, 0) => Answer::No,
             (None, _) => Answer::Unknown,
         }
