@@ -5,13 +5,14 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let cli = armwright::command_line::Cli::parse();
+    let log = cli.log();
     match armwright::command_line::run(cli) {
-        Ok(text) => {
-            armwright::command_line::print(&text);
-            ExitCode::SUCCESS
+        Ok(answer) => {
+            armwright::command_line::print(&answer.text);
+            ExitCode::from(answer.exit.code())
         }
         Err(failure) => {
-            eprintln!("error: {failure}");
+            log.error(&failure);
             ExitCode::from(failure.exit_code())
         }
     }

@@ -1,6 +1,7 @@
 //! The output of a finished search: files, page and terminal text.
 
 use super::corrections;
+use super::exit::Exit;
 use super::failure::Failure;
 use super::progress::Progress;
 use super::supplements::{FILES, Found, SupplementArgs};
@@ -20,7 +21,7 @@ use crate::report::html::study::StudyPage;
 use crate::report::number::significant;
 use crate::report::picks;
 use crate::report::section::PageSection;
-use crate::report::summary::{MaterialFront, SummaryInput, single_materials, summary_md, terminal_summary};
+use crate::report::summary::{MaterialFront, SummaryInput, single_materials, summary_md, terminal_summary, timing_words};
 use crate::report::supplement::Supplement;
 use crate::search::near::NearDesigns;
 use crate::search::sweep::Status;
@@ -49,6 +50,10 @@ pub(super) struct Written {
     pub front: FrontTable,
     /// How the search ended.
     pub status: Status,
+    /// How the program ends if all is written.
+    pub exit: Exit,
+    /// How long the search took, in a line.
+    pub timing: String,
     pub gap: Option<f64>,
     /// Whether no design is missing in it.
     pub is_whole: bool,
@@ -163,6 +168,8 @@ impl Finished<'_> {
             files,
             terminal,
             status,
+            exit: Exit::Done,
+            timing: format!("{}\n", timing_words(&summary.facts)),
             gap,
             is_whole: summary.facts.is_whole(),
             proved_to_mass_kg: self.proved_to_mass_kg(&summary.facts),
@@ -264,7 +271,8 @@ impl Finished<'_> {
         let mut page = study_page(self.study, self.problem, self.catalogs, summary);
         page.extras.extend(sections);
         page.extras.push(certificate_section(&summary.facts, self.exact.map(|exact| exact.boxes)));
-        StudyPage { scatter_svg: picture, run: facts_of(run), ..page }.page()
+        let (timing, run) = facts_of(run).into_iter().partition(|(key, _)| OF_A_RUN.contains(&key.as_str()));
+        StudyPage { scatter_svg: picture, run, timing, ..page }.page()
     }
 
     fn ties_listed(&self) -> bool {
@@ -330,6 +338,9 @@ impl Finished<'_> {
         run
     }
 }
+
+/// Facts that differ from run to run.
+const OF_A_RUN: [&str; 4] = ["elapsed s", "designs per s", "threads", "platform"];
 
 /// The facts of `run.json` that are a word or a number, for people.
 pub(super) fn facts_of(run: &Value) -> Vec<(String, String)> {

@@ -1,6 +1,8 @@
 //! `armwright reconcile`: where model and measurement disagree, what is missing, and what that changes.
 
+use super::exit::{Answer, Exit};
 use super::failure::Failure;
+use super::log::Log;
 use super::rerun::{Rerun, rerun};
 use super::search::SearchArgs;
 use super::write::write_all;
@@ -50,7 +52,8 @@ pub(crate) fn run(
     args: &ReconcileArgs,
     catalogs: &Catalogs,
     overlay: Option<&Path>,
-) -> Result<(Outcome, String), Failure> {
+    log: Log,
+) -> Result<(Outcome, Answer), Failure> {
     match &args.study {
         // a study that does not read, or a search that does not suit it, fails now and not after the fits
         Some(study) => drop(args.how.check(&super::asked::load_study(study, catalogs)?.0, catalogs)?),
@@ -73,13 +76,16 @@ pub(crate) fn run(
     files.extend(page.page().into_files());
     write_all(&out, &files)?;
     let mut text = format!("{}{}", narrow(&outcome.to_text()), page.terminal());
+    let mut exit = Exit::Done;
     if let Some(study) = &args.study {
-        let rerun = rerun(&outcome, (study, &args.how), catalogs, overlay, &out)?;
+        let rerun = rerun(&outcome, (study, &args.how), catalogs, overlay, &out, log)?;
         text.push_str(&rerun.text);
+        exit = rerun.exit;
         add(&mut files, &outcome, rerun);
         write_all(&out, &files)?;
     }
-    Ok((outcome, format!("{text}written to {}\n", out.display())))
+    text.push_str(&format!("written to {}\n", out.display()));
+    Ok((outcome, Answer { text, exit }))
 }
 
 /// Adds the result of the second run of the study to the verdict, and its table to the files.

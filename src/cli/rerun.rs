@@ -2,8 +2,10 @@
 
 use super::asked::{Asked, load_study};
 use super::corrections;
+use super::exit::Exit;
 use super::failure::Failure;
 use super::finished::Written;
+use super::log::Log;
 use super::search::{SearchArgs, With, search};
 use super::supplements::SupplementArgs;
 use crate::catalog::Catalogs;
@@ -28,6 +30,8 @@ pub(super) struct Rerun {
     pub json: Value,
     /// `study_changes.csv`, where both runs have a front.
     pub csv: Option<String>,
+    /// How the program ends: as the run that was stopped, if one was.
+    pub exit: Exit,
 }
 
 impl Rerun {
@@ -37,6 +41,7 @@ impl Rerun {
             text: format!("\nstudy {study}: {why}\n"),
             json: json!({"study": study, "status": status, "why": why}),
             csv: None,
+            exit: Exit::Done,
         }
     }
 }
@@ -51,6 +56,7 @@ pub(super) fn rerun(
     catalogs: &Catalogs,
     overlay: Option<&Path>,
     dir: &Path,
+    log: Log,
 ) -> Result<Rerun, Failure> {
     if outcome.verdict != Verdict::Explained {
         let why = format!(
@@ -77,7 +83,7 @@ pub(super) fn rerun(
         let supplements = SupplementArgs::default();
         match search(
             asked,
-            &With { catalogs, overlay, dir: &results, how, supplements: &supplements, record: None },
+            &With { catalogs, overlay, dir: &results, how, supplements: &supplements, record: None, log },
         ) {
             Ok(written) => {
                 written.write(&results)?;
@@ -134,7 +140,8 @@ fn told(name: &str, corrected: &Asked, found: &[Written], changes: &Changes) -> 
         changes.to_text(),
         if all_whole { String::new() } else { lacking_words(found) }
     );
-    Rerun { text, json, csv: Some(changes.to_csv()) }
+    let stopped = found.iter().map(|written| written.exit).find(|exit| *exit != Exit::Done);
+    Rerun { text, json, csv: Some(changes.to_csv()), exit: stopped.unwrap_or(Exit::Done) }
 }
 
 /// A caution for fronts that are not complete.

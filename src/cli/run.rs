@@ -2,8 +2,10 @@
 
 use super::asked::{Asked, load_study};
 use super::corrections;
+use super::exit::Answer;
 use super::failure::Failure;
 use super::finished::{catalogs_hash, facts_of, is_front_of_material, pretty};
+use super::log::Log;
 use super::progress::Record;
 use super::search::{SearchArgs, With, search};
 use super::supplements::SupplementArgs;
@@ -105,18 +107,24 @@ fn mass_limit(text: &str) -> Result<f64, String> {
 }
 
 /// Executes the verb.
-pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -> Result<String, Failure> {
+pub(super) fn run(
+    args: &RunArgs,
+    catalogs: &Catalogs,
+    overlay: Option<&Path>,
+    log: Log,
+) -> Result<Answer, Failure> {
     if NAMES.contains(&args.study.as_str()) {
-        return run_paper(args, catalogs);
+        return run_paper(args, catalogs).map(Answer::from);
     }
     let asked = args.asked(catalogs)?;
     let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(args.folder(&asked.study)));
     let record = args.progress.as_deref().map(Record::create).transpose()?;
     let (how, supplements, record) = (&args.search, &args.supplements, record.as_ref());
-    let written = search(&asked, &With { catalogs, overlay, dir: &dir, how, supplements, record })?;
+    let written = search(&asked, &With { catalogs, overlay, dir: &dir, how, supplements, record, log })?;
     written.write(&dir)?;
     let applied = corrections::to_text(&asked.corrections);
-    Ok(format!("{}{applied}\n{}", written.terminal, told(&dir, &written.files)))
+    let text = format!("{}{applied}\n{}{}", written.terminal, told(&dir, &written.files), written.timing);
+    Ok(Answer { text, exit: written.exit })
 }
 
 /// Runs one of the paper's studies, which are computed without a search.

@@ -71,7 +71,8 @@ pub fn run_study(
     let judged = by_full_model(&problem, all.collect());
     let of_material = |(name, candidates): (String, &Vec<Candidate>)| {
         let front = front_of(&judged, candidates);
-        let status = if front.is_empty() { Status::Infeasible } else { outcome.status };
+        let is_known_empty = front.is_empty() && outcome.status != Status::Interrupted;
+        let status = if is_known_empty { Status::Infeasible } else { outcome.status };
         OfMaterial { name, status, front, ties_listed: true }
     };
     let names = study.space.material_names();
