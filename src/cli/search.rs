@@ -96,6 +96,19 @@ impl SearchArgs {
         Ok(designs)
     }
 
+    /// Checks that nothing but a visit to every design was asked for, and counts the designs.
+    ///
+    /// # Errors
+    /// Something else was asked for, or the visit would take years.
+    pub(super) fn check_exhaustive(&self, study: &Study, catalogs: &Catalogs) -> Result<u128, Failure> {
+        if self.search == Some(SearchKind::Exact) {
+            return Err(Failure::Usage(
+                "--shard goes with --search exhaustive: the exact search runs on one machine".into(),
+            ));
+        }
+        Self { search: Some(SearchKind::Exhaustive), ..*self }.check(study, catalogs)
+    }
+
     /// Whether anything is asked for.
     pub(crate) fn is_default(&self) -> bool {
         self.search.is_none() && self.time_limit.is_none() && self.gap.is_none()

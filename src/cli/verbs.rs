@@ -3,7 +3,9 @@
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
 use super::log::{Log, LogForm};
-use super::{analyze, catalog, check, compare, design, front, new, predict, reconcile, size};
+use super::{
+    analyze, catalog, check, compare, design, front, merge, new, predict, reconcile, size, slurm,
+};
 use crate::catalog::Catalogs;
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
@@ -50,6 +52,12 @@ enum Verb {
     Front(front::FrontArgs),
     /// Compare fronts: the materials of one study, or several studies
     Compare(compare::CompareArgs),
+    /// Join the shards of a search into its front
+    Merge(merge::MergeArgs),
+    /// List the shards of a search and what is missing
+    Status(merge::StatusArgs),
+    /// Print a script that runs a study as shards on a Slurm cluster
+    Slurm(slurm::SlurmArgs),
     /// Check whether two folders of results are the same
     Check(check::CheckArgs),
     /// Start a campaign of measurements
@@ -97,6 +105,9 @@ pub fn run(cli: Cli) -> Result<Answer, Failure> {
         Verb::Catalog(args) => catalog::run(&args, overlay),
         Verb::Studies => Ok(crate::study::list()),
         Verb::Size(args) => size::run(&args, &catalogs?),
+        Verb::Merge(args) => return merge::merge(&args, &catalogs?, overlay),
+        Verb::Status(args) => merge::status(&args),
+        Verb::Slurm(args) => slurm::run(&args, &catalogs?, overlay),
         Verb::Check(args) => check::run(&args),
         Verb::Compare(args) => compare::run(&args),
         Verb::Analyze(args) => analyze::run(&args, &catalogs?),

@@ -6,13 +6,14 @@
 //! the order of visits or on the number of threads.
 
 use super::finish::FinishRows;
-use super::visit::Visit;
+use super::visit::{Visit, blocks};
 use crate::pareto::archive::Archive;
 use crate::pareto::front::not_clearly_beaten;
 use crate::pareto::objectives::Objectives;
 use crate::space::constraint::Constraints;
 use crate::space::levels::{Finished, Keep};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -77,6 +78,20 @@ pub struct SweepOutcome {
     pub groups: Vec<Vec<Candidate>>,
 }
 
+/// A shard: part `number` of `of` parts of a space, counted from 1. Each is swept by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shard {
+    /// Which part, from 1.
+    pub number: u32,
+    /// How many parts.
+    pub of: u32,
+}
+
+impl Shard {
+    /// The whole space.
+    pub const WHOLE: Self = Self { number: 1, of: 1 };
+}
+
 /// A sweep that other threads can watch and stop.
 ///
 /// The problem is any tree that can finish rows of designs. [`ArmProblem`](crate::space::ArmProblem) is the one for arms.
@@ -113,6 +128,7 @@ pub struct Sweep<'p, P: FinishRows> {
     constraints: Constraints,
     visited: AtomicU64,
     stop: &'p AtomicBool,
+    shard: Shard,
 }
 
 /// Candidates of one front, shared by the tasks.
@@ -161,8 +177,14 @@ impl Pool {
     }
 }
 
+/// `all * shards / of` without an overflow.
+fn share(all: u128, shards: u32, of: u32) -> u128 {
+    let (shards, of) = (u128::from(shards), u128::from(of));
+    all / of * shards + all % of * shards / of
+}
+
 /// Drops the candidates that another clearly dominates.
-fn clear_dominated(candidates: &mut Vec<Candidate>) {
+pub(crate) fn clear_dominated(candidates: &mut Vec<Candidate>) {
     let points: Vec<[f64; 3]> = candidates.iter().map(|c| c.objectives.minimized()).collect();
     let kept = not_clearly_beaten(&points, SLACK);
     *candidates = kept.into_iter().map(|i| candidates[i]).collect();
@@ -186,7 +208,27 @@ impl Tally {
 impl<'p, P: FinishRows> Sweep<'p, P> {
     /// A sweep of all designs of a problem. It ends early when `stop` is set.
     pub fn new(problem: &'p P, constraints: Constraints, stop: &'p AtomicBool) -> Self {
-        Self { problem, constraints, visited: AtomicU64::new(0), stop }
+        Self { problem, constraints, visited: AtomicU64::new(0), stop, shard: Shard::WHOLE }
+    }
+
+    /// Visits the designs of a shard alone.
+    #[must_use]
+    pub fn of_shard(self, shard: Shard) -> Self {
+        Self { shard, ..self }
+    }
+
+    /// The numbers of the designs that are visited. The ranges of all shards follow each other and cover the space.
+    pub fn range(&self) -> Range<u128> {
+        let each = blocks(self.problem).1;
+        let Range { start, end } = self.blocks();
+        start * each..end * each
+    }
+
+    fn blocks(&self) -> Range<u128> {
+        let all = blocks(self.problem).0;
+        let Shard { number, of } = self.shard;
+        let before = |shards: u32| share(all, shards, of);
+        before(number - 1)..before(number)
     }
 
     /// Number of designs visited or excluded so far.
@@ -206,14 +248,17 @@ impl<'p, P: FinishRows> Sweep<'p, P> {
         let overall = Pool::new(6);
         let groups: Vec<Pool> = (0..self.problem.groups()).map(|_| Pool::new(5)).collect();
         let tally = match self.problem.root() {
-            None => Tally { excluded: self.total(), ..Tally::default() },
+            None => {
+                let range = self.range();
+                Tally { excluded: range.end - range.start, ..Tally::default() }
+            }
             Some(root) => Visit {
                 problem: self.problem,
                 compiled: self.problem.compile(),
                 visited: &self.visited,
                 stop: self.stop,
             }
-            .every_design(&root, || Worker {
+            .designs_of(self.blocks(), &root, || Worker {
                 constraints: &self.constraints,
                 overall: &overall,
                 groups: &groups,
