@@ -52,5 +52,5 @@ pub mod verify;
 
 /// The command line, for a program that is one: parse, run, print.
 pub mod command_line {
-    pub use crate::cli::{Cli, Failure, print, printed, run, say};
+    pub use crate::cli::{Answer, Cli, Exit, Failure, Log, print, printed, run};
 }

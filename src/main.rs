@@ -1,32 +1,36 @@
 //! The `armwright` command: parse, call a verb, print one error.
 
-use armwright::command_line::{Cli, Failure, print, printed, run, say};
+use armwright::command_line::{Answer, Cli, Exit, Failure, Log, print, printed, run};
 use clap::Parser;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    let mut log = Log::default();
     let done = match Cli::try_parse() {
-        Ok(cli) => without_panic(cli).and_then(|text| print(&text)),
+        Ok(cli) => {
+            log = cli.log();
+            without_panic(cli).and_then(|answer| print(&answer.text).map(|()| answer.exit))
+        }
         Err(asked) if asked.use_stderr() => {
             // wrong usage; where standard error cannot be written the exit code says it
             let _ = asked.print();
-            return ExitCode::from(Failure::Usage(String::new()).exit_code());
+            return ExitCode::from(Exit::Usage.code());
         }
         // help and version
-        Err(asked) => printed(asked.print()),
+        Err(asked) => printed(asked.print()).map(|()| Exit::Done),
     };
     match done {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(exit) => ExitCode::from(exit.code()),
         Err(failure) => {
-            say(&format!("error: {failure}\n"));
+            log.error(&failure);
             ExitCode::from(failure.exit_code())
         }
     }
 }
 
 /// Executes a command line; a panic, whose message is on standard error by now, becomes an internal error.
-fn without_panic(cli: Cli) -> Result<String, Failure> {
+fn without_panic(cli: Cli) -> Result<Answer, Failure> {
     catch_unwind(AssertUnwindSafe(|| run(cli))).unwrap_or_else(|_| {
         let words = "this is a fault of armwright, please report it with the input and the lines above";
         Err(Failure::Internal(words.into()))

@@ -4,6 +4,7 @@ use super::failure::Failure;
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::study::definition::Study;
+use crate::study::diagnose::empty_pieces;
 use crate::study::effects::Correction;
 use crate::study::named;
 use crate::study::read::read_study;
@@ -41,4 +42,19 @@ pub(super) fn study_text(name: &str) -> Result<(String, String), Failure> {
 pub(super) fn load_study(name: &str, catalogs: &Catalogs) -> Result<(Study, String), Failure> {
     let (file, text) = study_text(name)?;
     Ok((read_study(Document::parse(&file, &text)?, catalogs)?, text))
+}
+
+/// Refuses a study with nothing to choose from at some link or joint. Every verb that builds designs asks here.
+///
+/// # Errors
+/// [`Failure::EmptySpace`] with every such link and joint.
+pub(super) fn refuse_empty(study: &Study, catalogs: &Catalogs) -> Result<(), Failure> {
+    match empty_pieces(&study.space, catalogs).as_slice() {
+        [] => Ok(()),
+        pieces => Err(Failure::EmptySpace(format!(
+            "the study \"{}\" has nothing to choose from\n  {}",
+            study.name,
+            pieces.join("\n  ")
+        ))),
+    }
 }

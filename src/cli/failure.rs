@@ -1,5 +1,6 @@
-//! Why a verb failed, and the exit code of each reason.
+//! Why a verb failed.
 
+use super::exit::Exit;
 use crate::input::json::{Faults, InputError};
 use std::path::Path;
 
@@ -36,23 +37,32 @@ pub enum Failure {
     /// Another process is writing the same results.
     #[error("{0}")]
     Locked(String),
+    /// A time limit came before anything was found.
+    #[error("{0}")]
+    Partial(String),
 }
 
 impl Failure {
+    /// How the program ends for this reason.
+    pub fn exit(&self) -> Exit {
+        match self {
+            Failure::Internal(_) => Exit::Internal,
+            Failure::Usage(_) => Exit::Usage,
+            Failure::Input(_) => Exit::Input,
+            Failure::Catalog(_) => Exit::Catalog,
+            Failure::EmptySpace(_) => Exit::EmptySpace,
+            Failure::Infeasible(_) => Exit::Infeasible,
+            Failure::File(_) => Exit::File,
+            Failure::Interrupted(_) => Exit::Interrupted,
+            Failure::Check(_) => Exit::CheckFailed,
+            Failure::Locked(_) => Exit::Locked,
+            Failure::Partial(_) => Exit::Partial,
+        }
+    }
+
     /// The process exit code.
     pub fn exit_code(&self) -> u8 {
-        match self {
-            Failure::Internal(_) => 1,
-            Failure::Usage(_) => 2,
-            Failure::Input(_) => 3,
-            Failure::Catalog(_) => 4,
-            Failure::EmptySpace(_) => 5,
-            Failure::Infeasible(_) => 6,
-            Failure::File(_) => 7,
-            Failure::Interrupted(_) => 8,
-            Failure::Check(_) => 9,
-            Failure::Locked(_) => 12,
-        }
+        self.exit().code()
     }
 
     /// Why the catalogs cannot be used.

@@ -2,6 +2,7 @@
 
 use super::beside::{Beside, another_stands, say_missing};
 use super::corrections;
+use super::exit::Exit;
 use super::failure::Failure;
 use super::manifest::{Files, RUN};
 use super::progress::Progress;
@@ -21,7 +22,9 @@ use crate::report::html::study::StudyPage;
 use crate::report::number::significant;
 use crate::report::picks;
 use crate::report::section::PageSection;
-use crate::report::summary::{MaterialFront, SummaryInput, single_materials, summary_md, terminal_summary};
+use crate::report::summary::{
+    MaterialFront, SummaryInput, single_materials, summary_md, terminal_summary, timing_words,
+};
 use crate::report::supplement::Supplement;
 use crate::search::near::NearDesigns;
 use crate::search::sweep::Status;
@@ -54,6 +57,10 @@ pub(super) struct Written {
     pub front: FrontTable,
     /// How the search ended.
     pub status: Status,
+    /// How the program ends if all is written.
+    pub exit: Exit,
+    /// How long the search took, in a line.
+    pub timing: String,
     pub gap: Option<f64>,
     /// Whether no design is missing in it.
     pub is_whole: bool,
@@ -149,6 +156,8 @@ impl Finished<'_> {
             files,
             terminal: terminal.unwrap_or_default() + &paragraphs,
             status: self.outcome.sweep.status,
+            exit: Exit::Done,
+            timing: format!("{}\n", timing_words(&summary.facts)),
             gap: summary.facts.gap,
             is_whole: summary.facts.is_whole(),
             proved_to_mass_kg: self.proved_to_mass_kg(&summary.facts),
@@ -297,7 +306,8 @@ impl Finished<'_> {
         let mut page = study_page(self.study, self.problem, self.catalogs, summary);
         page.extras.extend(sections);
         page.extras.push(certificate_section(&summary.facts, self.exact.map(|exact| exact.boxes)));
-        StudyPage { scatter_svg: picture, run: facts_of(run), ..page }.page()
+        let (timing, run) = facts_of(run).into_iter().partition(|(key, _)| OF_A_RUN.contains(&key.as_str()));
+        StudyPage { scatter_svg: picture, run, timing, ..page }.page()
     }
 
     fn ties_listed(&self) -> bool {
@@ -365,6 +375,9 @@ impl Finished<'_> {
         run
     }
 }
+
+/// Facts that differ from run to run.
+const OF_A_RUN: [&str; 4] = ["elapsed s", "designs per s", "threads", "platform"];
 
 /// The facts of `run.json` that are a word or a number, for people.
 pub(super) fn facts_of(run: &Value) -> Vec<(String, String)> {

@@ -1,8 +1,10 @@
 //! `armwright front check`: is a finished front correct and complete?
 
 use super::design::open_results;
+use super::exit::{Answer, Exit};
 use super::failure::Failure;
 use super::search::stopped_by_signal;
+use super::time_limit::time_limit;
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::report::certificate::gap_words;
@@ -41,16 +43,13 @@ struct CheckArgs {
     /// Result folder of a study
     results: PathBuf,
     /// Stop looking for missing designs after so many seconds, and say so
-    #[arg(long, value_name = "SECONDS")]
-    time_limit: Option<f64>,
+    #[arg(long, value_name = "SECONDS", value_parser = time_limit)]
+    time_limit: Option<Duration>,
 }
 
 /// Executes the verb.
-pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<String, Failure> {
+pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<Answer, Failure> {
     let FrontVerb::Check(args) = &args.verb;
-    if args.time_limit.is_some_and(|s| s.is_nan() || s <= 0.0) {
-        return Err(Failure::Usage("--time-limit is a number of seconds above zero".into()));
-    }
     let results = open_results(&args.results, catalogs)?;
     let run = &results.run;
     let (file, text) = results.text("study.json")?;
@@ -75,7 +74,7 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<String, Failu
     };
     let ties_listed = run["ties_listed"].as_bool().unwrap_or(true);
     let stop = stopped_by_signal();
-    let deadline = args.time_limit.map(|s| Instant::now() + Duration::from_secs_f64(s));
+    let deadline = args.time_limit.map(|limit| Instant::now() + limit);
     // a file that is not there has none
     let ties_csv = match results.is_there(ties::FILE) {
         true => results.with_todays_ids(ties::FILE)?,
@@ -102,7 +101,8 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<String, Failu
         let rows = check.rows;
         let words =
             format!("{rows} designs agree with the model, and none dominates another; {completeness}");
-        return Ok(wrap(&words, TERMINAL, ""));
+        let exit = if check.completeness.is_ok() { Exit::Done } else { Exit::Unsettled };
+        return Ok(Answer { text: wrap(&words, TERMINAL, ""), exit });
     }
     Err(Failure::Check(format!("{}:\n  {}", args.results.display(), faults.join("\n  "))))
 }

@@ -2,13 +2,13 @@
 //! `--progress FILE` asks for.
 
 use super::failure::Failure;
-use super::write::say;
+use super::log::Log;
 use crate::exact::Known;
 use crate::report::number::percent_rounded;
 use indicatif::{ProgressBar, ProgressStyle};
-use serde_json::json;
+use serde_json::{Value, json};
 use std::fs::File;
-use std::io::{IsTerminal, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -45,6 +45,16 @@ impl Progress {
     }
 }
 
+impl Progress {
+    /// The keys of a record.
+    fn to_json(self, elapsed_s: f64) -> Value {
+        let Self { designs, gap, front_size, boxes_open } = self;
+        json!({
+            "elapsed_s": elapsed_s, "designs": designs, "gap": gap, "front_size": front_size, "boxes_open": boxes_open,
+        })
+    }
+}
+
 /// The record of a search's progress: a JSON object a line.
 pub(super) struct Record {
     path: PathBuf,
@@ -66,10 +76,7 @@ impl Record {
     /// # Errors
     /// The file cannot be written.
     pub(super) fn add(&self, elapsed_s: f64, progress: &Progress) -> Result<(), Failure> {
-        let Progress { designs, gap, front_size, boxes_open } = progress;
-        let line = json!({
-            "elapsed_s": elapsed_s, "designs": designs, "gap": gap, "front_size": front_size, "boxes_open": boxes_open,
-        });
+        let line = progress.to_json(elapsed_s);
         // one call writes the whole line, so that a reader never sees a part of it
         (&self.file)
             .write_all(format!("{line}\n").as_bytes())
@@ -81,11 +88,12 @@ impl Record {
 pub(super) struct Watch<'r> {
     started: Instant,
     record: Option<&'r Record>,
+    log: Log,
 }
 
 impl<'r> Watch<'r> {
-    pub(super) fn new(started: Instant, record: Option<&'r Record>) -> Self {
-        Self { started, record }
+    pub(super) fn new(started: Instant, record: Option<&'r Record>, log: Log) -> Self {
+        Self { started, record, log }
     }
 
     /// Looks at a search until it is finished. `see` gets the elapsed time.
@@ -109,7 +117,7 @@ impl<'r> Watch<'r> {
     /// Shows how many designs are visited of how many.
     pub(super) fn designs(&self, total: u128, visited: &(dyn Fn() -> u64 + Sync), finished: &AtomicBool) {
         let now = || Progress::visited(visited());
-        if std::io::stderr().is_terminal() {
+        if self.log.draws() {
             let bar = ProgressBar::new(u64::try_from(total).unwrap_or(u64::MAX));
             let style = ProgressStyle::with_template(
                 "{bar:30} {human_pos}/{human_len} designs, {per_sec}, {eta} left",
@@ -117,23 +125,33 @@ impl<'r> Watch<'r> {
             bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
             self.look(finished, now, |_| bar.set_position(visited()));
             bar.finish_and_clear();
-        } else {
-            let line = |elapsed: Duration| say(&format!("{}\n", visited_line(total, visited(), elapsed)));
-            self.look(finished, now, in_lines(line));
+            return;
         }
+        let say = |event: &str, elapsed: Duration| {
+            let numbers = json!({
+                "elapsed_s": elapsed.as_secs_f64(), "designs": visited(), "designs_total": total as f64,
+            });
+            self.log.progress(event, &visited_line(total, visited(), elapsed), numbers);
+        };
+        self.look(finished, now, in_lines(|elapsed| say("progress", elapsed)));
+        say("searched", self.started.elapsed());
     }
 
     /// Shows what an exact search knows.
     pub(super) fn search(&self, known: &(dyn Fn() -> Known + Sync), finished: &AtomicBool) {
         let now = || Progress::known(&known());
         let line = |elapsed: Duration| search_line(&known(), elapsed);
-        if std::io::stderr().is_terminal() {
+        if self.log.draws() {
             let spinner = ProgressBar::new_spinner();
             self.look(finished, now, |elapsed| spinner.set_message(line(elapsed)));
             spinner.finish_and_clear();
-        } else {
-            self.look(finished, now, in_lines(|elapsed| say(&format!("{}\n", line(elapsed)))));
+            return;
         }
+        let say = |event: &str, elapsed: Duration| {
+            self.log.progress(event, &line(elapsed), now().to_json(elapsed.as_secs_f64()));
+        };
+        self.look(finished, now, in_lines(|elapsed| say("progress", elapsed)));
+        say("searched", self.started.elapsed());
     }
 }
 
@@ -150,7 +168,7 @@ fn in_lines(say: impl Fn(Duration)) -> impl FnMut(Duration) {
 
 fn visited_line(total: u128, visited: u64, elapsed: Duration) -> String {
     let (done, total, elapsed_s) = (visited as f64, total as f64, elapsed.as_secs_f64());
-    let rate = done / elapsed_s;
+    let rate = done / elapsed_s.max(f64::MIN_POSITIVE);
     format!(
         "{elapsed_s:.0} s: {done:.3e} of {total:.3e} designs ({:.0} %), {rate:.0} designs/s, about {:.0} s left",
         100.0 * done / total,

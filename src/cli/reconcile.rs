@@ -2,7 +2,9 @@
 
 use super::asked::load_study;
 use super::beside::{Beside, another_stands, say_missing};
+use super::exit::{Answer, Exit};
 use super::failure::Failure;
+use super::log::Log;
 use super::manifest::{Files, VERDICT};
 use super::rerun::{CHANGES, Rerun, rerun};
 use super::result_folder::ResultFolder;
@@ -56,7 +58,8 @@ pub(crate) fn run(
     args: &ReconcileArgs,
     catalogs: &Catalogs,
     overlay: Option<&Path>,
-) -> Result<(Outcome, String), Failure> {
+    log: Log,
+) -> Result<(Outcome, Answer), Failure> {
     match &args.study {
         // a study that does not read, or a search that does not suit it, fails now and not after the fits
         Some(study) => drop(args.how.check(&load_study(study, catalogs)?.0, catalogs)?),
@@ -81,15 +84,18 @@ pub(crate) fn run(
     let outcome = reconcile(&campaign);
     let (mut files, terminal) = keep(&campaign, &outcome, &folder)?;
     let mut text = format!("{}{terminal}", narrow(&outcome.to_text()));
+    let mut exit = Exit::Done;
     if let Some(study) = &args.study {
         let keep = |more: &[(String, Vec<u8>)]| folder.publish(&[&files, more].concat());
-        let rerun = rerun(&outcome, (study, &args.how), catalogs, overlay, (&out, &keep))?;
+        let rerun = rerun(&outcome, (study, &args.how), catalogs, overlay, (&out, &keep), log)?;
         text.push_str(&rerun.text);
+        exit = rerun.exit;
         add(&mut files, &outcome, rerun);
         let left_out = folder.publish(&files)?;
         say_missing(&left_out.iter().map(|name| another_stands(name)).collect::<Vec<_>>());
     }
-    Ok((outcome, format!("{text}written to {}\n", out.display())))
+    text.push_str(&format!("written to {}\n", out.display()));
+    Ok((outcome, Answer { text, exit }))
 }
 
 /// The files that will be written, as far as they are known before the fits.

@@ -2,8 +2,10 @@
 
 use super::asked::{Asked, load_study};
 use super::corrections;
+use super::exit::Exit;
 use super::failure::Failure;
 use super::finished::{Keep, Written};
+use super::log::Log;
 use super::manifest::{Files, RUN, sealed};
 use super::search::{SearchArgs, With, search};
 use super::supplements::SupplementArgs;
@@ -32,6 +34,8 @@ pub(super) struct Rerun {
     pub json: Value,
     /// The results of both runs, in `study/nominal` and `study/corrected`, and `study_changes.csv`, where both have a front.
     pub files: Files,
+    /// How the program ends: as the run that was stopped, if one was.
+    pub exit: Exit,
 }
 
 impl Rerun {
@@ -41,6 +45,7 @@ impl Rerun {
             text: format!("\nstudy {study}: {why}\n"),
             json: json!({"study": study, "status": status, "why": why}),
             files: Vec::new(),
+            exit: Exit::Done,
         }
     }
 }
@@ -56,6 +61,7 @@ pub(super) fn rerun(
     catalogs: &Catalogs,
     overlay: Option<&Path>,
     (dir, keep): (&Path, &Keep),
+    log: Log,
 ) -> Result<Rerun, Failure> {
     if outcome.verdict != Verdict::Explained {
         let why = format!(
@@ -81,8 +87,8 @@ pub(super) fn rerun(
         let results = dir.join("study").join(folder);
         let supplements = &SupplementArgs::default();
         let keep = &|files: &[(String, Vec<u8>)]| keep(&[kept.clone(), placed(files, folder)?].concat());
-        match search(asked, &With { catalogs, overlay, dir: &results, keep, how, supplements, record: None })
-        {
+        let with = With { catalogs, overlay, dir: &results, keep, how, supplements, record: None, log };
+        match search(asked, &with) {
             Ok(written) => {
                 kept.extend(placed(&written.files, folder)?);
                 found.push(written);
@@ -146,7 +152,13 @@ fn told(name: &str, corrected: &Asked, found: &[Written], changes: &Changes) -> 
         changes.to_text(),
         if all_whole { String::new() } else { lacking_words(found) }
     );
-    Rerun { text, json, files: vec![(CHANGES.into(), changes.to_csv().into_bytes())] }
+    let stopped = found.iter().map(|written| written.exit).find(|exit| *exit != Exit::Done);
+    Rerun {
+        text,
+        json,
+        files: vec![(CHANGES.into(), changes.to_csv().into_bytes())],
+        exit: stopped.unwrap_or(Exit::Done),
+    }
 }
 
 /// A caution for fronts that are not complete.

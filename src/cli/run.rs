@@ -3,12 +3,15 @@
 use super::asked::{Asked, load_study};
 use super::beside::{another_stands, say_missing};
 use super::corrections;
+use super::exit::Answer;
 use super::failure::Failure;
 use super::finished::{catalogs_hash, facts_of, front_of_material, is_front_of_material, pretty};
+use super::log::Log;
 use super::manifest::RUN;
 use super::progress::Record;
 use super::result_folder::ResultFolder;
 use super::search::{SearchArgs, With, search};
+use super::shard::{CANDIDATES, MANIFEST, STUDY, folder_of, run_shard, shard_of};
 use super::supplements::{FILES, SupplementArgs};
 use super::write::{is_same_file, refuse_overwriting};
 use crate::catalog::Catalogs;
@@ -20,7 +23,7 @@ use crate::report::html::render::PLOTS;
 use crate::report::section::Figure;
 use crate::report::table::Table;
 use crate::report::words::{TERMINAL, wrap};
-use crate::search::sweep::Status;
+use crate::search::sweep::{Shard, Status};
 use crate::study::definition::Study;
 use crate::study::effects::left_out;
 use crate::study::read::read_study;
@@ -56,6 +59,10 @@ pub(crate) struct RunArgs {
     /// boxes_open. There is a line every second and whenever the gap falls; null stands for what is not known
     #[arg(long, value_name = "FILE")]
     progress: Option<PathBuf>,
+    /// Visit part M of N of the designs only, and write what it found for `armwright merge`. The parts can run one after
+    /// the other or on many machines; the front is the same
+    #[arg(long, value_name = "M/N", value_parser = shard_of)]
+    shard: Option<Shard>,
     #[command(flatten)]
     search: SearchArgs,
     #[command(flatten)]
@@ -139,11 +146,19 @@ fn mass_limit(text: &str) -> Result<f64, String> {
 }
 
 /// Executes the verb.
-pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -> Result<String, Failure> {
+pub(super) fn run(
+    args: &RunArgs,
+    catalogs: &Catalogs,
+    overlay: Option<&Path>,
+    log: Log,
+) -> Result<Answer, Failure> {
     if NAMES.contains(&args.study.as_str()) {
-        return run_paper(args, catalogs);
+        return run_paper(args, catalogs).map(Answer::from);
     }
     let asked = args.asked(catalogs)?;
+    if let Some(shard) = args.shard {
+        return run_part(args, shard, &asked, (catalogs, overlay), log);
+    }
     let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(args.folder(&asked.study)));
     let planned = args.planned(&dir, &asked)?;
     let record = args.progress.as_deref().map(Record::create).transpose()?;
@@ -151,10 +166,41 @@ pub(super) fn run(args: &RunArgs, catalogs: &Catalogs, overlay: Option<&Path>) -
     let folder = ResultFolder::open(&dir, RUN, &planned)?;
     let (how, supplements, record) = (&args.search, &args.supplements, record.as_ref());
     let keep = |files: &[(String, Vec<u8>)]| folder.publish(files);
-    let written =
-        search(&asked, &With { catalogs, overlay, dir: &dir, keep: &keep, how, supplements, record })?;
+    let with = With { catalogs, overlay, dir: &dir, keep: &keep, how, supplements, record, log };
+    let written = search(&asked, &with)?;
     let applied = corrections::to_text(&asked.corrections);
-    Ok(format!("{}{applied}\n{}", written.terminal, told(&dir, &written.files)))
+    let text = format!("{}{applied}\n{}{}", written.terminal, told(&dir, &written.files), written.timing);
+    Ok(Answer { text, exit: written.exit })
+}
+
+/// Visits one part of the designs.
+fn run_part(
+    args: &RunArgs,
+    shard: Shard,
+    asked: &Asked,
+    (catalogs, overlay): (&Catalogs, Option<&Path>),
+    log: Log,
+) -> Result<Answer, Failure> {
+    if args.effects.is_some() {
+        let hint = "run the study.json of a run with --effects, which has them, in shards";
+        return Err(Failure::Usage(format!("--shard does not go with --effects: {hint}")));
+    }
+    if !args.supplements.is_default() {
+        return Err(Failure::Usage(
+            "--shard does not go with --within and --tolerance: give them to merge".into(),
+        ));
+    }
+    let mut words = vec!["run".to_string(), args.study.clone()];
+    words.extend(args.mass_max_kg.into_iter().flat_map(|kg| ["--mass-max-kg".into(), kg.to_string()]));
+    words.extend(overlay.into_iter().flat_map(|dir| ["--catalogs".into(), dir.display().to_string()]));
+    let shards = Path::new("results").join(args.folder(&asked.study)).join("shards");
+    let dir = args.out.clone().unwrap_or_else(|| folder_of(&shards, shard));
+    let record = args.progress.as_deref().map(Record::create).transpose()?;
+    let (how, supplements, record) = (&args.search, &args.supplements, record.as_ref());
+    let folder = ResultFolder::open(&dir, MANIFEST, &[MANIFEST, CANDIDATES, STUDY])?;
+    let keep = |files: &[(String, Vec<u8>)]| folder.publish(files);
+    let with = With { catalogs, overlay, dir: &dir, keep: &keep, how, supplements, record, log };
+    run_shard(asked, shard, words, &with)
 }
 
 /// Runs one of the paper's studies, which are computed without a search.

@@ -1,19 +1,21 @@
 //! Searches a study: chooses the method and stops when asked.
 
-use super::asked::Asked;
+use super::asked::{Asked, refuse_empty};
+use super::exit::Exit;
 use super::failure::Failure;
 use super::finished::{Finished, FoundExactly, Keep, Written};
+use super::log::Log;
 use super::progress::{Record, Watch};
 use super::supplements::SupplementArgs;
-use super::write::say;
+use super::time_limit::time_limit;
 use crate::catalog::Catalogs;
 use crate::report::certificate::certificate_words;
 use crate::report::words::{TERMINAL, wrap};
 use crate::search::sweep::Status;
 use crate::space::problem::ArmProblem;
 use crate::study::definition::Study;
-use crate::study::diagnose::{empty_pieces, why_infeasible};
-use crate::study::outcome::{ExactStudy, Extent, run_exact, run_study};
+use crate::study::diagnose::why_infeasible;
+use crate::study::outcome::{ExactStudy, Extent, StudyOutcome, run_exact, run_study};
 use crate::study::search_cost::SearchCost;
 use crate::study::tolerance::part;
 use clap::{Args, ValueEnum};
@@ -31,8 +33,8 @@ pub(crate) struct SearchArgs {
     search: Option<SearchKind>,
     /// Stop the exact search after so many seconds, as Ctrl-C does; write what it found and how much may be
     /// missing
-    #[arg(long, value_name = "SECONDS")]
-    time_limit: Option<f64>,
+    #[arg(long, value_name = "SECONDS", value_parser = time_limit)]
+    time_limit: Option<Duration>,
     /// End the exact search once it is proved that for every design of the study some listed one is worse by
     /// at most this percentage in each of tip deflection, mass and lowest mode, such as 2%. With 0% the whole
     /// front is found; only then are per-material fronts and near-front lists written. Default: the study's
@@ -59,12 +61,12 @@ impl SearchArgs {
     ///
     /// # Errors
     /// It does not suit the study, or would take years.
-    fn kind(&self, study: &Study, catalogs: &Catalogs) -> Result<SearchKind, Failure> {
+    fn kind(&self, study: &Study, catalogs: &Catalogs, log: Log) -> Result<SearchKind, Failure> {
         let designs = self.check(study, catalogs)?;
         Ok(match (self.search, self.gap.is_some() || self.time_limit.is_some()) {
             (Some(kind), _) => kind,
             (None, true) => SearchKind::Exact,
-            (None, false) => cheaper(study, catalogs, designs as f64),
+            (None, false) => cheaper(study, catalogs, designs as f64, log),
         })
     }
 
@@ -90,10 +92,20 @@ impl SearchArgs {
         if exhaustive && self.gap.is_some() {
             return refused("--gap goes with --search exact".into());
         }
-        if self.time_limit.is_some_and(|s| s.is_nan() || s <= 0.0) {
-            return refused("--time-limit is a number of seconds above zero".into());
-        }
         Ok(designs)
+    }
+
+    /// Checks that nothing but a visit to every design was asked for, and counts the designs.
+    ///
+    /// # Errors
+    /// Something else was asked for, or the visit would take years.
+    pub(super) fn check_exhaustive(&self, study: &Study, catalogs: &Catalogs) -> Result<u128, Failure> {
+        if self.search == Some(SearchKind::Exact) {
+            return Err(Failure::Usage(
+                "--shard goes with --search exhaustive: the exact search runs on one machine".into(),
+            ));
+        }
+        Self { search: Some(SearchKind::Exhaustive), ..*self }.check(study, catalogs)
     }
 
     /// Whether anything is asked for.
@@ -103,10 +115,10 @@ impl SearchArgs {
 }
 
 /// The search that is estimated to cost less.
-fn cheaper(study: &Study, catalogs: &Catalogs, designs: f64) -> SearchKind {
+fn cheaper(study: &Study, catalogs: &Catalogs, designs: f64, log: Log) -> SearchKind {
     let cost = SearchCost::of(&study.space, catalogs, designs);
     if let Some(words) = cost.words() {
-        say(&wrap(&words, TERMINAL, ""));
+        log.note(&wrap(&words, TERMINAL, ""));
     }
     if cost.speaks_for_exact() { SearchKind::Exact } else { SearchKind::Exhaustive }
 }
@@ -133,6 +145,8 @@ pub(super) struct With<'a> {
     pub supplements: &'a SupplementArgs,
     /// Where progress is recorded.
     pub record: Option<&'a Record>,
+    /// Where messages and progress go.
+    pub log: Log,
 }
 
 /// Searches a study and keeps its result.
@@ -140,7 +154,8 @@ pub(super) struct With<'a> {
 /// # Errors
 /// The search that is asked for does not suit the study, finds nothing, is interrupted, or its front cannot be written.
 pub(super) fn search(asked: &Asked, with: &With) -> Result<Written, Failure> {
-    let written = match with.how.kind(&asked.study, with.catalogs)? {
+    refuse_empty(&asked.study, with.catalogs)?;
+    let written = match with.how.kind(&asked.study, with.catalogs, with.log)? {
         SearchKind::Exhaustive => visit_all(asked, with),
         SearchKind::Exact => search_exactly(asked, with),
     }?;
@@ -152,42 +167,55 @@ pub(super) fn search(asked: &Asked, with: &With) -> Result<Written, Failure> {
 
 /// Visits every design of a study.
 fn visit_all(Asked { study, text, corrections }: &Asked, with: &With) -> Result<Written, Failure> {
-    let With { catalogs, overlay, dir, keep, supplements, record, .. } = *with;
+    let With { catalogs, overlay, dir, keep, supplements, record, log, .. } = *with;
     let problem = ArmProblem::new(&study.space, catalogs);
-    refuse_empty(study, &problem)?;
     let stop = stopped_by_signal();
     let started = Instant::now();
     let outcome = run_study(study, catalogs, stop, |total, visited, finished| {
-        Watch::new(started, record).designs(total, visited, finished);
+        Watch::new(started, record, log).designs(total, visited, finished);
     });
     let elapsed_s = started.elapsed().as_secs_f64();
-    match outcome.sweep.status {
+    let exit = match outcome.sweep.status {
+        Status::Interrupted if outcome.front.is_empty() => {
+            return Err(Failure::Interrupted(format!(
+                "{}, and none of them meets the study; nothing was written, run again to start over",
+                stopped_words(&outcome)
+            )));
+        }
         Status::Interrupted => {
-            let done = u128::from(outcome.sweep.designs_evaluated) + outcome.sweep.designs_excluded;
-            Err(Failure::Interrupted(format!(
-                "stopped after {done} of {} designs; nothing was written, run again to start over",
-                outcome.sweep.designs_total
-            )))
+            log.note(&format!("{}; the front of these is written", stopped_words(&outcome)));
+            Exit::Interrupted
         }
-        Status::Infeasible => Err(Failure::Infeasible(why_infeasible(study, catalogs, &outcome))),
-        _ => {
-            let finished = Finished {
-                study,
-                text,
-                corrections,
-                problem: &problem,
-                whole: &study.space,
-                outcome: &outcome,
-                near: None,
-                exact: None,
-                elapsed_s,
-                overlay,
-                catalogs,
-                dir,
-            };
-            finished.keep(supplements, stop, keep)
+        Status::Infeasible => {
+            return Err(Failure::Infeasible(why_infeasible(study, catalogs, stop, None)));
         }
-    }
+        _ => Exit::Done,
+    };
+    let finished = Finished {
+        study,
+        text,
+        corrections,
+        problem: &problem,
+        whole: &study.space,
+        outcome: &outcome,
+        near: None,
+        exact: None,
+        elapsed_s,
+        overlay,
+        catalogs,
+        dir,
+    };
+    // further searches are not for who wants to stop
+    let none = SupplementArgs::default();
+    let supplements = if exit == Exit::Interrupted { &none } else { supplements };
+    Ok(Written { exit, ..finished.keep(supplements, stop, keep)? })
+}
+
+/// How far a visit came that was stopped.
+fn stopped_words(outcome: &StudyOutcome) -> String {
+    let sweep = &outcome.sweep;
+    let done = u128::from(sweep.designs_evaluated) + sweep.designs_excluded;
+    format!("stopped after {done} of {} designs", sweep.designs_total)
 }
 
 /// A flag that is set when the user wants to stop. Code that reacts to it and continues must clear it: a
@@ -208,31 +236,31 @@ pub(super) fn stopped_by_signal() -> &'static AtomicBool {
 
 /// Finds the front of a study without visiting every design.
 fn search_exactly(Asked { study, text, corrections }: &Asked, with: &With) -> Result<Written, Failure> {
-    let With { catalogs, overlay, dir, keep, how, supplements, record } = *with;
+    let With { catalogs, overlay, dir, keep, how, supplements, record, log } = *with;
     let stop = stopped_by_signal();
     let started = Instant::now();
     let extent = Extent {
-        deadline: how.time_limit.map(|s| started + Duration::from_secs_f64(s)),
+        deadline: how.time_limit.map(|limit| started + limit),
         gap: how.gap.unwrap_or(study.gap),
         near: supplements.slack(),
     };
     let ExactStudy { study: part, outcome, boxes, gap, near, ties_listed } =
         run_exact(study, catalogs, stop, extent, |known, finished| {
-            Watch::new(started, record).search(known, finished);
+            Watch::new(started, record, log).search(known, finished);
         });
     // what was found is written; a further signal stops that too
-    stop.store(false, Ordering::Relaxed);
-    let designs = outcome.sweep.designs_total as f64;
+    let is_interrupted = stop.swap(false, Ordering::Relaxed);
     match outcome.sweep.status {
-        Status::Infeasible => Err(Failure::Infeasible(format!(
-            "none of the {designs:.3e} designs of the study \"{}\" meets its constraints (proved by {} boxes); \
-             loosen one, or run a coarser grid with --search exhaustive to see which of them it is",
-            study.name, boxes[0]
-        ))),
-        Status::Partial if outcome.front.is_empty() => Err(Failure::Interrupted(format!(
-            "no design was found before the search was stopped ({} boxes); nothing was written, allow more time",
-            boxes[0]
-        ))),
+        Status::Infeasible => {
+            Err(Failure::Infeasible(why_infeasible(study, catalogs, stop, extent.deadline)))
+        }
+        Status::Partial if outcome.front.is_empty() => {
+            let why = format!(
+                "no design was found before the search was stopped ({} boxes); nothing was written, allow more time",
+                boxes[0]
+            );
+            Err(if is_interrupted { Failure::Interrupted(why) } else { Failure::Partial(why) })
+        }
         _ => {
             let problem = ArmProblem::new(&part.space, catalogs);
             let finished = Finished {
@@ -250,19 +278,13 @@ fn search_exactly(Asked { study, text, corrections }: &Asked, with: &With) -> Re
                 dir,
             };
             let mut written = finished.keep(supplements, stop, keep)?;
+            written.exit = match outcome.sweep.status {
+                _ if is_interrupted => Exit::Interrupted,
+                Status::Partial => Exit::Partial,
+                _ => Exit::Done,
+            };
             written.terminal.push_str(&certificate_words(boxes, gap, written.proved_to_mass_kg));
             Ok(written)
         }
-    }
-}
-
-fn refuse_empty(study: &Study, problem: &ArmProblem) -> Result<(), Failure> {
-    match empty_pieces(problem).as_slice() {
-        [] => Ok(()),
-        pieces => Err(Failure::EmptySpace(format!(
-            "the study \"{}\" has nothing to choose from\n  {}",
-            study.name,
-            pieces.join("\n  ")
-        ))),
     }
 }

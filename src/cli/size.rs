@@ -1,7 +1,7 @@
 //! `armwright size`: sizes the drive of every joint from the tip inward, and says why other drives were
 //! rejected.
 
-use super::asked::load_study;
+use super::asked::{load_study, refuse_empty};
 use super::failure::Failure;
 use super::write::write_all;
 use crate::catalog::Catalogs;
@@ -18,6 +18,7 @@ use crate::space::design_space::SpacePiece;
 use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::SizedJoint;
 use crate::study::definition::Study;
+use crate::study::joint_obstacle::{first_fit_at, obstacle_at};
 use crate::study::table::sizing_rows;
 use clap::Args;
 use std::fmt::Write;
@@ -53,6 +54,7 @@ pub(crate) struct SizeArgs {
 /// Executes the verb.
 pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let (study, _) = load_study(&args.study, catalogs)?;
+    refuse_empty(&study, catalogs)?;
     let named = |id: &String| number_of(id).ok_or_else(|| no_design(args, &study));
     let number = args.design.as_ref().map(named).transpose()?;
     let space = match number {
@@ -101,7 +103,7 @@ fn middle(problem: &ArmProblem) -> Vec<u32> {
             (SpacePiece::Choice(choice), _) => {
                 out.push(nearest_to_median(problem, &out, piece, &choice.by_mass()));
             }
-            (_, Some(sized)) if sized.is_level() => out.push(first_fit_so_far(problem, &out, piece)),
+            (_, Some(sized)) if sized.is_level() => out.push(first_fit_at(problem, &out, piece)),
             _ => {}
         }
     }
@@ -118,18 +120,6 @@ fn nearest_to_median(problem: &ArmProblem, outboard: &[u32], piece: usize, by_ma
         Err(slot) => problem.piece_of_slot(slot) != piece,
     };
     order.into_iter().map(|rank| by_mass[rank]).find(holds).unwrap_or(by_mass[median])
-}
-
-fn first_fit_so_far(problem: &ArmProblem, outboard: &[u32], piece: usize) -> u32 {
-    let mut index = 0;
-    let _ = problem.walk(outboard, |slot, partial| {
-        if problem.piece_of_slot(slot) == piece
-            && let Some(sized) = problem.sized_joint(piece)
-        {
-            index = sized.table.first_fit(&problem.demand_at(partial, slot)).unwrap_or(0) as u32;
-        }
-    });
-    index
 }
 
 fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32]) -> String {
@@ -263,11 +253,10 @@ fn fails(problem: &ArmProblem, chosen: &[u32], slot: usize) -> Failure {
     match problem.sized_joint(piece) {
         Some(sized) => {
             let demand = problem.demand_at(&last, slot);
-            let shortfall = sized.table.smallest_shortfall(&demand).map(|shortfall| shortfall.to_string());
             let too_weak = || too_weak(problem, chosen, piece, sized, &demand);
-            Failure::Infeasible(shortfall.or_else(too_weak).unwrap_or_else(|| {
-                format!("joint {}: no drive of the catalogs can be checked in full", sized.table.joint())
-            }))
+            let internal = || format!("joint {}: its drive does not hold", sized.table.joint());
+            let why = obstacle_at(&sized.table, &demand).or_else(too_weak).unwrap_or_else(internal);
+            Failure::Infeasible(format!("with these links, {why}"))
         }
         None => Failure::Infeasible(
             "a link breaks a limit on stress, wall slenderness, cost or mass: choose another with --design"

@@ -92,6 +92,11 @@ impl SupplementArgs {
         Ok(out)
     }
 
+    /// Whether nothing is asked for.
+    pub(super) fn is_default(&self) -> bool {
+        self.tolerance.is_none() && self.within.is_none()
+    }
+
     /// Why there is no list of designs near the front, if one was asked for.
     fn why_no_near(&self) -> String {
         if self.within.is_some() { wrap(NO_NEAR, TERMINAL, "") } else { String::new() }

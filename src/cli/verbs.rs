@@ -1,7 +1,9 @@
 //! All verbs: their names, and the functions that execute them.
 
+use super::exit::{Answer, Exit};
 use super::failure::Failure;
-use super::{analyze, catalog, compare, design, front, new, predict, reconcile, size};
+use super::log::{Log, LogForm};
+use super::{analyze, catalog, check, compare, design, front, merge, new, predict, reconcile, size, slurm};
 use crate::catalog::Catalogs;
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
@@ -12,9 +14,7 @@ use std::path::PathBuf;
     name = "armwright",
     version,
     max_term_width = 100,
-    after_help = "Exit codes: 0 done; 1 internal error; 2 wrong usage; 3 faulty input file; 4 faulty catalog; \
-                  5 empty design space; 6 infeasible; 7 file cannot be read or written; 8 interrupted; \
-                  9 a check failed; 12 the results are being written by another process.\n\nStart with: armwright run compare-materials"
+    after_help = Exit::help()
 )]
 pub struct Cli {
     /// Folder with your own catalog rows (gears.csv, motors.csv, materials.csv, profiles.csv), added to the
@@ -24,6 +24,12 @@ pub struct Cli {
     /// Worker threads; the default is one per core. Results do not depend on it.
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
+    /// Say nothing on standard error but errors.
+    #[arg(long, short, global = true)]
+    quiet: bool,
+    /// Form of progress and messages on standard error.
+    #[arg(long, global = true, value_enum, value_name = "FORM", default_value = "text")]
+    log: LogForm,
     #[command(subcommand)]
     verb: Verb,
 }
@@ -44,6 +50,14 @@ enum Verb {
     Front(front::FrontArgs),
     /// Compare fronts: the materials of one study, or several studies
     Compare(compare::CompareArgs),
+    /// Join the shards of a search into its front
+    Merge(merge::MergeArgs),
+    /// List the shards of a search and what is missing
+    Status(merge::StatusArgs),
+    /// Print a script that runs a study as shards on a Slurm cluster
+    Slurm(slurm::SlurmArgs),
+    /// Check whether two folders of results are the same
+    Check(check::CheckArgs),
     /// Start a campaign of measurements
     New(new::NewArgs),
     /// Find where an arm and its measurements disagree and which physics is missing
@@ -54,6 +68,13 @@ enum Verb {
     Catalog(catalog::CatalogArgs),
 }
 
+impl Cli {
+    /// Where messages and progress go.
+    pub fn log(&self) -> Log {
+        Log::new(self.log, self.quiet)
+    }
+}
+
 /// Stack of a worker \[bytes\]: regions of an exact search are nested calls, and a waiting worker runs those
 /// of others on its own stack.
 const STACK: usize = 64 << 20;
@@ -62,7 +83,7 @@ const STACK: usize = 64 << 20;
 ///
 /// # Errors
 /// See [`Failure`].
-pub fn run(cli: Cli) -> Result<String, Failure> {
+pub fn run(cli: Cli) -> Result<Answer, Failure> {
     let workers = rayon::ThreadPoolBuilder::new()
         .num_threads(cli.threads.map_or(0, Into::into))
         .stack_size(STACK)
@@ -72,19 +93,27 @@ pub fn run(cli: Cli) -> Result<String, Failure> {
     if let (Err(e), Some(_)) = (workers, cli.threads) {
         return Err(Failure::Internal(e.to_string()));
     }
+    let log = cli.log();
     let overlay = cli.catalogs.as_deref();
     let catalogs = Catalogs::load(overlay).map_err(Failure::catalog);
-    match cli.verb {
+    let text = match cli.verb {
+        Verb::Run(args) => return super::run::run(&args, &catalogs?, overlay, log),
+        Verb::Front(args) => return front::run(&args, &catalogs?),
+        Verb::Reconcile(args) => {
+            return reconcile::run(&args, &catalogs?, overlay, log).map(|(_, answer)| answer);
+        }
         Verb::Catalog(args) => catalog::run(&args, overlay),
         Verb::Studies => Ok(crate::study::list()),
-        Verb::Run(args) => super::run::run(&args, &catalogs?, overlay),
         Verb::Size(args) => size::run(&args, &catalogs?),
+        Verb::Merge(args) => return merge::merge(&args, &catalogs?, overlay),
+        Verb::Status(args) => merge::status(&args),
+        Verb::Slurm(args) => slurm::run(&args, &catalogs?, overlay),
+        Verb::Check(args) => check::run(&args),
         Verb::Compare(args) => compare::run(&args),
         Verb::Analyze(args) => analyze::run(&args, &catalogs?),
         Verb::Design(args) => design::run(&args, &catalogs?),
-        Verb::Front(args) => front::run(&args, &catalogs?),
         Verb::New(args) => new::run(&args, &catalogs?),
-        Verb::Reconcile(args) => reconcile::run(&args, &catalogs?, overlay).map(|(_, text)| text),
         Verb::Predict(args) => predict::run(&args, &catalogs?),
-    }
+    };
+    text.map(Answer::from)
 }

@@ -31,7 +31,7 @@ pub fn printed(written: std::io::Result<()>) -> Result<(), Failure> {
 }
 
 /// Writes text to standard error. Where that cannot be written nothing is said, because work must go on.
-pub fn say(text: &str) {
+pub(super) fn say(text: &str) {
     let mut out = std::io::stderr().lock();
     let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
 }

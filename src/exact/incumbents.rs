@@ -6,7 +6,7 @@
 
 use super::bound::BoxBound;
 use crate::pareto::archive::Archive;
-use crate::pareto::objectives::Objectives;
+use crate::pareto::objectives::{Objective, Objectives};
 use std::collections::HashMap;
 
 /// Two objectives that differ by less than this (relative) count as equal.
@@ -24,17 +24,33 @@ pub(super) struct Incumbents {
     rows: HashMap<i32, Vec<Objectives>>,
     columns: HashMap<i32, Vec<Objectives>>,
     all: Vec<Objectives>,
+    /// The only objective that counts, and the least cost in it; `None` if all three count.
+    only: Option<(Objective, f64)>,
 }
 
 impl Default for Incumbents {
     fn default() -> Self {
-        Self { table: Archive::new(6), rows: HashMap::new(), columns: HashMap::new(), all: Vec::new() }
+        Self {
+            table: Archive::new(6),
+            rows: HashMap::new(),
+            columns: HashMap::new(),
+            all: Vec::new(),
+            only: None,
+        }
     }
 }
 
 impl Incumbents {
+    /// No incumbents yet. If one objective is given, it alone counts: a design dominates all that are no better in it.
+    pub(super) fn toward(only: Option<Objective>) -> Self {
+        Self { only: only.map(|objective| (objective, f64::INFINITY)), ..Self::default() }
+    }
+
     /// Adds a design that meets every constraint.
     pub(super) fn enter(&mut self, found: &Objectives) {
+        if let Some((objective, least)) = &mut self.only {
+            *least = least.min(objective.cost(found));
+        }
         self.table.enter(found);
         self.all.push(*found);
         let keys = [step(found.mass_kg), step(found.tip_deflection_m)];
@@ -61,6 +77,9 @@ impl Incumbents {
     /// Whether an incumbent dominates every member of a box.
     pub(super) fn dominates(&self, box_bound: &BoxBound) -> bool {
         let best = Objectives::from(*box_bound);
+        if let Some((objective, least)) = self.only {
+            return objective.cost(&best) >= least * (1.0 - BETTER);
+        }
         if self.table.rejects(&best) {
             return true;
         }

@@ -14,7 +14,7 @@ use super::problem::Problem;
 use super::regions::pass_by_regions;
 use super::search_state::SearchState;
 use crate::catalog::Catalogs;
-use crate::pareto::objectives::Objectives;
+use crate::pareto::objectives::{Objective, Objectives};
 use crate::search::sweep::Candidate;
 use crate::space::design_space::{DesignSpace, LinkOption};
 use std::sync::atomic::AtomicBool;
@@ -64,6 +64,8 @@ pub struct Exact<'p> {
     pub(super) budget: Budget<'p>,
     /// The slack of the last pass, after which the search is complete.
     gap: f64,
+    /// The only objective that counts; `None` if all three count.
+    only: Option<Objective>,
     /// Number of designs above which the space is searched by regions. `regions_to` is the number below which a
     /// region is searched by boxes.
     regions_from: f64,
@@ -115,6 +117,7 @@ impl<'p> Exact<'p> {
             catalogs,
             budget: Budget::new(stop, deadline),
             gap: 0.0,
+            only: None,
             regions_from: VAST,
             regions_to: FEW,
             most_with_ties: MOST_WITH_TIES,
@@ -143,6 +146,13 @@ impl<'p> Exact<'p> {
         Self { gap, ..self }
     }
 
+    /// Looks for a design that is best in one objective, and for no others. The front then has such a design. The search
+    /// goes box by box: the bounds of regions are about all three objectives.
+    #[must_use]
+    pub fn toward(self, objective: Objective) -> Self {
+        Self { only: Some(objective), regions_from: f64::INFINITY, ..self }
+    }
+
     /// What is known of the front of all designs now. The gap never rises.
     pub fn known(&self) -> Known {
         Known { boxes: self.budget.boxes(), ..self.live.known() }
@@ -167,7 +177,7 @@ impl<'p> Exact<'p> {
     }
 
     fn run_of(&self, whole: Option<Problem<'p>>, given: &[Objectives], live: Option<&Live>) -> ExactOutcome {
-        let mut state = SearchState::default();
+        let mut state = SearchState::toward(self.only);
         given.iter().for_each(|objectives| state.enter(objectives));
         let mut ended = Ended { gap: Some(0.0), open: Vec::new() };
         if let Some(whole) = &whole {
@@ -183,7 +193,8 @@ impl<'p> Exact<'p> {
         // Tied kinds may stand for the same design.
         front.dedup_by_key(|c| c.number);
         ExactOutcome {
-            designs_total: whole.as_ref().map_or(0, Problem::designs),
+            // Also of a space of which nothing was compiled because no option of a level can hold.
+            designs_total: self.space.designs(self.catalogs).unwrap_or(u128::MAX),
             designs_evaluated,
             boxes: self.budget.boxes(),
             boxes_open: ended.open.len() as u64,

@@ -4,7 +4,7 @@ use super::bound::BoxBound;
 use super::incumbents::{Incumbents, is_better};
 use super::live::Known;
 use crate::pareto::front::{exact_front, not_clearly_beaten};
-use crate::pareto::objectives::Objectives;
+use crate::pareto::objectives::{Objective, Objectives};
 use crate::search::sweep::{Candidate, SLACK};
 use std::collections::HashSet;
 
@@ -49,6 +49,11 @@ impl Findings {
 }
 
 impl SearchState {
+    /// The state of a search that begins. If one objective is given, it alone counts.
+    pub(super) fn toward(only: Option<Objective>) -> Self {
+        Self { incumbents: Incumbents::toward(only), ..Self::default() }
+    }
+
     /// Adds the objectives of a known design, from whatever source.
     pub(super) fn enter(&mut self, objectives: &Objectives) {
         self.incumbents.enter(objectives);

@@ -11,6 +11,29 @@ pub struct Objectives {
     pub lowest_mode_hz: f64,
 }
 
+/// One of the objectives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Objective {
+    /// Tip deflection, the less the better.
+    TipDeflection,
+    /// Mass, the less the better.
+    Mass,
+    /// Lowest mode, the higher the better.
+    LowestMode,
+}
+
+impl Objective {
+    /// The objective as a positive number to be minimized: deflection \[m\], mass \[kg\], or period \[s\] of the lowest
+    /// mode.
+    pub fn cost(self, o: &Objectives) -> f64 {
+        match self {
+            Self::TipDeflection => o.tip_deflection_m,
+            Self::Mass => o.mass_kg,
+            Self::LowestMode => o.lowest_mode_hz.recip(),
+        }
+    }
+}
+
 impl Objectives {
     /// The objectives of a design that is better by this factor in all three.
     pub(crate) fn better_by(&self, factor: f64) -> Self {

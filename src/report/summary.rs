@@ -74,6 +74,7 @@ pub fn summary_md(input: &SummaryInput) -> String {
     }
     out.push_str(&budget_markdown(&input.budgets));
     out.push_str(&format!("\n## What was searched\n\n- {}\n", counts(facts)));
+    out.push_str(&format!("- {}{}{}\n", TIMING[0], timing_words(facts), TIMING[1]));
     out.push_str(&format!(
         "- Constraints: {}.\n- Cases (the worst counts): {}.\n",
         listed(&facts.constraints),
@@ -180,6 +181,9 @@ impl Found {
         self.picks.iter().find(|p| p.names.contains(&"knee"))
     }
 }
+
+/// What stands around the timing, so that the rest can be compared from run to run.
+const TIMING: [&str; 2] = ["<!-- timing -->", "<!-- /timing -->"];
 
 /// The answer in two sentences.
 fn answer(input: &SummaryInput, found: &Found) -> String {
@@ -328,7 +332,7 @@ fn materials_table(input: &SummaryInput, names: &[String], headers: [&str; 7]) -
     for ((material, name), (_, count)) in input.materials.iter().zip(names).zip(&owners) {
         let cost = known(material.cost_eur_per_kg);
         let name = match material.status.as_str() {
-            "partial" => &format!("{name} (stopped)"),
+            "partial" | "interrupted" => &format!("{name} (stopped)"),
             _ => name,
         };
         table.row(material_cells(name, &designs(&material.front), percent_of(*count, total), cost));
@@ -357,36 +361,39 @@ fn ties(pick: &Pick, designs: &[Design]) -> String {
     }
 }
 
-/// Designs total, evaluated, excluded, and the rate.
+/// Designs total, evaluated, excluded.
 fn counts(facts: &SummaryFacts) -> String {
     if ["certified", "partial"].contains(&facts.status.as_str()) {
         return format!(
-            "{} designs: {} evaluated one by one, the others discarded in groups, in {} s; search {}.",
+            "{} designs: {} evaluated one by one, the others discarded in groups; search {}.",
             large(facts.designs_total),
             grouped(facts.designs_evaluated),
-            significant(facts.elapsed_s, 3),
             facts.status
         );
     }
-    let rate = facts.designs_evaluated as f64 / facts.elapsed_s;
-    let rate = if rate.is_finite() && rate > 0.0 {
-        let threads = match facts.threads {
-            0 => String::new(),
-            1 => " on 1 thread".into(),
-            n => format!(" on {n} threads"),
-        };
-        format!(" ({} designs/s{threads})", grouped(rate.round() as u128))
-    } else {
-        String::new()
-    };
     format!(
-        "{} designs: {} evaluated, {} excluded by a limit, in {} s{rate}; search {}.",
+        "{} designs: {} evaluated, {} excluded by a limit; search {}.",
         grouped(facts.designs_total),
         grouped(facts.designs_evaluated),
         grouped(facts.designs_excluded),
-        significant(facts.elapsed_s, 3),
         facts.status
     )
+}
+
+/// Number of designs, time and rate. Everything else in a summary is the same for each run of a study.
+pub fn timing_words(facts: &SummaryFacts) -> String {
+    let threads = match facts.threads {
+        0 => String::new(),
+        1 => " on 1 thread".into(),
+        n => format!(" on {n} threads"),
+    };
+    let rate = facts.designs_evaluated as f64 / facts.elapsed_s;
+    let rate = match rate.is_finite() && rate > 0.0 {
+        true => format!(", {} evaluated/s", grouped(rate.round() as u128)),
+        false => String::new(),
+    };
+    let elapsed = significant(facts.elapsed_s, 3);
+    format!("{} designs in {elapsed} s{threads}{rate}", large(facts.designs_total))
 }
 
 /// The commands that take a design out and analyse it, one a line.

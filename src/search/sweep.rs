@@ -6,13 +6,14 @@
 //! the order of visits or on the number of threads.
 
 use super::finish::FinishRows;
-use super::visit::Visit;
+use super::visit::{Visit, blocks};
 use crate::pareto::archive::Archive;
 use crate::pareto::front::not_clearly_beaten;
 use crate::pareto::objectives::Objectives;
 use crate::space::constraint::Constraints;
 use crate::space::levels::{Finished, Keep};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -75,9 +76,20 @@ pub struct SweepOutcome {
     pub front: Vec<Candidate>,
     /// Candidates of the front of each group (material).
     pub groups: Vec<Vec<Candidate>>,
-    /// Near misses: the best value of each objective (deflection \[m\], mass \[kg\], negative mode \[Hz\]) among the designs
-    /// that break only the limit on it. A limit relaxed to this value would let the first design in.
-    pub near_misses: [Option<f64>; 3],
+}
+
+/// A shard: part `number` of `of` parts of a space, counted from 1. Each is swept by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shard {
+    /// Which part, from 1.
+    pub number: u32,
+    /// How many parts.
+    pub of: u32,
+}
+
+impl Shard {
+    /// The whole space.
+    pub const WHOLE: Self = Self { number: 1, of: 1 };
 }
 
 /// A sweep that other threads can watch and stop.
@@ -116,6 +128,7 @@ pub struct Sweep<'p, P: FinishRows> {
     constraints: Constraints,
     visited: AtomicU64,
     stop: &'p AtomicBool,
+    shard: Shard,
 }
 
 /// Candidates of one front, shared by the tasks.
@@ -164,8 +177,14 @@ impl Pool {
     }
 }
 
+/// `all * shards / of` without an overflow.
+fn share(all: u128, shards: u32, of: u32) -> u128 {
+    let (shards, of) = (u128::from(shards), u128::from(of));
+    all / of * shards + all % of * shards / of
+}
+
 /// Drops the candidates that another clearly dominates.
-fn clear_dominated(candidates: &mut Vec<Candidate>) {
+pub(crate) fn clear_dominated(candidates: &mut Vec<Candidate>) {
     let points: Vec<[f64; 3]> = candidates.iter().map(|c| c.objectives.minimized()).collect();
     let kept = not_clearly_beaten(&points, SLACK);
     *candidates = kept.into_iter().map(|i| candidates[i]).collect();
@@ -176,43 +195,40 @@ fn clear_dominated(candidates: &mut Vec<Candidate>) {
 struct Tally {
     evaluated: u64,
     excluded: u128,
-    near_misses: [Option<f64>; 3],
 }
 
 impl Tally {
     fn merge(mut self, other: Tally) -> Tally {
         self.evaluated += other.evaluated;
         self.excluded += other.excluded;
-        for (mine, theirs) in self.near_misses.iter_mut().zip(other.near_misses) {
-            if let Some(x) = theirs {
-                note(mine, x);
-            }
-        }
         self
     }
-
-    /// Whether a design meets every constraint. A design that breaks exactly one is noted as a near miss.
-    fn meets(&mut self, constraints: &Constraints, o: &Objectives) -> bool {
-        let broken = constraints.broken(o);
-        if broken.iter().filter(|b| **b).count() == 1 {
-            let values = [o.tip_deflection_m, o.mass_kg, -o.lowest_mode_hz];
-            for (k, _) in broken.iter().enumerate().filter(|(_, b)| **b) {
-                note(&mut self.near_misses[k], values[k]);
-            }
-        }
-        !broken.contains(&true)
-    }
-}
-
-/// Keeps the smaller of two values.
-fn note(best: &mut Option<f64>, x: f64) {
-    *best = Some(best.map_or(x, |b| b.min(x)));
 }
 
 impl<'p, P: FinishRows> Sweep<'p, P> {
     /// A sweep of all designs of a problem. It ends early when `stop` is set.
     pub fn new(problem: &'p P, constraints: Constraints, stop: &'p AtomicBool) -> Self {
-        Self { problem, constraints, visited: AtomicU64::new(0), stop }
+        Self { problem, constraints, visited: AtomicU64::new(0), stop, shard: Shard::WHOLE }
+    }
+
+    /// Visits the designs of a shard alone.
+    #[must_use]
+    pub fn of_shard(self, shard: Shard) -> Self {
+        Self { shard, ..self }
+    }
+
+    /// The numbers of the designs that are visited. The ranges of all shards follow each other and cover the space.
+    pub fn range(&self) -> Range<u128> {
+        let each = blocks(self.problem).1;
+        let Range { start, end } = self.blocks();
+        start * each..end * each
+    }
+
+    fn blocks(&self) -> Range<u128> {
+        let all = blocks(self.problem).0;
+        let Shard { number, of } = self.shard;
+        let before = |shards: u32| share(all, shards, of);
+        before(number - 1)..before(number)
     }
 
     /// Number of designs visited or excluded so far.
@@ -232,14 +248,17 @@ impl<'p, P: FinishRows> Sweep<'p, P> {
         let overall = Pool::new(6);
         let groups: Vec<Pool> = (0..self.problem.groups()).map(|_| Pool::new(5)).collect();
         let tally = match self.problem.root() {
-            None => Tally { excluded: self.total(), ..Tally::default() },
+            None => {
+                let range = self.range();
+                Tally { excluded: range.end - range.start, ..Tally::default() }
+            }
             Some(root) => Visit {
                 problem: self.problem,
                 compiled: self.problem.compile(),
                 visited: &self.visited,
                 stop: self.stop,
             }
-            .every_design(&root, || Worker {
+            .designs_of(self.blocks(), &root, || Worker {
                 constraints: &self.constraints,
                 overall: &overall,
                 groups: &groups,
@@ -263,7 +282,6 @@ impl<'p, P: FinishRows> Sweep<'p, P> {
             designs_excluded: tally.excluded,
             front,
             groups: groups.into_iter().map(Pool::finish).collect(),
-            near_misses: tally.near_misses,
         }
     }
 }
@@ -281,7 +299,7 @@ struct Worker<'s> {
 impl Keep for Worker<'_> {
     fn complete(&mut self, number: u128, Finished { objectives, group }: Finished) {
         self.tally.evaluated += 1;
-        if !self.tally.meets(self.constraints, &objectives) {
+        if self.constraints.broken(&objectives).contains(&true) {
             return;
         }
         let candidate = Candidate { number, objectives };
@@ -298,8 +316,7 @@ impl Keep for Worker<'_> {
     }
 
     // A design of a group is of interest for two fronts. One that its own group dominates is dominated in both, so the
-    // bar of the group is the one to use. The bar comes from designs that meet the constraints. Once there is one, near
-    // misses no longer matter, and designs below the bar need not be examined for them.
+    // bar of the group is the one to use.
     fn bar_hz(&self, group: Option<usize>, mass_kg: f64, tip_deflection_m: f64) -> f64 {
         let pool = group.map_or(self.overall, |group| &self.groups[group]);
         pool.archive.bar_hz(mass_kg, tip_deflection_m)

@@ -38,17 +38,34 @@ impl<P: FinishRows> Visit<'_, P> {
         root: &'v P::Partial,
         keeper: impl Fn() -> K + Send + Sync + 'v,
     ) -> impl ParallelIterator<Item = K> + 'v {
-        let Levels { outer, inner, .. } = Levels::of(self.problem);
-        let rows = product(outer) * product(inner);
+        self.designs_of(0..blocks(self.problem).0, root, keeper)
+    }
+
+    /// Visits the designs of some [blocks].
+    pub(crate) fn designs_of<'v, K: Keep + Send + 'v>(
+        &'v self,
+        of: Range<u128>,
+        root: &'v P::Partial,
+        keeper: impl Fn() -> K + Send + Sync + 'v,
+    ) -> impl ParallelIterator<Item = K> + 'v {
+        let choices = product(Levels::of(self.problem).inner);
+        let (start, rows) = (of.start * choices, (of.end - of.start) * choices);
         let each = (rows / TASKS).max((BATCH as u128).min(rows / LEAST_TASKS)).max(1);
         let tasks = rows.div_ceil(each) as usize;
         (0..tasks).into_par_iter().map(move |task| {
             let first = task as u128 * each;
             let mut walker = Walker::new(self, root, keeper());
-            walker.walk(first..(first + each).min(rows));
+            walker.walk(start + first..start + (first + each).min(rows));
             walker.keeper
         })
     }
+}
+
+/// The blocks of a tree: the designs of one arm outboard of the row level, which have neighbouring numbers. Their number, and
+/// the number of designs in each.
+pub(crate) fn blocks(problem: &impl FinishRows) -> (u128, u128) {
+    let Levels { outer, row, inner } = Levels::of(problem);
+    (product(outer), u128::from(row) * product(inner))
 }
 
 /// The sizes of the levels outboard of the row level, of the row level, and of those inboard of it.

@@ -118,6 +118,17 @@ impl LinkChoice {
         places
     }
 
+    /// Keeps at most `most` options, the lightest, the heaviest, and others spread evenly between them by mass.
+    pub(crate) fn spread(&mut self, most: u32) {
+        let by_mass = self.by_mass();
+        let (last, steps) = (by_mass.len().saturating_sub(1), most.max(2) as usize - 1);
+        if last > steps {
+            let mut kept: Vec<u32> = (0..=steps).map(|k| by_mass[k * last / steps]).collect();
+            kept.sort_unstable();
+            self.keep(kept);
+        }
+    }
+
     fn keep(&mut self, places: Vec<u32>) {
         let of = self.options.len() as u32;
         self.options = places.iter().map(|&i| self.options[i as usize].clone()).collect();

@@ -13,6 +13,8 @@ pub(crate) mod diagnose;
 pub(crate) mod effects;
 mod fit;
 mod harness;
+pub(crate) mod joint_obstacle;
+mod limit;
 pub(crate) mod motion;
 mod motor_kinds;
 pub(crate) mod named;
@@ -25,9 +27,11 @@ pub(crate) mod pose_search;
 pub mod question;
 pub(crate) mod range;
 pub(crate) mod read;
+mod relaxed_limits;
 pub(crate) mod same_drives;
 pub(crate) mod search_cost;
 pub(crate) mod sections;
+pub(crate) mod shards;
 pub(crate) mod table;
 pub(crate) mod ties;
 pub(crate) mod tolerance;
@@ -41,11 +45,15 @@ pub use diagnose::{empty_pieces, why_infeasible};
 pub use effects::{CorrectedStudy, Correction, apply_corrections, left_out};
 pub use named::{NAMED, list, named, names};
 pub use near::{NearFront, near_front};
-pub use outcome::{ExactStudy, Extent, Front, Judged, OfMaterial, StudyOutcome, run_exact, run_study};
+pub use outcome::{
+    ExactStudy, Extent, Front, Judged, OfMaterial, StudyOutcome, judge_swept, run_exact, run_study,
+    sweep_shard,
+};
 pub use page::study_page;
 pub use pick_poses::{PicksInPoses, picks_in_poses};
 pub use read::read_study;
 pub use same_drives::{PicksOnSameDrives, picks_on_same_drives};
+pub use shards::{Swept, candidates_csv, gaps, joined, read_candidates};
 pub use table::front_table;
 pub use ties::{Ties, ties};
 pub use tolerance::{Sampling, Tolerance, part, scatter_front};

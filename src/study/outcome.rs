@@ -6,8 +6,7 @@ use crate::exact::Known;
 use crate::exact::run::{Exact, ExactOutcome};
 use crate::pareto::front::nondominated;
 use crate::search::near::{NearDesign, NearDesigns, Slack};
-use crate::search::sweep::Status;
-use crate::search::sweep::{Candidate, Sweep, SweepOutcome};
+use crate::search::sweep::{Candidate, Shard, Status, Sweep, SweepOutcome};
 use crate::space::design::number;
 use crate::space::design::{Evaluated, evaluate};
 use crate::space::design_space::DesignSpace;
@@ -15,6 +14,7 @@ use crate::space::levels::OutwardIn;
 use crate::space::problem::ArmProblem;
 use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -63,15 +63,36 @@ pub fn run_study(
     stop: &AtomicBool,
     watch: impl FnOnce(u128, &(dyn Fn() -> u64 + Sync), &AtomicBool) + Send,
 ) -> StudyOutcome {
+    let (swept, _) = sweep_shard(study, catalogs, Shard::WHOLE, stop, watch);
+    judge_swept(study, &ArmProblem::new(&study.space, catalogs), swept)
+}
+
+/// Visits the designs of a shard, and returns its candidates and the numbers of its designs. `watch` is as in
+/// [`run_study`].
+pub fn sweep_shard(
+    study: &Study,
+    catalogs: &Catalogs,
+    shard: Shard,
+    stop: &AtomicBool,
+    watch: impl FnOnce(u128, &(dyn Fn() -> u64 + Sync), &AtomicBool) + Send,
+) -> (SweepOutcome, Range<u128>) {
     let problem = ArmProblem::new(&study.space, catalogs);
-    let sweep = Sweep::new(&problem, study.space.constraints, stop);
-    let outcome = watched(|finished| watch(sweep.total(), &|| sweep.visited(), finished), || sweep.run());
+    let sweep = Sweep::new(&problem, study.space.constraints, stop).of_shard(shard);
+    let range = sweep.range();
+    let designs = range.end - range.start;
+    let outcome = watched(|finished| watch(designs, &|| sweep.visited(), finished), || sweep.run());
+    (outcome, range)
+}
+
+/// Judges the candidates of a sweep by the full model.
+pub fn judge_swept(study: &Study, problem: &ArmProblem, outcome: SweepOutcome) -> StudyOutcome {
     // a design may be a candidate of two fronts
     let all = outcome.groups.iter().flatten().chain(&outcome.front).map(|c| c.number);
-    let judged = by_full_model(&problem, all.collect());
+    let judged = by_full_model(problem, all.collect());
     let of_material = |(name, candidates): (String, &Vec<Candidate>)| {
         let front = front_of(&judged, candidates);
-        let status = if front.is_empty() { Status::Infeasible } else { outcome.status };
+        let is_known_empty = front.is_empty() && outcome.status != Status::Interrupted;
+        let status = if is_known_empty { Status::Infeasible } else { outcome.status };
         OfMaterial { name, status, front, ties_listed: true }
     };
     let names = study.space.material_names();
@@ -210,7 +231,6 @@ impl Searched {
                 designs_excluded: whole.designs_total.saturating_sub(u128::from(whole.designs_evaluated)),
                 front,
                 groups,
-                near_misses: [None; 3],
             },
         };
         (outcome, near)

@@ -33,6 +33,7 @@ pub fn study_page<'a>(
         scatter_svg: String::new(),
         beams: beams(study, catalogs),
         run: Vec::new(),
+        timing: Vec::new(),
         extras: budget_extra(&summary.budgets).into_iter().collect(),
     }
 }

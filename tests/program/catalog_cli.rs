@@ -6,7 +6,7 @@ use clap::Parser;
 
 fn said(line: &str) -> Result<String, Failure> {
     let words = ["armwright", "catalog"].into_iter().chain(line.split_whitespace());
-    run(Cli::try_parse_from(words).map_err(|e| Failure::Usage(e.to_string()))?)
+    run(Cli::try_parse_from(words).map_err(|e| Failure::Usage(e.to_string()))?).map(|answer| answer.text)
 }
 
 fn shown(line: &str) -> String {

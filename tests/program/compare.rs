@@ -201,7 +201,7 @@ fn what_moved_tells_designs_apart_by_their_choices() {
 
 fn compare_cli(line: &[&str]) -> Result<String, String> {
     let cli = Cli::try_parse_from([&["armwright", "compare"], line].concat()).map_err(|e| e.to_string())?;
-    run(cli).map_err(|e| e.to_string())
+    run(cli).map(|answer| answer.text).map_err(|e| e.to_string())
 }
 
 fn results(dir: &Path, study: &str) {

@@ -357,6 +357,7 @@ fn page_of(summary: &SummaryInput) -> String {
         beams: None,
         parts: Vec::new(),
         run: Vec::new(),
+        timing: Vec::new(),
         extras: Vec::new(),
     };
     page.page().html

@@ -51,6 +51,8 @@ pub struct StudyPage<'a> {
     pub parts: Vec<CatalogRow>,
     /// Facts of the run: names and values.
     pub run: Vec<(String, String)>,
+    /// Facts that differ from run to run: time, threads, machine.
+    pub timing: Vec<(String, String)>,
     /// Further sections: the stiffness budget, the front under scatter, how sure the front is, ...
     pub extras: Vec<PageSection>,
 }
@@ -89,6 +91,7 @@ impl StudyPage<'_> {
             "beams": self.beams.as_ref().map(|f| gallery.show(f)),
             "extras": extras,
             "run": self.run,
+            "timing": self.timing,
             "not_checked": facts.not_checked,
             "remarks": facts.remarks,
             "warnings": warnings(&self.summary.overall, &chosen),

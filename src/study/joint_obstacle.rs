@@ -1,0 +1,198 @@
+//! Joints that no drive can move, whatever the limits of the study: which check fails, by how much, and what would help.
+
+use super::limit::{short, toward};
+use crate::arm::joint_law::Curve;
+use crate::catalog::Catalogs;
+use crate::sizing::demand::JointDemand;
+use crate::sizing::explain::Shortfall;
+use crate::sizing::rpm_from_rad_s;
+use crate::sizing::select::DriveTable;
+use crate::space::design_space::{DesignSpace, DriveChoice, SpacePiece};
+use crate::space::problem::{ArmProblem, Partial};
+use crate::space::slot::SizedJoint;
+
+/// Most sections of a link that are tried for the one that asks least of a joint.
+const MOST_SECTIONS: u32 = 64;
+
+/// Every joint for which no drive holds, from the tip inward, in words. Each is judged with the lightest links, and with
+/// the sections of single links that ask least of it. A joint without a drive is taken as rigid and without mass for those
+/// inboard of it.
+pub(super) fn joint_obstacles(space: &DesignSpace, catalogs: &Catalogs) -> Vec<String> {
+    let mut space = few_sections(space);
+    let mut found = Vec::new();
+    while let Some((piece, words)) = first_obstacle(&space, catalogs) {
+        found.push(words);
+        if let SpacePiece::Joint(joint) = &mut space.pieces[piece] {
+            joint.drive = DriveChoice::Given { curve: Curve::Rigid, mass_kg: 0.0, gear: None, motor: None };
+        }
+    }
+    if found.is_empty() {
+        found.push(
+            "no single joint stands in the way with the lightest links and drives; `armwright size STUDY --explain JOINT` \
+             lists what each asks for"
+                .into(),
+        );
+    }
+    found
+}
+
+/// The space with at most [`MOST_SECTIONS`] sections for each link, from the lightest to the heaviest.
+fn few_sections(space: &DesignSpace) -> DesignSpace {
+    let mut out = space.clone();
+    for piece in &mut out.pieces {
+        if let SpacePiece::Choice(choice) = piece {
+            choice.spread(MOST_SECTIONS);
+        }
+    }
+    out.renumber_materials();
+    out
+}
+
+/// The outermost joint for which no drive holds: its piece, and why.
+fn first_obstacle(space: &DesignSpace, catalogs: &Catalogs) -> Option<(usize, String)> {
+    let problem = ArmProblem::new(space, catalogs);
+    let mut sections = lightest_sections(space);
+    loop {
+        let stuck = stuck_at(&problem, &sections)?;
+        let table = &problem.sized_joint(stuck.piece)?.table;
+        if table.is_empty() {
+            return Some((stuck.piece, no_legal_drive(table, &stuck.demand)));
+        }
+        let lightest = table.smallest_shortfall(&stuck.demand);
+        match easier_sections(&problem, &sections, &stuck, table) {
+            Ok(further) => sections = further,
+            Err(nearest) => {
+                let is_lightest = nearest == lightest;
+                let words = nearest.map_or_else(|| no_legal_drive(table, &stuck.demand), |s| s.to_string());
+                let links = if is_lightest { "even with the lightest links" } else { "with any links" };
+                return Some((stuck.piece, format!("{links}, {words}")));
+            }
+        }
+    }
+}
+
+/// The lightest section of every link, by piece; 0 for what is no choice.
+fn lightest_sections(space: &DesignSpace) -> Vec<u32> {
+    let lightest = |piece: &SpacePiece| match piece {
+        SpacePiece::Choice(choice) => choice.by_mass().first().copied().unwrap_or_default(),
+        _ => 0,
+    };
+    space.pieces.iter().map(lightest).collect()
+}
+
+/// The first joint on the way inward at which no drive holds.
+struct Stuck {
+    slot: usize,
+    piece: usize,
+    demand: JointDemand,
+}
+
+/// Builds the arm with these sections and the lightest drives that hold; `None` if all hold.
+fn stuck_at(problem: &ArmProblem, sections: &[u32]) -> Option<Stuck> {
+    let mut options = Vec::new();
+    for (piece, what) in problem.space().pieces.iter().enumerate().rev() {
+        match what {
+            SpacePiece::Choice(_) => options.push(sections[piece]),
+            _ if problem.sized_joint(piece).is_some_and(SizedJoint::is_level) => {
+                options.push(first_fit_at(problem, &options, piece));
+            }
+            _ => {}
+        }
+    }
+    let mut last = Partial::default();
+    let slot = problem.walk(&options, |_, arm| last.clone_from(arm)).err()?;
+    Some(Stuck { slot, piece: problem.piece_of_slot(slot), demand: problem.demand_at(&last, slot) })
+}
+
+/// The lightest drive that holds at a joint behind an arm; the first drive if none holds.
+pub(crate) fn first_fit_at(problem: &ArmProblem, outboard: &[u32], piece: usize) -> u32 {
+    let mut index = 0;
+    let _ = problem.walk(outboard, |slot, arm| {
+        if problem.piece_of_slot(slot) == piece
+            && let Some(sized) = problem.sized_joint(piece)
+        {
+            index = sized.table.first_fit(&problem.demand_at(arm, slot)).unwrap_or(0) as u32;
+        }
+    });
+    index
+}
+
+/// Sections with which the arm gets further; one link at a time takes each of its sections.
+///
+/// # Errors
+/// The smallest shortfall, if no such sections are found.
+fn easier_sections(
+    problem: &ArmProblem,
+    sections: &[u32],
+    stuck: &Stuck,
+    table: &DriveTable,
+) -> Result<Vec<u32>, Option<Shortfall>> {
+    let margin = |s: &Option<Shortfall>| s.as_ref().and_then(|s| s.check.torque_margin()).unwrap_or(0.0);
+    let mut nearest = table.smallest_shortfall(&stuck.demand);
+    for (piece, what) in problem.space().pieces.iter().enumerate().skip(stuck.piece) {
+        let SpacePiece::Choice(choice) = what else { continue };
+        for option in 0..choice.options.len() as u32 {
+            let mut other = sections.to_vec();
+            other[piece] = option;
+            match stuck_at(problem, &other) {
+                None => return Ok(other),
+                Some(later) if later.slot > stuck.slot => return Ok(other),
+                Some(same) if same.slot == stuck.slot => {
+                    let shortfall = table.smallest_shortfall(&same.demand);
+                    if margin(&shortfall) > margin(&nearest) {
+                        nearest = shortfall;
+                    }
+                }
+                Some(_) => {}
+            }
+        }
+    }
+    Err(nearest)
+}
+
+/// Why no drive is strong enough at a joint, in words; `None` if one is.
+pub(crate) fn obstacle_at(table: &DriveTable, demand: &JointDemand) -> Option<String> {
+    match table.is_empty() {
+        true => Some(no_legal_drive(table, demand)),
+        false if table.first_fit(demand).is_some() => None,
+        false => Some(
+            table.smallest_shortfall(demand).map_or_else(|| no_legal_drive(table, demand), |s| s.to_string()),
+        ),
+    }
+}
+
+/// The reason if no drive is legal: none turns the joint fast enough, none fits, or all lack a rating.
+fn no_legal_drive(table: &DriveTable, demand: &JointDemand) -> String {
+    let joint = table.joint();
+    let needed_rad_s = table.motion().speed_rad_s;
+    match fastest(table).filter(|(rad_s, _)| *rad_s < needed_rad_s) {
+        Some((rad_s, drive)) => format!(
+            "joint {joint}: {} rad/s needed, {} allowed by the fastest drive, {drive} (short by {} rad/s); slow \
+             the joint to {} rad/s (tip_speed_m_s, min_lever_m, max_speed_rad_s) or widen \"drives\"",
+            short(needed_rad_s),
+            short(rad_s),
+            short(needed_rad_s - rad_s),
+            toward(rad_s, false),
+        ),
+        None => table.smallest_shortfall(demand).map_or_else(
+            || {
+                format!(
+                    "joint {joint}: every drive that \"drives\" offers lacks a rating that a check needs; \
+                     `armwright size STUDY --explain {joint}` lists them"
+                )
+            },
+            |shortfall| shortfall.to_string(),
+        ),
+    }
+}
+
+/// The largest speed that a drive of a table allows \[rad/s\], and the names of the drive.
+fn fastest(table: &DriveTable) -> Option<(f64, String)> {
+    let pairs = table.gears().iter().flat_map(|gear| table.motors().iter().map(move |motor| (gear, motor)));
+    let speeds = pairs.filter_map(|(gear, motor)| {
+        let input_rpm = gear.max_input_speed_rpm?.min(motor.max_speed_rpm.or(motor.rated_speed_rpm)?);
+        Some((input_rpm / f64::from(gear.ratio) / rpm_from_rad_s(1.0), gear, motor))
+    });
+    let (rad_s, gear, motor) = speeds.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some((rad_s, format!("{} + {}", gear.id, motor.id)))
+}

@@ -1,0 +1,181 @@
+//! The limits of a study that a design can break, one by one: what each is on, what is asked, and what a design reaches.
+
+use crate::pareto::objectives::{Objective, Objectives};
+use crate::report::number::significant;
+use crate::space::constraint::Constraints;
+use crate::space::problem::{ArmProblem, Partial};
+
+/// What a limit is on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Quantity {
+    Deflection,
+    Mode,
+    Mass,
+    Stress,
+    Slenderness,
+    Cost,
+}
+
+impl Quantity {
+    const ALL: [Self; 6] =
+        [Self::Deflection, Self::Mode, Self::Mass, Self::Stress, Self::Slenderness, Self::Cost];
+
+    /// The limits that some constraints state.
+    pub(super) fn limited(constraints: &Constraints) -> Vec<Self> {
+        Self::ALL.into_iter().filter(|quantity| quantity.asked(constraints).is_some()).collect()
+    }
+
+    /// The limit, in the unit of the library: m, Hz, kg, EUR or a ratio.
+    pub(super) fn asked(self, constraints: &Constraints) -> Option<f64> {
+        match self {
+            Self::Deflection => constraints.tip_deflection_max_m,
+            Self::Mode => Some(constraints.required_mode_hz()).filter(|hz| *hz > 0.0),
+            Self::Mass => constraints.mass_max_kg,
+            Self::Stress => constraints.stress_safety_factor_min,
+            Self::Slenderness => constraints.wall_slenderness_max,
+            Self::Cost => constraints.material_cost_max_eur,
+        }
+    }
+
+    /// The constraints with another limit; `None` drops it.
+    pub(super) fn set(self, constraints: &mut Constraints, limit: Option<f64>) {
+        match self {
+            Self::Deflection => constraints.tip_deflection_max_m = limit,
+            Self::Mode => (constraints.lowest_mode_min_hz, constraints.servo) = (limit, None),
+            Self::Mass => constraints.mass_max_kg = limit,
+            Self::Stress => constraints.stress_safety_factor_min = limit,
+            Self::Slenderness => constraints.wall_slenderness_max = limit,
+            Self::Cost => constraints.material_cost_max_eur = limit,
+        }
+    }
+
+    /// What a complete design reaches; `None` if a strength or a cost is unknown.
+    pub(super) fn of(self, problem: &ArmProblem, arm: &Partial, objectives: &Objectives) -> Option<f64> {
+        match self {
+            Self::Deflection => Some(objectives.tip_deflection_m),
+            Self::Mode => Some(objectives.lowest_mode_hz),
+            Self::Mass => Some(objectives.mass_kg),
+            Self::Stress => Some(problem.stress_safety_factor(arm).unwrap_or(f64::INFINITY)),
+            Self::Slenderness => Some(problem.wall_slenderness(arm)),
+            Self::Cost => problem.material_cost_eur(arm),
+        }
+    }
+
+    /// The objective that is limited, if it is one.
+    pub(super) fn objective(self) -> Option<Objective> {
+        match self {
+            Self::Deflection => Some(Objective::TipDeflection),
+            Self::Mode => Some(Objective::LowestMode),
+            Self::Mass => Some(Objective::Mass),
+            Self::Stress | Self::Slenderness | Self::Cost => None,
+        }
+    }
+
+    /// Whether the limit is a minimum.
+    pub(super) fn is_least(self) -> bool {
+        matches!(self, Self::Mode | Self::Stress)
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Deflection => "tip deflection",
+            Self::Mode => "lowest mode",
+            Self::Mass => "mass",
+            Self::Stress => "strength over stress",
+            Self::Slenderness => "wall slenderness",
+            Self::Cost => "material cost",
+        }
+    }
+
+    /// Unit in a study file, and how many of it are one of the library's.
+    fn unit(self) -> (&'static str, f64) {
+        match self {
+            Self::Deflection => ("mm", 1e3),
+            Self::Mode => ("Hz", 1.0),
+            Self::Mass => ("kg", 1.0),
+            Self::Cost => ("EUR", 1.0),
+            Self::Stress | Self::Slenderness => ("", 1.0),
+        }
+    }
+
+    /// The keys of a study file that stand for the limit and would exclude a design that reaches this value, each with the
+    /// value that lets it in.
+    fn enough(self, constraints: &Constraints, reached: f64) -> Vec<(&'static str, f64)> {
+        let round = |x: f64| toward(x, !self.is_least());
+        let key = match self {
+            Self::Mode => return mode_keys(constraints, reached).map(|(key, x)| (key, round(x))).collect(),
+            Self::Deflection => "tip_deflection_max_mm",
+            Self::Mass => "mass_max_kg",
+            Self::Stress => "stress_safety_factor_min",
+            Self::Slenderness => "wall_slenderness_max",
+            Self::Cost => "material_cost_max_eur",
+        };
+        vec![(key, round(reached * self.unit().1))]
+    }
+
+    /// What is asked, what is reached, and what is missing.
+    pub(super) fn shortfall_words(self, constraints: &Constraints, reached: f64) -> String {
+        let (unit, scale) = self.unit();
+        let words = |x: f64| match unit {
+            "" => short(x * scale),
+            unit => format!("{} {unit}", short(x * scale)),
+        };
+        let asked = self.asked(constraints).unwrap_or_default();
+        format!(
+            "{}: {} asked, {} reached by designs that meet all else (short by {})",
+            self.name(),
+            words(asked),
+            words(reached),
+            words((reached - asked).abs())
+        )
+    }
+
+    /// The keys that have to be relaxed, each with the value that is enough: `"mass_max_kg" to 31.7`.
+    pub(super) fn enough_words(self, constraints: &Constraints, reached: f64) -> String {
+        let keys = self.enough(constraints, reached).into_iter();
+        keys.map(|(key, value)| format!("\"{key}\" to {value}")).collect::<Vec<_>>().join(" and ")
+    }
+}
+
+/// The keys that ask for a higher lowest mode than is reached \[Hz\]. The servo's is a bandwidth, not a mode.
+fn mode_keys(constraints: &Constraints, reached_hz: f64) -> impl Iterator<Item = (&'static str, f64)> {
+    let stated = constraints.lowest_mode_min_hz.filter(|hz| *hz > reached_hz);
+    let servo = constraints.servo.filter(|servo| servo.bandwidth_hz * servo.ratio > reached_hz);
+    let stated = stated.map(|_| ("lowest_mode_min_hz", reached_hz));
+    stated.into_iter().chain(servo.map(|servo| ("servo_bandwidth_hz", reached_hz / servo.ratio)))
+}
+
+/// Four significant digits.
+pub(super) fn short(x: f64) -> String {
+    significant(x, 4)
+}
+
+/// Rounds to five significant digits, up or down, so that a sufficient value stays sufficient.
+pub(super) fn toward(x: f64, up: bool) -> f64 {
+    let scale = 10f64.powi(4 - libm::log10(x.abs().max(f64::MIN_POSITIVE)).floor() as i32);
+    let scaled = x * scale;
+    (if up { (scaled * (1.0 + 1e-12)).ceil() } else { (scaled * (1.0 - 1e-12)).floor() }) / scale
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::constraint::Servo;
+
+    #[test]
+    fn a_value_that_is_enough_is_rounded_to_stay_enough() {
+        assert_eq!(toward(2.917_24, true), 2.9173);
+        assert_eq!(toward(2.917_24, false), 2.9172);
+        assert!(toward(12.0, true) >= 12.0 && toward(12.0, false) <= 12.0);
+        assert!(toward(1e-7 / 3.0, true) >= 1e-7 / 3.0);
+    }
+
+    #[test]
+    fn a_mode_that_two_keys_ask_for_needs_both_relaxed() {
+        let servo = Some(Servo { bandwidth_hz: 10.0, ratio: 3.0 });
+        let both = Constraints { lowest_mode_min_hz: Some(25.0), servo, ..Constraints::default() };
+        let words = |hz: f64| Quantity::Mode.enough_words(&both, hz);
+        assert_eq!(words(27.0), "\"servo_bandwidth_hz\" to 9");
+        assert_eq!(words(24.0), "\"lowest_mode_min_hz\" to 24 and \"servo_bandwidth_hz\" to 8");
+    }
+}

@@ -1,0 +1,141 @@
+//! Shards of an exhaustive search: what each found, and how they become one front.
+//!
+//! A shard keeps the candidates of its range of design numbers. A candidate that another shard clearly dominates is dropped
+//! when they are joined, and the full model judges the rest, as after a search on one machine: the front has the same bytes.
+
+use crate::pareto::objectives::Objectives;
+use crate::search::sweep::{Candidate, Status, SweepOutcome, clear_dominated};
+use std::fmt::Write;
+use std::ops::Range;
+
+/// The candidates of a sweep as CSV: `all` or the number of a material, the number of the design, its objectives by the fast
+/// model in m, kg and Hz. Numbers have their shortest form that reads back to the same bits.
+pub fn candidates_csv(swept: &SweepOutcome) -> String {
+    let mut out = String::from(HEADER);
+    let groups = swept.groups.iter().enumerate().map(|(k, group)| (k.to_string(), group));
+    for (front, candidates) in std::iter::once(("all".to_string(), &swept.front)).chain(groups) {
+        for Candidate { number, objectives: o } in candidates {
+            let _ =
+                writeln!(out, "{front},{number},{},{},{}", o.tip_deflection_m, o.mass_kg, o.lowest_mode_hz);
+        }
+    }
+    out
+}
+
+const HEADER: &str = "front,number,tip_deflection_m,mass_kg,lowest_mode_hz\n";
+
+/// Reads [`candidates_csv`] of a study with so many materials.
+///
+/// # Errors
+/// The number of the first line that is no candidate.
+pub fn read_candidates(text: &str, materials: usize) -> Result<(Vec<Candidate>, Vec<Vec<Candidate>>), usize> {
+    let mut front = Vec::new();
+    let mut groups = vec![Vec::new(); materials];
+    let rows = text.strip_prefix(HEADER).ok_or(1usize)?;
+    for (line, row) in rows.lines().enumerate() {
+        let fault = || line + 2;
+        let cells: Vec<&str> = row.split(',').collect();
+        let [of, number, tip, mass, mode] = cells[..] else { return Err(fault()) };
+        let value = |cell: &str| cell.parse::<f64>().map_err(|_| fault());
+        let candidate = Candidate {
+            number: number.parse().map_err(|_| fault())?,
+            objectives: Objectives {
+                tip_deflection_m: value(tip)?,
+                mass_kg: value(mass)?,
+                lowest_mode_hz: value(mode)?,
+            },
+        };
+        match of {
+            "all" => front.push(candidate),
+            k => groups.get_mut(k.parse::<usize>().map_err(|_| fault())?).ok_or_else(fault)?.push(candidate),
+        }
+    }
+    Ok((front, groups))
+}
+
+/// What one shard found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Swept {
+    /// Number of designs that hold and were judged.
+    pub designs_evaluated: u64,
+    /// Candidates of the front of all designs.
+    pub front: Vec<Candidate>,
+    /// Candidates of the front of each material.
+    pub groups: Vec<Vec<Candidate>>,
+}
+
+/// The sweep of a whole space from that of its shards, which must cover it.
+pub fn joined(shards: Vec<Swept>, designs_total: u128) -> SweepOutcome {
+    let materials = shards.iter().map(|shard| shard.groups.len()).max().unwrap_or_default();
+    let (mut front, mut groups, mut designs_evaluated) = (Vec::new(), vec![Vec::new(); materials], 0u64);
+    for shard in shards {
+        designs_evaluated += shard.designs_evaluated;
+        front.extend(shard.front);
+        groups.iter_mut().zip(shard.groups).for_each(|(all, of)| all.extend(of));
+    }
+    for candidates in groups.iter_mut().chain([&mut front]) {
+        clear_dominated(candidates);
+        candidates.sort_unstable_by_key(|candidate| candidate.number);
+    }
+    SweepOutcome {
+        status: if front.is_empty() { Status::Infeasible } else { Status::Complete },
+        designs_total,
+        designs_evaluated,
+        designs_excluded: designs_total.saturating_sub(u128::from(designs_evaluated)),
+        front,
+        groups,
+    }
+}
+
+/// The parts of `0..total` that no range covers, and the first number that two ranges share.
+pub fn gaps(mut ranges: Vec<Range<u128>>, total: u128) -> (Vec<Range<u128>>, Option<u128>) {
+    ranges.retain(|range| !range.is_empty());
+    ranges.sort_unstable_by_key(|range| range.start);
+    let (mut missing, mut shared, mut covered) = (Vec::new(), None, 0u128);
+    for range in ranges {
+        if range.start > covered {
+            missing.push(covered..range.start);
+        }
+        if range.start < covered {
+            shared = shared.or(Some(range.start));
+        }
+        covered = covered.max(range.end);
+    }
+    if covered < total {
+        missing.push(covered..total);
+    }
+    (missing, shared)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn candidates_read_back_to_the_same_bits() {
+        let candidate = |number, tip_deflection_m| Candidate {
+            number,
+            objectives: Objectives { tip_deflection_m, mass_kg: 0.1 + 0.2, lowest_mode_hz: 1.0 / 3.0 },
+        };
+        let swept = joined(
+            vec![Swept {
+                designs_evaluated: 2,
+                front: vec![candidate(u128::MAX, 1e-5 / 7.0)],
+                groups: vec![vec![], vec![candidate(3, 2e-308)]],
+            }],
+            9,
+        );
+        let text = candidates_csv(&swept);
+        assert_eq!(read_candidates(&text, 2), Ok((swept.front.clone(), swept.groups.clone())));
+        assert_eq!(read_candidates(&text, 1), Err(3), "a material that the study does not have");
+        assert_eq!(read_candidates(&text.replace("0.3333", "x"), 2), Err(2));
+    }
+
+    #[test]
+    fn what_no_shard_covers_is_found_and_what_two_do() {
+        assert_eq!(gaps(vec![4..9, 0..4], 9), (vec![], None));
+        assert_eq!(gaps(vec![6..8, 1..3, 2..2], 9), (vec![0..1, 3..6, 8..9], None));
+        assert_eq!(gaps(vec![0..5, 4..9], 9).1, Some(4));
+        assert_eq!(gaps(vec![], 0), (vec![], None));
+    }
+}
