@@ -223,6 +223,9 @@ fn find_gear<'c>(node: &Node, catalogs: &'c Catalogs) -> Option<&'c Gear> {
 
 /// The torsion curve of a gear in the catalog; `None` if a part of it is unknown.
 pub(crate) fn windup_of(gear: &Gear) -> Option<Windup> {
+    if let Some(stiffness_nm_per_rad) = gear.single_slope_nm_per_rad() {
+        return Some(Windup::straight(stiffness_nm_per_rad));
+    }
     Some(Windup {
         k1_nm_per_rad: gear.k1_nm_per_rad?,
         k2_nm_per_rad: gear.k2_nm_per_rad?,
@@ -235,7 +238,7 @@ pub(crate) fn windup_of(gear: &Gear) -> Option<Windup> {
 fn gear_windup(gear: &Gear, node: &Node) -> Option<Windup> {
     windup_of(gear).or_else(|| {
         node.fault(
-            format!("gear \"{}\" has no complete torsion curve", gear.id),
+            format!("gear \"{}\" has no complete torsion curve: no {}", gear.id, gear.missing_of_torsion().join(", ")),
             "give \"windup\" or \"stiffness_nm_per_rad\"",
         )
     })

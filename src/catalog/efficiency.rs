@@ -46,7 +46,7 @@ pub struct EfficiencyPoint {
     /// Size; `None` for a curve of whole series.
     pub size: Option<u32>,
     /// Ratio; `None` for a curve of whole series.
-    pub ratio: Option<u32>,
+    pub ratio: Option<f64>,
     /// Input speed \[rpm\] or torque over rated torque.
     pub x: f64,
     /// Efficiency or factor.

@@ -4,6 +4,7 @@
 pub(crate) mod analyze;
 pub(crate) mod asked;
 pub(crate) mod catalog;
+mod catalog_check;
 pub(crate) mod compare;
 pub(crate) mod corrections;
 pub(crate) mod design;

@@ -259,10 +259,17 @@ fn fails(problem: &ArmProblem, chosen: &[u32], slot: usize) -> Failure {
     match problem.sized_joint(piece) {
         Some(sized) => {
             let demand = problem.demand_at(&last, slot);
-            let shortfall = sized.table.smallest_shortfall(&demand).map(|shortfall| shortfall.to_string());
+            let missing = sized.table.missing_figures();
+            let also = missing.as_ref().map(|missing| format!("; not checked: {missing}")).unwrap_or_default();
+            let shortfall = sized.table.smallest_shortfall(&demand);
+            let shortfall = shortfall.map(|shortfall| format!("{shortfall}{also}"));
             let too_weak = || too_weak(problem, chosen, piece, sized, &demand);
             Failure::Infeasible(shortfall.or_else(too_weak).unwrap_or_else(|| {
-                format!("joint {}: no drive of the catalogs can be checked in full", sized.table.joint())
+                format!(
+                    "joint {joint}: no drive of the catalogs can be checked in full: {}; `--explain {joint}` says more",
+                    missing.unwrap_or_else(|| "\"drives\" leaves no gear or no motor".into()),
+                    joint = sized.table.joint(),
+                )
             }))
         }
         None => Failure::Infeasible(

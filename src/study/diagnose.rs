@@ -252,7 +252,9 @@ fn first_obstacle(study: &Study, catalogs: &Catalogs) -> String {
         Some(shortfall) if shortfall.check.kind.is_fit() => {
             format!("with the lightest links, {shortfall}{also}")
         }
-        Some(shortfall) => format!("even with the lightest links, {shortfall}{also}"),
+        Some(shortfall) => {
+            format!("even with the lightest links, {shortfall}{}{also}", missing_words(table))
+        }
         None if table.is_empty() => too_fast(sized),
         None => together,
     }
@@ -266,32 +268,40 @@ fn too_fast(sized: &SizedJoint) -> String {
         .gears()
         .iter()
         .flat_map(|gear| table.motors().iter().map(move |motor| (gear, motor)))
+        .filter(|(gear, motor)| gear.goes_with(motor))
         .filter_map(|(gear, motor)| {
-            let input_rpm = gear.max_input_speed_rpm?.min(motor.max_speed_rpm.or(motor.rated_speed_rpm)?);
-            Some((input_rpm / f64::from(gear.ratio), gear, motor))
+            let no_limit = gear.kind.has_no_ratings_of_its_own().then_some(f64::INFINITY);
+            let input_rpm = gear.max_input_speed_rpm.or(no_limit)?.min(motor.max_speed_rpm.or(motor.rated_speed_rpm)?);
+            Some((input_rpm / gear.ratio, gear, motor))
         })
         .max_by(|a, b| a.0.total_cmp(&b.0));
     match fastest {
         Some((rpm, gear, motor)) if rpm < needed_rpm => {
             let rad_s = |rpm: f64| table.motion().speed_rad_s * rpm / needed_rpm;
             format!(
-                "joint {}: {} rad/s needed, {} rad/s allowed by the fastest drive, {} + {} (short by {} rad/s); slow \
-                 the joint (tip_speed_m_s, min_lever_m, max_speed_rad_s) or widen \"drives\"",
+                "joint {}: {} rad/s needed, {} rad/s allowed by the fastest drive, {} (short by {} rad/s); slow \
+                 the joint (tip_speed_m_s, min_lever_m, max_speed_rad_s) or widen \"drives\"{}",
                 table.joint(),
                 short(rad_s(needed_rpm)),
                 short(rad_s(rpm)),
-                gear.id,
-                motor.id,
+                table.pair(gear, motor).name(),
                 short(rad_s(needed_rpm - rpm)),
+                missing_words(table),
             )
         }
         _ => format!(
             "joint {joint}: every drive that \"drives\" offers is too fast for its average input speed{fit} or lacks a rating \
-             that a check needs; `armwright size STUDY --explain {joint}` lists them",
+             that a check needs; `armwright size STUDY --explain {joint}` lists them{missing}",
             joint = table.joint(),
             fit = if table.motion().fit.is_asked() { ", does not fit" } else { "" },
+            missing = missing_words(table),
         ),
     }
+}
+
+/// The figures that parts lack, as the end of a sentence.
+fn missing_words(table: &crate::sizing::select::DriveTable) -> String {
+    table.missing_figures().map(|missing| format!("; not checked: {missing}")).unwrap_or_default()
 }
 
 /// The lightest option a level that keeps within the wall-slenderness limit.

@@ -10,6 +10,7 @@ pub(crate) mod check;
 mod connections;
 pub(crate) mod definition;
 pub(crate) mod diagnose;
+mod drives;
 pub(crate) mod effects;
 mod fit;
 mod harness;
