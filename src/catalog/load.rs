@@ -5,7 +5,7 @@ use super::read::row::Row;
 use super::read::table::rows;
 use super::read::{actuators, efficiency, gears, materials, motor_curves, motors, profiles, trend};
 use super::schema::CatalogFile;
-use super::{Catalogs, Confidence, Provenance};
+use super::{BUILT_IN, Catalogs, Confidence, Provenance};
 use crate::input::json::{Fault, Faults, InputError, closest};
 use std::path::Path;
 
@@ -65,7 +65,7 @@ impl Catalogs {
 fn builtin_sources() -> Vec<Source> {
     let source = |file: CatalogFile| Source {
         file,
-        name: format!("built-in {}", file.file_name()),
+        name: format!("{BUILT_IN}{}", file.file_name()),
         bytes: file.builtin_text().as_bytes().to_vec(),
     };
     CatalogFile::ALL.map(source).into()

@@ -66,6 +66,11 @@ impl Confidence {
 }
 
 impl Provenance {
+    /// Whether the row is one that comes with the program.
+    pub fn is_built_in(&self) -> bool {
+        self.file.starts_with(BUILT_IN)
+    }
+
     /// What is said beside a part whose core figures no document was seen for: `from memory` or `representative`.
     ///
     /// ```
@@ -85,6 +90,9 @@ impl Provenance {
         }
     }
 }
+
+/// How the names of the program's own files begin.
+pub(crate) const BUILT_IN: &str = "built-in ";
 
 impl fmt::Display for Confidence {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -260,7 +260,8 @@ fn fails(problem: &ArmProblem, chosen: &[u32], slot: usize) -> Failure {
         Some(sized) => {
             let demand = problem.demand_at(&last, slot);
             let missing = sized.table.missing_figures();
-            let also = missing.as_ref().map(|missing| format!("; not checked: {missing}")).unwrap_or_default();
+            let beside = sized.table.missing_beside_the_nearest();
+            let also = beside.as_ref().map(|missing| format!("; not checked: {missing}")).unwrap_or_default();
             let shortfall = sized.table.smallest_shortfall(&demand);
             let shortfall = shortfall.map(|shortfall| format!("{shortfall}{also}"));
             let too_weak = || too_weak(problem, chosen, piece, sized, &demand);

@@ -301,7 +301,8 @@ fn too_fast(sized: &SizedJoint) -> String {
 
 /// The figures that parts lack, as the end of a sentence.
 fn missing_words(table: &crate::sizing::select::DriveTable) -> String {
-    table.missing_figures().map(|missing| format!("; not checked: {missing}")).unwrap_or_default()
+    let missing = table.missing_beside_the_nearest();
+    missing.map(|missing| format!("; not checked: {missing}")).unwrap_or_default()
 }
 
 /// The lightest option a level that keeps within the wall-slenderness limit.

@@ -10,6 +10,7 @@ pub(crate) mod check;
 mod connections;
 pub(crate) mod definition;
 pub(crate) mod diagnose;
+pub(crate) mod creep;
 mod drives;
 pub(crate) mod effects;
 mod fit;

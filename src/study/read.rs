@@ -5,6 +5,7 @@
 //! else is SI. The resolved [`DesignSpace`] is SI throughout.
 
 use super::cases::{Cases, read_cases};
+use super::creep::creep_remarks;
 use super::connections::{connections_remark, with_connections};
 use super::definition::Study;
 use super::drives::{Drives, read_drives};
@@ -135,6 +136,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     remarks.extend(harness_remark(&space, harness_kg_per_m));
     remarks.extend(fit_remarks(&space, catalogs));
     remarks.extend(omissions(&space));
+    remarks.extend(creep_remarks(&space, catalogs));
     Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks })
 }
 
