@@ -117,7 +117,7 @@ fn the_parts_of_the_paper_are_found() {
     assert_eq!(motor("J 8.2"), Ok(("J 8.2 (129-)", Some(2.0))));
     assert!(matches!(motor("J"), Err(PartError::Ambiguous { candidates, .. }) if candidates.len() == 5));
     assert_eq!(catalogs.gear("CSF-58-100").map(|g| g.id.as_str()), Ok("HFUC-58-100"));
-    assert_eq!(catalogs.gear("hfuc-58-100").map(|g| g.ratio), Ok(100));
+    assert_eq!(catalogs.gear("hfuc-58-100").map(|g| g.ratio), Ok(100.0));
     assert!(catalogs.gear("HFUS-14-50").is_err(), "an outline is no other name");
     assert_eq!(catalogs.profile("SHS160x160x10").map(|p| p.shape), Ok(ProfileShape::Square));
     let s355 = catalogs.material("structural steel S355").expect("the whole name");
