@@ -238,7 +238,11 @@ pub(crate) fn windup_of(gear: &Gear) -> Option<Windup> {
 fn gear_windup(gear: &Gear, node: &Node) -> Option<Windup> {
     windup_of(gear).or_else(|| {
         node.fault(
-            format!("gear \"{}\" has no complete torsion curve: no {}", gear.id, gear.missing_of_torsion().join(", ")),
+            format!(
+                "gear \"{}\" has no complete torsion curve: no {}",
+                gear.id,
+                gear.missing_of_torsion().join(", ")
+            ),
             "give \"windup\" or \"stiffness_nm_per_rad\"",
         )
     })

@@ -232,7 +232,11 @@ impl Gear {
     /// The slope of a torsion curve of one segment \[N m/rad\]: K1 if nothing else is given, or the slope that K1, K2 and K3
     /// have in common where break points are blank.
     pub fn single_slope_nm_per_rad(&self) -> Option<f64> {
-        let [k1, k2, k3] = [self.k1_nm_per_rad?, self.k2_nm_per_rad.unwrap_or(f64::NAN), self.k3_nm_per_rad.unwrap_or(f64::NAN)];
+        let [k1, k2, k3] = [
+            self.k1_nm_per_rad?,
+            self.k2_nm_per_rad.unwrap_or(f64::NAN),
+            self.k3_nm_per_rad.unwrap_or(f64::NAN),
+        ];
         let alone = k2.is_nan() && k3.is_nan() && self.t1_nm.is_none() && self.t2_nm.is_none();
         let straight = k1 == k2 && k2 == k3 && (self.t1_nm.is_none() || self.t2_nm.is_none());
         (alone || straight).then_some(k1)

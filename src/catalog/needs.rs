@@ -43,7 +43,8 @@ impl Gear {
     /// assert_eq!(gear.lacks(GearMass::HousedUnit)[0].to_string(), "rated_life_h (life)");
     /// ```
     pub fn lacks(&self, mass: GearMass) -> Vec<Lack> {
-        let mut lacks = if self.kind.has_no_ratings_of_its_own() { Vec::new() } else { self.lacking_ratings() };
+        let mut lacks =
+            if self.kind.has_no_ratings_of_its_own() { Vec::new() } else { self.lacking_ratings() };
         lacks.extend(self.missing_of_torsion().into_iter().map(|figure| Lack { figure, purpose: "torsion" }));
         let column = match mass {
             _ if self.kind == GearKind::Actuator => "mass_kg",

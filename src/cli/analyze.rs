@@ -156,7 +156,9 @@ fn ignored_text(ignored: &[String]) -> String {
 /// What is said of the arm's materials that creep.
 fn creep_text(arm: &Arm, catalogs: &Catalogs) -> String {
     let tubes = arm.chain.iter().filter_map(|element| match element {
-        Element::Link(Link { name, body: LinkBody::Tube { material_name, .. }, .. }) => Some((material_name, name)),
+        Element::Link(Link { name, body: LinkBody::Tube { material_name, .. }, .. }) => {
+            Some((material_name, name))
+        }
         _ => None,
     });
     let sentences = tubes.filter_map(|(material, link)| creep_sentence(catalogs, material, link));

@@ -115,7 +115,10 @@ fn motors_of(catalogs: &Catalogs) -> impl Iterator<Item = &Motor> {
     catalogs.motors.iter().filter(|motor| motor.kind != MotorKind::OfActuator)
 }
 
-pub(super) fn provenances(catalogs: &Catalogs, file: CatalogFile) -> Box<dyn Iterator<Item = &Provenance> + '_> {
+pub(super) fn provenances(
+    catalogs: &Catalogs,
+    file: CatalogFile,
+) -> Box<dyn Iterator<Item = &Provenance> + '_> {
     match file {
         CatalogFile::Gears => Box::new(gears_of(catalogs, false).map(|g| &g.provenance)),
         CatalogFile::Actuators => Box::new(gears_of(catalogs, true).map(|g| &g.provenance)),
@@ -140,7 +143,9 @@ pub(crate) fn show(catalogs: &Catalogs, args: &ShowArgs) -> Result<String, Failu
         return show_part(catalogs, args.parts, name);
     }
     let Some(parts) = args.parts else {
-        return Err(Failure::Usage("say what to list: gears, actuators, motors, materials or profiles".into()));
+        return Err(Failure::Usage(
+            "say what to list: gears, actuators, motors, materials or profiles".into(),
+        ));
     };
     refuse_stray_filters(parts, args)?;
     match parts {

@@ -81,7 +81,14 @@ const SIZING_COLUMNS: [(CatalogFile, &[&str]); 4] = [
     ),
     (
         CatalogFile::Actuators,
-        &["rated_torque_nm", "peak_torque_nm", "max_speed_rpm", "inertia_output_kgm2", "k1_nm_per_rad", "mass_kg"],
+        &[
+            "rated_torque_nm",
+            "peak_torque_nm",
+            "max_speed_rpm",
+            "inertia_output_kgm2",
+            "k1_nm_per_rad",
+            "mass_kg",
+        ],
     ),
     (CatalogFile::Materials, &["g_pa", "poisson", "yield_or_strength_pa", "cost_eur_per_kg"]),
 ];
@@ -126,7 +133,11 @@ fn unchoosable(catalogs: &Catalogs) -> String {
         }
         add(&gear.provenance, gear.id.as_str(), lacks);
     }
-    for motor in catalogs.motors.iter().filter(|m| !catalogs.gears.iter().any(|g| g.kind == GearKind::Actuator && g.goes_with(m))) {
+    for motor in catalogs
+        .motors
+        .iter()
+        .filter(|m| !catalogs.gears.iter().any(|g| g.kind == GearKind::Actuator && g.goes_with(m)))
+    {
         add(&motor.provenance, motor.id.as_str(), motor.lacks());
     }
     let lines = by_lacks.into_iter().map(|((file, lacks), mut parts)| {
@@ -143,7 +154,9 @@ fn verbs(lacks: &[Lack]) -> String {
         lacks.iter().copied().filter(|lack| matches!(lack.purpose, "torsion" | "mass")).collect();
     let named = match of_arm.as_slice() {
         [] => String::new(),
-        of_arm => format!("; cannot be named in an arm without a stiffness and a mass beside it: {}", words(of_arm)),
+        of_arm => {
+            format!("; cannot be named in an arm without a stiffness and a mass beside it: {}", words(of_arm))
+        }
     };
     format!("cannot be chosen by size and run: {}{named}", words(lacks))
 }
@@ -164,10 +177,15 @@ fn by_usual_life(catalogs: &Catalogs) -> String {
         let Provenance { file, line, .. } = &gear.provenance;
         match (gear.life.rated_h, gear.kind.wears_out()) {
             (Some(hours), _) => {
-                let _ = writeln!(out, "  {file}:{line} {}: no rated_life_h; the usual {hours} h of its kind stand for it", gear.id);
+                let _ = writeln!(
+                    out,
+                    "  {file}:{line} {}: no rated_life_h; the usual {hours} h of its kind stand for it",
+                    gear.id
+                );
             }
             (None, false) if gear.kind == GearKind::Belt => {
-                let _ = writeln!(out, "  {file}:{line} {}: no rated_life_h; its life is not checked", gear.id);
+                let _ =
+                    writeln!(out, "  {file}:{line} {}: no rated_life_h; its life is not checked", gear.id);
             }
             _ => {}
         }

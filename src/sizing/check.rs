@@ -154,7 +154,7 @@ impl CheckKind {
     pub fn needs_its_rating(self) -> bool {
         !self.is_bearing()
             && !self.is_fit()
-            && !matches!(self, CheckKind::GearBuckling | CheckKind::GearRatcheting)
+            && !matches!(self, CheckKind::GearBuckling | CheckKind::GearRatcheting | CheckKind::GearStops)
     }
 
     /// Whether the check is about gear and bearing alone, whatever the motor.

@@ -33,7 +33,9 @@ pub fn gear_checks(
         gear_life(gear, motion, demand),
     ];
     if let Some(stops) = motion.emergency_stops {
-        checks.push(plain(CheckKind::GearStops, stops, Ok(limit::stops_allowed(gear, motion))));
+        let allowed = limit::stops_allowed(gear, motion);
+        let rule = MissingRating("a rule for the stops of its kind");
+        checks.push(plain(CheckKind::GearStops, stops, allowed.ok_or(rule)));
     }
     checks.retain(|check| !limit::is_unlimited(gear, check.kind));
     checks.extend(gear_fits(gear, &motion.fit, &demand.room));

@@ -56,7 +56,8 @@ impl MotorHeat {
         if !motion.checks_motor_heat {
             return Ok(Self::NONE);
         }
-        let continuous_nm = motor_curve::continuous_torque_nm(drive.motor, input_speed_rpm(drive.gear, motion))?;
+        let continuous_nm =
+            motor_curve::continuous_torque_nm(drive.motor, input_speed_rpm(drive.gear, motion))?;
         let (ratio, efficiency) = (drive.ratio(), drive.efficiency()?);
         let heat = Self {
             driving_per_nm: 1.0 / (ratio * efficiency * continuous_nm),

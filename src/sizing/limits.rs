@@ -13,7 +13,7 @@ use super::drive::{Drive, MissingRating, Rating, if_any, known};
 use super::fit::DriveWidths;
 use super::heat::MotorHeat;
 use super::motor_curve;
-use crate::catalog::gear::Gear;
+use crate::catalog::gear::{Gear, GearKind};
 use crate::catalog::motor::Motor;
 
 /// Thresholds of a drive under a fixed motion, on the output side. The drive holds a demand exactly if no threshold is
@@ -82,7 +82,11 @@ impl DriveLimits {
             return Err(Obstacle::TooFast);
         }
         let gear = drive.gear;
-        if motion.emergency_stops.is_some_and(|stops| stops > stops_allowed(gear, motion)) {
+        if motion
+            .emergency_stops
+            .zip(stops_allowed(gear, motion))
+            .is_some_and(|(asked, allowed)| asked > allowed)
+        {
             return Err(Obstacle::TooManyStops);
         }
         if !motion.fit.allows(drive.gear, drive.motor) {
@@ -239,14 +243,18 @@ fn gear_stop_nm(gear: &Gear) -> Rating {
 }
 
 /// Number of momentary peaks that a gear may bear: 1e4 / (2 n t / 60), n being the input speed in rpm and t the duration of
-/// a peak in seconds; never more than 1e4. The wave generator passes with two waves in each turn.
+/// a peak in seconds; never more than 1e4. The wave generator passes with two waves in each turn. `None`: the rule is for
+/// strain-wave gears only.
 ///
 /// Source: Harmonic Drive AG, manual 1019658, glossary (momentary peaks only in an emergency, their number by the selection
 /// procedure); the formula as in the public program AimanHaidar/harmonic-drive-selector.
-pub(super) fn stops_allowed(gear: &Gear, motion: &JointMotion) -> f64 {
+pub(super) fn stops_allowed(gear: &Gear, motion: &JointMotion) -> Option<f64> {
     const WAVES: f64 = 1e4;
+    if gear.kind != GearKind::StrainWave {
+        return None;
+    }
     let waves_in_a_stop = 2.0 * input_speed_rpm(gear, motion) / 60.0 * motion.stop_time_s();
-    WAVES / waves_in_a_stop.max(1.0)
+    Some(WAVES / waves_in_a_stop.max(1.0))
 }
 
 /// Whether a gear has no such limit, so that there is nothing to check.
@@ -258,9 +266,16 @@ pub(super) fn is_unlimited(gear: &Gear, kind: CheckKind) -> bool {
         CheckKind::GearSpeed => gear_max_speed_rpm(gear),
         CheckKind::GearMeanSpeed => gear_average_speed_rpm(gear),
         CheckKind::GearLife => return !has_life(gear),
+        // what buckles and ratchets is a flexspline
+        CheckKind::GearBuckling => return !has_flexspline(gear) && gear.buckling_torque_nm.is_none(),
+        CheckKind::GearRatcheting => return !has_flexspline(gear) && gear.ratcheting_torque_nm.is_none(),
         _ => return false,
     };
     limit == Ok(f64::INFINITY)
+}
+
+fn has_flexspline(gear: &Gear) -> bool {
+    gear.kind == GearKind::StrainWave
 }
 
 /// Whether the life of a gear is checked: its kind wears out, or its row states a life.

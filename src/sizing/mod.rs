@@ -60,8 +60,7 @@ pub use demand::{
     JointDemand, JointMotion, LinearReading, cubic_mean_cubed_nm3, linear_torque_nm, stop_torque_nm,
 };
 pub use drive::{
-    Drive, MissingRating, critical_rpm, motor_torque_nm, rotary_torque_motor_nm,
-    rotary_torque_output_nm,
+    Drive, MissingRating, critical_rpm, motor_torque_nm, rotary_torque_motor_nm, rotary_torque_output_nm,
 };
 pub use duty::{DutyCycle, HeatWeights, MeanTorqueWeights, Phase, PhaseKind};
 pub use explain::{RejectedPart, Rejection, Relaxation, RelaxationKind, Shortfall};

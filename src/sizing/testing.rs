@@ -37,6 +37,7 @@ pub(crate) fn housed<'c>(gear: &'c Gear, motor: &'c Motor) -> Drive<'c> {
 /// A gear and a motor that hold 300 N m of static and 100 N m of linear torque at 1.35 m in every respect.
 pub(crate) fn ample() -> (Gear, Motor) {
     let mut gear = gear("CSG-50-100", [600.0, 900.0, 700.0, 2000.0], [3500.0, 2500.0], 0.00125, [3.2, 8.9]);
+    gear.life.rated_h = Some(10_000.0);
     gear.permissible_tilting_moment_nm = Some(700.0);
     gear.bearing = BearingRatings {
         pitch_diameter_m: Some(0.1),
@@ -199,10 +200,12 @@ fn any_life() -> impl Strategy<Value = (GearKind, LifeLaw)> {
         1 => Just(GearKind::Belt),
         1 => Just(GearKind::Direct),
     ];
-    (kind, rating_in(2e3..3e4), rating_in(50.0..3000.0), 3.0..3.5f64).prop_map(|(kind, rated_h, rated_speed_rpm, p)| {
-        let exponent = if kind == GearKind::StrainWave { 3.0 } else { p };
-        (kind, LifeLaw { rated_h, rated_speed_rpm, exponent })
-    })
+    (kind, rating_in(2e3..3e4), rating_in(50.0..3000.0), 3.0..3.5f64).prop_map(
+        |(kind, rated_h, rated_speed_rpm, p)| {
+            let exponent = if kind == GearKind::StrainWave { 3.0 } else { p };
+            (kind, LifeLaw { rated_h, rated_speed_rpm, exponent })
+        },
+    )
 }
 
 prop_compose! {

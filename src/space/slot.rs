@@ -163,12 +163,7 @@ pub(crate) fn joint_slot<'c>(
     let table = DriveTable::build(
         &joint.name,
         motion,
-        &DriveFilter {
-            bearing: joint.bearing,
-            extras: joint.extras,
-            needs_torsion: true,
-            ..filter.clone()
-        },
+        &DriveFilter { bearing: joint.bearing, extras: joint.extras, needs_torsion: true, ..filter.clone() },
         &catalogs.gears,
         &catalogs.motors,
     );

@@ -25,7 +25,8 @@ pub(super) fn creep_remarks(space: &DesignSpace, catalogs: &Catalogs) -> Vec<Str
             }
         }
     }
-    let sentence = |(material, links): (&str, Vec<&str>)| creep_sentence(catalogs, material, &links.join(", "));
+    let sentence =
+        |(material, links): (&str, Vec<&str>)| creep_sentence(catalogs, material, &links.join(", "));
     links_of.into_iter().filter_map(sentence).collect()
 }
 

@@ -271,7 +271,8 @@ fn too_fast(sized: &SizedJoint) -> String {
         .filter(|(gear, motor)| gear.goes_with(motor))
         .filter_map(|(gear, motor)| {
             let no_limit = gear.kind.has_no_ratings_of_its_own().then_some(f64::INFINITY);
-            let input_rpm = gear.max_input_speed_rpm.or(no_limit)?.min(motor.max_speed_rpm.or(motor.rated_speed_rpm)?);
+            let input_rpm =
+                gear.max_input_speed_rpm.or(no_limit)?.min(motor.max_speed_rpm.or(motor.rated_speed_rpm)?);
             Some((input_rpm / gear.ratio, gear, motor))
         })
         .max_by(|a, b| a.0.total_cmp(&b.0));

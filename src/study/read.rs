@@ -5,8 +5,8 @@
 //! else is SI. The resolved [`DesignSpace`] is SI throughout.
 
 use super::cases::{Cases, read_cases};
-use super::creep::creep_remarks;
 use super::connections::{connections_remark, with_connections};
+use super::creep::creep_remarks;
 use super::definition::Study;
 use super::drives::{Drives, read_drives};
 use super::effects::check_effects;

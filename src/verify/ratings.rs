@@ -39,7 +39,10 @@ const CHECKS: [Check; 7] = [
     Check { on: Quantity::Peak, most: motor_peak_nm },
     Check { on: Quantity::Stop, most: |gear, _, _| limit(gear, gear.momentary_peak_torque_nm) },
     Check { on: Quantity::Stop, most: |gear, _, _| Some(breaks_nm(gear)) },
-    Check { on: Quantity::MeanCubed, most: |gear, _, _| Some(limit(gear, gear.average_torque_limit_nm)?.powi(3)) },
+    Check {
+        on: Quantity::MeanCubed,
+        most: |gear, _, _| Some(limit(gear, gear.average_torque_limit_nm)?.powi(3)),
+    },
     Check { on: Quantity::MeanCubed, most: life_nm3 },
 ];
 
@@ -140,7 +143,8 @@ fn breaks_nm(gear: &Gear) -> f64 {
 /// never fewer than one in a stop.
 fn bears_the_stops(gear: &Gear, duty: &Duty) -> bool {
     let waves = 2.0 * input_rpm(gear, duty.speed_rad_s) / 60.0 * duty.stop_s;
-    duty.emergency_stops.is_none_or(|stops| stops <= 1e4 / waves.max(1.0))
+    let has_waves = gear.kind == GearKind::StrainWave;
+    duty.emergency_stops.is_none_or(|stops| !has_waves || stops <= 1e4 / waves.max(1.0))
 }
 
 /// Speed of the motor \[rpm\] when the joint turns at `output_rad_s`.

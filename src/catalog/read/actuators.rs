@@ -81,7 +81,11 @@ fn ratio(row: &Row) -> f64 {
 fn check(row: &Row) {
     let pairs = [
         ("rated_torque_nm", "peak_torque_nm", "the peak torque is not below the rated torque"),
-        ("rated_speed_rpm", "max_speed_rpm", "the largest speed is not below the rated speed; both are the output's"),
+        (
+            "rated_speed_rpm",
+            "max_speed_rpm",
+            "the largest speed is not below the rated speed; both are the output's",
+        ),
         ("k1_nm_per_rad", "k2_nm_per_rad", "a gear stiffens: K1 <= K2 <= K3"),
         ("k2_nm_per_rad", "k3_nm_per_rad", "a gear stiffens: K1 <= K2 <= K3"),
     ];
@@ -112,7 +116,8 @@ mod tests {
         let (gear, motor) = (gear(&read[0]).expect("sound"), motor(&read[0]).expect("sound"));
         assert!(log.faults.borrow().is_empty());
         assert!(gear.goes_with(&motor) && gear.kind == GearKind::Actuator);
-        let back = |at_motor: Option<f64>| at_motor.map(|x| x * gear.ratio * gear.efficiency.expect("lossless"));
+        let back =
+            |at_motor: Option<f64>| at_motor.map(|x| x * gear.ratio * gear.efficiency.expect("lossless"));
         assert_eq!([back(motor.rated_torque_nm), back(motor.peak_torque_nm)], [Some(40.0), Some(82.0)]);
         assert_eq!([motor.rated_speed_rpm, motor.max_speed_rpm], [Some(1000.0), Some(1500.0)]);
         assert_eq!(motor.rotor_inertia_kgm2.map(|j| j * 2500.0), Some(0.5));

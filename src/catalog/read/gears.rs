@@ -119,7 +119,13 @@ fn check(row: &Row) {
         row.fault("bearing_pitch_diameter_m", problem, "write the pitch diameter in m, the outer one in mm");
     }
     if let Some(exponent) = row.number("life_exponent") {
-        row.within("life_exponent", exponent, [1.0, 10.0], [3.0, 10.0 / 3.0], "3 for balls, 3.333 for rollers");
+        row.within(
+            "life_exponent",
+            exponent,
+            [1.0, 10.0],
+            [3.0, 10.0 / 3.0],
+            "3 for balls, 3.333 for rollers",
+        );
     }
     if kind(row) == GearKind::StrainWave {
         usual_figures(row);

@@ -37,7 +37,11 @@ fn check(row: &Row) {
     let (moduli_pa, shear_moduli_pa, densities, expansions) = match class.and_then(MaterialClass::caution) {
         None => ([1e10, 1e12], [1e9, 2e11], [1000.0, 9000.0], [-6e-6, 3e-5]),
         Some(caution) => {
-            row.warn("class", format!("{}: {caution}", row.text("class")), "the moduli are taken as they stand");
+            row.warn(
+                "class",
+                format!("{}: {caution}", row.text("class")),
+                "the moduli are taken as they stand",
+            );
             ([1e8, 3e10], [1e7, 1e10], [100.0, 3000.0], [-6e-6, 3e-4])
         }
     };

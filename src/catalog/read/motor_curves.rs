@@ -15,7 +15,11 @@ pub(crate) fn attach(catalogs: &mut Catalogs, rows: &[Row]) {
         let [continuous_torque_nm, peak_torque_nm] =
             ["continuous_torque_nm", "peak_torque_nm"].map(|column| row.number(column));
         if continuous_torque_nm.is_none() && peak_torque_nm.is_none() {
-            row.fault("peak_torque_nm", "and continuous_torque_nm are both blank", "a point states at least one");
+            row.fault(
+                "peak_torque_nm",
+                "and continuous_torque_nm are both blank",
+                "a point states at least one",
+            );
         }
         row.ascending(
             &[("continuous_torque_nm", continuous_torque_nm), ("peak_torque_nm", peak_torque_nm)],

@@ -52,17 +52,20 @@ pub fn candidates(filter: &Value, catalog: &Catalog) -> Vec<Drive> {
     let mut drives = Vec::new();
     for gear in &catalog.gears {
         // other kinds only if the study names their series
-        let is_asked = gear.text("kind").is_empty() || filter["gear_series"].is_array() || filter["gears"].is_array();
-        if !is_asked || !is_listed("gear_series", gear.text("series")) || !is_listed("gears", &gear.id) || !is_ratio(gear)
+        let is_asked =
+            gear.text("kind").is_empty() || filter["gear_series"].is_array() || filter["gears"].is_array();
+        if !is_asked
+            || !is_listed("gear_series", gear.text("series"))
+            || !is_listed("gears", &gear.id)
+            || !is_ratio(gear)
         {
             continue;
         }
         for motor in &catalog.motors {
-            let is_wanted_kind =
-                match filter["motors"].as_array() {
-                    Some(kinds) => kinds.iter().any(|kind| is_kind(kind, motor)),
-                    None => filter["motor_models"].is_array() || motor.text("type") != "stepper",
-                };
+            let is_wanted_kind = match filter["motors"].as_array() {
+                Some(kinds) => kinds.iter().any(|kind| is_kind(kind, motor)),
+                None => filter["motor_models"].is_array() || motor.text("type") != "stepper",
+            };
             if is_wanted_kind && is_listed("motor_models", &motor.id) {
                 drives.extend(Drive::complete(gear, motor, mass_column));
             }
@@ -162,7 +165,8 @@ impl Drive {
         // Ramps run at half speed on average: weights 1/2, 3, 1/2 of t_a.
         let mean_nm = ((0.5 * fast.powi(3) + 3.0 * t.static_nm.powi(3) + 0.5 * slow.powi(3)) / 4.0).cbrt();
         let life_h =
-            self.rated_life_h * (self.rated_nm / mean_nm).powf(self.life_exponent) * self.rated_life_rpm / mean_rpm;
+            self.rated_life_h * (self.rated_nm / mean_nm).powf(self.life_exponent) * self.rated_life_rpm
+                / mean_rpm;
         let gain = self.ratio * self.efficiency;
         let rotary_nm = self.inertia_kgm2 * self.ratio * acceleration_rad_s2;
         fast <= self.repeated_nm
