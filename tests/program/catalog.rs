@@ -3,10 +3,10 @@
 
 use armwright::catalog::CatalogFile;
 use armwright::catalog::MaterialClass;
-use armwright::catalog::MotorKind;
 use armwright::catalog::PartError;
 use armwright::catalog::ProfileShape;
 use armwright::catalog::{Catalogs, Confidence};
+use armwright::catalog::{GearKind, Motor, MotorKind};
 use armwright::input::{Fault, InputError};
 use std::path::{Path, PathBuf};
 
@@ -135,7 +135,14 @@ fn a_blank_cell_is_unknown_and_never_zero() {
     assert_eq!((shg.buckling_torque_nm, shg.envelope.hollow_bore_m), (None, Some(0.08)));
     let orbital = catalogs.motor("J 8.2").expect("built in");
     assert_eq!((orbital.kind, orbital.rotor_inertia_kgm2), (MotorKind::HydraulicOrbital, None));
-    assert!(catalogs.motors.iter().all(|m| m.mass_kg != Some(0.0) && m.rotor_inertia_kgm2 != Some(0.0)));
+    let sold = |m: &&Motor| m.kind != MotorKind::OfActuator;
+    assert!(
+        catalogs
+            .motors
+            .iter()
+            .filter(sold)
+            .all(|m| m.mass_kg != Some(0.0) && m.rotor_inertia_kgm2 != Some(0.0))
+    );
 }
 
 #[test]
@@ -154,7 +161,7 @@ fn every_row_knows_its_file_line_and_trust() {
 
 #[test]
 fn every_housed_unit_has_the_figures_its_output_bearing_is_checked_with() {
-    for gear in &Catalogs::builtin().gears {
+    for gear in Catalogs::builtin().gears.iter().filter(|gear| gear.kind == GearKind::StrainWave) {
         let bearing = gear.bearing;
         let figures = [bearing.pitch_diameter_m, bearing.static_load_rating_n, bearing.dynamic_load_rating_n];
         assert!(figures.iter().all(Option::is_some) && bearing.offset_m.is_some(), "{}", gear.id);
@@ -270,7 +277,9 @@ fn messages_show_the_value_and_what_is_allowed() {
     let texts: Vec<_> = found.iter().map(ToString::to_string).collect();
     assert_eq!(found.len(), 3, "{texts:#?}");
     assert!(texts[0].contains("e_pa: = 210 is outside 1e8 to 2e12") && texts[0].contains("1 GPa = 1e9 Pa"));
-    assert!(texts[1].contains("did you mean \"metal\"? allowed: metal; composite; metal-matrix; MMC"));
+    assert!(texts[1].contains(
+        "did you mean \"metal\"? allowed: metal; composite; metal-matrix; polymer; wood; other; MMC"
+    ));
     assert!(texts[2].contains("g_pa") && texts[2].contains("G = E/2(1+nu)"));
 }
 

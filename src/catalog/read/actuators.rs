@@ -94,7 +94,7 @@ fn check(row: &Row) {
     }
     let breaks = [("t1_nm", row.number("t1_nm")), ("t2_nm", row.number("t2_nm"))];
     row.ascending(&breaks, true, "the first segment of the torsion curve ends before the second");
-    if let Some(speed) = row.number("max_speed_rpm").filter(|&speed| speed > 500.0) {
+    if let Some(speed) = row.number("max_speed_rpm").filter(|&speed| speed > 1000.0) {
         let hint = "speeds are the output's; the motor's are the ratio times as large";
         row.warn("max_speed_rpm", format!("= {speed} is fast for a joint"), hint);
     }
