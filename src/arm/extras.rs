@@ -7,7 +7,7 @@
 //! Drive's SHA actuators of sizes 20, 25 and 32 weigh more with a brake than without (0.10, 0.15 and 0.28 kg here). The
 //! flange is a disc of aluminium; that and the cables are representative figures without a source.
 
-use crate::catalog::gear::{Gear, GearMass};
+use crate::catalog::gear::{Gear, GearKind, GearMass};
 use crate::catalog::motor::{Motor, MotorKind};
 use crate::input::json::{Node, Object};
 use serde_json::{Value, json};
@@ -53,10 +53,20 @@ const CABLE_KG: f64 = 0.05;
 /// Outer diameter of a housed gear per size \[m\], where the catalog has none: size 20 is 0.093 m.
 const DIAMETER_PER_SIZE_M: f64 = 0.0046;
 
+/// Outer diameter of a gear \[m\]. Where the catalog has none, the size of a harmonic drive gives it; that of others does not,
+/// and their flange is left out.
+fn diameter_m(gear: &Gear) -> f64 {
+    let by_size = match gear.kind {
+        GearKind::StrainWave => DIAMETER_PER_SIZE_M * f64::from(gear.size),
+        _ => 0.0,
+    };
+    gear.envelope.outer_diameter_m.unwrap_or(by_size)
+}
+
 const KEYS: [&str; 5] = ["housing_kg", "brake_kg", "encoder_kg", "flange_kg", "cable_kg"];
 
 impl Extras {
-    /// What a joint of these parts usually has.
+    /// What a joint of these parts usually has. An actuator has all but its cables in it.
     ///
     /// ```
     /// use armwright::arm::Extras;
@@ -69,6 +79,9 @@ impl Extras {
     /// assert!(extras.total_kg() > 0.5 && extras.total_kg() < 1.2, "{extras:?}");
     /// ```
     pub fn usual(gear: &Gear, motor: &Motor, which: GearMass) -> Self {
+        if gear.kind == GearKind::Actuator {
+            return Self { cable_kg: CABLE_KG, ..Self::default() };
+        }
         let motor_kg = motor.mass_kg.unwrap_or_default();
         let set_kg = gear.mass_component_set_kg.or(gear.mass_housed_unit_kg).unwrap_or_default();
         let frameless = matches!(motor.kind, MotorKind::FramelessServo | MotorKind::FramelessTorque);
@@ -77,8 +90,7 @@ impl Extras {
             GearMass::ComponentSet => HOUSING_SHARE * set_kg,
             GearMass::HousedUnit => 0.0,
         };
-        let diameter_m = gear.envelope.outer_diameter_m.unwrap_or(DIAMETER_PER_SIZE_M * f64::from(gear.size));
-        let flange_kg = FLANGE_KG_PER_M3 * diameter_m.powi(3);
+        let flange_kg = FLANGE_KG_PER_M3 * diameter_m(gear).powi(3);
         Self {
             housing_kg: motor_housing_kg + gear_housing_kg,
             brake_kg: BRAKE_SHARE * (set_kg + motor_kg),

@@ -8,6 +8,7 @@ use super::extras::read_extras;
 use super::joint_law::{Curve, Windup};
 use super::load::vector;
 use super::section::{LinkMaterial, Section};
+use super::section_file::{read_i_beam, read_stated_section};
 use super::{Arm, Element, Joint, Link, LinkBody};
 use crate::catalog::Catalogs;
 use crate::catalog::gear::{Gear, GearMass};
@@ -223,6 +224,9 @@ fn find_gear<'c>(node: &Node, catalogs: &'c Catalogs) -> Option<&'c Gear> {
 
 /// The torsion curve of a gear in the catalog; `None` if a part of it is unknown.
 pub(crate) fn windup_of(gear: &Gear) -> Option<Windup> {
+    if let Some(stiffness_nm_per_rad) = gear.single_slope_nm_per_rad() {
+        return Some(Windup::straight(stiffness_nm_per_rad));
+    }
     Some(Windup {
         k1_nm_per_rad: gear.k1_nm_per_rad?,
         k2_nm_per_rad: gear.k2_nm_per_rad?,
@@ -235,7 +239,11 @@ pub(crate) fn windup_of(gear: &Gear) -> Option<Windup> {
 fn gear_windup(gear: &Gear, node: &Node) -> Option<Windup> {
     windup_of(gear).or_else(|| {
         node.fault(
-            format!("gear \"{}\" has no complete torsion curve", gear.id),
+            format!(
+                "gear \"{}\" has no complete torsion curve: no {}",
+                gear.id,
+                gear.missing_of_torsion().join(", ")
+            ),
             "give \"windup\" or \"stiffness_nm_per_rad\"",
         )
     })
@@ -300,6 +308,9 @@ pub(crate) fn read_link(object: &Object, materials: &[NamedMaterial], catalogs: 
     Some(Link { name: name?, vector_m: vector_m?, body: body? })
 }
 
+/// Name of the material that stands for a section of stated stiffnesses.
+const STATED_MATERIAL: &str = "(stated stiffness)";
+
 fn read_tube(
     object: &Object,
     section: &Node,
@@ -317,6 +328,13 @@ fn read_tube(
         object.node().fault::<()>("is a tube without length", "give a longer vector_m, or no section");
     }
     let section = read_section(section);
+    if let Some(Section::Stated(stated)) = section {
+        if let Some(material) = object.optional("material") {
+            material.fault::<()>("stands beside a section of stated stiffness and mass", "remove it");
+        }
+        let (material_name, material) = (STATED_MATERIAL.to_string(), stated.material());
+        return Some(LinkBody::Tube { material_name, material, section: Section::Stated(stated) });
+    }
     let material = object.required("material").and_then(|n| {
         let name = n.string()?;
         find_material(&n, name, materials, catalogs).map(|m| (name.to_string(), m))
@@ -382,10 +400,12 @@ pub(crate) fn read_section(node: &Node) -> Option<Section> {
             let object = node.object(&["shape", "diameter_m"])?;
             Section::RoundBar { diameter_m: object.required("diameter_m").and_then(|n| n.positive())? }
         }
+        Some("i_beam") => read_i_beam(node)?,
+        Some("stated") => read_stated_section(node).map(Section::Stated)?,
         _ => {
             return node.fault(
                 "has no known \"shape\"",
-                "choose one of: rectangular_tube, round_tube, rectangular_bar, round_bar",
+                "choose one of: rectangular_tube, round_tube, rectangular_bar, round_bar, i_beam, stated",
             );
         }
     };

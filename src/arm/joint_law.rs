@@ -3,7 +3,7 @@
 use super::JointModel;
 use super::effect::waves::transmission_waves;
 
-/// The three-segment torsion curve of a harmonic-drive gear. It is odd in the torque and has the slope 1/K1 up to T1, 1/K2
+/// The three-segment torsion curve of a gear. It is odd in the torque and has the slope 1/K1 up to T1, 1/K2
 /// up to T2 and 1/K3 beyond.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Windup {
@@ -31,6 +31,12 @@ pub struct Segment {
 }
 
 impl Windup {
+    /// A curve of one segment. Its break points lie anywhere, for they change nothing.
+    pub fn straight(stiffness_nm_per_rad: f64) -> Self {
+        let k = stiffness_nm_per_rad;
+        Self { k1_nm_per_rad: k, k2_nm_per_rad: k, k3_nm_per_rad: k, t1_nm: 1.0, t2_nm: 2.0 }
+    }
+
     /// The three segments in ascending order of torque. A break point belongs to the segment below it.
     #[inline]
     pub fn segments(&self) -> [Segment; 3] {

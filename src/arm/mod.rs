@@ -19,6 +19,7 @@ pub(crate) mod joint_torque;
 pub(crate) mod linkage;
 pub(crate) mod load;
 pub(crate) mod section;
+mod section_file;
 pub(crate) mod structure;
 pub(crate) mod torsion;
 pub(crate) mod write;
@@ -30,7 +31,7 @@ pub use file::{read_arm, read_arm_document};
 pub use joint_law::{Curve, FurtherTwist, JointLaw, LostMotion, Windup};
 pub use linkage::Linkage;
 pub use load::{LoadCase, Payload, Water, read_load_cases};
-pub use section::{LinkMaterial, Section, SectionProperties};
+pub use section::{LinkMaterial, Section, SectionProperties, StatedSection};
 pub use structure::{Beam, FrameCompliance, JointAngle, JointPiece, LinkPiece, Piece, Structure};
 
 use nalgebra::{Unit, Vector3};

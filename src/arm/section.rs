@@ -8,6 +8,7 @@
 //! | `J` round | `2 I` | exact for a circular tube |
 //! | shear factor, rectangular | `20(1+nu)/(48+39nu)` | Cowper 1966, thin square tube |
 //! | shear factor, round | `2(1+nu)/(4+3nu)` | Cowper 1966, thin round tube |
+//! | shear factor, I | in `i_beam` | Cowper 1966, thin-walled I section |
 //! | shear factor, bars | `10(1+nu)/(12+11nu)`, round `6(1+nu)/(7+6nu)` | Cowper 1966, solid sections |
 //!
 //! A bar is a tube whose wall is half its smaller side: `A` and `I` are the same formulas.
@@ -71,6 +72,69 @@ pub enum Section {
         /// Diameter \[m\].
         diameter_m: f64,
     },
+    /// I section, its web upright. Given links only: no study chooses it.
+    IBeam {
+        /// Width b of the flanges \[m\].
+        width_m: f64,
+        /// Height h over the flanges \[m\].
+        height_m: f64,
+        /// Thickness of the web \[m\].
+        web_m: f64,
+        /// Thickness of the flanges \[m\].
+        flange_m: f64,
+    },
+    /// A section by its stiffnesses and its mass. Given links only.
+    Stated(StatedSection),
+}
+
+/// A section by its stiffnesses and its mass, with the [`material`](Self::material) that makes them of geometric properties.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StatedSection {
+    /// Outer width \[m\]: for pictures, water and levers.
+    pub width_m: f64,
+    /// Outer height \[m\].
+    pub height_m: f64,
+    /// E I for bending that moves the link along z \[N m²\].
+    pub ei_y_nm2: f64,
+    /// E I for bending that moves the link along y \[N m²\].
+    pub ei_z_nm2: f64,
+    /// G J \[N m²\].
+    pub gj_nm2: f64,
+    /// E A \[N\]; infinite if it is not stated: the link does not stretch.
+    pub ea_n: f64,
+    /// Mass per length \[kg/m\].
+    pub kg_per_m: f64,
+}
+
+/// Modulus of the material that stands for a stated section \[Pa\]: so stiff that nothing yields by shear.
+const STATED_PA: f64 = 1e15;
+
+impl StatedSection {
+    /// The material of a density of 1 kg/m³ with which the section has its stiffnesses and its mass. Shear is in none of
+    /// them, so the link does not yield by it.
+    pub fn material(&self) -> LinkMaterial {
+        let of_ea_pa = self.ea_n / self.kg_per_m;
+        LinkMaterial {
+            youngs_modulus_pa: if of_ea_pa.is_finite() { of_ea_pa } else { STATED_PA },
+            shear_modulus_pa: STATED_PA,
+            density_kg_m3: 1.0,
+            poisson: 0.0,
+        }
+    }
+
+    fn properties(&self) -> SectionProperties {
+        let LinkMaterial { youngs_modulus_pa: e_pa, shear_modulus_pa: g_pa, .. } = self.material();
+        let torsion_constant_m4 = self.gj_nm2 / g_pa;
+        SectionProperties {
+            area_m2: self.kg_per_m,
+            second_moment_y_m4: self.ei_y_nm2 / e_pa,
+            second_moment_z_m4: self.ei_z_nm2 / e_pa,
+            torsion_constant_m4,
+            torsion_shear_per_m3: self.width_m.max(self.height_m) / 2.0 / torsion_constant_m4,
+            shear_factor: 1.0,
+            outer_area_m2: self.width_m * self.height_m,
+        }
+    }
 }
 
 /// Geometric properties of a section.
@@ -97,18 +161,22 @@ impl Section {
     pub fn outer_m(&self) -> (f64, f64) {
         match *self {
             Section::RectangularTube { width_m, height_m, .. }
-            | Section::RectangularBar { width_m, height_m } => (width_m, height_m),
+            | Section::RectangularBar { width_m, height_m }
+            | Section::IBeam { width_m, height_m, .. }
+            | Section::Stated(StatedSection { width_m, height_m, .. }) => (width_m, height_m),
             Section::RoundTube { diameter_m, .. } | Section::RoundBar { diameter_m } => {
                 (diameter_m, diameter_m)
             }
         }
     }
 
-    /// Wall thickness \[m\]. That of a bar is half its smaller side.
+    /// Wall thickness \[m\]. That of a section without a hollow is half its smaller side.
     pub fn wall_m(&self) -> f64 {
         match *self {
             Section::RectangularTube { wall_m, .. } | Section::RoundTube { wall_m, .. } => wall_m,
-            Section::RectangularBar { width_m, height_m } => width_m.min(height_m) / 2.0,
+            Section::RectangularBar { width_m, height_m }
+            | Section::IBeam { width_m, height_m, .. }
+            | Section::Stated(StatedSection { width_m, height_m, .. }) => width_m.min(height_m) / 2.0,
             Section::RoundBar { diameter_m } => diameter_m / 2.0,
         }
     }
@@ -130,12 +198,17 @@ impl Section {
             Section::RoundTube { .. } => "round_tube",
             Section::RectangularBar { .. } => "rectangular_bar",
             Section::RoundBar { .. } => "round_bar",
+            Section::IBeam { .. } => "i_beam",
+            Section::Stated(_) => "stated",
         }
     }
 
     /// The bar that a tube is if its wall fills the whole section, else the section itself.
     #[must_use]
     pub fn closed(self) -> Section {
+        if matches!(self, Section::IBeam { .. } | Section::Stated(_)) {
+            return self;
+        }
         let (width_m, height_m) = self.outer_m();
         if 2.0 * self.wall_m() < width_m.min(height_m) {
             return self;
@@ -162,6 +235,10 @@ impl Section {
             Section::RoundTube { diameter_m, wall_m } => round(diameter_m, wall_m, poisson),
             Section::RectangularBar { width_m, height_m } => rectangular_bar(width_m, height_m, poisson),
             Section::RoundBar { diameter_m } => round_bar(diameter_m, poisson),
+            Section::IBeam { width_m, height_m, web_m, flange_m } => {
+                i_beam([width_m, height_m, web_m, flange_m], poisson)
+            }
+            Section::Stated(stated) => stated.properties(),
         }
     }
 }
@@ -207,6 +284,29 @@ fn rectangular_bar(b: f64, h: f64, nu: f64) -> SectionProperties {
     }
 }
 
+/// The torsion constant is that of three thin strips, the flanges and the web between their middles. Cowper's shear factor
+/// is that of shear along the web; it is taken for shear across it too, where bending of the flanges prevails.
+fn i_beam([b, h, web, flange]: [f64; 4], nu: f64) -> SectionProperties {
+    let clear = h - 2.0 * flange;
+    let middles = h - flange;
+    let torsion_constant_m4 = (2.0 * b * flange.powi(3) + middles * web.powi(3)) / 3.0;
+    let (m, n) = (2.0 * b * flange / (middles * web), b / middles);
+    let shear_factor = 10.0 * (1.0 + nu) * (1.0 + 3.0 * m).powi(2)
+        / ((12.0 + 72.0 * m + 150.0 * m * m + 90.0 * m.powi(3))
+            + nu * (11.0 + 66.0 * m + 135.0 * m * m + 90.0 * m.powi(3))
+            + 30.0 * n * n * (m + m * m)
+            + 5.0 * nu * n * n * (8.0 * m + 9.0 * m * m));
+    SectionProperties {
+        area_m2: 2.0 * b * flange + clear * web,
+        second_moment_y_m4: (b * h.powi(3) - (b - web) * clear.powi(3)) / 12.0,
+        second_moment_z_m4: (2.0 * flange * b.powi(3) + clear * web.powi(3)) / 12.0,
+        torsion_constant_m4,
+        torsion_shear_per_m3: flange.max(web) / torsion_constant_m4,
+        shear_factor,
+        outer_area_m2: 2.0 * b * flange + clear * web,
+    }
+}
+
 fn round_bar(d: f64, nu: f64) -> SectionProperties {
     SectionProperties { shear_factor: 6.0 * (1.0 + nu) / (7.0 + 6.0 * nu), ..round(d, d / 2.0, nu) }
 }
@@ -222,6 +322,43 @@ mod tests {
         assert!((p.second_moment_y_m4 - (0.16f64.powi(4) - 0.14f64.powi(4)) / 12.0).abs() < 1e-18);
         assert!((p.area_m2 - 0.006).abs() < 1e-15);
         assert!((p.torsion_constant_m4 - 0.01 * 0.15f64.powi(3)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn an_i_section_has_the_moments_of_the_tables() {
+        // IPE 200: 100 x 200 mm, web 5.6 mm, flange 8.5 mm; the tables print 1943 and 142 cm4 and 28.5 cm2 with the fillets,
+        // which add up to 5 %
+        let section = Section::IBeam { width_m: 0.1, height_m: 0.2, web_m: 0.0056, flange_m: 0.0085 };
+        let p = section.properties(0.3);
+        assert!((0.95..1.0).contains(&(p.second_moment_y_m4 / 1.943e-5)), "{p:?}");
+        assert!((0.99..1.0).contains(&(p.second_moment_z_m4 / 1.42e-6)), "{p:?}");
+        assert!((0.94..1.0).contains(&(p.area_m2 / 2.85e-3)), "{p:?}");
+        // most of the shear is in the web
+        let web_share = 0.0056 * (0.2 - 0.0085) / p.area_m2;
+        assert!((0.75..1.1).contains(&(p.shear_factor / web_share)), "{p:?}, web {web_share}");
+    }
+
+    #[test]
+    fn a_stated_section_has_the_stiffnesses_and_the_mass_that_it_states() {
+        let stated = StatedSection {
+            width_m: 0.05,
+            height_m: 0.08,
+            ei_y_nm2: 3e4,
+            ei_z_nm2: 2e4,
+            gj_nm2: 1e4,
+            ea_n: 5e7,
+            kg_per_m: 2.5,
+        };
+        for stated in [stated, StatedSection { ea_n: f64::INFINITY, ..stated }] {
+            let (p, m) = (Section::Stated(stated).properties(0.0), stated.material());
+            let near = |x: f64, wanted: f64| assert!((x / wanted - 1.0).abs() < 1e-12, "{x}, not {wanted}");
+            near(m.youngs_modulus_pa * p.second_moment_y_m4, 3e4);
+            near(m.youngs_modulus_pa * p.second_moment_z_m4, 2e4);
+            near(m.shear_modulus_pa * p.torsion_constant_m4, 1e4);
+            near(m.density_kg_m3 * p.area_m2, 2.5);
+            assert!(stated.ea_n.is_infinite() || (m.youngs_modulus_pa * p.area_m2 / 5e7 - 1.0).abs() < 1e-12);
+            assert!(m.youngs_modulus_pa * p.area_m2 >= 5e7 * (1.0 - 1e-12));
+        }
     }
 
     #[test]

@@ -99,6 +99,9 @@ impl Link {
     fn to_json(&self) -> Value {
         let vector_m = self.vector_m.as_slice();
         match &self.body {
+            LinkBody::Tube { section: section @ Section::Stated(_), .. } => json!({
+                "type": "link", "name": self.name, "vector_m": vector_m, "section": section.to_json(),
+            }),
             LinkBody::Tube { material_name, section, .. } => json!({
                 "type": "link", "name": self.name, "vector_m": vector_m,
                 "material": material_name, "section": section.to_json(),
@@ -124,6 +127,20 @@ impl Section {
                 "shape": self.shape(), "width_m": width_m, "height_m": height_m,
             }),
             Section::RoundBar { diameter_m } => json!({"shape": self.shape(), "diameter_m": diameter_m}),
+            Section::IBeam { width_m, height_m, web_m, flange_m } => json!({
+                "shape": self.shape(), "width_m": width_m, "height_m": height_m, "web_m": web_m,
+                "flange_m": flange_m,
+            }),
+            Section::Stated(s) => {
+                let mut stated = json!({
+                    "shape": self.shape(), "width_m": s.width_m, "height_m": s.height_m, "ei_y_nm2": s.ei_y_nm2,
+                    "ei_z_nm2": s.ei_z_nm2, "gj_nm2": s.gj_nm2, "kg_per_m": s.kg_per_m,
+                });
+                if s.ea_n.is_finite() {
+                    stated["ea_n"] = json!(s.ea_n);
+                }
+                stated
+            }
         }
     }
 }

@@ -4,7 +4,7 @@
 //! `K_e` on it against the ratio of torque to rated torque, for whole series. Both hold for grease
 //! lubrication at about 20 °C; a sealed housed unit is a few points lower.
 
-use super::gear::Gear;
+use super::gear::{Gear, GearKind};
 use super::{Catalogs, Provenance};
 
 /// What a point of `gears_efficiency.csv` tells.
@@ -46,7 +46,7 @@ pub struct EfficiencyPoint {
     /// Size; `None` for a curve of whole series.
     pub size: Option<u32>,
     /// Ratio; `None` for a curve of whole series.
-    pub ratio: Option<u32>,
+    pub ratio: Option<f64>,
     /// Input speed \[rpm\] or torque over rated torque.
     pub x: f64,
     /// Efficiency or factor.
@@ -81,7 +81,7 @@ impl Catalogs {
     }
 
     /// Efficiency of a gear at an input speed \[rpm\] and a share of its rated torque, by curves of its kind: representative,
-    /// not a vendor's figure. `None` without a rated efficiency.
+    /// not a vendor's figure. `None` without a rated efficiency, and for gears that are no strain-wave gears.
     ///
     /// The curve against speed is the gear's own, or that of HFUC-25-100, scaled to the gear's efficiency at 2000 rpm; the
     /// factor on it is that of CSF and CSG. Beyond their ends the curves go on level. Temperature is left out.
@@ -91,7 +91,8 @@ impl Catalogs {
         input_speed_rpm: f64,
         torque_over_rated: f64,
     ) -> Option<f64> {
-        let rated = gear.efficiency?;
+        // the curves are those of harmonic drives
+        let rated = gear.efficiency.filter(|_| gear.kind == GearKind::StrainWave)?;
         let model = |of: &Gear, kind| Some(self.efficiency_curve(of, kind)).filter(|curve| !curve.is_empty());
         let other = self.gear(MODEL).ok();
         let curve = |kind| model(gear, kind).or_else(|| model(other?, kind));

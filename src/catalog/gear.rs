@@ -1,7 +1,104 @@
-//! Harmonic-drive (strain-wave) gears.
+//! Gears of any kind: strain-wave (harmonic drive), planetary, cycloidal, belt, spur, and what takes the place of a gear in
+//! a direct drive or an integrated actuator.
 
 use super::Provenance;
 use super::envelope::Envelope;
+use super::motor::{Motor, MotorKind};
+use std::fmt;
+
+/// Kinds of gears, as the column `kind` names them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum GearKind {
+    /// Strain-wave gear (harmonic drive); what a blank cell means.
+    StrainWave,
+    /// Planetary gear.
+    Planetary,
+    /// Cycloidal gear (RV).
+    Cycloidal,
+    /// Toothed belt and its pulleys.
+    Belt,
+    /// Spur or helical gear.
+    Spur,
+    /// No gear at all: the motor turns the joint.
+    Direct,
+    /// The gear within an actuator of `actuators.csv`, whose ratings are those of the whole.
+    Actuator,
+}
+
+impl GearKind {
+    /// Words of the column `kind` of `gears.csv`. An actuator stands in its own file.
+    pub const WORDS: [&'static str; 6] = ["strain_wave", "planetary", "cycloidal", "belt", "spur", "direct"];
+
+    /// The kind a word of the column means.
+    pub fn from_word(word: &str) -> Option<Self> {
+        use GearKind::{Belt, Cycloidal, Direct, Planetary, Spur, StrainWave};
+        let kinds = [StrainWave, Planetary, Cycloidal, Belt, Spur, Direct];
+        Self::WORDS.iter().position(|w| w.eq_ignore_ascii_case(word)).map(|place| kinds[place])
+    }
+
+    /// The kind's word.
+    pub fn word(self) -> &'static str {
+        Self::WORDS.get(self as usize).copied().unwrap_or("actuator")
+    }
+
+    /// Whether ratings that a row leaves blank do not exist. A direct drive has no teeth; an actuator is rated as a whole, by
+    /// its motor's figures.
+    pub fn has_no_ratings_of_its_own(self) -> bool {
+        matches!(self, GearKind::Direct | GearKind::Actuator)
+    }
+
+    /// Whether a gear of this kind has a life that its bearings set. That of a belt is checked if its row states one.
+    pub fn wears_out(self) -> bool {
+        !matches!(self, GearKind::Belt | GearKind::Direct | GearKind::Actuator)
+    }
+
+    /// The life that a blank cell stands for \[h\]: of strain-wave gears the usual 7000 h, for rated torque and 2000 rpm.
+    /// Source: Harmonic Drive LLC, CSF/CSG catalog (L10 of the CSF wave-generator bearing).
+    pub fn usual_life_h(self) -> Option<f64> {
+        (self == GearKind::StrainWave).then_some(7_000.0)
+    }
+
+    /// The input speed of the rated life that a blank cell stands for \[rpm\].
+    pub fn usual_life_speed_rpm(self) -> Option<f64> {
+        (self == GearKind::StrainWave).then_some(2_000.0)
+    }
+
+    /// The exponent of torque in the law of life that a blank cell stands for: 3 for the ball bearing of a wave generator
+    /// (Harmonic Drive LLC, CSF/CSG catalog), 10/3 for the roller bearings of other gears (ISO 281; Nabtesco's RV and
+    /// Spinea's TwinSpin catalogs print this law for cycloidal gears).
+    pub fn usual_life_exponent(self) -> f64 {
+        if self == GearKind::StrainWave { 3.0 } else { 10.0 / 3.0 }
+    }
+}
+
+impl fmt::Display for GearKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.word())
+    }
+}
+
+/// How long a gear lasts: L10 = rated life (T_rated / T_mean)^exponent (rated speed / n_mean). Cells that a row leaves blank
+/// are those of its [`GearKind`]; `None` is a figure that neither gives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LifeLaw {
+    /// L10 at rated torque and at [`Self::rated_speed_rpm`] \[h\].
+    pub rated_h: Option<f64>,
+    /// Input speed of that life \[rpm\].
+    pub rated_speed_rpm: Option<f64>,
+    /// Exponent of the torque.
+    pub exponent: f64,
+}
+
+impl LifeLaw {
+    /// The law of a kind whose row leaves all blank.
+    pub fn usual(kind: GearKind) -> Self {
+        Self {
+            rated_h: kind.usual_life_h(),
+            rated_speed_rpm: kind.usual_life_speed_rpm(),
+            exponent: kind.usual_life_exponent(),
+        }
+    }
+}
 
 /// Which printed mass of a gear is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,11 +130,15 @@ pub struct Gear {
     pub id: String,
     /// Series, e.g. `CSG`.
     pub series: String,
-    /// Size (about the pitch diameter in tenths of an inch).
+    /// Kind.
+    pub kind: GearKind,
+    /// Size as the maker counts it (of harmonic drives, about the pitch diameter in tenths of an inch).
     pub size: u32,
     /// Reduction ratio N.
-    pub ratio: u32,
-    /// Rated torque at 2000 rpm input \[N m\].
+    pub ratio: f64,
+    /// How long it lasts.
+    pub life: LifeLaw,
+    /// Torque for which the life is stated, of harmonic drives at 2000 rpm input \[N m\].
     pub rated_torque_nm: Option<f64>,
     /// Limit for repeated peak torque \[N m\].
     pub repeated_peak_torque_nm: Option<f64>,
@@ -67,6 +168,10 @@ pub struct Gear {
     pub k3_nm_per_rad: Option<f64>,
     /// Hysteresis loss \[arcmin\].
     pub hysteresis_loss_arcmin: Option<f64>,
+    /// Backlash: play without torque \[arcmin\].
+    pub backlash_arcmin: Option<f64>,
+    /// Lost motion at a few percent of the rated torque \[arcmin\].
+    pub lost_motion_arcmin: Option<f64>,
     /// Transmission accuracy \[arcmin\].
     pub transmission_accuracy_arcmin: Option<f64>,
     /// Tilting stiffness of the output bearing (housed unit) \[N m/rad\].
@@ -94,5 +199,46 @@ impl Gear {
             GearMass::ComponentSet => self.mass_component_set_kg,
             GearMass::HousedUnit => self.mass_housed_unit_kg,
         }
+    }
+
+    /// Whether the two make a drive: an actuator goes with its own motor only, and that motor with nothing else.
+    pub fn goes_with(&self, motor: &Motor) -> bool {
+        match (self.kind, motor.kind) {
+            (GearKind::Actuator, MotorKind::OfActuator) => self.id == motor.id,
+            (GearKind::Actuator, _) | (_, MotorKind::OfActuator) => false,
+            _ => true,
+        }
+    }
+
+    /// Figures of the torsion curve that the catalog lacks, as their columns are called. Slopes that are equal, or K1 alone,
+    /// are a curve of one segment, which needs no break points.
+    pub fn missing_of_torsion(&self) -> Vec<&'static str> {
+        let [k1, k2, k3] = [self.k1_nm_per_rad, self.k2_nm_per_rad, self.k3_nm_per_rad];
+        if self.single_slope_nm_per_rad().is_some() {
+            return Vec::new();
+        }
+        let figures = [
+            ("k1_nm_per_rad", k1),
+            ("k2_nm_per_rad", k2),
+            ("k3_nm_per_rad", k3),
+            ("t1_nm", self.t1_nm),
+            ("t2_nm", self.t2_nm),
+        ];
+        // K1 alone is enough where nothing of a curve is given
+        let wanted = if figures.iter().all(|(_, figure)| figure.is_none()) { 1 } else { figures.len() };
+        figures[..wanted].iter().filter(|(_, figure)| figure.is_none()).map(|(name, _)| *name).collect()
+    }
+
+    /// The slope of a torsion curve of one segment \[N m/rad\]: K1 if nothing else is given, or the slope that K1, K2 and K3
+    /// have in common where break points are blank.
+    pub fn single_slope_nm_per_rad(&self) -> Option<f64> {
+        let [k1, k2, k3] = [
+            self.k1_nm_per_rad?,
+            self.k2_nm_per_rad.unwrap_or(f64::NAN),
+            self.k3_nm_per_rad.unwrap_or(f64::NAN),
+        ];
+        let alone = k2.is_nan() && k3.is_nan() && self.t1_nm.is_none() && self.t2_nm.is_none();
+        let straight = k1 == k2 && k2 == k3 && (self.t1_nm.is_none() || self.t2_nm.is_none());
+        (alone || straight).then_some(k1)
     }
 }

@@ -3,9 +3,9 @@
 use super::read::log::Log;
 use super::read::row::Row;
 use super::read::table::rows;
-use super::read::{efficiency, gears, materials, motors, profiles, trend};
+use super::read::{actuators, efficiency, gears, materials, motor_curves, motors, profiles, trend};
 use super::schema::CatalogFile;
-use super::{Catalogs, Confidence, Provenance};
+use super::{BUILT_IN, Catalogs, Confidence, Provenance};
 use crate::input::json::{Fault, Faults, InputError, closest};
 use std::path::Path;
 
@@ -39,7 +39,7 @@ impl Catalogs {
     ///
     /// let catalogs = Catalogs::builtin();
     /// let gear = catalogs.gear("HFUC-58-100").expect("a gear of the catalog");
-    /// assert_eq!((gear.ratio, gear.rated_torque_nm), (100, Some(696.0)));
+    /// assert_eq!((gear.ratio, gear.rated_torque_nm), (100.0, Some(696.0)));
     /// assert!(catalogs.gear("HFUC-58-101").is_err(), "the error lists names that are near");
     /// ```
     pub fn builtin() -> Self {
@@ -65,7 +65,7 @@ impl Catalogs {
 fn builtin_sources() -> Vec<Source> {
     let source = |file: CatalogFile| Source {
         file,
-        name: format!("built-in {}", file.file_name()),
+        name: format!("{BUILT_IN}{}", file.file_name()),
         bytes: file.builtin_text().as_bytes().to_vec(),
     };
     CatalogFile::ALL.map(source).into()
@@ -93,8 +93,15 @@ fn overlay_sources(folder: &Path) -> Result<(Vec<Source>, Vec<Fault>), InputErro
     Ok((sources, names.iter().filter_map(|name| stray_file(folder, name)).collect()))
 }
 
-const FILE_NAMES: [&str; 5] =
-    ["gears.csv", "gears_efficiency.csv", "motors.csv", "materials.csv", "profiles.csv"];
+const FILE_NAMES: [&str; 7] = [
+    "gears.csv",
+    "gears_efficiency.csv",
+    "actuators.csv",
+    "motors.csv",
+    "motor_curves.csv",
+    "materials.csv",
+    "profiles.csv",
+];
 
 fn no_catalog_file(folder: &str, names: &[String]) -> Fault {
     let near = names.iter().find_map(|name| Some((name, closest(name, &FILE_NAMES)?)));
@@ -131,6 +138,7 @@ fn from_sources(sources: &[Source], warnings: Vec<Fault>) -> Result<Catalogs, Fa
         log.faults.borrow_mut()[before..].sort_by_key(|fault| fault.line);
     }
     trend::check(&catalogs, &log);
+    motor_curves::check(&catalogs, &log);
     let faults = log.faults.into_inner();
     if !faults.is_empty() {
         return Err(Faults(faults));
@@ -148,6 +156,14 @@ fn add_file(catalogs: &mut Catalogs, source: &Source, rows: &[Row]) {
         CatalogFile::Efficiency => add(&mut catalogs.efficiency, rows, efficiency::point, |p| {
             format!("{:?} {} {:?} {:?} {}", p.kind, p.series, p.size, p.ratio, p.x)
         }),
+        CatalogFile::Actuators => {
+            add(&mut catalogs.motors, rows, actuators::motor, |m| m.id.clone());
+            add(&mut catalogs.gears, rows, actuators::gear, |g| g.id.clone())
+        }
+        CatalogFile::MotorCurves => {
+            motor_curves::attach(catalogs, rows);
+            0
+        }
         CatalogFile::Motors => add(&mut catalogs.motors, rows, motors::motor, |m| m.id.clone()),
         CatalogFile::Materials => add(&mut catalogs.materials, rows, materials::material, |m| m.name.clone()),
         CatalogFile::Profiles => add(&mut catalogs.profiles, rows, profiles::profile, |p| {

@@ -12,17 +12,40 @@ pub enum MaterialClass {
     Composite,
     /// Metal-matrix composites.
     MetalMatrix,
+    /// Polymers, printed and filled ones too.
+    Polymer,
+    /// Wood and wood products.
+    Wood,
+    /// Anything else.
+    Other,
 }
 
 impl MaterialClass {
     /// Words of the column `class`.
-    pub const WORDS: [&'static str; 4] = ["metal", "composite", "metal-matrix", "MMC"];
+    pub const WORDS: [&'static str; 7] =
+        ["metal", "composite", "metal-matrix", "polymer", "wood", "other", "MMC"];
 
     /// The class a word means; `MMC` and `metal-matrix` are the same.
     pub fn from_word(word: &str) -> Option<Self> {
-        let classes = [MaterialClass::Metal, MaterialClass::Composite, MaterialClass::MetalMatrix];
-        let place = Self::WORDS.iter().position(|w| w.eq_ignore_ascii_case(word))?;
-        Some(classes[place.min(2)])
+        use MaterialClass::{Composite, Metal, MetalMatrix, Other, Polymer, Wood};
+        let classes = [Metal, Composite, MetalMatrix, Polymer, Wood, Other, MetalMatrix];
+        Self::WORDS.iter().position(|w| w.eq_ignore_ascii_case(word)).map(|place| classes[place])
+    }
+
+    /// What a material of this class does under a load that stays, which the model leaves out; `None` if it does nothing
+    /// at the temperatures of a room.
+    pub fn caution(self) -> Option<&'static str> {
+        match self {
+            MaterialClass::Metal | MaterialClass::Composite | MaterialClass::MetalMatrix => None,
+            MaterialClass::Polymer => Some(
+                "it creeps, and its modulus falls with time under load and with temperature (of a printed part also with \
+                 direction and infill)",
+            ),
+            MaterialClass::Wood => Some(
+                "it creeps, and its modulus depends on time under load, on moisture and on the direction of the grain",
+            ),
+            MaterialClass::Other => Some("it may creep, and its modulus may depend on time under load"),
+        }
     }
 }
 

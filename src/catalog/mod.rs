@@ -11,17 +11,19 @@ pub(crate) mod load;
 pub(crate) mod lookup;
 pub(crate) mod material;
 pub(crate) mod motor;
+pub(crate) mod needs;
 pub(crate) mod profile;
 pub(crate) mod read;
 pub(crate) mod schema;
 
 pub use efficiency::{EfficiencyKind, EfficiencyPoint};
 pub use envelope::Envelope;
-pub use gear::{BearingRatings, Gear, GearMass};
+pub use gear::{BearingRatings, Gear, GearKind, GearMass, LifeLaw};
 pub use load::Loaded;
 pub use lookup::{PartError, PartKind};
 pub use material::{Material, MaterialClass};
-pub use motor::{Motor, MotorKind};
+pub use motor::{Motor, MotorCurvePoint, MotorKind};
+pub use needs::Lack;
 pub use profile::{Profile, ProfileShape};
 pub use schema::{CatalogFile, Cell, Column};
 
@@ -64,6 +66,11 @@ impl Confidence {
 }
 
 impl Provenance {
+    /// Whether the row is one that comes with the program.
+    pub fn is_built_in(&self) -> bool {
+        self.file.starts_with(BUILT_IN)
+    }
+
     /// What is said beside a part whose core figures no document was seen for: `from memory` or `representative`.
     ///
     /// ```
@@ -83,6 +90,9 @@ impl Provenance {
         }
     }
 }
+
+/// How the names of the program's own files begin.
+pub(crate) const BUILT_IN: &str = "built-in ";
 
 impl fmt::Display for Confidence {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -108,9 +118,9 @@ pub struct Provenance {
 /// Everything that can be bought.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Catalogs {
-    /// Harmonic-drive gears.
+    /// Gears of every kind, and the gears within actuators.
     pub gears: Vec<Gear>,
-    /// Motors.
+    /// Motors, and the motors within actuators.
     pub motors: Vec<Motor>,
     /// Link materials.
     pub materials: Vec<Material>,

@@ -1,4 +1,4 @@
-//! Motors: electric servo and hydraulic.
+//! Motors: electric servo, stepper and hydraulic, and the motor within an integrated actuator.
 
 use super::Provenance;
 use super::envelope::Envelope;
@@ -19,37 +19,44 @@ pub enum MotorKind {
     HydraulicPiston,
     /// Hydraulic orbital motor.
     HydraulicOrbital,
+    /// Stepper motor.
+    Stepper,
+    /// The motor within an actuator of `actuators.csv`. No row of `motors.csv` is one.
+    OfActuator,
 }
 
 impl MotorKind {
-    /// All kinds, in the order of [`Self::WORDS`].
-    pub const ALL: [MotorKind; 6] = [
+    /// All kinds of `motors.csv`, in the order of [`Self::WORDS`].
+    pub const ALL: [MotorKind; 7] = [
         MotorKind::AcServo,
         MotorKind::BrushlessServo,
         MotorKind::FramelessServo,
         MotorKind::FramelessTorque,
         MotorKind::HydraulicPiston,
         MotorKind::HydraulicOrbital,
+        MotorKind::Stepper,
     ];
 
     /// Words of the column `type`: the short word of each kind, then the long ones of the built-in file.
-    pub const WORDS: [&'static str; 12] = [
+    pub const WORDS: [&'static str; 14] = [
         "ac-servo",
         "brushless-servo",
         "frameless-servo",
         "frameless-torque",
         "hydraulic-piston",
         "hydraulic-orbital",
+        "stepper",
         "AC servo",
         "brushless servo",
         "frameless servo",
         "frameless torque motor",
         "hydraulic axial piston (bent axis)",
         "hydraulic orbital (geroler)",
+        "stepper motor",
     ];
 
-    /// Words by which a study or a filter asks for motors: two families, then the kinds.
-    pub const CLASS_WORDS: [&'static str; 8] = [
+    /// Words by which a filter asks for motors: two families, then the kinds. `electric` means servo motors.
+    pub const CLASS_WORDS: [&'static str; 9] = [
         "electric",
         "hydraulic",
         "ac-servo",
@@ -58,11 +65,12 @@ impl MotorKind {
         "frameless-torque",
         "hydraulic-piston",
         "hydraulic-orbital",
+        "stepper",
     ];
 
     /// The kind's short word, e.g. `frameless-servo`.
     pub fn word(self) -> &'static str {
-        Self::WORDS[self as usize]
+        Self::WORDS[..Self::ALL.len()].get(self as usize).copied().unwrap_or("of-actuator")
     }
 
     /// The kind a word of the column `type` means.
@@ -74,10 +82,16 @@ impl MotorKind {
     /// The kinds a class word means: `electric`, `hydraulic`, or one kind.
     pub fn of_class(word: &str) -> Option<Vec<Self>> {
         match word.to_lowercase().as_str() {
-            "electric" => Some(Self::ALL.into_iter().filter(|kind| !kind.is_hydraulic()).collect()),
+            "electric" => Some(Self::ALL.into_iter().filter(|kind| kind.is_servo()).collect()),
             "hydraulic" => Some(Self::ALL.into_iter().filter(|kind| kind.is_hydraulic()).collect()),
             kind => Self::from_word(kind).map(|kind| vec![kind]),
         }
+    }
+
+    /// Whether the motor is an electric servo motor.
+    pub fn is_servo(self) -> bool {
+        use MotorKind::{AcServo, BrushlessServo, FramelessServo, FramelessTorque};
+        matches!(self, AcServo | BrushlessServo | FramelessServo | FramelessTorque)
     }
 
     /// Whether the motor is driven by oil.
@@ -90,6 +104,17 @@ impl fmt::Display for MotorKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.word())
     }
+}
+
+/// One point of a motor's torque against its speed, as `motor_curves.csv` has it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MotorCurvePoint {
+    /// Speed \[rpm\].
+    pub speed_rpm: f64,
+    /// Torque that the motor gives without end at this speed \[N m\].
+    pub continuous_torque_nm: Option<f64>,
+    /// Torque that it gives for a short time at this speed \[N m\]; of a stepper, at which it loses no step.
+    pub peak_torque_nm: Option<f64>,
 }
 
 /// One motor. `None` is a figure the catalog does not give.
@@ -113,6 +138,8 @@ pub struct Motor {
     pub rotor_inertia_kgm2: Option<f64>,
     /// Mass \[kg\].
     pub mass_kg: Option<f64>,
+    /// Torque against speed, by ascending speed; empty if only the single figures are known.
+    pub curve: Vec<MotorCurvePoint>,
     /// Rated power \[W\].
     pub rated_power_w: Option<f64>,
     /// Outer size; of a frameless motor, that of rotor and stator.

@@ -3,6 +3,7 @@
 
 use super::Confidence;
 use super::efficiency::EfficiencyKind;
+use super::gear::GearKind;
 use super::material::MaterialClass;
 use super::motor::MotorKind;
 use super::profile::{Profile, ProfileShape};
@@ -14,8 +15,12 @@ pub enum CatalogFile {
     Gears,
     /// `gears_efficiency.csv`
     Efficiency,
+    /// `actuators.csv`
+    Actuators,
     /// `motors.csv`
     Motors,
+    /// `motor_curves.csv`
+    MotorCurves,
     /// `materials.csv`
     Materials,
     /// `profiles.csv`
@@ -78,12 +83,13 @@ const SOURCE: Column = core("source", Cell::Text);
 const CONFIDENCE: Column = core("confidence", Cell::Word(&Confidence::WORDS));
 
 const GEARS: &[Column] = &[
+    Column { name: "kind", cell: Cell::Word(&GearKind::WORDS), required: false, figure: false },
     core("series", Cell::Text),
     remark("alias_series"),
     remark("vendor"),
     remark("housing"),
     core("size", Cell::Count),
-    core("ratio", Cell::Count),
+    core("ratio", Cell::Positive),
     figure("rated_torque_nm"),
     figure("repeated_peak_torque_nm"),
     figure("average_torque_limit_nm"),
@@ -99,6 +105,11 @@ const GEARS: &[Column] = &[
     figure("k1_nm_per_rad"),
     figure("k2_nm_per_rad"),
     figure("k3_nm_per_rad"),
+    figure("rated_life_h"),
+    figure("rated_life_speed_rpm"),
+    figure("life_exponent"),
+    figure_of("backlash_arcmin", Cell::NonNegative),
+    figure_of("lost_motion_arcmin", Cell::NonNegative),
     figure_of("hysteresis_loss_arcmin", Cell::NonNegative),
     figure_of("transmission_accuracy_arcmin", Cell::NonNegative),
     figure("tilting_stiffness_nm_per_rad"),
@@ -124,7 +135,7 @@ const EFFICIENCY: &[Column] = &[
     core("kind", Cell::Word(&EfficiencyKind::WORDS)),
     core("series", Cell::Text),
     Column { name: "size", cell: Cell::Count, required: false, figure: false },
-    Column { name: "ratio", cell: Cell::Count, required: false, figure: false },
+    Column { name: "ratio", cell: Cell::Positive, required: false, figure: false },
     core_figure("x"),
     remark("x_unit"),
     Column { name: "value", cell: Cell::Fraction, required: true, figure: true },
@@ -158,6 +169,44 @@ const MOTORS: &[Column] = &[
     CONFIDENCE,
     remark("unverified_fields"),
     remark("derived_fields"),
+    remark("notes"),
+];
+
+const ACTUATORS: &[Column] = &[
+    core("model", Cell::Text),
+    remark("vendor"),
+    figure("ratio"),
+    figure("rated_torque_nm"),
+    figure("peak_torque_nm"),
+    figure("rated_speed_rpm"),
+    figure("max_speed_rpm"),
+    figure("inertia_output_kgm2"),
+    figure("k1_nm_per_rad"),
+    figure("k2_nm_per_rad"),
+    figure("k3_nm_per_rad"),
+    figure("t1_nm"),
+    figure("t2_nm"),
+    figure_of("backlash_arcmin", Cell::NonNegative),
+    figure("mass_kg"),
+    figure("tilting_stiffness_nm_per_rad"),
+    figure("permissible_tilting_moment_nm"),
+    figure_of("efficiency", Cell::Fraction),
+    figure("outer_diameter_mm"),
+    figure("length_mm"),
+    figure_of("hollow_bore_mm", Cell::NonNegative),
+    SOURCE,
+    CONFIDENCE,
+    remark("unverified_fields"),
+    remark("notes"),
+];
+
+const MOTOR_CURVES: &[Column] = &[
+    core("model", Cell::Text),
+    Column { name: "speed_rpm", cell: Cell::NonNegative, required: true, figure: true },
+    figure_of("continuous_torque_nm", Cell::NonNegative),
+    figure_of("peak_torque_nm", Cell::NonNegative),
+    remark("source"),
+    Column { name: "confidence", cell: Cell::Word(&Confidence::WORDS), required: false, figure: false },
     remark("notes"),
 ];
 
@@ -202,10 +251,12 @@ const PROFILES: &[Column] = &[
 
 impl CatalogFile {
     /// All files, in the order they are read.
-    pub const ALL: [CatalogFile; 5] = [
+    pub const ALL: [CatalogFile; 7] = [
         CatalogFile::Gears,
         CatalogFile::Efficiency,
+        CatalogFile::Actuators,
         CatalogFile::Motors,
+        CatalogFile::MotorCurves,
         CatalogFile::Materials,
         CatalogFile::Profiles,
     ];
@@ -215,7 +266,9 @@ impl CatalogFile {
         match self {
             CatalogFile::Gears => "gears.csv",
             CatalogFile::Efficiency => "gears_efficiency.csv",
+            CatalogFile::Actuators => "actuators.csv",
             CatalogFile::Motors => "motors.csv",
+            CatalogFile::MotorCurves => "motor_curves.csv",
             CatalogFile::Materials => "materials.csv",
             CatalogFile::Profiles => "profiles.csv",
         }
@@ -226,7 +279,9 @@ impl CatalogFile {
         match self {
             CatalogFile::Gears => GEARS,
             CatalogFile::Efficiency => EFFICIENCY,
+            CatalogFile::Actuators => ACTUATORS,
             CatalogFile::Motors => MOTORS,
+            CatalogFile::MotorCurves => MOTOR_CURVES,
             CatalogFile::Materials => MATERIALS,
             CatalogFile::Profiles => PROFILES,
         }
@@ -237,7 +292,8 @@ impl CatalogFile {
         match self {
             CatalogFile::Gears => &["series", "size", "ratio"],
             CatalogFile::Efficiency => &["kind", "series", "size", "ratio", "x"],
-            CatalogFile::Motors => &["model"],
+            CatalogFile::Actuators | CatalogFile::Motors => &["model"],
+            CatalogFile::MotorCurves => &["model", "speed_rpm"],
             CatalogFile::Materials => &["name"],
             CatalogFile::Profiles => &["material_family", "designation"],
         }
@@ -248,7 +304,9 @@ impl CatalogFile {
         match self {
             CatalogFile::Gears => include_str!("../../catalogs/gears.csv"),
             CatalogFile::Efficiency => include_str!("../../catalogs/gears_efficiency.csv"),
+            CatalogFile::Actuators => include_str!("../../catalogs/actuators.csv"),
             CatalogFile::Motors => include_str!("../../catalogs/motors.csv"),
+            CatalogFile::MotorCurves => include_str!("../../catalogs/motor_curves.csv"),
             CatalogFile::Materials => include_str!("../../catalogs/materials.csv"),
             CatalogFile::Profiles => include_str!("../../catalogs/profiles.csv"),
         }

@@ -5,7 +5,7 @@ use super::values::{choice, number_list, numbers};
 use crate::arm::effect::entry::Effect;
 use crate::arm::file::read_arm;
 use crate::arm::load::{LoadCase, Payload, read_load_cases};
-use crate::arm::{Arm, Bearing, Element, JointModel, LinkModel};
+use crate::arm::{Arm, Bearing, Element, JointModel, Link, LinkBody, LinkModel};
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::mechanics::chain::Chain;
@@ -14,7 +14,9 @@ use crate::mechanics::response::{Response, frequency_response};
 use crate::mechanics::statics::{JointLoad, Statics};
 use crate::report::number::percent;
 use crate::report::small_displacement::too_far;
+use crate::report::words::{TERMINAL, wrap};
 use crate::space::bearing_loads::resolved;
+use crate::study::creep::creep_sentence;
 use clap::Args;
 use nalgebra::Vector3;
 use serde_json::{Map, Value, json};
@@ -135,7 +137,8 @@ pub(super) fn run(args: &AnalyzeArgs, catalogs: &Catalogs) -> Result<String, Fai
         (true, None) => pretty(&solved[0].to_json(&arm, &ignored)),
         (true, Some(_)) => pretty(&Value::Array(solved.iter().map(|s| s.to_json(&arm, &ignored)).collect())),
         (false, _) => {
-            solved.iter().map(|s| s.to_text(&arm)).collect::<Vec<_>>().join("\n") + &ignored_text(&ignored)
+            let text = solved.iter().map(|s| s.to_text(&arm)).collect::<Vec<_>>().join("\n");
+            text + &ignored_text(&ignored) + &creep_text(&arm, catalogs)
         }
     })
 }
@@ -148,6 +151,18 @@ fn ignored_text(ignored: &[String]) -> String {
             format!("  ignored, because they describe a test and not the arm: {}\n", effects.join(", "))
         }
     }
+}
+
+/// What is said of the arm's materials that creep.
+fn creep_text(arm: &Arm, catalogs: &Catalogs) -> String {
+    let tubes = arm.chain.iter().filter_map(|element| match element {
+        Element::Link(Link { name, body: LinkBody::Tube { material_name, .. }, .. }) => {
+            Some((material_name, name))
+        }
+        _ => None,
+    });
+    let sentences = tubes.filter_map(|(material, link)| creep_sentence(catalogs, material, link));
+    sentences.map(|sentence| wrap(&sentence, TERMINAL, "")).collect()
 }
 
 fn pretty(value: &Value) -> String {

@@ -3,17 +3,15 @@
 //!
 //! The functions return the text; nothing is printed here.
 
+use super::catalog_check::check;
 use super::failure::Failure;
-use crate::catalog::gear::Gear;
-use crate::catalog::load::Loaded;
+use crate::catalog::gear::{Gear, GearKind};
 use crate::catalog::lookup::PartError;
 use crate::catalog::material::{Material, MaterialClass};
 use crate::catalog::motor::{Motor, MotorKind};
 use crate::catalog::profile::{Profile, ProfileShape};
 use crate::catalog::schema::{CatalogFile, Column};
 use crate::catalog::{Catalogs, Confidence, Provenance};
-use crate::input::json::InputError;
-use std::fmt::Write as _;
 use std::path::Path;
 
 /// Catalogs: check them, or show parts.
@@ -39,6 +37,7 @@ pub(crate) enum CatalogVerb {
     /// List parts as a table, or one part with every rating and its source.
     #[command(after_help = "Examples:\n  armwright catalog show gears --series CSG --size 32\n  \
         armwright catalog show motors --kind electric\n  \
+        armwright catalog show gears --kind cycloidal\n  \
         armwright catalog show materials --class composite\n  \
         armwright catalog show profiles --family steel --shape square --csv\n  \
         armwright catalog show --part HFUC-58-100")]
@@ -48,8 +47,10 @@ pub(crate) enum CatalogVerb {
 /// Parts one can list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Parts {
-    /// Harmonic-drive gears.
+    /// Gears: strain-wave, planetary, cycloidal, belts.
     Gears,
+    /// Actuators: motor, gear and bearing in one part.
+    Actuators,
     /// Electric and hydraulic motors.
     Motors,
     /// Link materials.
@@ -75,8 +76,8 @@ pub(crate) struct ShowArgs {
     pub size: Option<u32>,
     /// Only gears of this ratio, e.g. `--ratio 100` [default: all].
     #[arg(long)]
-    pub ratio: Option<u32>,
-    /// Only motors of this kind: electric, hydraulic, or one such as `--kind frameless-torque` [default: all].
+    pub ratio: Option<f64>,
+    /// Only gears or motors of this kind: `gears --kind planetary`, `motors --kind electric` [default: all].
     #[arg(long)]
     pub kind: Option<String>,
     /// Only materials of this class: metal, composite or `--class metal-matrix` [default: all].
@@ -104,101 +105,32 @@ pub(crate) fn run(args: &CatalogArgs, overlay: Option<&Path>) -> Result<String, 
     }
 }
 
-/// Loads the catalogs and reports what is in them: rows, confidence, blank ratings, warnings.
-///
-/// # Errors
-/// Every fault of every file.
-pub(crate) fn check(overlay: Option<&Path>) -> Result<String, InputError> {
-    let catalogs = Catalogs::load(overlay)?;
-    let mut out = files_table(&catalogs.loaded);
-    out.push_str("\nFigures that a sizing check needs and rows leave blank:\n");
-    out.push_str(&blanks_table(&catalogs));
-    match catalogs.warnings.as_slice() {
-        [] => out.push_str("\nNo faults, no warnings.\n"),
-        warnings => {
-            // A String takes any text.
-            let _ = writeln!(out, "\nNo faults. Warnings ({}):", warnings.len());
-            warnings.iter().for_each(|warning| {
-                let _ = writeln!(out, "  {warning}");
-            });
-        }
-    }
-    Ok(out)
+/// The gears that are sold as such, or those within actuators.
+fn gears_of(catalogs: &Catalogs, actuators: bool) -> impl Iterator<Item = &Gear> {
+    catalogs.gears.iter().filter(move |gear| (gear.kind == GearKind::Actuator) == actuators)
 }
 
-fn files_table(loaded: &[Loaded]) -> String {
-    let mut table = TextTable::new(["file", "rows", "replacing"].into_iter().map(String::from).collect());
-    table.head.extend(Confidence::ALL.iter().map(ToString::to_string));
-    for file in loaded {
-        let mut row = vec![file.name.clone(), file.rows.to_string(), file.replaced.to_string()];
-        row.extend(file.by_confidence.iter().map(ToString::to_string));
-        table.rows.push(row);
-    }
-    table.to_text()
+/// The motors that are sold as such.
+fn motors_of(catalogs: &Catalogs) -> impl Iterator<Item = &Motor> {
+    catalogs.motors.iter().filter(|motor| motor.kind != MotorKind::OfActuator)
 }
 
-/// Columns that sizing reads, by kind of part.
-const SIZING_COLUMNS: [(CatalogFile, &[&str]); 3] = [
-    (
-        CatalogFile::Gears,
-        &[
-            "rated_torque_nm",
-            "repeated_peak_torque_nm",
-            "average_torque_limit_nm",
-            "momentary_peak_torque_nm",
-            "max_input_speed_rpm",
-            "average_input_speed_limit_rpm",
-            "inertia_input_kgm2",
-            "mass_component_set_kg",
-            "mass_housed_unit_kg",
-            "t1_nm",
-            "t2_nm",
-            "k1_nm_per_rad",
-            "k2_nm_per_rad",
-            "k3_nm_per_rad",
-            "efficiency_rated_2000rpm",
-        ],
-    ),
-    (
-        CatalogFile::Motors,
-        &[
-            "rated_torque_nm",
-            "peak_torque_nm",
-            "rated_speed_rpm",
-            "max_speed_rpm",
-            "rotor_inertia_kgm2",
-            "mass_kg",
-        ],
-    ),
-    (CatalogFile::Materials, &["g_pa", "poisson", "yield_or_strength_pa", "cost_eur_per_kg"]),
-];
-
-fn blanks_table(catalogs: &Catalogs) -> String {
-    let mut table = TextTable::new(["file", "column", "blank", "of"].map(String::from).into());
-    for (file, columns) in SIZING_COLUMNS {
-        let rows: Vec<_> = provenances(catalogs, file).map(|p| catalogs.printed_row(p)).collect();
-        for column in columns {
-            let blank = rows.iter().filter(|row| cell(row, column).is_empty()).count();
-            if blank > 0 {
-                let row = [file.file_name(), column, &blank.to_string(), &rows.len().to_string()];
-                table.rows.push(row.map(String::from).into());
-            }
-        }
-    }
-    table.to_text()
-}
-
-fn provenances(catalogs: &Catalogs, file: CatalogFile) -> Box<dyn Iterator<Item = &Provenance> + '_> {
+pub(super) fn provenances(
+    catalogs: &Catalogs,
+    file: CatalogFile,
+) -> Box<dyn Iterator<Item = &Provenance> + '_> {
     match file {
-        CatalogFile::Gears => Box::new(catalogs.gears.iter().map(|g| &g.provenance)),
+        CatalogFile::Gears => Box::new(gears_of(catalogs, false).map(|g| &g.provenance)),
+        CatalogFile::Actuators => Box::new(gears_of(catalogs, true).map(|g| &g.provenance)),
+        CatalogFile::MotorCurves => Box::new(std::iter::empty()),
         CatalogFile::Efficiency => Box::new(catalogs.efficiency.iter().map(|p| &p.provenance)),
-        CatalogFile::Motors => Box::new(catalogs.motors.iter().map(|m| &m.provenance)),
+        CatalogFile::Motors => Box::new(motors_of(catalogs).map(|m| &m.provenance)),
         CatalogFile::Materials => Box::new(catalogs.materials.iter().map(|m| &m.provenance)),
         CatalogFile::Profiles => Box::new(catalogs.profiles.iter().map(|p| &p.provenance)),
     }
 }
 
-fn cell<'r>(row: &'r [(&'static str, String)], column: &str) -> &'r str {
+pub(super) fn cell<'r>(row: &'r [(&'static str, String)], column: &str) -> &'r str {
     row.iter().find(|(name, _)| *name == column).map_or("", |(_, text)| text)
 }
 
@@ -211,13 +143,23 @@ pub(crate) fn show(catalogs: &Catalogs, args: &ShowArgs) -> Result<String, Failu
         return show_part(catalogs, args.parts, name);
     }
     let Some(parts) = args.parts else {
-        return Err(Failure::Usage("say what to list: gears, motors, materials or profiles".into()));
+        return Err(Failure::Usage(
+            "say what to list: gears, actuators, motors, materials or profiles".into(),
+        ));
     };
     refuse_stray_filters(parts, args)?;
     match parts {
         Parts::Gears => {
             list(catalogs, CatalogFile::Gears, &gears(catalogs, args)?, GEAR_FIELDS, |g| &g.provenance, args)
         }
+        Parts::Actuators => list(
+            catalogs,
+            CatalogFile::Actuators,
+            &gears_of(catalogs, true).collect::<Vec<_>>(),
+            ACTUATOR_FIELDS,
+            |g| &g.provenance,
+            args,
+        ),
         Parts::Motors => list(
             catalogs,
             CatalogFile::Motors,
@@ -248,18 +190,20 @@ pub(crate) fn show(catalogs: &Catalogs, args: &ShowArgs) -> Result<String, Failu
 /// Refuses a filter that belongs to another kind of part: it is a mistake, and to ignore it would mislead.
 fn refuse_stray_filters(parts: Parts, args: &ShowArgs) -> Result<(), Failure> {
     let given = [
-        ("--series", args.series.is_some(), Parts::Gears),
-        ("--size", args.size.is_some(), Parts::Gears),
-        ("--ratio", args.ratio.is_some(), Parts::Gears),
-        ("--kind", args.kind.is_some(), Parts::Motors),
-        ("--class", args.class.is_some(), Parts::Materials),
-        ("--family", args.family.is_some(), Parts::Profiles),
-        ("--shape", args.shape.is_some(), Parts::Profiles),
+        ("--series", args.series.is_some(), &[Parts::Gears][..]),
+        ("--size", args.size.is_some(), &[Parts::Gears]),
+        ("--ratio", args.ratio.is_some(), &[Parts::Gears]),
+        ("--kind", args.kind.is_some(), &[Parts::Motors, Parts::Gears]),
+        ("--class", args.class.is_some(), &[Parts::Materials]),
+        ("--family", args.family.is_some(), &[Parts::Profiles]),
+        ("--shape", args.shape.is_some(), &[Parts::Profiles]),
     ];
     for (flag, is_given, belongs_to) in given {
-        if is_given && belongs_to != parts {
+        if is_given && !belongs_to.contains(&parts) {
+            let belongs_to: Vec<String> = belongs_to.iter().map(|parts| format!("{parts:?}")).collect();
             return Err(Failure::Usage(format!(
-                "{flag} filters {belongs_to:?}, not {parts:?}; leave it away"
+                "{flag} filters {}, not {parts:?}; leave it away",
+                belongs_to.join(" and ")
             )));
         }
     }
@@ -268,16 +212,18 @@ fn refuse_stray_filters(parts: Parts, args: &ShowArgs) -> Result<(), Failure> {
 
 fn gears<'c>(catalogs: &'c Catalogs, args: &ShowArgs) -> Result<Vec<&'c Gear>, Failure> {
     let series = args.series.as_ref().map(|name| series(catalogs, name)).transpose()?;
+    let kind = word("--kind", &args.kind, GearKind::from_word, &GearKind::WORDS)?;
     let wanted = |g: &&Gear| {
         series.as_ref().is_none_or(|s| g.series.eq_ignore_ascii_case(s))
             && args.size.is_none_or(|size| g.size == size)
             && args.ratio.is_none_or(|ratio| g.ratio == ratio)
+            && kind.is_none_or(|kind| g.kind == kind)
     };
-    Ok(catalogs.gears.iter().filter(wanted).collect())
+    Ok(gears_of(catalogs, false).filter(wanted).collect())
 }
 
 fn series(catalogs: &Catalogs, name: &str) -> Result<String, Failure> {
-    if let Some(gear) = catalogs.gears.iter().find(|g| g.series.eq_ignore_ascii_case(name)) {
+    if let Some(gear) = gears_of(catalogs, false).find(|g| g.series.eq_ignore_ascii_case(name)) {
         return Ok(gear.series.clone());
     }
     if let Some((_, series)) =
@@ -285,7 +231,7 @@ fn series(catalogs: &Catalogs, name: &str) -> Result<String, Failure> {
     {
         return Ok(series.clone());
     }
-    let mut known: Vec<_> = catalogs.gears.iter().map(|g| g.series.as_str()).collect();
+    let mut known: Vec<_> = gears_of(catalogs, false).map(|g| g.series.as_str()).collect();
     known.sort_unstable();
     known.dedup();
     Err(Failure::Usage(format!("--series {name} is not known; choose one of: {}", known.join(", "))))
@@ -293,7 +239,7 @@ fn series(catalogs: &Catalogs, name: &str) -> Result<String, Failure> {
 
 fn motors<'c>(catalogs: &'c Catalogs, args: &ShowArgs) -> Result<Vec<&'c Motor>, Failure> {
     let kinds = word("--kind", &args.kind, MotorKind::of_class, &MotorKind::CLASS_WORDS)?;
-    Ok(catalogs.motors.iter().filter(|m| kinds.as_ref().is_none_or(|k| k.contains(&m.kind))).collect())
+    Ok(motors_of(catalogs).filter(|m| kinds.as_ref().is_none_or(|k| k.contains(&m.kind))).collect())
 }
 
 fn materials<'c>(catalogs: &'c Catalogs, args: &ShowArgs) -> Result<Vec<&'c Material>, Failure> {
@@ -356,6 +302,21 @@ const GEAR_FIELDS: &[Field<Gear>] = &[
     ("set|kg", |g| rating(g.mass_component_set_kg, 1.0)),
     ("unit|kg", |g| rating(g.mass_housed_unit_kg, 1.0)),
     ("eff.|", |g| rating(g.efficiency, 1.0)),
+    ("trust|", |g| trust(&g.provenance)),
+];
+
+const ACTUATOR_FIELDS: &[Field<Gear>] = &[
+    ("actuator|", |g| g.id.clone()),
+    ("ratio|", |g| rating(Some(g.ratio), 1.0)),
+    ("rated|Nm", |g| rating(g.rated_torque_nm, 1.0)),
+    ("peak|Nm", |g| rating(g.momentary_peak_torque_nm, 1.0)),
+    ("K1|kNm/rad", |g| rating(g.k1_nm_per_rad, 1e-3)),
+    ("play|arcmin", |g| rating(g.backlash_arcmin, 1.0)),
+    ("tilt|kNm/rad", |g| rating(g.tilting_stiffness_nm_per_rad, 1e-3)),
+    ("moment|Nm", |g| rating(g.permissible_tilting_moment_nm, 1.0)),
+    ("mass|kg", |g| rating(g.mass_housed_unit_kg, 1.0)),
+    ("outer|mm", |g| rating(g.envelope.outer_diameter_m, 1e3)),
+    ("bore|mm", |g| rating(g.envelope.hollow_bore_m, 1e3)),
     ("trust|", |g| trust(&g.provenance)),
 ];
 
@@ -454,7 +415,13 @@ fn find<'c>(
     name: &str,
 ) -> Result<(CatalogFile, &'c Provenance), PartError> {
     Ok(match parts {
-        Parts::Gears => (CatalogFile::Gears, &catalogs.gear(name)?.provenance),
+        Parts::Gears | Parts::Actuators => {
+            let gear = catalogs.gear(name)?;
+            match gear.kind {
+                GearKind::Actuator => (CatalogFile::Actuators, &gear.provenance),
+                _ => (CatalogFile::Gears, &gear.provenance),
+            }
+        }
         Parts::Motors => (CatalogFile::Motors, &catalogs.motor(name)?.provenance),
         Parts::Materials => (CatalogFile::Materials, &catalogs.material(name)?.provenance),
         Parts::Profiles => (CatalogFile::Profiles, &catalogs.profile(name)?.provenance),
@@ -531,17 +498,17 @@ fn rating(x: Option<f64>, factor: f64) -> String {
 }
 
 /// A table of text: headers (`name|unit`) above columns, numbers aligned to the right.
-struct TextTable {
-    head: Vec<String>,
-    rows: Vec<Vec<String>>,
+pub(super) struct TextTable {
+    pub head: Vec<String>,
+    pub rows: Vec<Vec<String>>,
 }
 
 impl TextTable {
-    fn new(head: Vec<String>) -> Self {
+    pub(super) fn new(head: Vec<String>) -> Self {
         Self { head, rows: Vec::new() }
     }
 
-    fn to_text(&self) -> String {
+    pub(super) fn to_text(&self) -> String {
         let split = |head: &String, unit: bool| {
             let (name, rest) = head.split_once('|').unwrap_or((head, ""));
             if unit { rest } else { name }.to_string()

@@ -5,6 +5,7 @@ pub(crate) mod analyze;
 pub(crate) mod asked;
 pub(crate) mod beside;
 pub(crate) mod catalog;
+mod catalog_check;
 pub(crate) mod check;
 pub(crate) mod compare;
 pub(crate) mod corrections;

@@ -18,7 +18,8 @@ pub(crate) fn gear(catalogs: &Catalogs, size: u32) -> Result<&Gear, PaperError> 
 }
 
 fn hfuc(catalogs: &Catalogs, size: u32, ratio: u32) -> Result<&Gear, PaperError> {
-    let found = catalogs.gears.iter().find(|g| g.series == "HFUC" && g.size == size && g.ratio == ratio);
+    let found =
+        catalogs.gears.iter().find(|g| g.series == "HFUC" && g.size == size && g.ratio == f64::from(ratio));
     found.ok_or_else(|| missing("gear", &format!("HFUC-{size}-{ratio}")))
 }
 

@@ -5,6 +5,9 @@ use crate::arm::section::Section;
 /// Outer size and wall of a section, `60 x 40 x 2 mm`, `Ø60 x 2 mm` or `60 x 40 mm bar`; the numbers are written by the
 /// caller, in millimetres: width, height, wall. `shape` is the word that files use ([`Section::shape`]).
 pub(crate) fn tube_size(shape: &str, [width, height, wall]: [&str; 3]) -> String {
+    if matches!(shape, "i_beam" | "stated") {
+        return format!("{width} x {height} mm {}", if shape == "stated" { "as stated" } else { "I" });
+    }
     match (shape.starts_with("round"), shape.ends_with("bar")) {
         (true, false) => format!("Ø{width} x {wall} mm"),
         (true, true) => format!("Ø{width} mm bar"),

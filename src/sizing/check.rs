@@ -50,6 +50,8 @@ pub enum CheckKind {
     MotorBore,
     /// The drive is no longer than the room at the joint.
     DriveLength,
+    /// The torsion curve of the gear is known. This check is listed only if it is not.
+    Torsion,
     /// The mass of the drive is known. This check is listed only if it is not.
     Mass,
 }
@@ -77,6 +79,7 @@ impl CheckKind {
             CheckKind::GearWidth | CheckKind::MotorWidth => "width",
             CheckKind::GearBore | CheckKind::MotorBore => "bore",
             CheckKind::DriveLength => "length of the drive",
+            CheckKind::Torsion => "torsion",
             CheckKind::Mass => "mass",
         }
     }
@@ -106,6 +109,7 @@ impl CheckKind {
             CheckKind::GearBore => "gear bore",
             CheckKind::MotorBore => "motor bore",
             CheckKind::DriveLength => "drive length",
+            CheckKind::Torsion => "gear torsion",
             CheckKind::Mass => "mass",
         }
     }
@@ -117,9 +121,19 @@ impl CheckKind {
             CheckKind::GearLife | CheckKind::BearingLife => "h",
             CheckKind::BearingRest | CheckKind::BearingStop => "times",
             CheckKind::GearStops => "stops",
+            CheckKind::Torsion => "N m/rad",
             CheckKind::Mass => "kg",
             fit if fit.is_fit() => "mm",
             _ => "N m",
+        }
+    }
+
+    /// Power of the torque that the margin usually goes with.
+    pub fn torque_exponent(self) -> f64 {
+        match self {
+            CheckKind::GearLife => 3.0,
+            CheckKind::BearingLife => 10.0 / 3.0,
+            _ => 1.0,
         }
     }
 
@@ -140,7 +154,7 @@ impl CheckKind {
     pub fn needs_its_rating(self) -> bool {
         !self.is_bearing()
             && !self.is_fit()
-            && !matches!(self, CheckKind::GearBuckling | CheckKind::GearRatcheting)
+            && !matches!(self, CheckKind::GearBuckling | CheckKind::GearRatcheting | CheckKind::GearStops)
     }
 
     /// Whether the check is about gear and bearing alone, whatever the motor.
@@ -177,9 +191,17 @@ pub struct Check {
     pub allowed: Option<f64>,
     /// Outcome.
     pub state: CheckState,
+    /// Power of the torque that the margin goes with; of a gear's life, the exponent of its law.
+    pub torque_exponent: f64,
 }
 
 impl Check {
+    /// A check that a blank rating prevents.
+    pub(super) fn not_made(kind: CheckKind, rating: MissingRating) -> Self {
+        let torque_exponent = kind.torque_exponent();
+        Self { kind, needed: None, allowed: None, state: CheckState::NotChecked(rating), torque_exponent }
+    }
+
     /// Allowed over needed; below 1 the check fails. `None` if it could not be checked.
     pub fn margin(&self) -> Option<f64> {
         match (self.needed?, self.allowed?) {
@@ -188,13 +210,14 @@ impl Check {
         }
     }
 
-    /// The margin as a factor on torque, which makes checks comparable. Life goes with the cube of the torque, so its
-    /// margin becomes the cube root; that of a bearing with the power 10/3 of its load. The number of stops does not depend
+    /// The margin as a factor on torque, which makes checks comparable. Life goes with a power of the torque, of a
+    /// strain-wave gear the cube, so its margin becomes the root; that of a bearing with the power 10/3 of its load. The number of stops does not depend
     /// on the torque. A part that fits does so at any torque.
     pub fn torque_margin(&self) -> Option<f64> {
         let margin = self.margin()?;
         Some(match self.kind {
-            CheckKind::GearLife => libm::cbrt(margin),
+            CheckKind::GearLife if self.torque_exponent == 3.0 => libm::cbrt(margin),
+            CheckKind::GearLife => libm::pow(margin, 1.0 / self.torque_exponent),
             CheckKind::BearingLife => libm::pow(margin, 0.3),
             fit if fit.is_fit() && self.state == CheckState::Holds => f64::INFINITY,
             _ => margin,
@@ -264,7 +287,8 @@ pub(super) fn check(kind: CheckKind, needed: Rating, allowed: Rating, load: f64,
         Ok(_) => CheckState::Fails,
         Err(rating) => CheckState::NotChecked(rating),
     };
-    Check { kind, needed: needed.ok(), allowed: allowed.ok(), state }
+    let torque_exponent = kind.torque_exponent();
+    Check { kind, needed: needed.ok(), allowed: allowed.ok(), state, torque_exponent }
 }
 
 /// A check that compares the printed numbers themselves.

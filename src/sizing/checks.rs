@@ -1,12 +1,13 @@
 //! All checks of a drive, one by one: those of its gear, of its output bearing and of its motor.
 
 use super::bearing_checks::bearing_checks;
-use super::check::{Check, CheckKind, CheckState, check, plain};
+use super::check::{Check, CheckKind, check, plain};
 use super::demand::{JointDemand, JointMotion, input_speed_rpm, mean_input_speed_rpm};
-use super::drive::{Drive, known};
+use super::drive::{Drive, MissingRating};
 use super::fit_checks::{gear_fits, motor_fits};
-use super::heat::{self, MotorHeat};
+use super::heat::MotorHeat;
 use super::limits as limit;
+use super::motor_curve;
 use crate::arm::bearing::Bearing;
 use crate::catalog::gear::Gear;
 
@@ -32,8 +33,11 @@ pub fn gear_checks(
         gear_life(gear, motion, demand),
     ];
     if let Some(stops) = motion.emergency_stops {
-        checks.push(plain(CheckKind::GearStops, stops, Ok(limit::stops_allowed(gear, motion))));
+        let allowed = limit::stops_allowed(gear, motion);
+        let rule = MissingRating("a rule for the stops of its kind");
+        checks.push(plain(CheckKind::GearStops, stops, allowed.ok_or(rule)));
     }
+    checks.retain(|check| !limit::is_unlimited(gear, check.kind));
     checks.extend(gear_fits(gear, &motion.fit, &demand.room));
     if let Some(bearing) = bearing {
         checks.extend(bearing_checks(bearing, motion, &demand.bearing));
@@ -51,16 +55,23 @@ fn gear_mean(gear: &Gear, demand: &JointDemand) -> Check {
     )
 }
 
-/// L10 = L_ref (T_rated / T_mean)³ (2000 rpm / n_mean), compared with the required life.
+/// L10 = L_rated (T_rated / T_mean)^p (n_rated / n_mean), compared with the required life.
 fn gear_life(gear: &Gear, motion: &JointMotion, demand: &JointDemand) -> Check {
-    let life_h = limit::life_product(gear, motion).map(|product| product / demand.mean_torque_cubed_nm3);
-    check(
+    let life_h = limit::gear_life_h(gear, motion, demand.mean_torque_cubed_nm3);
+    let check = check(
         CheckKind::GearLife,
         Ok(motion.life_h),
         life_h,
         demand.mean_torque_cubed_nm3,
         limit::gear_life_cubed_nm3(gear, motion),
-    )
+    );
+    Check { torque_exponent: gear.life.exponent, ..check }
+}
+
+/// What of the torsion curve is blank, a check for each figure: without it nobody knows how far the joint yields.
+pub(super) fn torsion_checks(gear: &Gear) -> Vec<Check> {
+    let missing = gear.missing_of_torsion().into_iter().map(MissingRating);
+    missing.map(|rating| Check::not_made(CheckKind::Torsion, rating)).collect()
 }
 
 /// The checks of a motor behind its gear. Its heat is checked unless the study turns that off. An unknown mass of the pair
@@ -77,15 +88,14 @@ pub fn motor_checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -
     ));
     checks.extend(motor_fits(drive, &motion.fit, &demand.room));
     if let Err(rating) = drive.mass_kg() {
-        let state = CheckState::NotChecked(rating);
-        checks.push(Check { kind: CheckKind::Mass, needed: None, allowed: None, state });
+        checks.push(Check::not_made(CheckKind::Mass, rating));
     }
     checks
 }
 
 /// T / (N η), compared with the continuous torque; a brake holds any.
 fn motor_hold(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check {
-    let rated = known(drive.motor.rated_torque_nm, "motor rated_torque_nm");
+    let rated = motor_curve::standing_torque_nm(drive.motor);
     check(
         CheckKind::MotorHold,
         drive.gain().map(|gain| demand.static_torque_nm / gain),
@@ -101,7 +111,7 @@ fn motor_peak(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Chec
     check(
         CheckKind::MotorPeak,
         drive.peak_motor_torque_nm(motion, peak_nm),
-        known(drive.motor.peak_torque_nm, "peak_torque_nm"),
+        motor_curve::peak_torque_nm(drive.motor, input_speed_rpm(drive.gear, motion)),
         peak_nm,
         limit::motor_peak_nm(drive, motion),
     )
@@ -110,7 +120,7 @@ fn motor_peak(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Chec
 /// Root mean square of the motor's torque over the cycle, compared with its continuous torque at the cruising speed.
 fn motor_rms(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check {
     let input_rpm = input_speed_rpm(drive.gear, motion);
-    let continuous_nm = heat::continuous_torque_nm(drive.motor, input_rpm);
+    let continuous_nm = motor_curve::continuous_torque_nm(drive.motor, input_rpm);
     let used = MotorHeat::of(drive, motion).map(|heat| heat.share_squared(demand));
     let needed = used.and_then(|used| Ok(used.sqrt() * continuous_nm?));
     check(CheckKind::MotorRms, needed, continuous_nm, used.unwrap_or(f64::NAN), used.map(|_| 1.0))

@@ -11,6 +11,7 @@ use crate::arm::bearing::BearingSource;
 use crate::arm::extras::ExtrasSource;
 use crate::catalog::gear::{BearingRatings, GearMass};
 use crate::catalog::motor::Motor;
+use crate::sizing::check::CheckState;
 use crate::sizing::drive::MissingRating;
 use crate::sizing::limits::{DriveLimits, Obstacle};
 use crate::sizing::requirement::MotionRequirement;

@@ -252,12 +252,12 @@ pub fn cubic_mean_cubed_nm3(weights: MeanTorqueWeights, static_torque_nm: f64, l
 
 /// N ω \[rpm\].
 pub(super) fn input_speed_rpm(gear: &Gear, motion: &JointMotion) -> f64 {
-    f64::from(gear.ratio) * rpm_from_rad_s(motion.speed_rad_s)
+    gear.ratio * rpm_from_rad_s(motion.speed_rad_s)
 }
 
 /// N times the mean speed over the duty cycle \[rpm\].
 pub(super) fn mean_input_speed_rpm(gear: &Gear, motion: &JointMotion) -> f64 {
-    f64::from(gear.ratio) * rpm_from_rad_s(motion.mean_speed_rad_s())
+    gear.ratio * rpm_from_rad_s(motion.mean_speed_rad_s())
 }
 
 #[cfg(test)]

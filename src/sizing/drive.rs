@@ -3,7 +3,7 @@
 use super::demand::JointMotion;
 use crate::arm::bearing::{Bearing, BearingSource};
 use crate::arm::extras::{Extras, ExtrasSource};
-use crate::catalog::gear::{Gear, GearMass};
+use crate::catalog::gear::{Gear, GearKind, GearMass};
 use crate::catalog::motor::Motor;
 
 /// A rating that the catalog leaves blank.
@@ -25,6 +25,14 @@ pub(super) type Rating = Result<f64, MissingRating>;
 /// The rating, or its name if it is blank.
 pub(super) fn known(rating: Option<f64>, name: &'static str) -> Rating {
     rating.ok_or(MissingRating(name))
+}
+
+/// A rating of a gear, or its name if it is blank. Where the gear's kind has no ratings of its own, a blank one is `none`.
+pub(super) fn if_any(gear: &Gear, rating: Option<f64>, none: f64, name: &'static str) -> Rating {
+    match rating {
+        None if gear.kind.has_no_ratings_of_its_own() => Ok(none),
+        rating => known(rating, name),
+    }
 }
 
 /// A gear and a motor.
@@ -60,8 +68,11 @@ pub struct Drive<'c> {
 }
 
 impl Drive<'_> {
-    /// `gear + motor`, for messages.
+    /// `gear + motor`, for messages; an actuator by its model.
     pub fn name(&self) -> String {
+        if self.gear.kind == GearKind::Actuator {
+            return self.gear.id.clone();
+        }
         format!("{} + {}", self.gear.id, self.motor.id)
     }
 
@@ -85,7 +96,7 @@ impl Drive<'_> {
 
     /// Reduction ratio N.
     pub fn ratio(&self) -> f64 {
-        f64::from(self.gear.ratio)
+        self.gear.ratio
     }
 
     /// Mass of gear and motor \[kg\], rounded to the microgram, so that equal sums of catalog masses are equal numbers.
@@ -95,6 +106,7 @@ impl Drive<'_> {
     pub fn mass_kg(&self) -> Result<f64, MissingRating> {
         const PER_KG: f64 = 1e9;
         let name = match self.gear_mass {
+            _ if self.gear.kind == GearKind::Actuator => "mass_kg",
             GearMass::ComponentSet => "gear mass_component_set_kg",
             GearMass::HousedUnit => "gear mass_housed_unit_kg",
         };
@@ -103,13 +115,17 @@ impl Drive<'_> {
         Ok((sum_kg * PER_KG).round() / PER_KG)
     }
 
-    /// Eq 9: J_in = rotor + wave generator, motor side \[kg m²\].
+    /// Eq 9: J_in = rotor + input of the gear (wave generator), motor side \[kg m²\].
     ///
     /// # Errors
     /// The inertia that the catalog leaves blank.
     pub fn input_inertia_kgm2(&self) -> Result<f64, MissingRating> {
-        Ok(known(self.motor.rotor_inertia_kgm2, "rotor_inertia_kgm2")?
-            + known(self.gear.inertia_input_kgm2, "inertia_input_kgm2")?)
+        let rotor = match self.gear.kind {
+            GearKind::Actuator => "inertia_output_kgm2",
+            _ => "rotor_inertia_kgm2",
+        };
+        let rotor_kgm2 = known(self.motor.rotor_inertia_kgm2, rotor)?;
+        Ok(rotor_kgm2 + if_any(self.gear, self.gear.inertia_input_kgm2, 0.0, "inertia_input_kgm2")?)
     }
 
     /// Efficiency of the gear.
@@ -117,7 +133,7 @@ impl Drive<'_> {
     /// # Errors
     /// Its name if the catalog leaves it blank.
     pub fn efficiency(&self) -> Result<f64, MissingRating> {
-        known(self.gear.efficiency, "efficiency")
+        if_any(self.gear, self.gear.efficiency, 1.0, "efficiency_rated_2000rpm")
     }
 
     /// Output torque per newton metre at the motor: N η.
@@ -169,20 +185,6 @@ pub fn motor_torque_nm(output_torque_nm: f64, gain: f64, rotary_torque_motor_nm:
 /// that n / 60 · 2 = f \[rpm\].
 pub fn critical_rpm(frequency_hz: f64) -> f64 {
     30.0 * frequency_hz
-}
-
-/// L10 life of a wave-generator bearing at rated torque and 2000 rpm \[h\], by series of gears; `None` for an unknown
-/// series.
-///
-/// Source: Harmonic Drive LLC, CSF/CSG catalog, Eq 8 (L10: CSF 7000, CSG 10000) and Harmonic Drive SE,
-/// engineering data 1019659, table 20.1 (L50: CSG, SHG, CobaltLine 50000; HFUC, HFUS, CSD, CPU, CSF, SHD
-/// 35000; L10 about a fifth of it).
-pub fn reference_life_h(series: &str) -> Option<f64> {
-    match series {
-        "CSG" | "SHG" | "CobaltLine" => Some(10_000.0),
-        "HFUC" | "HFUS" | "CSF" | "CSD" | "CPU" | "SHD" => Some(7_000.0),
-        _ => None,
-    }
 }
 
 #[cfg(test)]

@@ -2,11 +2,12 @@
 
 use super::bearing_checks::bearing_that_holds;
 use super::check::{Check, CheckState, digits_of};
-use super::checks::{binding, checks, gear_checks, motor_checks};
+use super::checks::{binding, checks, gear_checks, motor_checks, torsion_checks};
 use super::demand::JointDemand;
 use super::drive::Drive;
 use super::limits::DriveLimits;
 use super::select::DriveTable;
+use crate::catalog::gear::Gear;
 use std::fmt;
 
 /// The part that a rejection is about.
@@ -167,8 +168,7 @@ impl<'c> DriveTable<'c> {
     pub fn explain(&self, demand: &JointDemand) -> Vec<Rejection> {
         let (mut rejections, trials) = (Vec::new(), self.trials(demand));
         for gear in self.gears() {
-            let failed =
-                not_holding(gear_checks(gear, self.bearing_of(gear).as_ref(), self.motion(), demand));
+            let failed = not_holding(self.checks_of_gear(gear, demand));
             if !failed.is_empty() {
                 rejections.push(self.rejection(RejectedPart::Gear { gear: gear.id.clone() }, failed));
                 continue;
@@ -197,15 +197,23 @@ impl<'c> DriveTable<'c> {
         Some(Shortfall { joint: self.joint().to_string(), drive: drive.name(), check, relaxations })
     }
 
-    /// Every gear that holds, with every motor.
+    /// The checks of a gear, and what of its torsion is blank where the joint needs it.
+    fn checks_of_gear(&self, gear: &Gear, demand: &JointDemand) -> Vec<Check> {
+        let mut checks = gear_checks(gear, self.bearing_of(gear).as_ref(), self.motion(), demand);
+        if !self.knows_torsion(gear) {
+            checks.extend(torsion_checks(gear));
+        }
+        checks
+    }
+
+    /// Every gear that holds, with every motor that goes with it.
     fn trials(&self, demand: &JointDemand) -> Vec<Trial<'c>> {
         let mut trials = Vec::new();
         for gear in self.gears() {
-            let bearing = self.bearing_of(gear);
-            if !not_holding(gear_checks(gear, bearing.as_ref(), self.motion(), demand)).is_empty() {
+            if !not_holding(self.checks_of_gear(gear, demand)).is_empty() {
                 continue;
             }
-            for motor in self.motors() {
+            for motor in self.motors().iter().filter(|motor| gear.goes_with(motor)) {
                 let drive = self.pair(gear, motor);
                 let checks = motor_checks(&drive, self.motion(), demand);
                 // a motor that cannot be checked at all is the farthest from holding
@@ -254,7 +262,7 @@ impl<'c> DriveTable<'c> {
     /// The drive whose worst margin is the largest, among those for which every check could be made.
     fn nearest(&self, demand: &JointDemand) -> Option<(Drive<'c>, Check)> {
         let mut best: Option<(f64, Drive<'c>, Check)> = None;
-        for drive in self.all_drives() {
+        for drive in self.all_drives().filter(|drive| self.knows_torsion(drive.gear)) {
             let checks = checks(&drive, self.motion(), demand);
             if checks.iter().any(|c| !c.holds() && matches!(c.state, CheckState::NotChecked(_))) {
                 continue;
@@ -287,7 +295,8 @@ impl<'c> DriveTable<'c> {
             .demand_of_torques(demand.static_torque_nm, demand.linear_torque_nm * factor)
             .with_bearing(demand.bearing.slowed(factor))
             .with_room(demand.room);
-        let holding = self.all_drives().filter_map(|drive| {
+        let known = self.all_drives().filter(|drive| self.knows_torsion(drive.gear));
+        let holding = known.filter_map(|drive| {
             let limits = DriveLimits::of(&drive, &motion).ok()?;
             let mass_kg = drive.mass_with_extras_kg().ok()?;
             limits.hold(&slower).then_some((mass_kg, drive))
@@ -314,7 +323,7 @@ pub(super) fn not_holding(checks: Vec<Check>) -> Vec<Check> {
 mod tests {
     use super::super::testing::{char_lynn_j_8_2, f11_10, hfuc_40_100, hfuc_58_100, motor};
     use super::*;
-    use crate::catalog::gear::{Gear, GearMass};
+    use crate::catalog::gear::GearMass;
     use crate::catalog::motor::Motor;
     use crate::sizing::check::CheckKind;
     use crate::sizing::demand::JointMotion;
@@ -379,7 +388,7 @@ mod tests {
     #[test]
     fn a_motor_may_fail_behind_one_gear_and_hold_behind_another() {
         let mut fast = hfuc_40_100();
-        (fast.id, fast.ratio) = ("HFUC-40-160".into(), 160);
+        (fast.id, fast.ratio) = ("HFUC-40-160".into(), 160.0);
         let slow_motor = motor("SLOW", [5.0, 9.0], [800.0, 800.0], 0.0001, 3.0);
         let (gears, motors) = ([fast, hfuc_40_100()], [slow_motor]);
         let rejections = table(&gears, &motors).explain(&motion().demand_of_torques(200.0, 100.0));

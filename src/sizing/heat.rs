@@ -24,16 +24,14 @@
 //! number of a box of drives, is a lower bound for every member, and a drive that has no number larger than another holds
 //! whatever the other holds. `tests` below hold this against random members, and against a motion simulated step by step.
 //!
-//! *Continuous torque.* Up to the rated speed a motor gives its rated torque. Between the rated and the largest speed the
-//! catalog has no curve; constant power is assumed, T_rated n_rated / n. Where the catalog has no rated speed, the rated
-//! torque is taken at every speed. The speed is that of the motor while the joint cruises.
+//! *Continuous torque.* It is that at the motor's speed while the joint cruises; [`motor_curve`] has it.
 //!
 //! Source of the rule (root mean square within the continuous torque): the selection guides of motor vendors, such as
 //! Oriental Motor, "Motor Sizing Basics Part 3: Acceleration Torque (and RMS Torque)".
 
 use super::demand::{JointDemand, JointMotion, input_speed_rpm};
-use super::drive::{Drive, Rating, known};
-use crate::catalog::motor::Motor;
+use super::drive::Drive;
+use super::motor_curve;
 
 /// What a motor behind its gear uses of its continuous torque T_c. A drive that holds more has smaller numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,7 +56,8 @@ impl MotorHeat {
         if !motion.checks_motor_heat {
             return Ok(Self::NONE);
         }
-        let continuous_nm = continuous_torque_nm(drive.motor, input_speed_rpm(drive.gear, motion))?;
+        let continuous_nm =
+            motor_curve::continuous_torque_nm(drive.motor, input_speed_rpm(drive.gear, motion))?;
         let (ratio, efficiency) = (drive.ratio(), drive.efficiency()?);
         let heat = Self {
             driving_per_nm: 1.0 / (ratio * efficiency * continuous_nm),
@@ -141,16 +140,6 @@ impl MotorHeat {
             & (self.own_share <= other.own_share)
             & (self.stated_share_squared <= other.stated_share_squared)
     }
-}
-
-/// Torque that a motor gives continuously at a speed \[N m\]: the rated torque up to the rated speed, the rated power
-/// beyond it.
-pub(super) fn continuous_torque_nm(motor: &Motor, speed_rpm: f64) -> Rating {
-    let rated_nm = known(motor.rated_torque_nm, "motor rated_torque_nm")?;
-    Ok(match motor.rated_speed_rpm {
-        Some(rated_rpm) if speed_rpm > rated_rpm => rated_nm * rated_rpm / speed_rpm,
-        _ => rated_nm,
-    })
 }
 
 #[cfg(test)]

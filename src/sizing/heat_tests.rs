@@ -9,6 +9,8 @@ use super::*;
 use crate::arm::bearing::BearingSource;
 use crate::arm::extras::ExtrasSource;
 use crate::catalog::gear::{Gear, GearMass};
+use crate::catalog::motor::Motor;
+use crate::sizing::motor_curve::continuous_torque_nm;
 use proptest::prelude::*;
 
 fn motion() -> JointMotion {

@@ -7,15 +7,14 @@
 //! thresholds.
 
 use super::bearing::BearingLimits;
+use super::check::CheckKind;
 use super::demand::{JointDemand, JointMotion, input_speed_rpm, mean_input_speed_rpm};
-use super::drive::{Drive, MissingRating, Rating, known, reference_life_h};
+use super::drive::{Drive, MissingRating, Rating, if_any, known};
 use super::fit::DriveWidths;
 use super::heat::MotorHeat;
-use crate::catalog::gear::Gear;
+use super::motor_curve;
+use crate::catalog::gear::{Gear, GearKind};
 use crate::catalog::motor::Motor;
-
-/// Input speed at which a gear's rated torque holds \[rpm\].
-pub(super) const RATED_INPUT_SPEED_RPM: f64 = 2000.0;
 
 /// Thresholds of a drive under a fixed motion, on the output side. The drive holds a demand exactly if no threshold is
 /// exceeded.
@@ -83,7 +82,11 @@ impl DriveLimits {
             return Err(Obstacle::TooFast);
         }
         let gear = drive.gear;
-        if motion.emergency_stops.is_some_and(|stops| stops > stops_allowed(gear, motion)) {
+        if motion
+            .emergency_stops
+            .zip(stops_allowed(gear, motion))
+            .is_some_and(|(asked, allowed)| asked > allowed)
+        {
             return Err(Obstacle::TooManyStops);
         }
         if !motion.fit.allows(drive.gear, drive.motor) {
@@ -171,17 +174,25 @@ fn speeds_hold(drive: &Drive, motion: &JointMotion) -> Result<bool, MissingRatin
     Ok(gear_max && gear_mean && input_rpm <= motor_max_speed_rpm(drive.motor)?)
 }
 
+/// A limit of a gear; none, which is infinite, where its kind has no such limit and its row states none.
+fn limit(gear: &Gear, rating: Option<f64>, name: &'static str) -> Rating {
+    if_any(gear, rating, f64::INFINITY, name)
+}
+
 pub(super) fn gear_max_speed_rpm(gear: &Gear) -> Rating {
-    known(gear.max_input_speed_rpm, "max_input_speed_rpm")
+    limit(gear, gear.max_input_speed_rpm, "max_input_speed_rpm")
 }
 
 pub(super) fn gear_average_speed_rpm(gear: &Gear) -> Rating {
-    known(gear.average_input_speed_limit_rpm, "average_input_speed_limit_rpm")
+    limit(gear, gear.average_input_speed_limit_rpm, "average_input_speed_limit_rpm")
 }
 
-/// Speed that a motor may reach at the end of a ramp: its largest speed, or the rated one if only that is known.
+/// Speed that a motor may reach at the end of a ramp: its largest speed, or the rated one if only that is known; never more
+/// than the last of its torque curve.
 pub(super) fn motor_max_speed_rpm(motor: &Motor) -> Rating {
-    known(motor.max_speed_rpm.or(motor.rated_speed_rpm), "max_speed_rpm")
+    let of_curve = motor_curve::largest_speed_rpm(motor);
+    let stated = motor.max_speed_rpm.or(motor.rated_speed_rpm);
+    known(stated.into_iter().chain(of_curve).reduce(f64::min), "motor max_speed_rpm")
 }
 
 /// Static torque that the motor must hold without end: without limit if a brake holds the joint at rest.
@@ -189,23 +200,23 @@ pub(super) fn motor_hold_nm(drive: &Drive, motion: &JointMotion) -> Rating {
     if motion.has_brake { Ok(f64::INFINITY) } else { motor_continuous_nm(drive) }
 }
 
-/// Static torque at which the motor gives its continuous torque: T_rated N η.
+/// Static torque at which the motor gives the torque that it holds without end: T_rated N η.
 pub(super) fn motor_continuous_nm(drive: &Drive) -> Rating {
-    Ok(known(drive.motor.rated_torque_nm, "motor rated_torque_nm")? * drive.gain()?)
+    Ok(motor_curve::standing_torque_nm(drive.motor)? * drive.gain()?)
 }
 
 /// Output torque at which the accelerating motor gives its peak torque: (T_peak - J_in N α) N η.
 pub(super) fn motor_peak_nm(drive: &Drive, motion: &JointMotion) -> Rating {
-    let peak = known(drive.motor.peak_torque_nm, "peak_torque_nm")?;
+    let peak = motor_curve::peak_torque_nm(drive.motor, input_speed_rpm(drive.gear, motion))?;
     Ok((peak - drive.rotary_torque_motor_nm(motion)?) * drive.gain()?)
 }
 
 pub(super) fn gear_peak_nm(gear: &Gear) -> Rating {
-    known(gear.repeated_peak_torque_nm, "repeated_peak_torque_nm")
+    limit(gear, gear.repeated_peak_torque_nm, "repeated_peak_torque_nm")
 }
 
 pub(super) fn gear_average_nm(gear: &Gear) -> Rating {
-    known(gear.average_torque_limit_nm, "average_torque_limit_nm")
+    limit(gear, gear.average_torque_limit_nm, "average_torque_limit_nm")
 }
 
 pub(super) fn gear_average_cubed_nm3(gear: &Gear) -> Rating {
@@ -213,7 +224,7 @@ pub(super) fn gear_average_cubed_nm3(gear: &Gear) -> Rating {
 }
 
 pub(super) fn gear_momentary_nm(gear: &Gear) -> Rating {
-    known(gear.momentary_peak_torque_nm, "momentary_peak_torque_nm")
+    limit(gear, gear.momentary_peak_torque_nm, "momentary_peak_torque_nm")
 }
 
 pub(super) fn gear_buckling_nm(gear: &Gear) -> Rating {
@@ -232,24 +243,72 @@ fn gear_stop_nm(gear: &Gear) -> Rating {
 }
 
 /// Number of momentary peaks that a gear may bear: 1e4 / (2 n t / 60), n being the input speed in rpm and t the duration of
-/// a peak in seconds; never more than 1e4. The wave generator passes with two waves in each turn.
+/// a peak in seconds; never more than 1e4. The wave generator passes with two waves in each turn. `None`: the rule is for
+/// strain-wave gears only.
 ///
 /// Source: Harmonic Drive AG, manual 1019658, glossary (momentary peaks only in an emergency, their number by the selection
 /// procedure); the formula as in the public program AimanHaidar/harmonic-drive-selector.
-pub(super) fn stops_allowed(gear: &Gear, motion: &JointMotion) -> f64 {
+pub(super) fn stops_allowed(gear: &Gear, motion: &JointMotion) -> Option<f64> {
     const WAVES: f64 = 1e4;
+    if gear.kind != GearKind::StrainWave {
+        return None;
+    }
     let waves_in_a_stop = 2.0 * input_speed_rpm(gear, motion) / 60.0 * motion.stop_time_s();
-    WAVES / waves_in_a_stop.max(1.0)
+    Some(WAVES / waves_in_a_stop.max(1.0))
 }
 
-/// Life at a mean torque of 1 N m \[h (N m)³\]: L_ref T_rated³ (2000 rpm / n_mean).
-pub(super) fn life_product(gear: &Gear, motion: &JointMotion) -> Rating {
-    let reference_h = known(reference_life_h(&gear.series), "reference life of its series")?;
+/// Whether a gear has no such limit, so that there is nothing to check.
+pub(super) fn is_unlimited(gear: &Gear, kind: CheckKind) -> bool {
+    let limit = match kind {
+        CheckKind::GearPeak => gear_peak_nm(gear),
+        CheckKind::GearMean => gear_average_nm(gear),
+        CheckKind::GearStop => gear_momentary_nm(gear),
+        CheckKind::GearSpeed => gear_max_speed_rpm(gear),
+        CheckKind::GearMeanSpeed => gear_average_speed_rpm(gear),
+        CheckKind::GearLife => return !has_life(gear),
+        // what buckles and ratchets is a flexspline
+        CheckKind::GearBuckling => return !has_flexspline(gear) && gear.buckling_torque_nm.is_none(),
+        CheckKind::GearRatcheting => return !has_flexspline(gear) && gear.ratcheting_torque_nm.is_none(),
+        _ => return false,
+    };
+    limit == Ok(f64::INFINITY)
+}
+
+fn has_flexspline(gear: &Gear) -> bool {
+    gear.kind == GearKind::StrainWave
+}
+
+/// Whether the life of a gear is checked: its kind wears out, or its row states a life.
+pub(super) fn has_life(gear: &Gear) -> bool {
+    gear.kind.wears_out() || gear.life.rated_h.is_some()
+}
+
+/// Life at a mean torque of 1 N m \[h (N m)^p\]: L_rated T_rated^p (n_rated / n_mean), p being the exponent of the gear's law.
+fn life_product(gear: &Gear, motion: &JointMotion) -> Rating {
+    let rated_h = known(gear.life.rated_h, "rated_life_h")?;
+    let rated_rpm = known(gear.life.rated_speed_rpm, "rated_life_speed_rpm")?;
     let rated_nm = known(gear.rated_torque_nm, "gear rated_torque_nm")?;
-    Ok(reference_h * rated_nm.powi(3) * (RATED_INPUT_SPEED_RPM / mean_input_speed_rpm(gear, motion)))
+    let rated_power = match gear.life.exponent {
+        3.0 => rated_nm.powi(3),
+        exponent => libm::pow(rated_nm, exponent),
+    };
+    Ok(rated_h * rated_power * (rated_rpm / mean_input_speed_rpm(gear, motion)))
+}
+
+/// Life under a mean torque, given by its cube \[h\].
+pub(super) fn gear_life_h(gear: &Gear, motion: &JointMotion, mean_cubed_nm3: f64) -> Rating {
+    Ok(life_product(gear, motion)? / power(mean_cubed_nm3, gear.life.exponent / 3.0))
 }
 
 /// Cube of the mean torque at which the life of the gear is just the required one.
 pub(super) fn gear_life_cubed_nm3(gear: &Gear, motion: &JointMotion) -> Rating {
-    Ok(life_product(gear, motion)? / motion.life_h)
+    match has_life(gear) {
+        true => Ok(power(life_product(gear, motion)? / motion.life_h, 3.0 / gear.life.exponent)),
+        false => Ok(f64::INFINITY),
+    }
+}
+
+/// A power; the first is the number itself, to the last digit.
+fn power(x: f64, exponent: f64) -> f64 {
+    if exponent == 1.0 { x } else { libm::pow(x, exponent) }
 }

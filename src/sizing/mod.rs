@@ -25,7 +25,7 @@
 //! joint.
 //!
 //! *Validity.* Efficiency is a single number of the catalog, for rated torque and 2000 rpm at the input. It is also used
-//! for holding, where friction in truth helps the motor. The catalog has no torque-speed curves of motors, so the peak
+//! for holding, where friction in truth helps the motor. Where the catalog has no torque-speed curve of a motor, its peak
 //! torque is taken as available up to the largest speed, and the continuous torque as falling with constant power beyond the
 //! rated speed.
 
@@ -43,6 +43,8 @@ pub(crate) mod fit;
 pub(crate) mod fit_checks;
 pub(crate) mod heat;
 pub(crate) mod limits;
+pub(crate) mod missing;
+mod motor_curve;
 pub(crate) mod requirement;
 pub(crate) mod select;
 pub(crate) mod sheet;
@@ -58,8 +60,7 @@ pub use demand::{
     JointDemand, JointMotion, LinearReading, cubic_mean_cubed_nm3, linear_torque_nm, stop_torque_nm,
 };
 pub use drive::{
-    Drive, MissingRating, critical_rpm, motor_torque_nm, reference_life_h, rotary_torque_motor_nm,
-    rotary_torque_output_nm,
+    Drive, MissingRating, critical_rpm, motor_torque_nm, rotary_torque_motor_nm, rotary_torque_output_nm,
 };
 pub use duty::{DutyCycle, HeatWeights, MeanTorqueWeights, Phase, PhaseKind};
 pub use explain::{RejectedPart, Rejection, Relaxation, RelaxationKind, Shortfall};

@@ -8,7 +8,7 @@ use super::drive::Drive;
 use super::limits::DriveLimits;
 use crate::arm::bearing::{Bearing, BearingSource};
 use crate::arm::extras::ExtrasSource;
-use crate::catalog::gear::{Gear, GearMass};
+use crate::catalog::gear::{Gear, GearKind, GearMass};
 use crate::catalog::motor::{Motor, MotorKind};
 use std::ops::Range;
 
@@ -21,13 +21,19 @@ pub struct DriveFilter {
     pub bearing: BearingSource,
     /// Where the masses beyond gear, motor and bearing come from.
     pub extras: ExtrasSource,
+    /// Whether a gear must have a torsion curve, because the arm's deflection is computed.
+    pub needs_torsion: bool,
     /// Series of gears, such as `CSG`.
     pub gear_series: Option<Vec<String>>,
     /// Reduction ratios.
-    pub ratios: Option<Vec<u32>>,
+    pub ratios: Option<Vec<f64>>,
+    /// Kinds of gears; actuators are asked for by [`Self::actuator_ids`].
+    pub gear_kinds: Option<Vec<GearKind>>,
     /// Gears by name.
     pub gear_ids: Option<Vec<String>>,
-    /// Kinds of motors.
+    /// Actuators by model.
+    pub actuator_ids: Option<Vec<String>>,
+    /// Kinds of motors; an actuator has its own motor, whatever is asked.
     pub motor_kinds: Option<Vec<MotorKind>>,
     /// Motors by name.
     pub motor_ids: Option<Vec<String>>,
@@ -40,9 +46,12 @@ impl DriveFilter {
             gear_mass,
             bearing: BearingSource::OfGear,
             extras: ExtrasSource::NONE,
+            needs_torsion: false,
             gear_series: None,
             ratios: None,
+            gear_kinds: None,
             gear_ids: None,
+            actuator_ids: None,
             motor_kinds: None,
             motor_ids: None,
         }
@@ -50,13 +59,20 @@ impl DriveFilter {
 
     /// Whether a gear may be used.
     pub fn allows_gear(&self, gear: &Gear) -> bool {
+        if gear.kind == GearKind::Actuator {
+            return allows(&self.actuator_ids, &gear.id);
+        }
         allows(&self.gear_series, &gear.series)
             && allows(&self.ratios, &gear.ratio)
+            && allows(&self.gear_kinds, &gear.kind)
             && allows(&self.gear_ids, &gear.id)
     }
 
     /// Whether a motor may be used.
     pub fn allows_motor(&self, motor: &Motor) -> bool {
+        if motor.kind == MotorKind::OfActuator {
+            return allows(&self.actuator_ids, &motor.id);
+        }
         allows(&self.motor_kinds, &motor.kind) && allows(&self.motor_ids, &motor.id)
     }
 }
@@ -75,7 +91,7 @@ struct Pair {
 /// Every legal drive of one joint under its motion, lightest first. Drives of equal mass are sorted by the names of gear
 /// and motor.
 ///
-/// A drive that may not turn so fast, or that lacks a rating that a check needs, has no index.
+/// A drive that may not turn so fast, or that lacks a figure that a check needs, has no index.
 /// [`DriveTable::explain`] says why.
 #[derive(Debug, Clone)]
 pub struct DriveTable<'c> {
@@ -84,6 +100,7 @@ pub struct DriveTable<'c> {
     gear_mass: GearMass,
     bearing: BearingSource,
     extras: ExtrasSource,
+    needs_torsion: bool,
     gears: Vec<&'c Gear>,
     motors: Vec<&'c Motor>,
     pairs: Vec<Pair>,
@@ -154,6 +171,7 @@ impl<'c> DriveTable<'c> {
             gear_mass: filter.gear_mass,
             bearing: filter.bearing,
             extras: filter.extras,
+            needs_torsion: filter.needs_torsion,
             gears: gears.iter().filter(|g| filter.allows_gear(g)).collect(),
             motors: motors.iter().filter(|m| filter.allows_motor(m)).collect(),
             pairs: Vec::new(),
@@ -172,7 +190,7 @@ impl<'c> DriveTable<'c> {
     /// Tabulates the legal pairs.
     fn fill(&mut self) {
         let mut legal = Vec::new();
-        for (drive, pair) in self.all_pairs() {
+        for (drive, pair) in self.all_pairs().filter(|(drive, _)| self.knows_torsion(drive.gear)) {
             if let (Ok(limits), Ok(mass_kg)) =
                 (DriveLimits::of(&drive, &self.motion), drive.mass_with_extras_kg())
             {
@@ -207,7 +225,8 @@ impl<'c> DriveTable<'c> {
         let motors = 0..self.motors.len() as u32;
         let pairs = (0..self.gears.len() as u32)
             .flat_map(move |gear| motors.clone().map(move |motor| Pair { gear, motor }));
-        pairs.map(|pair| (self.drive_of(pair), pair))
+        let drives = pairs.map(|pair| (self.drive_of(pair), pair));
+        drives.filter(|(drive, _)| drive.gear.goes_with(drive.motor))
     }
 
     fn drive_of(&self, pair: Pair) -> Drive<'c> {
@@ -215,7 +234,7 @@ impl<'c> DriveTable<'c> {
     }
 
     /// The drive of a gear and a motor in this joint.
-    pub(super) fn pair(&self, gear: &'c Gear, motor: &'c Motor) -> Drive<'c> {
+    pub(crate) fn pair(&self, gear: &'c Gear, motor: &'c Motor) -> Drive<'c> {
         Drive { gear, motor, gear_mass: self.gear_mass, bearing: self.bearing, extras: self.extras }
     }
 
@@ -227,6 +246,11 @@ impl<'c> DriveTable<'c> {
     /// The output bearing of the joint with a gear.
     pub(super) fn bearing_of(&self, gear: &Gear) -> Option<Bearing> {
         self.bearing.with_gear(gear, self.gear_mass)
+    }
+
+    /// Whether the torsion of a gear is known as far as this joint needs it.
+    pub(super) fn knows_torsion(&self, gear: &Gear) -> bool {
+        !self.needs_torsion || gear.missing_of_torsion().is_empty()
     }
 
     /// Name of the joint.
@@ -407,7 +431,7 @@ mod tests {
         };
         assert_eq!(count(|_| ()), (2, 2));
         assert_eq!(count(|f| f.gear_series = Some(vec!["CSG".into()])), (0, 2));
-        assert_eq!(count(|f| f.ratios = Some(vec![100])), (2, 2));
+        assert_eq!(count(|f| f.ratios = Some(vec![100.0])), (2, 2));
         assert_eq!(count(|f| f.gear_ids = Some(vec!["HFUC-40-100".into()])), (1, 2));
         assert_eq!(count(|f| f.motor_kinds = Some(vec![MotorKind::HydraulicOrbital])), (2, 1));
         assert_eq!(count(|f| f.motor_ids = Some(vec!["none".into()])), (2, 0));

@@ -64,7 +64,7 @@ pub struct JointSizingRow {
     /// Mean speed of the motor over the cycle, rests included \[rpm\].
     pub mean_input_speed_rpm: f64,
     /// Number of emergency stops that the gear may bear in its life.
-    pub emergency_stops_allowed: f64,
+    pub emergency_stops_allowed: Option<f64>,
     /// Gear chosen.
     pub gear: String,
     /// Motor chosen.
@@ -315,7 +315,7 @@ fn cycle_cells(row: &JointSizingRow) -> [String; 9] {
         or_none(row.motor_rms_margin),
         or_none(row.cycle_efficiency),
         or_none(row.motor_rms_margin_at_cycle_efficiency),
-        digits(row.emergency_stops_allowed.floor(), 0),
+        row.emergency_stops_allowed.map_or("-".into(), |stops| digits(stops.floor(), 0)),
     ]
 }
 

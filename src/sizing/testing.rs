@@ -8,7 +8,7 @@ use super::requirement::MotionRequirement;
 use crate::arm::bearing::BearingSource;
 use crate::arm::extras::ExtrasSource;
 use crate::catalog::envelope::Envelope;
-use crate::catalog::gear::{BearingRatings, Gear, GearMass};
+use crate::catalog::gear::{BearingRatings, Gear, GearKind, GearMass, LifeLaw};
 use crate::catalog::motor::{Motor, MotorKind};
 use crate::catalog::{Confidence, Provenance};
 use proptest::prelude::*;
@@ -37,6 +37,7 @@ pub(crate) fn housed<'c>(gear: &'c Gear, motor: &'c Motor) -> Drive<'c> {
 /// A gear and a motor that hold 300 N m of static and 100 N m of linear torque at 1.35 m in every respect.
 pub(crate) fn ample() -> (Gear, Motor) {
     let mut gear = gear("CSG-50-100", [600.0, 900.0, 700.0, 2000.0], [3500.0, 2500.0], 0.00125, [3.2, 8.9]);
+    gear.life.rated_h = Some(10_000.0);
     gear.permissible_tilting_moment_nm = Some(700.0);
     gear.bearing = BearingRatings {
         pitch_diameter_m: Some(0.1),
@@ -61,7 +62,9 @@ pub(crate) fn gear(
         id: id.to_string(),
         series: next().to_string(),
         size: next().parse().expect("a size"),
+        kind: GearKind::StrainWave,
         ratio: next().parse().expect("a ratio"),
+        life: LifeLaw::usual(GearKind::StrainWave),
         rated_torque_nm: Some(torques_nm[0]),
         repeated_peak_torque_nm: Some(torques_nm[1]),
         average_torque_limit_nm: Some(torques_nm[2]),
@@ -77,6 +80,8 @@ pub(crate) fn gear(
         k2_nm_per_rad: None,
         k3_nm_per_rad: None,
         hysteresis_loss_arcmin: None,
+        backlash_arcmin: None,
+        lost_motion_arcmin: None,
         transmission_accuracy_arcmin: None,
         tilting_stiffness_nm_per_rad: None,
         permissible_tilting_moment_nm: None,
@@ -107,6 +112,7 @@ pub(crate) fn motor(
         max_speed_rpm: Some(speeds_rpm[1]),
         rotor_inertia_kgm2: Some(inertia),
         mass_kg: Some(mass_kg),
+        curve: Vec::new(),
         rated_power_w: None,
         envelope: Default::default(),
         provenance: provenance(),
@@ -153,7 +159,8 @@ fn rating_in(range: std::ops::Range<f64>) -> impl Strategy<Value = Option<f64>> 
 prop_compose! {
     /// A gear of random ratings.
     pub fn any_gear()(
-        series in prop_oneof![9 => Just("CSG"), 9 => Just("HFUC"), 1 => Just("HOMEMADE")],
+        series in prop_oneof![Just("CSG"), Just("HFUC")],
+        life in any_life(),
         ratio in prop_oneof![Just(30u32), Just(50), Just(100), Just(160)],
         torques in prop::array::uniform4(rating_in(50.0..2000.0)),
         speeds in prop::array::uniform2(rating_in(300.0..6000.0)),
@@ -173,6 +180,7 @@ prop_compose! {
         [gear.max_input_speed_rpm, gear.average_input_speed_limit_rpm] = speeds;
         [gear.mass_component_set_kg, gear.mass_housed_unit_kg] = masses;
         (gear.inertia_input_kgm2, gear.efficiency) = (inertia, efficiency);
+        (gear.kind, gear.life) = life;
         gear.permissible_tilting_moment_nm = tilt;
         let (pitch_diameter_m, offset_m, static_load_rating_n, dynamic_load_rating_n) = bearing;
         gear.bearing =
@@ -181,6 +189,23 @@ prop_compose! {
         gear.envelope = envelope;
         gear
     }
+}
+
+/// A kind of gear with the law of its life; hours and speed may be blank.
+fn any_life() -> impl Strategy<Value = (GearKind, LifeLaw)> {
+    let kind = prop_oneof![
+        4 => Just(GearKind::StrainWave),
+        1 => Just(GearKind::Planetary),
+        1 => Just(GearKind::Cycloidal),
+        1 => Just(GearKind::Belt),
+        1 => Just(GearKind::Direct),
+    ];
+    (kind, rating_in(2e3..3e4), rating_in(50.0..3000.0), 3.0..3.5f64).prop_map(
+        |(kind, rated_h, rated_speed_rpm, p)| {
+            let exponent = if kind == GearKind::StrainWave { 3.0 } else { p };
+            (kind, LifeLaw { rated_h, rated_speed_rpm, exponent })
+        },
+    )
 }
 
 prop_compose! {

@@ -333,7 +333,10 @@ impl LinkOption {
         match self.section {
             Section::RectangularTube { .. } => (width.max(height) - 2.0 * wall) / wall,
             Section::RoundTube { .. } => width / wall,
-            Section::RectangularBar { .. } | Section::RoundBar { .. } => 0.0,
+            Section::RectangularBar { .. }
+            | Section::RoundBar { .. }
+            | Section::IBeam { .. }
+            | Section::Stated(_) => 0.0,
         }
     }
 }

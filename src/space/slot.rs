@@ -2,7 +2,6 @@
 
 use super::attributes::{OptionAttributes, attributes_of};
 use super::design_space::{DesignSpace, DriveChoice, LinkChoice, LinkOption, SpaceJoint};
-use crate::arm::file::windup_of;
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::arm::structure::JointPiece;
 use crate::arm::{Link, LinkBody};
@@ -164,7 +163,7 @@ pub(crate) fn joint_slot<'c>(
     let table = DriveTable::build(
         &joint.name,
         motion,
-        &DriveFilter { bearing: joint.bearing, extras: joint.extras, ..with_curve(filter, catalogs) },
+        &DriveFilter { bearing: joint.bearing, extras: joint.extras, needs_torsion: true, ..filter.clone() },
         &catalogs.gears,
         &catalogs.motors,
     );
@@ -177,12 +176,6 @@ pub(crate) fn joint_slot<'c>(
     let laws = pieces.iter().map(|piece| piece.law).collect();
     let tilts_rad_per_nm = pieces.iter().map(|piece| piece.tilt_rad_per_nm).collect();
     Slot::Sized(SizedJoint { table, laws, tilts_rad_per_nm, all_fits })
-}
-
-/// Leaves out gears without a complete torsion curve, because their deflection cannot be computed.
-fn with_curve(filter: &DriveFilter, catalogs: &Catalogs) -> DriveFilter {
-    let known = catalogs.gears.iter().filter(|g| filter.allows_gear(g) && windup_of(g).is_some());
-    DriveFilter { gear_ids: Some(known.map(|g| g.id.clone()).collect()), ..filter.clone() }
 }
 
 /// The slot of a link that the study gives.

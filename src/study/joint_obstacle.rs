@@ -63,7 +63,8 @@ fn first_obstacle(space: &DesignSpace, catalogs: &Catalogs) -> Option<(usize, St
             Ok(further) => sections = further,
             Err(nearest) => {
                 let is_lightest = nearest == lightest;
-                let words = nearest.map_or_else(|| no_legal_drive(table, &stuck.demand), |s| s.to_string());
+                let words =
+                    nearest.map_or_else(|| no_legal_drive(table, &stuck.demand), |s| in_words(table, &s));
                 let links = if is_lightest { "even with the lightest links" } else { "with any links" };
                 return Some((stuck.piece, format!("{links}, {words}")));
             }
@@ -156,7 +157,9 @@ pub(crate) fn obstacle_at(table: &DriveTable, demand: &JointDemand) -> Option<St
         true => Some(no_legal_drive(table, demand)),
         false if table.first_fit(demand).is_some() => None,
         false => Some(
-            table.smallest_shortfall(demand).map_or_else(|| no_legal_drive(table, demand), |s| s.to_string()),
+            table
+                .smallest_shortfall(demand)
+                .map_or_else(|| no_legal_drive(table, demand), |s| in_words(table, &s)),
         ),
     }
 }
@@ -168,31 +171,47 @@ fn no_legal_drive(table: &DriveTable, demand: &JointDemand) -> String {
     match fastest(table).filter(|(rad_s, _)| *rad_s < needed_rad_s) {
         Some((rad_s, drive)) => format!(
             "joint {joint}: {} rad/s needed, {} allowed by the fastest drive, {drive} (short by {} rad/s); slow \
-             the joint to {} rad/s (tip_speed_m_s, min_lever_m, max_speed_rad_s) or widen \"drives\"",
+             the joint to {} rad/s (tip_speed_m_s, min_lever_m, max_speed_rad_s) or widen \"drives\"{}",
             short(needed_rad_s),
             short(rad_s),
             short(needed_rad_s - rad_s),
             toward(rad_s, false),
+            missing_words(table),
         ),
         None => table.smallest_shortfall(demand).map_or_else(
             || {
+                let missing = table.missing_figures();
+                let missing = missing.unwrap_or_else(|| "\"drives\" leaves no gear or no motor".into());
                 format!(
-                    "joint {joint}: every drive that \"drives\" offers lacks a rating that a check needs; \
-                     `armwright size STUDY --explain {joint}` lists them"
+                    "joint {joint}: no drive of the catalogs can be checked in full: {missing}; `armwright size STUDY --explain \
+                     {joint}` says more"
                 )
             },
-            |shortfall| shortfall.to_string(),
+            |shortfall| in_words(table, &shortfall),
         ),
     }
+}
+
+/// A shortfall, and the figures that other parts lack.
+fn in_words(table: &DriveTable, shortfall: &Shortfall) -> String {
+    format!("{shortfall}{}", missing_words(table))
+}
+
+/// The figures that parts lack, as the end of a sentence.
+fn missing_words(table: &DriveTable) -> String {
+    let missing = table.missing_beside_the_nearest();
+    missing.map(|missing| format!("; not checked: {missing}")).unwrap_or_default()
 }
 
 /// The largest speed that a drive of a table allows \[rad/s\], and the names of the drive.
 fn fastest(table: &DriveTable) -> Option<(f64, String)> {
     let pairs = table.gears().iter().flat_map(|gear| table.motors().iter().map(move |motor| (gear, motor)));
-    let speeds = pairs.filter_map(|(gear, motor)| {
-        let input_rpm = gear.max_input_speed_rpm?.min(motor.max_speed_rpm.or(motor.rated_speed_rpm)?);
-        Some((input_rpm / f64::from(gear.ratio) / rpm_from_rad_s(1.0), gear, motor))
+    let speeds = pairs.filter(|(gear, motor)| gear.goes_with(motor)).filter_map(|(gear, motor)| {
+        let no_limit = gear.kind.has_no_ratings_of_its_own().then_some(f64::INFINITY);
+        let input_rpm =
+            gear.max_input_speed_rpm.or(no_limit)?.min(motor.max_speed_rpm.or(motor.rated_speed_rpm)?);
+        Some((input_rpm / gear.ratio / rpm_from_rad_s(1.0), gear, motor))
     });
     let (rad_s, gear, motor) = speeds.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some((rad_s, format!("{} + {}", gear.id, motor.id)))
+    Some((rad_s, table.pair(gear, motor).name()))
 }

@@ -3,7 +3,7 @@
 use crate::catalog::motor::MotorKind;
 use crate::input::json::Node;
 
-const MOTOR_WORDS: [(&str, &[MotorKind]); 6] = [
+const MOTOR_WORDS: [(&str, &[MotorKind]); 7] = [
     (
         "electric",
         &[
@@ -18,7 +18,13 @@ const MOTOR_WORDS: [(&str, &[MotorKind]); 6] = [
     ("brushless_servo", &[MotorKind::BrushlessServo]),
     ("frameless_servo", &[MotorKind::FramelessServo]),
     ("frameless_torque", &[MotorKind::FramelessTorque]),
+    ("stepper", &[MotorKind::Stepper]),
 ];
+
+/// The kinds of a study that asks for none: servo and hydraulic motors.
+pub(super) fn usual_motor_kinds() -> Vec<MotorKind> {
+    MotorKind::ALL.into_iter().filter(|kind| *kind != MotorKind::Stepper).collect()
+}
 
 /// Reads a list of such words.
 pub(super) fn read_motor_kinds(node: &Node) -> Option<Vec<MotorKind>> {

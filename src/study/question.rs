@@ -91,7 +91,9 @@ fn allowed(filter: &DriveFilter) -> AllowedParts {
         gear_mass: filter.gear_mass,
         gear_series: filter.gear_series.clone(),
         ratios: filter.ratios.clone(),
+        gear_kinds: filter.gear_kinds.clone(),
         gears: filter.gear_ids.clone(),
+        actuators: filter.actuator_ids.clone(),
         motor_kinds: filter.motor_kinds.clone(),
         motors: filter.motor_ids.clone(),
     }

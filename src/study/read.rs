@@ -6,12 +6,13 @@
 
 use super::cases::{Cases, read_cases};
 use super::connections::{connections_remark, with_connections};
+use super::creep::creep_remarks;
 use super::definition::Study;
+use super::drives::{Drives, read_drives};
 use super::effects::check_effects;
 use super::fit::{fit_remarks, read_fit};
 use super::harness::{harness_effects, harness_remark};
 use super::motion::{read_duty, read_motion};
-use super::motor_kinds::read_motor_kinds;
 use super::omissions::omissions;
 use super::range::{check_poses, read_range};
 use super::sections::{Aside, read_materials, read_sections};
@@ -25,7 +26,6 @@ use crate::catalog::gear::GearMass;
 use crate::input::json::{Document, Faults, Node, Object};
 use crate::sizing::fit::FitRequirement;
 use crate::sizing::requirement::MotionRequirement;
-use crate::sizing::select::DriveFilter;
 use crate::sizing::stated::StatedDuty;
 use crate::space::constraint::{Constraints, Servo};
 use crate::space::design_space::{DesignSpace, DriveChoice, LinkChoice, SpaceJoint, SpacePiece};
@@ -136,6 +136,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     remarks.extend(harness_remark(&space, harness_kg_per_m));
     remarks.extend(fit_remarks(&space, catalogs));
     remarks.extend(omissions(&space));
+    remarks.extend(creep_remarks(&space, catalogs));
     Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks })
 }
 
@@ -191,84 +192,6 @@ struct Open<'a> {
     connection_share: f64,
     /// The duty that the study states for its only joint.
     duty: Option<&'a StatedDuty>,
-}
-
-/// Where drives are taken from.
-#[derive(Debug, Clone)]
-struct Drives {
-    filter: DriveFilter,
-}
-
-impl Default for Drives {
-    fn default() -> Self {
-        Self { filter: DriveFilter::everything(GearMass::HousedUnit) }
-    }
-}
-
-fn read_drives(node: &Node, catalogs: &Catalogs) -> Option<Drives> {
-    let object = node.object(&["gear_series", "gears", "ratios", "gear_mass", "motors", "motor_models"])?;
-    let gear_mass = object.or("gear_mass", GearMass::HousedUnit, read_gear_mass);
-    let known_series: Vec<&str> = catalogs.gears.iter().map(|g| g.series.as_str()).collect();
-    let known_gears: Vec<&str> = catalogs.gears.iter().map(|g| g.id.as_str()).collect();
-    let known_motors: Vec<&str> = catalogs.motors.iter().map(|m| m.id.as_str()).collect();
-    let mut known_ratios: Vec<u32> = catalogs.gears.iter().map(|g| g.ratio).collect();
-    known_ratios.sort_unstable();
-    known_ratios.dedup();
-    let filter = DriveFilter {
-        gear_mass: gear_mass?,
-        bearing: BearingSource::OfGear,
-        extras: ExtrasSource::NONE,
-        gear_series: names(&object, "gear_series", &known_series)?,
-        ratios: object.or("ratios", None, |n| read_ratios(n, &known_ratios).map(Some))?,
-        gear_ids: names(&object, "gears", &known_gears)?,
-        motor_kinds: object.or("motors", None, |n| read_motor_kinds(n).map(Some))?,
-        motor_ids: names(&object, "motor_models", &known_motors)?,
-    };
-    Some(Drives { filter })
-}
-
-/// A list of names that must all be known; without the key there is no restriction.
-fn names(object: &Object, key: &str, known: &[&str]) -> Option<Option<Vec<String>>> {
-    object.or(key, None, |node| {
-        let read: Vec<Option<String>> = node
-            .array()?
-            .iter()
-            .map(|n| match n.string()? {
-                name if known.contains(&name) => Some(name.to_string()),
-                name => n.fault(
-                    format!("\"{name}\" is not in the catalog"),
-                    &crate::input::json::closest(name, known)
-                        .map_or("`armwright catalog show` lists what is".into(), |c| {
-                            format!("did you mean \"{c}\"?")
-                        }),
-                ),
-            })
-            .collect();
-        read.into_iter().collect::<Option<Vec<_>>>().map(Some)
-    })
-}
-
-fn read_gear_mass(node: &Node) -> Option<GearMass> {
-    match node.string()? {
-        "component_set" => Some(GearMass::ComponentSet),
-        "housed_unit" => Some(GearMass::HousedUnit),
-        other => node.fault(format!("\"{other}\" is not known"), "choose one of: component_set, housed_unit"),
-    }
-}
-
-fn read_ratios(node: &Node, known: &[u32]) -> Option<Vec<u32>> {
-    let read: Vec<_> = node
-        .array()?
-        .iter()
-        .map(|n| {
-            let ratio = n.positive()?;
-            known.iter().copied().find(|&k| f64::from(k) == ratio).or_else(|| {
-                let list: Vec<String> = known.iter().map(u32::to_string).collect();
-                n.fault(format!("= {ratio}: no gear has this ratio"), &format!("ratios: {}", list.join(", ")))
-            })
-        })
-        .collect();
-    read.into_iter().collect()
 }
 
 fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePiece>> {

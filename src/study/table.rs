@@ -2,6 +2,7 @@
 
 use super::outcome::Front;
 use crate::catalog::Catalogs;
+use crate::catalog::gear::GearKind;
 use crate::report::front_table::FrontTable;
 use crate::report::tube::tube_size;
 use crate::sizing::demand::{JointDemand, JointMotion};
@@ -82,7 +83,9 @@ fn row(problem: &ArmProblem, catalogs: &Catalogs, judged: &super::outcome::Judge
         out.push(joint.bearing_margin.map_or(String::new(), number));
         out.push(joint.motor_rms_margin.map_or(String::new(), number));
         out.push(number(joint.motor_speed_rpm));
-        out.push(number(critical_rpm(o.lowest_mode_hz)));
+        // only a wave generator passes with two waves in each turn
+        let waves = catalogs.gears.iter().any(|g| g.id == joint.gear && g.kind == GearKind::StrainWave);
+        out.push(if waves { number(critical_rpm(o.lowest_mode_hz)) } else { String::new() });
     }
     let complete = problem.walk(&chosen, |_, _| {}).ok()?;
     out.push(problem.stress_safety_factor(&complete).map_or(String::new(), number));

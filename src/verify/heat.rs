@@ -5,7 +5,7 @@
 //! drives. The worse of the two directions counts. The search uses a formula for lifting alone.
 
 use super::question::AskedDutyPhase;
-use crate::catalog::gear::Gear;
+use crate::catalog::gear::{Gear, GearKind};
 use crate::catalog::motor::Motor;
 use std::f64::consts::PI;
 
@@ -55,10 +55,10 @@ impl MotorHeat {
         acceleration_rad_s2: f64,
         stated: &[StatedPhase],
     ) -> Option<Self> {
-        let (ratio, efficiency) = (f64::from(gear.ratio), gear.efficiency?);
+        let (ratio, efficiency) = (gear.ratio, efficiency(gear)?);
         let cruising_rpm = ratio * speed_rad_s * 30.0 / PI;
         let continuous_nm = continuous_nm(motor, cruising_rpm)?;
-        let own_s2 = (motor.rotor_inertia_kgm2? + gear.inertia_input_kgm2?) * ratio / continuous_nm;
+        let own_s2 = input_inertia_kgm2(gear, motor)? * ratio / continuous_nm;
         let heat = Self {
             driving: 1.0 / (ratio * efficiency) / continuous_nm,
             driven: efficiency / ratio / continuous_nm,
@@ -116,8 +116,47 @@ impl MotorHeat {
     }
 }
 
-/// What a motor gives continuously at a speed: its rated torque, beyond the rated speed its rated power.
-fn continuous_nm(motor: &Motor, speed_rpm: f64) -> Option<f64> {
+/// Efficiency of a gear; a direct drive loses nothing.
+pub(super) fn efficiency(gear: &Gear) -> Option<f64> {
+    gear.efficiency.or((gear.kind == GearKind::Direct).then_some(1.0))
+}
+
+/// Inertia of rotor and of the gear's input, at the motor \[kg m²\].
+pub(super) fn input_inertia_kgm2(gear: &Gear, motor: &Motor) -> Option<f64> {
+    let none = (gear.kind == GearKind::Direct).then_some(0.0);
+    Some(motor.rotor_inertia_kgm2? + gear.inertia_input_kgm2.or(none)?)
+}
+
+/// The largest torque that a motor gives at every speed from rest to a speed.
+pub(super) fn peak_nm(motor: &Motor, speed_rpm: f64) -> Option<f64> {
+    let points: Vec<(f64, f64)> =
+        motor.curve.iter().filter_map(|p| Some((p.speed_rpm, p.peak_torque_nm?))).collect();
+    let passed = points.iter().filter(|(rpm, _)| *rpm <= speed_rpm).map(|(_, torque_nm)| *torque_nm);
+    let least = on_curve(&points, speed_rpm).into_iter().chain(passed).reduce(f64::min);
+    least.or(motor.peak_torque_nm)
+}
+
+/// A torque on a curve of speeds and torques, level beyond its ends; `None` without points.
+fn on_curve(points: &[(f64, f64)], speed_rpm: f64) -> Option<f64> {
+    let (first, last) = (points.first()?, points.last()?);
+    let between = points.windows(2).find(|pair| (pair[0].0..=pair[1].0).contains(&speed_rpm));
+    Some(match between {
+        Some(pair) => {
+            let share = (speed_rpm - pair[0].0) / (pair[1].0 - pair[0].0);
+            (1.0 - share) * pair[0].1 + share * pair[1].1
+        }
+        None if speed_rpm < first.0 => first.1,
+        None => last.1,
+    })
+}
+
+/// What a motor gives continuously at a speed: by its curve, else its rated torque, beyond the rated speed its rated power.
+pub(super) fn continuous_nm(motor: &Motor, speed_rpm: f64) -> Option<f64> {
+    let points: Vec<(f64, f64)> =
+        motor.curve.iter().filter_map(|p| Some((p.speed_rpm, p.continuous_torque_nm?))).collect();
+    if let Some(torque_nm) = on_curve(&points, speed_rpm) {
+        return Some(torque_nm);
+    }
     let beyond = motor.rated_speed_rpm.map_or(1.0, |rated_rpm| (speed_rpm / rated_rpm).max(1.0));
     Some(motor.rated_torque_nm? / beyond)
 }

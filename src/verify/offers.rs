@@ -130,7 +130,8 @@ fn offers(
         }
         let (law, tilt_rad_per_nm) = springs(Curve::Windup(windup), bearing);
         let extras = |motor| joint.extras.with_parts(gear, motor, allowed.gear_mass);
-        let motors = catalogs.motors.iter().enumerate().filter(|(_, motor)| allowed.allows_motor(motor));
+        let motors = catalogs.motors.iter().enumerate();
+        let motors = motors.filter(|(_, motor)| gear.goes_with(motor) && allowed.allows_motor(motor));
         offers.extend(motors.filter_map(|(motor_place, motor)| {
             Some(Offer {
                 gear: gear_place,
@@ -162,6 +163,14 @@ fn drive_kg(allowed: &AllowedParts, gear: &Gear, motor: &Motor) -> Option<f64> {
 /// number of the curve.
 fn torsion_curve(gear: &Gear, share: f64) -> Option<Windup> {
     let together = |stiffness: Option<f64>| Some(stiffness? * (1.0 / (1.0 + share)));
+    // K1 alone, or equal slopes without break points, are a straight line, which any break points describe
+    let [k1, k2, k3] = [gear.k1_nm_per_rad, gear.k2_nm_per_rad, gear.k3_nm_per_rad];
+    let breaks = gear.t1_nm.is_some() as usize + gear.t2_nm.is_some() as usize;
+    let one_line = (k2.is_none() && k3.is_none() && breaks == 0) || (k1 == k2 && k2 == k3 && breaks < 2);
+    if one_line {
+        let k = together(k1)?;
+        return Some(Windup { k1_nm_per_rad: k, k2_nm_per_rad: k, k3_nm_per_rad: k, t1_nm: 1.0, t2_nm: 2.0 });
+    }
     let [k1_nm_per_rad, k2_nm_per_rad, k3_nm_per_rad] =
         [together(gear.k1_nm_per_rad)?, together(gear.k2_nm_per_rad)?, together(gear.k3_nm_per_rad)?];
     Some(Windup { k1_nm_per_rad, k2_nm_per_rad, k3_nm_per_rad, t1_nm: gear.t1_nm?, t2_nm: gear.t2_nm? })

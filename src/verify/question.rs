@@ -12,7 +12,7 @@ use crate::arm::load::LoadCase;
 use crate::arm::section::{LinkMaterial, Section};
 use crate::arm::structure::{JointPiece, LinkPiece, Piece, Structure};
 use crate::arm::{Arm, Element, Joint, JointModel, Link, LinkBody, LinkModel};
-use crate::catalog::gear::{Gear, GearMass};
+use crate::catalog::gear::{Gear, GearKind, GearMass};
 use crate::catalog::motor::{Motor, MotorKind};
 use nalgebra::{Unit, Vector3};
 
@@ -127,10 +127,14 @@ pub struct AllowedParts {
     /// Series of gears.
     pub gear_series: Option<Vec<String>>,
     /// Reduction ratios.
-    pub ratios: Option<Vec<u32>>,
+    pub ratios: Option<Vec<f64>>,
+    /// Kinds of gears other than actuators.
+    pub gear_kinds: Option<Vec<GearKind>>,
     /// Gears by name.
     pub gears: Option<Vec<String>>,
-    /// Kinds of motors.
+    /// Actuators by model.
+    pub actuators: Option<Vec<String>>,
+    /// Kinds of motors other than those of actuators.
     pub motor_kinds: Option<Vec<MotorKind>>,
     /// Motors by name.
     pub motors: Option<Vec<String>>,
@@ -255,13 +259,20 @@ impl Limits {
 impl AllowedParts {
     /// Whether a gear may be used.
     pub fn allows_gear(&self, gear: &Gear) -> bool {
+        if gear.kind == GearKind::Actuator {
+            return is_listed(&self.actuators, |model| *model == gear.id);
+        }
         is_listed(&self.gear_series, |series| *series == gear.series)
             && is_listed(&self.ratios, |ratio| *ratio == gear.ratio)
+            && is_listed(&self.gear_kinds, |kind| *kind == gear.kind)
             && is_listed(&self.gears, |name| *name == gear.id)
     }
 
     /// Whether a motor may be used.
     pub fn allows_motor(&self, motor: &Motor) -> bool {
+        if motor.kind == MotorKind::OfActuator {
+            return is_listed(&self.actuators, |model| *model == motor.id);
+        }
         is_listed(&self.motor_kinds, |kind| *kind == motor.kind)
             && is_listed(&self.motors, |name| *name == motor.id)
     }

@@ -11,9 +11,9 @@ use super::bearing::BearingRatings;
 use super::demand::{Demand, QUANTITIES, Quantity};
 use super::duty::Duty;
 use super::fit::{Widths, goes_into_joint, widths};
-use super::heat::MotorHeat;
+use super::heat::{MotorHeat, continuous_nm, efficiency, input_inertia_kgm2, peak_nm};
 use crate::arm::bearing::Bearing;
-use crate::catalog::gear::Gear;
+use crate::catalog::gear::{Gear, GearKind, LifeLaw};
 use crate::catalog::motor::Motor;
 
 /// The greatest torque of each quantity that a drive holds, what its output bearing holds, how its motor heats, and how wide
@@ -35,16 +35,16 @@ struct Check {
 /// All checks of torques. A drive that lacks a number for one of them cannot be chosen.
 const CHECKS: [Check; 7] = [
     Check { on: Quantity::Static, most: motor_hold_nm },
-    Check { on: Quantity::Peak, most: |gear, _, _| gear.repeated_peak_torque_nm },
+    Check { on: Quantity::Peak, most: |gear, _, _| limit(gear, gear.repeated_peak_torque_nm) },
     Check { on: Quantity::Peak, most: motor_peak_nm },
-    Check { on: Quantity::Stop, most: |gear, _, _| gear.momentary_peak_torque_nm },
+    Check { on: Quantity::Stop, most: |gear, _, _| limit(gear, gear.momentary_peak_torque_nm) },
     Check { on: Quantity::Stop, most: |gear, _, _| Some(breaks_nm(gear)) },
-    Check { on: Quantity::MeanCubed, most: |gear, _, _| Some(gear.average_torque_limit_nm?.powi(3)) },
+    Check {
+        on: Quantity::MeanCubed,
+        most: |gear, _, _| Some(limit(gear, gear.average_torque_limit_nm)?.powi(3)),
+    },
     Check { on: Quantity::MeanCubed, most: life_nm3 },
 ];
-
-/// Input speed for which the rated torques of gears are stated \[rpm\].
-const RATED_RPM: f64 = 2000.0;
 
 impl Ratings {
     /// Ratings under which no check fails.
@@ -114,14 +114,24 @@ impl Ratings {
 
 /// Whether gear and motor may turn as fast as the motion needs; `None` if the catalog lacks a number.
 fn turns_as_fast(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<bool> {
-    let motor_max_rpm = motor.max_speed_rpm.or(motor.rated_speed_rpm)?;
+    let of_curve = motor.curve.last().map(|point| point.speed_rpm);
+    let of_row = motor.max_speed_rpm.or(motor.rated_speed_rpm);
+    let motor_max_rpm = of_row.or(of_curve)?.min(of_curve.unwrap_or(f64::INFINITY));
     let fastest_rpm = input_rpm(gear, duty.speed_rad_s);
     let mean_rpm = input_rpm(gear, duty.mean_speed_rad_s);
     Some(
-        fastest_rpm <= gear.max_input_speed_rpm?
+        fastest_rpm <= limit(gear, gear.max_input_speed_rpm)?
             && fastest_rpm <= motor_max_rpm
-            && mean_rpm <= gear.average_input_speed_limit_rpm?,
+            && mean_rpm <= limit(gear, gear.average_input_speed_limit_rpm)?,
     )
+}
+
+/// A limit of a gear. A direct drive and an actuator have none but those that their rows state.
+fn limit(gear: &Gear, rating: Option<f64>) -> Option<f64> {
+    match gear.kind {
+        GearKind::Direct | GearKind::Actuator => Some(rating.unwrap_or(f64::INFINITY)),
+        _ => rating,
+    }
 }
 
 /// The torque at which a gear buckles or its teeth jump, as far as the catalog knows it.
@@ -133,52 +143,46 @@ fn breaks_nm(gear: &Gear) -> f64 {
 /// never fewer than one in a stop.
 fn bears_the_stops(gear: &Gear, duty: &Duty) -> bool {
     let waves = 2.0 * input_rpm(gear, duty.speed_rad_s) / 60.0 * duty.stop_s;
-    duty.emergency_stops.is_none_or(|stops| stops <= 1e4 / waves.max(1.0))
+    let has_waves = gear.kind == GearKind::StrainWave;
+    duty.emergency_stops.is_none_or(|stops| !has_waves || stops <= 1e4 / waves.max(1.0))
 }
 
 /// Speed of the motor \[rpm\] when the joint turns at `output_rad_s`.
 fn input_rpm(gear: &Gear, output_rad_s: f64) -> f64 {
-    f64::from(gear.ratio) * (output_rad_s * 30.0 / std::f64::consts::PI)
+    gear.ratio * (output_rad_s * 30.0 / std::f64::consts::PI)
 }
 
 /// Torque at the joint for one newton metre at the motor.
 fn gain(gear: &Gear) -> Option<f64> {
-    Some(f64::from(gear.ratio) * gear.efficiency?)
+    Some(gear.ratio * efficiency(gear)?)
 }
 
 /// Torque at the joint that the motor can hold without end: `T_rated N η` \[N m\]. A brake holds any.
 fn motor_hold_nm(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<f64> {
     match duty.has_brake {
         true => Some(f64::INFINITY),
-        false => Some(motor.rated_torque_nm? * gain(gear)?),
+        false => Some(continuous_nm(motor, 0.0)? * gain(gear)?),
     }
 }
 
 /// Torque at the joint when the motor gives its peak torque \[N m\]. The rotor's and the wave generator's own
 /// acceleration is subtracted (Eqs 9-12): `(T_peak - (J_rotor + J_input) N α) N η`.
 fn motor_peak_nm(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<f64> {
-    let inertia_kgm2 = motor.rotor_inertia_kgm2? + gear.inertia_input_kgm2?;
-    let own_nm = inertia_kgm2 * f64::from(gear.ratio) * duty.acceleration_rad_s2;
-    Some((motor.peak_torque_nm? - own_nm) * gain(gear)?)
+    let own_nm = input_inertia_kgm2(gear, motor)? * gear.ratio * duty.acceleration_rad_s2;
+    let peak_nm = peak_nm(motor, input_rpm(gear, duty.speed_rad_s))?;
+    Some((peak_nm - own_nm) * gain(gear)?)
 }
 
-/// Cube of the mean torque under which the wave generator's bearing lasts for the required life \[(N m)³\], from `L10
-/// = L_ref (T_rated / T_mean)³ (2000 rpm / n_mean)`.
+/// Cube of the mean torque under which the gear lasts for the required life \[(N m)³\], from `L10 = L_rated (T_rated /
+/// T_mean)^p (n_rated / n_mean)`. A belt, a direct drive and an actuator have a life only if their rows state one.
 fn life_nm3(gear: &Gear, _: &Motor, duty: &Duty) -> Option<f64> {
-    let at_rated_h = rated_life_h(&gear.series)? * (RATED_RPM / input_rpm(gear, duty.mean_speed_rad_s));
-    Some(gear.rated_torque_nm?.powi(3) * at_rated_h / duty.life_h)
-}
-
-/// L10 life at rated torque and speed, by series of gears \[h\] (Harmonic Drive SE, engineering data 1019659, table
-/// 20.1, and Harmonic Drive LLC, CSF/CSG catalog). `None` for an unknown series.
-fn rated_life_h(series: &str) -> Option<f64> {
-    const LONG: [&str; 3] = ["CSG", "SHG", "CobaltLine"];
-    const SHORT: [&str; 6] = ["HFUC", "HFUS", "CSF", "CSD", "CPU", "SHD"];
-    match series {
-        long if LONG.contains(&long) => Some(10_000.0),
-        short if SHORT.contains(&short) => Some(7_000.0),
-        _ => None,
+    let LifeLaw { rated_h, rated_speed_rpm, exponent } = gear.life;
+    if rated_h.is_none() && matches!(gear.kind, GearKind::Belt | GearKind::Direct | GearKind::Actuator) {
+        return Some(f64::INFINITY);
     }
+    let at_rated_h = rated_h? * (rated_speed_rpm? / input_rpm(gear, duty.mean_speed_rad_s));
+    let times = libm::exp(libm::log(at_rated_h / duty.life_h) / exponent);
+    Some((gear.rated_torque_nm? * times).powi(3))
 }
 
 #[cfg(test)]
@@ -265,7 +269,7 @@ mod tests {
         let (gear, motor) = (catalogs.gear("HFUC-58-100").unwrap(), catalogs.motor("F11-10").unwrap());
         let blank = Gear { momentary_peak_torque_nm: None, ..gear.clone() };
         let slow = Gear { max_input_speed_rpm: Some(10.0), ..gear.clone() };
-        let unknown = Gear { series: "unheard of".into(), ..gear.clone() };
+        let unknown = Gear { life: LifeLaw { rated_h: None, ..gear.life }, ..gear.clone() };
         for gear in [blank, slow, unknown] {
             assert_eq!(Ratings::of(&gear, motor, None, &duty()), None);
         }

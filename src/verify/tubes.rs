@@ -142,7 +142,10 @@ pub(super) fn is_too_slender(question: &Question, section: &Section) -> bool {
     let slenderness = match section {
         Section::RectangularTube { .. } => (width_m.max(height_m) - 2.0 * wall_m) / wall_m,
         Section::RoundTube { .. } => width_m / wall_m,
-        Section::RectangularBar { .. } | Section::RoundBar { .. } => return false,
+        Section::RectangularBar { .. }
+        | Section::RoundBar { .. }
+        | Section::IBeam { .. }
+        | Section::Stated(_) => return false,
     };
     question.limits.wall_slenderness_max.is_some_and(|most| slenderness > most)
 }

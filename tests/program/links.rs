@@ -192,3 +192,80 @@ fn a_pick_of_a_representative_material_says_so() {
     assert!(!said.contains("6061-T6 (representative)"), "{said}");
     assert!(!summary.contains("6061-T6 (representative)"), "{summary}");
 }
+
+/// A rigid joint with a link of this section, 0.6 m long, without gravity; its tip under 100 N downwards and 100 N along y.
+fn cantilever_m(link: Value, catalogs: Option<(&str, &str)>) -> ([f64; 2], f64, String) {
+    let mut link = link;
+    link["type"] = json!("link");
+    link["name"] = json!("arm");
+    link["vector_m"] = json!([0.6, 0, 0]);
+    let steel = json!({"youngs_modulus_pa": 2.1e11, "shear_modulus_pa": 8.1e10, "density_kg_m3": 7850});
+    let arm = json!({"name": "arm", "gravity_m_s2": 0, "materials": {"steel": steel}, "chain": [
+        {"type": "joint", "name": "j1", "axis": [0, 1, 0], "stiffness_nm_per_rad": null}, link]});
+    let here = folder_with("arm.json", &arm);
+    let mut words = vec!["analyze", "arm.json", "--force-n", "0,100,-100"];
+    if let Some((name, rows)) = catalogs {
+        std::fs::create_dir(here.path().join("p")).expect("a folder");
+        std::fs::write(here.path().join("p").join(name), rows).expect("written");
+        words.extend(["--catalogs", "p"]);
+    }
+    let (code, text) = armwright(here.path(), &words);
+    assert_eq!(code, 0, "{text}");
+    words.push("--json");
+    let (_, said) = armwright(here.path(), &words);
+    let case: Value = serde_json::from_str(&said).expect("JSON");
+    let tip = |i: usize| case["tip_displacement_m"][i].as_f64().expect("a number");
+    let hz = case["modes"][0]["frequency_hz"].as_f64().expect("a number");
+    ([tip(1), -tip(2)], hz, text)
+}
+
+#[test]
+fn a_section_by_its_stiffnesses_bends_and_vibrates_as_a_cantilever_of_them() {
+    let section = json!({"shape": "stated", "width_m": 0.05, "height_m": 0.08, "ei_y_nm2": 3e4, "ei_z_nm2": 2e4,
+        "gj_nm2": 1e4, "kg_per_m": 2.5});
+    let ([y_m, z_m], hz, _) = cantilever_m(json!({"section": section}), None);
+    let by_hand = |ei: f64| 100.0 * 0.6f64.powi(3) / (3.0 * ei);
+    assert!((z_m / by_hand(3e4) - 1.0).abs() < 1e-9, "{z_m}");
+    assert!((y_m / by_hand(2e4) - 1.0).abs() < 1e-9, "{y_m}");
+    // 1.8751 for the first mode of a cantilever; one link has two bending coordinates a plane, which is 0.5 % too stiff
+    let mode_hz = 1.875_104f64.powi(2) * (2e4 / 2.5f64).sqrt() / (0.6 * 0.6) / (2.0 * PI);
+    assert!((0.0..0.006).contains(&(hz / mode_hz - 1.0)), "{hz}, by hand {mode_hz}");
+    let with_material = json!({"material": "steel", "section": {"shape": "stated", "width_m": 0.05, "height_m": 0.08,
+        "ei_y_nm2": 3e4, "ei_z_nm2": 2e4, "gj_nm2": 1e4, "kg_per_m": 2.5}});
+    let arm = json!({"name": "a", "chain": [{"type": "link", "name": "l", "vector_m": [1, 0, 0],
+        "material": with_material["material"], "section": with_material["section"]}]});
+    let (code, said) = armwright(folder_with("a.json", &arm).path(), &["analyze", "a.json"]);
+    assert!(code == 3 && said.contains("stands beside a section of stated stiffness"), "{said}");
+}
+
+#[test]
+fn an_i_section_bends_about_both_axes_as_a_beam_with_shear() {
+    let section =
+        json!({"shape": "i_beam", "width_m": 0.05, "height_m": 0.1, "web_m": 0.004, "flange_m": 0.006});
+    let ([y_m, z_m], ..) = cantilever_m(json!({"material": "steel", "section": section}), None);
+    let (b, h, web, flange) = (0.05f64, 0.1f64, 0.004, 0.006);
+    let (clear, area) = (h - 2.0 * flange, 2.0 * b * flange + (h - 2.0 * flange) * web);
+    let iy = 2.0 * (b * flange.powi(3) / 12.0 + b * flange * ((h - flange) / 2.0).powi(2))
+        + web * clear.powi(3) / 12.0;
+    let iz = 2.0 * flange * b.powi(3) / 12.0 + clear * web.powi(3) / 12.0;
+    let bending = |i: f64| 100.0 * 0.6f64.powi(3) / (3.0 * 2.1e11 * i);
+    // shear in the web alone is more than Cowper's, whole area less
+    let shear = |area_m2: f64| 100.0 * 0.6 / (8.1e10 * area_m2);
+    let web_m2 = (h - flange) * web;
+    assert!(z_m > bending(iy) + shear(area) && z_m < bending(iy) + 1.5 * shear(web_m2), "{z_m}");
+    assert!((0.0..0.02).contains(&(y_m / bending(iz) - 1.0)), "{y_m}");
+}
+
+#[test]
+fn a_printed_link_is_taken_and_said_to_creep() {
+    let rows = "name,class,e_pa,g_pa,density_kg_m3,poisson,yield_or_strength_pa,source,confidence\n\
+        PETG printed,polymer,2.0e9,0.73e9,1270,0.38,4e7,filament sheet,third party\n";
+    let section = json!({"shape": "round_tube", "diameter_m": 0.06, "wall_m": 0.005});
+    let ([_, z_m], _, text) =
+        cantilever_m(json!({"material": "PETG printed", "section": section}), Some(("materials.csv", rows)));
+    let i = PI / 64.0 * (0.06f64.powi(4) - 0.05f64.powi(4));
+    let bending = 100.0 * 0.6f64.powi(3) / (3.0 * 2.0e9 * i);
+    assert!((0.0..0.03).contains(&(z_m / bending - 1.0)), "{z_m}, bending alone {bending}");
+    let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("PETG printed (polymer) in arm: it creeps"), "{words}");
+}

@@ -10,6 +10,7 @@ mod catalog_cli;
 mod cli;
 mod compare;
 mod docs;
+mod drives;
 mod duty_cycles;
 mod front_check;
 mod hostile_names;

@@ -13,7 +13,7 @@ pub(crate) fn point(row: &Row) -> Option<EfficiencyPoint> {
         kind: kind?,
         series: row.filled("series")?.to_string(),
         size: row.count("size"),
-        ratio: row.count("ratio"),
+        ratio: row.number("ratio"),
         x: row.number("x")?,
         value: row.number("value")?,
         provenance: row.provenance()?,

@@ -2,17 +2,20 @@
 
 use super::envelope::envelope;
 use super::row::Row;
-use crate::catalog::gear::{BearingRatings, Gear};
+use crate::catalog::gear::{BearingRatings, Gear, GearKind, LifeLaw};
 
 /// The gear of a row; `None` if its name or source was refused.
 pub(crate) fn gear(row: &Row) -> Option<Gear> {
     check(row);
-    let (series, size, ratio) = (row.filled("series")?.to_string(), row.count("size")?, row.count("ratio")?);
+    let (series, size, ratio) = (row.filled("series")?.to_string(), row.count("size")?, row.number("ratio")?);
+    let kind = kind(row);
     Some(Gear {
         id: format!("{series}-{size}-{ratio}"),
         series,
+        kind,
         size,
         ratio,
+        life: life(row, kind),
         rated_torque_nm: row.number("rated_torque_nm"),
         repeated_peak_torque_nm: row.number("repeated_peak_torque_nm"),
         average_torque_limit_nm: row.number("average_torque_limit_nm"),
@@ -28,6 +31,8 @@ pub(crate) fn gear(row: &Row) -> Option<Gear> {
         k2_nm_per_rad: row.number("k2_nm_per_rad"),
         k3_nm_per_rad: row.number("k3_nm_per_rad"),
         hysteresis_loss_arcmin: row.number("hysteresis_loss_arcmin"),
+        backlash_arcmin: row.number("backlash_arcmin"),
+        lost_motion_arcmin: row.number("lost_motion_arcmin"),
         transmission_accuracy_arcmin: row.number("transmission_accuracy_arcmin"),
         tilting_stiffness_nm_per_rad: row.number("tilting_stiffness_nm_per_rad"),
         permissible_tilting_moment_nm: row.number("permissible_tilting_moment_nm"),
@@ -38,6 +43,21 @@ pub(crate) fn gear(row: &Row) -> Option<Gear> {
         efficiency: row.number("efficiency_rated_2000rpm"),
         provenance: row.provenance()?,
     })
+}
+
+/// The kind of a row; blank is a strain-wave gear.
+fn kind(row: &Row) -> GearKind {
+    GearKind::from_word(row.text("kind")).unwrap_or(GearKind::StrainWave)
+}
+
+/// What the row says of its life, and what its kind says where the row is blank.
+fn life(row: &Row, kind: GearKind) -> LifeLaw {
+    let usual = LifeLaw::usual(kind);
+    LifeLaw {
+        rated_h: row.number("rated_life_h").or(usual.rated_h),
+        rated_speed_rpm: row.number("rated_life_speed_rpm").or(usual.rated_speed_rpm),
+        exponent: row.number("life_exponent").unwrap_or(usual.exponent),
+    }
 }
 
 fn bearing(row: &Row) -> BearingRatings {
@@ -66,14 +86,14 @@ fn check(row: &Row) {
     order(
         row,
         &["repeated_peak_torque_nm", "momentary_peak_torque_nm"],
-        true,
+        kind(row) == GearKind::StrainWave,
         "rated <= average limit <= repeated peak < momentary peak",
     );
     order(
         row,
         &["k1_nm_per_rad", "k2_nm_per_rad", "k3_nm_per_rad"],
         false,
-        "a harmonic drive stiffens: K1 <= K2 <= K3",
+        "a gear stiffens: K1 <= K2 <= K3",
     );
     order(row, &["t1_nm", "t2_nm"], true, "the first segment of the torsion curve ends before the second");
     order(
@@ -98,7 +118,18 @@ fn check(row: &Row) {
         let problem = format!("= {pitch_m} is not within outer_diameter_mm = {outer_mm}");
         row.fault("bearing_pitch_diameter_m", problem, "write the pitch diameter in m, the outer one in mm");
     }
-    usual_figures(row);
+    if let Some(exponent) = row.number("life_exponent") {
+        row.within(
+            "life_exponent",
+            exponent,
+            [1.0, 10.0],
+            [3.0, 10.0 / 3.0],
+            "3 for balls, 3.333 for rollers",
+        );
+    }
+    if kind(row) == GearKind::StrainWave {
+        usual_figures(row);
+    }
 }
 
 fn order(row: &Row, columns: &[&'static str], strict: bool, hint: &str) {
@@ -114,7 +145,7 @@ fn usual_figures(row: &Row) {
             row.warn(
                 column,
                 format!("= {x} is unusual for size {size}"),
-                &format!("usual: {:.3e} to {:.3e} {unit}; a slip of unit?", low * scale, high * scale),
+                &format!("usual of strain-wave gears: {:.3e} to {:.3e} {unit}; a slip of unit, or another kind (column kind)?", low * scale, high * scale),
             );
         }
     };

@@ -32,13 +32,26 @@ fn unidirectional(row: &Row) -> bool {
 }
 
 fn check(row: &Row) {
+    let class = MaterialClass::from_word(row.text("class"));
+    // metals and fibre composites are held to what is usual of them
+    let (moduli_pa, shear_moduli_pa, densities, expansions) = match class.and_then(MaterialClass::caution) {
+        None => ([1e10, 1e12], [1e9, 2e11], [1000.0, 9000.0], [-6e-6, 3e-5]),
+        Some(caution) => {
+            row.warn(
+                "class",
+                format!("{}: {caution}", row.text("class")),
+                "the moduli are taken as they stand",
+            );
+            ([1e8, 3e10], [1e7, 1e10], [100.0, 3000.0], [-6e-6, 3e-4])
+        }
+    };
     let ranges = [
-        ("e_pa", [1e8, 2e12], [1e10, 1e12], "write Pa (1 GPa = 1e9 Pa)"),
-        ("g_pa", [1e7, 1e12], [1e9, 2e11], "write Pa (1 GPa = 1e9 Pa)"),
-        ("density_kg_m3", [100.0, 25_000.0], [1000.0, 9000.0], "write kg/m3 (1 g/cm3 = 1000 kg/m3)"),
+        ("e_pa", [1e8, 2e12], moduli_pa, "write Pa (1 GPa = 1e9 Pa)"),
+        ("g_pa", [1e7, 1e12], shear_moduli_pa, "write Pa (1 GPa = 1e9 Pa)"),
+        ("density_kg_m3", [100.0, 25_000.0], densities, "write kg/m3 (1 g/cm3 = 1000 kg/m3)"),
         ("yield_or_strength_pa", [1e5, 2e10], [1e7, 6e9], "write Pa (1 MPa = 1e6 Pa)"),
         ("compressive_strength_pa", [1e5, 2e10], [1e7, 6e9], "write Pa (1 MPa = 1e6 Pa)"),
-        ("cte_1_per_k", [-1e-4, 1e-3], [-6e-6, 3e-5], "write 1/K (1 um/(m K) = 1e-6)"),
+        ("cte_1_per_k", [-1e-4, 1e-3], expansions, "write 1/K (1 um/(m K) = 1e-6)"),
     ];
     let mut moduli_are_possible = true;
     for (column, possible, usual, hint) in ranges {
@@ -56,7 +69,7 @@ fn poisson(row: &Row) -> bool {
     let (Some(class), Some(nu)) = (MaterialClass::from_word(row.text("class")), row.number("poisson")) else {
         return true;
     };
-    if class == MaterialClass::Composite {
+    if matches!(class, MaterialClass::Composite | MaterialClass::Wood | MaterialClass::Other) {
         return row.within("poisson", nu, [-1.0, 1.0], [0.0, 0.5], "a laminate may leave 0 to 0.5");
     }
     let is_possible = nu > 0.0 && nu < 0.5;
@@ -72,11 +85,13 @@ fn shear_modulus(row: &Row) {
     let figures = (class, row.number("e_pa"), row.number("g_pa"), row.number("poisson"));
     if let (Some(class), Some(e_pa), Some(g_pa), Some(nu)) = figures
         && !unidirectional(row)
+        && class != MaterialClass::Wood
     {
         let refuse = match class {
             MaterialClass::Metal => 0.06,
             MaterialClass::MetalMatrix => 0.25,
-            MaterialClass::Composite => f64::INFINITY,
+            // wood is orthotropic like a laminate, and a printed polymer is so too
+            _ => f64::INFINITY,
         };
         row.agrees("g_pa", g_pa, e_pa / (2.0 * (1.0 + nu)), "G = E/2(1+nu)", 0.06, refuse);
     }

@@ -18,6 +18,7 @@ pub(crate) fn motor(row: &Row) -> Option<Motor> {
         max_speed_rpm: row.number("max_speed_rpm"),
         rotor_inertia_kgm2: row.number("rotor_inertia_kgm2"),
         mass_kg: row.number("mass_kg"),
+        curve: Vec::new(),
         rated_power_w: row.number("rated_power_w"),
         envelope: envelope(row),
         provenance: row.provenance()?,

@@ -3,7 +3,7 @@
 
 use super::log::Log;
 use crate::catalog::efficiency::EfficiencyKind;
-use crate::catalog::gear::Gear;
+use crate::catalog::gear::{Gear, GearKind};
 use crate::catalog::{Catalogs, Provenance};
 use std::collections::BTreeMap;
 
@@ -43,8 +43,8 @@ const GROW_WITH_RATIO: &[Figure] = &[
 
 /// Warns of gears that break the trend of their series, and of curves that miss the rated efficiency.
 pub(crate) fn check(catalogs: &Catalogs, log: &Log) {
-    let by_size = families(&catalogs.gears, |g| g.ratio, |g| g.size);
-    let by_ratio = families(&catalogs.gears, |g| g.size, |g| g.ratio);
+    let by_size = families(&catalogs.gears, |g| g.ratio, |g| f64::from(g.size));
+    let by_ratio = families(&catalogs.gears, |g| f64::from(g.size), |g| g.ratio);
     for family in &by_size {
         GROW_WITH_SIZE.iter().for_each(|figure| grows(family, *figure, true, log));
     }
@@ -55,12 +55,12 @@ pub(crate) fn check(catalogs: &Catalogs, log: &Log) {
 }
 
 /// The gears of each series with the same `common` figure, sorted by the `rising` one.
-fn families(gears: &[Gear], common: fn(&Gear) -> u32, rising: fn(&Gear) -> u32) -> Vec<Vec<&Gear>> {
-    let mut families: BTreeMap<(&str, u32), Vec<&Gear>> = BTreeMap::new();
-    for gear in gears {
-        families.entry((&gear.series, common(gear))).or_default().push(gear);
+fn families(gears: &[Gear], common: fn(&Gear) -> f64, rising: fn(&Gear) -> f64) -> Vec<Vec<&Gear>> {
+    let mut families: BTreeMap<(&str, u64), Vec<&Gear>> = BTreeMap::new();
+    for gear in gears.iter().filter(|gear| gear.kind == GearKind::StrainWave) {
+        families.entry((&gear.series, common(gear).to_bits())).or_default().push(gear);
     }
-    families.values_mut().for_each(|family| family.sort_by_key(|gear| rising(gear)));
+    families.values_mut().for_each(|family| family.sort_by(|a, b| rising(a).total_cmp(&rising(b))));
     families.into_values().collect()
 }
 

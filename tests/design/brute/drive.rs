@@ -28,7 +28,9 @@ pub struct Drive {
     momentary_nm: f64,
     input_rpm: f64,
     average_input_rpm: f64,
-    reference_life_h: f64,
+    rated_life_h: f64,
+    rated_life_rpm: f64,
+    life_exponent: f64,
     motor_rated_nm: f64,
     motor_peak_nm: f64,
     motor_rpm: f64,
@@ -49,13 +51,21 @@ pub fn candidates(filter: &Value, catalog: &Catalog) -> Vec<Drive> {
     };
     let mut drives = Vec::new();
     for gear in &catalog.gears {
-        if !is_listed("gear_series", gear.text("series")) || !is_listed("gears", &gear.id) || !is_ratio(gear)
+        // other kinds only if the study names their series
+        let is_asked =
+            gear.text("kind").is_empty() || filter["gear_series"].is_array() || filter["gears"].is_array();
+        if !is_asked
+            || !is_listed("gear_series", gear.text("series"))
+            || !is_listed("gears", &gear.id)
+            || !is_ratio(gear)
         {
             continue;
         }
         for motor in &catalog.motors {
-            let is_wanted_kind =
-                filter["motors"].as_array().is_none_or(|k| k.iter().any(|k| is_kind(k, motor)));
+            let is_wanted_kind = match filter["motors"].as_array() {
+                Some(kinds) => kinds.iter().any(|kind| is_kind(kind, motor)),
+                None => filter["motor_models"].is_array() || motor.text("type") != "stepper",
+            };
             if is_wanted_kind && is_listed("motor_models", &motor.id) {
                 drives.extend(Drive::complete(gear, motor, mass_column));
             }
@@ -70,7 +80,7 @@ pub fn candidates(filter: &Value, catalog: &Catalog) -> Vec<Drive> {
 fn is_kind(word: &Value, motor: &Row) -> bool {
     let is_hydraulic = motor.text("type").starts_with("hydraulic");
     match word.as_str() {
-        Some("electric") => !is_hydraulic,
+        Some("electric") => !is_hydraulic && motor.text("type") != "stepper",
         Some("hydraulic") => is_hydraulic,
         other => panic!("the brute force does not know the motors {other:?}"),
     }
@@ -101,7 +111,9 @@ impl Drive {
             momentary_nm: gear.number("momentary_peak_torque_nm")?,
             input_rpm: gear.number("max_input_speed_rpm")?,
             average_input_rpm: gear.number("average_input_speed_limit_rpm")?,
-            reference_life_h: if ["CSG", "SHG"].contains(&gear.text("series")) { 10_000.0 } else { 7_000.0 },
+            rated_life_h: gear.number("rated_life_h")?,
+            rated_life_rpm: gear.number("rated_life_speed_rpm")?,
+            life_exponent: gear.number("life_exponent")?,
             motor_rated_nm: motor.number("rated_torque_nm")?,
             motor_peak_nm: motor.number("peak_torque_nm")?,
             motor_rpm: motor.number("max_speed_rpm").or(motor.number("rated_speed_rpm"))?,
@@ -152,7 +164,9 @@ impl Drive {
         let (slow, fast) = ((t.static_nm - t.linear_nm).abs(), t.static_nm + t.linear_nm);
         // Ramps run at half speed on average: weights 1/2, 3, 1/2 of t_a.
         let mean_nm = ((0.5 * fast.powi(3) + 3.0 * t.static_nm.powi(3) + 0.5 * slow.powi(3)) / 4.0).cbrt();
-        let life_h = self.reference_life_h * (self.rated_nm / mean_nm).powi(3) * 2000.0 / mean_rpm;
+        let life_h =
+            self.rated_life_h * (self.rated_nm / mean_nm).powf(self.life_exponent) * self.rated_life_rpm
+                / mean_rpm;
         let gain = self.ratio * self.efficiency;
         let rotary_nm = self.inertia_kgm2 * self.ratio * acceleration_rad_s2;
         fast <= self.repeated_nm

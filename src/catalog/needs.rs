@@ -1,0 +1,97 @@
+//! What a part lacks: the figures that sizing a joint cannot do without, and what each of them is for.
+
+use super::gear::{Gear, GearKind, GearMass};
+use super::motor::Motor;
+use std::fmt;
+
+/// A figure that a part lacks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Lack {
+    /// Column of the figure.
+    pub figure: &'static str,
+    /// What it is for.
+    pub purpose: &'static str,
+}
+
+impl fmt::Display for Lack {
+    /// `rated_life_h (life)`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} ({})", self.figure, self.purpose)
+    }
+}
+
+/// The lacks in one line: `no rated_life_h (life), no k1_nm_per_rad (torsion)`.
+pub(crate) fn words(lacks: &[Lack]) -> String {
+    lacks.iter().map(|lack| format!("no {lack}")).collect::<Vec<_>>().join(", ")
+}
+
+fn blank(figures: &[(Option<f64>, &'static str, &'static str)]) -> Vec<Lack> {
+    let blank = figures.iter().filter(|(figure, ..)| figure.is_none());
+    blank.map(|&(_, figure, purpose)| Lack { figure, purpose }).collect()
+}
+
+impl Gear {
+    /// What the gear lacks to be chosen for a joint with this mass; empty if every check of the gear can be made.
+    ///
+    /// ```
+    /// use armwright::catalog::{Catalogs, GearMass};
+    ///
+    /// let catalogs = Catalogs::builtin();
+    /// let mut gear = catalogs.gear("HFUC-58-100").unwrap().clone();
+    /// assert!(gear.lacks(GearMass::HousedUnit).is_empty());
+    /// gear.life.rated_h = None;
+    /// assert_eq!(gear.lacks(GearMass::HousedUnit)[0].to_string(), "rated_life_h (life)");
+    /// ```
+    pub fn lacks(&self, mass: GearMass) -> Vec<Lack> {
+        let mut lacks =
+            if self.kind.has_no_ratings_of_its_own() { Vec::new() } else { self.lacking_ratings() };
+        lacks.extend(self.missing_of_torsion().into_iter().map(|figure| Lack { figure, purpose: "torsion" }));
+        let column = match mass {
+            _ if self.kind == GearKind::Actuator => "mass_kg",
+            GearMass::ComponentSet => "mass_component_set_kg",
+            GearMass::HousedUnit => "mass_housed_unit_kg",
+        };
+        lacks.extend(blank(&[(self.mass_kg(mass), column, "mass")]));
+        lacks
+    }
+
+    /// The ratings that the checks of a gear with teeth, or of a belt, need.
+    fn lacking_ratings(&self) -> Vec<Lack> {
+        let mut lacks = blank(&[
+            (self.repeated_peak_torque_nm, "repeated_peak_torque_nm", "peak"),
+            (self.average_torque_limit_nm, "average_torque_limit_nm", "mean"),
+            (self.momentary_peak_torque_nm, "momentary_peak_torque_nm", "stop"),
+            (self.max_input_speed_rpm, "max_input_speed_rpm", "input speed"),
+            (self.average_input_speed_limit_rpm, "average_input_speed_limit_rpm", "mean input speed"),
+            (self.inertia_input_kgm2, "inertia_input_kgm2", "motor peak"),
+            (self.efficiency, "efficiency_rated_2000rpm", "motor torque"),
+        ]);
+        if self.kind.wears_out() || self.life.rated_h.is_some() {
+            lacks.extend(blank(&[
+                (self.rated_torque_nm, "rated_torque_nm", "life"),
+                (self.life.rated_h, "rated_life_h", "life"),
+                (self.life.rated_speed_rpm, "rated_life_speed_rpm", "life"),
+            ]));
+        }
+        lacks
+    }
+}
+
+impl Motor {
+    /// What the motor lacks to be chosen for a joint; empty if every check of the motor can be made. Of an actuator's motor
+    /// the columns are those of `actuators.csv`.
+    pub fn lacks(&self) -> Vec<Lack> {
+        let of_actuator = self.kind == super::motor::MotorKind::OfActuator;
+        let inertia = if of_actuator { "inertia_output_kgm2" } else { "rotor_inertia_kgm2" };
+        let continuous = self.curve.iter().find_map(|point| point.continuous_torque_nm);
+        let peak = self.curve.iter().find_map(|point| point.peak_torque_nm);
+        let fastest = self.curve.last().map(|point| point.speed_rpm);
+        blank(&[
+            (continuous.or(self.rated_torque_nm), "rated_torque_nm", "hold and rms"),
+            (peak.or(self.peak_torque_nm), "peak_torque_nm", "peak"),
+            (fastest.or(self.max_speed_rpm).or(self.rated_speed_rpm), "max_speed_rpm", "speed"),
+            (self.rotor_inertia_kgm2, inertia, "peak and rms"),
+            (self.mass_kg, "mass_kg", "mass"),
+        ])
+    }
+}

@@ -1,0 +1,194 @@
+//! `armwright catalog check`: what the catalogs hold, what they leave blank, and what cannot be chosen for it.
+
+use super::catalog::{TextTable, cell, provenances};
+use crate::catalog::gear::{GearKind, GearMass};
+use crate::catalog::load::Loaded;
+use crate::catalog::needs::{Lack, words};
+use crate::catalog::schema::CatalogFile;
+use crate::catalog::{Catalogs, Confidence, Provenance};
+use crate::input::json::InputError;
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Loads the catalogs and reports what is in them: rows, confidence, blank ratings, warnings.
+///
+/// # Errors
+/// Every fault of every file.
+pub(crate) fn check(overlay: Option<&Path>) -> Result<String, InputError> {
+    let catalogs = Catalogs::load(overlay)?;
+    let mut out = files_table(&catalogs.loaded);
+    out.push_str("\nFigures that a sizing check needs and rows leave blank:\n");
+    out.push_str(&blanks_table(&catalogs));
+    out.push_str(&unchoosable(&catalogs));
+    out.push_str(&by_usual_life(&catalogs));
+    match catalogs.warnings.as_slice() {
+        [] => out.push_str("\nNo faults, no warnings.\n"),
+        warnings => {
+            // A String takes any text.
+            let _ = writeln!(out, "\nNo faults. Warnings ({}):", warnings.len());
+            warnings.iter().for_each(|warning| {
+                let _ = writeln!(out, "  {warning}");
+            });
+        }
+    }
+    Ok(out)
+}
+
+fn files_table(loaded: &[Loaded]) -> String {
+    let mut table = TextTable::new(["file", "rows", "replacing"].into_iter().map(String::from).collect());
+    table.head.extend(Confidence::ALL.iter().map(ToString::to_string));
+    for file in loaded {
+        let mut row = vec![file.name.clone(), file.rows.to_string(), file.replaced.to_string()];
+        row.extend(file.by_confidence.iter().map(ToString::to_string));
+        table.rows.push(row);
+    }
+    table.to_text()
+}
+
+/// Columns that sizing reads, by kind of part.
+const SIZING_COLUMNS: [(CatalogFile, &[&str]); 4] = [
+    (
+        CatalogFile::Gears,
+        &[
+            "rated_torque_nm",
+            "repeated_peak_torque_nm",
+            "average_torque_limit_nm",
+            "momentary_peak_torque_nm",
+            "max_input_speed_rpm",
+            "average_input_speed_limit_rpm",
+            "inertia_input_kgm2",
+            "mass_component_set_kg",
+            "mass_housed_unit_kg",
+            "t1_nm",
+            "t2_nm",
+            "k1_nm_per_rad",
+            "k2_nm_per_rad",
+            "k3_nm_per_rad",
+            "efficiency_rated_2000rpm",
+        ],
+    ),
+    (
+        CatalogFile::Motors,
+        &[
+            "rated_torque_nm",
+            "peak_torque_nm",
+            "rated_speed_rpm",
+            "max_speed_rpm",
+            "rotor_inertia_kgm2",
+            "mass_kg",
+        ],
+    ),
+    (
+        CatalogFile::Actuators,
+        &[
+            "rated_torque_nm",
+            "peak_torque_nm",
+            "max_speed_rpm",
+            "inertia_output_kgm2",
+            "k1_nm_per_rad",
+            "mass_kg",
+        ],
+    ),
+    (CatalogFile::Materials, &["g_pa", "poisson", "yield_or_strength_pa", "cost_eur_per_kg"]),
+];
+
+fn blanks_table(catalogs: &Catalogs) -> String {
+    let mut table = TextTable::new(["file", "column", "blank", "of"].map(String::from).into());
+    for (file, columns) in SIZING_COLUMNS {
+        let rows: Vec<_> = provenances(catalogs, file).map(|p| catalogs.printed_row(p)).collect();
+        for column in columns {
+            let blank = rows.iter().filter(|row| cell(row, column).is_empty()).count();
+            if blank > 0 {
+                let row = [file.file_name(), column, &blank.to_string(), &rows.len().to_string()];
+                table.rows.push(row.map(String::from).into());
+            }
+        }
+    }
+    table.to_text()
+}
+
+/// Number of parts that a line names.
+const NAMED: usize = 3;
+
+/// Parts that `size` and `run` cannot choose and parts that an arm file cannot name, by what they lack; empty if there are
+/// none.
+fn unchoosable(catalogs: &Catalogs) -> String {
+    let mut by_lacks: BTreeMap<(String, String), Vec<(usize, &str)>> = BTreeMap::new();
+    let mut add = |from: &Provenance, id, lacks: Vec<Lack>| {
+        if !lacks.is_empty() {
+            by_lacks.entry((from.file.clone(), verbs(&lacks))).or_default().push((from.line, id));
+        }
+    };
+    for gear in &catalogs.gears {
+        // a component set has no mass of a housed unit, and the other way round
+        let mass = match gear.mass_housed_unit_kg {
+            None if gear.mass_component_set_kg.is_some() => GearMass::ComponentSet,
+            _ => GearMass::HousedUnit,
+        };
+        let mut lacks = gear.lacks(mass);
+        if gear.kind == GearKind::Actuator {
+            let own = catalogs.motors.iter().find(|motor| gear.goes_with(motor));
+            lacks.extend(own.map(|motor| motor.lacks()).unwrap_or_default());
+        }
+        add(&gear.provenance, gear.id.as_str(), lacks);
+    }
+    for motor in catalogs
+        .motors
+        .iter()
+        .filter(|m| !catalogs.gears.iter().any(|g| g.kind == GearKind::Actuator && g.goes_with(m)))
+    {
+        add(&motor.provenance, motor.id.as_str(), motor.lacks());
+    }
+    let lines = by_lacks.into_iter().map(|((file, lacks), mut parts)| {
+        parts.sort_unstable();
+        format!("  {file}:{} {}: {lacks}\n", parts[0].0, named(&parts))
+    });
+    let lines: String = lines.collect();
+    if lines.is_empty() { lines } else { format!("\nParts that cannot be used for a blank figure:\n{lines}") }
+}
+
+/// Which verbs cannot use a part with these lacks.
+fn verbs(lacks: &[Lack]) -> String {
+    let of_arm: Vec<Lack> =
+        lacks.iter().copied().filter(|lack| matches!(lack.purpose, "torsion" | "mass")).collect();
+    let named = match of_arm.as_slice() {
+        [] => String::new(),
+        of_arm => {
+            format!("; cannot be named in an arm without a stiffness and a mass beside it: {}", words(of_arm))
+        }
+    };
+    format!("cannot be chosen by size and run: {}{named}", words(lacks))
+}
+
+fn named(parts: &[(usize, &str)]) -> String {
+    let names: Vec<&str> = parts.iter().take(NAMED).map(|(_, id)| *id).collect();
+    match parts.len().saturating_sub(NAMED) {
+        0 => names.join(", "),
+        more => format!("{} and {more} more", names.join(", ")),
+    }
+}
+
+/// Gears whose life is that of their kind because their row states none.
+fn by_usual_life(catalogs: &Catalogs) -> String {
+    let is_blank = |from: &Provenance| cell(catalogs.printed_row(from), "rated_life_h").is_empty();
+    let mut out = String::new();
+    for gear in catalogs.gears.iter().filter(|g| g.kind != GearKind::Actuator && is_blank(&g.provenance)) {
+        let Provenance { file, line, .. } = &gear.provenance;
+        match (gear.life.rated_h, gear.kind.wears_out()) {
+            (Some(hours), _) => {
+                let _ = writeln!(
+                    out,
+                    "  {file}:{line} {}: no rated_life_h; the usual {hours} h of its kind stand for it",
+                    gear.id
+                );
+            }
+            (None, false) if gear.kind == GearKind::Belt => {
+                let _ =
+                    writeln!(out, "  {file}:{line} {}: no rated_life_h; its life is not checked", gear.id);
+            }
+            _ => {}
+        }
+    }
+    if out.is_empty() { out } else { format!("\nLives that no row states:\n{out}") }
+}

@@ -1,0 +1,75 @@
+//! Materials that creep: said wherever a study has links of them.
+
+use crate::arm::LinkBody;
+use crate::catalog::Catalogs;
+use crate::space::design_space::{DesignSpace, SpacePiece};
+
+/// A sentence for each material of a link, given or to choose, that creeps.
+pub(super) fn creep_remarks(space: &DesignSpace, catalogs: &Catalogs) -> Vec<String> {
+    let mut links_of: Vec<(&str, Vec<&str>)> = Vec::new();
+    let mut add = |material, link| match links_of.iter_mut().find(|(known, _)| *known == material) {
+        Some((_, links)) if links.contains(&link) => {}
+        Some((_, links)) => links.push(link),
+        None => links_of.push((material, vec![link])),
+    };
+    for piece in &space.pieces {
+        match piece {
+            SpacePiece::Joint(_) => {}
+            SpacePiece::Link(link) => {
+                if let LinkBody::Tube { material_name, .. } = &link.body {
+                    add(material_name.as_str(), link.name.as_str());
+                }
+            }
+            SpacePiece::Choice(choice) => {
+                choice.options.iter().for_each(|option| add(&option.material_name, &choice.name));
+            }
+        }
+    }
+    let sentence =
+        |(material, links): (&str, Vec<&str>)| creep_sentence(catalogs, material, &links.join(", "));
+    links_of.into_iter().filter_map(sentence).collect()
+}
+
+/// What is said of a material of links that creeps; `None` if it does not, or is not of the catalogs.
+pub(crate) fn creep_sentence(catalogs: &Catalogs, material: &str, links: &str) -> Option<String> {
+    let row = catalogs.materials.iter().find(|row| row.name == material)?;
+    row.class.caution().map(|caution| {
+        format!(
+            "{material} ({}) in {links}: {caution}. Deflections, stresses and frequencies are those of a short load with \
+             the catalog's modulus of {:.3} GPa; give a creep modulus for a load that stays.",
+            row.class,
+            row.youngs_modulus_pa / 1e9
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::json::Document;
+    use crate::study::read::read_study;
+
+    #[test]
+    fn a_printed_link_is_said_to_creep_and_a_steel_one_is_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let rows = "name,class,e_pa,g_pa,density_kg_m3,poisson,source,confidence\n\
+            PETG printed,polymer,2.0e9,0.73e9,1270,0.38,a test,third party\n";
+        std::fs::write(folder.path().join("materials.csv"), rows).unwrap();
+        let catalogs = Catalogs::load(Some(folder.path())).unwrap();
+        let remarks = |material: &str| {
+            let study = format!(
+                r#"{{"name": "s", "chain": [
+                {{"type": "joint", "name": "j", "axis": [0,1,0], "stiffness_nm_per_rad": 1e4}},
+                {{"type": "link", "name": "arm", "vector_m": [0.3,0,0], "material": "{material}",
+                  "section": {{"shape": "round_tube", "diameter_m": 0.04, "wall_m": 0.004}}}}],
+                "poses": [{{"pose_deg": [0]}}]}}"#
+            );
+            let study = read_study(Document::parse("s.json", &study).unwrap(), &catalogs).unwrap();
+            study.remarks.join(" ")
+        };
+        let printed = remarks("PETG printed");
+        assert!(printed.contains("PETG printed (polymer) in arm: it creeps"), "{printed}");
+        assert!(printed.contains("2.000 GPa"), "{printed}");
+        assert!(!remarks("Structural steel S355").contains("creep"));
+    }
+}

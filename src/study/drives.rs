@@ -1,0 +1,148 @@
+//! Reads `"drives"`: the parts among which the joints of a study are sized.
+
+use super::motor_kinds::{read_motor_kinds, usual_motor_kinds};
+use crate::arm::bearing::BearingSource;
+use crate::arm::extras::ExtrasSource;
+use crate::catalog::Catalogs;
+use crate::catalog::gear::{Gear, GearKind, GearMass};
+use crate::catalog::motor::{Motor, MotorKind};
+use crate::input::json::{Node, Object, closest};
+use crate::sizing::select::DriveFilter;
+
+/// Where drives are taken from.
+#[derive(Debug, Clone)]
+pub(super) struct Drives {
+    pub filter: DriveFilter,
+}
+
+impl Default for Drives {
+    /// The strain-wave gears and the servo and hydraulic motors of the catalogs. Other kinds join a study that asks for them.
+    fn default() -> Self {
+        let filter = DriveFilter {
+            gear_kinds: Some(vec![GearKind::StrainWave]),
+            actuator_ids: Some(Vec::new()),
+            motor_kinds: Some(usual_motor_kinds()),
+            ..DriveFilter::everything(GearMass::HousedUnit)
+        };
+        Self { filter }
+    }
+}
+
+/// Keys that ask for gears.
+const GEAR_KEYS: [&str; 4] = ["gear_series", "gears", "gear_kinds", "ratios"];
+
+pub(super) fn read_drives(node: &Node, catalogs: &Catalogs) -> Option<Drives> {
+    let object = node.object(&[
+        "gear_series",
+        "gears",
+        "gear_kinds",
+        "ratios",
+        "gear_mass",
+        "actuators",
+        "motors",
+        "motor_models",
+    ])?;
+    let gear_mass = object.or("gear_mass", GearMass::HousedUnit, read_gear_mass);
+    let gears: Vec<&Gear> = catalogs.gears.iter().filter(|g| g.kind != GearKind::Actuator).collect();
+    let motors = catalogs.motors.iter().filter(|m| m.kind != MotorKind::OfActuator);
+    let known_series: Vec<&str> = gears.iter().map(|g| g.series.as_str()).collect();
+    let known_gears: Vec<&str> = gears.iter().map(|g| g.id.as_str()).collect();
+    let known_motors: Vec<&str> = motors.map(|m: &Motor| m.id.as_str()).collect();
+    let mut known_ratios: Vec<f64> = gears.iter().map(|g| g.ratio).collect();
+    known_ratios.sort_by(f64::total_cmp);
+    known_ratios.dedup();
+    let named = object.has("gear_series") || object.has("gears");
+    let usual_gears = if named { None } else { Some(vec![GearKind::StrainWave]) };
+    let usual_motors = if object.has("motor_models") { None } else { Some(usual_motor_kinds()) };
+    let actuators = object.or("actuators", Some(Vec::new()), |n| read_actuators(n, catalogs));
+    let (gear_series, gear_ids) =
+        (names(&object, "gear_series", &known_series), names(&object, "gears", &known_gears));
+    let (ratios, gear_kinds) = (
+        object.or("ratios", None, |n| read_ratios(n, &known_ratios).map(Some)),
+        object.or("gear_kinds", usual_gears, |n| read_gear_kinds(n).map(Some)),
+    );
+    let motor_kinds = object.or("motors", usual_motors, |n| read_motor_kinds(n).map(Some));
+    let motor_ids = names(&object, "motor_models", &known_motors);
+    let only_actuators = object.has("actuators") && !GEAR_KEYS.iter().any(|key| object.has(key));
+    Some(Drives {
+        filter: DriveFilter {
+            gear_mass: gear_mass?,
+            bearing: BearingSource::OfGear,
+            extras: ExtrasSource::NONE,
+            needs_torsion: false,
+            gear_series: gear_series?,
+            ratios: ratios?,
+            gear_kinds: if only_actuators { Some(Vec::new()) } else { gear_kinds? },
+            gear_ids: gear_ids?,
+            actuator_ids: actuators?,
+            motor_kinds: motor_kinds?,
+            motor_ids: motor_ids?,
+        },
+    })
+}
+
+/// `"all"`, or a list of models.
+fn read_actuators(node: &Node, catalogs: &Catalogs) -> Option<Option<Vec<String>>> {
+    if node.value().as_str() == Some("all") {
+        return Some(None);
+    }
+    let actuators = catalogs.gears.iter().filter(|g| g.kind == GearKind::Actuator);
+    list(node, &actuators.map(|g| g.id.as_str()).collect::<Vec<_>>()).map(Some)
+}
+
+/// A list of names that must all be known; without the key there is no restriction.
+fn names(object: &Object, key: &str, known: &[&str]) -> Option<Option<Vec<String>>> {
+    object.or(key, None, |node| list(node, known).map(Some))
+}
+
+fn list(node: &Node, known: &[&str]) -> Option<Vec<String>> {
+    let read: Vec<Option<String>> = node
+        .array()?
+        .iter()
+        .map(|n| match n.string()? {
+            name if known.contains(&name) => Some(name.to_string()),
+            name => n.fault(
+                format!("\"{name}\" is not in the catalog"),
+                &closest(name, known).map_or("`armwright catalog show` lists what is".into(), |c| {
+                    format!("did you mean \"{c}\"?")
+                }),
+            ),
+        })
+        .collect();
+    read.into_iter().collect()
+}
+
+fn read_gear_mass(node: &Node) -> Option<GearMass> {
+    match node.string()? {
+        "component_set" => Some(GearMass::ComponentSet),
+        "housed_unit" => Some(GearMass::HousedUnit),
+        other => node.fault(format!("\"{other}\" is not known"), "choose one of: component_set, housed_unit"),
+    }
+}
+
+fn read_gear_kinds(node: &Node) -> Option<Vec<GearKind>> {
+    let kind = |n: &Node| {
+        let word = n.string()?;
+        GearKind::from_word(word).or_else(|| {
+            let hint = format!(
+                "choose among: {}; actuators have their own key, \"actuators\"",
+                GearKind::WORDS.join(", ")
+            );
+            n.fault(format!("\"{word}\" is not known"), &hint)
+        })
+    };
+    let read: Vec<Option<GearKind>> = node.array()?.iter().map(kind).collect();
+    read.into_iter().collect()
+}
+
+fn read_ratios(node: &Node, known: &[f64]) -> Option<Vec<f64>> {
+    let ratio = |n: &Node| {
+        let ratio = n.positive()?;
+        known.iter().copied().find(|&k| k == ratio).or_else(|| {
+            let list: Vec<String> = known.iter().map(f64::to_string).collect();
+            n.fault(format!("= {ratio}: no gear has this ratio"), &format!("ratios: {}", list.join(", ")))
+        })
+    };
+    let read: Vec<Option<f64>> = node.array()?.iter().map(ratio).collect();
+    read.into_iter().collect()
+}
