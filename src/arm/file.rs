@@ -1,6 +1,7 @@
 //! The reader of the arm file.
 
 use super::bearing::{Bearing, Stated, read_bearing};
+use super::body::{read_joint_bodies, read_link_bodies};
 use super::effect::channel::Channel;
 use super::effect::entry::Effect;
 use super::effect::servo_compliance;
@@ -100,7 +101,7 @@ fn read_chain(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> 
     read.into_iter().collect()
 }
 
-const JOINT_KEYS: [&str; 12] = [
+const JOINT_KEYS: [&str; 13] = [
     "type",
     "name",
     "axis",
@@ -112,9 +113,10 @@ const JOINT_KEYS: [&str; 12] = [
     "mass_kg",
     "bearing",
     "extras",
+    "bodies",
     "coupled",
 ];
-const LINK_KEYS: [&str; 6] = ["type", "name", "vector_m", "material", "section", "mass_kg"];
+const LINK_KEYS: [&str; 7] = ["type", "name", "vector_m", "material", "section", "mass_kg", "bodies"];
 
 fn read_element(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> Option<Element> {
     let kind = node.value().get("type").and_then(|v| v.as_str());
@@ -134,6 +136,7 @@ fn read_joint(object: &Object, catalogs: &Catalogs) -> Option<Joint> {
     let mass_kg = read_joint_mass(object, catalogs);
     let bearing = read_joint_bearing(object, catalogs);
     let extras = read_extras(object);
+    let bodies = read_joint_bodies(object);
     let coupled = object.or("coupled", None, |n| read_coupling(n).map(Some));
     Some(Joint {
         name: name?,
@@ -142,6 +145,7 @@ fn read_joint(object: &Object, catalogs: &Catalogs) -> Option<Joint> {
         mass_kg: mass_kg?,
         bearing: bearing?,
         extras: extras?,
+        bodies: bodies?,
         gear: gear?,
         motor: motor?,
         coupled: coupled?,
@@ -297,7 +301,8 @@ pub(crate) fn read_link(object: &Object, materials: &[NamedMaterial], catalogs: 
             object.or("mass_kg", 0.0, Node::non_negative).map(|mass_kg| LinkBody::Offset { mass_kg })
         }
     };
-    Some(Link { name: name?, vector_m: vector_m?, body: body? })
+    let bodies = read_link_bodies(object);
+    Some(Link { name: name?, vector_m: vector_m?, body: body?, bodies: bodies? })
 }
 
 fn read_tube(

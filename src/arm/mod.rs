@@ -11,6 +11,7 @@
 
 pub(crate) mod base_lift;
 pub(crate) mod bearing;
+pub(crate) mod body;
 pub mod effect;
 pub(crate) mod extras;
 pub(crate) mod file;
@@ -24,6 +25,7 @@ pub(crate) mod torsion;
 pub(crate) mod write;
 
 pub use bearing::{Bearing, BearingSource};
+pub use body::{JointBodies, RigidBody};
 pub use effect::entry::Effect;
 pub use extras::{Extras, ExtrasSource};
 pub use file::{read_arm, read_arm_document};
@@ -120,6 +122,7 @@ impl JointModel {
 /// let joint = Joint {
 ///     bearing: None,
 ///     extras: Default::default(),
+///     bodies: Default::default(),
 ///     name: "j2".into(),
 ///     axis: Vector3::y_axis(),
 ///     curve: Curve::Linear(607e3),
@@ -129,7 +132,7 @@ impl JointModel {
 ///     coupled: None,
 /// };
 /// let body = LinkBody::Offset { mass_kg: 5.0 };
-/// let link = Link { name: "upper_arm".into(), vector_m: Vector3::new(0.8, 0.0, 0.0), body };
+/// let link = Link { name: "upper_arm".into(), vector_m: Vector3::new(0.8, 0.0, 0.0), body, bodies: Vec::new() };
 /// let chain = vec![Element::Joint(joint), Element::Link(link)];
 /// let arm = Arm { name: "two pieces".into(), gravity_m_s2: 9.81, chain, effects: Vec::new() };
 /// assert_eq!(arm.mass_kg(), 17.2);
@@ -172,6 +175,8 @@ pub struct Joint {
     pub bearing: Option<Bearing>,
     /// What the joint weighs beyond drive and bearing.
     pub extras: Extras,
+    /// Rigid bodies that the joint carries beyond all these.
+    pub bodies: JointBodies,
     /// Name of the gear, for information. The numbers above count.
     pub gear: Option<String>,
     /// Name of the motor, for information.
@@ -189,6 +194,8 @@ pub struct Link {
     pub vector_m: Vector3<f64>,
     /// The tube or offset.
     pub body: LinkBody,
+    /// Rigid bodies that the link carries.
+    pub bodies: Vec<RigidBody>,
 }
 
 /// The body of a link.
@@ -262,7 +269,7 @@ impl Arm {
 }
 
 impl Joint {
-    /// Mass of drive, bearing and extras \[kg\].
+    /// Mass of drive, bearing and extras \[kg\], which is a point on the axis.
     pub fn total_mass_kg(&self) -> f64 {
         self.mass_kg + self.bearing.map_or(0.0, |bearing| bearing.mass_kg) + self.extras.total_kg()
     }
@@ -272,8 +279,8 @@ impl Element {
     /// Mass of the element \[kg\].
     pub fn mass_kg(&self) -> f64 {
         match self {
-            Element::Joint(joint) => joint.total_mass_kg(),
-            Element::Link(link) => match &link.body {
+            Element::Joint(joint) => joint.total_mass_kg() + joint.bodies.mass_kg(),
+            Element::Link(link) => body::total_kg(&link.bodies) + match &link.body {
                 LinkBody::Tube { material, section, .. } => {
                     material.density_kg_m3
                         * section.properties(material.poisson).area_m2

@@ -70,6 +70,9 @@ impl Joint {
         if self.extras != Extras::default() {
             map.insert("extras".into(), self.extras.to_json());
         }
+        if let Some(bodies) = self.bodies.to_json() {
+            map.insert("bodies".into(), bodies);
+        }
         if let Some(terms) = &self.coupled {
             let terms: Map<String, Value> = terms.iter().map(|(n, f)| (n.clone(), json!(f))).collect();
             map.insert("coupled".into(), Value::Object(terms));
@@ -98,7 +101,7 @@ impl Curve {
 impl Link {
     fn to_json(&self) -> Value {
         let vector_m = self.vector_m.as_slice();
-        match &self.body {
+        let mut value = match &self.body {
             LinkBody::Tube { material_name, section, .. } => json!({
                 "type": "link", "name": self.name, "vector_m": vector_m,
                 "material": material_name, "section": section.to_json(),
@@ -106,7 +109,11 @@ impl Link {
             LinkBody::Offset { mass_kg } => json!({
                 "type": "link", "name": self.name, "vector_m": vector_m, "mass_kg": mass_kg,
             }),
+        };
+        if !self.bodies.is_empty() {
+            value["bodies"] = self.bodies.iter().map(|body| body.to_json()).collect();
         }
+        value
     }
 }
 

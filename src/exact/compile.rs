@@ -135,6 +135,7 @@ impl<'c> Problem<'c> {
                 // A given mass beyond the parts loads the arm, but a design's mass does not count it.
                 Layer::Mass(_) => Part::Offset { mass_kg: 0.0 },
                 Layer::Extra(mass_kg) => Part::Offset { mass_kg },
+                Layer::Bodies(carried) => Part::Offset { mass_kg: carried.mass_kg() },
                 // The tilts of a gear's bearing are coordinates of its joint.
                 Layer::Bearing(_) => continue,
             };

@@ -9,7 +9,7 @@
 use super::bearing_rows::{BearingRows, Loads, Ramp};
 use super::parts::{INERTIAS, inertia};
 use super::pose::{
-    COORDINATES, ENDS, InertiaRow, Pose, PosedPiece, PosedTube, Row, StressRow, TILT, TORSION, TubeForms,
+    COORDINATES, ENDS, InertiaRow, Pose, PosedBodies, PosedPiece, PosedTube, Row, StressRow, TILT, TORSION, TubeForms,
 };
 use crate::arm::LinkModel;
 use crate::arm::load::Water;
@@ -18,8 +18,8 @@ use crate::mechanics::beam::{PreparedBeam, section_frame};
 use crate::mechanics::chain::across;
 use crate::mechanics::{Twist, Wrench, angular, body_inertia, displacement_at, linear, rotation_twist};
 use crate::space::design_space::{DesignSpace, SpacePiece};
-use crate::space::effects::Layer;
-use crate::space::station::{Walk, payload_in, weight_wrench};
+use crate::space::effects::{Carried, Carrier, Layer};
+use crate::space::station::{Walk, bodies_at, payload_in, weight_wrench};
 use nalgebra::{DMatrix, Matrix3, Matrix6, Rotation3, SMatrix, Vector3};
 
 /// What a pose has to know about a joint of the chain, beside its axis.
@@ -42,7 +42,7 @@ impl Pose {
         let (payload_wrench, payload_inertia) = payload_in(space, case, water, &walk);
         let (mut pieces, mut needs) = (Vec::new(), Vec::new());
         for (place, layer) in space.layers() {
-            let (at, joint) = (&walk.places[place], joints[place]);
+            let (at, joint) = (walk.place(place, &layer), joints[place]);
             let Some(posed) = posed(space, water, layer, joint.tilts, at) else { continue };
             if let Layer::Piece(SpacePiece::Joint(_)) = layer {
                 needs.push((pieces.len(), joint));
@@ -108,14 +108,21 @@ impl Pose {
                         self.stress.push(outboard.stress(piece, tube, &end_m));
                     }
                     let areas = areas_per_n(tube);
+                    let bodies = tube.bodies.as_ref().map_or([0.0; 8], |bodies| bodies.end_forces);
                     for (end, coordinate) in ENDS.into_iter().enumerate() {
                         // A tube's own weight strains its coordinates too, though it is not outboard of the
                         // tube.
                         let own = areas[end];
-                        self.rows.push(outboard.row(piece, coordinate, &tube.ends[end], own, tip_m));
+                        let mut row = outboard.row(piece, coordinate, &tube.ends[end], own, tip_m);
+                        row.fixed += bodies[end];
+                        self.rows.push(row);
                     }
                     let middle_m = tube.root_m + tube.frame * Vector3::x() * (tube.length_m / 2.0);
                     outboard.push(weight_wrench(1.0, &middle_m), tube.rigid_forms());
+                    if let Some(bodies) = &tube.bodies {
+                        outboard.fixed += bodies.weight;
+                        outboard.fixed_inertia += bodies.rigid;
+                    }
                     if tube.chosen {
                         self.stress.push(outboard.stress(piece, tube, &tube.root_m));
                     }
@@ -176,6 +183,10 @@ fn posed(
         Layer::Tilt(tilt) => hinge(&tilt.axis(rotation), None),
         Layer::Mass(mass_kg) | Layer::Extra(mass_kg) => body(mass_kg, at_m, Matrix3::zeros()),
         Layer::Bearing(_) => return None,
+        Layer::Bodies(Carried { by: Carrier::Tube, .. }) => PosedPiece::Body(Matrix6::zeros()),
+        Layer::Bodies(Carried { bodies, .. }) => {
+            PosedPiece::Body(bodies_at(bodies, space.gravity_m_s2, &(*at_m, *rotation)).0)
+        }
         Layer::Piece(SpacePiece::Joint(joint)) => {
             let axis = rotation * joint.axis;
             hinge(&axis, tilts.then(|| across(&axis)))
@@ -226,7 +237,39 @@ fn posed_tube(
         forms: TubeForms::new(&beam),
         added_kg_m3: water.map_or(0.0, |w| w.added_mass_coefficient * w.density_kg_m3),
         chosen,
+        bodies: PosedBodies::new(space, link, &beam, (root_m, rotation)).map(Box::new),
     }))
+}
+
+impl PosedBodies {
+    /// The bodies on a tube whose root is at a place of the pose; `None` if there are none.
+    fn new(
+        space: &DesignSpace,
+        link: &LinkPiece,
+        beam: &PreparedBeam,
+        (root_m, rotation): (&Vector3<f64>, &Matrix3<f64>),
+    ) -> Option<Self> {
+        if link.bodies.is_empty() {
+            return None;
+        }
+        let place = (*root_m, Rotation3::from_matrix_unchecked(*rotation));
+        let (rigid, weight) = bodies_at(&link.bodies, space.gravity_m_s2, &place);
+        let down = (rotation * beam.frame).tr_mul(&-Vector3::z());
+        let mut out = Self {
+            inertia: DMatrix::zeros(6 + COORDINATES, 6 + COORDINATES),
+            rigid,
+            weight,
+            end_forces: [0.0; 8],
+        };
+        for body in &link.bodies {
+            out.inertia += beam.inertia_of(body);
+            let centre = beam.centre_fields(body);
+            for (force, coordinate) in out.end_forces.iter_mut().zip(ENDS) {
+                *force += body.mass_kg * space.gravity_m_s2 * centre.column(6 + coordinate).dot(&down);
+            }
+        }
+        Some(out)
+    }
 }
 
 impl TubeForms {

@@ -6,6 +6,7 @@ use super::beam::PreparedBeam;
 use super::{Twist, Wrench, body_inertia, force_wrench, rotation_twist, stack};
 use crate::arm::LinkModel;
 use crate::arm::base_lift::BaseLift;
+use crate::arm::body::RigidBody;
 use crate::arm::effect::base_lift;
 use crate::arm::joint_law::JointLaw;
 use crate::arm::linkage::{Linkage, linkages};
@@ -233,6 +234,7 @@ impl Walk {
     /// Adds a joint. Its mass is inboard of its springs; the springs of its bearing come before its torsion.
     fn joint(&mut self, joint: &JointPiece, angle_rad: f64, gravity_m_s2: f64) {
         self.point_mass(joint.mass_kg, self.at_m, gravity_m_s2);
+        self.bodies(&joint.bodies.fixed, gravity_m_s2);
         let axis = self.rotation * joint.axis;
         if joint.tilt_rad_per_nm > 0.0 {
             let across = across(&axis);
@@ -247,6 +249,7 @@ impl Walk {
             own: None,
         }));
         self.rotation *= Rotation3::from_axis_angle(&joint.axis, angle_rad);
+        self.bodies(&joint.bodies.rotating, gravity_m_s2);
     }
 
     /// Adds a link, with the frame at its root.
@@ -257,6 +260,10 @@ impl Walk {
         let end_m = self.at_m + vector;
         if let Some(beam) = beam {
             self.items.push(Item::Elastic(self.beam_element(piece, link, beam, &end_m)));
+        }
+        // a tube has its bodies: each moves with a point of its axis
+        if link.beam.is_none() {
+            self.bodies(&link.bodies, gravity_m_s2);
         }
         self.at_m = end_m;
     }
@@ -330,6 +337,19 @@ impl Walk {
         }));
     }
 
+    /// Adds rigid bodies of the element that starts at the present place.
+    fn bodies(&mut self, bodies: &[RigidBody], gravity_m_s2: f64) {
+        for body in bodies {
+            let turn = self.rotation.matrix();
+            self.items.push(Item::Body(Body {
+                mass_kg: body.mass_kg,
+                cg_m: self.at_m + turn * body.cg_m,
+                inertia_kgm2: turn * body.inertia_kgm2 * turn.transpose(),
+                weight_n: body.mass_kg * gravity_m_s2,
+            }));
+        }
+    }
+
     /// Adds a point mass, if it is not zero.
     fn point_mass(&mut self, mass_kg: f64, cg_m: Vector3<f64>, gravity_m_s2: f64) {
         if mass_kg != 0.0 {
@@ -365,11 +385,13 @@ fn own_mass(piece: usize, beam: &PreparedBeam, frame: &Matrix3<f64>, root_m: &Ve
     let n = beam.compliances.len();
     let local_rigid = beam.inertia.fixed_view::<6, 6>(0, 0);
     let local_coupling = beam.inertia.view((0, 6), (6, n));
-    let down = Vector3::new(0.0, 0.0, -beam.weight_n_per_m);
-    let centre = root_m + frame.column(0) * (beam.length_m / 2.0);
+    let down = -Vector3::z();
+    let along = frame.transpose() * (down * beam.weight_n_per_m);
     let local_down = frame.transpose() * down;
-    // a weight works on the area under each deflected shape
-    let weight_work = beam.area_fields.column_iter().map(|f| f.fixed_rows::<3>(0).dot(&local_down)).collect();
+    // a uniform weight works on the area under each deflected shape
+    let areas = beam.area_fields.column_iter().map(|f| f.dot(&along));
+    let bodies = beam.carried.fields.column_iter().map(|f| f.dot(&local_down));
+    let weight_work = areas.zip(bodies).map(|(tube, bodies)| tube + bodies).collect();
     OwnMass {
         piece,
         root_m: *root_m,
@@ -377,7 +399,7 @@ fn own_mass(piece: usize, beam: &PreparedBeam, frame: &Matrix3<f64>, root_m: &Ve
         rigid: to_local.transpose() * local_rigid * to_local,
         coupling: Matrix6xX::from_iterator(n, (to_local.transpose() * local_coupling).iter().copied()),
         inner: beam.inertia.view((6, 6), (n, n)).into_owned(),
-        weight: force_wrench(&(down * beam.length_m), &centre),
+        weight: beam.weight(root_m, frame),
         weight_work,
     }
 }

@@ -2,6 +2,7 @@
 
 use super::constraint::Constraints;
 use crate::arm::bearing::{Bearing, BearingSource};
+use crate::arm::body::{JointBodies, RigidBody};
 use crate::arm::effect::entry::Effect;
 use crate::arm::extras::ExtrasSource;
 use crate::arm::file::windup_of;
@@ -60,6 +61,7 @@ use nalgebra::{Unit, Vector3};
 ///             axis: Vector3::y_axis(),
 ///             bearing: BearingSource::Stated(None),
 ///             extras: ExtrasSource::NONE,
+///             bodies: Default::default(),
 ///             drive,
 ///             max_speed_rad_s: None,
 ///             range_deg: None,
@@ -72,6 +74,7 @@ use nalgebra::{Unit, Vector3};
 ///             name: "upper_arm".into(),
 ///             vector_m: Vector3::new(0.8, 0.0, 0.0),
 ///             options: vec![tube(0.005), tube(0.010)],
+///             bodies: Vec::new(),
 ///             excerpt: None,
 ///         }),
 ///     ],
@@ -172,6 +175,8 @@ pub struct SpaceJoint {
     pub bearing: BearingSource,
     /// Where the masses beyond gear, motor and bearing come from.
     pub extras: ExtrasSource,
+    /// Rigid bodies that the joint carries beyond all these.
+    pub bodies: JointBodies,
     /// How the drive of the joint is found.
     pub drive: DriveChoice,
     /// Largest speed that the study asks for \[rad/s\]; `None`: the speed that follows from the tip's.
@@ -218,6 +223,8 @@ pub struct LinkChoice {
     pub vector_m: Vector3<f64>,
     /// The materials and sections to choose from.
     pub options: Vec<LinkOption>,
+    /// Rigid bodies that the link carries, whichever tube it has.
+    pub bodies: Vec<RigidBody>,
     /// The places of these options in the whole list; `None` if this is the whole list.
     pub excerpt: Option<Excerpt>,
 }

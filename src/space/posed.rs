@@ -5,11 +5,12 @@
 //! memory grows as options times cases.
 
 use super::design_space::{Case, DesignSpace, SpacePiece};
-use super::effects::Layer;
+use super::effects::{Carried, Layer};
 use super::station::{
-    Block, BlockSlot, Modal, Place, Station, StationJoint, StationLink, StationSlot, Walk, payload_in,
-    weight_wrench,
+    Block, BlockSlot, Modal, OnTube, Place, Station, StationJoint, StationLink, StationSlot, Walk, bodies_at,
+    payload_in, weight_wrench,
 };
+use crate::arm::body::RigidBody;
 use crate::arm::structure::{LinkPiece, Structure};
 use crate::arm::{Link, LinkModel};
 use crate::mechanics::beam::{PreparedBeam, section_frame};
@@ -110,8 +111,8 @@ impl Posed {
         let mut slots: Vec<StationSlot> = layers
             .iter()
             .map(|(piece, layer)| {
-                Builder { space, structure: &structure, place: &walk.places[*piece], tip_m: &walk.tip_m }
-                    .build(layer)
+                let place = walk.place(*piece, layer);
+                Builder { space, structure: &structure, place, tip_m: &walk.tip_m }.build(layer)
             })
             .collect();
         let is_planar = planar(&slots, &start_inertia);
@@ -127,8 +128,14 @@ impl Posed {
 
     /// Puts options of the link in a slot into the pose; nothing if there is no link.
     fn add_options(&mut self, slot: usize, tubes: &[Tube]) {
-        let StationSlot::Link { options, place } = &mut self.station.slots[slot] else { return };
-        let placed = |tube: &Tube| tube.condensed.place(&place.root_m, &place.end_m, &place.frame);
+        let StationSlot::Link { options, place, carried } = &mut self.station.slots[slot] else { return };
+        let placed = |tube: &Tube| {
+            let mut placed = tube.condensed.place(&place.root_m, &place.end_m, &place.frame);
+            // the slot inboard has the bodies, as they move with the root
+            let mut root = placed.inertia[0].fixed_view_mut::<6, 6>(0, 0);
+            root -= carried.inertia;
+            placed
+        };
         let placed: Vec<PlacedLink> = tubes.par_iter().map(placed).collect();
         let is_planar = matches!(self.station.modal, Modal::Planar(_));
         let option = |(tube, placed)| station_link(tube, placed, place, &self.tip_m, is_planar);
@@ -157,9 +164,15 @@ impl Builder<'_> {
             Layer::Tilt(tilt) => self.hinge(&tilt.axis(rotation)),
             Layer::Bearing(spring) => self.hinge(&spring.axis(rotation)),
             Layer::Mass(mass_kg) | Layer::Extra(mass_kg) => self.body(*mass_kg, at_m),
+            Layer::Bodies(Carried { bodies, .. }) => {
+                let (inertia, weight) = bodies_at(bodies, self.structure.gravity_m_s2, self.place);
+                StationSlot::Body { inertia, weight }
+            }
             Layer::Piece(SpacePiece::Joint(joint)) => self.hinge(&(rotation * joint.axis)),
             Layer::Piece(SpacePiece::Link(link)) => self.link(link),
-            Layer::Piece(SpacePiece::Choice(choice)) => self.tube(&choice.vector_m, choice.options.len()),
+            Layer::Piece(SpacePiece::Choice(choice)) => {
+                self.tube(&choice.vector_m, &choice.bodies, choice.options.len())
+            }
         }
     }
 
@@ -193,7 +206,7 @@ impl Builder<'_> {
         let point = self.body(piece.point_mass_kg, &(at_m + rotation * link.vector_m / 2.0));
         let Some(tube) = Tube::new(&piece, self.structure, self.space.links) else { return point };
         if piece.beam.is_some() {
-            return self.tube(&link.vector_m, 1);
+            return self.tube(&link.vector_m, &link.bodies, 1);
         }
         let StationSlot::Body { inertia, weight } = point else { return point };
         // a harness on a rigid offset has mass and no compliance, so both together are one rigid body
@@ -204,8 +217,12 @@ impl Builder<'_> {
     }
 
     /// A tube with room for its options.
-    fn tube(&self, vector_m: &Vector3<f64>, options: usize) -> StationSlot {
-        StationSlot::Link { options: Vec::with_capacity(options), place: self.place_of(vector_m) }
+    fn tube(&self, vector_m: &Vector3<f64>, bodies: &[RigidBody], options: usize) -> StationSlot {
+        let of = |bodies| bodies_at(bodies, self.structure.gravity_m_s2, self.place);
+        let is_symmetric = bodies.chunks(1).all(|body| uncoupled(&of(body).0));
+        let (inertia, weight) = of(bodies);
+        let carried = OnTube { inertia, weight, is_symmetric };
+        StationSlot::Link { options: Vec::with_capacity(options), place: self.place_of(vector_m), carried }
     }
 
     fn place_of(&self, vector_m: &Vector3<f64>) -> Place {
@@ -231,7 +248,7 @@ fn station_link(
         // a uniform weight acts at mid-length
         weight: weight_wrench(tube.weight_n_per_m * tube.length_m, &place.centre_m),
         end: placed.end,
-        own_weight_end: placed.end_per_weight * tube.weight_n_per_m,
+        own_weight_end: placed.end_per_weight * tube.weight_n_per_m + placed.end_under_bodies,
         tip: Matrix3x6::from_columns(&tips),
         end_inertia: placed.inertia[0].diagonal().fixed_rows::<6>(6).into_owned(),
         block: if is_planar { ends_by_block(placed) } else { [0; 6] },
@@ -245,13 +262,15 @@ fn put_into_one_block(slot: &mut StationSlot) {
     }
 }
 
+/// Whether an inertia does not couple the motions within the x-z plane with those across it.
+fn uncoupled(m: &Matrix6<f64>) -> bool {
+    let largest = m.amax();
+    PLANES[0].iter().all(|&i| PLANES[1].iter().all(|&j| m[(i, j)].abs() <= ROUNDING * largest))
+}
+
 /// Whether the motions within the x-z plane and those across it are coupled nowhere: by no inertia, no joint axis and no
 /// link.
 fn planar(slots: &[StationSlot], payload: &Matrix6<f64>) -> bool {
-    let uncoupled = |m: &Matrix6<f64>| {
-        let largest = m.amax();
-        PLANES[0].iter().all(|&i| PLANES[1].iter().all(|&j| m[(i, j)].abs() <= ROUNDING * largest))
-    };
     uncoupled(payload)
         && slots.iter().all(|slot| match slot {
             StationSlot::Joint(joint) => {
@@ -260,7 +279,7 @@ fn planar(slots: &[StationSlot], payload: &Matrix6<f64>) -> bool {
                 !(across && within) && uncoupled(&joint.inertia_per_kg)
             }
             StationSlot::Body { inertia, .. } => uncoupled(inertia),
-            StationSlot::Link { place, .. } => is_symmetric(place),
+            StationSlot::Link { place, carried, .. } => is_symmetric(place) && carried.is_symmetric,
         })
 }
 

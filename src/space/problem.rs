@@ -116,6 +116,7 @@ impl<'c> ArmProblem<'c> {
                 Layer::Piece(SpacePiece::Choice(choice)) => choice_slot(space, choice),
                 Layer::Bearing(_) => Slot::bearing(piece_slots[piece], &slots),
                 Layer::Extra(mass_kg) => Slot::Offset { mass_kg },
+                Layer::Bodies(carried) => Slot::Offset { mass_kg: carried.mass_kg() },
                 Layer::Tilt(tilt) => Slot::Given { law: tilt.law(), mass_kg: 0.0 },
                 // the station has its weight and inertia; the mass of a design is that of its links and drives alone
                 Layer::Mass(_) => Slot::Offset { mass_kg: 0.0 },
@@ -405,14 +406,15 @@ impl<'c> ArmProblem<'c> {
             return false;
         }
         for (case, (station, state)) in self.stations.iter().zip(&mut to.stations).enumerate() {
-            let StationSlot::Link { options, place } = &station.slots[slot] else { continue };
+            let StationSlot::Link { options, place, carried } = &station.slots[slot] else { continue };
             let outboard = state.wrench;
             state.add_link(&options[option as usize]);
             let Some(stress) = &link.stress else { continue };
             // in a sizing case the arm accelerates; in the other cases it stands still
             let factor = if self.space.sizing_cases.contains(&case) { self.peak_factor } else { 1.0 };
-            // between the ends only the link's own weight changes force and moment: the ends are checked
-            for (wrench, at_m) in [(&outboard, &place.end_m), (&state.wrench, &place.root_m)] {
+            // between the ends only the weight of the link and its bodies changes force and moment: the ends are checked
+            let at_root = state.wrench + carried.weight;
+            for (wrench, at_m) in [(&outboard, &place.end_m), (&at_root, &place.root_m)] {
                 to.stress_ratio = to.stress_ratio.max(stress.ratio(wrench, at_m, place) * factor);
             }
         }

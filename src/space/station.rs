@@ -9,6 +9,8 @@
 //! then found in two blocks of three motions instead of one block of six, which is less work.
 
 use super::design_space::{Case, DesignSpace, SpacePiece};
+use super::effects::{Carried, Carrier, Layer};
+use crate::arm::body::RigidBody;
 use crate::arm::load::Water;
 use crate::mechanics::lowest::BlockLink;
 use crate::mechanics::{Twist, Wrench, angular, body_inertia, force_wrench, linear};
@@ -33,7 +35,20 @@ pub(crate) enum StationSlot {
     /// A rigid body: a point mass, or a rigid offset with the harness along it.
     Body { inertia: Matrix6<f64>, weight: Wrench },
     /// A tube, with one entry for each option.
-    Link { options: Vec<StationLink>, place: Place },
+    Link {
+        options: Vec<StationLink>,
+        place: Place,
+        carried: OnTube,
+    },
+}
+
+/// The bodies on a tube in a pose, as they are if the tube does not yield. They have a slot of their own inboard of the
+/// tube; what they add to the bending of the tube is in its options.
+pub(crate) struct OnTube {
+    pub inertia: Matrix6<f64>,
+    pub weight: Wrench,
+    /// Whether every body is symmetric about the x-z plane.
+    pub is_symmetric: bool,
 }
 
 /// A joint in a pose.
@@ -151,7 +166,8 @@ pub(crate) fn weight_wrench(weight_n: f64, at_m: &Vector3<f64>) -> Wrench {
 
 /// Where each piece is in a pose.
 pub(crate) struct Walk {
-    /// Start and attitude of each piece, base to tip. A joint has the attitude before its own rotation.
+    /// Start and attitude of each piece, base to tip, then those of the tip. A joint has the attitude before its own
+    /// rotation.
     pub(crate) places: Vec<(Vector3<f64>, Rotation3<f64>)>,
     pub(crate) tip_m: Vector3<f64>,
     pub(crate) tip_rotation: Rotation3<f64>,
@@ -173,8 +189,35 @@ impl Walk {
                 SpacePiece::Choice(choice) => at_m += rotation * choice.vector_m,
             }
         }
+        places.push((at_m, rotation));
         Self { places, tip_m: at_m, tip_rotation: rotation }
     }
+}
+
+impl Walk {
+    /// The place and attitude in which a layer of a piece stands.
+    pub(crate) fn place(&self, piece: usize, layer: &Layer) -> &(Vector3<f64>, Rotation3<f64>) {
+        match layer {
+            Layer::Bodies(Carried { by: Carrier::RotatedFrame, .. }) => &self.places[piece + 1],
+            _ => &self.places[piece],
+        }
+    }
+}
+
+/// Inertia and weight of bodies whose piece begins at a place of a pose, about the world's origin.
+pub(crate) fn bodies_at(
+    bodies: &[RigidBody],
+    gravity_m_s2: f64,
+    (at_m, rotation): &(Vector3<f64>, Rotation3<f64>),
+) -> (Matrix6<f64>, Wrench) {
+    let turn = rotation.matrix();
+    let (mut inertia, mut weight) = (Matrix6::zeros(), Wrench::zeros());
+    for body in bodies {
+        let cg_m = at_m + turn * body.cg_m;
+        inertia += body_inertia(body.mass_kg, &cg_m, &(turn * body.inertia_kgm2 * turn.transpose()));
+        weight += weight_wrench(body.mass_kg * gravity_m_s2, &cg_m);
+    }
+    (inertia, weight)
 }
 
 /// Reach of each joint \[m\], base to tip: the largest distance of the tip from its axis over some cases.

@@ -71,6 +71,7 @@ fn asked_joint(joint: &SpaceJoint) -> AskedJoint {
         axis: joint.axis,
         bearing: joint.bearing,
         extras: joint.extras,
+        bodies: joint.bodies.clone(),
         drive,
         max_speed_rad_s: joint.max_speed_rad_s,
         has_brake: joint.has_brake,
@@ -109,6 +110,7 @@ fn asked_link(choice: &LinkChoice) -> AskedLink {
         name: choice.name.clone(),
         vector_m: choice.vector_m,
         tubes: choice.options.iter().map(tube).collect(),
+        bodies: choice.bodies.clone(),
     }
 }
 

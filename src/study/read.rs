@@ -16,6 +16,7 @@ use super::omissions::omissions;
 use super::range::{check_poses, read_range};
 use super::sections::{Aside, read_materials, read_sections};
 use crate::arm::bearing::{BearingSource, Stated, read_bearing};
+use crate::arm::body::{read_joint_bodies, read_link_bodies};
 use crate::arm::extras::{ExtrasSource, read_extras_source};
 use crate::arm::file::{read_curve, read_effects, read_joint_mass, read_link, read_name};
 use crate::arm::load::{vector, word};
@@ -320,6 +321,7 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
         "duty",
         "drives",
         "fit",
+        "bodies",
     ])?;
     let name = read_name(&object);
     let axis = object.required("axis").and_then(|n| crate::arm::file::read_axis(&n));
@@ -362,6 +364,7 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
     // the mass of a given drive is stated, and so are its extras
     let usually = if drive.is_sized() { open.extras } else { ExtrasSource::NONE };
     let extras = read_extras_source(&object, usually);
+    let bodies = read_joint_bodies(&object);
     let range_deg = object.or("range_deg", None, |n| read_range(n).map(Some));
     let connection_share = open.connection_share;
     let (drive, bearing) = with_connections(connection_share, &object, drive, bearing?);
@@ -373,6 +376,7 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
         axis,
         bearing,
         extras,
+        bodies: bodies?,
         drive,
         max_speed_rad_s,
         range_deg,
@@ -437,7 +441,8 @@ fn read_given_drive(object: &Object, open: &Open) -> Option<DriveChoice> {
 }
 
 fn read_space_link(node: &Node, open: &Open, aside: &mut Aside) -> Option<SpacePiece> {
-    let object = node.object(&["type", "name", "vector_m", "material", "section", "mass_kg", "choose"])?;
+    let object =
+        node.object(&["type", "name", "vector_m", "material", "section", "mass_kg", "bodies", "choose"])?;
     let Some(choose) = object.optional("choose") else {
         return read_link(&object, &[], open.catalogs).map(SpacePiece::Link);
     };
@@ -456,7 +461,14 @@ fn read_space_link(node: &Node, open: &Open, aside: &mut Aside) -> Option<SpaceP
     let sections = choices.required("sections").and_then(|n| read_sections(&n, open.catalogs));
     let options =
         super::sections::options(&materials?, &sections?, open.constraints, name.as_deref()?, aside);
-    Some(SpacePiece::Choice(LinkChoice { name: name?, vector_m: vector_m?, options, excerpt: None }))
+    let bodies = read_link_bodies(&object);
+    Some(SpacePiece::Choice(LinkChoice {
+        name: name?,
+        vector_m: vector_m?,
+        options,
+        bodies: bodies?,
+        excerpt: None,
+    }))
 }
 
 fn read_constraints(node: &Node) -> Option<Constraints> {

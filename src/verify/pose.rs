@@ -17,7 +17,7 @@ use super::span::{Linear, LinearVector};
 use super::tubes::{DENSITIES, STIFFNESSES};
 use crate::arm::load::{LoadCase, Water};
 use crate::arm::structure::Structure;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
 /// Gauss-Legendre points and weights on 0..1, exact to degree 7.
 const GAUSS: [(f64, f64); 4] = [
@@ -167,8 +167,8 @@ impl Builder<'_> {
         let about_m = &point.at_m;
         let none = Wrench::default();
         let tip = self.tip_loads.iter().map(|(force, at_m)| Wrench::of(*force, at_m, about_m));
-        let masses = self.layout.masses.iter().filter(|mass| mass.rank > point.rank);
-        let masses = masses.map(|m| Wrench::of(down(m.mass_kg * self.gravity_m_s2), &m.at_m, about_m));
+        let masses = self.layout.masses.iter().filter(|mass| mass.is_outboard_of(point));
+        let masses = masses.map(|m| Wrench::of(down(m.mass_kg * self.gravity_m_s2), &m.centre_m(), about_m));
         let drives = self.layout.joints.iter().map(|joint| match joint.rank > point.rank {
             true => Wrench::of(down(self.gravity_m_s2), &joint.at_m, about_m),
             false => none,
@@ -242,12 +242,11 @@ impl Builder<'_> {
             fixed: Vector3::zeros(),
             per_load: vec![Vector3::zeros(); loads],
         });
-        for (xi, weight) in GAUSS {
-            let point = self.inside(tube, xi * placed.length_m);
+        for (x, length_m) in self.quadrature(tube) {
+            let point = self.inside(tube, x);
             let carried = self.carried(&point);
             let units = [Vector3::x(), Vector3::y(), Vector3::z()]
                 .map(|e| Wrench::of(e, &self.layout.tip_m, &point.at_m).in_frame(&placed.frame));
-            let length_m = weight * placed.length_m;
             let parts = |real: &Wrench| products(&real.in_frame(&placed.frame), &units, length_m);
             for (work, part) in works.iter_mut().zip(parts(&carried.fixed)) {
                 work.fixed += part;
@@ -259,6 +258,22 @@ impl Builder<'_> {
             }
         }
         works
+    }
+
+    /// Points of a tube \[m\] with the lengths that they stand for. A body on the tube makes a step in the loads, so that it
+    /// divides the tube.
+    fn quadrature(&self, tube: usize) -> Vec<(f64, f64)> {
+        let placed = &self.layout.tubes[tube];
+        let on_tube = self.layout.masses.iter().filter(|mass| mass.carrier.rank == placed.rank);
+        let mut cuts: Vec<f64> = on_tube.filter_map(|mass| mass.carrier.inside_m).collect();
+        cuts.extend([0.0, placed.length_m]);
+        cuts.sort_by(f64::total_cmp);
+        cuts.dedup();
+        let parts = cuts.windows(2).flat_map(|part| {
+            let length_m = part[1] - part[0];
+            GAUSS.map(|(xi, weight)| (part[0] + xi * length_m, weight * length_m))
+        });
+        parts.collect()
     }
 
     /// Inertia matrix of the payload and of the masses that no choice changes.
@@ -273,9 +288,16 @@ impl Builder<'_> {
             add_square(&mut out, &along(&turned, &(rotation * spin.column(axis))), 1.0);
         }
         for mass in &self.layout.masses {
-            let (moved, _) = self.motions(&Point { at_m: mass.at_m, rank: mass.rank, inside_m: None });
+            let (mut moved, turned) = self.motions(&mass.carrier);
+            moved.iter_mut().zip(&turned).for_each(|(moved, turned)| *moved += turned.cross(&mass.arm_m));
             for axis in 0..3 {
                 add_square(&mut out, &along(&moved, &Vector3::ith(axis, 1.0)), mass.mass_kg);
+            }
+            if mass.inertia_kgm2 != Matrix3::zeros() {
+                let principal = SymmetricEigen::new(mass.inertia_kgm2);
+                for (axis, moment) in principal.eigenvectors.column_iter().zip(&principal.eigenvalues) {
+                    add_square(&mut out, &along(&turned, &axis.into_owned()), moment.max(0.0));
+                }
             }
         }
         out

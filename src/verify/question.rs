@@ -5,6 +5,7 @@
 //! follows from them (which drives hold, what a tube weighs, where a joint is) is worked out in this room.
 
 use crate::arm::bearing::{Bearing, BearingSource};
+use crate::arm::body::{JointBodies, RigidBody};
 use crate::arm::effect::Effect;
 use crate::arm::extras::{Extras, ExtrasSource};
 use crate::arm::joint_law::Curve;
@@ -63,6 +64,8 @@ pub struct AskedJoint {
     pub bearing: BearingSource,
     /// Where the masses beyond gear, motor and bearing come from.
     pub extras: ExtrasSource,
+    /// Rigid bodies that it carries beyond all these.
+    pub bodies: JointBodies,
     /// How its drive is found.
     pub drive: AskedDrive,
     /// Largest speed, if the study gives one \[rad/s\]; else it follows from the speed of the tip.
@@ -145,6 +148,8 @@ pub struct AskedLink {
     pub vector_m: Vector3<f64>,
     /// The tubes it can be.
     pub tubes: Vec<AskedTube>,
+    /// Rigid bodies that it carries, whichever tube it has.
+    pub bodies: Vec<RigidBody>,
 }
 
 /// A tube that a link can be.
@@ -316,6 +321,7 @@ impl AskedJoint {
             mass_kg,
             bearing,
             extras,
+            bodies: self.bodies.clone(),
             gear: None,
             motor: None,
             coupled: None,
@@ -328,7 +334,7 @@ impl AskedLink {
     pub(super) fn with_tube(&self, tube: &AskedTube) -> Link {
         let AskedTube { material, section, .. } = *tube;
         let body = LinkBody::Tube { material_name: String::new(), material, section };
-        Link { name: self.name.clone(), vector_m: self.vector_m, body }
+        Link { name: self.name.clone(), vector_m: self.vector_m, body, bodies: self.bodies.clone() }
     }
 }
 
@@ -376,6 +382,7 @@ impl Question {
                     name: choice.name.clone(),
                     vector_m: choice.vector_m,
                     body: LinkBody::Offset { mass_kg: 0.0 },
+                    bodies: choice.bodies.clone(),
                 },
             }),
         };
