@@ -122,7 +122,13 @@ fn read_inertia(node: &Node) -> Option<Matrix3<f64>> {
         let (above, below) = (tensor[(i, j)], tensor[(j, i)]);
         if (above - below).abs() > rounding {
             return node.fault(
-                format!("is not symmetric: row {}, column {} is {above} and row {}, column {} is {below}", i + 1, j + 1, j + 1, i + 1),
+                format!(
+                    "is not symmetric: row {}, column {} is {above} and row {}, column {} is {below}",
+                    i + 1,
+                    j + 1,
+                    j + 1,
+                    i + 1
+                ),
                 "write each product of inertia twice, with the sign of the tensor (Ixy = -∫xy dm)",
             );
         }

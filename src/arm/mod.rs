@@ -280,14 +280,17 @@ impl Element {
     pub fn mass_kg(&self) -> f64 {
         match self {
             Element::Joint(joint) => joint.total_mass_kg() + joint.bodies.mass_kg(),
-            Element::Link(link) => body::total_kg(&link.bodies) + match &link.body {
-                LinkBody::Tube { material, section, .. } => {
-                    material.density_kg_m3
-                        * section.properties(material.poisson).area_m2
-                        * link.vector_m.norm()
-                }
-                LinkBody::Offset { mass_kg } => *mass_kg,
-            },
+            Element::Link(link) => {
+                body::total_kg(&link.bodies)
+                    + match &link.body {
+                        LinkBody::Tube { material, section, .. } => {
+                            material.density_kg_m3
+                                * section.properties(material.poisson).area_m2
+                                * link.vector_m.norm()
+                        }
+                        LinkBody::Offset { mass_kg } => *mass_kg,
+                    }
+            }
         }
     }
 }

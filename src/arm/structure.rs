@@ -129,7 +129,9 @@ impl LinkPiece {
 
     /// Mass of tube, cables, point mass and bodies \[kg\].
     pub fn mass_kg(&self) -> f64 {
-        self.point_mass_kg + total_kg(&self.bodies) + self.vector_m.norm() * (self.tube_kg_per_m() + self.harness_kg_per_m)
+        self.point_mass_kg
+            + total_kg(&self.bodies)
+            + self.vector_m.norm() * (self.tube_kg_per_m() + self.harness_kg_per_m)
     }
 }
 

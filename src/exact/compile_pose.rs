@@ -9,7 +9,8 @@
 use super::bearing_rows::{BearingRows, Loads, Ramp};
 use super::parts::{INERTIAS, inertia};
 use super::pose::{
-    COORDINATES, ENDS, InertiaRow, Pose, PosedBodies, PosedPiece, PosedTube, Row, StressRow, TILT, TORSION, TubeForms,
+    COORDINATES, ENDS, InertiaRow, Pose, PosedBodies, PosedPiece, PosedTube, Row, StressRow, TILT, TORSION,
+    TubeForms,
 };
 use crate::arm::LinkModel;
 use crate::arm::load::Water;

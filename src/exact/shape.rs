@@ -351,8 +351,8 @@ impl Local {
     fn all(&self) -> DVector<f64> {
         let (z, y, turn, along) = (&self.z, &self.y, &self.turn, &self.along);
         DVector::from_row_slice(&[
-            along[0], y[0], z[0], turn[0], z[1], y[1], z[2], z[3], z[4], z[5], y[2], y[3], y[4], y[5], z[6], z[7],
-            z[8], y[6], y[7], y[8], turn[1], turn[2], turn[3], along[1], along[2], along[3],
+            along[0], y[0], z[0], turn[0], z[1], y[1], z[2], z[3], z[4], z[5], y[2], y[3], y[4], y[5], z[6],
+            z[7], z[8], y[6], y[7], y[8], turn[1], turn[2], turn[3], along[1], along[2], along[3],
         ])
     }
 

@@ -16,9 +16,9 @@
 //! Timoshenko counterparts), so statics are exact. Frequencies converge from above. The inertia does not depend on the
 //! stiffness, so frequencies rise with every stiffness and fall with every mass. The exact search relies on this.
 
+use super::{Wrench, body_inertia, force_wrench, stack};
 use crate::arm::LinkModel;
 use crate::arm::body::RigidBody;
-use super::{Wrench, body_inertia, force_wrench, stack};
 use crate::arm::structure::{Beam, LinkPiece, Structure};
 use nalgebra::{DMatrix, Matrix3, Matrix3xX, Matrix6xX, SMatrix, Vector3};
 

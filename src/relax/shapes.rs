@@ -101,8 +101,7 @@ impl ShapeModel {
                         stiffness: tubes[slot].iter().map(stiffness).collect(),
                     });
                     for body in &tubes[slot][0].bodies {
-                        model.given +=
-                            body_inertia_over(&beam, body, &frame, &place.root_m, &twist, column);
+                        model.given += body_inertia_over(&beam, body, &frame, &place.root_m, &twist, column);
                     }
                     for (k, field) in beam.end_fields.column_iter().enumerate() {
                         let turn: Vector3<f64> = frame * field.fixed_rows::<3>(3);

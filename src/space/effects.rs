@@ -5,13 +5,13 @@
 //! `reconcile` compute the same thing. Stations, rows and lanes know pieces only; they know nothing of effects.
 
 use super::design_space::{DesignSpace, SpaceJoint, SpacePiece};
-use crate::arm::{Link, LinkBody};
 use crate::arm::bearing::Bearing;
 use crate::arm::body::{JointBodies, RigidBody, total_kg};
 use crate::arm::effect::subject::Subject;
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::arm::joint_torque::JointTorque;
 use crate::arm::structure::{JointAngle, JointPiece, LinkPiece, Piece, Structure, link_piece};
+use crate::arm::{Link, LinkBody};
 use crate::mechanics::chain::across;
 use nalgebra::{Rotation3, Vector3};
 

@@ -35,11 +35,7 @@ pub(crate) enum StationSlot {
     /// A rigid body: a point mass, or a rigid offset with the harness along it.
     Body { inertia: Matrix6<f64>, weight: Wrench },
     /// A tube, with one entry for each option.
-    Link {
-        options: Vec<StationLink>,
-        place: Place,
-        carried: OnTube,
-    },
+    Link { options: Vec<StationLink>, place: Place, carried: OnTube },
 }
 
 /// The bodies on a tube in a pose, as they are if the tube does not yield. They have a slot of their own inboard of the

@@ -3,6 +3,7 @@
 
 mod bearing_loads;
 mod beside_the_front;
+mod bodies;
 mod brute;
 mod brute_bearings;
 mod brute_force;
