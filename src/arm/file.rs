@@ -280,7 +280,8 @@ fn part_mass(node: &Node, mass_kg: Option<f64>) -> Option<f64> {
     mass_kg.or_else(|| node.fault("has no mass in the catalog", "give the joint's \"mass_kg\""))
 }
 
-fn read_coupling(node: &Node) -> Option<Vec<(String, f64)>> {
+/// Reads the drivers of a passive joint, each with its factor.
+pub(crate) fn read_coupling(node: &Node) -> Option<Vec<(String, f64)>> {
     let read: Vec<_> =
         node.entries()?.iter().map(|(name, n)| n.number().map(|f| (name.to_string(), f))).collect();
     read.into_iter().collect()

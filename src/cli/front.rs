@@ -55,6 +55,13 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<String, Failu
     let file = args.results.join("study.json");
     let text = fs_err::read_to_string(&file).map_err(|e| Failure::File(e.to_string()))?;
     let study = read_study(Document::parse(&file.display().to_string(), &text)?, catalogs)?;
+    if study.space.has_linkages() {
+        return Err(Failure::Usage(format!(
+            "the study \"{}\" has coupled joints, which the bounds of this check do not cover; `armwright design` and \
+             `armwright analyze --cases` compute a row again",
+            study.name
+        )));
+    }
     let table =
         FrontTable::read(&args.results.join("front.csv")).map_err(|e| Failure::File(e.to_string()))?;
     let mut faults = Vec::new();

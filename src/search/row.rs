@@ -204,8 +204,11 @@ impl DriveAttributes {
 
 impl Row {
     /// Compiles the row level. Returns `None` if there is no level, or if a given tube inboard of it is too slender,
-    /// so that no design holds.
+    /// so that no design holds, or if there are linkages, which lanes do not know.
     pub(crate) fn new(problem: &ArmProblem) -> Option<Self> {
+        if problem.space().has_linkages() {
+            return None;
+        }
         let first = problem.row_slot()?;
         let slots = &problem.slots()[first..];
         let given_tubes = || slots[1..].iter().filter_map(Slot::given_tube);

@@ -193,7 +193,7 @@ fn given_joint(joint: &SpaceJoint) -> Option<Joint> {
         bodies: joint.bodies.clone(),
         gear: gear.clone(),
         motor: motor.clone(),
-        coupled: None,
+        coupled: joint.coupled.clone(),
     })
 }
 
@@ -255,6 +255,7 @@ mod tests {
             duty: None,
             fit: Default::default(),
             connection_share: 0.0,
+            coupled: None,
         };
         let given = given_joint(&joint).expect("given");
         assert_eq!((given.curve, given.mass_kg), (Curve::Linear(4e5), 3.2));

@@ -69,6 +69,7 @@ use nalgebra::{Unit, Vector3};
 ///             duty: None,
 ///             fit: FitRequirement::default(),
 ///             connection_share: 0.0,
+///             coupled: None,
 ///         }),
 ///         SpacePiece::Choice(LinkChoice {
 ///             name: "upper_arm".into(),
@@ -192,6 +193,9 @@ pub struct SpaceJoint {
     /// Compliance of the connections at the joint as a share of that of its gear and its bearing. What the study states in
     /// numbers has it already.
     pub connection_share: f64,
+    /// The angle of a passive joint: a sum of factors times the angles of driven joints inboard of it. `None` for a driven
+    /// joint, which has an entry in every pose.
+    pub coupled: Option<Vec<(String, f64)>>,
 }
 
 /// How a joint's drive is found.
@@ -345,7 +349,54 @@ impl LinkOption {
     }
 }
 
+/// One driver of a passive joint, by the numbers of their pieces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct SpaceLinkage {
+    pub driver: usize,
+    pub passive: usize,
+    /// Rotation of the passive joint per rotation of the driver.
+    pub factor: f64,
+}
+
 impl DesignSpace {
+    /// Whether linkages turn passive joints. The bounds of the exact search, of the verifier and of the relaxation do not
+    /// cover them.
+    pub fn has_linkages(&self) -> bool {
+        self.joints().any(|(_, joint)| joint.coupled.is_some())
+    }
+
+    /// The joints with the numbers of their pieces, base to tip.
+    pub(crate) fn joints(&self) -> impl Iterator<Item = (usize, &SpaceJoint)> {
+        self.pieces.iter().enumerate().filter_map(|(piece, what)| match what {
+            SpacePiece::Joint(joint) => Some((piece, joint)),
+            _ => None,
+        })
+    }
+
+    /// Every driver of every passive joint.
+    pub(crate) fn linkages(&self) -> Vec<SpaceLinkage> {
+        let piece = |name: &str| self.joints().find(|(_, joint)| joint.name == name).map(|(piece, _)| piece);
+        let of = |(passive, joint): (usize, &SpaceJoint)| -> Vec<SpaceLinkage> {
+            let terms = joint.coupled.iter().flatten();
+            terms
+                .filter_map(|(name, factor)| Some(SpaceLinkage { driver: piece(name)?, passive, factor: *factor }))
+                .collect()
+        };
+        self.joints().flat_map(of).collect()
+    }
+
+    /// Angle of every joint in a case, base to tip, those of passive joints too \[rad\].
+    pub(crate) fn angles_rad(&self, case: &Case) -> Vec<f64> {
+        let driven = self.joints().filter(|(_, joint)| joint.coupled.is_none()).map(|(_, joint)| &joint.name);
+        let angles: Vec<(&String, f64)> = driven.zip(case.pose_deg.iter().map(|a| a.to_radians())).collect();
+        let of = |name: &String| angles.iter().find(|(driver, _)| *driver == name).map_or(0.0, |(_, angle)| *angle);
+        let angle = |(_, joint): (usize, &SpaceJoint)| match &joint.coupled {
+            None => of(&joint.name),
+            Some(terms) => terms.iter().map(|(name, factor)| factor * of(name)).sum(),
+        };
+        self.joints().map(angle).collect()
+    }
+
     /// Number of options of all open links together.
     pub fn link_options(&self) -> usize {
         let options = |piece: &SpacePiece| match piece {

@@ -7,7 +7,7 @@
 use super::design_space::{Case, DesignSpace, SpacePiece};
 use super::effects::{Carried, Layer};
 use super::station::{
-    Block, BlockSlot, Modal, OnTube, Place, Station, StationJoint, StationLink, StationSlot, Walk, bodies_at,
+    Block, BlockSlot, Modal, OnTube, Place, Station, StationJoint, StationLink, StationSlot, Turned, Walk, bodies_at,
     payload_in, weight_wrench,
 };
 use crate::arm::body::RigidBody;
@@ -115,6 +115,7 @@ impl Posed {
                 Builder { space, structure: &structure, place, tip_m: &walk.tip_m }.build(layer)
             })
             .collect();
+        link_up(space, layers, &mut slots);
         let is_planar = planar(&slots, &start_inertia);
         if !is_planar {
             slots.iter_mut().for_each(put_into_one_block);
@@ -188,6 +189,8 @@ impl Builder<'_> {
             weight_per_kg: weight_wrench(self.structure.gravity_m_s2, at_m),
             // rounding leaves traces of the other plane in an axis that was turned
             block: usize::from(PLANES[1].iter().any(|&i| twist[i].abs() > ROUNDING * twist.amax())),
+            turns: Vec::new(),
+            is_passive: false,
         })
     }
 
@@ -253,6 +256,22 @@ fn station_link(
         end_inertia: placed.inertia[0].diagonal().fixed_rows::<6>(6).into_owned(),
         block: if is_planar { ends_by_block(placed) } else { [0; 6] },
         inner_trace_s2: placed.inner_trace_s2,
+    }
+}
+
+/// Tells every driver which passive joints it turns.
+fn link_up(space: &DesignSpace, layers: &[(usize, Layer)], slots: &mut [StationSlot]) {
+    let of_piece = |piece: usize| {
+        layers.iter().position(|(at, layer)| *at == piece && matches!(layer, Layer::Piece(SpacePiece::Joint(_))))
+    };
+    for linkage in space.linkages() {
+        let (Some(driver), Some(slot)) = (of_piece(linkage.driver), of_piece(linkage.passive)) else { continue };
+        let StationSlot::Joint(passive) = &mut slots[slot] else { continue };
+        passive.is_passive = true;
+        let (twist, tip_m_per_rad) = (passive.twist * linkage.factor, passive.tip_m_per_rad * linkage.factor);
+        if let StationSlot::Joint(joint) = &mut slots[driver] {
+            joint.turns.push(Turned { slot, twist, tip_m_per_rad });
+        }
     }
 }
 

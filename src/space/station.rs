@@ -60,6 +60,19 @@ pub(crate) struct StationJoint {
     pub weight_per_kg: Wrench,
     /// The block in which the joint moves the arm: 0 within the plane, 1 across it.
     pub block: usize,
+    /// What a linkage turns together with the joint, each with the slot of the passive joint. All of them are outboard.
+    pub turns: Vec<Turned>,
+    /// Whether a linkage turns the joint.
+    pub is_passive: bool,
+}
+
+/// A passive joint as its driver turns it.
+pub(crate) struct Turned {
+    pub slot: usize,
+    /// Motion of everything outboard of the passive joint per radian of the driver.
+    pub twist: Twist,
+    /// Displacement of the tip by the passive joint per radian of the driver.
+    pub tip_m_per_rad: Vector3<f64>,
 }
 
 /// Where a link is in a pose.
@@ -172,7 +185,7 @@ pub(crate) struct Walk {
 impl Walk {
     /// Forward kinematics of a case, base to tip.
     pub(crate) fn new(space: &DesignSpace, case: &Case) -> Self {
-        let mut angles = case.pose_deg.iter().map(|a| a.to_radians());
+        let mut angles = space.angles_rad(case).into_iter();
         let (mut at_m, mut rotation) = (Vector3::zeros(), Rotation3::identity());
         let mut places = Vec::with_capacity(space.pieces.len());
         for piece in &space.pieces {
@@ -216,7 +229,8 @@ pub(crate) fn bodies_at(
     (inertia, weight)
 }
 
-/// Reach of each joint \[m\], base to tip: the largest distance of the tip from its axis over some cases.
+/// Reach of each joint \[m\], base to tip: the largest way of the tip per radian over some cases. That is the distance of the
+/// tip from the axis, unless the joint turns passive joints too.
 pub(crate) fn reaches_m<'a>(space: &DesignSpace, cases: impl Iterator<Item = &'a Case>) -> Vec<f64> {
     let joints: Vec<(usize, Vector3<f64>)> = space
         .pieces
@@ -227,13 +241,19 @@ pub(crate) fn reaches_m<'a>(space: &DesignSpace, cases: impl Iterator<Item = &'a
             _ => None,
         })
         .collect();
+    let linkages = space.linkages();
     let mut reaches = vec![0.0f64; joints.len()];
     for case in cases {
         let walk = Walk::new(space, case);
-        for (reach, (piece, axis)) in reaches.iter_mut().zip(&joints) {
-            let (origin, rotation) = &walk.places[*piece];
-            // the distance of a point from an axis through the origin is |axis x way to the point|
-            *reach = reach.max((rotation * axis).cross(&(walk.tip_m - origin)).norm());
+        let way = |piece: usize| {
+            let (origin, rotation) = &walk.places[piece];
+            let axis = joints.iter().find(|(joint, _)| *joint == piece).map_or(Vector3::zeros(), |(_, axis)| *axis);
+            (rotation * axis).cross(&(walk.tip_m - origin))
+        };
+        for (reach, (piece, _)) in reaches.iter_mut().zip(&joints) {
+            let turned = linkages.iter().filter(|linkage| linkage.driver == *piece);
+            let all = turned.fold(way(*piece), |sum, linkage| sum + way(linkage.passive) * linkage.factor);
+            *reach = reach.max(all.norm());
         }
     }
     reaches

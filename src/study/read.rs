@@ -18,7 +18,7 @@ use super::sections::{Aside, read_materials, read_sections};
 use crate::arm::bearing::{BearingSource, Stated, read_bearing};
 use crate::arm::body::{read_joint_bodies, read_link_bodies};
 use crate::arm::extras::{ExtrasSource, read_extras_source};
-use crate::arm::file::{read_curve, read_effects, read_joint_mass, read_link, read_name};
+use crate::arm::file::{read_coupling, read_curve, read_effects, read_joint_mass, read_link, read_name};
 use crate::arm::load::{vector, word};
 use crate::arm::{JointModel, LinkModel};
 use crate::catalog::Catalogs;
@@ -29,6 +29,7 @@ use crate::sizing::requirement::MotionRequirement;
 use crate::sizing::select::DriveFilter;
 use crate::sizing::stated::StatedDuty;
 use crate::space::constraint::{Constraints, Servo};
+use serde_json::Value;
 use crate::space::design_space::{DesignSpace, DriveChoice, LinkChoice, SpaceJoint, SpacePiece};
 
 const KEYS: [&str; 20] = [
@@ -150,10 +151,11 @@ fn read_gap(node: &Node) -> Option<f64> {
     }
 }
 
-/// Names of the joints as written, so that poses are checked even when the chain is faulty.
+/// Names of the driven joints as written, so that poses are checked even when the chain is faulty.
 fn joint_names(study: &Node) -> Vec<String> {
     let chain = study.value().get("chain").and_then(|c| c.as_array());
-    let joints = chain.into_iter().flatten().filter(|e| e.get("type").is_some_and(|t| t == "joint"));
+    let is_driven = |e: &&Value| e.get("type").is_some_and(|t| t == "joint") && e.get("coupled").is_none();
+    let joints = chain.into_iter().flatten().filter(is_driven);
     joints.map(|j| j.get("name").and_then(|n| n.as_str()).unwrap_or("(unnamed)").to_string()).collect()
 }
 
@@ -288,7 +290,28 @@ fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePi
     let mut pieces = read.into_iter().collect::<Option<Vec<_>>>()?;
     number_materials(&mut pieces);
     unique_names(node, &pieces)?;
+    drivers_are_inboard(&items, &pieces)?;
     Some(pieces)
+}
+
+/// Checks that every passive joint is turned by driven joints inboard of it. Drives are sized from the tip inward, so what a
+/// linkage hands to its driver must be known before the driver is.
+fn drivers_are_inboard(items: &[Node], pieces: &[SpacePiece]) -> Option<()> {
+    let mut sound = Some(());
+    let mut inboard: Vec<&str> = Vec::new();
+    for (item, piece) in items.iter().zip(pieces) {
+        let SpacePiece::Joint(joint) = piece else { continue };
+        for (name, _) in joint.coupled.iter().flatten().filter(|(name, _)| !inboard.contains(&name.as_str())) {
+            sound = item.fault(
+                format!("is coupled to \"{name}\", which is no driven joint inboard of it"),
+                &format!("driven joints inboard of it: {}", inboard.join(", ")),
+            );
+        }
+        if joint.coupled.is_none() {
+            inboard.push(&joint.name);
+        }
+    }
+    sound
 }
 
 fn unique_names(node: &Node, pieces: &[SpacePiece]) -> Option<()> {
@@ -322,6 +345,7 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
         "drives",
         "fit",
         "bodies",
+        "coupled",
     ])?;
     let name = read_name(&object);
     let axis = object.required("axis").and_then(|n| crate::arm::file::read_axis(&n));
@@ -337,6 +361,16 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
             "add \"drive\", or \"gear\" and \"motor\"",
         );
     }
+    if object.has("coupled") {
+        let of_driven = ["drive", "motor", "range_deg", "max_speed_rad_s", "brake", "duty"];
+        stray(
+            &object,
+            &of_driven,
+            "stands beside \"coupled\"",
+            "a linkage turns this joint: write it at the joint that drives it",
+        );
+    }
+    let coupled = object.or("coupled", None, |n| read_coupling(n).map(Some));
     let drive = match object.optional("drive") {
         Some(drive) => {
             let given = ["stiffness_nm_per_rad", "windup", "gear", "motor", "gear_mass", "mass_kg"];
@@ -384,6 +418,7 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
         duty,
         fit,
         connection_share,
+        coupled: coupled?,
     })
 }
 
