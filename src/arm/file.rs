@@ -58,14 +58,29 @@ pub fn read_arm_document(document: Document, catalogs: &Catalogs) -> Result<Arm,
 pub(crate) fn arm(node: &Node, catalogs: &Catalogs) -> Option<Arm> {
     let root = node.object(&["name", "gravity_m_s2", "materials", "chain", "effects", "provenance"])?;
     let name = root.or("name", "arm".to_string(), |n| n.string().map(String::from));
-    let gravity = root.or("gravity_m_s2", DEFAULT_GRAVITY_M_S2, Node::non_negative);
+    let gravity = read_gravity(&root);
     let materials = root.or("materials", Vec::new(), read_materials).unwrap_or_default();
     let chain = root.required("chain").and_then(|n| read_chain(&n, &materials, catalogs));
     let effects = root.or("effects", Vec::new(), read_effects);
-    let arm = Arm { name: name?, gravity_m_s2: gravity?, chain: chain?, effects: effects? };
+    let (gravity_m_s2, down) = gravity?;
+    let arm = Arm { name: name?, gravity_m_s2, down, chain: chain?, effects: effects? };
     check_names(&arm, &root)?;
     check_effects(&arm, &root)?;
     Some(arm)
+}
+
+/// Reads the key `gravity_m_s2`: the acceleration along world -z, or a vector in the world; 0 is none. The result is the
+/// acceleration and its direction.
+pub(crate) fn read_gravity(object: &Object) -> Option<(f64, Vector3<f64>)> {
+    let upright = -Vector3::z();
+    object.or("gravity_m_s2", (DEFAULT_GRAVITY_M_S2, upright), |n| match n.value() {
+        Value::Array(_) => {
+            let acceleration = vector(n)?;
+            let direction = Unit::try_new(acceleration, 0.0).map_or(upright, Unit::into_inner);
+            Some((acceleration.norm(), direction))
+        }
+        _ => n.non_negative().map(|m_s2| (m_s2, upright)),
+    })
 }
 
 /// A material of the file with its name; `None` if it is faulty, in which case the fault is recorded.

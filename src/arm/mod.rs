@@ -35,6 +35,7 @@ pub use load::{LoadCase, Payload, Water, read_load_cases};
 pub use section::{LinkMaterial, Section, SectionProperties};
 pub use structure::{Beam, FrameCompliance, JointAngle, JointPiece, LinkPiece, Piece, Structure};
 
+use crate::input::json::Fault;
 use nalgebra::{Unit, Vector3};
 
 /// The physics of links that a calculation uses.
@@ -134,7 +135,7 @@ impl JointModel {
 /// let body = LinkBody::Offset { mass_kg: 5.0 };
 /// let link = Link { name: "upper_arm".into(), vector_m: Vector3::new(0.8, 0.0, 0.0), body, bodies: Vec::new() };
 /// let chain = vec![Element::Joint(joint), Element::Link(link)];
-/// let arm = Arm { name: "two pieces".into(), gravity_m_s2: 9.81, chain, effects: Vec::new() };
+/// let arm = Arm { name: "two pieces".into(), gravity_m_s2: 9.81, down: -Vector3::z(), chain, effects: Vec::new() };
 /// assert_eq!(arm.mass_kg(), 17.2);
 /// assert_eq!(arm.reach_m(), 0.8);
 /// assert_eq!(arm.to_json()["chain"][0]["stiffness_nm_per_rad"], 607e3);
@@ -143,8 +144,10 @@ impl JointModel {
 pub struct Arm {
     /// Name.
     pub name: String,
-    /// Gravitational acceleration along world -z \[m/s²\].
+    /// Gravitational acceleration \[m/s²\].
     pub gravity_m_s2: f64,
+    /// Direction of gravity in the world, a unit vector: -z for an arm that stands upright.
+    pub down: Vector3<f64>,
     /// Joints and links from base to tip.
     pub chain: Vec<Element>,
     /// Physics beyond the nominal model.
@@ -252,6 +255,19 @@ impl Arm {
     /// Mass of all links and drives \[kg\], without what effects add.
     pub fn mass_kg(&self) -> f64 {
         self.chain.iter().map(Element::mass_kg).sum()
+    }
+
+    /// The fault that gravity does not act along world -z; `None` if it does. The workflows on measurements take it for
+    /// granted. `file` is the name of the arm's file.
+    pub(crate) fn tilt_fault(&self, file: &str) -> Option<Fault> {
+        (self.down != -Vector3::z()).then(|| Fault {
+            file: file.into(),
+            line: None,
+            field: "gravity_m_s2".into(),
+            problem: "is a vector, and readings are compared with arms that stand upright alone".into(),
+            hint: "write the arm in a world whose z axis is up, with a number for gravity; `analyze` and studies take vectors"
+                .into(),
+        })
     }
 
     /// Reach \[m\]: the sum of the lengths of the links outboard of the first joint that is not vertical. What carries this

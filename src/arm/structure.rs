@@ -14,6 +14,8 @@ use nalgebra::{Matrix3, SymmetricEigen, Unit, Vector3};
 pub struct Structure {
     /// Gravitational acceleration \[m/s²\].
     pub gravity_m_s2: f64,
+    /// Direction of gravity in the world, a unit vector.
+    pub down: Vector3<f64>,
     /// Tilt of the base about world x and y per moment \[rad/(N m)\].
     pub base_tilt_rad_per_nm: f64,
     /// Feet that lift off.
@@ -172,7 +174,7 @@ impl Arm {
                 Element::Link(link) => Piece::Link(link_piece(link)),
             })
             .collect();
-        Structure::nominal(self.gravity_m_s2, pieces)
+        Structure { down: self.down, ..Structure::nominal(self.gravity_m_s2, pieces) }
     }
 }
 
@@ -186,10 +188,11 @@ impl Structure {
         self.pieces.iter().map(mass_kg).sum()
     }
 
-    /// A structure of pieces on a rigid base in air.
+    /// A structure of pieces on a rigid base in air, upright.
     pub(crate) fn nominal(gravity_m_s2: f64, pieces: Vec<Piece>) -> Self {
         Self {
             gravity_m_s2,
+            down: -Vector3::z(),
             base_tilt_rad_per_nm: 0.0,
             base_lift: None,
             base_frame: FrameCompliance::default(),

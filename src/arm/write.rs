@@ -6,6 +6,7 @@ use super::extras::Extras;
 use super::joint_law::Curve;
 use super::section::Section;
 use super::{Arm, Element, Joint, Link, LinkBody};
+use nalgebra::Vector3;
 use serde_json::{Map, Value, json};
 
 impl Arm {
@@ -14,11 +15,19 @@ impl Arm {
     pub fn to_json(&self) -> Value {
         json!({
             "name": self.name,
-            "gravity_m_s2": self.gravity_m_s2,
+            "gravity_m_s2": self.gravity_json(),
             "materials": self.materials_json(),
             "chain": self.chain.iter().map(Element::to_json).collect::<Vec<_>>(),
             "effects": self.effects.iter().map(Effect::to_json).collect::<Vec<_>>(),
         })
+    }
+
+    /// A number if the arm stands upright, else a vector in the world.
+    fn gravity_json(&self) -> Value {
+        match self.down == -Vector3::z() {
+            true => json!(self.gravity_m_s2),
+            false => json!((self.down * self.gravity_m_s2).as_slice()),
+        }
     }
 
     fn materials_json(&self) -> Value {

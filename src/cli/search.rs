@@ -79,7 +79,8 @@ impl SearchArgs {
             return refused(format!("the study \"{}\" has more than 1e38 designs; thin a grid", study.name));
         };
         let exhaustive = self.search == Some(SearchKind::Exhaustive);
-        let by_bounds = self.search == Some(SearchKind::Exact) || self.time_limit.is_some() || self.gap.is_some();
+        let by_bounds =
+            self.search == Some(SearchKind::Exact) || self.time_limit.is_some() || self.gap.is_some();
         if study.space.has_linkages() && by_bounds {
             return refused(format!(
                 "the study \"{}\" has coupled joints, which the bounds of the exact search do not cover; leave --search \

@@ -114,8 +114,7 @@ impl<'c> Problem<'c> {
             level_sizes: Vec::new(),
             poses: Arc::new(poses),
             inertias: Arc::default(),
-            peak_factor: 1.0
-                + space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE),
+            peak_factor: space.peak_factor(),
             lighter_is_better: false,
             joint_plays: Vec::new(),
             levers: Vec::new(),

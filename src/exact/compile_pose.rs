@@ -14,7 +14,7 @@ use super::pose::{
 };
 use crate::arm::LinkModel;
 use crate::arm::load::Water;
-use crate::arm::structure::{LinkPiece, Structure};
+use crate::arm::structure::LinkPiece;
 use crate::mechanics::beam::{PreparedBeam, section_frame};
 use crate::mechanics::chain::across;
 use crate::mechanics::{Twist, Wrench, angular, body_inertia, displacement_at, linear, rotation_twist};
@@ -95,11 +95,11 @@ impl Pose {
                     self.inertia_about.push(Some(outboard.inertia_row(twist)));
                     let mut forms = [Matrix6::zeros(); INERTIAS];
                     forms[inertia::MASS] = body_inertia(1.0, at_m, &Matrix3::zeros());
-                    outboard.push(weight_wrench(1.0, at_m), forms);
+                    outboard.push(weight_wrench(1.0, &space.down, at_m), forms);
                 }
                 PosedPiece::Body(body) => {
                     self.inertia_about.push(None);
-                    outboard.add_body(body, space.gravity_m_s2);
+                    outboard.add_body(body, space);
                 }
                 PosedPiece::Tube(tube) => {
                     self.inertia_about.push(None);
@@ -108,7 +108,7 @@ impl Pose {
                     if tube.chosen {
                         self.stress.push(outboard.stress(piece, tube, &end_m));
                     }
-                    let areas = areas_per_n(tube);
+                    let areas = areas_per_n(tube, &space.down);
                     let bodies = tube.bodies.as_ref().map_or([0.0; 8], |bodies| bodies.end_forces);
                     for (end, coordinate) in ENDS.into_iter().enumerate() {
                         // A tube's own weight strains its coordinates too, though it is not outboard of the
@@ -119,7 +119,7 @@ impl Pose {
                         self.rows.push(row);
                     }
                     let middle_m = tube.root_m + tube.frame * Vector3::x() * (tube.length_m / 2.0);
-                    outboard.push(weight_wrench(1.0, &middle_m), tube.rigid_forms());
+                    outboard.push(weight_wrench(1.0, &space.down, &middle_m), tube.rigid_forms());
                     if let Some(bodies) = &tube.bodies {
                         outboard.fixed += bodies.weight;
                         outboard.fixed_inertia += bodies.rigid;
@@ -186,7 +186,7 @@ fn posed(
         Layer::Bearing(_) => return None,
         Layer::Bodies(Carried { by: Carrier::Tube, .. }) => PosedPiece::Body(Matrix6::zeros()),
         Layer::Bodies(Carried { bodies, .. }) => {
-            PosedPiece::Body(bodies_at(bodies, space.gravity_m_s2, &(*at_m, *rotation)).0)
+            PosedPiece::Body(bodies_at(bodies, space, &(*at_m, *rotation)).0)
         }
         Layer::Piece(SpacePiece::Joint(joint)) => {
             let axis = rotation * joint.axis;
@@ -218,7 +218,7 @@ fn posed_tube(
     rotation: &Matrix3<f64>,
     chosen: bool,
 ) -> PosedPiece {
-    let structure = Structure::nominal(space.gravity_m_s2, Vec::new());
+    let structure = space.structure_of(Vec::new());
     let frame = rotation * section_frame(&link.vector_m);
     // The fields of the coordinates depend on the length alone, so the first option stands for all.
     let Some(beam) = PreparedBeam::new(link, &structure, LinkModel::Full) else {
@@ -254,8 +254,8 @@ impl PosedBodies {
             return None;
         }
         let place = (*root_m, Rotation3::from_matrix_unchecked(*rotation));
-        let (rigid, weight) = bodies_at(&link.bodies, space.gravity_m_s2, &place);
-        let down = (rotation * beam.frame).tr_mul(&-Vector3::z());
+        let (rigid, weight) = bodies_at(&link.bodies, space, &place);
+        let down = (rotation * beam.frame).tr_mul(&space.down);
         let mut out = Self {
             inertia: DMatrix::zeros(6 + COORDINATES, 6 + COORDINATES),
             rigid,
@@ -332,8 +332,8 @@ impl PosedTube {
 
 /// Force on each of the coordinates [`ENDS`] per newton of the tube's own weight, which is distributed along the
 /// tube.
-fn areas_per_n(tube: &PosedTube) -> [f64; 8] {
-    let down = tube.frame.tr_mul(&-Vector3::z());
+fn areas_per_n(tube: &PosedTube, down: &Vector3<f64>) -> [f64; 8] {
+    let down = tube.frame.tr_mul(down);
     let f = &tube.forms;
     // ∫ field · (force per length) is the translation row of the inertia form divided by the length.
     let per = |form: &SMatrix<f64, 9, 9>, place: usize| form[(0, place)] / tube.length_m;
@@ -370,12 +370,12 @@ impl Outboard {
     }
 
     /// Adds a given body.
-    fn add_body(&mut self, body: &Matrix6<f64>, gravity_m_s2: f64) {
+    fn add_body(&mut self, body: &Matrix6<f64>, space: &DesignSpace) {
         self.fixed_inertia += body;
         let mass_kg = body[(0, 0)];
         if mass_kg > 0.0 {
             let moment = Vector3::new(body[(5, 1)], body[(3, 2)], body[(4, 0)]) / mass_kg;
-            self.fixed += weight_wrench(mass_kg * gravity_m_s2, &moment);
+            self.fixed += weight_wrench(mass_kg * space.gravity_m_s2, &space.down, &moment);
         }
         self.push(Wrench::zeros(), [Matrix6::zeros(); INERTIAS]);
     }

@@ -188,13 +188,13 @@ impl PreparedBeam {
     }
 
     /// Weight as a wrench about the world's origin. The root is at `root_m`, and `frame` is the section frame in the world.
-    pub(crate) fn weight(&self, root_m: &Vector3<f64>, frame: &Matrix3<f64>) -> Wrench {
-        let down = -Vector3::z();
+    /// `down` is the direction of gravity.
+    pub(crate) fn weight(&self, root_m: &Vector3<f64>, frame: &Matrix3<f64>, down: &Vector3<f64>) -> Wrench {
         let middle_m = root_m + frame.column(0) * (self.length_m / 2.0);
-        let tube = force_wrench(&(down * (self.weight_n_per_m * self.length_m)), &middle_m);
+        let tube = force_wrench(&(*down * (self.weight_n_per_m * self.length_m)), &middle_m);
         let CarriedWeight { weight_n, moment_nm, .. } = &self.carried;
-        let moment_nm = (root_m * *weight_n + frame * moment_nm).cross(&down);
-        tube + stack(&(down * *weight_n), &moment_nm)
+        let moment_nm = (root_m * *weight_n + frame * moment_nm).cross(down);
+        tube + stack(&(*down * *weight_n), &moment_nm)
     }
 
     /// Adds a body, which moves with the point of the axis that is nearest to its centre.

@@ -72,13 +72,14 @@ impl CondensedLink {
         }
     }
 
-    /// The condensed link in a pose. `root_m` and `end_m` are the places of its root and end, `frame` is its section frame,
-    /// all in the world.
+    /// The condensed link in a pose. `root_m` and `end_m` are the places of its root and end, `frame` is its section frame and
+    /// `down` the direction of gravity, all in the world.
     pub(crate) fn place(
         &self,
         root_m: &Vector3<f64>,
         end_m: &Vector3<f64>,
         frame: &Matrix3<f64>,
+        down: &Vector3<f64>,
     ) -> PlacedLink {
         let to_root = world_to_local(root_m, frame);
         let mut to_local = Inertia12::identity();
@@ -94,8 +95,8 @@ impl CondensedLink {
         PlacedLink {
             inertia: self.inertia.map(|m| to_local.transpose() * m * to_local),
             end,
-            end_per_weight: self.end_per_line_load * (frame.transpose() * -Vector3::z()),
-            end_under_bodies: self.end_under_bodies * (frame.transpose() * -Vector3::z()),
+            end_per_weight: self.end_per_line_load * (frame.transpose() * down),
+            end_under_bodies: self.end_under_bodies * (frame.transpose() * down),
             inner_trace_s2: self.inner_trace_s2,
         }
     }

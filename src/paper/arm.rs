@@ -117,7 +117,13 @@ impl PaperArm {
                 bodies: Vec::new(),
             }),
         ];
-        Arm { name: "paper-arm".into(), gravity_m_s2: GRAVITY_M_S2, chain, effects: Vec::new() }
+        Arm {
+            name: "paper-arm".into(),
+            gravity_m_s2: GRAVITY_M_S2,
+            down: -Vector3::z(),
+            chain,
+            effects: Vec::new(),
+        }
     }
 
     fn joint(&self, index: usize, mass_kg: f64) -> Element {

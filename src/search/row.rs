@@ -362,8 +362,11 @@ impl RowCase {
             _ => &[],
         };
         // the options of a link differ in weight but not in its line of action, so any of them gives the unit wrench
-        let link_weight =
-            links.iter().find(|l| l.weight[2] != 0.0).map_or(Vector6::zeros(), |l| -l.weight / l.weight[2]);
+        let down = &station.down;
+        let link_weight = links
+            .iter()
+            .find(|l| l.weight_n(down) != 0.0)
+            .map_or(Vector6::zeros(), |l| l.weight / l.weight_n(down));
         let links_yield = links.iter().any(|l| l.end.amax() > 0.0);
         let link_weight_at_root = match &slots[0] {
             StationSlot::Link { place, .. } => place.local(&link_weight, &place.root_m),
@@ -565,7 +568,7 @@ impl CaseChunk {
         };
         Some(Self {
             // a weight points along -z of the world
-            weight_n: lanes(&|l| -l.weight[2]),
+            weight_n: lanes(&|l| l.weight_n(&station.down)),
             flexibility: std::array::from_fn(|i| {
                 std::array::from_fn(|j| flexibility.map(|f: Matrix3x6<f64>| f[(i, j)]))
             }),

@@ -115,6 +115,7 @@ impl<'c> ArmProblem<'c> {
         Some(Arm {
             name: space.name.clone(),
             gravity_m_s2: space.gravity_m_s2,
+            down: space.down,
             chain: with_levers(chain),
             effects: space.effects.clone(),
         })
@@ -145,6 +146,7 @@ impl<'c> ArmProblem<'c> {
                 pose_deg: case.pose_deg.clone(),
                 payload: case.payload,
                 tip_force_n: case.tip_force_n,
+                tip_moment_nm: case.tip_moment_nm,
                 links: space.links,
                 joints: space.joints,
                 water: case.water,

@@ -55,6 +55,7 @@ use nalgebra::{Unit, Vector3};
 /// let space = DesignSpace {
 ///     name: "one link".into(),
 ///     gravity_m_s2: 9.81,
+///     down: -Vector3::z(),
 ///     pieces: vec![
 ///         SpacePiece::Joint(SpaceJoint {
 ///             name: "j2".into(),
@@ -84,6 +85,7 @@ use nalgebra::{Unit, Vector3};
 ///         pose_deg: vec![0.0],
 ///         payload: Payload { mass_kg: 5.0, ..Payload::default() },
 ///         tip_force_n: Vector3::zeros(),
+///         tip_moment_nm: Vector3::zeros(),
 ///         water: None,
 ///     }],
 ///     judged_cases: vec![0],
@@ -108,6 +110,8 @@ pub struct DesignSpace {
     pub name: String,
     /// Gravity \[m/s²\].
     pub gravity_m_s2: f64,
+    /// Direction of gravity in the world, a unit vector: -z for an arm that stands upright.
+    pub down: Vector3<f64>,
     /// Joints and links from base to tip.
     pub pieces: Vec<SpacePiece>,
     /// Every case in which the arm is judged or sized.
@@ -139,6 +143,8 @@ pub struct Case {
     pub payload: Payload,
     /// Force at the tip, world \[N\].
     pub tip_force_n: Vector3<f64>,
+    /// Moment at the tip, world \[N m\].
+    pub tip_moment_nm: Vector3<f64>,
     /// The water the arm is in.
     pub water: Option<Water>,
 }
@@ -379,7 +385,9 @@ impl DesignSpace {
         let of = |(passive, joint): (usize, &SpaceJoint)| -> Vec<SpaceLinkage> {
             let terms = joint.coupled.iter().flatten();
             terms
-                .filter_map(|(name, factor)| Some(SpaceLinkage { driver: piece(name)?, passive, factor: *factor }))
+                .filter_map(|(name, factor)| {
+                    Some(SpaceLinkage { driver: piece(name)?, passive, factor: *factor })
+                })
                 .collect()
         };
         self.joints().flat_map(of).collect()
@@ -389,12 +397,23 @@ impl DesignSpace {
     pub(crate) fn angles_rad(&self, case: &Case) -> Vec<f64> {
         let driven = self.joints().filter(|(_, joint)| joint.coupled.is_none()).map(|(_, joint)| &joint.name);
         let angles: Vec<(&String, f64)> = driven.zip(case.pose_deg.iter().map(|a| a.to_radians())).collect();
-        let of = |name: &String| angles.iter().find(|(driver, _)| *driver == name).map_or(0.0, |(_, angle)| *angle);
+        let of = |name: &String| {
+            angles.iter().find(|(driver, _)| *driver == name).map_or(0.0, |(_, angle)| *angle)
+        };
         let angle = |(_, joint): (usize, &SpaceJoint)| match &joint.coupled {
             None => of(&joint.name),
             Some(terms) => terms.iter().map(|(name, factor)| factor * of(name)).sum(),
         };
         self.joints().map(angle).collect()
+    }
+
+    /// Stress at peak load over stress at rest: by the paper's reading the acceleration a adds a/g times the static load.
+    /// Without gravity no stress is limited, and the factor is 1.
+    pub(crate) fn peak_factor(&self) -> f64 {
+        match self.gravity_m_s2 > 0.0 {
+            true => 1.0 + self.motion.tip_acceleration_m_s2() / self.gravity_m_s2,
+            false => 1.0,
+        }
     }
 
     /// Number of options of all open links together.

@@ -237,7 +237,12 @@ impl DesignSpace {
             SpacePiece::Link(link) => Piece::Link(link_piece(link)),
             SpacePiece::Choice(choice) => Piece::Link(link_piece(&choice.first_link())),
         };
-        Structure::nominal(self.gravity_m_s2, self.pieces.iter().map(piece).collect())
+        self.structure_of(self.pieces.iter().map(piece).collect())
+    }
+
+    /// A structure of pieces under the gravity of the study, without any effect.
+    pub(crate) fn structure_of(&self, pieces: Vec<Piece>) -> Structure {
+        Structure { down: self.down, ..Structure::nominal(self.gravity_m_s2, pieces) }
     }
 
     fn affected(&self, piece: Piece) -> Option<Piece> {
@@ -245,7 +250,7 @@ impl DesignSpace {
     }
 
     fn with_effects(&self, pieces: Vec<Piece>) -> Structure {
-        let mut subject = Subject::new(Structure::nominal(self.gravity_m_s2, pieces));
+        let mut subject = Subject::new(self.structure_of(pieces));
         self.effects.iter().filter(|effect| !effect.is_of_test()).for_each(|effect| subject.apply(effect));
         subject.structure
     }

@@ -7,8 +7,8 @@
 use super::design_space::{Case, DesignSpace, SpacePiece};
 use super::effects::{Carried, Layer};
 use super::station::{
-    Block, BlockSlot, Modal, OnTube, Place, Station, StationJoint, StationLink, StationSlot, Turned, Walk, bodies_at,
-    payload_in, weight_wrench,
+    Block, BlockSlot, Modal, OnTube, Place, Station, StationJoint, StationLink, StationSlot, Turned, Walk,
+    bodies_at, payload_in, weight_wrench,
 };
 use crate::arm::body::RigidBody;
 use crate::arm::structure::{LinkPiece, Structure};
@@ -124,14 +124,19 @@ impl Posed {
             true => Modal::Planar(Box::new(PLANES.map(|motions| block(&slots, &start_inertia, motions)))),
             false => Modal::Spatial(Box::new(block(&slots, &start_inertia, ALL))),
         };
-        Self { structure, tip_m: walk.tip_m, station: Station { slots, modal, start_wrench, start_inertia } }
+        Self {
+            structure,
+            tip_m: walk.tip_m,
+            station: Station { slots, modal, start_wrench, start_inertia, down: space.down },
+        }
     }
 
     /// Puts options of the link in a slot into the pose; nothing if there is no link.
     fn add_options(&mut self, slot: usize, tubes: &[Tube]) {
+        let down = &self.structure.down;
         let StationSlot::Link { options, place, carried } = &mut self.station.slots[slot] else { return };
         let placed = |tube: &Tube| {
-            let mut placed = tube.condensed.place(&place.root_m, &place.end_m, &place.frame);
+            let mut placed = tube.condensed.place(&place.root_m, &place.end_m, &place.frame, down);
             // the slot inboard has the bodies, as they move with the root
             let mut root = placed.inertia[0].fixed_view_mut::<6, 6>(0, 0);
             root -= carried.inertia;
@@ -139,7 +144,7 @@ impl Posed {
         };
         let placed: Vec<PlacedLink> = tubes.par_iter().map(placed).collect();
         let is_planar = matches!(self.station.modal, Modal::Planar(_));
-        let option = |(tube, placed)| station_link(tube, placed, place, &self.tip_m, is_planar);
+        let option = |(tube, placed)| station_link(tube, placed, place, (&self.tip_m, down), is_planar);
         options.par_extend(tubes.par_iter().zip(&placed).map(option));
         match &mut self.station.modal {
             Modal::Planar(blocks) => {
@@ -166,7 +171,7 @@ impl Builder<'_> {
             Layer::Bearing(spring) => self.hinge(&spring.axis(rotation)),
             Layer::Mass(mass_kg) | Layer::Extra(mass_kg) => self.body(*mass_kg, at_m),
             Layer::Bodies(Carried { bodies, .. }) => {
-                let (inertia, weight) = bodies_at(bodies, self.structure.gravity_m_s2, self.place);
+                let (inertia, weight) = bodies_at(bodies, self.space, self.place);
                 StationSlot::Body { inertia, weight }
             }
             Layer::Piece(SpacePiece::Joint(joint)) => self.hinge(&(rotation * joint.axis)),
@@ -186,7 +191,7 @@ impl Builder<'_> {
             at_m: *at_m,
             tip_m_per_rad: displacement_at(&twist, self.tip_m),
             inertia_per_kg: body_inertia(1.0, at_m, &Matrix3::zeros()),
-            weight_per_kg: weight_wrench(self.structure.gravity_m_s2, at_m),
+            weight_per_kg: weight_wrench(self.structure.gravity_m_s2, &self.structure.down, at_m),
             // rounding leaves traces of the other plane in an axis that was turned
             block: usize::from(PLANES[1].iter().any(|&i| twist[i].abs() > ROUNDING * twist.amax())),
             turns: Vec::new(),
@@ -198,7 +203,7 @@ impl Builder<'_> {
     fn body(&self, mass_kg: f64, centre_m: &Vector3<f64>) -> StationSlot {
         StationSlot::Body {
             inertia: body_inertia(mass_kg, centre_m, &Matrix3::zeros()),
-            weight: weight_wrench(mass_kg * self.structure.gravity_m_s2, centre_m),
+            weight: weight_wrench(mass_kg * self.structure.gravity_m_s2, &self.structure.down, centre_m),
         }
     }
 
@@ -214,14 +219,15 @@ impl Builder<'_> {
         let StationSlot::Body { inertia, weight } = point else { return point };
         // a harness on a rigid offset has mass and no compliance, so both together are one rigid body
         let place = self.place_of(&link.vector_m);
-        let placed = tube.condensed.place(&place.root_m, &place.end_m, &place.frame);
-        let along = station_link(&tube, &placed, &place, self.tip_m, false);
+        let down = &self.structure.down;
+        let placed = tube.condensed.place(&place.root_m, &place.end_m, &place.frame, down);
+        let along = station_link(&tube, &placed, &place, (self.tip_m, down), false);
         StationSlot::Body { inertia: inertia + along.inertia, weight: weight + along.weight }
     }
 
     /// A tube with room for its options.
     fn tube(&self, vector_m: &Vector3<f64>, bodies: &[RigidBody], options: usize) -> StationSlot {
-        let of = |bodies| bodies_at(bodies, self.structure.gravity_m_s2, self.place);
+        let of = |bodies| bodies_at(bodies, self.space, self.place);
         let is_symmetric = bodies.chunks(1).all(|body| uncoupled(&of(body).0));
         let (inertia, weight) = of(bodies);
         let carried = OnTube { inertia, weight, is_symmetric };
@@ -240,7 +246,7 @@ fn station_link(
     tube: &Tube,
     placed: &PlacedLink,
     place: &Place,
-    tip_m: &Vector3<f64>,
+    (tip_m, down): (&Vector3<f64>, &Vector3<f64>),
     is_planar: bool,
 ) -> StationLink {
     let tips: Vec<Vector3<f64>> =
@@ -249,7 +255,7 @@ fn station_link(
         // to order 0 in λ, over the motion of the root: the link as a rigid body
         inertia: placed.inertia[0].fixed_view::<6, 6>(0, 0).into_owned(),
         // a uniform weight acts at mid-length
-        weight: weight_wrench(tube.weight_n_per_m * tube.length_m, &place.centre_m),
+        weight: weight_wrench(tube.weight_n_per_m * tube.length_m, down, &place.centre_m),
         end: placed.end,
         own_weight_end: placed.end_per_weight * tube.weight_n_per_m + placed.end_under_bodies,
         tip: Matrix3x6::from_columns(&tips),
@@ -262,10 +268,14 @@ fn station_link(
 /// Tells every driver which passive joints it turns.
 fn link_up(space: &DesignSpace, layers: &[(usize, Layer)], slots: &mut [StationSlot]) {
     let of_piece = |piece: usize| {
-        layers.iter().position(|(at, layer)| *at == piece && matches!(layer, Layer::Piece(SpacePiece::Joint(_))))
+        layers
+            .iter()
+            .position(|(at, layer)| *at == piece && matches!(layer, Layer::Piece(SpacePiece::Joint(_))))
     };
     for linkage in space.linkages() {
-        let (Some(driver), Some(slot)) = (of_piece(linkage.driver), of_piece(linkage.passive)) else { continue };
+        let (Some(driver), Some(slot)) = (of_piece(linkage.driver), of_piece(linkage.passive)) else {
+            continue;
+        };
         let StationSlot::Joint(passive) = &mut slots[slot] else { continue };
         passive.is_passive = true;
         let (twist, tip_m_per_rad) = (passive.twist * linkage.factor, passive.tip_m_per_rad * linkage.factor);

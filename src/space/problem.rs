@@ -5,8 +5,8 @@
 //! arm has all that its extensions need.
 
 use super::attributes::OptionAttributes;
-use super::design::full_objectives;
 use super::bearing_loads::BearingLoads;
+use super::design::full_objectives;
 use super::design_space::{DesignSpace, SpacePiece};
 use super::effects::Layer;
 use super::fit::RoomAtJoint;
@@ -14,7 +14,9 @@ use super::levels::OutwardIn;
 pub(crate) use super::slot::SizedJoint;
 pub(crate) use super::slot::Slot;
 use super::slot::{choice_slot, joint_slot, link_slot};
-use super::station::{Block, BlockSlot, Modal, Station, StationJoint, StationLink, StationSlot, Turned, reaches_m};
+use super::station::{
+    Block, BlockSlot, Modal, Station, StationJoint, StationLink, StationSlot, Turned, reaches_m,
+};
 use crate::arm::joint_law::JointLaw;
 use crate::catalog::Catalogs;
 use crate::mechanics::Wrench;
@@ -127,9 +129,6 @@ impl<'c> ArmProblem<'c> {
         }
         let level_slots: Vec<usize> = (0..slots.len()).filter(|&i| slots[i].is_level()).collect();
         let level_sizes: Vec<u32> = level_slots.iter().map(|&i| slots[i].options()).collect();
-        // by the paper's reading the acceleration a adds a/g times the static load; without gravity nothing is loaded,
-        // and a tiny divisor does no harm
-        let a_over_g = space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE);
         Self {
             space,
             row_level: row_level(&slots, &level_slots, &level_sizes),
@@ -137,7 +136,7 @@ impl<'c> ArmProblem<'c> {
             level_sizes,
             stations: Station::all(space),
             materials: space.material_names().len(),
-            peak_factor: 1.0 + a_over_g,
+            peak_factor: space.peak_factor(),
             bearing_loads: BearingLoads::new(space, &slots, &piece_slots, &reaches),
             rooms: RoomAtJoint::all(&space.pieces, &piece_slots, slots.len()),
             slots,
@@ -528,7 +527,8 @@ impl StationState {
     /// Torque on a joint that is next to be added \[N m\]. A linkage makes a driver hold the torque of its passive joints too,
     /// by virtual work: a radian of the driver turns each of them by its factor.
     pub(crate) fn torque_nm(&self, joint: &StationJoint) -> f64 {
-        let of_passive = |turned: &Turned| self.outboard_of(turned.slot).map_or(0.0, |(w, _)| turned.twist.dot(w));
+        let of_passive =
+            |turned: &Turned| self.outboard_of(turned.slot).map_or(0.0, |(w, _)| turned.twist.dot(w));
         joint.twist.dot(&self.wrench) + joint.turns.iter().map(of_passive).sum::<f64>()
     }
 

@@ -13,7 +13,7 @@ use super::effects::{Carried, Carrier, Layer};
 use crate::arm::body::RigidBody;
 use crate::arm::load::Water;
 use crate::mechanics::lowest::BlockLink;
-use crate::mechanics::{Twist, Wrench, angular, body_inertia, force_wrench, linear};
+use crate::mechanics::{Twist, Wrench, angular, body_inertia, force_wrench, linear, stack};
 use nalgebra::{Matrix3, Matrix3x6, Matrix6, Rotation3, SMatrix, SVector, Vector3, Vector6};
 
 /// A pose with its load, compiled for the slots of an arm.
@@ -26,6 +26,8 @@ pub(crate) struct Station {
     pub start_wrench: Wrench,
     /// Inertia of the payload.
     pub start_inertia: Matrix6<f64>,
+    /// Direction of gravity in the world.
+    pub down: Vector3<f64>,
 }
 
 /// What the search adds in one step, in a pose.
@@ -116,6 +118,11 @@ pub(crate) struct StationLink {
 }
 
 impl StationLink {
+    /// Its net weight, along the direction of gravity \[N\].
+    pub(crate) fn weight_n(&self, down: &Vector3<f64>) -> f64 {
+        down.dot(&linear(&self.weight))
+    }
+
     /// Displacement of the tip per unit of the wrench on the link's end.
     pub(crate) fn flexibility(&self) -> Matrix3x6<f64> {
         // the end coordinates have unit stiffness: a wrench w deflects them by endᵀ w
@@ -164,13 +171,15 @@ pub(crate) fn payload_in(
         rotation * Matrix3::from_diagonal(&payload.inertia_about_cg_kgm2) * rotation.transpose();
     let buoyancy = water.map_or(0.0, |w| w.density_kg_m3 / w.payload_density_kg_m3);
     let weight_n = payload.mass_kg * space.gravity_m_s2 * (1.0 - buoyancy);
-    let wrench = force_wrench(&case.tip_force_n, &walk.tip_m) + weight_wrench(weight_n, &cg_m);
+    let wrench = force_wrench(&case.tip_force_n, &walk.tip_m)
+        + stack(&Vector3::zeros(), &case.tip_moment_nm)
+        + weight_wrench(weight_n, &space.down, &cg_m);
     (wrench, body_inertia(payload.mass_kg, &cg_m, &inertia_kgm2))
 }
 
-/// The wrench of a weight \[N\] at a point.
-pub(crate) fn weight_wrench(weight_n: f64, at_m: &Vector3<f64>) -> Wrench {
-    force_wrench(&Vector3::new(0.0, 0.0, -weight_n), at_m)
+/// The wrench of a weight \[N\] at a point; `down` is the direction of gravity.
+pub(crate) fn weight_wrench(weight_n: f64, down: &Vector3<f64>, at_m: &Vector3<f64>) -> Wrench {
+    force_wrench(&(down * weight_n), at_m)
 }
 
 /// Where each piece is in a pose.
@@ -216,7 +225,7 @@ impl Walk {
 /// Inertia and weight of bodies whose piece begins at a place of a pose, about the world's origin.
 pub(crate) fn bodies_at(
     bodies: &[RigidBody],
-    gravity_m_s2: f64,
+    space: &DesignSpace,
     (at_m, rotation): &(Vector3<f64>, Rotation3<f64>),
 ) -> (Matrix6<f64>, Wrench) {
     let turn = rotation.matrix();
@@ -224,7 +233,7 @@ pub(crate) fn bodies_at(
     for body in bodies {
         let cg_m = at_m + turn * body.cg_m;
         inertia += body_inertia(body.mass_kg, &cg_m, &(turn * body.inertia_kgm2 * turn.transpose()));
-        weight += weight_wrench(body.mass_kg * gravity_m_s2, &cg_m);
+        weight += weight_wrench(body.mass_kg * space.gravity_m_s2, &space.down, &cg_m);
     }
     (inertia, weight)
 }
@@ -247,7 +256,8 @@ pub(crate) fn reaches_m<'a>(space: &DesignSpace, cases: impl Iterator<Item = &'a
         let walk = Walk::new(space, case);
         let way = |piece: usize| {
             let (origin, rotation) = &walk.places[piece];
-            let axis = joints.iter().find(|(joint, _)| *joint == piece).map_or(Vector3::zeros(), |(_, axis)| *axis);
+            let axis =
+                joints.iter().find(|(joint, _)| *joint == piece).map_or(Vector3::zeros(), |(_, axis)| *axis);
             (rotation * axis).cross(&(walk.tip_m - origin))
         };
         for (reach, (piece, _)) in reaches.iter_mut().zip(&joints) {

@@ -29,12 +29,14 @@ pub fn question(space: &DesignSpace) -> Question {
         pose_deg: case.pose_deg.clone(),
         payload: case.payload,
         tip_force_n: case.tip_force_n,
+        tip_moment_nm: case.tip_moment_nm,
         links: space.links,
         joints: space.joints,
         water: case.water,
     };
     Question {
         gravity_m_s2: space.gravity_m_s2,
+        down: space.down,
         pieces: space.pieces.iter().map(piece).collect(),
         cases: space.cases.iter().map(case).collect(),
         judged_cases: space.judged_cases.clone(),

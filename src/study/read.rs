@@ -18,27 +18,31 @@ use super::sections::{Aside, read_materials, read_sections};
 use crate::arm::bearing::{BearingSource, Stated, read_bearing};
 use crate::arm::body::{read_joint_bodies, read_link_bodies};
 use crate::arm::extras::{ExtrasSource, read_extras_source};
-use crate::arm::file::{read_coupling, read_curve, read_effects, read_joint_mass, read_link, read_name};
+use crate::arm::file::{
+    read_coupling, read_curve, read_effects, read_gravity, read_joint_mass, read_link, read_name,
+};
 use crate::arm::load::{vector, word};
 use crate::arm::{JointModel, LinkModel};
 use crate::catalog::Catalogs;
 use crate::catalog::gear::GearMass;
 use crate::input::json::{Document, Faults, Node, Object};
+use crate::sizing::demand::LinearReading;
 use crate::sizing::fit::FitRequirement;
 use crate::sizing::requirement::MotionRequirement;
 use crate::sizing::select::DriveFilter;
 use crate::sizing::stated::StatedDuty;
 use crate::space::constraint::{Constraints, Servo};
-use serde_json::Value;
 use crate::space::design_space::{DesignSpace, DriveChoice, LinkChoice, SpaceJoint, SpacePiece};
+use serde_json::Value;
 
-const KEYS: [&str; 20] = [
+const KEYS: [&str; 21] = [
     "name",
     "question",
     "gravity_m_s2",
     "chain",
     "payload",
     "tip_force_n",
+    "tip_moment_nm",
     "poses",
     "environments",
     "motion",
@@ -91,7 +95,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
         }
     });
     let (question, _notes) = (text("question"), text("notes"));
-    let gravity = root.or("gravity_m_s2", 9.81, Node::positive);
+    let gravity = read_gravity(&root);
     let gap = root.or("gap_percent", 0.0, read_gap);
     let filter = root.or("drives", Drives::default(), |n| read_drives(n, catalogs));
     let constraints = root.or("constraints", Constraints::default(), read_constraints);
@@ -115,12 +119,18 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     let harness_kg_per_m = root.or("harness_kg_per_m", 0.0, Node::non_negative);
     let Cases { cases, judged, sizing } = cases?;
     let mut motion = motion?;
-    motion.gravity_m_s2 = gravity?;
+    let (gravity_m_s2, down) = gravity?;
+    weight_is_needed(&root, gravity_m_s2, &motion)?;
+    // without gravity nothing reads it
+    if gravity_m_s2 > 0.0 {
+        motion.gravity_m_s2 = gravity_m_s2;
+    }
     let (chain, mut effects, harness_kg_per_m) = (chain?, effects?, harness_kg_per_m?);
     effects.extend(harness_effects(&chain, harness_kg_per_m, &effects));
     let space = DesignSpace {
         name: name.clone()?,
-        gravity_m_s2: gravity?,
+        gravity_m_s2,
+        down,
         pieces: chain,
         cases,
         judged_cases: judged,
@@ -139,6 +149,23 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     remarks.extend(fit_remarks(&space, catalogs));
     remarks.extend(omissions(&space));
     Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks })
+}
+
+/// Checks that nothing is asked for that is measured by the weight, if there is no gravity: the paper's reading of Eq 8, and the
+/// stress at peak load, which is taken as 1 + a/g times the stress of the weight.
+fn weight_is_needed(root: &Object, gravity_m_s2: f64, motion: &MotionRequirement) -> Option<()> {
+    let stress = root.optional("constraints").filter(|n| n.value().get("stress_safety_factor_min").is_some());
+    let node = match motion.linear_reading {
+        LinearReading::Paper => root.optional("motion").or(stress),
+        LinearReading::Exact => stress,
+    };
+    match node.filter(|_| gravity_m_s2 == 0.0) {
+        Some(node) => node.fault(
+            "asks for loads as a multiple of the weight, and without gravity there is none",
+            "leave stress_safety_factor_min and the paper's linear_torque away, or state gravity_m_s2",
+        ),
+        None => Some(()),
+    }
 }
 
 /// A fraction, written in percent.
@@ -301,7 +328,8 @@ fn drivers_are_inboard(items: &[Node], pieces: &[SpacePiece]) -> Option<()> {
     let mut inboard: Vec<&str> = Vec::new();
     for (item, piece) in items.iter().zip(pieces) {
         let SpacePiece::Joint(joint) = piece else { continue };
-        for (name, _) in joint.coupled.iter().flatten().filter(|(name, _)| !inboard.contains(&name.as_str())) {
+        for (name, _) in joint.coupled.iter().flatten().filter(|(name, _)| !inboard.contains(&name.as_str()))
+        {
             sound = item.fault(
                 format!("is coupled to \"{name}\", which is no driven joint inboard of it"),
                 &format!("driven joints inboard of it: {}", inboard.join(", ")),

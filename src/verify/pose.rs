@@ -73,8 +73,10 @@ pub(super) struct Carried {
 pub(super) struct Builder<'a> {
     pub layout: &'a Layout,
     gravity_m_s2: f64,
+    down: Vector3<f64>,
     /// Weight of the payload, and the tip force, each with the point where it acts \[m\].
     tip_loads: [(Vector3<f64>, Vector3<f64>); 2],
+    tip_moment_nm: Vector3<f64>,
     coordinates: &'a [Coordinate],
 }
 
@@ -83,8 +85,11 @@ impl Pose {
     pub(super) fn new(question: &Question, index: usize, water: usize, builder: &Builder) -> Self {
         let (case, layout) = (&question.cases[index], builder.layout);
         let sizing = question.sizing_cases.contains(&index);
-        let gravity_m_s2 = question.gravity_m_s2.max(f64::MIN_POSITIVE);
-        let acceleration = question.motion.tip_acceleration_m_s2() / gravity_m_s2;
+        // without gravity no stress is limited
+        let acceleration = match question.gravity_m_s2 > 0.0 {
+            true => question.motion.tip_acceleration_m_s2() / question.gravity_m_s2,
+            false => 0.0,
+        };
         Self {
             judged: question.judged_cases.contains(&index),
             sizing,
@@ -107,9 +112,9 @@ pub(super) fn water_of(structure: &Structure, case: &LoadCase) -> Option<Water> 
     case.water.or(structure.water)
 }
 
-fn payload_weight(gravity_m_s2: f64, case: &LoadCase, water: Option<Water>) -> Vector3<f64> {
+fn payload_weight(question: &Question, case: &LoadCase, water: Option<Water>) -> Vector3<f64> {
     let lifted = water.map_or(0.0, |water| water.density_kg_m3 / water.payload_density_kg_m3);
-    Vector3::new(0.0, 0.0, -case.payload.mass_kg * gravity_m_s2 * (1.0 - lifted))
+    question.down * (case.payload.mass_kg * question.gravity_m_s2 * (1.0 - lifted))
 }
 
 fn payload_at(layout: &Layout, case: &LoadCase) -> Vector3<f64> {
@@ -149,9 +154,16 @@ impl<'a> Builder<'a> {
         layout: &'a Layout,
         coordinates: &'a [Coordinate],
     ) -> Self {
-        let weight = payload_weight(question.gravity_m_s2, case, water_of(structure, case));
+        let weight = payload_weight(question, case, water_of(structure, case));
         let tip_loads = [(weight, payload_at(layout, case)), (case.tip_force_n, layout.tip_m)];
-        Self { layout, gravity_m_s2: question.gravity_m_s2, tip_loads, coordinates }
+        Self {
+            layout,
+            gravity_m_s2: question.gravity_m_s2,
+            down: question.down,
+            tip_loads,
+            tip_moment_nm: case.tip_moment_nm,
+            coordinates,
+        }
     }
 
     /// The same with other coordinates.
@@ -163,7 +175,7 @@ impl<'a> Builder<'a> {
 impl Builder<'_> {
     /// Wrench at a point of everything outboard of it.
     pub(super) fn carried(&self, point: &Point) -> Carried {
-        let down = |size: f64| Vector3::new(0.0, 0.0, -size);
+        let down = |size: f64| self.down * size;
         let about_m = &point.at_m;
         let none = Wrench::default();
         let tip = self.tip_loads.iter().map(|(force, at_m)| Wrench::of(*force, at_m, about_m));
@@ -182,7 +194,11 @@ impl Builder<'_> {
             let middle_m = tube.root_m + tube.frame.column(0) * (0.5 * (from_m + tube.length_m));
             Wrench::of(down(tube.length_m - from_m), &middle_m, about_m)
         });
-        Carried { fixed: tip.chain(masses).fold(none, Wrench::plus), per_load: drives.chain(tubes).collect() }
+        let moment = Wrench { moment: self.tip_moment_nm, ..none };
+        Carried {
+            fixed: tip.chain(masses).fold(moment, Wrench::plus),
+            per_load: drives.chain(tubes).collect(),
+        }
     }
 
     fn torque(&self, joint: usize) -> Linear {

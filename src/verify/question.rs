@@ -20,8 +20,10 @@ use nalgebra::{Unit, Vector3};
 /// An arm with choices, what it must do, and how it is judged.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Question {
-    /// Gravity, along world -z \[m/s²\].
+    /// Gravity \[m/s²\].
     pub gravity_m_s2: f64,
+    /// Its direction in the world, a unit vector.
+    pub down: Vector3<f64>,
     /// Joints and links from base to tip.
     pub pieces: Vec<AskedPiece>,
     /// All poses and loads, each with the models of links and joints.
@@ -341,7 +343,13 @@ impl AskedLink {
 impl Question {
     /// The arm of these elements, with the effects of the question.
     pub(super) fn arm(&self, chain: Vec<Element>) -> Arm {
-        Arm { name: String::new(), gravity_m_s2: self.gravity_m_s2, chain, effects: self.effects.clone() }
+        Arm {
+            name: String::new(),
+            gravity_m_s2: self.gravity_m_s2,
+            down: self.down,
+            chain,
+            effects: self.effects.clone(),
+        }
     }
 
     /// A joint with this torsion curve and bearing and with the effects that act on the joint. Its mass is only that of

@@ -18,6 +18,7 @@ mod exact_threads;
 mod exact_ties;
 mod fits;
 mod frozen_designs;
+mod loads_and_linkages;
 mod mechanics_reference;
 mod motor_heat;
 mod paper;

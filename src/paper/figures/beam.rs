@@ -85,8 +85,13 @@ pub fn library_deflection_m(material: &Material, section: Section, links: LinkMo
         body,
         bodies: Vec::new(),
     });
-    let arm =
-        Arm { name: "cantilever".into(), gravity_m_s2: GRAVITY_M_S2, chain: vec![beam], effects: Vec::new() };
+    let arm = Arm {
+        name: "cantilever".into(),
+        gravity_m_s2: GRAVITY_M_S2,
+        down: -Vector3::z(),
+        chain: vec![beam],
+        effects: Vec::new(),
+    };
     let chain = Chain::new(&arm.structure(JointModel::K2), links);
     let posed = chain.pose_rad(&[], &Payload::default(), -Vector3::z() * FORCE_N);
     Some(-posed.statics().tip_displacement_m.z)
