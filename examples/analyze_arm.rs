@@ -30,6 +30,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         pose_deg: vec![-30.0, 60.0],
         payload: Payload { mass_kg: 5.0, cg_m: Vector3::new(0.05, 0.0, 0.0), ..Payload::default() },
         tip_force_n: Vector3::zeros(),
+        tip_moment_nm: Vector3::zeros(),
         links: LinkModel::Full,
         joints: JointModel::ThreeSegment,
         water: None,

@@ -1,6 +1,7 @@
 //! The reader of the arm file.
 
 use super::bearing::{Bearing, Stated, read_bearing};
+use super::body::{read_joint_bodies, read_link_bodies};
 use super::effect::channel::Channel;
 use super::effect::entry::Effect;
 use super::effect::servo_compliance;
@@ -58,14 +59,29 @@ pub fn read_arm_document(document: Document, catalogs: &Catalogs) -> Result<Arm,
 pub(crate) fn arm(node: &Node, catalogs: &Catalogs) -> Option<Arm> {
     let root = node.object(&["name", "gravity_m_s2", "materials", "chain", "effects", "provenance"])?;
     let name = root.or("name", "arm".to_string(), |n| n.string().map(String::from));
-    let gravity = root.or("gravity_m_s2", DEFAULT_GRAVITY_M_S2, Node::non_negative);
+    let gravity = read_gravity(&root);
     let materials = root.or("materials", Vec::new(), read_materials).unwrap_or_default();
     let chain = root.required("chain").and_then(|n| read_chain(&n, &materials, catalogs));
     let effects = root.or("effects", Vec::new(), read_effects);
-    let arm = Arm { name: name?, gravity_m_s2: gravity?, chain: chain?, effects: effects? };
+    let (gravity_m_s2, down) = gravity?;
+    let arm = Arm { name: name?, gravity_m_s2, down, chain: chain?, effects: effects? };
     check_names(&arm, &root)?;
     check_effects(&arm, &root)?;
     Some(arm)
+}
+
+/// Reads the key `gravity_m_s2`: the acceleration along world -z, or a vector in the world; 0 is none. The result is the
+/// acceleration and its direction.
+pub(crate) fn read_gravity(object: &Object) -> Option<(f64, Vector3<f64>)> {
+    let upright = -Vector3::z();
+    object.or("gravity_m_s2", (DEFAULT_GRAVITY_M_S2, upright), |n| match n.value() {
+        Value::Array(_) => {
+            let acceleration = vector(n)?;
+            let direction = Unit::try_new(acceleration, 0.0).map_or(upright, Unit::into_inner);
+            Some((acceleration.norm(), direction))
+        }
+        _ => n.non_negative().map(|m_s2| (m_s2, upright)),
+    })
 }
 
 /// A material of the file with its name; `None` if it is faulty, in which case the fault is recorded.
@@ -101,7 +117,7 @@ fn read_chain(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> 
     read.into_iter().collect()
 }
 
-const JOINT_KEYS: [&str; 12] = [
+const JOINT_KEYS: [&str; 13] = [
     "type",
     "name",
     "axis",
@@ -113,9 +129,10 @@ const JOINT_KEYS: [&str; 12] = [
     "mass_kg",
     "bearing",
     "extras",
+    "bodies",
     "coupled",
 ];
-const LINK_KEYS: [&str; 6] = ["type", "name", "vector_m", "material", "section", "mass_kg"];
+const LINK_KEYS: [&str; 7] = ["type", "name", "vector_m", "material", "section", "mass_kg", "bodies"];
 
 fn read_element(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> Option<Element> {
     let kind = node.value().get("type").and_then(|v| v.as_str());
@@ -135,6 +152,7 @@ fn read_joint(object: &Object, catalogs: &Catalogs) -> Option<Joint> {
     let mass_kg = read_joint_mass(object, catalogs);
     let bearing = read_joint_bearing(object, catalogs);
     let extras = read_extras(object);
+    let bodies = read_joint_bodies(object);
     let coupled = object.or("coupled", None, |n| read_coupling(n).map(Some));
     Some(Joint {
         name: name?,
@@ -143,6 +161,7 @@ fn read_joint(object: &Object, catalogs: &Catalogs) -> Option<Joint> {
         mass_kg: mass_kg?,
         bearing: bearing?,
         extras: extras?,
+        bodies: bodies?,
         gear: gear?,
         motor: motor?,
         coupled: coupled?,
@@ -284,7 +303,8 @@ fn part_mass(node: &Node, mass_kg: Option<f64>) -> Option<f64> {
     mass_kg.or_else(|| node.fault("has no mass in the catalog", "give the joint's \"mass_kg\""))
 }
 
-fn read_coupling(node: &Node) -> Option<Vec<(String, f64)>> {
+/// Reads the drivers of a passive joint, each with its factor.
+pub(crate) fn read_coupling(node: &Node) -> Option<Vec<(String, f64)>> {
     let read: Vec<_> =
         node.entries()?.iter().map(|(name, n)| n.number().map(|f| (name.to_string(), f))).collect();
     read.into_iter().collect()
@@ -305,7 +325,8 @@ pub(crate) fn read_link(object: &Object, materials: &[NamedMaterial], catalogs: 
             object.or("mass_kg", 0.0, Node::non_negative).map(|mass_kg| LinkBody::Offset { mass_kg })
         }
     };
-    Some(Link { name: name?, vector_m: vector_m?, body: body? })
+    let bodies = read_link_bodies(object);
+    Some(Link { name: name?, vector_m: vector_m?, body: body?, bodies: bodies? })
 }
 
 /// Name of the material that stands for a section of stated stiffnesses.

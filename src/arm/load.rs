@@ -27,6 +27,7 @@ pub struct Payload {
 ///     pose_deg: vec![0.0, -30.0, 60.0],
 ///     payload: Payload { mass_kg: 5.0, cg_m: Vector3::new(0.05, 0.0, 0.0), ..Payload::default() },
 ///     tip_force_n: Vector3::zeros(),
+///     tip_moment_nm: Vector3::zeros(),
 ///     links: LinkModel::Full,
 ///     joints: JointModel::ThreeSegment,
 ///     water: None,
@@ -43,6 +44,8 @@ pub struct LoadCase {
     pub payload: Payload,
     /// Force at the tip in world axes \[N\].
     pub tip_force_n: Vector3<f64>,
+    /// Moment at the tip in world axes \[N m\].
+    pub tip_moment_nm: Vector3<f64>,
     /// Physics of the links.
     pub links: LinkModel,
     /// Physics of the joints.
@@ -62,6 +65,9 @@ impl LoadCase {
             "links": self.links.word(),
             "joints": self.joints.word(),
         });
+        if self.tip_moment_nm != Vector3::zeros() {
+            case["tip_moment_nm"] = json!(self.tip_moment_nm.as_slice());
+        }
         if let Some(water) = self.water {
             case["water"] = water.to_json();
         }
@@ -163,17 +169,28 @@ pub fn read_load_cases(document: Document, driven_joints: &[&str]) -> Result<Vec
 }
 
 fn read_case(node: &Node, driven_joints: &[&str]) -> Option<LoadCase> {
-    let object = node.object(&["name", "pose_deg", "payload", "tip_force_n", "links", "joints", "water"])?;
+    let object = node.object(&[
+        "name",
+        "pose_deg",
+        "payload",
+        "tip_force_n",
+        "tip_moment_nm",
+        "links",
+        "joints",
+        "water",
+    ])?;
     let name = object.or("name", node.path().to_string(), |n| n.string().map(String::from));
     let pose_deg = object.required("pose_deg").and_then(|n| read_pose(&n, driven_joints));
     let payload = object.or("payload", Payload::default(), Payload::read);
     let water = object.or("water", None, |n| Water::read(n).map(Some));
+    let tip_moment_nm = object.or("tip_moment_nm", Vector3::zeros(), vector);
     let (tip_force_n, links, joints) = read_force_and_models(&object);
     Some(LoadCase {
         name: name?,
         pose_deg: pose_deg?,
         payload: payload?,
         tip_force_n: tip_force_n?,
+        tip_moment_nm: tip_moment_nm?,
         links: links?,
         joints: joints?,
         water: water?,

@@ -11,6 +11,7 @@
 
 pub(crate) mod base_lift;
 pub(crate) mod bearing;
+pub(crate) mod body;
 pub mod effect;
 pub(crate) mod extras;
 pub(crate) mod file;
@@ -25,6 +26,7 @@ pub(crate) mod torsion;
 pub(crate) mod write;
 
 pub use bearing::{Bearing, BearingSource};
+pub use body::{JointBodies, RigidBody};
 pub use effect::entry::Effect;
 pub use extras::{Extras, ExtrasSource};
 pub use file::{read_arm, read_arm_document};
@@ -34,6 +36,7 @@ pub use load::{LoadCase, Payload, Water, read_load_cases};
 pub use section::{LinkMaterial, Section, SectionProperties, StatedSection};
 pub use structure::{Beam, FrameCompliance, JointAngle, JointPiece, LinkPiece, Piece, Structure};
 
+use crate::input::json::Fault;
 use nalgebra::{Unit, Vector3};
 
 /// The physics of links that a calculation uses.
@@ -121,6 +124,7 @@ impl JointModel {
 /// let joint = Joint {
 ///     bearing: None,
 ///     extras: Default::default(),
+///     bodies: Default::default(),
 ///     name: "j2".into(),
 ///     axis: Vector3::y_axis(),
 ///     curve: Curve::Linear(607e3),
@@ -130,9 +134,9 @@ impl JointModel {
 ///     coupled: None,
 /// };
 /// let body = LinkBody::Offset { mass_kg: 5.0 };
-/// let link = Link { name: "upper_arm".into(), vector_m: Vector3::new(0.8, 0.0, 0.0), body };
+/// let link = Link { name: "upper_arm".into(), vector_m: Vector3::new(0.8, 0.0, 0.0), body, bodies: Vec::new() };
 /// let chain = vec![Element::Joint(joint), Element::Link(link)];
-/// let arm = Arm { name: "two pieces".into(), gravity_m_s2: 9.81, chain, effects: Vec::new() };
+/// let arm = Arm { name: "two pieces".into(), gravity_m_s2: 9.81, down: -Vector3::z(), chain, effects: Vec::new() };
 /// assert_eq!(arm.mass_kg(), 17.2);
 /// assert_eq!(arm.reach_m(), 0.8);
 /// assert_eq!(arm.to_json()["chain"][0]["stiffness_nm_per_rad"], 607e3);
@@ -141,8 +145,10 @@ impl JointModel {
 pub struct Arm {
     /// Name.
     pub name: String,
-    /// Gravitational acceleration along world -z \[m/s²\].
+    /// Gravitational acceleration \[m/s²\].
     pub gravity_m_s2: f64,
+    /// Direction of gravity in the world, a unit vector: -z for an arm that stands upright.
+    pub down: Vector3<f64>,
     /// Joints and links from base to tip.
     pub chain: Vec<Element>,
     /// Physics beyond the nominal model.
@@ -173,6 +179,8 @@ pub struct Joint {
     pub bearing: Option<Bearing>,
     /// What the joint weighs beyond drive and bearing.
     pub extras: Extras,
+    /// Rigid bodies that the joint carries beyond all these.
+    pub bodies: JointBodies,
     /// Name of the gear, for information. The numbers above count.
     pub gear: Option<String>,
     /// Name of the motor, for information.
@@ -190,6 +198,8 @@ pub struct Link {
     pub vector_m: Vector3<f64>,
     /// The tube or offset.
     pub body: LinkBody,
+    /// Rigid bodies that the link carries.
+    pub bodies: Vec<RigidBody>,
 }
 
 /// The body of a link.
@@ -248,6 +258,19 @@ impl Arm {
         self.chain.iter().map(Element::mass_kg).sum()
     }
 
+    /// The fault that gravity does not act along world -z; `None` if it does. The workflows on measurements take it for
+    /// granted. `file` is the name of the arm's file.
+    pub(crate) fn tilt_fault(&self, file: &str) -> Option<Fault> {
+        (self.down != -Vector3::z()).then(|| Fault {
+            file: file.into(),
+            line: None,
+            field: "gravity_m_s2".into(),
+            problem: "is a vector, and readings are compared with arms that stand upright alone".into(),
+            hint: "write the arm in a world whose z axis is up, with a number for gravity; `analyze` and studies take vectors"
+                .into(),
+        })
+    }
+
     /// Reach \[m\]: the sum of the lengths of the links outboard of the first joint that is not vertical. What carries this
     /// joint is a column. Of an arm whose joints are all vertical, it is the length outboard of the first joint.
     pub fn reach_m(&self) -> f64 {
@@ -263,7 +286,7 @@ impl Arm {
 }
 
 impl Joint {
-    /// Mass of drive, bearing and extras \[kg\].
+    /// Mass of drive, bearing and extras \[kg\], which is a point on the axis.
     pub fn total_mass_kg(&self) -> f64 {
         self.mass_kg + self.bearing.map_or(0.0, |bearing| bearing.mass_kg) + self.extras.total_kg()
     }
@@ -273,15 +296,18 @@ impl Element {
     /// Mass of the element \[kg\].
     pub fn mass_kg(&self) -> f64 {
         match self {
-            Element::Joint(joint) => joint.total_mass_kg(),
-            Element::Link(link) => match &link.body {
-                LinkBody::Tube { material, section, .. } => {
-                    material.density_kg_m3
-                        * section.properties(material.poisson).area_m2
-                        * link.vector_m.norm()
-                }
-                LinkBody::Offset { mass_kg } => *mass_kg,
-            },
+            Element::Joint(joint) => joint.total_mass_kg() + joint.bodies.mass_kg(),
+            Element::Link(link) => {
+                body::total_kg(&link.bodies)
+                    + match &link.body {
+                        LinkBody::Tube { material, section, .. } => {
+                            material.density_kg_m3
+                                * section.properties(material.poisson).area_m2
+                                * link.vector_m.norm()
+                        }
+                        LinkBody::Offset { mass_kg } => *mass_kg,
+                    }
+            }
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Structures: the arm as the mechanics sees it. Effects are applied to its pieces, and names of parts are gone.
 
 use super::base_lift::BaseLift;
+use super::body::{JointBodies, RigidBody, total_kg};
 use super::joint_law::JointLaw;
 use super::joint_torque::JointTorque;
 use super::load::{LoadCase, Water};
@@ -13,6 +14,8 @@ use nalgebra::{Matrix3, SymmetricEigen, Unit, Vector3};
 pub struct Structure {
     /// Gravitational acceleration \[m/s²\].
     pub gravity_m_s2: f64,
+    /// Direction of gravity in the world, a unit vector.
+    pub down: Vector3<f64>,
     /// Tilt of the base about world x and y per moment \[rad/(N m)\].
     pub base_tilt_rad_per_nm: f64,
     /// Feet that lift off.
@@ -67,6 +70,8 @@ pub struct JointPiece {
     pub tilt_rad_per_nm: f64,
     /// Point mass on the axis, inboard \[kg\].
     pub mass_kg: f64,
+    /// Rigid bodies that the joint carries.
+    pub bodies: JointBodies,
     /// Source of the joint's angle.
     pub angle: JointAngle,
 }
@@ -108,6 +113,8 @@ pub struct LinkPiece {
     pub beam: Option<Beam>,
     /// Point mass at mid-length \[kg\].
     pub point_mass_kg: f64,
+    /// Rigid bodies that the link carries.
+    pub bodies: Vec<RigidBody>,
     /// Cables and hoses along the axis \[kg/m\].
     pub harness_kg_per_m: f64,
     /// Rotational compliance of the structure behind the joint, at the root of the link, in carried-frame axes.
@@ -122,9 +129,11 @@ impl LinkPiece {
         })
     }
 
-    /// Mass of tube, cables and point mass \[kg\].
+    /// Mass of tube, cables, point mass and bodies \[kg\].
     pub fn mass_kg(&self) -> f64 {
-        self.point_mass_kg + self.vector_m.norm() * (self.tube_kg_per_m() + self.harness_kg_per_m)
+        self.point_mass_kg
+            + total_kg(&self.bodies)
+            + self.vector_m.norm() * (self.tube_kg_per_m() + self.harness_kg_per_m)
     }
 }
 
@@ -165,7 +174,7 @@ impl Arm {
                 Element::Link(link) => Piece::Link(link_piece(link)),
             })
             .collect();
-        Structure::nominal(self.gravity_m_s2, pieces)
+        Structure { down: self.down, ..Structure::nominal(self.gravity_m_s2, pieces) }
     }
 }
 
@@ -173,16 +182,17 @@ impl Structure {
     /// Mass of all pieces \[kg\], with what effects add.
     pub fn mass_kg(&self) -> f64 {
         let mass_kg = |piece: &Piece| match piece {
-            Piece::Joint(joint) => joint.mass_kg,
+            Piece::Joint(joint) => joint.mass_kg + joint.bodies.mass_kg(),
             Piece::Link(link) => link.mass_kg(),
         };
         self.pieces.iter().map(mass_kg).sum()
     }
 
-    /// A structure of pieces on a rigid base in air.
+    /// A structure of pieces on a rigid base in air, upright.
     pub(crate) fn nominal(gravity_m_s2: f64, pieces: Vec<Piece>) -> Self {
         Self {
             gravity_m_s2,
+            down: -Vector3::z(),
             base_tilt_rad_per_nm: 0.0,
             base_lift: None,
             base_frame: FrameCompliance::default(),
@@ -208,6 +218,7 @@ fn joint_piece(joint: &Joint, driven: &[&str], model: JointModel) -> JointPiece 
         torque: JointTorque::default(),
         tilt_rad_per_nm: joint.bearing.map_or(0.0, |bearing| bearing.tilt_rad_per_nm()),
         mass_kg: joint.total_mass_kg(),
+        bodies: joint.bodies.clone(),
         angle,
     }
 }
@@ -225,6 +236,7 @@ pub(crate) fn link_piece(link: &Link) -> LinkPiece {
         vector_m: link.vector_m,
         beam,
         point_mass_kg,
+        bodies: link.bodies.clone(),
         harness_kg_per_m: 0.0,
         root_frame: FrameCompliance::default(),
     }

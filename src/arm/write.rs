@@ -6,6 +6,7 @@ use super::extras::Extras;
 use super::joint_law::Curve;
 use super::section::Section;
 use super::{Arm, Element, Joint, Link, LinkBody};
+use nalgebra::Vector3;
 use serde_json::{Map, Value, json};
 
 impl Arm {
@@ -14,11 +15,19 @@ impl Arm {
     pub fn to_json(&self) -> Value {
         json!({
             "name": self.name,
-            "gravity_m_s2": self.gravity_m_s2,
+            "gravity_m_s2": self.gravity_json(),
             "materials": self.materials_json(),
             "chain": self.chain.iter().map(Element::to_json).collect::<Vec<_>>(),
             "effects": self.effects.iter().map(Effect::to_json).collect::<Vec<_>>(),
         })
+    }
+
+    /// A number if the arm stands upright, else a vector in the world.
+    fn gravity_json(&self) -> Value {
+        match self.down == -Vector3::z() {
+            true => json!(self.gravity_m_s2),
+            false => json!((self.down * self.gravity_m_s2).as_slice()),
+        }
     }
 
     fn materials_json(&self) -> Value {
@@ -70,6 +79,9 @@ impl Joint {
         if self.extras != Extras::default() {
             map.insert("extras".into(), self.extras.to_json());
         }
+        if let Some(bodies) = self.bodies.to_json() {
+            map.insert("bodies".into(), bodies);
+        }
         if let Some(terms) = &self.coupled {
             let terms: Map<String, Value> = terms.iter().map(|(n, f)| (n.clone(), json!(f))).collect();
             map.insert("coupled".into(), Value::Object(terms));
@@ -98,7 +110,7 @@ impl Curve {
 impl Link {
     fn to_json(&self) -> Value {
         let vector_m = self.vector_m.as_slice();
-        match &self.body {
+        let mut value = match &self.body {
             LinkBody::Tube { section: section @ Section::Stated(_), .. } => json!({
                 "type": "link", "name": self.name, "vector_m": vector_m, "section": section.to_json(),
             }),
@@ -109,7 +121,11 @@ impl Link {
             LinkBody::Offset { mass_kg } => json!({
                 "type": "link", "name": self.name, "vector_m": vector_m, "mass_kg": mass_kg,
             }),
+        };
+        if !self.bodies.is_empty() {
+            value["bodies"] = self.bodies.iter().map(|body| body.to_json()).collect();
         }
+        value
     }
 }
 

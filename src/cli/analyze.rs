@@ -48,6 +48,9 @@ pub(crate) struct AnalyzeArgs {
     /// Force at the tip, world axes [N]
     #[arg(long, value_name = "X,Y,Z", default_value = "0,0,0", allow_hyphen_values = true, value_parser = numbers::<3>)]
     force_n: [f64; 3],
+    /// Moment at the tip, world axes [N m]
+    #[arg(long, value_name = "X,Y,Z", default_value = "0,0,0", allow_hyphen_values = true, value_parser = numbers::<3>)]
+    moment_nm: [f64; 3],
     /// Link model: rigid, bending (Eqs 1-6) or full
     #[arg(long, default_value = "full", value_parser = choice::<LinkModel>)]
     links: LinkModel,
@@ -59,7 +62,7 @@ pub(crate) struct AnalyzeArgs {
     #[arg(long, default_value_t = 6)]
     modes: usize,
     /// Take pose, payload and models from a cases file instead of these options
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["pose_deg", "payload_kg", "payload_cg_m", "payload_inertia_kgm2", "force_n", "links", "joints"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["pose_deg", "payload_kg", "payload_cg_m", "payload_inertia_kgm2", "force_n", "moment_nm", "links", "joints"])]
     cases: Option<PathBuf>,
     /// Amplitude of a harmonic force at the tip, world axes [N]: prints the tip's response (Eq 16)
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = numbers::<3>)]
@@ -189,6 +192,7 @@ fn case_of_flags(args: &AnalyzeArgs, arm: &Arm) -> Result<LoadCase, Failure> {
             inertia_about_cg_kgm2: args.payload_inertia_kgm2.into(),
         },
         tip_force_n: args.force_n.into(),
+        tip_moment_nm: args.moment_nm.into(),
         links: args.links,
         joints: args.joints,
         water: None,

@@ -54,6 +54,13 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<Answer, Failu
     let run = &results.run;
     let (file, text) = results.text("study.json")?;
     let study = read_study(Document::parse(&file, &text)?, catalogs)?;
+    if study.space.has_linkages() {
+        return Err(Failure::Usage(format!(
+            "the study \"{}\" has coupled joints, which the bounds of this check do not cover; `armwright design` and \
+             `armwright analyze --cases` compute a row again",
+            study.name
+        )));
+    }
     let front = args.results.join("front.csv");
     let table = FrontTable::parse(&front, &results.with_todays_ids("front.csv")?)
         .map_err(|e| Failure::File(e.to_string()))?;

@@ -6,6 +6,7 @@ use super::write::{say, write_file};
 use crate::arm::effect::channel::Channel;
 use crate::arm::file::read_arm;
 use crate::catalog::Catalogs;
+use crate::input::json::{Faults, InputError};
 use crate::reconcile::predict::{predict, unplaced};
 use crate::reconcile::readings::campaign::{Statement, read_statement};
 use crate::reconcile::readings::placement::Placed;
@@ -46,7 +47,11 @@ fn json_of(file: &Path) -> Value {
 }
 
 fn placed(file: &Path, catalogs: &Catalogs) -> Result<Placed, Failure> {
-    Ok(Placed { arm: read_arm(file, catalogs)?, placement: Placement::from_json(&json_of(file)) })
+    let arm = read_arm(file, catalogs)?;
+    if let Some(fault) = arm.tilt_fault(&file.display().to_string()) {
+        return Err(InputError::from(Faults(vec![fault])).into());
+    }
+    Ok(Placed { arm, placement: Placement::from_json(&json_of(file)) })
 }
 
 /// The other arms on the same trunk: those named in the corrected arm's provenance, or else in the campaign.

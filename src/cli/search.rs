@@ -66,6 +66,7 @@ impl SearchArgs {
         Ok(match (self.search, self.gap.is_some() || self.time_limit.is_some()) {
             (Some(kind), _) => kind,
             (None, true) => SearchKind::Exact,
+            (None, false) if study.space.has_linkages() => SearchKind::Exhaustive,
             (None, false) => cheaper(study, catalogs, designs as f64, log),
         })
     }
@@ -80,6 +81,15 @@ impl SearchArgs {
             return refused(format!("the study \"{}\" has more than 1e38 designs; thin a grid", study.name));
         };
         let exhaustive = self.search == Some(SearchKind::Exhaustive);
+        let by_bounds =
+            self.search == Some(SearchKind::Exact) || self.time_limit.is_some() || self.gap.is_some();
+        if study.space.has_linkages() && by_bounds {
+            return refused(format!(
+                "the study \"{}\" has coupled joints, which the bounds of the exact search do not cover; leave --search \
+                 exact, --gap and --time-limit away, and every design is visited",
+                study.name
+            ));
+        }
         if exhaustive && designs > MOST_CONCEIVABLE {
             return refused(format!(
                 "visiting the {:.1e} designs of the study \"{}\" would take years; use --search exact",
@@ -155,6 +165,12 @@ pub(super) struct With<'a> {
 /// The search that is asked for does not suit the study, finds nothing, is interrupted, or its front cannot be written.
 pub(super) fn search(asked: &Asked, with: &With) -> Result<Written, Failure> {
     refuse_empty(&asked.study, with.catalogs)?;
+    if asked.study.space.has_linkages() && with.supplements.scatters() {
+        return Err(Failure::Usage(format!(
+            "--tolerance samples a front without coupled joints, and the study \"{}\" has some; leave it away",
+            asked.study.name
+        )));
+    }
     let written = match with.how.kind(&asked.study, with.catalogs, with.log)? {
         SearchKind::Exhaustive => visit_all(asked, with),
         SearchKind::Exact => search_exactly(asked, with),

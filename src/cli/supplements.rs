@@ -102,6 +102,11 @@ impl SupplementArgs {
         if self.within.is_some() { wrap(NO_NEAR, TERMINAL, "") } else { String::new() }
     }
 
+    /// Whether scatter of catalog ratings is asked for.
+    pub(super) fn scatters(&self) -> bool {
+        self.tolerance.is_some()
+    }
+
     /// Which designs near the front are asked for, if any are.
     pub(super) fn slack(&self) -> Option<Slack> {
         self.within.map(|part| Slack { part, most: self.within_most as usize })

@@ -114,8 +114,7 @@ impl<'c> Problem<'c> {
             level_sizes: Vec::new(),
             poses: Arc::new(poses),
             inertias: Arc::default(),
-            peak_factor: 1.0
-                + space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE),
+            peak_factor: space.peak_factor(),
             lighter_is_better: false,
             joint_plays: Vec::new(),
             levers: Vec::new(),
@@ -135,6 +134,7 @@ impl<'c> Problem<'c> {
                 // A given mass beyond the parts loads the arm, but a design's mass does not count it.
                 Layer::Mass(_) => Part::Offset { mass_kg: 0.0 },
                 Layer::Extra(mass_kg) => Part::Offset { mass_kg },
+                Layer::Bodies(carried) => Part::Offset { mass_kg: carried.mass_kg() },
                 // The tilts of a gear's bearing are coordinates of its joint.
                 Layer::Bearing(_) => continue,
             };

@@ -9,17 +9,18 @@
 use super::bearing_rows::{BearingRows, Loads, Ramp};
 use super::parts::{INERTIAS, inertia};
 use super::pose::{
-    COORDINATES, ENDS, InertiaRow, Pose, PosedPiece, PosedTube, Row, StressRow, TILT, TORSION, TubeForms,
+    COORDINATES, ENDS, InertiaRow, Pose, PosedBodies, PosedPiece, PosedTube, Row, StressRow, TILT, TORSION,
+    TubeForms,
 };
 use crate::arm::LinkModel;
 use crate::arm::load::Water;
-use crate::arm::structure::{LinkPiece, Structure};
+use crate::arm::structure::LinkPiece;
 use crate::mechanics::beam::{PreparedBeam, section_frame};
 use crate::mechanics::chain::across;
 use crate::mechanics::{Twist, Wrench, angular, body_inertia, displacement_at, linear, rotation_twist};
 use crate::space::design_space::{DesignSpace, SpacePiece};
-use crate::space::effects::Layer;
-use crate::space::station::{Walk, payload_in, weight_wrench};
+use crate::space::effects::{Carried, Carrier, Layer};
+use crate::space::station::{Walk, bodies_at, payload_in, weight_wrench};
 use nalgebra::{DMatrix, Matrix3, Matrix6, Rotation3, SMatrix, Vector3};
 
 /// What a pose has to know about a joint of the chain, beside its axis.
@@ -42,7 +43,7 @@ impl Pose {
         let (payload_wrench, payload_inertia) = payload_in(space, case, water, &walk);
         let (mut pieces, mut needs) = (Vec::new(), Vec::new());
         for (place, layer) in space.layers() {
-            let (at, joint) = (&walk.places[place], joints[place]);
+            let (at, joint) = (walk.place(place, &layer), joints[place]);
             let Some(posed) = posed(space, water, layer, joint.tilts, at) else { continue };
             if let Layer::Piece(SpacePiece::Joint(_)) = layer {
                 needs.push((pieces.len(), joint));
@@ -94,11 +95,11 @@ impl Pose {
                     self.inertia_about.push(Some(outboard.inertia_row(twist)));
                     let mut forms = [Matrix6::zeros(); INERTIAS];
                     forms[inertia::MASS] = body_inertia(1.0, at_m, &Matrix3::zeros());
-                    outboard.push(weight_wrench(1.0, at_m), forms);
+                    outboard.push(weight_wrench(1.0, &space.down, at_m), forms);
                 }
                 PosedPiece::Body(body) => {
                     self.inertia_about.push(None);
-                    outboard.add_body(body, space.gravity_m_s2);
+                    outboard.add_body(body, space);
                 }
                 PosedPiece::Tube(tube) => {
                     self.inertia_about.push(None);
@@ -107,15 +108,22 @@ impl Pose {
                     if tube.chosen {
                         self.stress.push(outboard.stress(piece, tube, &end_m));
                     }
-                    let areas = areas_per_n(tube);
+                    let areas = areas_per_n(tube, &space.down);
+                    let bodies = tube.bodies.as_ref().map_or([0.0; 8], |bodies| bodies.end_forces);
                     for (end, coordinate) in ENDS.into_iter().enumerate() {
                         // A tube's own weight strains its coordinates too, though it is not outboard of the
                         // tube.
                         let own = areas[end];
-                        self.rows.push(outboard.row(piece, coordinate, &tube.ends[end], own, tip_m));
+                        let mut row = outboard.row(piece, coordinate, &tube.ends[end], own, tip_m);
+                        row.fixed += bodies[end];
+                        self.rows.push(row);
                     }
                     let middle_m = tube.root_m + tube.frame * Vector3::x() * (tube.length_m / 2.0);
-                    outboard.push(weight_wrench(1.0, &middle_m), tube.rigid_forms());
+                    outboard.push(weight_wrench(1.0, &space.down, &middle_m), tube.rigid_forms());
+                    if let Some(bodies) = &tube.bodies {
+                        outboard.fixed += bodies.weight;
+                        outboard.fixed_inertia += bodies.rigid;
+                    }
                     if tube.chosen {
                         self.stress.push(outboard.stress(piece, tube, &tube.root_m));
                     }
@@ -176,6 +184,10 @@ fn posed(
         Layer::Tilt(tilt) => hinge(&tilt.axis(rotation), None),
         Layer::Mass(mass_kg) | Layer::Extra(mass_kg) => body(mass_kg, at_m, Matrix3::zeros()),
         Layer::Bearing(_) => return None,
+        Layer::Bodies(Carried { by: Carrier::Tube, .. }) => PosedPiece::Body(Matrix6::zeros()),
+        Layer::Bodies(Carried { bodies, .. }) => {
+            PosedPiece::Body(bodies_at(bodies, space, &(*at_m, *rotation)).0)
+        }
         Layer::Piece(SpacePiece::Joint(joint)) => {
             let axis = rotation * joint.axis;
             hinge(&axis, tilts.then(|| across(&axis)))
@@ -206,7 +218,7 @@ fn posed_tube(
     rotation: &Matrix3<f64>,
     chosen: bool,
 ) -> PosedPiece {
-    let structure = Structure::nominal(space.gravity_m_s2, Vec::new());
+    let structure = space.structure_of(Vec::new());
     let frame = rotation * section_frame(&link.vector_m);
     // The fields of the coordinates depend on the length alone, so the first option stands for all.
     let Some(beam) = PreparedBeam::new(link, &structure, LinkModel::Full) else {
@@ -226,7 +238,39 @@ fn posed_tube(
         forms: TubeForms::new(&beam),
         added_kg_m3: water.map_or(0.0, |w| w.added_mass_coefficient * w.density_kg_m3),
         chosen,
+        bodies: PosedBodies::new(space, link, &beam, (root_m, rotation)).map(Box::new),
     }))
+}
+
+impl PosedBodies {
+    /// The bodies on a tube whose root is at a place of the pose; `None` if there are none.
+    fn new(
+        space: &DesignSpace,
+        link: &LinkPiece,
+        beam: &PreparedBeam,
+        (root_m, rotation): (&Vector3<f64>, &Matrix3<f64>),
+    ) -> Option<Self> {
+        if link.bodies.is_empty() {
+            return None;
+        }
+        let place = (*root_m, Rotation3::from_matrix_unchecked(*rotation));
+        let (rigid, weight) = bodies_at(&link.bodies, space, &place);
+        let down = (rotation * beam.frame).tr_mul(&space.down);
+        let mut out = Self {
+            inertia: DMatrix::zeros(6 + COORDINATES, 6 + COORDINATES),
+            rigid,
+            weight,
+            end_forces: [0.0; 8],
+        };
+        for body in &link.bodies {
+            out.inertia += beam.inertia_of(body);
+            let centre = beam.centre_fields(body);
+            for (force, coordinate) in out.end_forces.iter_mut().zip(ENDS) {
+                *force += body.mass_kg * space.gravity_m_s2 * centre.column(6 + coordinate).dot(&down);
+            }
+        }
+        Some(out)
+    }
 }
 
 impl TubeForms {
@@ -288,8 +332,8 @@ impl PosedTube {
 
 /// Force on each of the coordinates [`ENDS`] per newton of the tube's own weight, which is distributed along the
 /// tube.
-fn areas_per_n(tube: &PosedTube) -> [f64; 8] {
-    let down = tube.frame.tr_mul(&-Vector3::z());
+fn areas_per_n(tube: &PosedTube, down: &Vector3<f64>) -> [f64; 8] {
+    let down = tube.frame.tr_mul(down);
     let f = &tube.forms;
     // ∫ field · (force per length) is the translation row of the inertia form divided by the length.
     let per = |form: &SMatrix<f64, 9, 9>, place: usize| form[(0, place)] / tube.length_m;
@@ -326,12 +370,12 @@ impl Outboard {
     }
 
     /// Adds a given body.
-    fn add_body(&mut self, body: &Matrix6<f64>, gravity_m_s2: f64) {
+    fn add_body(&mut self, body: &Matrix6<f64>, space: &DesignSpace) {
         self.fixed_inertia += body;
         let mass_kg = body[(0, 0)];
         if mass_kg > 0.0 {
             let moment = Vector3::new(body[(5, 1)], body[(3, 2)], body[(4, 0)]) / mass_kg;
-            self.fixed += weight_wrench(mass_kg * gravity_m_s2, &moment);
+            self.fixed += weight_wrench(mass_kg * space.gravity_m_s2, &space.down, &moment);
         }
         self.push(Wrench::zeros(), [Matrix6::zeros(); INERTIAS]);
     }

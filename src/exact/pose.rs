@@ -3,8 +3,8 @@
 use super::bearing_rows::BearingRows;
 use super::interval::interval;
 use super::parts::INERTIAS;
-use crate::mechanics::Twist;
-use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3};
+use crate::mechanics::{Twist, Wrench};
+use nalgebra::{DMatrix, Matrix3, Matrix6, SMatrix, Vector3};
 
 /// Coefficients below this part of the largest are rounding.
 const NOTHING: f64 = 1e-12;
@@ -97,6 +97,19 @@ pub(super) struct PosedTube {
     pub added_kg_m3: f64,
     /// Whether its section is chosen by the search.
     pub chosen: bool,
+    /// The bodies on the tube; `None` if there are none.
+    pub bodies: Option<Box<PosedBodies>>,
+}
+
+/// Given bodies on a tube, each of which moves with a point of the axis.
+pub(super) struct PosedBodies {
+    /// Inertia over the motion of the root and the coordinates, in the section frame.
+    pub inertia: DMatrix<f64>,
+    /// Inertia about the world's origin, if the tube does not yield.
+    pub rigid: Matrix6<f64>,
+    pub weight: Wrench,
+    /// Force of the weight on each of the coordinates [`ENDS`].
+    pub end_forces: [f64; 8],
 }
 
 /// Quadratic forms of kinetic energy. In each plane they are over `(root translation, root rotation,

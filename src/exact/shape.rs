@@ -14,7 +14,7 @@ use super::pose::{
     COORDINATES, ENDS, JOINT_COORDINATES, Pose, PosedPiece, PosedTube, RESISTED, TILT, TORSION, degree_factor,
 };
 use crate::mechanics::{Twist, Wrench, angular, linear, stack};
-use nalgebra::{SMatrix, SVector, Vector3};
+use nalgebra::{DVector, SMatrix, SVector, Vector3};
 
 /// A motion of the arm, with the strain and kinetic energy of each piece. Pieces are counted from the tip.
 #[derive(Debug, Clone, Default)]
@@ -152,7 +152,12 @@ impl Shape {
                 }
                 PosedPiece::Body(body) => self.kinetic_fixed += twist.dot(&(body * twist)),
                 PosedPiece::Tube(tube) => {
-                    *kinetic = Local::new(tube, &twist, x).kinetic(tube);
+                    let local = Local::new(tube, &twist, x);
+                    *kinetic = local.kinetic(tube);
+                    self.kinetic_fixed += tube.bodies.as_ref().map_or(0.0, |bodies| {
+                        let all = local.all();
+                        all.dot(&(&bodies.inertia * &all))
+                    });
                     *strain = [0.0; STIFFNESSES];
                     for (c, x) in x.iter().enumerate() {
                         strain[RESISTED[c].0] += x * x * tube.length_m / degree_factor(c);
@@ -325,14 +330,30 @@ impl Local {
         let y = f.across_y * self.y * across + f.rotary_z * self.y * line[inertia::ROTARY_Z];
         let turn = f.polar * self.turn * line[inertia::POLAR];
         let along = f.along * self.along * line[inertia::MASS];
-        TubeMomentum {
+        let mut out = TubeMomentum {
             root_force: Vector3::new(along[0], y[0], z[0]),
             root_moment: Vector3::new(turn[0], z[1], y[1]),
             forces: [
                 z[2], z[3], z[4], z[5], y[2], y[3], y[4], y[5], z[6], z[7], z[8], y[6], y[7], y[8], turn[1],
                 turn[2], turn[3], along[1], along[2], along[3],
             ],
+        };
+        if let Some(bodies) = &tube.bodies {
+            let momentum = &bodies.inertia * self.all();
+            out.root_force += momentum.fixed_rows::<3>(0);
+            out.root_moment += momentum.fixed_rows::<3>(3);
+            out.forces.iter_mut().zip(momentum.iter().skip(6)).for_each(|(force, p)| *force += p);
         }
+        out
+    }
+
+    /// Translation and rotation of the root, then all coordinates.
+    fn all(&self) -> DVector<f64> {
+        let (z, y, turn, along) = (&self.z, &self.y, &self.turn, &self.along);
+        DVector::from_row_slice(&[
+            along[0], y[0], z[0], turn[0], z[1], y[1], z[2], z[3], z[4], z[5], y[2], y[3], y[4], y[5], z[6],
+            z[7], z[8], y[6], y[7], y[8], turn[1], turn[2], turn[3], along[1], along[2], along[3],
+        ])
     }
 
     #[inline]

@@ -16,9 +16,11 @@
 //! Timoshenko counterparts), so statics are exact. Frequencies converge from above. The inertia does not depend on the
 //! stiffness, so frequencies rise with every stiffness and fall with every mass. The exact search relies on this.
 
+use super::{Wrench, body_inertia, force_wrench, stack};
 use crate::arm::LinkModel;
+use crate::arm::body::RigidBody;
 use crate::arm::structure::{Beam, LinkPiece, Structure};
-use nalgebra::{DMatrix, Matrix3, Matrix6xX, SMatrix, Vector3};
+use nalgebra::{DMatrix, Matrix3, Matrix3xX, Matrix6xX, SMatrix, Vector3};
 
 /// Number of polynomials of curvature in each plane.
 pub(crate) const CURVATURES: usize = 4;
@@ -82,6 +84,23 @@ impl LineInertia {
     }
 }
 
+/// Weight of the bodies on a link, in its section frame.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct CarriedWeight {
+    /// Work of the weight per coordinate, if it acts along each axis \[N m per unit\].
+    pub fields: Matrix3xX<f64>,
+    /// Weight \[N\].
+    pub weight_n: f64,
+    /// First moment of the weight about the root \[N m\].
+    pub moment_nm: Vector3<f64>,
+}
+
+impl Default for CarriedWeight {
+    fn default() -> Self {
+        Self { fields: Matrix3xX::zeros(0), weight_n: 0.0, moment_nm: Vector3::zeros() }
+    }
+}
+
 /// A link prepared for any pose: everything that does not depend on its place.
 #[derive(Debug, Clone)]
 pub(crate) struct PreparedBeam {
@@ -94,11 +113,13 @@ pub(crate) struct PreparedBeam {
     /// Displacement (rows 0-2) and rotation (rows 3-5) of the end per coordinate, in the section frame.
     pub end_fields: Matrix6xX<f64>,
     /// Integral of the displacement over the length per coordinate, in the section frame \[m² per unit\].
-    pub area_fields: Matrix6xX<f64>,
+    pub area_fields: Matrix3xX<f64>,
     /// Inertia over root translation, root rotation and coordinates, in the section frame.
     pub inertia: DMatrix<f64>,
     /// Weight minus buoyancy per length \[N/m\].
     pub weight_n_per_m: f64,
+    /// Weight of the bodies on the link.
+    pub carried: CarriedWeight,
     coordinates: Vec<(Strain, usize)>,
     line: LineInertia,
 }
@@ -117,14 +138,18 @@ impl PreparedBeam {
             frame: section_frame(&link.vector_m),
             compliances: stiffness.iter().map(|(_, _, c)| *c).collect(),
             end_fields: Matrix6xX::zeros(0),
-            area_fields: Matrix6xX::zeros(0),
+            area_fields: Matrix3xX::zeros(0),
             inertia: DMatrix::zeros(0, 0),
             weight_n_per_m: weight_n_per_m(link, structure),
+            carried: CarriedWeight::default(),
             coordinates: stiffness.iter().map(|(s, i, _)| (*s, *i)).collect(),
             line,
         };
         beam.end_fields = beam.fields(1.0).columns_range(6..).into_owned();
         beam.integrate();
+        if link.beam.is_some() {
+            link.bodies.iter().for_each(|body| beam.add_body(body, structure.gravity_m_s2));
+        }
         Some(beam)
     }
 
@@ -162,21 +187,66 @@ impl PreparedBeam {
         GAUSS.iter().map(|&(xi, weight)| (xi, weight * self.length_m))
     }
 
+    /// Weight as a wrench about the world's origin. The root is at `root_m`, and `frame` is the section frame in the world.
+    /// `down` is the direction of gravity.
+    pub(crate) fn weight(&self, root_m: &Vector3<f64>, frame: &Matrix3<f64>, down: &Vector3<f64>) -> Wrench {
+        let middle_m = root_m + frame.column(0) * (self.length_m / 2.0);
+        let tube = force_wrench(&(*down * (self.weight_n_per_m * self.length_m)), &middle_m);
+        let CarriedWeight { weight_n, moment_nm, .. } = &self.carried;
+        let moment_nm = (root_m * *weight_n + frame * moment_nm).cross(down);
+        tube + stack(&(*down * *weight_n), &moment_nm)
+    }
+
+    /// Adds a body, which moves with the point of the axis that is nearest to its centre.
+    fn add_body(&mut self, body: &RigidBody, gravity_m_s2: f64) {
+        self.inertia += self.inertia_of(body);
+        let weight_n = body.mass_kg * gravity_m_s2;
+        self.carried.fields += weight_n * self.centre_fields(body).columns_range(6..);
+        self.carried.weight_n += weight_n;
+        self.carried.moment_nm += weight_n * (self.frame.transpose() * body.cg_m);
+    }
+
+    /// Inertia of a body over root translation, root rotation and coordinates, in the section frame.
+    pub(crate) fn inertia_of(&self, body: &RigidBody) -> DMatrix<f64> {
+        let turn = self.frame.transpose();
+        let (fields, arm_m) = self.carrier(body);
+        let about_point = body_inertia(body.mass_kg, &arm_m, &(turn * body.inertia_kgm2 * self.frame));
+        let weighted = about_point * &fields;
+        DMatrix::from_fn(fields.ncols(), fields.ncols(), |i, j| fields.column(i).dot(&weighted.column(j)))
+    }
+
+    /// Displacement of the centre of a body per unit of root translation, root rotation and each coordinate, in the section
+    /// frame.
+    pub(crate) fn centre_fields(&self, body: &RigidBody) -> Matrix3xX<f64> {
+        let (fields, arm_m) = self.carrier(body);
+        let turned = arm_m.cross_matrix() * fields.fixed_rows::<3>(3);
+        fields.fixed_rows::<3>(0) - turned
+    }
+
+    /// The fields at the point of the axis that carries a body, and the way from there to the centre of the body in the
+    /// section frame.
+    pub(crate) fn carrier(&self, body: &RigidBody) -> (Matrix6xX<f64>, Vector3<f64>) {
+        let cg_m = self.frame.transpose() * body.cg_m;
+        let xi = (cg_m.x / self.length_m).clamp(0.0, 1.0);
+        (self.fields(xi), cg_m - Vector3::x() * (xi * self.length_m))
+    }
+
     /// Integrates inertia and displacement over the length.
     fn integrate(&mut self) {
         let n = 6 + self.coordinates.len();
         let densities = self.line_densities();
         let mut inertia = DMatrix::zeros(n, n);
-        let mut areas = Matrix6xX::zeros(n - 6);
+        let mut areas = Matrix3xX::zeros(n - 6);
         for (xi, weight) in self.quadrature() {
             let fields = self.fields(xi);
-            areas += weight * fields.columns_range(6..);
+            areas += weight * fields.columns_range(6..).fixed_rows::<3>(0);
             let weighted =
                 SMatrix::<f64, 6, 6>::from_diagonal(&(weight * nalgebra::Vector6::from(densities)));
             inertia += fields.transpose() * (weighted * &fields);
         }
         self.inertia = inertia;
         self.area_fields = areas;
+        self.carried.fields = Matrix3xX::zeros(n - 6);
     }
 }
 

@@ -6,6 +6,7 @@ use super::beam::PreparedBeam;
 use super::{Twist, Wrench, body_inertia, force_wrench, rotation_twist, stack};
 use crate::arm::LinkModel;
 use crate::arm::base_lift::BaseLift;
+use crate::arm::body::RigidBody;
 use crate::arm::effect::base_lift;
 use crate::arm::joint_law::JointLaw;
 use crate::arm::linkage::{Linkage, linkages};
@@ -45,6 +46,7 @@ use nalgebra::{DMatrix, Matrix3, Matrix6, Matrix6xX, Rotation3, Vector3};
 #[derive(Debug, Clone)]
 pub struct Chain {
     gravity_m_s2: f64,
+    down: Vector3<f64>,
     base_tilt_rad_per_nm: f64,
     base_lift: Option<BaseLift>,
     base_frame: FrameCompliance,
@@ -120,6 +122,8 @@ pub struct Body {
     pub inertia_kgm2: Matrix3<f64>,
     /// Weight minus buoyancy \[N\].
     pub weight_n: f64,
+    /// Direction of the weight in the world, a unit vector.
+    pub down: Vector3<f64>,
 }
 
 /// An item of a posed arm. A body is moved by every element that comes before it.
@@ -144,6 +148,8 @@ pub struct Posed<'a> {
     pub tip_rotation: Rotation3<f64>,
     /// Force at the tip in world axes \[N\].
     pub tip_force_n: Vector3<f64>,
+    /// Moment at the tip in world axes \[N m\].
+    pub tip_moment_nm: Vector3<f64>,
 }
 
 impl Chain {
@@ -160,6 +166,7 @@ impl Chain {
             .collect();
         Self {
             gravity_m_s2: structure.gravity_m_s2,
+            down: structure.down,
             base_tilt_rad_per_nm: structure.base_tilt_rad_per_nm,
             base_lift: structure.base_lift,
             base_frame: structure.base_frame,
@@ -172,12 +179,18 @@ impl Chain {
     /// Puts the arm into the pose and load of a case. The pose has one angle \[deg\] for each driven joint, base to tip.
     pub fn pose(&self, case: &LoadCase) -> Posed<'_> {
         let pose_rad: Vec<f64> = case.pose_deg.iter().map(|a| a.to_radians()).collect();
-        self.pose_rad(&pose_rad, &case.payload, case.tip_force_n)
+        let posed = self.pose_rad(&pose_rad, &case.payload, case.tip_force_n);
+        Posed { tip_moment_nm: case.tip_moment_nm, ..posed }
     }
 
     /// Puts the arm into a pose given in radians, with a payload and a force at the tip \[N\].
     pub fn pose_rad(&self, pose_rad: &[f64], payload: &Payload, tip_force_n: Vector3<f64>) -> Posed<'_> {
-        let mut walk = Walk { items: Vec::new(), at_m: Vector3::zeros(), rotation: Rotation3::identity() };
+        let mut walk = Walk {
+            items: Vec::new(),
+            at_m: Vector3::zeros(),
+            rotation: Rotation3::identity(),
+            gravity: (self.gravity_m_s2, self.down),
+        };
         if self.base_tilt_rad_per_nm > 0.0 {
             walk.tilt("base".into(), &[Vector3::x(), Vector3::y()], self.base_tilt_rad_per_nm);
         }
@@ -185,13 +198,20 @@ impl Chain {
         walk.frame("base", &self.base_frame);
         for (index, piece) in self.pieces.iter().enumerate() {
             match piece {
-                Prepared::Joint(joint) => walk.joint(joint, joint.angle.of(pose_rad), self.gravity_m_s2),
-                Prepared::Link(link, beam) => walk.link(index, link, beam.as_ref(), self.gravity_m_s2),
+                Prepared::Joint(joint) => walk.joint(joint, joint.angle.of(pose_rad)),
+                Prepared::Link(link, beam) => walk.link(index, link, beam.as_ref()),
             }
         }
         // the payload is the last body, so every element moves it
         walk.items.push(Item::Body(self.payload_body(payload, &walk)));
-        Posed { chain: self, items: walk.items, tip_m: walk.at_m, tip_rotation: walk.rotation, tip_force_n }
+        Posed {
+            chain: self,
+            items: walk.items,
+            tip_m: walk.at_m,
+            tip_rotation: walk.rotation,
+            tip_force_n,
+            tip_moment_nm: Vector3::zeros(),
+        }
     }
 
     /// The linkages, which turn the passive joints.
@@ -218,6 +238,7 @@ impl Chain {
                 * Matrix3::from_diagonal(&payload.inertia_about_cg_kgm2)
                 * rotation.transpose(),
             weight_n: payload.mass_kg * self.gravity_m_s2 * (1.0 - buoyancy),
+            down: self.down,
         }
     }
 }
@@ -227,12 +248,15 @@ struct Walk {
     items: Vec<Item>,
     at_m: Vector3<f64>,
     rotation: Rotation3<f64>,
+    /// Acceleration of gravity \[m/s²\] and its direction.
+    gravity: (f64, Vector3<f64>),
 }
 
 impl Walk {
     /// Adds a joint. Its mass is inboard of its springs; the springs of its bearing come before its torsion.
-    fn joint(&mut self, joint: &JointPiece, angle_rad: f64, gravity_m_s2: f64) {
-        self.point_mass(joint.mass_kg, self.at_m, gravity_m_s2);
+    fn joint(&mut self, joint: &JointPiece, angle_rad: f64) {
+        self.point_mass(joint.mass_kg, self.at_m);
+        self.bodies(&joint.bodies.fixed);
         let axis = self.rotation * joint.axis;
         if joint.tilt_rad_per_nm > 0.0 {
             let across = across(&axis);
@@ -247,16 +271,21 @@ impl Walk {
             own: None,
         }));
         self.rotation *= Rotation3::from_axis_angle(&joint.axis, angle_rad);
+        self.bodies(&joint.bodies.rotating);
     }
 
     /// Adds a link, with the frame at its root.
-    fn link(&mut self, piece: usize, link: &LinkPiece, beam: Option<&PreparedBeam>, gravity_m_s2: f64) {
+    fn link(&mut self, piece: usize, link: &LinkPiece, beam: Option<&PreparedBeam>) {
         self.frame(&link.name, &link.root_frame);
         let vector = self.rotation * link.vector_m;
-        self.point_mass(link.point_mass_kg, self.at_m + vector / 2.0, gravity_m_s2);
+        self.point_mass(link.point_mass_kg, self.at_m + vector / 2.0);
         let end_m = self.at_m + vector;
         if let Some(beam) = beam {
             self.items.push(Item::Elastic(self.beam_element(piece, link, beam, &end_m)));
+        }
+        // a tube has its bodies: each moves with a point of its axis
+        if link.beam.is_none() {
+            self.bodies(&link.bodies);
         }
         self.at_m = end_m;
     }
@@ -284,7 +313,7 @@ impl Walk {
             twists,
             yielding: Yielding::Linear(beam.compliances.clone()),
             torque_nm: 0.0,
-            own: Some(own_mass(piece, beam, &frame, &self.at_m)),
+            own: Some(own_mass(piece, beam, &frame, &self.at_m, &self.gravity.1)),
         }
     }
 
@@ -330,14 +359,29 @@ impl Walk {
         }));
     }
 
+    /// Adds rigid bodies of the element that starts at the present place.
+    fn bodies(&mut self, bodies: &[RigidBody]) {
+        for body in bodies {
+            let turn = self.rotation.matrix();
+            self.items.push(Item::Body(Body {
+                mass_kg: body.mass_kg,
+                cg_m: self.at_m + turn * body.cg_m,
+                inertia_kgm2: turn * body.inertia_kgm2 * turn.transpose(),
+                weight_n: body.mass_kg * self.gravity.0,
+                down: self.gravity.1,
+            }));
+        }
+    }
+
     /// Adds a point mass, if it is not zero.
-    fn point_mass(&mut self, mass_kg: f64, cg_m: Vector3<f64>, gravity_m_s2: f64) {
+    fn point_mass(&mut self, mass_kg: f64, cg_m: Vector3<f64>) {
         if mass_kg != 0.0 {
             self.items.push(Item::Body(Body {
                 mass_kg,
                 cg_m,
                 inertia_kgm2: Matrix3::zeros(),
-                weight_n: mass_kg * gravity_m_s2,
+                weight_n: mass_kg * self.gravity.0,
+                down: self.gravity.1,
             }));
         }
     }
@@ -352,7 +396,13 @@ pub(crate) fn across(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
 }
 
 /// Transforms the inertia and weight of a link from its section frame to the world.
-fn own_mass(piece: usize, beam: &PreparedBeam, frame: &Matrix3<f64>, root_m: &Vector3<f64>) -> OwnMass {
+fn own_mass(
+    piece: usize,
+    beam: &PreparedBeam,
+    frame: &Matrix3<f64>,
+    root_m: &Vector3<f64>,
+    down: &Vector3<f64>,
+) -> OwnMass {
     // from a twist about the world's origin to translation and rotation of the root in the section frame
     let to_local = {
         let mut x = Matrix6::zeros();
@@ -365,11 +415,12 @@ fn own_mass(piece: usize, beam: &PreparedBeam, frame: &Matrix3<f64>, root_m: &Ve
     let n = beam.compliances.len();
     let local_rigid = beam.inertia.fixed_view::<6, 6>(0, 0);
     let local_coupling = beam.inertia.view((0, 6), (6, n));
-    let down = Vector3::new(0.0, 0.0, -beam.weight_n_per_m);
-    let centre = root_m + frame.column(0) * (beam.length_m / 2.0);
+    let along = frame.transpose() * (*down * beam.weight_n_per_m);
     let local_down = frame.transpose() * down;
-    // a weight works on the area under each deflected shape
-    let weight_work = beam.area_fields.column_iter().map(|f| f.fixed_rows::<3>(0).dot(&local_down)).collect();
+    // a uniform weight works on the area under each deflected shape
+    let areas = beam.area_fields.column_iter().map(|f| f.dot(&along));
+    let bodies = beam.carried.fields.column_iter().map(|f| f.dot(&local_down));
+    let weight_work = areas.zip(bodies).map(|(tube, bodies)| tube + bodies).collect();
     OwnMass {
         piece,
         root_m: *root_m,
@@ -377,7 +428,7 @@ fn own_mass(piece: usize, beam: &PreparedBeam, frame: &Matrix3<f64>, root_m: &Ve
         rigid: to_local.transpose() * local_rigid * to_local,
         coupling: Matrix6xX::from_iterator(n, (to_local.transpose() * local_coupling).iter().copied()),
         inner: beam.inertia.view((6, 6), (n, n)).into_owned(),
-        weight: force_wrench(&(down * beam.length_m), &centre),
+        weight: beam.weight(root_m, frame, down),
         weight_work,
     }
 }
@@ -390,6 +441,6 @@ impl Body {
 
     /// Weight as a wrench about the world's origin.
     pub fn weight(&self) -> Wrench {
-        force_wrench(&Vector3::new(0.0, 0.0, -self.weight_n), &self.cg_m)
+        force_wrench(&(self.down * self.weight_n), &self.cg_m)
     }
 }

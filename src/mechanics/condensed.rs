@@ -31,6 +31,8 @@ pub(crate) struct CondensedLink {
     pub end: Matrix6<f64>,
     /// End coordinates per uniform load along each axis of the section \[1/(N/m)\].
     pub end_per_line_load: SMatrix<f64, 6, 3>,
+    /// End coordinates under the weight of the bodies on the link, if it acts along each axis of the section.
+    pub end_under_bodies: SMatrix<f64, 6, 3>,
     /// Sum of `1/λ` over the inner modes with root and end held \[s²\]. It is an upper bound of each `1/λ`.
     pub inner_trace_s2: f64,
 }
@@ -55,6 +57,7 @@ impl CondensedLink {
         let first = over_q.transpose() * &inner;
         let fixed = |m: DMatrix<f64>| Inertia12::from_iterator(m.iter().copied());
         let areas = DMatrix::from_fn(n, 3, |q, axis| beam.area_fields[(axis, q)]);
+        let bodies = DMatrix::from_fn(n, 3, |q, axis| beam.carried.fields[(axis, q)]);
         Self {
             inertia: [
                 fixed(expand.transpose() * &beam.inertia * &expand),
@@ -63,18 +66,20 @@ impl CondensedLink {
             ],
             end,
             end_per_line_load: SMatrix::from_iterator((spread.transpose() * areas).iter().copied()),
+            end_under_bodies: SMatrix::from_iterator((spread.transpose() * bodies).iter().copied()),
             // rounding may make a trace of nothing negative
             inner_trace_s2: (&inner * inner_mass).trace().max(0.0),
         }
     }
 
-    /// The condensed link in a pose. `root_m` and `end_m` are the places of its root and end, `frame` is its section frame,
-    /// all in the world.
+    /// The condensed link in a pose. `root_m` and `end_m` are the places of its root and end, `frame` is its section frame and
+    /// `down` the direction of gravity, all in the world.
     pub(crate) fn place(
         &self,
         root_m: &Vector3<f64>,
         end_m: &Vector3<f64>,
         frame: &Matrix3<f64>,
+        down: &Vector3<f64>,
     ) -> PlacedLink {
         let to_root = world_to_local(root_m, frame);
         let mut to_local = Inertia12::identity();
@@ -90,7 +95,8 @@ impl CondensedLink {
         PlacedLink {
             inertia: self.inertia.map(|m| to_local.transpose() * m * to_local),
             end,
-            end_per_weight: self.end_per_line_load * (frame.transpose() * -Vector3::z()),
+            end_per_weight: self.end_per_line_load * (frame.transpose() * down),
+            end_under_bodies: self.end_under_bodies * (frame.transpose() * down),
             inner_trace_s2: self.inner_trace_s2,
         }
     }
@@ -103,6 +109,8 @@ pub(crate) struct PlacedLink {
     pub inertia: [Inertia12; 3],
     /// Twist of everything outboard per end coordinate.
     pub end: Matrix6<f64>,
+    /// End coordinates under the weight of the bodies on the link.
+    pub end_under_bodies: Vector6<f64>,
     /// End coordinates per net weight per length \[1/(N/m)\].
     pub end_per_weight: Vector6<f64>,
     /// Sum of `1/λ` over the inner modes \[s²\].

@@ -6,7 +6,7 @@
 //! matrix with the factor in the row of the passive joint and the column of the driver.
 
 use super::chain::{Item, Posed};
-use super::{Twist, Wrench, force_wrench};
+use super::{Twist, Wrench};
 use nalgebra::{DMatrix, DVector};
 
 /// Motion and torque that a linkage transfers to its driver, in a pose under a load.
@@ -28,7 +28,7 @@ impl Posed<'_> {
         if linkages.is_empty() {
             return out;
         }
-        let mut wrench: Wrench = force_wrench(&self.tip_force_n, &self.tip_m);
+        let mut wrench: Wrench = self.tip_load();
         for item in self.items.iter().rev() {
             match item {
                 Item::Body(body) => wrench += body.weight(),

@@ -5,7 +5,7 @@
 
 use super::chain::{ElasticElement, Item, Posed, Yielding};
 use super::linkage::Transferred;
-use super::{Twist, Wrench, angular, displacement_at, force_wrench, linear};
+use super::{Twist, Wrench, angular, displacement_at, force_wrench, linear, stack};
 use nalgebra::Vector3;
 
 /// The static state of an arm in a pose under a load.
@@ -69,7 +69,7 @@ impl Posed<'_> {
     /// One pass goes from the tip to the base. It adds up the wrench of everything outboard, lets each element yield to
     /// it, and sums the displacements of the tip. [`Chain`](super::Chain) has an example.
     pub fn statics(&self) -> Statics {
-        let mut wrench = force_wrench(&self.tip_force_n, &self.tip_m);
+        let mut wrench = self.tip_load();
         let transferred = self.transferred();
         let mut out = Statics {
             joint_torques_nm: Vec::new(),
@@ -96,6 +96,11 @@ impl Posed<'_> {
         out.tip_displacement_m = out.shares_m.iter().map(|(_, share)| share).sum();
         out.base_wrench = wrench;
         out
+    }
+
+    /// Force and moment at the tip, about the world's origin.
+    pub(crate) fn tip_load(&self) -> Wrench {
+        force_wrench(&self.tip_force_n, &self.tip_m) + stack(&Vector3::zeros(), &self.tip_moment_nm)
     }
 
     /// Lets one element yield to the outboard wrench, and records its deformation, its tangent compliance and its share.

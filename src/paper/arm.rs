@@ -114,15 +114,23 @@ impl PaperArm {
                 name: "tool".into(),
                 vector_m: Vector3::x() * self.third_link_m,
                 body: LinkBody::Offset { mass_kg: 0.0 },
+                bodies: Vec::new(),
             }),
         ];
-        Arm { name: "paper-arm".into(), gravity_m_s2: GRAVITY_M_S2, chain, effects: Vec::new() }
+        Arm {
+            name: "paper-arm".into(),
+            gravity_m_s2: GRAVITY_M_S2,
+            down: -Vector3::z(),
+            chain,
+            effects: Vec::new(),
+        }
     }
 
     fn joint(&self, index: usize, mass_kg: f64) -> Element {
         Element::Joint(Joint {
             bearing: None,
             extras: Default::default(),
+            bodies: Default::default(),
             name: JOINTS[index].into(),
             axis: Unit::new_unchecked(Vector3::y()),
             curve: self.curves[index],
@@ -142,6 +150,7 @@ impl PaperArm {
                 material: self.material,
                 section: self.sections[index],
             },
+            bodies: Vec::new(),
         })
     }
 

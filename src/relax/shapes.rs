@@ -8,11 +8,12 @@
 
 use super::parts::Parts;
 use super::row::Row;
+use crate::arm::body::RigidBody;
 use crate::arm::structure::{LinkPiece, Structure};
 use crate::mechanics::beam::{PreparedBeam, compliances, line_densities};
 use crate::mechanics::{displacement_at, stack};
 use crate::space::design_space::{DesignSpace, SpacePiece};
-use crate::space::effects::Layer;
+use crate::space::effects::{Carried, Carrier, Layer};
 use crate::space::problem::ArmProblem;
 use crate::space::station::{StationSlot, Walk};
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix6xX, SymmetricEigen, Vector3};
@@ -81,6 +82,8 @@ impl ShapeModel {
                     twist.set_column(column, &joint.twist);
                     column += 1;
                 }
+                // bodies on a tube move with points of the tube, and are added with it
+                StationSlot::Body { .. } if is_on_tube(&layers[slot].1) => {}
                 StationSlot::Body { inertia, .. } => model.given += twist.transpose() * inertia * &twist,
                 StationSlot::Link { place, .. } => {
                     let Some(beam) = beam(slot) else { continue };
@@ -97,6 +100,9 @@ impl ShapeModel {
                             .collect(),
                         stiffness: tubes[slot].iter().map(stiffness).collect(),
                     });
+                    for body in &tubes[slot][0].bodies {
+                        model.given += body_inertia_over(&beam, body, &frame, &place.root_m, &twist, column);
+                    }
                     for (k, field) in beam.end_fields.column_iter().enumerate() {
                         let turn: Vector3<f64> = frame * field.fixed_rows::<3>(3);
                         let move_m = frame * field.fixed_rows::<3>(0) + place.end_m.cross(&turn);
@@ -235,6 +241,37 @@ fn point_motion(twist: &DMatrix<f64>, at_m: &Vector3<f64>) -> DMatrix<f64> {
     DMatrix::from_fn(3, columns.len(), |i, j| columns[j][i])
 }
 
+/// Whether a layer has the bodies on a tube.
+fn is_on_tube(layer: &Layer) -> bool {
+    matches!(layer, Layer::Bodies(Carried { by: Carrier::Tube, .. }))
+}
+
+/// Inertia of a body on a tube, over all coordinates. The coordinates of the tube are those from `first` on.
+fn body_inertia_over(
+    beam: &PreparedBeam,
+    body: &RigidBody,
+    frame: &Matrix3<f64>,
+    root_m: &Vector3<f64>,
+    twist: &DMatrix<f64>,
+    first: usize,
+) -> DMatrix<f64> {
+    let inertia = beam.inertia_of(body);
+    let own = inertia.ncols() - 6;
+    let mut motion = DMatrix::zeros(6 + own, twist.ncols());
+    motion.rows_mut(0, 6).copy_from(&root_motion(frame, root_m, twist));
+    motion.view_mut((6, first), (own, own)).fill_with_identity();
+    motion.transpose() * inertia * motion
+}
+
+/// Translation and rotation of the root of a tube in its section frame, per unit of each coordinate.
+fn root_motion(frame: &Matrix3<f64>, root_m: &Vector3<f64>, twist: &DMatrix<f64>) -> DMatrix<f64> {
+    let turned = frame.transpose();
+    let mut root = DMatrix::zeros(6, twist.ncols());
+    root.rows_mut(0, 3).copy_from(&(turned * point_motion(twist, root_m)));
+    root.rows_mut(3, 3).copy_from(&(turned * twist.rows(3, 3)));
+    root
+}
+
 /// Displacement and rotation in the section frame at each Gauss point, times the square root of its weight.
 fn link_fields(
     beam: &PreparedBeam,
@@ -243,10 +280,7 @@ fn link_fields(
     twist: &DMatrix<f64>,
     first: usize,
 ) -> Vec<Matrix6xX<f64>> {
-    let turned = frame.transpose();
-    let mut root = DMatrix::zeros(6, twist.ncols());
-    root.rows_mut(0, 3).copy_from(&(turned * point_motion(twist, root_m)));
-    root.rows_mut(3, 3).copy_from(&(turned * twist.rows(3, 3)));
+    let root = root_motion(frame, root_m, twist);
     beam.quadrature()
         .map(|(xi, weight)| {
             let fields = beam.fields(xi);

@@ -59,7 +59,7 @@ impl CaseLoads {
                     amount.push(vec![1.0]);
                 }
                 StationSlot::Link { options, .. } => {
-                    let weights: Vec<f64> = options.iter().map(|o| -o.weight[2]).collect();
+                    let weights: Vec<f64> = options.iter().map(|o| o.weight_n(&station.down)).collect();
                     // All options of a link weigh along the same line, so one of them gives the direction.
                     let weighing = options.iter().zip(&weights).find(|(_, w)| **w != 0.0);
                     unit.push(weighing.map_or(Wrench::zeros(), |(o, w)| o.weight / *w));

@@ -204,8 +204,11 @@ impl DriveAttributes {
 
 impl Row {
     /// Compiles the row level. Returns `None` if there is no level, or if a given tube inboard of it is too slender,
-    /// so that no design holds.
+    /// so that no design holds, or if there are linkages, which lanes do not know.
     pub(crate) fn new(problem: &ArmProblem) -> Option<Self> {
+        if problem.space().has_linkages() {
+            return None;
+        }
         let first = problem.row_slot()?;
         let slots = &problem.slots()[first..];
         let given_tubes = || slots[1..].iter().filter_map(Slot::given_tube);
@@ -359,8 +362,11 @@ impl RowCase {
             _ => &[],
         };
         // the options of a link differ in weight but not in its line of action, so any of them gives the unit wrench
-        let link_weight =
-            links.iter().find(|l| l.weight[2] != 0.0).map_or(Vector6::zeros(), |l| -l.weight / l.weight[2]);
+        let down = &station.down;
+        let link_weight = links
+            .iter()
+            .find(|l| l.weight_n(down) != 0.0)
+            .map_or(Vector6::zeros(), |l| l.weight / l.weight_n(down));
         let links_yield = links.iter().any(|l| l.end.amax() > 0.0);
         let link_weight_at_root = match &slots[0] {
             StationSlot::Link { place, .. } => place.local(&link_weight, &place.root_m),
@@ -562,7 +568,7 @@ impl CaseChunk {
         };
         Some(Self {
             // a weight points along -z of the world
-            weight_n: lanes(&|l| -l.weight[2]),
+            weight_n: lanes(&|l| l.weight_n(&station.down)),
             flexibility: std::array::from_fn(|i| {
                 std::array::from_fn(|j| flexibility.map(|f: Matrix3x6<f64>| f[(i, j)]))
             }),

@@ -109,9 +109,9 @@ impl Begun {
                 *at = AtJoint::new(&twist, &state.inertia, &state.wrench);
                 at.add(case.fixed[hinge.number], 1.0);
             }
-            if let StationSlot::Link { place, .. } = &station.slots[row.first] {
+            if let StationSlot::Link { place, carried, .. } = &station.slots[row.first] {
                 begun.at_end = place.local(&state.wrench, &place.end_m);
-                begun.at_root = place.local(&state.wrench, &place.root_m);
+                begun.at_root = place.local(&(state.wrench + carried.weight), &place.root_m);
             }
             begun.spread.clear();
             begun.spread.extend(case.spread_entries.iter().map(|&(_, i, j)| {

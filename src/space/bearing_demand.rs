@@ -87,7 +87,7 @@ impl ArmProblem<'_> {
         for (k, mover) in loads.movers.iter().enumerate() {
             let ramp = match &station.slots[mover.slot] {
                 _ if mover.slot < slot => state.ramps[k],
-                StationSlot::Joint(moving) => state.inertia * moving.twist * mover.acceleration_rad_s2,
+                StationSlot::Joint(moving) => state.momentum(slot, moving) * mover.acceleration_rad_s2,
                 _ => continue,
             };
             largest.moving(&rest, &bearing.components(&ramp), loads.stop_factor);
@@ -103,7 +103,7 @@ impl ArmProblem<'_> {
         for &case in &self.space().sizing_cases {
             if let StationSlot::Joint(moving) = &self.stations()[case].slots[slot] {
                 let state = &mut states[case];
-                state.ramps[k] = state.inertia * moving.twist * loads.movers[k].acceleration_rad_s2;
+                state.ramps[k] = state.momentum(slot, moving) * loads.movers[k].acceleration_rad_s2;
             }
         }
     }

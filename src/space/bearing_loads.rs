@@ -98,7 +98,10 @@ impl BearingLoads {
             let slot = piece_slots[piece];
             let reach_m = reaches_m.next().copied().unwrap_or_default();
             let motion = joint.motion(&space.motion, reach_m);
-            movers.push(Mover { slot, acceleration_rad_s2: motion.acceleration_rad_s2 });
+            // a passive joint moves with its drivers
+            if joint.coupled.is_none() {
+                movers.push(Mover { slot, acceleration_rad_s2: motion.acceleration_rad_s2 });
+            }
             if is_checked(&slots[slot], joint) {
                 levers[slot] = Some(Lever::new(space, piece, joint, piece_slots));
             }

@@ -126,6 +126,7 @@ impl<'c> ArmProblem<'c> {
         Some(Arm {
             name: space.name.clone(),
             gravity_m_s2: space.gravity_m_s2,
+            down: space.down,
             chain: with_levers(chain),
             effects: space.effects.clone(),
         })
@@ -156,6 +157,7 @@ impl<'c> ArmProblem<'c> {
                 pose_deg: case.pose_deg.clone(),
                 payload: case.payload,
                 tip_force_n: case.tip_force_n,
+                tip_moment_nm: case.tip_moment_nm,
                 links: space.links,
                 joints: space.joints,
                 water: case.water,
@@ -184,6 +186,7 @@ pub(crate) fn joint_with(joint: &SpaceJoint, drive: &Drive) -> Option<Joint> {
         mass_kg: drive.mass_kg().ok()?,
         bearing: joint.bearing_with(drive),
         extras: drive.extras(),
+        bodies: joint.bodies.clone(),
         gear: Some(drive.gear.id.clone()),
         motor: Some(drive.motor.id.clone()),
         coupled: None,
@@ -200,9 +203,10 @@ fn given_joint(joint: &SpaceJoint) -> Option<Joint> {
         mass_kg: *mass_kg,
         bearing: joint.bearing.stated(),
         extras: joint.extras.stated(),
+        bodies: joint.bodies.clone(),
         gear: gear.clone(),
         motor: motor.clone(),
-        coupled: None,
+        coupled: joint.coupled.clone(),
     })
 }
 
@@ -256,6 +260,7 @@ mod tests {
             axis: nalgebra::Vector3::z_axis(),
             bearing: BearingSource::Stated(None),
             extras: ExtrasSource::NONE,
+            bodies: Default::default(),
             drive,
             max_speed_rad_s: None,
             range_deg: None,
@@ -263,6 +268,7 @@ mod tests {
             duty: None,
             fit: Default::default(),
             connection_share: 0.0,
+            coupled: None,
         };
         let given = given_joint(&joint).expect("given");
         assert_eq!((given.curve, given.mass_kg), (Curve::Linear(4e5), 3.2));

@@ -2,6 +2,7 @@
 
 use super::constraint::Constraints;
 use crate::arm::bearing::{Bearing, BearingSource};
+use crate::arm::body::{JointBodies, RigidBody};
 use crate::arm::effect::entry::Effect;
 use crate::arm::extras::ExtrasSource;
 use crate::arm::file::windup_of;
@@ -54,12 +55,14 @@ use nalgebra::{Unit, Vector3};
 /// let space = DesignSpace {
 ///     name: "one link".into(),
 ///     gravity_m_s2: 9.81,
+///     down: -Vector3::z(),
 ///     pieces: vec![
 ///         SpacePiece::Joint(SpaceJoint {
 ///             name: "j2".into(),
 ///             axis: Vector3::y_axis(),
 ///             bearing: BearingSource::Stated(None),
 ///             extras: ExtrasSource::NONE,
+///             bodies: Default::default(),
 ///             drive,
 ///             max_speed_rad_s: None,
 ///             range_deg: None,
@@ -67,11 +70,13 @@ use nalgebra::{Unit, Vector3};
 ///             duty: None,
 ///             fit: FitRequirement::default(),
 ///             connection_share: 0.0,
+///             coupled: None,
 ///         }),
 ///         SpacePiece::Choice(LinkChoice {
 ///             name: "upper_arm".into(),
 ///             vector_m: Vector3::new(0.8, 0.0, 0.0),
 ///             options: vec![tube(0.005), tube(0.010)],
+///             bodies: Vec::new(),
 ///             excerpt: None,
 ///         }),
 ///     ],
@@ -80,6 +85,7 @@ use nalgebra::{Unit, Vector3};
 ///         pose_deg: vec![0.0],
 ///         payload: Payload { mass_kg: 5.0, ..Payload::default() },
 ///         tip_force_n: Vector3::zeros(),
+///         tip_moment_nm: Vector3::zeros(),
 ///         water: None,
 ///     }],
 ///     judged_cases: vec![0],
@@ -104,6 +110,8 @@ pub struct DesignSpace {
     pub name: String,
     /// Gravity \[m/s²\].
     pub gravity_m_s2: f64,
+    /// Direction of gravity in the world, a unit vector: -z for an arm that stands upright.
+    pub down: Vector3<f64>,
     /// Joints and links from base to tip.
     pub pieces: Vec<SpacePiece>,
     /// Every case in which the arm is judged or sized.
@@ -135,6 +143,8 @@ pub struct Case {
     pub payload: Payload,
     /// Force at the tip, world \[N\].
     pub tip_force_n: Vector3<f64>,
+    /// Moment at the tip, world \[N m\].
+    pub tip_moment_nm: Vector3<f64>,
     /// The water the arm is in.
     pub water: Option<Water>,
 }
@@ -172,6 +182,8 @@ pub struct SpaceJoint {
     pub bearing: BearingSource,
     /// Where the masses beyond gear, motor and bearing come from.
     pub extras: ExtrasSource,
+    /// Rigid bodies that the joint carries beyond all these.
+    pub bodies: JointBodies,
     /// How the drive of the joint is found.
     pub drive: DriveChoice,
     /// Largest speed that the study asks for \[rad/s\]; `None`: the speed that follows from the tip's.
@@ -187,6 +199,9 @@ pub struct SpaceJoint {
     /// Compliance of the connections at the joint as a share of that of its gear and its bearing. What the study states in
     /// numbers has it already.
     pub connection_share: f64,
+    /// The angle of a passive joint: a sum of factors times the angles of driven joints inboard of it. `None` for a driven
+    /// joint, which has an entry in every pose.
+    pub coupled: Option<Vec<(String, f64)>>,
 }
 
 /// How a joint's drive is found.
@@ -218,6 +233,8 @@ pub struct LinkChoice {
     pub vector_m: Vector3<f64>,
     /// The materials and sections to choose from.
     pub options: Vec<LinkOption>,
+    /// Rigid bodies that the link carries, whichever tube it has.
+    pub bodies: Vec<RigidBody>,
     /// The places of these options in the whole list; `None` if this is the whole list.
     pub excerpt: Option<Excerpt>,
 }
@@ -341,7 +358,67 @@ impl LinkOption {
     }
 }
 
+/// One driver of a passive joint, by the numbers of their pieces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct SpaceLinkage {
+    pub driver: usize,
+    pub passive: usize,
+    /// Rotation of the passive joint per rotation of the driver.
+    pub factor: f64,
+}
+
 impl DesignSpace {
+    /// Whether linkages turn passive joints. The bounds of the exact search, of the verifier and of the relaxation do not
+    /// cover them.
+    pub fn has_linkages(&self) -> bool {
+        self.joints().any(|(_, joint)| joint.coupled.is_some())
+    }
+
+    /// The joints with the numbers of their pieces, base to tip.
+    pub(crate) fn joints(&self) -> impl Iterator<Item = (usize, &SpaceJoint)> {
+        self.pieces.iter().enumerate().filter_map(|(piece, what)| match what {
+            SpacePiece::Joint(joint) => Some((piece, joint)),
+            _ => None,
+        })
+    }
+
+    /// Every driver of every passive joint.
+    pub(crate) fn linkages(&self) -> Vec<SpaceLinkage> {
+        let piece = |name: &str| self.joints().find(|(_, joint)| joint.name == name).map(|(piece, _)| piece);
+        let of = |(passive, joint): (usize, &SpaceJoint)| -> Vec<SpaceLinkage> {
+            let terms = joint.coupled.iter().flatten();
+            terms
+                .filter_map(|(name, factor)| {
+                    Some(SpaceLinkage { driver: piece(name)?, passive, factor: *factor })
+                })
+                .collect()
+        };
+        self.joints().flat_map(of).collect()
+    }
+
+    /// Angle of every joint in a case, base to tip, those of passive joints too \[rad\].
+    pub(crate) fn angles_rad(&self, case: &Case) -> Vec<f64> {
+        let driven = self.joints().filter(|(_, joint)| joint.coupled.is_none()).map(|(_, joint)| &joint.name);
+        let angles: Vec<(&String, f64)> = driven.zip(case.pose_deg.iter().map(|a| a.to_radians())).collect();
+        let of = |name: &String| {
+            angles.iter().find(|(driver, _)| *driver == name).map_or(0.0, |(_, angle)| *angle)
+        };
+        let angle = |(_, joint): (usize, &SpaceJoint)| match &joint.coupled {
+            None => of(&joint.name),
+            Some(terms) => terms.iter().map(|(name, factor)| factor * of(name)).sum(),
+        };
+        self.joints().map(angle).collect()
+    }
+
+    /// Stress at peak load over stress at rest: by the paper's reading the acceleration a adds a/g times the static load.
+    /// Without gravity no stress is limited, and the factor is 1.
+    pub(crate) fn peak_factor(&self) -> f64 {
+        match self.gravity_m_s2 > 0.0 {
+            true => 1.0 + self.motion.tip_acceleration_m_s2() / self.gravity_m_s2,
+            false => 1.0,
+        }
+    }
+
     /// Number of options of all open links together.
     pub fn link_options(&self) -> usize {
         let options = |piece: &SpacePiece| match piece {

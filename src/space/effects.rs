@@ -5,12 +5,13 @@
 //! `reconcile` compute the same thing. Stations, rows and lanes know pieces only; they know nothing of effects.
 
 use super::design_space::{DesignSpace, SpaceJoint, SpacePiece};
-use crate::arm::Link;
 use crate::arm::bearing::Bearing;
+use crate::arm::body::{JointBodies, RigidBody, total_kg};
 use crate::arm::effect::subject::Subject;
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::arm::joint_torque::JointTorque;
 use crate::arm::structure::{JointAngle, JointPiece, LinkPiece, Piece, Structure, link_piece};
+use crate::arm::{Link, LinkBody};
 use crate::mechanics::chain::across;
 use nalgebra::{Rotation3, Vector3};
 
@@ -28,6 +29,38 @@ pub(crate) enum Layer<'s> {
     Mass(f64),
     /// A point mass at a joint that counts in the mass of the design, such as a bearing of its own \[kg\].
     Extra(f64),
+    /// Rigid bodies, which count in the mass of the design.
+    Bodies(Carried<'s>),
+}
+
+/// Rigid bodies of a piece.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Carried<'s> {
+    pub bodies: &'s [RigidBody],
+    pub by: Carrier,
+}
+
+/// What carries bodies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Carrier {
+    /// The frame in which the piece begins.
+    Frame,
+    /// The frame after the rotation of the joint.
+    RotatedFrame,
+    /// The axis of a tube, which the bodies bend; otherwise they move with its root.
+    Tube,
+}
+
+impl Carried<'_> {
+    /// Mass of the bodies \[kg\].
+    pub(crate) fn mass_kg(&self) -> f64 {
+        total_kg(self.bodies)
+    }
+}
+
+/// Layer of some bodies; none if there are no bodies.
+fn carried(bodies: &[RigidBody], by: Carrier) -> Option<Layer<'_>> {
+    (!bodies.is_empty()).then_some(Layer::Bodies(Carried { bodies, by }))
 }
 
 /// The axis about which a spring turns.
@@ -102,15 +135,20 @@ impl DesignSpace {
                 SpacePiece::Joint(joint) => joint,
                 SpacePiece::Link(link) => {
                     out.push((index, Layer::Piece(piece)));
+                    let is_tube = matches!(link.body, LinkBody::Tube { .. });
+                    let by = if is_tube { Carrier::Tube } else { Carrier::Frame };
+                    out.extend(carried(&link.bodies, by).map(|bodies| (index, bodies)));
                     out.extend(self.root_springs(link).map(|tilt| (index, tilt)));
                     continue;
                 }
                 SpacePiece::Choice(choice) => {
                     out.push((index, Layer::Piece(piece)));
+                    out.extend(carried(&choice.bodies, Carrier::Tube).map(|bodies| (index, bodies)));
                     out.extend(self.root_springs(&choice.first_link()).map(|tilt| (index, tilt)));
                     continue;
                 }
             };
+            out.extend(carried(&joint.bodies.rotating, Carrier::RotatedFrame).map(|bodies| (index, bodies)));
             let bearing = joint.bearing.stated();
             let affected = self.joint_piece(joint, Curve::Rigid, bearing);
             if joint.bearing_is_open() {
@@ -127,6 +165,7 @@ impl DesignSpace {
             if affected.mass_kg != 0.0 {
                 out.push((index, Layer::Mass(affected.mass_kg)));
             }
+            out.extend(carried(&joint.bodies.fixed, Carrier::Frame).map(|bodies| (index, bodies)));
         }
         let base = self.surroundings();
         let fixed = base.base_frame.springs().into_iter();
@@ -198,7 +237,12 @@ impl DesignSpace {
             SpacePiece::Link(link) => Piece::Link(link_piece(link)),
             SpacePiece::Choice(choice) => Piece::Link(link_piece(&choice.first_link())),
         };
-        Structure::nominal(self.gravity_m_s2, self.pieces.iter().map(piece).collect())
+        self.structure_of(self.pieces.iter().map(piece).collect())
+    }
+
+    /// A structure of pieces under the gravity of the study, without any effect.
+    pub(crate) fn structure_of(&self, pieces: Vec<Piece>) -> Structure {
+        Structure { down: self.down, ..Structure::nominal(self.gravity_m_s2, pieces) }
     }
 
     fn affected(&self, piece: Piece) -> Option<Piece> {
@@ -206,7 +250,7 @@ impl DesignSpace {
     }
 
     fn with_effects(&self, pieces: Vec<Piece>) -> Structure {
-        let mut subject = Subject::new(Structure::nominal(self.gravity_m_s2, pieces));
+        let mut subject = Subject::new(self.structure_of(pieces));
         self.effects.iter().filter(|effect| !effect.is_of_test()).for_each(|effect| subject.apply(effect));
         subject.structure
     }
@@ -220,6 +264,7 @@ fn nominal_joint(joint: &SpaceJoint, curve: Curve) -> JointPiece {
         torque: JointTorque::default(),
         tilt_rad_per_nm: 0.0,
         mass_kg: 0.0,
+        bodies: JointBodies::default(),
         angle: JointAngle::Driven(0),
     }
 }

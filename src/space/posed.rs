@@ -5,11 +5,12 @@
 //! memory grows as options times cases.
 
 use super::design_space::{Case, DesignSpace, SpacePiece};
-use super::effects::Layer;
+use super::effects::{Carried, Layer};
 use super::station::{
-    Block, BlockSlot, Modal, Place, Station, StationJoint, StationLink, StationSlot, Walk, payload_in,
-    weight_wrench,
+    Block, BlockSlot, Modal, OnTube, Place, Station, StationJoint, StationLink, StationSlot, Turned, Walk,
+    bodies_at, payload_in, weight_wrench,
 };
+use crate::arm::body::RigidBody;
 use crate::arm::structure::{LinkPiece, Structure};
 use crate::arm::{Link, LinkModel};
 use crate::mechanics::beam::{PreparedBeam, section_frame};
@@ -110,10 +111,11 @@ impl Posed {
         let mut slots: Vec<StationSlot> = layers
             .iter()
             .map(|(piece, layer)| {
-                Builder { space, structure: &structure, place: &walk.places[*piece], tip_m: &walk.tip_m }
-                    .build(layer)
+                let place = walk.place(*piece, layer);
+                Builder { space, structure: &structure, place, tip_m: &walk.tip_m }.build(layer)
             })
             .collect();
+        link_up(space, layers, &mut slots);
         let is_planar = planar(&slots, &start_inertia);
         if !is_planar {
             slots.iter_mut().for_each(put_into_one_block);
@@ -122,16 +124,27 @@ impl Posed {
             true => Modal::Planar(Box::new(PLANES.map(|motions| block(&slots, &start_inertia, motions)))),
             false => Modal::Spatial(Box::new(block(&slots, &start_inertia, ALL))),
         };
-        Self { structure, tip_m: walk.tip_m, station: Station { slots, modal, start_wrench, start_inertia } }
+        Self {
+            structure,
+            tip_m: walk.tip_m,
+            station: Station { slots, modal, start_wrench, start_inertia, down: space.down },
+        }
     }
 
     /// Puts options of the link in a slot into the pose; nothing if there is no link.
     fn add_options(&mut self, slot: usize, tubes: &[Tube]) {
-        let StationSlot::Link { options, place } = &mut self.station.slots[slot] else { return };
-        let placed = |tube: &Tube| tube.condensed.place(&place.root_m, &place.end_m, &place.frame);
+        let down = &self.structure.down;
+        let StationSlot::Link { options, place, carried } = &mut self.station.slots[slot] else { return };
+        let placed = |tube: &Tube| {
+            let mut placed = tube.condensed.place(&place.root_m, &place.end_m, &place.frame, down);
+            // the slot inboard has the bodies, as they move with the root
+            let mut root = placed.inertia[0].fixed_view_mut::<6, 6>(0, 0);
+            root -= carried.inertia;
+            placed
+        };
         let placed: Vec<PlacedLink> = tubes.par_iter().map(placed).collect();
         let is_planar = matches!(self.station.modal, Modal::Planar(_));
-        let option = |(tube, placed)| station_link(tube, placed, place, &self.tip_m, is_planar);
+        let option = |(tube, placed)| station_link(tube, placed, place, (&self.tip_m, down), is_planar);
         options.par_extend(tubes.par_iter().zip(&placed).map(option));
         match &mut self.station.modal {
             Modal::Planar(blocks) => {
@@ -157,9 +170,15 @@ impl Builder<'_> {
             Layer::Tilt(tilt) => self.hinge(&tilt.axis(rotation)),
             Layer::Bearing(spring) => self.hinge(&spring.axis(rotation)),
             Layer::Mass(mass_kg) | Layer::Extra(mass_kg) => self.body(*mass_kg, at_m),
+            Layer::Bodies(Carried { bodies, .. }) => {
+                let (inertia, weight) = bodies_at(bodies, self.space, self.place);
+                StationSlot::Body { inertia, weight }
+            }
             Layer::Piece(SpacePiece::Joint(joint)) => self.hinge(&(rotation * joint.axis)),
             Layer::Piece(SpacePiece::Link(link)) => self.link(link),
-            Layer::Piece(SpacePiece::Choice(choice)) => self.tube(&choice.vector_m, choice.options.len()),
+            Layer::Piece(SpacePiece::Choice(choice)) => {
+                self.tube(&choice.vector_m, &choice.bodies, choice.options.len())
+            }
         }
     }
 
@@ -172,9 +191,11 @@ impl Builder<'_> {
             at_m: *at_m,
             tip_m_per_rad: displacement_at(&twist, self.tip_m),
             inertia_per_kg: body_inertia(1.0, at_m, &Matrix3::zeros()),
-            weight_per_kg: weight_wrench(self.structure.gravity_m_s2, at_m),
+            weight_per_kg: weight_wrench(self.structure.gravity_m_s2, &self.structure.down, at_m),
             // rounding leaves traces of the other plane in an axis that was turned
             block: usize::from(PLANES[1].iter().any(|&i| twist[i].abs() > ROUNDING * twist.amax())),
+            turns: Vec::new(),
+            is_passive: false,
         })
     }
 
@@ -182,7 +203,7 @@ impl Builder<'_> {
     fn body(&self, mass_kg: f64, centre_m: &Vector3<f64>) -> StationSlot {
         StationSlot::Body {
             inertia: body_inertia(mass_kg, centre_m, &Matrix3::zeros()),
-            weight: weight_wrench(mass_kg * self.structure.gravity_m_s2, centre_m),
+            weight: weight_wrench(mass_kg * self.structure.gravity_m_s2, &self.structure.down, centre_m),
         }
     }
 
@@ -193,19 +214,24 @@ impl Builder<'_> {
         let point = self.body(piece.point_mass_kg, &(at_m + rotation * link.vector_m / 2.0));
         let Some(tube) = Tube::new(&piece, self.structure, self.space.links) else { return point };
         if piece.beam.is_some() {
-            return self.tube(&link.vector_m, 1);
+            return self.tube(&link.vector_m, &link.bodies, 1);
         }
         let StationSlot::Body { inertia, weight } = point else { return point };
         // a harness on a rigid offset has mass and no compliance, so both together are one rigid body
         let place = self.place_of(&link.vector_m);
-        let placed = tube.condensed.place(&place.root_m, &place.end_m, &place.frame);
-        let along = station_link(&tube, &placed, &place, self.tip_m, false);
+        let down = &self.structure.down;
+        let placed = tube.condensed.place(&place.root_m, &place.end_m, &place.frame, down);
+        let along = station_link(&tube, &placed, &place, (self.tip_m, down), false);
         StationSlot::Body { inertia: inertia + along.inertia, weight: weight + along.weight }
     }
 
     /// A tube with room for its options.
-    fn tube(&self, vector_m: &Vector3<f64>, options: usize) -> StationSlot {
-        StationSlot::Link { options: Vec::with_capacity(options), place: self.place_of(vector_m) }
+    fn tube(&self, vector_m: &Vector3<f64>, bodies: &[RigidBody], options: usize) -> StationSlot {
+        let of = |bodies| bodies_at(bodies, self.space, self.place);
+        let is_symmetric = bodies.chunks(1).all(|body| uncoupled(&of(body).0));
+        let (inertia, weight) = of(bodies);
+        let carried = OnTube { inertia, weight, is_symmetric };
+        StationSlot::Link { options: Vec::with_capacity(options), place: self.place_of(vector_m), carried }
     }
 
     fn place_of(&self, vector_m: &Vector3<f64>) -> Place {
@@ -220,7 +246,7 @@ fn station_link(
     tube: &Tube,
     placed: &PlacedLink,
     place: &Place,
-    tip_m: &Vector3<f64>,
+    (tip_m, down): (&Vector3<f64>, &Vector3<f64>),
     is_planar: bool,
 ) -> StationLink {
     let tips: Vec<Vector3<f64>> =
@@ -229,13 +255,33 @@ fn station_link(
         // to order 0 in λ, over the motion of the root: the link as a rigid body
         inertia: placed.inertia[0].fixed_view::<6, 6>(0, 0).into_owned(),
         // a uniform weight acts at mid-length
-        weight: weight_wrench(tube.weight_n_per_m * tube.length_m, &place.centre_m),
+        weight: weight_wrench(tube.weight_n_per_m * tube.length_m, down, &place.centre_m),
         end: placed.end,
-        own_weight_end: placed.end_per_weight * tube.weight_n_per_m,
+        own_weight_end: placed.end_per_weight * tube.weight_n_per_m + placed.end_under_bodies,
         tip: Matrix3x6::from_columns(&tips),
         end_inertia: placed.inertia[0].diagonal().fixed_rows::<6>(6).into_owned(),
         block: if is_planar { ends_by_block(placed) } else { [0; 6] },
         inner_trace_s2: placed.inner_trace_s2,
+    }
+}
+
+/// Tells every driver which passive joints it turns.
+fn link_up(space: &DesignSpace, layers: &[(usize, Layer)], slots: &mut [StationSlot]) {
+    let of_piece = |piece: usize| {
+        layers
+            .iter()
+            .position(|(at, layer)| *at == piece && matches!(layer, Layer::Piece(SpacePiece::Joint(_))))
+    };
+    for linkage in space.linkages() {
+        let (Some(driver), Some(slot)) = (of_piece(linkage.driver), of_piece(linkage.passive)) else {
+            continue;
+        };
+        let StationSlot::Joint(passive) = &mut slots[slot] else { continue };
+        passive.is_passive = true;
+        let (twist, tip_m_per_rad) = (passive.twist * linkage.factor, passive.tip_m_per_rad * linkage.factor);
+        if let StationSlot::Joint(joint) = &mut slots[driver] {
+            joint.turns.push(Turned { slot, twist, tip_m_per_rad });
+        }
     }
 }
 
@@ -245,13 +291,15 @@ fn put_into_one_block(slot: &mut StationSlot) {
     }
 }
 
+/// Whether an inertia does not couple the motions within the x-z plane with those across it.
+fn uncoupled(m: &Matrix6<f64>) -> bool {
+    let largest = m.amax();
+    PLANES[0].iter().all(|&i| PLANES[1].iter().all(|&j| m[(i, j)].abs() <= ROUNDING * largest))
+}
+
 /// Whether the motions within the x-z plane and those across it are coupled nowhere: by no inertia, no joint axis and no
 /// link.
 fn planar(slots: &[StationSlot], payload: &Matrix6<f64>) -> bool {
-    let uncoupled = |m: &Matrix6<f64>| {
-        let largest = m.amax();
-        PLANES[0].iter().all(|&i| PLANES[1].iter().all(|&j| m[(i, j)].abs() <= ROUNDING * largest))
-    };
     uncoupled(payload)
         && slots.iter().all(|slot| match slot {
             StationSlot::Joint(joint) => {
@@ -260,7 +308,7 @@ fn planar(slots: &[StationSlot], payload: &Matrix6<f64>) -> bool {
                 !(across && within) && uncoupled(&joint.inertia_per_kg)
             }
             StationSlot::Body { inertia, .. } => uncoupled(inertia),
-            StationSlot::Link { place, .. } => is_symmetric(place),
+            StationSlot::Link { place, carried, .. } => is_symmetric(place) && carried.is_symmetric,
         })
 }
 

@@ -6,6 +6,7 @@
 
 use super::attributes::OptionAttributes;
 use super::bearing_loads::BearingLoads;
+use super::design::full_objectives;
 use super::design_space::{DesignSpace, SpacePiece};
 use super::effects::Layer;
 use super::fit::RoomAtJoint;
@@ -13,7 +14,9 @@ use super::levels::OutwardIn;
 pub(crate) use super::slot::SizedJoint;
 pub(crate) use super::slot::Slot;
 use super::slot::{choice_slot, joint_slot, link_slot};
-use super::station::{Block, BlockSlot, Modal, Station, StationJoint, StationLink, StationSlot, reaches_m};
+use super::station::{
+    Block, BlockSlot, Modal, Station, StationJoint, StationLink, StationSlot, Turned, reaches_m,
+};
 use crate::arm::joint_law::JointLaw;
 use crate::catalog::Catalogs;
 use crate::mechanics::Wrench;
@@ -90,6 +93,8 @@ pub(crate) struct StationState {
     pub compliances: Vec<f64>,
     /// Wrench of the ramp of each joint so far, tip first, with the others at rest; empty if no bearing is checked.
     pub ramps: Vec<Wrench>,
+    /// Wrench and inertia outboard of each passive joint so far, with its slot, tip first.
+    pub passive: Vec<(usize, Wrench, Matrix6<f64>)>,
 }
 
 impl<'c> ArmProblem<'c> {
@@ -116,6 +121,7 @@ impl<'c> ArmProblem<'c> {
                 Layer::Piece(SpacePiece::Choice(choice)) => choice_slot(space, choice),
                 Layer::Bearing(_) => Slot::bearing(piece_slots[piece], &slots),
                 Layer::Extra(mass_kg) => Slot::Offset { mass_kg },
+                Layer::Bodies(carried) => Slot::Offset { mass_kg: carried.mass_kg() },
                 Layer::Tilt(tilt) => Slot::Given { law: tilt.law(), mass_kg: 0.0 },
                 // the station has its weight and inertia; the mass of a design is that of its links and drives alone
                 Layer::Mass(_) => Slot::Offset { mass_kg: 0.0 },
@@ -123,9 +129,6 @@ impl<'c> ArmProblem<'c> {
         }
         let level_slots: Vec<usize> = (0..slots.len()).filter(|&i| slots[i].is_level()).collect();
         let level_sizes: Vec<u32> = level_slots.iter().map(|&i| slots[i].options()).collect();
-        // by the paper's reading the acceleration a adds a/g times the static load; without gravity nothing is loaded,
-        // and a tiny divisor does no harm
-        let a_over_g = space.motion.tip_acceleration_m_s2() / space.gravity_m_s2.max(f64::MIN_POSITIVE);
         Self {
             space,
             row_level: row_level(&slots, &level_slots, &level_sizes),
@@ -133,7 +136,7 @@ impl<'c> ArmProblem<'c> {
             level_sizes,
             stations: Station::all(space),
             materials: space.material_names().len(),
-            peak_factor: 1.0 + a_over_g,
+            peak_factor: space.peak_factor(),
             bearing_loads: BearingLoads::new(space, &slots, &piece_slots, &reaches),
             rooms: RoomAtJoint::all(&space.pieces, &piece_slots, slots.len()),
             slots,
@@ -289,6 +292,7 @@ impl<'c> ArmProblem<'c> {
                         true => vec![Wrench::zeros(); self.bearing_loads.movers.len()],
                         false => Vec::new(),
                     },
+                    passive: Vec::new(),
                 })
                 .collect(),
             ..Partial::default()
@@ -359,8 +363,8 @@ impl<'c> ArmProblem<'c> {
         for &case in &self.space.sizing_cases {
             let StationSlot::Joint(joint) = &self.stations[case].slots[slot] else { continue };
             let state = &outboard.stations[case];
-            static_nm = static_nm.max(joint.twist.dot(&state.wrench).abs());
-            inertia_kgm2 = inertia_kgm2.max(joint.twist.dot(&(state.inertia * joint.twist)));
+            static_nm = static_nm.max(state.torque_nm(joint).abs());
+            inertia_kgm2 = inertia_kgm2.max(state.inertia_about(slot, joint));
         }
         let torques = motion.map_or_else(
             || self.space.motion.joint_motion(0.0, None).demand(static_nm, inertia_kgm2),
@@ -405,14 +409,15 @@ impl<'c> ArmProblem<'c> {
             return false;
         }
         for (case, (station, state)) in self.stations.iter().zip(&mut to.stations).enumerate() {
-            let StationSlot::Link { options, place } = &station.slots[slot] else { continue };
+            let StationSlot::Link { options, place, carried } = &station.slots[slot] else { continue };
             let outboard = state.wrench;
             state.add_link(&options[option as usize]);
             let Some(stress) = &link.stress else { continue };
             // in a sizing case the arm accelerates; in the other cases it stands still
             let factor = if self.space.sizing_cases.contains(&case) { self.peak_factor } else { 1.0 };
-            // between the ends only the link's own weight changes force and moment: the ends are checked
-            for (wrench, at_m) in [(&outboard, &place.end_m), (&state.wrench, &place.root_m)] {
+            // between the ends only the weight of the link and its bodies changes force and moment: the ends are checked
+            let at_root = state.wrench + carried.weight;
+            for (wrench, at_m) in [(&outboard, &place.end_m), (&at_root, &place.root_m)] {
                 to.stress_ratio = to.stress_ratio.max(stress.ratio(wrench, at_m, place) * factor);
             }
         }
@@ -506,13 +511,57 @@ impl StationState {
     /// Adds a joint with its drive. The drive's mass is inboard of the joint, so the joint's own torque and inertia are
     /// taken before it is added.
     pub(crate) fn add_joint(&mut self, slot: usize, joint: &StationJoint, law: &JointLaw, mass_kg: f64) {
-        let torque_nm = joint.twist.dot(&self.wrench);
+        let torque_nm = self.torque_nm(joint);
         let compliance = law.tangent_compliance_rad_per_nm(torque_nm);
-        self.tip_m += joint.tip_m_per_rad * law.rising_angle_rad(torque_nm);
+        let turned: Vector3<f64> = joint.turns.iter().map(|turned| turned.tip_m_per_rad).sum();
+        self.tip_m += (joint.tip_m_per_rad + turned) * law.rising_angle_rad(torque_nm);
         self.compliances[slot] = compliance;
-        self.trace_s2[joint.block] += compliance * joint.twist.dot(&(self.inertia * joint.twist));
+        self.trace_s2[joint.block] += compliance * self.inertia_about(slot, joint);
+        if joint.is_passive {
+            self.passive.push((slot, self.wrench, self.inertia));
+        }
         self.inertia += joint.inertia_per_kg * mass_kg;
         self.wrench += joint.weight_per_kg * mass_kg;
+    }
+
+    /// Torque on a joint that is next to be added \[N m\]. A linkage makes a driver hold the torque of its passive joints too,
+    /// by virtual work: a radian of the driver turns each of them by its factor.
+    pub(crate) fn torque_nm(&self, joint: &StationJoint) -> f64 {
+        let of_passive =
+            |turned: &Turned| self.outboard_of(turned.slot).map_or(0.0, |(w, _)| turned.twist.dot(w));
+        joint.twist.dot(&self.wrench) + joint.turns.iter().map(of_passive).sum::<f64>()
+    }
+
+    /// Inertia about a joint that is next to be added in `slot`, with the passive joints that it turns \[kg m²\].
+    pub(crate) fn inertia_about(&self, slot: usize, joint: &StationJoint) -> f64 {
+        if joint.turns.is_empty() {
+            return joint.twist.dot(&(self.inertia * joint.twist));
+        }
+        let momentum = self.momentum(slot, joint);
+        // what is outboard of a passive joint moves with it as well
+        let with_passive = |turned: &Turned| {
+            let outboard = self.outboard_of(turned.slot);
+            outboard.map_or(0.0, |(_, of)| turned.twist.dot(&self.momentum_of(of, turned.slot, joint)))
+        };
+        joint.twist.dot(&momentum) + joint.turns.iter().map(with_passive).sum::<f64>()
+    }
+
+    /// Momentum, per radian a second of a joint in or inboard of `slot`, of everything outboard of that slot.
+    pub(crate) fn momentum(&self, slot: usize, joint: &StationJoint) -> Wrench {
+        self.momentum_of(&self.inertia, slot, joint)
+    }
+
+    /// The same of an inertia that is outboard of a slot.
+    fn momentum_of(&self, inertia: &Matrix6<f64>, slot: usize, joint: &StationJoint) -> Wrench {
+        let (further, nearer): (Vec<&Turned>, Vec<&Turned>) = joint.turns.iter().partition(|t| t.slot < slot);
+        let motion = nearer.iter().fold(joint.twist, |sum, turned| sum + turned.twist);
+        let of = |turned: &&Turned| self.outboard_of(turned.slot).map(|(_, inertia)| inertia * turned.twist);
+        further.iter().filter_map(of).fold(inertia * motion, |sum, own| sum + own)
+    }
+
+    /// Wrench and inertia outboard of the passive joint in a slot, if it is part of the arm.
+    fn outboard_of(&self, passive: usize) -> Option<(&Wrench, &Matrix6<f64>)> {
+        self.passive.iter().find(|(slot, ..)| *slot == passive).map(|(_, wrench, inertia)| (wrench, inertia))
     }
 
     /// Adds a rigid body.
@@ -559,6 +608,10 @@ impl OutwardIn for ArmProblem<'_> {
     }
 
     fn objectives(&self, complete: &Partial) -> Option<Objectives> {
+        // the passes for the lowest mode do not know linkages
+        if self.space.has_linkages() {
+            return Some(full_objectives(&self.arm_of(complete)?, &self.load_cases()));
+        }
         Some(objectives_over(self.judged(complete), complete))
     }
 

@@ -218,6 +218,7 @@ impl LinkChoice {
                 material: option.material,
                 section: option.section,
             },
+            bodies: self.bodies.clone(),
         }
     }
 
@@ -227,6 +228,7 @@ impl LinkChoice {
             name: self.name.clone(),
             vector_m: self.vector_m,
             body: LinkBody::Offset { mass_kg: 0.0 },
+            bodies: self.bodies.clone(),
         };
         self.options.first().map_or_else(nothing, |option| self.link(option))
     }

@@ -9,9 +9,11 @@
 //! then found in two blocks of three motions instead of one block of six, which is less work.
 
 use super::design_space::{Case, DesignSpace, SpacePiece};
+use super::effects::{Carried, Carrier, Layer};
+use crate::arm::body::RigidBody;
 use crate::arm::load::Water;
 use crate::mechanics::lowest::BlockLink;
-use crate::mechanics::{Twist, Wrench, angular, body_inertia, force_wrench, linear};
+use crate::mechanics::{Twist, Wrench, angular, body_inertia, force_wrench, linear, stack};
 use nalgebra::{Matrix3, Matrix3x6, Matrix6, Rotation3, SMatrix, SVector, Vector3, Vector6};
 
 /// A pose with its load, compiled for the slots of an arm.
@@ -24,6 +26,8 @@ pub(crate) struct Station {
     pub start_wrench: Wrench,
     /// Inertia of the payload.
     pub start_inertia: Matrix6<f64>,
+    /// Direction of gravity in the world.
+    pub down: Vector3<f64>,
 }
 
 /// What the search adds in one step, in a pose.
@@ -33,7 +37,16 @@ pub(crate) enum StationSlot {
     /// A rigid body: a point mass, or a rigid offset with the harness along it.
     Body { inertia: Matrix6<f64>, weight: Wrench },
     /// A tube, with one entry for each option.
-    Link { options: Vec<StationLink>, place: Place },
+    Link { options: Vec<StationLink>, place: Place, carried: OnTube },
+}
+
+/// The bodies on a tube in a pose, as they are if the tube does not yield. They have a slot of their own inboard of the
+/// tube; what they add to the bending of the tube is in its options.
+pub(crate) struct OnTube {
+    pub inertia: Matrix6<f64>,
+    pub weight: Wrench,
+    /// Whether every body is symmetric about the x-z plane.
+    pub is_symmetric: bool,
 }
 
 /// A joint in a pose.
@@ -49,6 +62,19 @@ pub(crate) struct StationJoint {
     pub weight_per_kg: Wrench,
     /// The block in which the joint moves the arm: 0 within the plane, 1 across it.
     pub block: usize,
+    /// What a linkage turns together with the joint, each with the slot of the passive joint. All of them are outboard.
+    pub turns: Vec<Turned>,
+    /// Whether a linkage turns the joint.
+    pub is_passive: bool,
+}
+
+/// A passive joint as its driver turns it.
+pub(crate) struct Turned {
+    pub slot: usize,
+    /// Motion of everything outboard of the passive joint per radian of the driver.
+    pub twist: Twist,
+    /// Displacement of the tip by the passive joint per radian of the driver.
+    pub tip_m_per_rad: Vector3<f64>,
 }
 
 /// Where a link is in a pose.
@@ -92,6 +118,11 @@ pub(crate) struct StationLink {
 }
 
 impl StationLink {
+    /// Its net weight, along the direction of gravity \[N\].
+    pub(crate) fn weight_n(&self, down: &Vector3<f64>) -> f64 {
+        down.dot(&linear(&self.weight))
+    }
+
     /// Displacement of the tip per unit of the wrench on the link's end.
     pub(crate) fn flexibility(&self) -> Matrix3x6<f64> {
         // the end coordinates have unit stiffness: a wrench w deflects them by endᵀ w
@@ -140,18 +171,21 @@ pub(crate) fn payload_in(
         rotation * Matrix3::from_diagonal(&payload.inertia_about_cg_kgm2) * rotation.transpose();
     let buoyancy = water.map_or(0.0, |w| w.density_kg_m3 / w.payload_density_kg_m3);
     let weight_n = payload.mass_kg * space.gravity_m_s2 * (1.0 - buoyancy);
-    let wrench = force_wrench(&case.tip_force_n, &walk.tip_m) + weight_wrench(weight_n, &cg_m);
+    let wrench = force_wrench(&case.tip_force_n, &walk.tip_m)
+        + stack(&Vector3::zeros(), &case.tip_moment_nm)
+        + weight_wrench(weight_n, &space.down, &cg_m);
     (wrench, body_inertia(payload.mass_kg, &cg_m, &inertia_kgm2))
 }
 
-/// The wrench of a weight \[N\] at a point.
-pub(crate) fn weight_wrench(weight_n: f64, at_m: &Vector3<f64>) -> Wrench {
-    force_wrench(&Vector3::new(0.0, 0.0, -weight_n), at_m)
+/// The wrench of a weight \[N\] at a point; `down` is the direction of gravity.
+pub(crate) fn weight_wrench(weight_n: f64, down: &Vector3<f64>, at_m: &Vector3<f64>) -> Wrench {
+    force_wrench(&(down * weight_n), at_m)
 }
 
 /// Where each piece is in a pose.
 pub(crate) struct Walk {
-    /// Start and attitude of each piece, base to tip. A joint has the attitude before its own rotation.
+    /// Start and attitude of each piece, base to tip, then those of the tip. A joint has the attitude before its own
+    /// rotation.
     pub(crate) places: Vec<(Vector3<f64>, Rotation3<f64>)>,
     pub(crate) tip_m: Vector3<f64>,
     pub(crate) tip_rotation: Rotation3<f64>,
@@ -160,7 +194,7 @@ pub(crate) struct Walk {
 impl Walk {
     /// Forward kinematics of a case, base to tip.
     pub(crate) fn new(space: &DesignSpace, case: &Case) -> Self {
-        let mut angles = case.pose_deg.iter().map(|a| a.to_radians());
+        let mut angles = space.angles_rad(case).into_iter();
         let (mut at_m, mut rotation) = (Vector3::zeros(), Rotation3::identity());
         let mut places = Vec::with_capacity(space.pieces.len());
         for piece in &space.pieces {
@@ -173,11 +207,39 @@ impl Walk {
                 SpacePiece::Choice(choice) => at_m += rotation * choice.vector_m,
             }
         }
+        places.push((at_m, rotation));
         Self { places, tip_m: at_m, tip_rotation: rotation }
     }
 }
 
-/// Reach of each joint \[m\], base to tip: the largest distance of the tip from its axis over some cases.
+impl Walk {
+    /// The place and attitude in which a layer of a piece stands.
+    pub(crate) fn place(&self, piece: usize, layer: &Layer) -> &(Vector3<f64>, Rotation3<f64>) {
+        match layer {
+            Layer::Bodies(Carried { by: Carrier::RotatedFrame, .. }) => &self.places[piece + 1],
+            _ => &self.places[piece],
+        }
+    }
+}
+
+/// Inertia and weight of bodies whose piece begins at a place of a pose, about the world's origin.
+pub(crate) fn bodies_at(
+    bodies: &[RigidBody],
+    space: &DesignSpace,
+    (at_m, rotation): &(Vector3<f64>, Rotation3<f64>),
+) -> (Matrix6<f64>, Wrench) {
+    let turn = rotation.matrix();
+    let (mut inertia, mut weight) = (Matrix6::zeros(), Wrench::zeros());
+    for body in bodies {
+        let cg_m = at_m + turn * body.cg_m;
+        inertia += body_inertia(body.mass_kg, &cg_m, &(turn * body.inertia_kgm2 * turn.transpose()));
+        weight += weight_wrench(body.mass_kg * space.gravity_m_s2, &space.down, &cg_m);
+    }
+    (inertia, weight)
+}
+
+/// Reach of each joint \[m\], base to tip: the largest way of the tip per radian over some cases. That is the distance of the
+/// tip from the axis, unless the joint turns passive joints too.
 pub(crate) fn reaches_m<'a>(space: &DesignSpace, cases: impl Iterator<Item = &'a Case>) -> Vec<f64> {
     let joints: Vec<(usize, Vector3<f64>)> = space
         .pieces
@@ -188,13 +250,20 @@ pub(crate) fn reaches_m<'a>(space: &DesignSpace, cases: impl Iterator<Item = &'a
             _ => None,
         })
         .collect();
+    let linkages = space.linkages();
     let mut reaches = vec![0.0f64; joints.len()];
     for case in cases {
         let walk = Walk::new(space, case);
-        for (reach, (piece, axis)) in reaches.iter_mut().zip(&joints) {
-            let (origin, rotation) = &walk.places[*piece];
-            // the distance of a point from an axis through the origin is |axis x way to the point|
-            *reach = reach.max((rotation * axis).cross(&(walk.tip_m - origin)).norm());
+        let way = |piece: usize| {
+            let (origin, rotation) = &walk.places[piece];
+            let axis =
+                joints.iter().find(|(joint, _)| *joint == piece).map_or(Vector3::zeros(), |(_, axis)| *axis);
+            (rotation * axis).cross(&(walk.tip_m - origin))
+        };
+        for (reach, (piece, _)) in reaches.iter_mut().zip(&joints) {
+            let turned = linkages.iter().filter(|linkage| linkage.driver == *piece);
+            let all = turned.fold(way(*piece), |sum, linkage| sum + way(linkage.passive) * linkage.factor);
+            *reach = reach.max(all.norm());
         }
     }
     reaches

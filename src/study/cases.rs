@@ -24,14 +24,19 @@ struct ReadCase {
 pub(super) fn read_cases(root: &Object, joints: &[String]) -> Option<Cases> {
     let payload = root.or("payload", Payload::default(), Payload::read);
     let force = root.or("tip_force_n", Vector3::zeros(), vector);
+    let moment = root.or("tip_moment_nm", Vector3::zeros(), vector);
     let environments = root.or("environments", vec![Environment::default()], read_environments);
     let poses = root.required("poses").and_then(|n| n.array());
     let joints: Vec<&str> = joints.iter().map(String::as_str).collect();
     // faulty defaults must not hide faults of the poses
-    let (usual, push) = (payload.unwrap_or_default(), force.unwrap_or_default());
-    let poses: Vec<_> = poses?.iter().map(|n| read_case(n, &joints, &usual, &push)).collect();
+    let usual = Load {
+        payload: payload.unwrap_or_default(),
+        tip_force_n: force.unwrap_or_default(),
+        tip_moment_nm: moment.unwrap_or_default(),
+    };
+    let poses: Vec<_> = poses?.iter().map(|n| read_case(n, &joints, &usual)).collect();
     let poses = poses.into_iter().collect::<Option<Vec<_>>>()?;
-    let (environments, _, _) = (environments?, payload?, force?);
+    let (environments, _, _, _) = (environments?, payload?, force?, moment?);
     if poses.is_empty() {
         return root.required("poses")?.fault("is empty", "give at least the pose the arm is judged in");
     }
@@ -86,15 +91,30 @@ fn read_environments(node: &Node) -> Option<Vec<Environment>> {
     read.into_iter().collect()
 }
 
-fn read_case(node: &Node, joints: &[&str], payload: &Payload, force: &Vector3<f64>) -> Option<ReadCase> {
-    let object = node.object(&["name", "pose_deg", "payload", "tip_force_n", "sizing", "judged"])?;
+/// What a pose is loaded with if it does not say.
+struct Load {
+    payload: Payload,
+    tip_force_n: Vector3<f64>,
+    tip_moment_nm: Vector3<f64>,
+}
+
+fn read_case(node: &Node, joints: &[&str], usual: &Load) -> Option<ReadCase> {
+    let object =
+        node.object(&["name", "pose_deg", "payload", "tip_force_n", "tip_moment_nm", "sizing", "judged"])?;
     let name = object.or("name", node.path().to_string(), |n| n.string().map(String::from));
     let pose_deg = object.required("pose_deg").and_then(|n| read_pose(&n, joints));
-    let payload = object.or("payload", *payload, Payload::read);
-    let tip_force_n = object.or("tip_force_n", *force, vector);
+    let payload = object.or("payload", usual.payload, Payload::read);
+    let tip_force_n = object.or("tip_force_n", usual.tip_force_n, vector);
+    let tip_moment_nm = object.or("tip_moment_nm", usual.tip_moment_nm, vector);
     let sizing = object.or("sizing", true, Node::boolean);
     let judged = object.or("judged", true, Node::boolean);
-    let case =
-        Case { name: name?, pose_deg: pose_deg?, payload: payload?, tip_force_n: tip_force_n?, water: None };
+    let case = Case {
+        name: name?,
+        pose_deg: pose_deg?,
+        payload: payload?,
+        tip_force_n: tip_force_n?,
+        tip_moment_nm: tip_moment_nm?,
+        water: None,
+    };
     Some(ReadCase { case, judged: judged?, sizing: sizing? })
 }

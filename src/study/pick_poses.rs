@@ -53,7 +53,9 @@ pub fn picks_in_poses(problem: &ArmProblem, front: &FrontTable) -> PicksInPoses 
         Some(PickPoses { pick, reach_m: arm.reach_m(), worst })
     };
     let joints = space.pieces.iter().filter_map(|piece| match piece {
-        SpacePiece::Joint(joint) => Some((joint.name.clone(), joint.range_deg.is_some())),
+        SpacePiece::Joint(joint) if joint.coupled.is_none() => {
+            Some((joint.name.clone(), joint.range_deg.is_some()))
+        }
         _ => None,
     });
     PicksInPoses {

@@ -29,12 +29,14 @@ pub fn question(space: &DesignSpace) -> Question {
         pose_deg: case.pose_deg.clone(),
         payload: case.payload,
         tip_force_n: case.tip_force_n,
+        tip_moment_nm: case.tip_moment_nm,
         links: space.links,
         joints: space.joints,
         water: case.water,
     };
     Question {
         gravity_m_s2: space.gravity_m_s2,
+        down: space.down,
         pieces: space.pieces.iter().map(piece).collect(),
         cases: space.cases.iter().map(case).collect(),
         judged_cases: space.judged_cases.clone(),
@@ -71,6 +73,7 @@ fn asked_joint(joint: &SpaceJoint) -> AskedJoint {
         axis: joint.axis,
         bearing: joint.bearing,
         extras: joint.extras,
+        bodies: joint.bodies.clone(),
         drive,
         max_speed_rad_s: joint.max_speed_rad_s,
         has_brake: joint.has_brake,
@@ -111,6 +114,7 @@ fn asked_link(choice: &LinkChoice) -> AskedLink {
         name: choice.name.clone(),
         vector_m: choice.vector_m,
         tubes: choice.options.iter().map(tube).collect(),
+        bodies: choice.bodies.clone(),
     }
 }
 

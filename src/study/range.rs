@@ -69,9 +69,10 @@ pub(crate) fn ranges_deg(space: &DesignSpace) -> Vec<[f64; 2]> {
     joints(&space.pieces).map(|joint| joint.range_deg.unwrap_or(NOT_STATED_DEG)).collect()
 }
 
+/// The driven joints, each of which has an angle in every pose.
 fn joints(pieces: &[SpacePiece]) -> impl Iterator<Item = &SpaceJoint> {
     pieces.iter().filter_map(|piece| match piece {
-        SpacePiece::Joint(joint) => Some(joint),
+        SpacePiece::Joint(joint) if joint.coupled.is_none() => Some(joint),
         _ => None,
     })
 }

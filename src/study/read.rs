@@ -17,26 +17,32 @@ use super::omissions::omissions;
 use super::range::{check_poses, read_range};
 use super::sections::{Aside, read_materials, read_sections};
 use crate::arm::bearing::{BearingSource, Stated, read_bearing};
+use crate::arm::body::{read_joint_bodies, read_link_bodies};
 use crate::arm::extras::{ExtrasSource, read_extras_source};
-use crate::arm::file::{read_curve, read_effects, read_joint_mass, read_link, read_name};
+use crate::arm::file::{
+    read_coupling, read_curve, read_effects, read_gravity, read_joint_mass, read_link, read_name,
+};
 use crate::arm::load::{vector, word};
 use crate::arm::{JointModel, LinkModel};
 use crate::catalog::Catalogs;
 use crate::catalog::gear::GearMass;
 use crate::input::json::{Document, Faults, Node, Object};
+use crate::sizing::demand::LinearReading;
 use crate::sizing::fit::FitRequirement;
 use crate::sizing::requirement::MotionRequirement;
 use crate::sizing::stated::StatedDuty;
 use crate::space::constraint::{Constraints, Servo};
 use crate::space::design_space::{DesignSpace, DriveChoice, LinkChoice, SpaceJoint, SpacePiece};
+use serde_json::Value;
 
-const KEYS: [&str; 20] = [
+const KEYS: [&str; 21] = [
     "name",
     "question",
     "gravity_m_s2",
     "chain",
     "payload",
     "tip_force_n",
+    "tip_moment_nm",
     "poses",
     "environments",
     "motion",
@@ -89,7 +95,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
         }
     });
     let (question, _notes) = (text("question"), text("notes"));
-    let gravity = root.or("gravity_m_s2", 9.81, Node::positive);
+    let gravity = read_gravity(&root);
     let gap = root.or("gap_percent", 0.0, read_gap);
     let filter = root.or("drives", Drives::default(), |n| read_drives(n, catalogs));
     let constraints = root.or("constraints", Constraints::default(), read_constraints);
@@ -113,12 +119,18 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     let harness_kg_per_m = root.or("harness_kg_per_m", 0.0, Node::non_negative);
     let Cases { cases, judged, sizing } = cases?;
     let mut motion = motion?;
-    motion.gravity_m_s2 = gravity?;
+    let (gravity_m_s2, down) = gravity?;
+    weight_is_needed(&root, gravity_m_s2, &motion)?;
+    // without gravity nothing reads it
+    if gravity_m_s2 > 0.0 {
+        motion.gravity_m_s2 = gravity_m_s2;
+    }
     let (chain, mut effects, harness_kg_per_m) = (chain?, effects?, harness_kg_per_m?);
     effects.extend(harness_effects(&chain, harness_kg_per_m, &effects));
     let space = DesignSpace {
         name: name.clone()?,
-        gravity_m_s2: gravity?,
+        gravity_m_s2,
+        down,
         pieces: chain,
         cases,
         judged_cases: judged,
@@ -140,6 +152,23 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks })
 }
 
+/// Checks that nothing is asked for that is measured by the weight, if there is no gravity: the paper's reading of Eq 8, and the
+/// stress at peak load, which is taken as 1 + a/g times the stress of the weight.
+fn weight_is_needed(root: &Object, gravity_m_s2: f64, motion: &MotionRequirement) -> Option<()> {
+    let stress = root.optional("constraints").filter(|n| n.value().get("stress_safety_factor_min").is_some());
+    let node = match motion.linear_reading {
+        LinearReading::Paper => root.optional("motion").or(stress),
+        LinearReading::Exact => stress,
+    };
+    match node.filter(|_| gravity_m_s2 == 0.0) {
+        Some(node) => node.fault(
+            "asks for loads as a multiple of the weight, and without gravity there is none",
+            "leave stress_safety_factor_min and the paper's linear_torque away, or state gravity_m_s2",
+        ),
+        None => Some(()),
+    }
+}
+
 /// A fraction, written in percent.
 fn read_gap(node: &Node) -> Option<f64> {
     match node.non_negative()? {
@@ -150,10 +179,11 @@ fn read_gap(node: &Node) -> Option<f64> {
     }
 }
 
-/// Names of the joints as written, so that poses are checked even when the chain is faulty.
+/// Names of the driven joints as written, so that poses are checked even when the chain is faulty.
 fn joint_names(study: &Node) -> Vec<String> {
     let chain = study.value().get("chain").and_then(|c| c.as_array());
-    let joints = chain.into_iter().flatten().filter(|e| e.get("type").is_some_and(|t| t == "joint"));
+    let is_driven = |e: &&Value| e.get("type").is_some_and(|t| t == "joint") && e.get("coupled").is_none();
+    let joints = chain.into_iter().flatten().filter(is_driven);
     joints.map(|j| j.get("name").and_then(|n| n.as_str()).unwrap_or("(unnamed)").to_string()).collect()
 }
 
@@ -210,7 +240,29 @@ fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePi
     let mut pieces = read.into_iter().collect::<Option<Vec<_>>>()?;
     number_materials(&mut pieces);
     unique_names(node, &pieces)?;
+    drivers_are_inboard(&items, &pieces)?;
     Some(pieces)
+}
+
+/// Checks that every passive joint is turned by driven joints inboard of it. Drives are sized from the tip inward, so what a
+/// linkage hands to its driver must be known before the driver is.
+fn drivers_are_inboard(items: &[Node], pieces: &[SpacePiece]) -> Option<()> {
+    let mut sound = Some(());
+    let mut inboard: Vec<&str> = Vec::new();
+    for (item, piece) in items.iter().zip(pieces) {
+        let SpacePiece::Joint(joint) = piece else { continue };
+        for (name, _) in joint.coupled.iter().flatten().filter(|(name, _)| !inboard.contains(&name.as_str()))
+        {
+            sound = item.fault(
+                format!("is coupled to \"{name}\", which is no driven joint inboard of it"),
+                &format!("driven joints inboard of it: {}", inboard.join(", ")),
+            );
+        }
+        if joint.coupled.is_none() {
+            inboard.push(&joint.name);
+        }
+    }
+    sound
 }
 
 fn unique_names(node: &Node, pieces: &[SpacePiece]) -> Option<()> {
@@ -243,6 +295,8 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
         "duty",
         "drives",
         "fit",
+        "bodies",
+        "coupled",
     ])?;
     let name = read_name(&object);
     let axis = object.required("axis").and_then(|n| crate::arm::file::read_axis(&n));
@@ -258,6 +312,16 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
             "add \"drive\", or \"gear\" and \"motor\"",
         );
     }
+    if object.has("coupled") {
+        let of_driven = ["drive", "motor", "range_deg", "max_speed_rad_s", "brake", "duty"];
+        stray(
+            &object,
+            &of_driven,
+            "stands beside \"coupled\"",
+            "a linkage turns this joint: write it at the joint that drives it",
+        );
+    }
+    let coupled = object.or("coupled", None, |n| read_coupling(n).map(Some));
     let drive = match object.optional("drive") {
         Some(drive) => {
             let given = ["stiffness_nm_per_rad", "windup", "gear", "motor", "gear_mass", "mass_kg"];
@@ -285,6 +349,7 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
     // the mass of a given drive is stated, and so are its extras
     let usually = if drive.is_sized() { open.extras } else { ExtrasSource::NONE };
     let extras = read_extras_source(&object, usually);
+    let bodies = read_joint_bodies(&object);
     let range_deg = object.or("range_deg", None, |n| read_range(n).map(Some));
     let connection_share = open.connection_share;
     let (drive, bearing) = with_connections(connection_share, &object, drive, bearing?);
@@ -296,6 +361,7 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
         axis,
         bearing,
         extras,
+        bodies: bodies?,
         drive,
         max_speed_rad_s,
         range_deg,
@@ -303,6 +369,7 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
         duty,
         fit,
         connection_share,
+        coupled: coupled?,
     })
 }
 
@@ -360,7 +427,8 @@ fn read_given_drive(object: &Object, open: &Open) -> Option<DriveChoice> {
 }
 
 fn read_space_link(node: &Node, open: &Open, aside: &mut Aside) -> Option<SpacePiece> {
-    let object = node.object(&["type", "name", "vector_m", "material", "section", "mass_kg", "choose"])?;
+    let object =
+        node.object(&["type", "name", "vector_m", "material", "section", "mass_kg", "bodies", "choose"])?;
     let Some(choose) = object.optional("choose") else {
         return read_link(&object, &[], open.catalogs).map(SpacePiece::Link);
     };
@@ -379,7 +447,14 @@ fn read_space_link(node: &Node, open: &Open, aside: &mut Aside) -> Option<SpaceP
     let sections = choices.required("sections").and_then(|n| read_sections(&n, open.catalogs));
     let options =
         super::sections::options(&materials?, &sections?, open.constraints, name.as_deref()?, aside);
-    Some(SpacePiece::Choice(LinkChoice { name: name?, vector_m: vector_m?, options, excerpt: None }))
+    let bodies = read_link_bodies(&object);
+    Some(SpacePiece::Choice(LinkChoice {
+        name: name?,
+        vector_m: vector_m?,
+        options,
+        bodies: bodies?,
+        excerpt: None,
+    }))
 }
 
 fn read_constraints(node: &Node) -> Option<Constraints> {

@@ -6,7 +6,7 @@
 use super::pose_search::{PoseRanges, Scored};
 use crate::arm::Arm;
 use crate::arm::load::LoadCase;
-use crate::mechanics::chain::Chain;
+use crate::mechanics::chain::{Chain, Posed};
 use crate::space::design::full_objectives;
 use rayon::prelude::*;
 
@@ -53,6 +53,7 @@ pub(super) fn loads(cases: &[LoadCase]) -> Vec<&LoadCase> {
     let same = |a: &LoadCase, b: &LoadCase| {
         a.payload == b.payload
             && a.tip_force_n == b.tip_force_n
+            && a.tip_moment_nm == b.tip_moment_nm
             && a.water == b.water
             && (a.links, a.joints) == (b.links, b.joints)
     };
@@ -76,7 +77,8 @@ fn worst_under(
     let chain = Chain::new(&structure, load.links);
     let posed = |pose_deg: &[f64]| {
         let pose_rad: Vec<f64> = pose_deg.iter().map(|angle| angle.to_radians()).collect();
-        chain.pose_rad(&pose_rad, &load.payload, load.tip_force_n)
+        let posed = chain.pose_rad(&pose_rad, &load.payload, load.tip_force_n);
+        Posed { tip_moment_nm: load.tip_moment_nm, ..posed }
     };
     let deflection_m = |pose_deg: &[f64]| posed(pose_deg).statics().tip_displacement_m.norm();
     let both = |pose_deg: &[f64]| {

@@ -5,6 +5,7 @@
 //! fewer ways is stiffer, so its lowest mode is no lower than that of the full model.
 
 use crate::arm::LinkModel;
+use crate::arm::body::RigidBody;
 use crate::arm::load::LoadCase;
 use crate::arm::structure::{LinkPiece, Piece, Structure};
 use crate::mechanics::beam::section_frame;
@@ -40,9 +41,34 @@ pub(super) struct PlacedTube {
 
 /// A mass that no choice changes.
 pub(super) struct PlacedMass {
-    pub rank: usize,
-    pub at_m: Vector3<f64>,
+    /// The point of the arm with which it moves.
+    pub carrier: Point,
+    /// Way from that point to the centre of the mass \[m\].
+    pub arm_m: Vector3<f64>,
     pub mass_kg: f64,
+    /// Inertia about the centre, in axes of the world \[kg m²\].
+    pub inertia_kgm2: Matrix3<f64>,
+}
+
+impl PlacedMass {
+    fn new(body: &RigidBody, rotation: &Matrix3<f64>, carrier: Point, arm_m: Vector3<f64>) -> Self {
+        let inertia_kgm2 = rotation * body.inertia_kgm2 * rotation.transpose();
+        Self { carrier, arm_m, mass_kg: body.mass_kg, inertia_kgm2 }
+    }
+
+    /// Place of its centre in the world \[m\].
+    pub(super) fn centre_m(&self) -> Vector3<f64> {
+        self.carrier.at_m + self.arm_m
+    }
+
+    /// Whether its weight is on the section of the arm at a point. At the root of a tube every body of the tube is, at the
+    /// end of the tube none.
+    pub(super) fn is_outboard_of(&self, point: &Point) -> bool {
+        match (self.carrier.rank.cmp(&point.rank), self.carrier.inside_m, point.inside_m) {
+            (std::cmp::Ordering::Equal, Some(mass_m), Some(x)) => mass_m > x || x == 0.0,
+            (order, _, _) => order.is_gt(),
+        }
+    }
 }
 
 /// A spring of an effect: it tilts everything outboard about an axis.
@@ -81,10 +107,13 @@ impl Layout {
                 Piece::Joint(joint) => {
                     let axis = rotation * joint.axis.into_inner();
                     layout.add_mass(place, layout.tip_m, joint.mass_kg);
+                    layout.add_bodies(piece_rank(place), &joint.bodies.fixed, &rotation);
                     let (rank, at_m) = (piece_rank(place), layout.tip_m);
                     layout.joints.push(PlacedJoint { rank, at_m, axis, across: across(&axis) });
                     let angle = angles.next().copied().unwrap_or_default().to_radians();
                     rotation *= Rotation3::from_axis_angle(&joint.axis, angle);
+                    // outboard of the joint, and inboard of whatever comes next
+                    layout.add_bodies(piece_rank(place) + 1, &joint.bodies.rotating, &rotation);
                 }
                 Piece::Link(link) => layout.add_link(place, link, &rotation),
             }
@@ -120,7 +149,32 @@ impl Layout {
 
     fn add_mass(&mut self, place: usize, at_m: Vector3<f64>, mass_kg: f64) {
         if mass_kg != 0.0 {
-            self.masses.push(PlacedMass { rank: piece_rank(place), at_m, mass_kg });
+            self.masses.push(PlacedMass {
+                carrier: Point { at_m, rank: piece_rank(place), inside_m: None },
+                arm_m: Vector3::zeros(),
+                mass_kg,
+                inertia_kgm2: Matrix3::zeros(),
+            });
+        }
+    }
+
+    /// Adds bodies whose element begins at the end of the chain so far.
+    fn add_bodies(&mut self, rank: usize, bodies: &[RigidBody], rotation: &Rotation3<f64>) {
+        for body in bodies {
+            let carrier = Point { at_m: self.tip_m, rank, inside_m: None };
+            self.masses.push(PlacedMass::new(body, rotation.matrix(), carrier, rotation * body.cg_m));
+        }
+    }
+
+    /// Adds the bodies of a tube that begins at the end of the chain so far. Each moves with the nearest point of the axis.
+    fn add_bodies_on_tube(&mut self, rank: usize, link: &LinkPiece, rotation: &Rotation3<f64>) {
+        let length_m = link.vector_m.norm();
+        for body in &link.bodies {
+            let along_m = (body.cg_m.dot(&link.vector_m) / length_m).clamp(0.0, length_m);
+            let foot_m = rotation * link.vector_m * (along_m / length_m);
+            let carrier = Point { at_m: self.tip_m + foot_m, rank, inside_m: Some(along_m) };
+            let arm_m = rotation * body.cg_m - foot_m;
+            self.masses.push(PlacedMass::new(body, rotation.matrix(), carrier, arm_m));
         }
     }
 
@@ -130,6 +184,10 @@ impl Layout {
         self.add_springs(place, &turned);
         let vector_m = rotation * link.vector_m;
         self.add_mass(place, self.tip_m + vector_m / 2.0, link.point_mass_kg);
+        match link.beam {
+            Some(_) => self.add_bodies_on_tube(piece_rank(place), link, rotation),
+            None => self.add_bodies(piece_rank(place), &link.bodies, rotation),
+        }
         if has_line(link) {
             self.tubes.push(PlacedTube {
                 rank: piece_rank(place),

@@ -17,7 +17,7 @@ use super::span::{Linear, LinearVector};
 use super::tubes::{DENSITIES, STIFFNESSES};
 use crate::arm::load::{LoadCase, Water};
 use crate::arm::structure::Structure;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
 /// Gauss-Legendre points and weights on 0..1, exact to degree 7.
 const GAUSS: [(f64, f64); 4] = [
@@ -73,8 +73,10 @@ pub(super) struct Carried {
 pub(super) struct Builder<'a> {
     pub layout: &'a Layout,
     gravity_m_s2: f64,
+    down: Vector3<f64>,
     /// Weight of the payload, and the tip force, each with the point where it acts \[m\].
     tip_loads: [(Vector3<f64>, Vector3<f64>); 2],
+    tip_moment_nm: Vector3<f64>,
     coordinates: &'a [Coordinate],
 }
 
@@ -83,8 +85,11 @@ impl Pose {
     pub(super) fn new(question: &Question, index: usize, water: usize, builder: &Builder) -> Self {
         let (case, layout) = (&question.cases[index], builder.layout);
         let sizing = question.sizing_cases.contains(&index);
-        let gravity_m_s2 = question.gravity_m_s2.max(f64::MIN_POSITIVE);
-        let acceleration = question.motion.tip_acceleration_m_s2() / gravity_m_s2;
+        // without gravity no stress is limited
+        let acceleration = match question.gravity_m_s2 > 0.0 {
+            true => question.motion.tip_acceleration_m_s2() / question.gravity_m_s2,
+            false => 0.0,
+        };
         Self {
             judged: question.judged_cases.contains(&index),
             sizing,
@@ -107,9 +112,9 @@ pub(super) fn water_of(structure: &Structure, case: &LoadCase) -> Option<Water> 
     case.water.or(structure.water)
 }
 
-fn payload_weight(gravity_m_s2: f64, case: &LoadCase, water: Option<Water>) -> Vector3<f64> {
+fn payload_weight(question: &Question, case: &LoadCase, water: Option<Water>) -> Vector3<f64> {
     let lifted = water.map_or(0.0, |water| water.density_kg_m3 / water.payload_density_kg_m3);
-    Vector3::new(0.0, 0.0, -case.payload.mass_kg * gravity_m_s2 * (1.0 - lifted))
+    question.down * (case.payload.mass_kg * question.gravity_m_s2 * (1.0 - lifted))
 }
 
 fn payload_at(layout: &Layout, case: &LoadCase) -> Vector3<f64> {
@@ -149,9 +154,16 @@ impl<'a> Builder<'a> {
         layout: &'a Layout,
         coordinates: &'a [Coordinate],
     ) -> Self {
-        let weight = payload_weight(question.gravity_m_s2, case, water_of(structure, case));
+        let weight = payload_weight(question, case, water_of(structure, case));
         let tip_loads = [(weight, payload_at(layout, case)), (case.tip_force_n, layout.tip_m)];
-        Self { layout, gravity_m_s2: question.gravity_m_s2, tip_loads, coordinates }
+        Self {
+            layout,
+            gravity_m_s2: question.gravity_m_s2,
+            down: question.down,
+            tip_loads,
+            tip_moment_nm: case.tip_moment_nm,
+            coordinates,
+        }
     }
 
     /// The same with other coordinates.
@@ -163,12 +175,12 @@ impl<'a> Builder<'a> {
 impl Builder<'_> {
     /// Wrench at a point of everything outboard of it.
     pub(super) fn carried(&self, point: &Point) -> Carried {
-        let down = |size: f64| Vector3::new(0.0, 0.0, -size);
+        let down = |size: f64| self.down * size;
         let about_m = &point.at_m;
         let none = Wrench::default();
         let tip = self.tip_loads.iter().map(|(force, at_m)| Wrench::of(*force, at_m, about_m));
-        let masses = self.layout.masses.iter().filter(|mass| mass.rank > point.rank);
-        let masses = masses.map(|m| Wrench::of(down(m.mass_kg * self.gravity_m_s2), &m.at_m, about_m));
+        let masses = self.layout.masses.iter().filter(|mass| mass.is_outboard_of(point));
+        let masses = masses.map(|m| Wrench::of(down(m.mass_kg * self.gravity_m_s2), &m.centre_m(), about_m));
         let drives = self.layout.joints.iter().map(|joint| match joint.rank > point.rank {
             true => Wrench::of(down(self.gravity_m_s2), &joint.at_m, about_m),
             false => none,
@@ -182,7 +194,11 @@ impl Builder<'_> {
             let middle_m = tube.root_m + tube.frame.column(0) * (0.5 * (from_m + tube.length_m));
             Wrench::of(down(tube.length_m - from_m), &middle_m, about_m)
         });
-        Carried { fixed: tip.chain(masses).fold(none, Wrench::plus), per_load: drives.chain(tubes).collect() }
+        let moment = Wrench { moment: self.tip_moment_nm, ..none };
+        Carried {
+            fixed: tip.chain(masses).fold(moment, Wrench::plus),
+            per_load: drives.chain(tubes).collect(),
+        }
     }
 
     fn torque(&self, joint: usize) -> Linear {
@@ -242,12 +258,11 @@ impl Builder<'_> {
             fixed: Vector3::zeros(),
             per_load: vec![Vector3::zeros(); loads],
         });
-        for (xi, weight) in GAUSS {
-            let point = self.inside(tube, xi * placed.length_m);
+        for (x, length_m) in self.quadrature(tube) {
+            let point = self.inside(tube, x);
             let carried = self.carried(&point);
             let units = [Vector3::x(), Vector3::y(), Vector3::z()]
                 .map(|e| Wrench::of(e, &self.layout.tip_m, &point.at_m).in_frame(&placed.frame));
-            let length_m = weight * placed.length_m;
             let parts = |real: &Wrench| products(&real.in_frame(&placed.frame), &units, length_m);
             for (work, part) in works.iter_mut().zip(parts(&carried.fixed)) {
                 work.fixed += part;
@@ -259,6 +274,22 @@ impl Builder<'_> {
             }
         }
         works
+    }
+
+    /// Points of a tube \[m\] with the lengths that they stand for. A body on the tube makes a step in the loads, so that it
+    /// divides the tube.
+    fn quadrature(&self, tube: usize) -> Vec<(f64, f64)> {
+        let placed = &self.layout.tubes[tube];
+        let on_tube = self.layout.masses.iter().filter(|mass| mass.carrier.rank == placed.rank);
+        let mut cuts: Vec<f64> = on_tube.filter_map(|mass| mass.carrier.inside_m).collect();
+        cuts.extend([0.0, placed.length_m]);
+        cuts.sort_by(f64::total_cmp);
+        cuts.dedup();
+        let parts = cuts.windows(2).flat_map(|part| {
+            let length_m = part[1] - part[0];
+            GAUSS.map(|(xi, weight)| (part[0] + xi * length_m, weight * length_m))
+        });
+        parts.collect()
     }
 
     /// Inertia matrix of the payload and of the masses that no choice changes.
@@ -273,9 +304,16 @@ impl Builder<'_> {
             add_square(&mut out, &along(&turned, &(rotation * spin.column(axis))), 1.0);
         }
         for mass in &self.layout.masses {
-            let (moved, _) = self.motions(&Point { at_m: mass.at_m, rank: mass.rank, inside_m: None });
+            let (mut moved, turned) = self.motions(&mass.carrier);
+            moved.iter_mut().zip(&turned).for_each(|(moved, turned)| *moved += turned.cross(&mass.arm_m));
             for axis in 0..3 {
                 add_square(&mut out, &along(&moved, &Vector3::ith(axis, 1.0)), mass.mass_kg);
+            }
+            if mass.inertia_kgm2 != Matrix3::zeros() {
+                let principal = SymmetricEigen::new(mass.inertia_kgm2);
+                for (axis, moment) in principal.eigenvectors.column_iter().zip(&principal.eigenvalues) {
+                    add_square(&mut out, &along(&turned, &axis.into_owned()), moment.max(0.0));
+                }
             }
         }
         out

@@ -5,6 +5,7 @@
 //! follows from them (which drives hold, what a tube weighs, where a joint is) is worked out in this room.
 
 use crate::arm::bearing::{Bearing, BearingSource};
+use crate::arm::body::{JointBodies, RigidBody};
 use crate::arm::effect::Effect;
 use crate::arm::extras::{Extras, ExtrasSource};
 use crate::arm::joint_law::Curve;
@@ -19,8 +20,10 @@ use nalgebra::{Unit, Vector3};
 /// An arm with choices, what it must do, and how it is judged.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Question {
-    /// Gravity, along world -z \[m/s²\].
+    /// Gravity \[m/s²\].
     pub gravity_m_s2: f64,
+    /// Its direction in the world, a unit vector.
+    pub down: Vector3<f64>,
     /// Joints and links from base to tip.
     pub pieces: Vec<AskedPiece>,
     /// All poses and loads, each with the models of links and joints.
@@ -63,6 +66,8 @@ pub struct AskedJoint {
     pub bearing: BearingSource,
     /// Where the masses beyond gear, motor and bearing come from.
     pub extras: ExtrasSource,
+    /// Rigid bodies that it carries beyond all these.
+    pub bodies: JointBodies,
     /// How its drive is found.
     pub drive: AskedDrive,
     /// Largest speed, if the study gives one \[rad/s\]; else it follows from the speed of the tip.
@@ -149,6 +154,8 @@ pub struct AskedLink {
     pub vector_m: Vector3<f64>,
     /// The tubes it can be.
     pub tubes: Vec<AskedTube>,
+    /// Rigid bodies that it carries, whichever tube it has.
+    pub bodies: Vec<RigidBody>,
 }
 
 /// A tube that a link can be.
@@ -327,6 +334,7 @@ impl AskedJoint {
             mass_kg,
             bearing,
             extras,
+            bodies: self.bodies.clone(),
             gear: None,
             motor: None,
             coupled: None,
@@ -339,14 +347,20 @@ impl AskedLink {
     pub(super) fn with_tube(&self, tube: &AskedTube) -> Link {
         let AskedTube { material, section, .. } = *tube;
         let body = LinkBody::Tube { material_name: String::new(), material, section };
-        Link { name: self.name.clone(), vector_m: self.vector_m, body }
+        Link { name: self.name.clone(), vector_m: self.vector_m, body, bodies: self.bodies.clone() }
     }
 }
 
 impl Question {
     /// The arm of these elements, with the effects of the question.
     pub(super) fn arm(&self, chain: Vec<Element>) -> Arm {
-        Arm { name: String::new(), gravity_m_s2: self.gravity_m_s2, chain, effects: self.effects.clone() }
+        Arm {
+            name: String::new(),
+            gravity_m_s2: self.gravity_m_s2,
+            down: self.down,
+            chain,
+            effects: self.effects.clone(),
+        }
     }
 
     /// A joint with this torsion curve and bearing and with the effects that act on the joint. Its mass is only that of
@@ -387,6 +401,7 @@ impl Question {
                     name: choice.name.clone(),
                     vector_m: choice.vector_m,
                     body: LinkBody::Offset { mass_kg: 0.0 },
+                    bodies: choice.bodies.clone(),
                 },
             }),
         };

@@ -201,6 +201,7 @@ mod tests {
             axis: nalgebra::Vector3::y_axis(),
             bearing: BearingSource::Stated(None),
             extras: ExtrasSource::NONE,
+            bodies: Default::default(),
             drive: AskedDrive::Given { curve: Curve::Rigid, mass_kg: 0.0 },
             max_speed_rad_s: None,
             has_brake: false,

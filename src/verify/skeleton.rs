@@ -11,6 +11,7 @@ use super::pose::{Builder, Pose, water_of};
 use super::question::{AskedJoint, AskedPiece, Limits, Question};
 use super::tubes::TubeOptions;
 use crate::arm::LinkBody;
+use crate::arm::body::total_kg;
 use crate::arm::load::Water;
 use crate::arm::structure::{Piece, Structure};
 use crate::catalog::Catalogs;
@@ -19,7 +20,7 @@ use crate::catalog::Catalogs;
 pub(super) struct Skeleton {
     /// Lengths of the tubes \[m\].
     pub lengths_m: Vec<f64>,
-    /// Mass of rigid offsets and of bearings that the study states \[kg\].
+    /// Mass of rigid offsets, of bodies and of bearings that the study states \[kg\].
     pub offsets_kg: f64,
     pub poses: Vec<Pose>,
     /// Loads on the bearing of every joint in every case; none where it is not checked.
@@ -210,11 +211,13 @@ fn tube_lengths_m(structure: &Structure) -> Vec<f64> {
 fn offsets_kg(question: &Question) -> f64 {
     let masses = question.pieces.iter().map(|piece| match piece {
         AskedPiece::Link(link) => match link.body {
-            LinkBody::Offset { mass_kg } => mass_kg,
-            LinkBody::Tube { .. } => 0.0,
+            LinkBody::Offset { mass_kg } => mass_kg + total_kg(&link.bodies),
+            LinkBody::Tube { .. } => total_kg(&link.bodies),
         },
-        AskedPiece::Joint(joint) => joint.bearing.stated().map_or(0.0, |bearing| bearing.mass_kg),
-        AskedPiece::Choice(_) => 0.0,
+        AskedPiece::Joint(joint) => {
+            joint.bearing.stated().map_or(0.0, |bearing| bearing.mass_kg) + joint.bodies.mass_kg()
+        }
+        AskedPiece::Choice(choice) => total_kg(&choice.bodies),
     });
     masses.sum()
 }

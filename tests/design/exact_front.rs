@@ -6,6 +6,7 @@
 //!
 //! `ARMWRIGHT_EXACT_STUDIES=500 cargo test --release --test design exact_front` runs more of them.
 
+use crate::bodies::add_bodies;
 use crate::dice::Dice;
 use crate::exact_support::{agree, agrees, judged, read};
 use armwright::catalog::Catalogs;
@@ -128,6 +129,9 @@ pub fn random_study(seed: u64) -> Value {
         constraints["mass_max_kg"] = json!(dice.within(25.0, 60.0));
     }
     study["constraints"] = constraints;
+    if seed % 4 == 3 {
+        add_bodies(&mut study, seed);
+    }
     study
 }
 

@@ -3,6 +3,7 @@
 
 mod bearing_loads;
 mod beside_the_front;
+mod bodies;
 mod brute;
 mod brute_bearings;
 mod brute_force;
@@ -17,6 +18,7 @@ mod exact_threads;
 mod exact_ties;
 mod fits;
 mod frozen_designs;
+mod loads_and_linkages;
 mod mechanics_reference;
 mod motor_heat;
 mod paper;

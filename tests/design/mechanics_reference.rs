@@ -42,6 +42,7 @@ fn load_case(case: &Value, links: LinkModel) -> LoadCase {
             inertia_about_cg_kgm2: Vector3::new(inertia("ixx"), inertia("iyy"), inertia("izz")),
         },
         tip_force_n: vector(&case["tip_force_n"]),
+        tip_moment_nm: Vector3::zeros(),
         links,
         joints: JointModel::ThreeSegment,
         water: None,

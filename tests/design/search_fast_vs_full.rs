@@ -6,6 +6,7 @@
 //! with effects at random joints and links. A design must hold in both or in neither, and all objectives must agree to
 //! 1e-10 (half of them to 1e-13).
 
+use crate::bodies::add_bodies;
 use crate::dice::Dice;
 use armwright::catalog::Catalogs;
 use armwright::input::Document;
@@ -86,7 +87,11 @@ fn pose(dice: &mut Dice) -> Vec<f64> {
 }
 
 fn study(seed: u64, catalogs: &Catalogs) -> Study {
-    read(seed, &random_study(&mut Dice(seed)), catalogs)
+    let mut text = random_study(&mut Dice(seed));
+    if seed % 4 == 3 {
+        add_bodies(&mut text, seed);
+    }
+    read(seed, &text, catalogs)
 }
 
 /// The same study with a few effects.

@@ -6,6 +6,7 @@
 //!
 //! `ARMWRIGHT_WITNESS_STUDIES=300 cargo test --release --test design witness_front` runs more of them.
 
+use crate::bodies::add_bodies;
 use crate::dice::Dice;
 use armwright::catalog::Catalogs;
 use armwright::input::Document;
@@ -156,6 +157,9 @@ fn random_study(seed: u64) -> Value {
         study["effects"] = effects(dice);
         // effects of a link are for links that yield
         study["models"]["links"] = json!("full");
+    }
+    if seed % 4 == 3 {
+        add_bodies(&mut study, seed);
     }
     study
 }

@@ -23,6 +23,7 @@ fn case(pose_deg: &[f64], payload: Payload, tip_force_n: [f64; 3]) -> LoadCase {
         pose_deg: pose_deg.to_vec(),
         payload,
         tip_force_n: tip_force_n.into(),
+        tip_moment_nm: Vector3::zeros(),
         links: LinkModel::Full,
         joints: JointModel::ThreeSegment,
         water: None,

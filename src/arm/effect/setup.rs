@@ -50,6 +50,7 @@ fn offset(name: &str, vector_m: Vector3<f64>, point_mass_kg: f64) -> Piece {
         vector_m,
         beam: None,
         point_mass_kg,
+        bodies: Vec::new(),
         harness_kg_per_m: 0.0,
         root_frame: FrameCompliance::default(),
     })

@@ -79,9 +79,19 @@ pub fn library_deflection_m(material: &Material, section: Section, links: LinkMo
         poisson: material.poisson.unwrap_or(0.3),
     };
     let body = LinkBody::Tube { material_name: material.name.clone(), material: link, section };
-    let beam = Element::Link(Link { name: "beam".into(), vector_m: Vector3::x() * LENGTH_M, body });
-    let arm =
-        Arm { name: "cantilever".into(), gravity_m_s2: GRAVITY_M_S2, chain: vec![beam], effects: Vec::new() };
+    let beam = Element::Link(Link {
+        name: "beam".into(),
+        vector_m: Vector3::x() * LENGTH_M,
+        body,
+        bodies: Vec::new(),
+    });
+    let arm = Arm {
+        name: "cantilever".into(),
+        gravity_m_s2: GRAVITY_M_S2,
+        down: -Vector3::z(),
+        chain: vec![beam],
+        effects: Vec::new(),
+    };
     let chain = Chain::new(&arm.structure(JointModel::K2), links);
     let posed = chain.pose_rad(&[], &Payload::default(), -Vector3::z() * FORCE_N);
     Some(-posed.statics().tip_displacement_m.z)

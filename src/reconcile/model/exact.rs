@@ -160,6 +160,7 @@ pub fn with_tool(structure: &Structure, tool_m: Vector3<f64>) -> Structure {
         vector_m: tool_m,
         beam: None,
         point_mass_kg: 0.0,
+        bodies: Vec::new(),
         harness_kg_per_m: 0.0,
         root_frame: FrameCompliance::default(),
     }));

@@ -7,6 +7,7 @@
 
 use super::kinematics::Geometry;
 use super::tree::Tree;
+use crate::arm::body::total_kg;
 use crate::arm::effect::kind::{Kind, Yields};
 use crate::arm::effect::{
     base_compliance, bearing_tilt, connection_compliance, frame_compliance, joint_compliance,
@@ -364,7 +365,8 @@ fn yielding_everywhere(structure: &Structure, known: &Chain, joints: usize) -> S
         if let Piece::Link(link) = &mut unit.pieces[own.piece]
             && structure.gravity_m_s2 > 0.0
         {
-            link.point_mass_kg -= linear(&own.weight).z / structure.gravity_m_s2;
+            // the bodies are still there
+            link.point_mass_kg -= linear(&own.weight).z / structure.gravity_m_s2 + total_kg(&link.bodies);
         }
     }
     unit

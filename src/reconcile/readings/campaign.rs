@@ -274,6 +274,8 @@ impl Campaign {
             hash: String::new(),
         };
         faults.extend(campaign.faults());
+        let arms = std::iter::once(&campaign.arm).chain(&campaign.other_arms);
+        faults.extend(arms.filter_map(|arm| arm.tilt_fault(&arm.name)));
         for channel in Channel::ALL {
             if let Some(file) = campaign.file(channel) {
                 let source = campaign.statement.source(channel);
