@@ -24,7 +24,7 @@ pub(crate) fn transposed_product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<
 /// # Panics
 /// If the sizes do not fit.
 pub(crate) fn add_transposed_product(out: &mut DMatrix<f64>, a: DMatrixView<f64>, b: DMatrixView<f64>) {
-    add(out, &Panels::of_columns(a), b);
+    Panels::of_columns(a).add_times(out, b);
 }
 
 /// The left factor of a product, eight of its rows side by side. Rows that fill up the last panel are zero.
@@ -52,13 +52,29 @@ impl Panels {
     ///
     /// # Panics
     /// If the right factor has not as many rows as this one has columns.
-    pub(crate) fn times(&self, b: &DMatrix<f64>) -> DMatrix<f64> {
+    pub(crate) fn times(&self, b: DMatrixView<f64>) -> DMatrix<f64> {
         let mut out = DMatrix::zeros(self.rows, b.ncols());
-        add(&mut out, self, b.as_view());
+        self.add_times(&mut out, b);
         out
     }
 
-    fn of_columns(a: DMatrixView<f64>) -> Self {
+    /// Adds the product with a right factor to the first rows of a matrix.
+    ///
+    /// # Panics
+    /// If the sizes do not fit.
+    pub(crate) fn add_times(&self, out: &mut DMatrix<f64>, b: DMatrixView<f64>) {
+        assert_eq!(self.terms, b.nrows(), "as many terms on either side");
+        assert!(self.rows <= out.nrows() && out.ncols() == b.ncols(), "a place for every sum");
+        if self.terms > 0 && !out.is_empty() {
+            let columns: Vec<_> = b.column_iter().collect();
+            let columns: Vec<&[f64]> = columns.iter().map(|column| column.as_slice()).collect();
+            let stride = out.nrows();
+            in_lanes(Sums { out: out.as_mut_slice(), stride, a: self, columns: &columns });
+        }
+    }
+
+    /// The transpose of a matrix, as a left factor.
+    pub(crate) fn of_columns(a: DMatrixView<f64>) -> Self {
         let (terms, rows) = a.shape();
         let mut eights = vec![[0.0; LANES]; rows.div_ceil(LANES) * terms];
         for (row, column) in a.column_iter().enumerate() {
@@ -69,18 +85,10 @@ impl Panels {
     }
 }
 
-fn add(out: &mut DMatrix<f64>, a: &Panels, b: DMatrixView<f64>) {
-    assert_eq!(a.terms, b.nrows(), "as many terms on either side");
-    assert_eq!(out.shape(), (a.rows, b.ncols()), "a place for every sum");
-    if a.terms > 0 {
-        let columns: Vec<_> = b.column_iter().collect();
-        let columns: Vec<&[f64]> = columns.iter().map(|column| column.as_slice()).collect();
-        in_lanes(Sums { out: out.as_mut_slice(), a, columns: &columns });
-    }
-}
-
 struct Sums<'a> {
     out: &'a mut [f64],
+    /// Rows of the matrix that the sums are added to.
+    stride: usize,
     a: &'a Panels,
     columns: &'a [&'a [f64]],
 }
@@ -90,38 +98,38 @@ impl LaneWork for Sums<'_> {
 
     #[inline(always)]
     fn run<V: Lanes>(self) {
-        let rows = self.a.rows;
+        let stride = self.stride;
         for (panel, terms) in self.a.eights.chunks_exact(self.a.terms).enumerate() {
             let first = panel * LANES;
+            let count = LANES.min(self.a.rows - first);
             let mut j = 0;
             while j + COLUMNS <= self.columns.len() {
-                let to = &mut self.out[j * rows..(j + COLUMNS) * rows];
-                add_block::<V, COLUMNS>(to, first, rows, terms, &self.columns[j..j + COLUMNS]);
+                let to = &mut self.out[j * stride + first..];
+                add_block::<V, COLUMNS>(to, stride, count, terms, &self.columns[j..j + COLUMNS]);
                 j += COLUMNS;
             }
             while j < self.columns.len() {
-                let to = &mut self.out[j * rows..(j + 1) * rows];
-                add_block::<V, 1>(to, first, rows, terms, &self.columns[j..j + 1]);
+                let to = &mut self.out[j * stride + first..];
+                add_block::<V, 1>(to, stride, count, terms, &self.columns[j..j + 1]);
                 j += 1;
             }
         }
     }
 }
 
-/// Adds the products of eight rows with `K` columns to the places from row `first` on.
+/// Adds the products of up to eight rows with `K` columns. The places of one column are `stride` numbers from those of the next.
 #[inline(always)]
 fn add_block<V: Lanes, const K: usize>(
     to: &mut [f64],
-    first: usize,
-    rows: usize,
+    stride: usize,
+    count: usize,
     terms: &[Eight],
     columns: &[&[f64]],
 ) {
-    let count = LANES.min(rows - first);
     let mut sums = [V::zero(); K];
     for k in 0..K {
         let mut own = [0.0; LANES];
-        own[..count].copy_from_slice(&to[k * rows + first..][..count]);
+        own[..count].copy_from_slice(&to[k * stride..][..count]);
         sums[k] = V::load(&own);
     }
     let mut factors: [&[f64]; K] = [&[]; K];
@@ -135,7 +143,7 @@ fn add_block<V: Lanes, const K: usize>(
         }
     }
     for k in 0..K {
-        to[k * rows + first..][..count].copy_from_slice(&sums[k].store()[..count]);
+        to[k * stride..][..count].copy_from_slice(&sums[k].store()[..count]);
     }
 }
 
@@ -157,8 +165,13 @@ mod tests {
                 (0..terms).fold(0.0, |sum, k| sum + a[(i, k)] * b[(k, j)])
             });
             // equal to the last bit: the order of the terms is that of the plain sum
-            assert_eq!(Panels::of_rows(&a).times(&b), direct);
+            assert_eq!(Panels::of_rows(&a).times(b.as_view()), direct);
             assert_eq!(transposed_product(&a.transpose(), &b), direct);
+            let mut longer = DMatrix::from_element(rows + 3, columns, 2.0);
+            Panels::of_rows(&a).add_times(&mut longer, b.as_view());
+            assert_eq!(longer.rows(rows, 3), DMatrix::from_element(3, columns, 2.0));
+            let within = longer.rows(0, rows) - direct;
+            assert!(within.iter().all(|x| (x - 2.0).abs() < 1e-14), "{within}");
         }
     }
 

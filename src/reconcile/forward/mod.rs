@@ -5,6 +5,7 @@
 //! torques of dead weight. A [`Subject`](crate::arm::effect::subject::Subject) then enters through its [`Coefficients`]:
 //! compliances, laws of the joints and masses. The prepared model is linear in all of these but the laws.
 
+mod added_mass;
 pub(crate) mod bench;
 pub(crate) mod coefficients;
 pub(crate) mod datum;

@@ -5,6 +5,7 @@
 //! mass. With `B = C F` the reduced problem is `BᵀM B z = μ FᵀB z`, where `μ = 1/ω²`. One solution `x = B z`,
 //! scaled to `xᵀK x = 1`, with `y = M x`, gives the effect of every parameter: `dμ = yᵀ dC y / μ + xᵀ dM x`.
 
+use super::added_mass::Factor;
 use super::coefficients::{Coefficients, Layout};
 use super::datum::{Datum, Groups};
 use super::statics::PoseGeometry;
@@ -46,9 +47,8 @@ pub struct ModalTest {
     pub modes: Vec<(usize, usize)>,
     /// Mass matrix of the nominal arm without payload.
     mass: Panels,
-    /// Factors `L` of the matrix `L Lᵀ` that a unit of each added mass contributes. They have few columns,
-    /// and only the rows of coordinates inboard of the mass.
-    factors: Vec<DMatrix<f64>>,
+    /// Factors of each added mass. They have few columns, and only the rows of coordinates inboard of the mass.
+    factors: Vec<Factor>,
     tip: Matrix3xX<f64>,
     spin: Matrix3xX<f64>,
     forces: DMatrix<f64>,
@@ -111,7 +111,7 @@ impl ModalTest {
         let posed = layout.template.pose_rad(&pose_rad, &empty, Vector3::zeros());
         let mass = posed.mass_matrix();
         let added = |c: &Chain| c.pose_rad(&pose_rad, &empty, Vector3::zeros()).mass_matrix() - &mass;
-        let factors = layout.with_mass.iter().map(|chain| factor(&added(chain))).collect();
+        let factors = layout.with_mass.iter().map(|chain| Factor::of(&added(chain))).collect();
         let (tip, spin) = tip_jacobians(&posed);
         Self {
             factors,
@@ -194,12 +194,11 @@ impl ModalTest {
     /// The mass matrix times shapes. The parts that parameters change have a low rank, so the matrix itself
     /// need not be assembled.
     fn momenta(&self, coefficients: &Coefficients, shapes: &DMatrix<f64>) -> DMatrix<f64> {
-        let mut out = self.mass.times(shapes);
+        let mut out = self.mass.times(shapes.as_view());
         for (factor, amount) in self.factors.iter().zip(&coefficients.masses) {
             if *amount != 0.0 {
-                let reach = factor.nrows();
-                let moved = factor.tr_mul(&shapes.rows(0, reach));
-                out.rows_mut(0, reach).gemm(*amount, factor, &moved, 1.0);
+                let moved = factor.across.times(shapes.rows(0, factor.l.nrows())) * *amount;
+                factor.down.add_times(&mut out, moved.as_view());
             }
         }
         let (hung_kg, jacobian) = self.hung_jacobian(coefficients);
@@ -397,7 +396,7 @@ impl ModalTest {
 
     /// The product `xᵀ M x` for a unit of an added mass.
     fn energy(&self, mass: usize, shape: &DVector<f64>) -> f64 {
-        let factor = &self.factors[mass];
+        let factor = &self.factors[mass].l;
         factor.tr_mul(&shape.rows(0, factor.nrows())).norm_squared()
     }
 
@@ -501,35 +500,6 @@ impl UnitStrains {
     }
 }
 
-/// Number of leading coordinates; beyond them the symmetric matrix is zero.
-fn leading(matrix: &DMatrix<f64>) -> usize {
-    let floor = 1e-14 * matrix.amax();
-    (0..matrix.nrows()).rev().find(|&i| matrix.row(i).amax() > floor).map_or(0, |i| i + 1)
-}
-
-/// Pivoted Cholesky factor of a positive semidefinite matrix. It has as many columns as the matrix has rank,
-/// and only the leading rows that are not zero.
-fn factor(matrix: &DMatrix<f64>) -> DMatrix<f64> {
-    let mut rest = matrix.clone();
-    // the matrix is semidefinite, so smaller pivots are rounding error
-    let floor = 1e-13 * matrix.diagonal().max();
-    let mut columns = Vec::new();
-    while columns.len() < matrix.nrows() {
-        let pivot = rest.diagonal().imax();
-        let size = rest[(pivot, pivot)];
-        if size <= floor || size <= 0.0 {
-            break;
-        }
-        let column = rest.column(pivot) / size.sqrt();
-        rest.ger(-1.0, &column, &column, 1.0);
-        columns.push(column);
-    }
-    match columns.is_empty() {
-        true => DMatrix::zeros(0, 0),
-        false => DMatrix::from_columns(&columns).rows(0, leading(matrix)).into_owned(),
-    }
-}
-
 /// Slope of the tilt of feet that lift off \[rad/(N m)\]. Its step is smoothed over `width` \[ln of the moment\].
 fn lifted_tangent(lift: &BaseLift, moment_nm: f64, width: f64) -> f64 {
     if width == 0.0 {
@@ -584,7 +554,7 @@ mod tests {
         let pose_rad: Vec<f64> = campaign.modal[0].pose_deg.iter().map(|a| a.to_radians()).collect();
         let matrix = |chain: &Chain| {
             chain.pose_rad(&pose_rad, &Payload::default(), Vector3::zeros()).mass_matrix()
-                - test.mass.times(&identity)
+                - test.mass.times(identity.as_view())
         };
         let direct: DMatrix<f64> =
             amounts.iter().map(|(mass, amount)| matrix(&layout.with_mass[*mass]) * *amount).sum();

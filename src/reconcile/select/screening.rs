@@ -9,8 +9,8 @@ use super::search::{Scored, Search};
 use super::unnamed::{self, Better};
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::reconcile::fit::descent::{
-    Effort, Fit, Normal, Point, Slopes, Weights, bounded_step, change, descent, evaluate, fit, jacobian,
-    normal, objective,
+    Effort, Fit, Normal, Point, Slopes, Weights, bounded_step, change, descent, evaluate, evaluate_near, fit,
+    jacobian, normal, objective,
 };
 use crate::reconcile::fit::steps::WIDE;
 use crate::reconcile::model::parameters::Model;
@@ -357,6 +357,7 @@ impl<'a> Search<'a> {
     /// missing, a model that is linear about the fit so far does not show what a candidate does to the frequencies.
     fn by_size(&self, base: &Scored) -> Vec<(usize, Vec<f64>, f64)> {
         let model = self.model(&base.effects);
+        let here = evaluate(self.forward, &model, &base.u, self.weights);
         // frequencies are slow to solve for: displacements choose the start, frequencies the size
         let smooth = self.weights.without_modes(self.forward);
         let best_size = |index: usize| {
@@ -367,7 +368,9 @@ impl<'a> Search<'a> {
                 let own = own.map(|(parameter, u)| parameter.scaled(*u, part));
                 base.u.iter().copied().chain(own).collect()
             };
-            let misfit = |u: &[f64], weights: &Weights| evaluate(self.forward, &with, u, weights).objective;
+            let misfit = |u: &[f64], weights: &Weights| {
+                evaluate_near(self.forward, &with, u, weights, Some(&here)).objective
+            };
             let best_start = |part: f64| {
                 let starts = candidate.starts.iter().map(|start| sized(start, part));
                 match candidate.starts.len() {

@@ -1,0 +1,49 @@
+//! The mass matrix of an added mass as a product of few columns, so that it need not be assembled where its amount changes.
+
+use crate::mechanics::product::Panels;
+use nalgebra::DMatrix;
+
+/// The factor `L` of the matrix `L Lᵀ` that a unit of an added mass contributes, as it is used in products.
+pub(super) struct Factor {
+    pub(super) l: DMatrix<f64>,
+    /// `L` as a left factor.
+    pub(super) down: Panels,
+    /// `Lᵀ` as a left factor.
+    pub(super) across: Panels,
+}
+
+impl Factor {
+    pub(super) fn of(matrix: &DMatrix<f64>) -> Self {
+        let l = factor(matrix);
+        Self { down: Panels::of_rows(&l), across: Panels::of_columns(l.as_view()), l }
+    }
+}
+
+/// Number of leading coordinates; beyond them the symmetric matrix is zero.
+fn leading(matrix: &DMatrix<f64>) -> usize {
+    let floor = 1e-14 * matrix.amax();
+    (0..matrix.nrows()).rev().find(|&i| matrix.row(i).amax() > floor).map_or(0, |i| i + 1)
+}
+
+/// Pivoted Cholesky factor of a positive semidefinite matrix. It has as many columns as the matrix has rank,
+/// and only the leading rows that are not zero.
+fn factor(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut rest = matrix.clone();
+    // the matrix is semidefinite, so smaller pivots are rounding error
+    let floor = 1e-13 * matrix.diagonal().max();
+    let mut columns = Vec::new();
+    while columns.len() < matrix.nrows() {
+        let pivot = rest.diagonal().imax();
+        let size = rest[(pivot, pivot)];
+        if size <= floor || size <= 0.0 {
+            break;
+        }
+        let column = rest.column(pivot) / size.sqrt();
+        rest.ger(-1.0, &column, &column, 1.0);
+        columns.push(column);
+    }
+    match columns.is_empty() {
+        true => DMatrix::zeros(0, 0),
+        false => DMatrix::from_columns(&columns).rows(0, leading(matrix)).into_owned(),
+    }
+}
