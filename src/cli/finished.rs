@@ -21,7 +21,9 @@ use crate::report::html::study::StudyPage;
 use crate::report::number::significant;
 use crate::report::picks;
 use crate::report::section::PageSection;
-use crate::report::summary::{MaterialFront, SummaryInput, single_materials, summary_md, terminal_summary, timing_words};
+use crate::report::summary::{
+    MaterialFront, SummaryInput, single_materials, summary_md, terminal_summary, timing_words,
+};
 use crate::report::supplement::Supplement;
 use crate::search::near::NearDesigns;
 use crate::search::sweep::Status;

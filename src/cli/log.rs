@@ -60,8 +60,7 @@ impl Log {
         match self.form {
             LogForm::Text => line(&format!("error: {failure}")),
             LogForm::Json => {
-                let object =
-                    json!({"event": "error", "exit_code": failure.exit_code(), "message": failure.to_string()});
+                let object = json!({"event": "error", "exit_code": failure.exit_code(), "message": failure.to_string()});
                 line(&object.to_string());
             }
         }

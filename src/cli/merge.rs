@@ -119,12 +119,8 @@ pub(super) fn merge(
 /// Executes `status`.
 pub(super) fn status(args: &StatusArgs) -> Result<String, Failure> {
     let shards = Shards::read(&args.shards)?;
-    let mut out = format!(
-        "{} of {} shards of {} designs\n",
-        shards.by_number.len(),
-        shards.of,
-        shards.designs_total
-    );
+    let mut out =
+        format!("{} of {} shards of {} designs\n", shards.by_number.len(), shards.of, shards.designs_total);
     for found in shards.by_number.values() {
         let Range { start, end } = found.range;
         out.push_str(&format!(
@@ -221,7 +217,8 @@ fn shards_in(folder: &Path, depth: usize) -> Result<Vec<PathBuf>, Failure> {
         return Ok(vec![folder.to_path_buf()]);
     }
     let entries = fs_err::read_dir(folder).map_err(|e| Failure::File(e.to_string()))?;
-    let mut inside: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).filter(|p| p.is_dir()).collect();
+    let mut inside: Vec<PathBuf> =
+        entries.flatten().map(|entry| entry.path()).filter(|p| p.is_dir()).collect();
     inside.sort();
     let mut out = Vec::new();
     for folder in inside.iter().filter(|_| depth > 0) {

@@ -148,7 +148,9 @@ fn run_part(
         return Err(Failure::Usage(format!("--shard does not go with --effects: {hint}")));
     }
     if !args.supplements.is_default() {
-        return Err(Failure::Usage("--shard does not go with --within and --tolerance: give them to merge".into()));
+        return Err(Failure::Usage(
+            "--shard does not go with --within and --tolerance: give them to merge".into(),
+        ));
     }
     let mut words = vec!["run".to_string(), args.study.clone()];
     words.extend(args.mass_max_kg.into_iter().flat_map(|kg| ["--mass-max-kg".into(), kg.to_string()]));

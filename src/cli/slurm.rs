@@ -13,7 +13,9 @@ use std::path::{Path, PathBuf};
 /// that fails can be submitted again by itself (`armwright status`), and the script can be run again: shards that are
 /// there are not swept twice.
 #[derive(Debug, Args)]
-#[command(after_help = "Example: armwright slurm my-study.json --shards 64 --cpus 8 > submit.sh\n         sh submit.sh")]
+#[command(
+    after_help = "Example: armwright slurm my-study.json --shards 64 --cpus 8 > submit.sh\n         sh submit.sh"
+)]
 pub(crate) struct SlurmArgs {
     /// A built-in study or a study file
     study: String,
@@ -35,7 +37,8 @@ pub(super) fn run(args: &SlurmArgs, catalogs: &Catalogs, overlay: Option<&Path>)
     let name = slug(&study.name);
     let out = args.out.clone().unwrap_or_else(|| Path::new("results").join(&name));
     let out = shell_word(&out.display().to_string());
-    let catalogs = overlay.map_or(String::new(), |dir| format!(" --catalogs {}", shell_word(&dir.display().to_string())));
+    let catalogs = overlay
+        .map_or(String::new(), |dir| format!(" --catalogs {}", shell_word(&dir.display().to_string())));
     let (study, shards, cpus) = (shell_word(&args.study), args.shards, args.cpus);
     Ok(format!(
         r#"#!/bin/sh

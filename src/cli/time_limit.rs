@@ -14,7 +14,9 @@ pub(super) fn time_limit(text: &str) -> Result<Duration, String> {
     if seconds > 0.0 && seconds <= LONGEST_S {
         return Ok(Duration::from_secs_f64(seconds));
     }
-    Err(format!("a number of seconds above zero and at most {LONGEST_S:.0} (ten years); leave it out for no limit"))
+    Err(format!(
+        "a number of seconds above zero and at most {LONGEST_S:.0} (ten years); leave it out for no limit"
+    ))
 }
 
 #[cfg(test)]

@@ -3,9 +3,7 @@
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
 use super::log::{Log, LogForm};
-use super::{
-    analyze, catalog, check, compare, design, front, merge, new, predict, reconcile, size, slurm,
-};
+use super::{analyze, catalog, check, compare, design, front, merge, new, predict, reconcile, size, slurm};
 use crate::catalog::Catalogs;
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
@@ -101,7 +99,9 @@ pub fn run(cli: Cli) -> Result<Answer, Failure> {
     let text = match cli.verb {
         Verb::Run(args) => return super::run::run(&args, &catalogs?, overlay, log),
         Verb::Front(args) => return front::run(&args, &catalogs?),
-        Verb::Reconcile(args) => return reconcile::run(&args, &catalogs?, overlay, log).map(|(_, answer)| answer),
+        Verb::Reconcile(args) => {
+            return reconcile::run(&args, &catalogs?, overlay, log).map(|(_, answer)| answer);
+        }
         Verb::Catalog(args) => catalog::run(&args, overlay),
         Verb::Studies => Ok(crate::study::list()),
         Verb::Size(args) => size::run(&args, &catalogs?),

@@ -30,7 +30,13 @@ pub(super) struct Incumbents {
 
 impl Default for Incumbents {
     fn default() -> Self {
-        Self { table: Archive::new(6), rows: HashMap::new(), columns: HashMap::new(), all: Vec::new(), only: None }
+        Self {
+            table: Archive::new(6),
+            rows: HashMap::new(),
+            columns: HashMap::new(),
+            all: Vec::new(),
+            only: None,
+        }
     }
 }
 

@@ -45,7 +45,10 @@ pub use diagnose::{empty_pieces, why_infeasible};
 pub use effects::{CorrectedStudy, Correction, apply_corrections, left_out};
 pub use named::{NAMED, list, named, names};
 pub use near::{NearFront, near_front};
-pub use outcome::{ExactStudy, Extent, Front, Judged, OfMaterial, StudyOutcome, judge_swept, run_exact, run_study, sweep_shard};
+pub use outcome::{
+    ExactStudy, Extent, Front, Judged, OfMaterial, StudyOutcome, judge_swept, run_exact, run_study,
+    sweep_shard,
+};
 pub use page::study_page;
 pub use pick_poses::{PicksInPoses, picks_in_poses};
 pub use read::read_study;

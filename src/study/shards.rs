@@ -15,11 +15,8 @@ pub fn candidates_csv(swept: &SweepOutcome) -> String {
     let groups = swept.groups.iter().enumerate().map(|(k, group)| (k.to_string(), group));
     for (front, candidates) in std::iter::once(("all".to_string(), &swept.front)).chain(groups) {
         for Candidate { number, objectives: o } in candidates {
-            let _ = writeln!(
-                out,
-                "{front},{number},{},{},{}",
-                o.tip_deflection_m, o.mass_kg, o.lowest_mode_hz
-            );
+            let _ =
+                writeln!(out, "{front},{number},{},{},{}", o.tip_deflection_m, o.mass_kg, o.lowest_mode_hz);
         }
     }
     out
