@@ -96,7 +96,7 @@ pub fn empty_pieces(space: &DesignSpace, catalogs: &Catalogs) -> Vec<String> {
 const MOST_PAIRS: usize = 3_000_000;
 
 /// Why a space is too large to be worked with, in words; `None` if it is not.
-pub fn too_large(space: &DesignSpace, catalogs: &Catalogs) -> Option<String> {
+pub(crate) fn too_large(space: &DesignSpace, catalogs: &Catalogs) -> Option<String> {
     let pairs = space.pieces.iter().filter_map(|piece| match piece {
         SpacePiece::Joint(joint) => {
             parts_offered(joint, catalogs).map(|[gears, motors]| gears.saturating_mul(motors))
