@@ -53,6 +53,8 @@ impl Csv {
         for record in reader.byte_records() {
             if out.records.len() > most {
                 out.unreadable.push((lines.line(), format!("has more than {most} rows, which is the limit")));
+                // what is refused as a whole is not looked at row by row
+                out.records.truncate(1);
                 break;
             }
             match record.map_err(|e| e.to_string()).and_then(|r| Ok((lines.of(r.position()), utf8(r)?))) {

@@ -4,7 +4,6 @@ use super::limit::{short, toward};
 use crate::arm::joint_law::Curve;
 use crate::catalog::Catalogs;
 use crate::sizing::demand::JointDemand;
-use crate::sizing::explain::Shortfall;
 use crate::sizing::rpm_from_rad_s;
 use crate::sizing::select::DriveTable;
 use crate::space::design_space::{DesignSpace, DriveChoice, SpacePiece};
@@ -58,13 +57,12 @@ fn first_obstacle(space: &DesignSpace, catalogs: &Catalogs) -> Option<(usize, St
         if table.is_empty() {
             return Some((stuck.piece, no_legal_drive(table, &stuck.demand)));
         }
-        let lightest = table.smallest_shortfall(&stuck.demand);
         match easier_sections(&problem, &sections, &stuck, table) {
             Ok(further) => sections = further,
             Err(nearest) => {
-                let is_lightest = nearest == lightest;
-                let words = nearest.map_or_else(|| no_legal_drive(table, &stuck.demand), |s| s.to_string());
+                let is_lightest = nearest == stuck.demand;
                 let links = if is_lightest { "even with the lightest links" } else { "with any links" };
+                let words = obstacle_at(table, &nearest).unwrap_or_default();
                 return Some((stuck.piece, format!("{links}, {words}")));
             }
         }
@@ -120,15 +118,14 @@ pub(crate) fn first_fit_at(problem: &ArmProblem, outboard: &[u32], piece: usize)
 /// Sections with which the arm gets further; one link at a time takes each of its sections.
 ///
 /// # Errors
-/// The smallest shortfall, if no such sections are found.
+/// The demand to which some drive comes nearest, if no such sections are found.
 fn easier_sections(
     problem: &ArmProblem,
     sections: &[u32],
     stuck: &Stuck,
     table: &DriveTable,
-) -> Result<Vec<u32>, Option<Shortfall>> {
-    let margin = |s: &Option<Shortfall>| s.as_ref().and_then(|s| s.check.torque_margin()).unwrap_or(0.0);
-    let mut nearest = table.smallest_shortfall(&stuck.demand);
+) -> Result<Vec<u32>, JointDemand> {
+    let (mut nearest, mut margin) = (stuck.demand, table.nearest_margin(&stuck.demand));
     for (piece, what) in problem.space().pieces.iter().enumerate().skip(stuck.piece) {
         let SpacePiece::Choice(choice) = what else { continue };
         for option in 0..choice.options.len() as u32 {
@@ -138,9 +135,9 @@ fn easier_sections(
                 None => return Ok(other),
                 Some(later) if later.slot > stuck.slot => return Ok(other),
                 Some(same) if same.slot == stuck.slot => {
-                    let shortfall = table.smallest_shortfall(&same.demand);
-                    if margin(&shortfall) > margin(&nearest) {
-                        nearest = shortfall;
+                    let of_same = table.nearest_margin(&same.demand);
+                    if of_same > margin {
+                        (nearest, margin) = (same.demand, of_same);
                     }
                 }
                 Some(_) => {}

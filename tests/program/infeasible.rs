@@ -23,6 +23,7 @@ fn study() -> Value {
     let joint = |name: &str| json!({"type": "joint", "name": name, "axis": [0, 1, 0], "drive": "first_fit"});
     json!({"name": "small", "chain": [joint("j1"), link("upper"), joint("j2"), link("fore")],
         "payload": {"mass_kg": 5},
+        "drives": {"gear_series": ["CSG"], "motors": ["electric"]},
         "motion": {"tip_speed_m_s": 0.5, "ramp_time_s": 0.5, "life_h": 7000},
         "poses": [{"name": "out", "pose_deg": [0, 0]}, {"name": "bent", "pose_deg": [-30, 60]}]})
 }
