@@ -61,7 +61,7 @@ fn first_obstacle(space: &DesignSpace, catalogs: &Catalogs) -> Option<(usize, St
             Ok(further) => sections = further,
             Err(nearest) => {
                 let is_lightest = nearest == stuck.demand;
-                let links = if is_lightest { "even with the lightest links" } else { "with any links" };
+                let links = if is_lightest { "even with the lightest links" } else { "with the links that ask least of it" };
                 let words = obstacle_at(table, &nearest).unwrap_or_default();
                 return Some((stuck.piece, format!("{links}, {words}")));
             }
