@@ -1,5 +1,6 @@
 //! The reader of the arm file.
 
+use super::MOST_ELEMENTS;
 use super::bearing::{Bearing, Stated, read_bearing};
 use super::body::{read_joint_bodies, read_link_bodies};
 use super::effect::channel::Channel;
@@ -112,6 +113,10 @@ fn read_chain(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> 
     let items = node.array()?;
     if items.is_empty() {
         return node.fault("is empty", "an arm has at least one joint or link");
+    }
+    if items.len() > MOST_ELEMENTS {
+        let problem = format!("has {} joints and links, and the limit is {MOST_ELEMENTS}", items.len());
+        return node.fault(problem, "join links that lie in line, or model a part of the arm");
     }
     let read: Vec<_> = items.iter().map(|n| read_element(n, materials, catalogs)).collect();
     read.into_iter().collect()

@@ -231,6 +231,9 @@ impl Element {
     }
 }
 
+/// Most joints and links of an arm. Modes take the third power of their number in time: 2000 take seconds.
+pub(crate) const MOST_ELEMENTS: usize = 2_000;
+
 impl Arm {
     /// The joints from base to tip.
     pub fn joints(&self) -> impl Iterator<Item = &Joint> {

@@ -4,7 +4,7 @@ use super::failure::Failure;
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::study::definition::Study;
-use crate::study::diagnose::empty_pieces;
+use crate::study::diagnose::{empty_pieces, too_large};
 use crate::study::effects::Correction;
 use crate::study::named;
 use crate::study::read::read_study;
@@ -44,11 +44,15 @@ pub(super) fn load_study(name: &str, catalogs: &Catalogs) -> Result<(Study, Stri
     Ok((read_study(Document::parse(&file, &text)?, catalogs)?, text))
 }
 
-/// Refuses a study with nothing to choose from at some link or joint. Every verb that builds designs asks here.
+/// Refuses a study with nothing to choose from at some link or joint, or with too much. Every verb that builds designs asks
+/// here.
 ///
 /// # Errors
-/// [`Failure::EmptySpace`] with every such link and joint.
+/// [`Failure::EmptySpace`] with every such link and joint; [`Failure::Usage`] with the limit that is exceeded.
 pub(super) fn refuse_empty(study: &Study, catalogs: &Catalogs) -> Result<(), Failure> {
+    if let Some(why) = too_large(&study.space, catalogs) {
+        return Err(Failure::Usage(format!("the study \"{}\": {why}", study.name)));
+    }
     match empty_pieces(&study.space, catalogs).as_slice() {
         [] => Ok(()),
         pieces => Err(Failure::EmptySpace(format!(

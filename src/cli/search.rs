@@ -32,7 +32,7 @@ pub(crate) struct SearchArgs {
     #[arg(long, value_enum)]
     search: Option<SearchKind>,
     /// Stop the exact search after so many seconds, as Ctrl-C does; write what it found and how much may be
-    /// missing
+    /// missing, which takes some seconds more for a front of thousands of designs
     #[arg(long, value_name = "SECONDS", value_parser = time_limit)]
     time_limit: Option<Duration>,
     /// End the exact search once it is proved that for every design of the study some listed one is worse by
@@ -74,8 +74,9 @@ impl SearchArgs {
     /// Checks that what was asked for suits the study, and counts its designs.
     ///
     /// # Errors
-    /// It does not suit the study, or would take years.
+    /// The study has nothing to choose from, what was asked for does not suit it, or it would take years.
     pub(super) fn check(&self, study: &Study, catalogs: &Catalogs) -> Result<u128, Failure> {
+        refuse_empty(study, catalogs)?;
         let refused = |why: String| Err(Failure::Usage(why));
         let Some(designs) = study.space.designs(catalogs) else {
             return refused(format!("the study \"{}\" has more than 1e38 designs; thin a grid", study.name));
@@ -164,7 +165,6 @@ pub(super) struct With<'a> {
 /// # Errors
 /// The search that is asked for does not suit the study, finds nothing, is interrupted, or its front cannot be written.
 pub(super) fn search(asked: &Asked, with: &With) -> Result<Written, Failure> {
-    refuse_empty(&asked.study, with.catalogs)?;
     if asked.study.space.has_linkages() && with.supplements.scatters() {
         return Err(Failure::Usage(format!(
             "--tolerance samples a front without coupled joints, and the study \"{}\" has some; leave it away",

@@ -18,6 +18,9 @@ pub(crate) struct Record {
     pub cells: Vec<String>,
 }
 
+/// Most rows of any table: more are a mistake, or work for another program.
+const MOST_ROWS: usize = 2_000_000;
+
 /// A CSV text cut into records; blank lines and comments are no records.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(crate) struct Csv {
@@ -30,6 +33,11 @@ pub(crate) struct Csv {
 impl Csv {
     /// Cuts text into records. Lines that begin with `comment` are left out.
     pub(crate) fn parse(bytes: &[u8], comment: Option<u8>) -> Self {
+        Self::parse_up_to(MOST_ROWS, bytes, comment)
+    }
+
+    /// [`Csv::parse`] of at most so many rows; more cannot be read.
+    pub(crate) fn parse_up_to(most: usize, bytes: &[u8], comment: Option<u8>) -> Self {
         let bytes = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
         let mut reader = ReaderBuilder::new()
             .has_headers(false)
@@ -43,6 +51,12 @@ impl Csv {
         };
         let mut out = Self::default();
         for record in reader.byte_records() {
+            if out.records.len() > most {
+                out.unreadable.push((lines.line(), format!("has more than {most} rows, which is the limit")));
+                // what is refused as a whole is not looked at row by row
+                out.records.truncate(1);
+                break;
+            }
             match record.map_err(|e| e.to_string()).and_then(|r| Ok((lines.of(r.position()), utf8(r)?))) {
                 Ok((line, record)) => {
                     out.records.push(Record { line, cells: record.iter().map(String::from).collect() });

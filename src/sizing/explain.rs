@@ -206,6 +206,11 @@ impl<'c> DriveTable<'c> {
         checks
     }
 
+    /// How near the nearest drive comes to a demand that none holds: its worst margin as a factor on torque.
+    pub(crate) fn nearest_margin(&self, demand: &JointDemand) -> f64 {
+        self.nearest(demand).and_then(|(_, check)| check.torque_margin()).unwrap_or(0.0)
+    }
+
     /// Every gear that holds, with every motor that goes with it.
     fn trials(&self, demand: &JointDemand) -> Vec<Trial<'c>> {
         let mut trials = Vec::new();

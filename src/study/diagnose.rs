@@ -92,12 +92,34 @@ pub fn empty_pieces(space: &DesignSpace, catalogs: &Catalogs) -> Vec<String> {
     space.pieces.iter().filter_map(words).collect()
 }
 
+/// Most pairs of gear and motor of all joints together: they take about a gigabyte.
+const MOST_PAIRS: usize = 3_000_000;
+
+/// Why a space is too large to be worked with, in words; `None` if it is not.
+pub(crate) fn too_large(space: &DesignSpace, catalogs: &Catalogs) -> Option<String> {
+    let pairs = space.pieces.iter().filter_map(|piece| match piece {
+        SpacePiece::Joint(joint) => {
+            parts_offered(joint, catalogs).map(|[gears, motors]| gears.saturating_mul(motors))
+        }
+        _ => None,
+    });
+    let pairs = pairs.fold(0, usize::saturating_add);
+    (pairs > MOST_PAIRS).then(|| {
+        format!("the joints have {pairs} pairs of gear and motor to choose from, and the limit is {MOST_PAIRS}; narrow \"drives\"")
+    })
+}
+
+/// Number of gears and of motors that a joint may use; `None` if its drive is given.
+fn parts_offered(joint: &SpaceJoint, catalogs: &Catalogs) -> Option<[usize; 2]> {
+    let (DriveChoice::FirstFit(filter) | DriveChoice::AllFits(filter)) = &joint.drive else { return None };
+    let gears = catalogs.gears.iter().filter(|gear| filter.allows_gear(gear) && windup_of(gear).is_some());
+    let motors = catalogs.motors.iter().filter(|motor| filter.allows_motor(motor));
+    Some([gears.count(), motors.count()])
+}
+
 /// A joint for whose drive the study leaves no gear or no motor, in words.
 fn no_drive_offered(joint: &SpaceJoint, catalogs: &Catalogs) -> Option<String> {
-    let (DriveChoice::FirstFit(filter) | DriveChoice::AllFits(filter)) = &joint.drive else { return None };
-    let gears =
-        catalogs.gears.iter().filter(|gear| filter.allows_gear(gear) && windup_of(gear).is_some()).count();
-    let motors = catalogs.motors.iter().filter(|motor| filter.allows_motor(motor)).count();
+    let [gears, motors] = parts_offered(joint, catalogs)?;
     (gears == 0 || motors == 0).then(|| {
         format!(
             "joint {}: \"drives\" leaves {gears} gears with a torsion curve and {motors} motors of the catalogs; widen it",

@@ -58,14 +58,16 @@ fn first_obstacle(space: &DesignSpace, catalogs: &Catalogs) -> Option<(usize, St
         if table.is_empty() {
             return Some((stuck.piece, no_legal_drive(table, &stuck.demand)));
         }
-        let lightest = table.smallest_shortfall(&stuck.demand);
         match easier_sections(&problem, &sections, &stuck, table) {
             Ok(further) => sections = further,
             Err(nearest) => {
-                let is_lightest = nearest == lightest;
-                let words =
-                    nearest.map_or_else(|| no_legal_drive(table, &stuck.demand), |s| in_words(table, &s));
-                let links = if is_lightest { "even with the lightest links" } else { "with any links" };
+                let is_lightest = nearest == stuck.demand;
+                let links = if is_lightest {
+                    "even with the lightest links"
+                } else {
+                    "with the links that ask least of it"
+                };
+                let words = obstacle_at(table, &nearest).unwrap_or_default();
                 return Some((stuck.piece, format!("{links}, {words}")));
             }
         }
@@ -121,15 +123,14 @@ pub(crate) fn first_fit_at(problem: &ArmProblem, outboard: &[u32], piece: usize)
 /// Sections with which the arm gets further; one link at a time takes each of its sections.
 ///
 /// # Errors
-/// The smallest shortfall, if no such sections are found.
+/// The demand to which some drive comes nearest, if no such sections are found.
 fn easier_sections(
     problem: &ArmProblem,
     sections: &[u32],
     stuck: &Stuck,
     table: &DriveTable,
-) -> Result<Vec<u32>, Option<Shortfall>> {
-    let margin = |s: &Option<Shortfall>| s.as_ref().and_then(|s| s.check.torque_margin()).unwrap_or(0.0);
-    let mut nearest = table.smallest_shortfall(&stuck.demand);
+) -> Result<Vec<u32>, JointDemand> {
+    let (mut nearest, mut margin) = (stuck.demand, table.nearest_margin(&stuck.demand));
     for (piece, what) in problem.space().pieces.iter().enumerate().skip(stuck.piece) {
         let SpacePiece::Choice(choice) = what else { continue };
         for option in 0..choice.options.len() as u32 {
@@ -139,9 +140,9 @@ fn easier_sections(
                 None => return Ok(other),
                 Some(later) if later.slot > stuck.slot => return Ok(other),
                 Some(same) if same.slot == stuck.slot => {
-                    let shortfall = table.smallest_shortfall(&same.demand);
-                    if margin(&shortfall) > margin(&nearest) {
-                        nearest = shortfall;
+                    let of_same = table.nearest_margin(&same.demand);
+                    if of_same > margin {
+                        (nearest, margin) = (same.demand, of_same);
                     }
                 }
                 Some(_) => {}

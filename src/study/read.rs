@@ -15,7 +15,8 @@ use super::harness::{harness_effects, harness_remark};
 use super::motion::{read_duty, read_motion};
 use super::omissions::omissions;
 use super::range::{check_poses, read_range};
-use super::sections::{Aside, read_materials, read_sections};
+use super::sections::{Aside, MOST_OPTIONS, read_materials, read_sections};
+use crate::arm::MOST_ELEMENTS;
 use crate::arm::bearing::{BearingSource, Stated, read_bearing};
 use crate::arm::body::{read_joint_bodies, read_link_bodies};
 use crate::arm::extras::{ExtrasSource, read_extras_source};
@@ -143,7 +144,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     };
     check_effects(&space, &root)?;
     in_range?;
-    let Aside { not_checked, mut remarks } = aside;
+    let Aside { not_checked, mut remarks, .. } = aside;
     remarks.extend(connections_remark(&space));
     remarks.extend(harness_remark(&space, harness_kg_per_m));
     remarks.extend(fit_remarks(&space, catalogs));
@@ -228,6 +229,10 @@ fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePi
     let items = node.array()?;
     if items.is_empty() {
         return node.fault("is empty", "an arm has at least one joint or link");
+    }
+    if items.len() > MOST_ELEMENTS {
+        let problem = format!("has {} joints and links, and the limit is {MOST_ELEMENTS}", items.len());
+        return node.fault(problem, "join links that lie in line, or study a part of the arm");
     }
     let read: Vec<Option<SpacePiece>> = items
         .iter()
@@ -445,8 +450,13 @@ fn read_space_link(node: &Node, open: &Open, aside: &mut Aside) -> Option<SpaceP
     let choices = choose.object(&["materials", "sections"])?;
     let materials = choices.required("materials").and_then(|n| read_materials(&n, open.catalogs));
     let sections = choices.required("sections").and_then(|n| read_sections(&n, open.catalogs));
-    let options =
-        super::sections::options(&materials?, &sections?, open.constraints, name.as_deref()?, aside);
+    let (materials, sections) = (materials?, sections?);
+    aside.options += materials.len() * sections.len();
+    if aside.options > MOST_OPTIONS {
+        let problem = format!("brings the study to {} choices of material and section", aside.options);
+        return node.fault(problem, &format!("the limit is {MOST_OPTIONS} for all links; thin a grid"));
+    }
+    let options = super::sections::options(&materials, &sections, open.constraints, name.as_deref()?, aside);
     let bodies = read_link_bodies(&object);
     Some(SpacePiece::Choice(LinkChoice {
         name: name?,

@@ -12,6 +12,10 @@ use std::collections::{BTreeSet, HashSet};
 const DEFAULT_POISSON: f64 = 0.3;
 /// Most points of a grid; more would be a mistake in the step.
 const MOST_POINTS: usize = 100_000;
+/// Most sections of a family.
+const MOST_SECTIONS: usize = 1_000_000;
+/// Most choices of material and section of all links together: they take about a gigabyte.
+pub(super) const MOST_OPTIONS: usize = 3_000_000;
 
 /// Sections to choose from.
 pub(super) struct Sections {
@@ -25,6 +29,8 @@ pub(super) struct Aside {
     pub not_checked: Vec<String>,
     /// What a reader of the result should know.
     pub remarks: Vec<String>,
+    /// Number of choices of material and section of all links so far.
+    pub options: usize,
 }
 
 /// A profile and the family of materials it is sold in.
@@ -69,6 +75,12 @@ pub(super) fn read_materials<'c>(node: &Node, catalogs: &'c Catalogs) -> Option<
     read.into_iter().collect()
 }
 
+impl Sections {
+    pub(super) fn len(&self) -> usize {
+        self.sections.len()
+    }
+}
+
 /// Reads a list of section families.
 pub(super) fn read_sections(node: &Node, catalogs: &Catalogs) -> Option<Sections> {
     let read: Vec<_> = node.array()?.iter().map(|n| read_family(n, catalogs)).collect();
@@ -108,6 +120,7 @@ fn read_rectangular(node: &Node) -> Option<Vec<Named>> {
     let outlines = read_outlines(&object);
     let walls = object.required("wall_mm").and_then(|n| read_grid(&n));
     let (outlines, walls) = (outlines?, walls?);
+    refuse_too_many(node, [outlines.len(), walls.len()])?;
     let mut out = Vec::new();
     for (width, height) in outlines {
         for &wall in walls.iter().filter(|&&t| 2.0 * t < width.min(height)) {
@@ -133,6 +146,7 @@ fn read_outlines(object: &Object) -> Option<Vec<(f64, f64)>> {
     }
     let heights = object.required("height_mm").and_then(|n| read_grid(&n));
     let (widths, heights) = (widths?, heights?);
+    refuse_too_many(object.node(), [widths.len(), heights.len()])?;
     Some(widths.iter().flat_map(|&w| heights.iter().map(move |&h| (w, h))).collect())
 }
 
@@ -147,6 +161,7 @@ fn read_round(node: &Node) -> Option<Vec<Named>> {
     let diameters = object.required("diameter_mm").and_then(|n| read_grid(&n));
     let walls = object.required("wall_mm").and_then(|n| read_grid(&n));
     let (diameters, walls) = (diameters?, walls?);
+    refuse_too_many(node, [diameters.len(), walls.len()])?;
     let mut out = Vec::new();
     for &diameter in &diameters {
         for &wall in walls.iter().filter(|&&t| 2.0 * t < diameter) {
@@ -204,6 +219,17 @@ fn profile_section(profile: &Profile) -> Named {
     let name =
         ProfileName { designation: profile.designation.clone(), family: profile.material_family.clone() };
     (section, Some(name))
+}
+
+/// A fault if two grids together have more sections than a family may.
+fn refuse_too_many(node: &Node, [a, b]: [usize; 2]) -> Option<()> {
+    match a.saturating_mul(b) {
+        0..=MOST_SECTIONS => Some(()),
+        sections => node.fault(
+            format!("has {sections} sections before walls that do not fit are left out"),
+            &format!("the limit is {MOST_SECTIONS}; thin a grid"),
+        ),
+    }
 }
 
 /// Reads a number, a list of numbers, or `{"from", "to", "step"}`, all greater than zero.

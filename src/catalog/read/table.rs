@@ -38,12 +38,21 @@ pub(crate) fn rows<'a>(file: CatalogFile, name: &'a str, bytes: &[u8], log: &'a 
     out
 }
 
+/// Most parts of a catalog file. Every gear is paired with every motor, and every material with every section.
+const MOST_PARTS: usize = 100_000;
+
 /// The records of a CSV text.
 fn records(name: &str, bytes: &[u8], log: &Log) -> Vec<Record> {
-    let csv = Csv::parse(bytes, None);
+    let csv = Csv::parse_up_to(MOST_PARTS, bytes, None);
     for (line, problem) in csv.unreadable {
         let problem = format!("cannot be read: {problem}");
-        log.fault(name, Some(line), "", problem, "save the file as UTF-8 text".into());
+        log.fault(
+            name,
+            Some(line),
+            "",
+            problem,
+            "save the file as UTF-8 text, and keep the parts that matter".into(),
+        );
     }
     csv.records
 }

@@ -242,6 +242,9 @@ impl Statement {
     }
 }
 
+/// Most readings of a channel. A fit goes through all of them for each candidate effect.
+const MOST_READINGS: usize = 20_000;
+
 impl Campaign {
     /// Reads a campaign folder.
     ///
@@ -279,7 +282,8 @@ impl Campaign {
         for channel in Channel::ALL {
             if let Some(file) = campaign.file(channel) {
                 let source = campaign.statement.source(channel);
-                let table = Table::read_from(&file, &source)?;
+                let mut table = Table::read_from(&file, &source)?;
+                table.refuse_more_than(MOST_READINGS);
                 campaign.read_channel(channel, &table);
                 faults.extend(table.into_faults());
             }

@@ -180,6 +180,15 @@ impl Table {
         self.columns.len() > 1
     }
 
+    /// A fault if there are more rows than this; the others are left out.
+    pub fn refuse_more_than(&mut self, most: usize) {
+        if self.rows.len() > most {
+            let problem = format!("has {} rows, and the limit is {most}", self.rows.len());
+            self.fault(None, "", problem, "average repeated readings, or leave some poses out");
+            self.rows.truncate(most);
+        }
+    }
+
     fn push(&mut self, Record { line, cells }: Record) {
         if self.columns.is_empty() {
             self.header_line = line;
