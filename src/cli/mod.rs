@@ -5,6 +5,7 @@ pub(crate) mod analyze;
 pub(crate) mod asked;
 pub(crate) mod catalog;
 mod catalog_check;
+mod catalog_table;
 pub(crate) mod compare;
 pub(crate) mod corrections;
 pub(crate) mod design;
