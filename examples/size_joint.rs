@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     );
     let filter = DriveFilter {
         gear_series: Some(vec!["HFUC".into()]),
-        ratios: Some(vec![100]),
+        ratios: Some(vec![100.0]),
         ..DriveFilter::everything(GearMass::HousedUnit)
     };
     let table = DriveTable::build("elbow", motion, &filter, &catalogs.gears, &catalogs.motors);
