@@ -4,6 +4,7 @@
 //! The functions return the text; nothing is printed here.
 
 use super::catalog_check::check;
+use super::catalog_table::{TextTable, cell, gears_of, motors_of, provenances};
 use super::failure::Failure;
 use crate::catalog::gear::{Gear, GearKind};
 use crate::catalog::lookup::PartError;
@@ -103,35 +104,6 @@ pub(crate) fn run(args: &CatalogArgs, overlay: Option<&Path>) -> Result<String, 
         CatalogVerb::Check => check(overlay).map_err(Failure::catalog),
         CatalogVerb::Show(args) => show(&Catalogs::load(overlay).map_err(Failure::catalog)?, args),
     }
-}
-
-/// The gears that are sold as such, or those within actuators.
-fn gears_of(catalogs: &Catalogs, actuators: bool) -> impl Iterator<Item = &Gear> {
-    catalogs.gears.iter().filter(move |gear| (gear.kind == GearKind::Actuator) == actuators)
-}
-
-/// The motors that are sold as such.
-fn motors_of(catalogs: &Catalogs) -> impl Iterator<Item = &Motor> {
-    catalogs.motors.iter().filter(|motor| motor.kind != MotorKind::OfActuator)
-}
-
-pub(super) fn provenances(
-    catalogs: &Catalogs,
-    file: CatalogFile,
-) -> Box<dyn Iterator<Item = &Provenance> + '_> {
-    match file {
-        CatalogFile::Gears => Box::new(gears_of(catalogs, false).map(|g| &g.provenance)),
-        CatalogFile::Actuators => Box::new(gears_of(catalogs, true).map(|g| &g.provenance)),
-        CatalogFile::MotorCurves => Box::new(std::iter::empty()),
-        CatalogFile::Efficiency => Box::new(catalogs.efficiency.iter().map(|p| &p.provenance)),
-        CatalogFile::Motors => Box::new(motors_of(catalogs).map(|m| &m.provenance)),
-        CatalogFile::Materials => Box::new(catalogs.materials.iter().map(|m| &m.provenance)),
-        CatalogFile::Profiles => Box::new(catalogs.profiles.iter().map(|p| &p.provenance)),
-    }
-}
-
-pub(super) fn cell<'r>(row: &'r [(&'static str, String)], column: &str) -> &'r str {
-    row.iter().find(|(name, _)| *name == column).map_or("", |(_, text)| text)
 }
 
 /// The parts asked for as a table or CSV, or one part with all its fields.
@@ -495,49 +467,6 @@ fn rating(x: Option<f64>, factor: f64) -> String {
     let decimals = (3 - magnitude).max(0) as usize;
     let text = format!("{x:.decimals$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
-}
-
-/// A table of text: headers (`name|unit`) above columns, numbers aligned to the right.
-pub(super) struct TextTable {
-    pub head: Vec<String>,
-    pub rows: Vec<Vec<String>>,
-}
-
-impl TextTable {
-    pub(super) fn new(head: Vec<String>) -> Self {
-        Self { head, rows: Vec::new() }
-    }
-
-    pub(super) fn to_text(&self) -> String {
-        let split = |head: &String, unit: bool| {
-            let (name, rest) = head.split_once('|').unwrap_or((head, ""));
-            if unit { rest } else { name }.to_string()
-        };
-        let names: Vec<_> = self.head.iter().map(|h| split(h, false)).collect();
-        let units: Vec<_> = self.head.iter().map(|h| split(h, true)).collect();
-        let mut lines = vec![names];
-        if units.iter().any(|unit| !unit.is_empty()) {
-            lines.push(units);
-        }
-        lines.extend(self.rows.iter().cloned());
-        let columns: Vec<_> = (0..self.head.len()).map(|i| self.column(i, &lines)).collect();
-        lines.iter().fold(String::new(), |out, line| out + &aligned(line, &columns) + "\n")
-    }
-
-    /// Width of a column, and whether it holds numbers.
-    fn column(&self, i: usize, lines: &[Vec<String>]) -> (usize, bool) {
-        let width = lines.iter().map(|line| line[i].chars().count()).max().unwrap_or(0);
-        (width, self.rows.iter().all(|row| row[i].is_empty() || row[i].parse::<f64>().is_ok()))
-    }
-}
-
-fn aligned(line: &[String], columns: &[(usize, bool)]) -> String {
-    let mut out = String::new();
-    for (text, (width, is_number)) in line.iter().zip(columns) {
-        let padding = " ".repeat(width - text.chars().count());
-        out += &if *is_number { format!("{padding}{text}  ") } else { format!("{text}{padding}  ") };
-    }
-    out.trim_end().to_string()
 }
 
 #[cfg(test)]

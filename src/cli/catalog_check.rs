@@ -1,6 +1,6 @@
 //! `armwright catalog check`: what the catalogs hold, what they leave blank, and what cannot be chosen for it.
 
-use super::catalog::{TextTable, cell, provenances};
+use super::catalog_table::{TextTable, cell, provenances};
 use crate::catalog::gear::{GearKind, GearMass};
 use crate::catalog::load::Loaded;
 use crate::catalog::needs::{Lack, words};

@@ -7,6 +7,7 @@ pub(crate) mod beside;
 pub(crate) mod catalog;
 mod catalog_check;
 pub(crate) mod check;
+mod catalog_table;
 pub(crate) mod compare;
 pub(crate) mod corrections;
 pub(crate) mod design;
