@@ -9,7 +9,8 @@
 //! lever times radial force to the moment, as in the vendor's `M = F_r (L_r + R) + F_a L_a`.
 
 use super::bearing_loads::{Components, PosedBearing};
-use super::problem::{ArmProblem, StationState};
+use super::problem::ArmProblem;
+use super::state::StationState;
 use super::station::StationSlot;
 use crate::sizing::bearing::{BearingDemand, BearingLoad};
 

@@ -3,6 +3,7 @@
 pub(crate) mod alternatives;
 pub(crate) mod ballast;
 pub(crate) mod bearing_remarks;
+pub(crate) mod bodies;
 pub(crate) mod bounds;
 pub(crate) mod budget;
 pub(crate) mod cases;
@@ -13,6 +14,7 @@ pub(crate) mod diagnose;
 pub(crate) mod effects;
 mod fit;
 mod harness;
+mod linkages;
 pub(crate) mod motion;
 mod motor_kinds;
 pub(crate) mod named;

@@ -4,12 +4,14 @@
 //! Lengths of sections and limits are in millimetres because that is how profiles are sold; everything
 //! else is SI. The resolved [`DesignSpace`] is SI throughout.
 
+use super::bodies::impossible_bodies_remark;
 use super::cases::{Cases, read_cases};
 use super::connections::{connections_remark, with_connections};
 use super::definition::Study;
 use super::effects::check_effects;
 use super::fit::{fit_remarks, read_fit};
 use super::harness::{harness_effects, harness_remark};
+use super::linkages::drivers_are_inboard;
 use super::motion::{read_duty, read_motion};
 use super::motor_kinds::read_motor_kinds;
 use super::omissions::omissions;
@@ -148,6 +150,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     remarks.extend(harness_remark(&space, harness_kg_per_m));
     remarks.extend(fit_remarks(&space, catalogs));
     remarks.extend(omissions(&space));
+    remarks.extend(impossible_bodies_remark(&space));
     Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks })
 }
 
@@ -319,27 +322,6 @@ fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePi
     unique_names(node, &pieces)?;
     drivers_are_inboard(&items, &pieces)?;
     Some(pieces)
-}
-
-/// Checks that every passive joint is turned by driven joints inboard of it. Drives are sized from the tip inward, so what a
-/// linkage hands to its driver must be known before the driver is.
-fn drivers_are_inboard(items: &[Node], pieces: &[SpacePiece]) -> Option<()> {
-    let mut sound = Some(());
-    let mut inboard: Vec<&str> = Vec::new();
-    for (item, piece) in items.iter().zip(pieces) {
-        let SpacePiece::Joint(joint) = piece else { continue };
-        for (name, _) in joint.coupled.iter().flatten().filter(|(name, _)| !inboard.contains(&name.as_str()))
-        {
-            sound = item.fault(
-                format!("is coupled to \"{name}\", which is no driven joint inboard of it"),
-                &format!("driven joints inboard of it: {}", inboard.join(", ")),
-            );
-        }
-        if joint.coupled.is_none() {
-            inboard.push(&joint.name);
-        }
-    }
-    sound
 }
 
 fn unique_names(node: &Node, pieces: &[SpacePiece]) -> Option<()> {
