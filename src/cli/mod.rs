@@ -3,6 +3,7 @@
 
 pub(crate) mod analyze;
 pub(crate) mod asked;
+pub(crate) mod capacity;
 pub(crate) mod catalog;
 pub(crate) mod compare;
 pub(crate) mod corrections;

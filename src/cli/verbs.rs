@@ -1,7 +1,7 @@
 //! All verbs: their names, and the functions that execute them.
 
 use super::failure::Failure;
-use super::{analyze, catalog, compare, design, front, new, predict, reconcile, size};
+use super::{analyze, capacity, catalog, compare, design, front, new, predict, reconcile, size};
 use crate::catalog::Catalogs;
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
@@ -36,6 +36,8 @@ enum Verb {
     Run(super::run::RunArgs),
     /// Size every joint of a study's arm, from the tip inward
     Size(size::SizeArgs),
+    /// Find the largest payload of a study's arm
+    Capacity(capacity::CapacityArgs),
     /// Compute statics, modes and response of an arm file
     Analyze(analyze::AnalyzeArgs),
     /// Write a design of a result as an arm file
@@ -79,6 +81,7 @@ pub fn run(cli: Cli) -> Result<String, Failure> {
         Verb::Studies => Ok(crate::study::list()),
         Verb::Run(args) => super::run::run(&args, &catalogs?, overlay),
         Verb::Size(args) => size::run(&args, &catalogs?),
+        Verb::Capacity(args) => capacity::run(&args, &catalogs?),
         Verb::Compare(args) => compare::run(&args),
         Verb::Analyze(args) => analyze::run(&args, &catalogs?),
         Verb::Design(args) => design::run(&args, &catalogs?),

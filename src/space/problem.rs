@@ -22,6 +22,8 @@ use crate::mechanics::Wrench;
 use crate::mechanics::lanes::LANES;
 use crate::mechanics::lowest::{Step, frequency_hz, lowest_eigenvalue};
 use crate::pareto::objectives::Objectives;
+use crate::sizing::check::Check;
+use crate::sizing::checks::{binding, checks};
 use crate::sizing::demand::{JointDemand, JointMotion};
 use crate::sizing::fit::LinkRoom;
 use nalgebra::Vector3;
@@ -67,6 +69,13 @@ pub struct Partial {
     /// Mass of the drive in each slot \[kg\].
     pub(crate) masses_kg: Vec<f64>,
     pub(crate) stations: Vec<StationState>,
+}
+
+impl Partial {
+    /// Option of each slot, tip first.
+    pub(crate) fn slot_options(&self) -> &[u32] {
+        &self.options
+    }
 }
 
 /// The material of the links so far.
@@ -213,6 +222,28 @@ impl<'c> ArmProblem<'c> {
         options.iter().enumerate().all(&mut adds).then_some(partial)
     }
 
+    /// The first piece from the tip that some cases overload, with the drive's check that fails; `None` in place of a check
+    /// stands for the stress of a link. `options` has the option of every slot.
+    pub(crate) fn overload(&self, options: &[u32], cases: &[usize]) -> Option<(usize, Option<Check>)> {
+        let mut partial = self.empty();
+        for (slot, &option) in options.iter().enumerate() {
+            let Slot::Sized(sized) = &self.slots[slot] else {
+                if !self.add(slot, option, &mut partial) {
+                    return Some((self.piece_of_slot(slot), None));
+                }
+                continue;
+            };
+            let (index, motion) = (option as usize, sized.table.motion());
+            let demand = self.demand_in(cases, &partial, slot, Some(motion));
+            if !sized.table.holds(index, &demand) {
+                let checks = checks(&sized.table.drive(index), motion, &demand);
+                return Some((self.piece_of_slot(slot), binding(&checks).cloned()));
+            }
+            self.add_drive(slot, sized, index, &mut partial);
+        }
+        None
+    }
+
     /// The piece (base to tip) that stands in a slot (tip first).
     pub fn piece_of_slot(&self, slot: usize) -> usize {
         self.piece_slots.iter().position(|&s| s == slot).unwrap_or_default()
@@ -340,8 +371,19 @@ impl<'c> ArmProblem<'c> {
         slot: usize,
         motion: Option<&JointMotion>,
     ) -> JointDemand {
+        self.demand_in(&self.space.sizing_cases, outboard, slot, motion)
+    }
+
+    /// Demand on a joint in some of the cases.
+    fn demand_in(
+        &self,
+        cases: &[usize],
+        outboard: &Partial,
+        slot: usize,
+        motion: Option<&JointMotion>,
+    ) -> JointDemand {
         let (mut static_nm, mut inertia_kgm2) = (0.0f64, 0.0f64);
-        for &case in &self.space.sizing_cases {
+        for &case in cases {
             let StationSlot::Joint(joint) = &self.stations[case].slots[slot] else { continue };
             let state = &outboard.stations[case];
             static_nm = static_nm.max(state.torque_nm(joint).abs());
@@ -352,7 +394,8 @@ impl<'c> ArmProblem<'c> {
             |motion| motion.demand(static_nm, inertia_kgm2),
         );
         let room = self.rooms[slot].as_ref().map_or(LinkRoom::ANY, |room| room.of(&outboard.options));
-        torques.with_bearing(self.bearing_demand(&outboard.stations, &outboard.options, slot)).with_room(room)
+        let bearing = self.bearing_demand(cases, &outboard.stations, &outboard.options, slot);
+        torques.with_bearing(bearing).with_room(room)
     }
 
     /// Adds a joint to every case. It always holds: a sized drive was checked before, and a given one excludes nothing.
