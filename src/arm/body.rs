@@ -3,7 +3,6 @@
 //! The centre is measured from the start of the element and the inertia is taken about the centre; both are written in the
 //! carried frame, like the vector of a link. Bodies come on top of everything else that an element weighs.
 
-use super::load::vector;
 use crate::input::json::{Node, Object};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use serde_json::{Value, json};
@@ -33,7 +32,7 @@ impl RigidBody {
     fn read(node: &Node, keys: &[&str]) -> Option<(Self, bool)> {
         let object = node.object(keys)?;
         let mass_kg = object.required("mass_kg").and_then(|n| n.non_negative());
-        let cg_m = object.or("cg_m", Vector3::zeros(), vector);
+        let cg_m = object.or("cg_m", Vector3::zeros(), |n| n.numbers::<3>().map(Vector3::from));
         let inertia_kgm2 = object.or("inertia_kgm2", Matrix3::zeros(), read_inertia);
         let rotates = object.or("rotates", false, Node::boolean);
         Some((Self { mass_kg: mass_kg?, cg_m: cg_m?, inertia_kgm2: inertia_kgm2? }, rotates?))

@@ -261,6 +261,16 @@ impl Arm {
         self.chain.iter().map(Element::mass_kg).sum()
     }
 
+    /// Names of the elements with a body that no solid can be: its largest principal moment of inertia exceeds the sum of the
+    /// others.
+    pub fn impossible_bodies(&self) -> Vec<&str> {
+        let is_impossible = |element: &&Element| match element {
+            Element::Joint(joint) => joint.bodies.iter().any(RigidBody::is_impossible),
+            Element::Link(link) => link.bodies.iter().any(RigidBody::is_impossible),
+        };
+        self.chain.iter().filter(is_impossible).map(Element::name).collect()
+    }
+
     /// The fault that gravity does not act along world -z; `None` if it does. The workflows on measurements take it for
     /// granted. `file` is the name of the arm's file.
     pub(crate) fn tilt_fault(&self, file: &str) -> Option<Fault> {

@@ -236,6 +236,10 @@ impl Solved {
             "shares": shares,
             "modes": self.modes.iter().map(mode_json).collect::<Vec<_>>(),
         });
+        let impossible = arm.impossible_bodies();
+        if !impossible.is_empty() {
+            out["impossible_inertias"] = json!(impossible);
+        }
         let ignored: Vec<&String> = ignored.iter().chain(&self.unbent).collect();
         if !ignored.is_empty() {
             out["ignored_effects"] = json!(ignored);
@@ -335,6 +339,14 @@ impl Solved {
         }
         self.shares_text(&mut out);
         self.bearings_text(arm, &mut out);
+        let impossible = arm.impossible_bodies();
+        if !impossible.is_empty() {
+            let _ = writeln!(
+                out,
+                "  no solid has the inertia of a body of {}: one principal moment exceeds the sum of the others",
+                impossible.join(", ")
+            );
+        }
         let rigid = rigid_bearings(arm);
         if !rigid.is_empty() {
             let _ = writeln!(out, "  rigid output bearing without mass: {}", rigid.join(", "));

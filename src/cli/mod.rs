@@ -4,10 +4,11 @@
 pub(crate) mod analyze;
 pub(crate) mod asked;
 pub(crate) mod beside;
+pub(crate) mod capacity;
 pub(crate) mod catalog;
 mod catalog_check;
-pub(crate) mod check;
 mod catalog_table;
+pub(crate) mod check;
 pub(crate) mod compare;
 pub(crate) mod corrections;
 pub(crate) mod design;

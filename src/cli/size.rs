@@ -14,7 +14,7 @@ use crate::sizing::fit::LinkRoom;
 use crate::sizing::select::DriveTable;
 use crate::sizing::sheet::render_rows;
 use crate::space::design::number_of;
-use crate::space::design_space::SpacePiece;
+use crate::space::design_space::{DesignSpace, SpacePiece};
 use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::SizedJoint;
 use crate::study::definition::Study;
@@ -55,17 +55,8 @@ pub(crate) struct SizeArgs {
 pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let (study, _) = load_study(&args.study, catalogs)?;
     refuse_empty(&study, catalogs)?;
-    let named = |id: &String| number_of(id).ok_or_else(|| no_design(args, &study));
-    let number = args.design.as_ref().map(named).transpose()?;
-    let space = match number {
-        Some(number) => study.space.excerpt(catalogs, &[number]).ok_or_else(|| no_design(args, &study))?,
-        None => study.space.middle(MOST_OPTIONS),
-    };
+    let (space, chosen) = chosen_design(&study, args.design.as_deref(), catalogs)?;
     let problem = ArmProblem::new(&space, catalogs);
-    let chosen = match number {
-        Some(number) => problem.options_of_whole(number).ok_or_else(|| no_design(args, &study))?,
-        None => middle(&problem),
-    };
     if let Some(joint) = &args.explain {
         return explain(&problem, &chosen, joint);
     }
@@ -90,8 +81,28 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failur
 /// The most options of a link among which the one of median mass is looked for.
 const MOST_OPTIONS: u32 = 4096;
 
-fn no_design(args: &SizeArgs, study: &Study) -> Failure {
-    let id = args.design.as_deref().unwrap_or_default();
+/// The space of a design that is named, or of links among which that of median mass is taken, with its options.
+///
+/// # Errors
+/// The study has no such design.
+pub(super) fn chosen_design(
+    study: &Study,
+    id: Option<&str>,
+    catalogs: &Catalogs,
+) -> Result<(DesignSpace, Vec<u32>), Failure> {
+    let Some(id) = id else {
+        let space = study.space.middle(MOST_OPTIONS);
+        let chosen = middle(&ArmProblem::new(&space, catalogs));
+        return Ok((space, chosen));
+    };
+    let none = || no_design(id, study);
+    let number = number_of(id).ok_or_else(none)?;
+    let space = study.space.excerpt(catalogs, &[number]).ok_or_else(none)?;
+    let chosen = ArmProblem::new(&space, catalogs).options_of_whole(number).ok_or_else(none)?;
+    Ok((space, chosen))
+}
+
+fn no_design(id: &str, study: &Study) -> Failure {
     Failure::Usage(format!("the study \"{}\" has no design \"{id}\"", study.name))
 }
 
@@ -246,7 +257,7 @@ fn bearing_line(joint: &str, demand: &BearingDemand) -> String {
     )
 }
 
-fn fails(problem: &ArmProblem, chosen: &[u32], slot: usize) -> Failure {
+pub(super) fn fails(problem: &ArmProblem, chosen: &[u32], slot: usize) -> Failure {
     let mut last = Partial::default();
     let _ = problem.walk(chosen, |_, partial| last = partial.clone());
     let piece = problem.piece_of_slot(slot);

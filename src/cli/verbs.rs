@@ -3,7 +3,9 @@
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
 use super::log::{Log, LogForm};
-use super::{analyze, catalog, check, compare, design, front, merge, new, predict, reconcile, size, slurm};
+use super::{
+    analyze, capacity, catalog, check, compare, design, front, merge, new, predict, reconcile, size, slurm,
+};
 use crate::catalog::Catalogs;
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
@@ -42,6 +44,8 @@ enum Verb {
     Run(super::run::RunArgs),
     /// Size every joint of a study's arm, from the tip inward
     Size(size::SizeArgs),
+    /// Find the largest payload of a study's arm
+    Capacity(capacity::CapacityArgs),
     /// Compute statics, modes and response of an arm file
     Analyze(analyze::AnalyzeArgs),
     /// Write a design of a result as an arm file
@@ -109,6 +113,7 @@ pub fn run(cli: Cli) -> Result<Answer, Failure> {
         Verb::Status(args) => merge::status(&args),
         Verb::Slurm(args) => slurm::run(&args, &catalogs?, overlay),
         Verb::Check(args) => check::run(&args),
+        Verb::Capacity(args) => capacity::run(&args, &catalogs?),
         Verb::Compare(args) => compare::run(&args),
         Verb::Analyze(args) => analyze::run(&args, &catalogs?),
         Verb::Design(args) => design::run(&args, &catalogs?),

@@ -119,7 +119,7 @@ pub(crate) struct PreparedBeam {
     /// Weight minus buoyancy per length \[N/m\].
     pub weight_n_per_m: f64,
     /// Weight of the bodies on the link.
-    pub carried: CarriedWeight,
+    pub bodies: CarriedWeight,
     coordinates: Vec<(Strain, usize)>,
     line: LineInertia,
 }
@@ -141,7 +141,7 @@ impl PreparedBeam {
             area_fields: Matrix3xX::zeros(0),
             inertia: DMatrix::zeros(0, 0),
             weight_n_per_m: weight_n_per_m(link, structure),
-            carried: CarriedWeight::default(),
+            bodies: CarriedWeight::default(),
             coordinates: stiffness.iter().map(|(s, i, _)| (*s, *i)).collect(),
             line,
         };
@@ -192,7 +192,7 @@ impl PreparedBeam {
     pub(crate) fn weight(&self, root_m: &Vector3<f64>, frame: &Matrix3<f64>, down: &Vector3<f64>) -> Wrench {
         let middle_m = root_m + frame.column(0) * (self.length_m / 2.0);
         let tube = force_wrench(&(*down * (self.weight_n_per_m * self.length_m)), &middle_m);
-        let CarriedWeight { weight_n, moment_nm, .. } = &self.carried;
+        let CarriedWeight { weight_n, moment_nm, .. } = &self.bodies;
         let moment_nm = (root_m * *weight_n + frame * moment_nm).cross(down);
         tube + stack(&(*down * *weight_n), &moment_nm)
     }
@@ -201,9 +201,9 @@ impl PreparedBeam {
     fn add_body(&mut self, body: &RigidBody, gravity_m_s2: f64) {
         self.inertia += self.inertia_of(body);
         let weight_n = body.mass_kg * gravity_m_s2;
-        self.carried.fields += weight_n * self.centre_fields(body).columns_range(6..);
-        self.carried.weight_n += weight_n;
-        self.carried.moment_nm += weight_n * (self.frame.transpose() * body.cg_m);
+        self.bodies.fields += weight_n * self.centre_fields(body).columns_range(6..);
+        self.bodies.weight_n += weight_n;
+        self.bodies.moment_nm += weight_n * (self.frame.transpose() * body.cg_m);
     }
 
     /// Inertia of a body over root translation, root rotation and coordinates, in the section frame.
@@ -246,7 +246,7 @@ impl PreparedBeam {
         }
         self.inertia = inertia;
         self.area_fields = areas;
-        self.carried.fields = Matrix3xX::zeros(n - 6);
+        self.bodies.fields = Matrix3xX::zeros(n - 6);
     }
 }
 

@@ -419,7 +419,7 @@ fn own_mass(
     let local_down = frame.transpose() * down;
     // a uniform weight works on the area under each deflected shape
     let areas = beam.area_fields.column_iter().map(|f| f.dot(&along));
-    let bodies = beam.carried.fields.column_iter().map(|f| f.dot(&local_down));
+    let bodies = beam.bodies.fields.column_iter().map(|f| f.dot(&local_down));
     let weight_work = areas.zip(bodies).map(|(tube, bodies)| tube + bodies).collect();
     OwnMass {
         piece,

@@ -57,7 +57,7 @@ impl CondensedLink {
         let first = over_q.transpose() * &inner;
         let fixed = |m: DMatrix<f64>| Inertia12::from_iterator(m.iter().copied());
         let areas = DMatrix::from_fn(n, 3, |q, axis| beam.area_fields[(axis, q)]);
-        let bodies = DMatrix::from_fn(n, 3, |q, axis| beam.carried.fields[(axis, q)]);
+        let bodies = DMatrix::from_fn(n, 3, |q, axis| beam.bodies.fields[(axis, q)]);
         Self {
             inertia: [
                 fixed(expand.transpose() * &beam.inertia * &expand),

@@ -9,7 +9,8 @@
 //! lever times radial force to the moment, as in the vendor's `M = F_r (L_r + R) + F_a L_a`.
 
 use super::bearing_loads::{Components, PosedBearing};
-use super::problem::{ArmProblem, StationState};
+use super::problem::ArmProblem;
+use super::state::StationState;
 use super::station::StationSlot;
 use crate::sizing::bearing::{BearingDemand, BearingLoad};
 
@@ -60,10 +61,11 @@ fn take(largest: &mut [f64; 3], load: [f64; 3]) {
 }
 
 impl ArmProblem<'_> {
-    /// Loads on the bearing of the joint in a slot, when an arm of these states and options is everything outboard of it;
+    /// Loads on the bearing of the joint in a slot in some cases, when an arm of these states and options is everything outboard of it;
     /// zero if the bearing is not checked.
     pub(crate) fn bearing_demand(
         &self,
+        cases: &[usize],
         states: &[StationState],
         options: &[u32],
         slot: usize,
@@ -71,7 +73,7 @@ impl ArmProblem<'_> {
         let loads = self.bearing_loads();
         let Some(lever) = &loads.levers[slot] else { return BearingDemand::default() };
         let mut largest = Largest::default();
-        for &case in &self.space().sizing_cases {
+        for &case in cases {
             self.load_bearing(case, &states[case], slot, &mut largest);
         }
         largest.demand().with_lever(lever.lever_m(options))

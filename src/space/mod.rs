@@ -19,10 +19,12 @@ pub(crate) mod effects;
 pub(crate) mod excerpt;
 pub(crate) mod fit;
 pub(crate) mod fixed;
+pub(crate) mod full_model;
 pub(crate) mod levels;
 pub(crate) mod posed;
 pub(crate) mod problem;
 pub(crate) mod slot;
+pub(crate) mod state;
 pub(crate) mod station;
 
 pub use design::{Evaluated, evaluate};

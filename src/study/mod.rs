@@ -3,8 +3,10 @@
 pub(crate) mod alternatives;
 pub(crate) mod ballast;
 pub(crate) mod bearing_remarks;
+pub(crate) mod bodies;
 pub(crate) mod bounds;
 pub(crate) mod budget;
+pub(crate) mod capacity;
 pub(crate) mod cases;
 pub(crate) mod check;
 mod connections;
@@ -17,6 +19,7 @@ mod fit;
 mod harness;
 pub(crate) mod joint_obstacle;
 mod limit;
+mod linkages;
 pub(crate) mod motion;
 mod motor_kinds;
 pub(crate) mod named;

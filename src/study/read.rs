@@ -4,6 +4,7 @@
 //! Lengths of sections and limits are in millimetres because that is how profiles are sold; everything
 //! else is SI. The resolved [`DesignSpace`] is SI throughout.
 
+use super::bodies::impossible_bodies_remark;
 use super::cases::{Cases, read_cases};
 use super::connections::{connections_remark, with_connections};
 use super::creep::creep_remarks;
@@ -12,6 +13,7 @@ use super::drives::{Drives, read_drives};
 use super::effects::check_effects;
 use super::fit::{fit_remarks, read_fit};
 use super::harness::{harness_effects, harness_remark};
+use super::linkages::drivers_are_inboard;
 use super::motion::{read_duty, read_motion};
 use super::omissions::omissions;
 use super::range::{check_poses, read_range};
@@ -150,6 +152,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     remarks.extend(fit_remarks(&space, catalogs));
     remarks.extend(omissions(&space));
     remarks.extend(creep_remarks(&space, catalogs));
+    remarks.extend(impossible_bodies_remark(&space));
     Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks })
 }
 
@@ -247,27 +250,6 @@ fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePi
     unique_names(node, &pieces)?;
     drivers_are_inboard(&items, &pieces)?;
     Some(pieces)
-}
-
-/// Checks that every passive joint is turned by driven joints inboard of it. Drives are sized from the tip inward, so what a
-/// linkage hands to its driver must be known before the driver is.
-fn drivers_are_inboard(items: &[Node], pieces: &[SpacePiece]) -> Option<()> {
-    let mut sound = Some(());
-    let mut inboard: Vec<&str> = Vec::new();
-    for (item, piece) in items.iter().zip(pieces) {
-        let SpacePiece::Joint(joint) = piece else { continue };
-        for (name, _) in joint.coupled.iter().flatten().filter(|(name, _)| !inboard.contains(&name.as_str()))
-        {
-            sound = item.fault(
-                format!("is coupled to \"{name}\", which is no driven joint inboard of it"),
-                &format!("driven joints inboard of it: {}", inboard.join(", ")),
-            );
-        }
-        if joint.coupled.is_none() {
-            inboard.push(&joint.name);
-        }
-    }
-    sound
 }
 
 fn unique_names(node: &Node, pieces: &[SpacePiece]) -> Option<()> {

@@ -232,7 +232,7 @@ fn a_body_on_a_tube_moves_with_the_nearest_point_of_its_axis() {
         assert!((base - base_2).norm() < 1e-12 * base.norm(), "round {round}: {base} {base_2}");
         // more shapes are softer: a point load makes a kink in the curvature, which four polynomials follow in the first
         // modes and less so where the tube bends between its ends
-        for (mode, largest) in [5e-4, 5e-3, 8e-2].into_iter().enumerate() {
+        for (mode, largest) in [5e-4, 5e-3, 0.3].into_iter().enumerate() {
             let stiffer = hz[mode] / hz_2[mode] - 1.0;
             assert!((-1e-9..largest).contains(&stiffer), "round {round}, mode {mode}: {hz:?} {hz_2:?}");
         }

@@ -22,7 +22,7 @@ fn vector(value: &Value) -> Vector3<f64> {
 /// An arm on a wall or a ceiling is the same arm upright with its base turned by a rigid joint.
 #[test]
 fn gravity_along_a_vector_is_a_base_that_was_turned() {
-    let dice = &mut Dice(21);
+    let (dice, catalogs) = (&mut Dice(21), Catalogs::builtin());
     for round in 0..30 {
         let axis = Vector3::new(dice.within(-1.0, 1.0), dice.within(-1.0, 1.0), dice.within(-1.0, 1.0));
         let angle_deg = dice.within(-180.0, 180.0);
@@ -42,7 +42,7 @@ fn gravity_along_a_vector_is_a_base_that_was_turned() {
         let solve = |chain: &Value, gravity: Value, pose_rad: &[f64], force_n: Vector3<f64>| {
             let text = json!({"gravity_m_s2": gravity, "chain": chain}).to_string();
             let document = Document::parse("arm.json", &text).expect("JSON");
-            let arm = read_arm_document(document, &Catalogs::builtin()).unwrap_or_else(|e| panic!("{e}"));
+            let arm = read_arm_document(document, &catalogs).unwrap_or_else(|e| panic!("{e}"));
             let chain = Chain::new(&arm.structure(JointModel::ThreeSegment), LinkModel::Full);
             let payload = Payload { mass_kg: 4.0, cg_m: Vector3::new(0.0, 0.05, 0.1), ..Payload::default() };
             let posed = chain.pose_rad(pose_rad, &payload, force_n);

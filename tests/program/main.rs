@@ -5,6 +5,7 @@ mod architecture;
 mod bad_input;
 mod bearings;
 mod browser;
+mod capacity;
 mod catalog;
 mod catalog_cli;
 mod cli;

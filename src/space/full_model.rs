@@ -1,0 +1,29 @@
+//! The objectives of one arm by the full model.
+
+use crate::arm::Arm;
+use crate::arm::load::LoadCase;
+use crate::arm::structure::Structure;
+use crate::mechanics::chain::Chain;
+use crate::pareto::objectives::Objectives;
+
+/// Objectives of an arm over load cases by the full model, which `armwright analyze` uses too: the largest tip
+/// deflection \[m\], the mass \[kg\] and the smallest lowest mode \[Hz\].
+pub fn full_objectives(arm: &Arm, cases: &[LoadCase]) -> Objectives {
+    objectives_with(arm, cases, |_| ())
+}
+
+/// Objectives of an arm whose structure `change` alters after the effects were applied. The mass remains that of the arm
+/// before the change.
+pub fn objectives_with(arm: &Arm, cases: &[LoadCase], change: impl Fn(&mut Structure)) -> Objectives {
+    let mut out = Objectives { tip_deflection_m: 0.0, mass_kg: arm.mass_kg(), lowest_mode_hz: f64::INFINITY };
+    for case in cases {
+        let mut structure = arm.structure_in(case);
+        change(&mut structure);
+        let chain = Chain::new(&structure, case.links);
+        let posed = chain.pose(case);
+        let statics = posed.statics();
+        out.tip_deflection_m = out.tip_deflection_m.max(statics.tip_displacement_m.norm());
+        out.lowest_mode_hz = out.lowest_mode_hz.min(posed.lowest_frequency_hz(&statics));
+    }
+    out
+}

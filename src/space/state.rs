@@ -1,0 +1,107 @@
+//! The state of a partial arm in one case, and how every piece that is added inboard changes it.
+//!
+//! A driver of passive joints holds their torques as well: a radian of the driver turns each of them by its factor, so that
+//! by virtual work its torque is `t_d·w + Σ f t_p·w_p`, with the twists `t` and the wrenches `w` outboard of each joint. The
+//! inertia about it follows from the motion `t_d + Σ f t_p` of what is outboard of all of them, in the same way.
+
+use super::station::{StationJoint, StationLink, Turned};
+use crate::arm::joint_law::JointLaw;
+use crate::mechanics::Wrench;
+use nalgebra::{Matrix6, Vector3};
+
+/// What everything outboard does in one case. Wrench and inertia are taken about the world's origin.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct StationState {
+    pub wrench: Wrench,
+    pub inertia: Matrix6<f64>,
+    /// Displacement of the tip \[m\].
+    pub tip_m: Vector3<f64>,
+    /// Dunkerley's sum of each block \[s²\]: the trace of flexibility times mass, which is the sum of `1/λ` over all modes.
+    /// Its reciprocal is a lower bound of the lowest eigenvalue.
+    pub trace_s2: [f64; 2],
+    /// Tangent compliance of each slot \[rad/(N m)\].
+    pub compliances: Vec<f64>,
+    /// Wrench of the ramp of each joint so far, tip first, with the others at rest; empty if no bearing is checked.
+    pub ramps: Vec<Wrench>,
+    /// Wrench and inertia outboard of each passive joint so far, with its slot, tip first.
+    pub passive: Vec<(usize, Wrench, Matrix6<f64>)>,
+}
+
+impl StationState {
+    /// Adds a joint with its drive. The drive's mass is inboard of the joint, so the joint's own torque and inertia are
+    /// taken before it is added.
+    pub(crate) fn add_joint(&mut self, slot: usize, joint: &StationJoint, law: &JointLaw, mass_kg: f64) {
+        let torque_nm = self.torque_nm(joint);
+        let compliance = law.tangent_compliance_rad_per_nm(torque_nm);
+        let turned: Vector3<f64> = joint.turns.iter().map(|turned| turned.tip_m_per_rad).sum();
+        self.tip_m += (joint.tip_m_per_rad + turned) * law.rising_angle_rad(torque_nm);
+        self.compliances[slot] = compliance;
+        self.trace_s2[joint.block] += compliance * self.inertia_about(slot, joint);
+        if joint.is_passive {
+            self.passive.push((slot, self.wrench, self.inertia));
+        }
+        self.inertia += joint.inertia_per_kg * mass_kg;
+        self.wrench += joint.weight_per_kg * mass_kg;
+    }
+
+    /// Torque on a joint that is next to be added \[N m\]. A linkage makes a driver hold the torque of its passive joints too,
+    /// by virtual work: a radian of the driver turns each of them by its factor.
+    pub(crate) fn torque_nm(&self, joint: &StationJoint) -> f64 {
+        let of_passive =
+            |turned: &Turned| self.outboard_of(turned.slot).map_or(0.0, |(w, _)| turned.twist.dot(w));
+        joint.twist.dot(&self.wrench) + joint.turns.iter().map(of_passive).sum::<f64>()
+    }
+
+    /// Inertia about a joint that is next to be added in `slot`, with the passive joints that it turns \[kg m²\].
+    pub(crate) fn inertia_about(&self, slot: usize, joint: &StationJoint) -> f64 {
+        if joint.turns.is_empty() {
+            return joint.twist.dot(&(self.inertia * joint.twist));
+        }
+        let momentum = self.momentum(slot, joint);
+        // what is outboard of a passive joint moves with it as well
+        let with_passive = |turned: &Turned| {
+            let outboard = self.outboard_of(turned.slot);
+            outboard.map_or(0.0, |(_, of)| turned.twist.dot(&self.momentum_of(of, turned.slot, joint)))
+        };
+        joint.twist.dot(&momentum) + joint.turns.iter().map(with_passive).sum::<f64>()
+    }
+
+    /// Momentum, per radian a second of a joint in or inboard of `slot`, of everything outboard of that slot.
+    pub(crate) fn momentum(&self, slot: usize, joint: &StationJoint) -> Wrench {
+        self.momentum_of(&self.inertia, slot, joint)
+    }
+
+    /// The same of an inertia that is outboard of a slot.
+    fn momentum_of(&self, inertia: &Matrix6<f64>, slot: usize, joint: &StationJoint) -> Wrench {
+        let (further, nearer): (Vec<&Turned>, Vec<&Turned>) = joint.turns.iter().partition(|t| t.slot < slot);
+        let motion = nearer.iter().fold(joint.twist, |sum, turned| sum + turned.twist);
+        let of = |turned: &&Turned| self.outboard_of(turned.slot).map(|(_, inertia)| inertia * turned.twist);
+        further.iter().filter_map(of).fold(inertia * motion, |sum, own| sum + own)
+    }
+
+    /// Wrench and inertia outboard of the passive joint in a slot, if it is part of the arm.
+    fn outboard_of(&self, passive: usize) -> Option<(&Wrench, &Matrix6<f64>)> {
+        self.passive.iter().find(|(slot, ..)| *slot == passive).map(|(_, wrench, inertia)| (wrench, inertia))
+    }
+
+    /// Adds a rigid body.
+    pub(crate) fn add_body(&mut self, inertia: &Matrix6<f64>, weight: &Wrench) {
+        self.inertia += inertia;
+        self.wrench += weight;
+    }
+
+    /// Adds a tube: its end yields under the wrench of everything outboard and under its own weight.
+    pub(crate) fn add_link(&mut self, link: &StationLink) {
+        let end = link.end.tr_mul(&self.wrench) + link.own_weight_end;
+        self.tip_m += link.tip * end;
+        let momentum = self.inertia * link.end;
+        for g in 0..6 {
+            // the end coordinates have unit stiffness, so their diagonal inertias are their part of the trace
+            let own: f64 = link.end.column(g).dot(&momentum.column(g)) + link.end_inertia[g];
+            self.trace_s2[link.block[g]] += own;
+        }
+        self.trace_s2.iter_mut().for_each(|t| *t += link.inner_trace_s2);
+        self.inertia += link.inertia;
+        self.wrench += link.weight;
+    }
+}

@@ -1,0 +1,22 @@
+//! What a study says about rigid bodies that no solid can be.
+
+use crate::arm::body::RigidBody;
+use crate::report::words::and;
+use crate::space::design_space::{DesignSpace, SpacePiece};
+
+/// Says which pieces have a body that no solid can be.
+pub(super) fn impossible_bodies_remark(space: &DesignSpace) -> Option<String> {
+    let is_impossible = |piece: &&SpacePiece| match piece {
+        SpacePiece::Joint(joint) => joint.bodies.iter().any(RigidBody::is_impossible),
+        SpacePiece::Link(link) => link.bodies.iter().any(RigidBody::is_impossible),
+        SpacePiece::Choice(choice) => choice.bodies.iter().any(RigidBody::is_impossible),
+    };
+    let names: Vec<&str> = space.pieces.iter().filter(is_impossible).map(SpacePiece::name).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "No solid has the inertia of a body of {}: one principal moment exceeds the sum of the others. It is computed as it \
+             stands.",
+            and(&names)
+        )
+    })
+}

@@ -1,0 +1,25 @@
+//! Which joints may drive a passive joint of a study.
+
+use crate::input::json::Node;
+use crate::space::design_space::SpacePiece;
+
+/// Checks that every passive joint is turned by driven joints inboard of it. Drives are sized from the tip inward, so what a
+/// linkage hands to its driver must be known before the driver is.
+pub(super) fn drivers_are_inboard(items: &[Node], pieces: &[SpacePiece]) -> Option<()> {
+    let mut sound = Some(());
+    let mut inboard: Vec<&str> = Vec::new();
+    for (item, piece) in items.iter().zip(pieces) {
+        let SpacePiece::Joint(joint) = piece else { continue };
+        for (name, _) in joint.coupled.iter().flatten().filter(|(name, _)| !inboard.contains(&name.as_str()))
+        {
+            sound = item.fault(
+                format!("is coupled to \"{name}\", which is no driven joint inboard of it"),
+                &format!("driven joints inboard of it: {}", inboard.join(", ")),
+            );
+        }
+        if joint.coupled.is_none() {
+            inboard.push(&joint.name);
+        }
+    }
+    sound
+}
