@@ -22,8 +22,8 @@ const OF_A_RUN: [&str; 5] = ["elapsed_s", "designs_per_s", "threads", "platform"
 /// What stands around timings.
 const TIMING: [&str; 2] = ["<!-- timing -->", "<!-- /timing -->"];
 /// Commands that name the folder of results.
-const COMMANDS: [&str; 4] =
-    ["armwright design ", "armwright analyze ", "armwright compare ", "armwright front check "];
+const COMMANDS: [&str; 5] =
+    ["armwright design ", "armwright analyze ", "armwright compare ", "armwright front check ", " --cases "];
 
 /// Executes the verb.
 pub(super) fn run(args: &CheckArgs) -> Result<String, Failure> {
