@@ -64,8 +64,8 @@ impl GearKind {
     }
 
     /// The exponent of torque in the law of life that a blank cell stands for: 3 for the ball bearing of a wave generator
-    /// (Harmonic Drive LLC, CSF/CSG catalog), 10/3 for the roller bearings of other gears (ISO 281; Nabtesco's RV and
-    /// Spinea's TwinSpin catalogs print this law for cycloidal gears).
+    /// (Harmonic Drive LLC, CSF/CSG catalog), 10/3 for the roller bearings of other gears (ISO 281; that
+    /// makers of cycloidal gears use it is from memory).
     pub fn usual_life_exponent(self) -> f64 {
         if self == GearKind::StrainWave { 3.0 } else { 10.0 / 3.0 }
     }

@@ -168,12 +168,12 @@ fn in_lines(say: impl Fn(Duration)) -> impl FnMut(Duration) {
 
 fn visited_line(total: u128, visited: u64, elapsed: Duration) -> String {
     let (done, total, elapsed_s) = (visited as f64, total as f64, elapsed.as_secs_f64());
-    let rate = done / elapsed_s.max(f64::MIN_POSITIVE);
-    format!(
-        "{elapsed_s:.0} s: {done:.3e} of {total:.3e} designs ({:.0} %), {rate:.0} designs/s, about {:.0} s left",
-        100.0 * done / total,
-        (total - done) / rate.max(1.0)
-    )
+    let so_far = format!("{elapsed_s:.0} s: {done:.3e} of {total:.3e} designs ({:.0} %)", 100.0 * done / total);
+    if visited == 0 || elapsed_s == 0.0 {
+        return so_far;
+    }
+    let rate = done / elapsed_s;
+    format!("{so_far}, {rate:.0} designs/s, about {:.0} s left", (total - done) / rate.max(1.0))
 }
 
 fn search_line(known: &Known, elapsed: Duration) -> String {

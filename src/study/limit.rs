@@ -175,7 +175,7 @@ mod tests {
         let servo = Some(Servo { bandwidth_hz: 10.0, ratio: 3.0 });
         let both = Constraints { lowest_mode_min_hz: Some(25.0), servo, ..Constraints::default() };
         let words = |hz: f64| Quantity::Mode.enough_words(&both, hz);
-        assert_eq!(words(27.0), "\"servo_bandwidth_hz\" to 9");
-        assert_eq!(words(24.0), "\"lowest_mode_min_hz\" to 24 and \"servo_bandwidth_hz\" to 8");
+        assert_eq!(words(27.3), "\"servo_bandwidth_hz\" to 9.0999");
+        assert_eq!(words(24.3), "\"lowest_mode_min_hz\" to 24.299 and \"servo_bandwidth_hz\" to 8.0999");
     }
 }

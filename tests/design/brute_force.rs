@@ -449,7 +449,7 @@ fn sizes_every_design_of_a_study_alike() {
         sized.iter().map(|chain| (arm_key(&arm_file(0.0, chain)), &chain[..])).collect();
     assert_eq!(ours.len(), results.count("designs_total"));
     for number in 0..ours.len() {
-        let id = base_36(number);
+        let id = format!("x{}", base_36(number));
         let out = dir.path().join("taken");
         armwright_ok(&["design", word(&dir.path().join("results")), &id, "--out", word(&out)]);
         let arm = read_json(&out.join("arm.json"));
