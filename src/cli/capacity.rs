@@ -80,7 +80,7 @@ fn kilograms(limit: &Limit) -> String {
 fn to_text(name: &str, found: &Capacity) -> String {
     let mut out = match found.limit.payload_kg.is_finite() {
         true => format!(
-            "{name} holds {} kg in all of its poses; beyond, {} fails by its {} (the pose {} allows least)\n",
+            "{name} holds {} kg in all of its poses; more is too much for {} (check: {}), first in the pose {}\n",
             kilograms(&found.limit),
             found.limit.piece,
             found.limit.check,

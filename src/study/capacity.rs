@@ -78,7 +78,7 @@ fn limit(space: &DesignSpace, catalogs: &Catalogs, options: &[u32], cases: &[usi
         problem.overload(options, cases).map(|(piece, check)| {
             let name =
                 space.pieces.get(piece).map_or(String::new(), |piece| SpacePiece::name(piece).to_string());
-            (name, check.map_or("link stress".to_string(), |check| check.kind.name().to_string()))
+            (name, check.map_or("link stress".to_string(), |check| check.kind.label().to_string()))
         })
     };
     let (mut low, mut high) = (0.0, 1.0);

@@ -13,6 +13,7 @@ use crate::brute::program::{
     FrontRow, Results, armwright_fails, armwright_ok, read_json, run_study, run_study_with, word,
 };
 use crate::brute::study::Study;
+use crate::exact_support::write_listed;
 use crate::witness::LoadCase;
 use nalgebra::Vector3;
 use serde_json::{Value, json};
@@ -405,7 +406,7 @@ fn finds_the_same_front_with_thick_walls_bars_and_a_fibre_that_is_weak_in_compre
     armwright_ok(&["front", "check", word(&results)]);
     let front = std::fs::read_to_string(results.join("front.csv")).expect("a front");
     let fewer: Vec<&str> = front.lines().enumerate().filter(|(i, _)| *i != 2).map(|(_, line)| line).collect();
-    std::fs::write(results.join("front.csv"), fewer.join("\n") + "\n").expect("written");
+    write_listed(&results, "front.csv", &(fewer.join("\n") + "\n"));
     assert_eq!(armwright_fails(&["front", "check", word(&results)]).0, 9);
 }
 

@@ -10,6 +10,7 @@ use armwright::space::ArmProblem;
 use armwright::space::evaluate;
 use armwright::study::{Study, read_study};
 use serde_json::Value;
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 pub fn read(study: &Value, catalogs: &Catalogs) -> Study {
@@ -89,4 +90,13 @@ pub fn both_searches(
 pub fn agree(text: &Value) -> usize {
     let catalogs = Catalogs::builtin();
     both_searches(&read(text, &catalogs), &catalogs, true, &text.to_string()).1
+}
+
+/// Writes another text into a file of a result and into the list of its files, as a program would that is wrong and not torn.
+pub fn write_listed(results: &Path, name: &str, text: &str) {
+    std::fs::write(results.join(name), text).expect("written");
+    let file = results.join("run.json");
+    let mut run: Value = serde_json::from_str(&std::fs::read_to_string(&file).expect("a run")).expect("JSON");
+    run["files"][name] = blake3::hash(text.as_bytes()).to_hex().to_string().into();
+    std::fs::write(&file, run.to_string()).expect("written");
 }

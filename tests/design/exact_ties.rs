@@ -1,7 +1,7 @@
 //! Drives of equal mass and curve are one option of the exact search: every one of them that holds is listed all the same.
 
 use crate::dice::Dice;
-use crate::exact_support::{agree, read};
+use crate::exact_support::{agree, read, write_listed};
 use armwright::catalog::Catalogs;
 use armwright::exact::Exact;
 use armwright::search::Sweep;
@@ -175,11 +175,11 @@ fn ties_too_many_for_the_front_are_listed_beside_it_and_hold() {
     let fewer: String =
         listed.lines().take(1).chain(listed.lines().skip(2)).map(|l| format!("{l}\n")).collect();
     for (tampered, said) in [(other, "may not be"), (fewer, "may be"), (String::new(), "its columns are")] {
-        std::fs::write(at("out/ties.csv"), tampered).expect("written");
+        write_listed(&at("out"), "ties.csv", &tampered);
         let (code, text) = armwright(&["front", "check", &out]);
         assert!(code == 9 && text.contains("ties.csv") && text.contains(said), "{said}: {text}");
     }
-    std::fs::write(at("out/ties.csv"), listed).expect("written");
+    write_listed(&at("out"), "ties.csv", &listed);
 
     // a front that says that its ties are rows of it, and one that lacks a row, are found out
     let file = at("out/run.json");
@@ -201,12 +201,12 @@ fn ties_too_many_for_the_front_are_listed_beside_it_and_hold() {
     let whole = std::fs::read_to_string(at("out/front.csv")).expect("front.csv");
     let mut lines: Vec<&str> = whole.lines().collect();
     let dropped = lines.remove(lines.len() / 2);
-    std::fs::write(at("out/front.csv"), lines.join("\n") + "\n").expect("written");
     with("front_size", json!(front.len() - 1));
+    write_listed(&at("out"), "front.csv", &(lines.join("\n") + "\n"));
     let (code, text) = armwright(&["front", "check", &out]);
     assert_eq!(code, 9, "{text}");
     assert!(text.contains("belongs on the front and is not there"), "{dropped}: {text}");
-    std::fs::write(at("out/front.csv"), whole).expect("written");
+    write_listed(&at("out"), "front.csv", &whole);
 
     // two drives that ties.csv names, put in by a study that has no other at these joints, leave the objectives
     let of_design =

@@ -4,7 +4,7 @@
 use crate::brute::catalog::Catalog;
 use crate::brute::design::{Design, search};
 use crate::brute::front::{Place, places};
-use crate::brute::program::{FrontRow, Results, armwright_ok, read_json, word};
+use crate::brute::program::{FrontRow, Results, armwright, armwright_ok, read_json, word};
 use crate::brute::study::Study;
 use serde_json::Value;
 use std::path::Path;
@@ -178,7 +178,7 @@ fn the_study_is_searched_as_asked_and_one_of_very_many_designs_not_design_by_des
     std::fs::write(&file, large.to_string()).expect("written");
     let campaign = format!("{}/tests/data/campaigns/plain-0251e", env!("CARGO_MANIFEST_DIR"));
     let out = dir.path().join("large");
-    let said = armwright_ok(&[
+    let output = armwright(&[
         "reconcile",
         &campaign,
         "--study",
@@ -188,6 +188,8 @@ fn the_study_is_searched_as_asked_and_one_of_very_many_designs_not_design_by_des
         "--out",
         word(&out),
     ]);
+    let said = String::from_utf8(output.stdout).expect("text");
+    assert_eq!(output.status.code(), Some(10), "{said}");
     let rerun = read_json(&out.join("verdict.json"))["study"].clone();
     assert_eq!(rerun["status"], "partial", "{said}");
     for side in ["nominal", "corrected"] {
