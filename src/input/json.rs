@@ -407,7 +407,9 @@ fn line_of(text: &str, path: &str) -> Option<usize> {
 fn is_key(quoted: &[u8], wanted: &str) -> bool {
     match quoted.contains(&b'\\') {
         true => serde_json::from_slice::<String>(quoted).is_ok_and(|key| key == wanted),
-        false => quoted.get(1..quoted.len() - 1) == Some(wanted.as_bytes()),
+        false => {
+            quoted.strip_prefix(b"\"").and_then(|rest| rest.strip_suffix(b"\"")) == Some(wanted.as_bytes())
+        }
     }
 }
 

@@ -4,7 +4,6 @@ use super::definition::Study;
 use super::joint_obstacle::joint_obstacles;
 use super::limit::Quantity;
 use super::relaxed_limits::{Limited, Relaxation};
-use crate::arm::file::windup_of;
 use crate::catalog::Catalogs;
 use crate::space::constraint::Constraints;
 use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint, SpacePiece};
@@ -112,7 +111,7 @@ pub(crate) fn too_large(space: &DesignSpace, catalogs: &Catalogs) -> Option<Stri
 /// Number of gears and of motors that a joint may use; `None` if its drive is given.
 fn parts_offered(joint: &SpaceJoint, catalogs: &Catalogs) -> Option<[usize; 2]> {
     let (DriveChoice::FirstFit(filter) | DriveChoice::AllFits(filter)) = &joint.drive else { return None };
-    let gears = catalogs.gears.iter().filter(|gear| filter.allows_gear(gear) && windup_of(gear).is_some());
+    let gears = catalogs.gears.iter().filter(|gear| filter.allows_gear(gear));
     let motors = catalogs.motors.iter().filter(|motor| filter.allows_motor(motor));
     Some([gears.count(), motors.count()])
 }
@@ -122,7 +121,7 @@ fn no_drive_offered(joint: &SpaceJoint, catalogs: &Catalogs) -> Option<String> {
     let [gears, motors] = parts_offered(joint, catalogs)?;
     (gears == 0 || motors == 0).then(|| {
         format!(
-            "joint {}: \"drives\" leaves {gears} gears with a torsion curve and {motors} motors of the catalogs; widen it",
+            "joint {}: \"drives\" leaves {gears} gears and {motors} motors of the catalogs; widen it",
             joint.name
         )
     })
