@@ -10,6 +10,10 @@ use std::path::{Component, Path};
 pub(super) const RUN: &str = "run.json";
 /// The file that lists the files of a campaign's result.
 pub(super) const VERDICT: &str = "verdict.json";
+/// The file that lists the files of a shard of a search.
+pub(super) const SHARD: &str = "shard.json";
+/// Every such file.
+pub(super) const MANIFESTS: [&str; 3] = [RUN, VERDICT, SHARD];
 
 /// Files with their names relative to a folder of results.
 pub(super) type Files = Vec<(String, Vec<u8>)>;

@@ -4,11 +4,11 @@ use super::asked::Asked;
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
 use super::finished::{Finished, catalogs_hash};
-use super::manifest::RUN;
+use super::manifest::{RUN, SHARD};
 use super::result_folder::ResultFolder;
 use super::run::planned;
 use super::search::stopped_by_signal;
-use super::shard::{CANDIDATES, COMMON, MANIFEST, STUDY, folder_of, read_manifest};
+use super::shard::{CANDIDATES, COMMON, STUDY, folder_of, read_manifest};
 use super::supplements::SupplementArgs;
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
@@ -157,7 +157,7 @@ impl Shards {
         let Some(first) = all.first() else {
             let names: Vec<String> = folders.iter().map(|folder| folder.display().to_string()).collect();
             return Err(Failure::File(format!(
-                "{} has no shard, which is a folder with {MANIFEST}; `armwright run STUDY --shard 1/4` makes one",
+                "{} has no shard, which is a folder with {SHARD}; `armwright run STUDY --shard 1/4` makes one",
                 names.join(", ")
             )));
         };
@@ -216,7 +216,7 @@ const DEEPEST: usize = 3;
 
 /// The folders of shards in a folder, itself among them, in the order of their names.
 fn shards_in(folder: &Path, depth: usize) -> Result<Vec<PathBuf>, Failure> {
-    if folder.join(MANIFEST).is_file() {
+    if folder.join(SHARD).is_file() {
         return Ok(vec![folder.to_path_buf()]);
     }
     let entries = fs_err::read_dir(folder).map_err(|e| Failure::File(e.to_string()))?;
@@ -241,7 +241,7 @@ impl Found {
             (1..=of).contains(&number).then_some(Shard { number, of })
         });
         let range = pair("range").map(|[start, end]| u128::from(start)..u128::from(end));
-        let fault = || Failure::File(format!("{}: no shard or no range", dir.join(MANIFEST).display()));
+        let fault = || Failure::File(format!("{}: no shard or no range", dir.join(SHARD).display()));
         let (shard, range) = shard.zip(range).ok_or_else(fault)?;
         Ok(Self { dir, manifest, shard, range })
     }

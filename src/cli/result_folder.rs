@@ -7,7 +7,7 @@
 
 use super::failure::Failure;
 use super::lock::Lock;
-use super::manifest::{Earlier, Files, RUN, VERDICT, sealed};
+use super::manifest::{Earlier, Files, MANIFESTS, sealed};
 use crate::report::whole_file::{create_folder, folder_of, remove_file, rename, sync_folder, write_staged};
 use std::collections::BTreeSet;
 use std::io;
@@ -158,7 +158,7 @@ fn roll_forward(folder: &Path) -> io::Result<()> {
         return Ok(());
     }
     // without a manifest all was moved already
-    if let Some(manifest) = [RUN, VERDICT].into_iter().find(|name| ready.join(name).is_file()) {
+    if let Some(manifest) = MANIFESTS.into_iter().find(|name| ready.join(name).is_file()) {
         let read =
             |folder: &Path| Earlier::read(folder, manifest).map_err(|e| io::Error::other(e.to_string()));
         let (new, old) = (read(&ready)?, read(folder)?);

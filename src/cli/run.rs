@@ -7,11 +7,11 @@ use super::exit::Answer;
 use super::failure::Failure;
 use super::finished::{catalogs_hash, facts_of, front_of_material, is_front_of_material, pretty};
 use super::log::Log;
-use super::manifest::RUN;
+use super::manifest::{RUN, SHARD};
 use super::progress::Record;
 use super::result_folder::ResultFolder;
 use super::search::{SearchArgs, With, search};
-use super::shard::{CANDIDATES, MANIFEST, STUDY, folder_of, run_shard, shard_of};
+use super::shard::{CANDIDATES, STUDY, folder_of, run_shard, shard_of};
 use super::supplements::{FILES, SupplementArgs};
 use super::write::{is_same_file, refuse_overwriting};
 use crate::catalog::Catalogs;
@@ -197,7 +197,7 @@ fn run_part(
     let dir = args.out.clone().unwrap_or_else(|| folder_of(&shards, shard));
     let record = args.progress.as_deref().map(Record::create).transpose()?;
     let (how, supplements, record) = (&args.search, &args.supplements, record.as_ref());
-    let folder = ResultFolder::open(&dir, MANIFEST, &[MANIFEST, CANDIDATES, STUDY])?;
+    let folder = ResultFolder::open(&dir, SHARD, &[SHARD, CANDIDATES, STUDY])?;
     let keep = |files: &[(String, Vec<u8>)]| folder.publish(files);
     let with = With { catalogs, overlay, dir: &dir, keep: &keep, how, supplements, record, log };
     run_shard(asked, shard, words, &with)

@@ -5,6 +5,7 @@ use super::asked::Asked;
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
 use super::finished::{catalogs_hash, pretty};
+use super::manifest::SHARD;
 use super::progress::Watch;
 use super::search::{With, stopped_by_signal};
 use crate::search::sweep::{Shard, Status};
@@ -14,8 +15,6 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Name of the manifest of a shard.
-pub(super) const MANIFEST: &str = "shard.json";
 /// Names of the other files of a shard.
 pub(super) const CANDIDATES: &str = "candidates.csv";
 pub(super) const STUDY: &str = "study.json";
@@ -96,11 +95,11 @@ pub(super) fn run_shard(
     let mut written: Vec<(String, Vec<u8>)> =
         files.into_iter().map(|(name, text)| (name.to_string(), text.into_bytes())).collect();
     // it lists the others with their hashes and is written last: where it is, the rest is complete
-    written.push((MANIFEST.into(), pretty(&manifest)));
+    written.push((SHARD.into(), pretty(&manifest)));
     (with.keep)(&written)?;
     let text = format!(
         "shard {}/{}: {} designs, {} candidates of the front, in {elapsed_s:.1} s\nwritten to {}: {CANDIDATES}, {STUDY}, \
-         {MANIFEST}\n",
+         {SHARD}\n",
         shard.number,
         shard.of,
         range.end - range.start,
@@ -128,7 +127,7 @@ pub(super) fn hash_of(bytes: &[u8]) -> String {
 /// # Errors
 /// A file is missing, is no manifest, or has other bytes.
 pub(super) fn read_manifest(dir: &Path) -> Result<Value, Failure> {
-    let path = dir.join(MANIFEST);
+    let path = dir.join(SHARD);
     let text = fs_err::read_to_string(&path).map_err(|e| Failure::File(e.to_string()))?;
     let manifest: Value =
         serde_json::from_str(&text).map_err(|e| Failure::File(format!("{}: {e}", path.display())))?;

@@ -1,7 +1,7 @@
 //! Output: text to standard output and standard error, and files that are no result of a study or a campaign.
 
 use super::failure::Failure;
-use super::manifest::{Earlier, RUN, VERDICT};
+use super::manifest::{Earlier, MANIFESTS};
 use crate::report::whole_file::{create_folder, folder_of, write_whole};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -99,7 +99,7 @@ pub(super) fn is_same_file(a: &Path, b: &Path) -> bool {
 fn result_of(path: &Path) -> Result<Option<PathBuf>, Failure> {
     let (folder, name) =
         (folder_of(path), path.file_name().and_then(|name| name.to_str()).unwrap_or_default());
-    for manifest in [RUN, VERDICT] {
+    for manifest in MANIFESTS {
         if let listed @ Earlier::Listed(_) = Earlier::read(&folder, manifest)?
             && listed.has(name, manifest)
         {

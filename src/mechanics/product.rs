@@ -180,7 +180,7 @@ mod tests {
         let (a, b) = (numbers(50, 9, 2), numbers(50, 6, 3));
         let mut parts = DMatrix::zeros(9, 6);
         for (first, count) in [(0, 13), (13, 37)] {
-            add_transposed_product(&mut parts, a.rows(first, count).into(), b.rows(first, count).into());
+            add_transposed_product(&mut parts, a.rows(first, count), b.rows(first, count));
         }
         assert_eq!(parts, transposed_product(&a, &b));
     }

@@ -33,7 +33,7 @@ impl DriveTable<'_> {
     }
 
     /// What the gears and the user's own motors lack: what is said beside a drive that comes nearest.
-    pub fn missing_beside_the_nearest(&self) -> Option<String> {
+    pub fn also_missing_figures(&self) -> Option<String> {
         let gears = self.gears().iter().any(|gear| !gear.lacks(self.gear_mass()).is_empty());
         let own = self.motors().iter().any(|m| !m.provenance.is_built_in() && !m.lacks().is_empty());
         (gears || own).then(|| self.missing_figures())?

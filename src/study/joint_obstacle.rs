@@ -61,7 +61,7 @@ fn first_obstacle(space: &DesignSpace, catalogs: &Catalogs) -> Option<(usize, St
         match easier_sections(&problem, &sections, &stuck, table) {
             Ok(further) => sections = further,
             Err(nearest) => {
-                let is_lightest = nearest == stuck.demand;
+                let is_lightest = *nearest == stuck.demand;
                 let links = if is_lightest {
                     "even with the lightest links"
                 } else {
@@ -129,7 +129,7 @@ fn easier_sections(
     sections: &[u32],
     stuck: &Stuck,
     table: &DriveTable,
-) -> Result<Vec<u32>, JointDemand> {
+) -> Result<Vec<u32>, Box<JointDemand>> {
     let (mut nearest, mut margin) = (stuck.demand, table.nearest_margin(&stuck.demand));
     for (piece, what) in problem.space().pieces.iter().enumerate().skip(stuck.piece) {
         let SpacePiece::Choice(choice) = what else { continue };
@@ -149,7 +149,7 @@ fn easier_sections(
             }
         }
     }
-    Err(nearest)
+    Err(Box::new(nearest))
 }
 
 /// Why no drive is strong enough at a joint, in words; `None` if one is.
@@ -200,7 +200,7 @@ fn in_words(table: &DriveTable, shortfall: &Shortfall) -> String {
 
 /// The figures that parts lack, as the end of a sentence.
 fn missing_words(table: &DriveTable) -> String {
-    let missing = table.missing_beside_the_nearest();
+    let missing = table.also_missing_figures();
     missing.map(|missing| format!("; not checked: {missing}")).unwrap_or_default()
 }
 

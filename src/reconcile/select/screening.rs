@@ -374,7 +374,7 @@ impl<'a> Search<'a> {
             let best_start = |part: f64| {
                 let starts = candidate.starts.iter().map(|start| sized(start, part));
                 match candidate.starts.len() {
-                    0 | 1 => starts.last(),
+                    0 | 1 => starts.into_iter().next(),
                     _ => least(starts.map(|u| (misfit(&u, &smooth), u))).map(|(_, u)| u),
                 }
             };
