@@ -1,7 +1,7 @@
 //! File names made from names: of a study, a campaign, a material, a pose, a joint, a picture.
 //!
 //! A name may hold anything; the file name that is made of it holds lower-case letters, digits and `-` alone. It is never
-//! empty, has at most [`MOST_LETTERS`] letters, and is unique among those that are made together.
+//! empty, has at most 64 letters, and is unique among those that are made together.
 
 use std::collections::HashSet;
 

@@ -16,7 +16,7 @@ const LONGEST: Duration = Duration::from_secs(60);
 /// The reason in words: every joint that no drive can move; or, if some drive holds at each, every limit that alone keeps
 /// the designs out, with the value that would suffice; or the fewest limits that do so together.
 ///
-/// It takes some searches, which end at the deadline, after [`LONGEST`], or when `stop` is set. The words then say so.
+/// It takes some searches, which end at the deadline, after a minute, or when `stop` is set. The words then say so.
 pub fn why_infeasible(
     study: &Study,
     catalogs: &Catalogs,
