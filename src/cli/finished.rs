@@ -1,5 +1,6 @@
 //! The output of a finished search: files, page and terminal text.
 
+use super::asked::Asked;
 use super::beside::{Beside, another_stands, say_missing};
 use super::corrections;
 use super::exit::Exit;
@@ -112,6 +113,35 @@ pub(super) struct Finished<'a> {
     pub overlay: Option<&'a Path>,
     pub catalogs: &'a Catalogs,
     pub dir: &'a Path,
+}
+
+impl<'a> Finished<'a> {
+    /// The finished visit to every design of a study, on one machine or in shards.
+    pub(super) fn visit(
+        asked: &'a Asked,
+        (problem, outcome): (&'a ArmProblem<'a>, &'a StudyOutcome),
+        elapsed_s: f64,
+        (catalogs, overlay): (&'a Catalogs, Option<&'a Path>),
+        dir: &'a Path,
+    ) -> Self {
+        let Asked { study, text, corrections } = asked;
+        let whole = &study.space;
+        let (near, exact) = (None, None);
+        Self {
+            study,
+            text,
+            corrections,
+            problem,
+            whole,
+            outcome,
+            near,
+            exact,
+            elapsed_s,
+            overlay,
+            catalogs,
+            dir,
+        }
+    }
 }
 
 impl Finished<'_> {

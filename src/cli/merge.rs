@@ -93,20 +93,7 @@ pub(super) fn merge(
         return Err(Failure::Infeasible(why_infeasible(study, catalogs, stop, None)));
     }
     let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(file_name(&study.name)));
-    let finished = Finished {
-        study,
-        text: &asked.text,
-        corrections: &asked.corrections,
-        problem: &problem,
-        whole: &study.space,
-        outcome: &outcome,
-        near: None,
-        exact: None,
-        elapsed_s,
-        overlay,
-        catalogs,
-        dir: &dir,
-    };
+    let finished = Finished::visit(&asked, (&problem, &outcome), elapsed_s, (catalogs, overlay), &dir);
     let folder = ResultFolder::open(&dir, RUN, &planned(study))?;
     let written = finished.keep(&args.supplements, stop, &|files| folder.publish(files))?;
     let text = format!(

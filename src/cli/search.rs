@@ -182,7 +182,8 @@ pub(super) fn search(asked: &Asked, with: &With) -> Result<Written, Failure> {
 }
 
 /// Visits every design of a study.
-fn visit_all(Asked { study, text, corrections }: &Asked, with: &With) -> Result<Written, Failure> {
+fn visit_all(asked: &Asked, with: &With) -> Result<Written, Failure> {
+    let study = &asked.study;
     let With { catalogs, overlay, dir, keep, supplements, record, log, .. } = *with;
     let problem = ArmProblem::new(&study.space, catalogs);
     let stop = stopped_by_signal();
@@ -207,20 +208,7 @@ fn visit_all(Asked { study, text, corrections }: &Asked, with: &With) -> Result<
         }
         _ => Exit::Done,
     };
-    let finished = Finished {
-        study,
-        text,
-        corrections,
-        problem: &problem,
-        whole: &study.space,
-        outcome: &outcome,
-        near: None,
-        exact: None,
-        elapsed_s,
-        overlay,
-        catalogs,
-        dir,
-    };
+    let finished = Finished::visit(asked, (&problem, &outcome), elapsed_s, (catalogs, overlay), dir);
     // further searches are not for who wants to stop
     let none = SupplementArgs::default();
     let supplements = if exit == Exit::Interrupted { &none } else { supplements };
