@@ -14,6 +14,7 @@ pub mod near;
 pub(crate) mod row;
 pub(crate) mod row_bearing;
 pub(crate) mod row_begun;
+pub(crate) mod row_drives;
 pub(crate) mod row_lanes;
 pub(crate) mod row_modes;
 pub(crate) mod row_room;
