@@ -11,6 +11,8 @@ use super::joint_law::{Curve, Windup};
 use super::load::vector;
 use super::section::{LinkMaterial, Section};
 use super::section_file::{read_i_beam, read_stated_section};
+use super::springs::Spring;
+use super::springs_file::{BodiesOf, Named, hang, read_counterweights, read_springs};
 use super::{Arm, Element, Joint, Link, LinkBody};
 use crate::catalog::Catalogs;
 use crate::catalog::gear::{Gear, GearMass};
@@ -58,17 +60,31 @@ pub fn read_arm_document(document: Document, catalogs: &Catalogs) -> Result<Arm,
 
 /// Reads an arm from a node of a larger document.
 pub(crate) fn arm(node: &Node, catalogs: &Catalogs) -> Option<Arm> {
-    let root = node.object(&["name", "gravity_m_s2", "materials", "chain", "effects", "provenance"])?;
+    let root = node.object(&["name", "gravity_m_s2", "materials", "chain", "effects", "springs", "counterweights", "provenance"])?;
     let name = root.or("name", "arm".to_string(), |n| n.string().map(String::from));
     let gravity = read_gravity(&root);
     let materials = root.or("materials", Vec::new(), read_materials).unwrap_or_default();
     let chain = root.required("chain").and_then(|n| read_chain(&n, &materials, catalogs));
     let effects = root.or("effects", Vec::new(), read_effects);
     let (gravity_m_s2, down) = gravity?;
-    let arm = Arm { name: name?, gravity_m_s2, down, chain: chain?, effects: effects? };
+    let mut chain = chain?;
+    let springs = read_balance(&root, &mut chain);
+    let arm = Arm { name: name?, gravity_m_s2, down, chain, effects: effects?, springs: springs? };
     check_names(&arm, &root)?;
     check_effects(&arm, &root)?;
     Some(arm)
+}
+
+/// Reads the springs of an arm, and hangs its counterweights on the elements that carry them.
+fn read_balance(root: &Object, chain: &mut [Element]) -> Option<Vec<Spring>> {
+    let named: Vec<Named> = chain.iter().map(|e| (e.name(), matches!(e, Element::Joint(_)))).collect();
+    let (springs, counterweights) = (read_springs(root, &named), read_counterweights(root, &named));
+    let bodies = chain.iter_mut().map(|element| match element {
+        Element::Joint(joint) => BodiesOf::Joint(&mut joint.bodies),
+        Element::Link(link) => BodiesOf::Link(&mut link.bodies),
+    });
+    hang(counterweights?, bodies.collect());
+    springs
 }
 
 /// Reads the key `gravity_m_s2`: the acceleration along world -z, or a vector in the world; 0 is none. The result is the

@@ -184,7 +184,9 @@ fn posed(
         Layer::Tilt(tilt) => hinge(&tilt.axis(rotation), None),
         Layer::Mass(mass_kg) | Layer::Extra(mass_kg) => body(mass_kg, at_m, Matrix3::zeros()),
         Layer::Bearing(_) => return None,
-        Layer::Bodies(Carried { by: Carrier::Tube, .. }) => PosedPiece::Body(Matrix6::zeros()),
+        Layer::Springs(_) | Layer::Bodies(Carried { by: Carrier::Tube, .. }) => {
+            PosedPiece::Body(Matrix6::zeros())
+        }
         Layer::Bodies(Carried { bodies, .. }) => {
             PosedPiece::Body(bodies_at(bodies, space, &(*at_m, *rotation)).0)
         }

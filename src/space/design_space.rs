@@ -10,6 +10,7 @@ use crate::arm::joint_law::Curve;
 use crate::arm::load::Payload;
 use crate::arm::load::Water;
 use crate::arm::section::{LinkMaterial, Section};
+use crate::arm::springs::Spring;
 use crate::arm::structure::Beam;
 use crate::arm::{JointModel, Link, LinkModel};
 use crate::catalog::gear::Gear;
@@ -95,6 +96,7 @@ use nalgebra::{Unit, Vector3};
 ///     joints: JointModel::ThreeSegment,
 ///     constraints: Constraints::default(),
 ///     effects: Vec::new(),
+///     springs: Vec::new(),
 /// };
 /// assert_eq!(space.link_options(), 2);
 /// let catalogs = Catalogs::builtin();
@@ -130,6 +132,8 @@ pub struct DesignSpace {
     pub constraints: Constraints,
     /// Physics beyond the nominal model. Effects that describe a test are left out of every calculation.
     pub effects: Vec<Effect>,
+    /// Springs that balance every design; their elements are numbered as the pieces are.
+    pub springs: Vec<Spring>,
 }
 
 /// One case of a study: a pose, a load, and what is around the arm.
@@ -372,6 +376,17 @@ impl DesignSpace {
     /// cover them.
     pub fn has_linkages(&self) -> bool {
         self.joints().any(|(_, joint)| joint.coupled.is_some())
+    }
+
+    /// What the bounds of the exact search, of the verifier and of the relaxation do not cover in this space, in words for
+    /// people; `None` if they cover all of it.
+    pub fn beyond_bounds(&self) -> Option<&'static str> {
+        match (self.has_linkages(), !self.springs.is_empty()) {
+            (true, true) => Some("coupled joints and springs"),
+            (true, false) => Some("coupled joints"),
+            (false, true) => Some("springs"),
+            (false, false) => None,
+        }
     }
 
     /// The joints with the numbers of their pieces, base to tip.

@@ -4,6 +4,7 @@
 //! Lengths of sections and limits are in millimetres because that is how profiles are sold; everything
 //! else is SI. The resolved [`DesignSpace`] is SI throughout.
 
+use super::balance::{balance_remarks, read_balance};
 use super::bodies::impossible_bodies_remark;
 use super::cases::{Cases, read_cases};
 use super::connections::{connections_remark, with_connections};
@@ -38,7 +39,7 @@ use crate::space::constraint::{Constraints, Servo};
 use crate::space::design_space::{DesignSpace, DriveChoice, LinkChoice, SpaceJoint, SpacePiece};
 use serde_json::Value;
 
-const KEYS: [&str; 21] = [
+const KEYS: [&str; 23] = [
     "name",
     "question",
     "gravity_m_s2",
@@ -58,6 +59,8 @@ const KEYS: [&str; 21] = [
     "constraints",
     "models",
     "effects",
+    "springs",
+    "counterweights",
     "gap_percent",
     "notes",
 ];
@@ -128,7 +131,8 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     if gravity_m_s2 > 0.0 {
         motion.gravity_m_s2 = gravity_m_s2;
     }
-    let (chain, mut effects, harness_kg_per_m) = (chain?, effects?, harness_kg_per_m?);
+    let (mut chain, mut effects, harness_kg_per_m) = (chain?, effects?, harness_kg_per_m?);
+    let springs = read_balance(&root, &mut chain);
     effects.extend(harness_effects(&chain, harness_kg_per_m, &effects));
     let space = DesignSpace {
         name: name.clone()?,
@@ -143,6 +147,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
         joints: joint_model,
         constraints: constraints?,
         effects,
+        springs: springs?,
     };
     check_effects(&space, &root)?;
     in_range?;
@@ -153,6 +158,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     remarks.extend(omissions(&space));
     remarks.extend(creep_remarks(&space, catalogs));
     remarks.extend(impossible_bodies_remark(&space));
+    remarks.extend(balance_remarks(&space));
     Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks })
 }
 
