@@ -289,6 +289,20 @@ impl Arm {
         })
     }
 
+    /// The fault that springs balance the arm; `None` if none do. The model of absolute positions lacks them. `file` is the
+    /// name of the arm's file.
+    pub(crate) fn springs_fault(&self, file: &str) -> Option<Fault> {
+        (!self.springs.is_empty()).then(|| Fault {
+            file: file.into(),
+            line: None,
+            field: "springs".into(),
+            problem: "stand in an arm whose absolute positions are measured, and the model of positions has no springs".into(),
+            hint: "campaigns of static, modal and windup readings take springs; for positions state what the springs leave \
+                   over as the effect joint_torque"
+                .into(),
+        })
+    }
+
     /// Reach \[m\]: the sum of the lengths of the links outboard of the first joint that is not vertical. What carries this
     /// joint is a column. Of an arm whose joints are all vertical, it is the length outboard of the first joint.
     pub fn reach_m(&self) -> f64 {

@@ -5,6 +5,7 @@ use super::values::{choice, number_list, numbers};
 use crate::arm::effect::entry::Effect;
 use crate::arm::file::read_arm;
 use crate::arm::load::{LoadCase, Payload, read_load_cases};
+use crate::arm::springs::Drawn;
 use crate::arm::{Arm, Bearing, Element, JointModel, Link, LinkBody, LinkModel};
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
@@ -125,6 +126,8 @@ struct Solved {
     response: Option<Vec<Response>>,
     /// Effects on the bending of links, if the case holds links rigid.
     unbent: Vec<String>,
+    /// The springs in the pose of the case.
+    springs: Vec<(String, Drawn)>,
 }
 
 /// Executes the verb.
@@ -204,13 +207,15 @@ fn solve(args: &AnalyzeArgs, arm: &Arm, case: LoadCase) -> Solved {
     let chain = Chain::new(&structure, case.links);
     let posed = chain.pose(&case);
     let statics = posed.statics();
+    let pose_rad: Vec<f64> = case.pose_deg.iter().map(|a| a.to_radians()).collect();
+    let springs = chain.springs_in(&pose_rad).into_iter().map(|(name, drawn)| (name.to_string(), drawn)).collect();
     let modes = posed.modes(&statics, args.modes);
     let response = args.response_n.map(|force| {
         frequency_response(&posed, &statics, &Vector3::from(force), args.damping, &args.response_hz.0)
     });
     let rigid = case.links == LinkModel::Rigid;
     let unbent = arm.effects.iter().filter(|e| rigid && e.is_of_bending()).map(Effect::label).collect();
-    Solved { case, statics, modes, response, unbent }
+    Solved { case, statics, modes, response, unbent, springs }
 }
 
 impl Solved {
@@ -236,6 +241,10 @@ impl Solved {
             "shares": shares,
             "modes": self.modes.iter().map(mode_json).collect::<Vec<_>>(),
         });
+        if !self.springs.is_empty() {
+            out["springs"] = self.springs.iter().map(|(name, drawn)| spring_json(name, drawn)).collect();
+            out["springs_stiffen_modes"] = json!(false);
+        }
         let impossible = arm.impossible_bodies();
         if !impossible.is_empty() {
             out["impossible_inertias"] = json!(impossible);
@@ -351,6 +360,7 @@ impl Solved {
         if !rigid.is_empty() {
             let _ = writeln!(out, "  rigid output bearing without mass: {}", rigid.join(", "));
         }
+        self.springs_text(&mut out);
         self.modes_text(&mut out);
         self.response_text(&mut out);
         out
@@ -370,6 +380,27 @@ impl Solved {
                 mm.x, mm.y, mm.z
             );
         }
+    }
+
+    /// The springs in the pose, and what is left out of them.
+    fn springs_text(&self, out: &mut String) {
+        if self.springs.is_empty() {
+            return;
+        }
+        let _ = writeln!(out, "  spring          length m    what it does in this pose");
+        for (name, drawn) in &self.springs {
+            let (length, does) = match drawn {
+                Drawn::Line { length_m, force_n, .. } if *force_n < 0.0 => {
+                    (format!("{length_m:.4}"), format!("pushes with {:.1} N", -force_n))
+                }
+                Drawn::Line { length_m, force_n, .. } => {
+                    (format!("{length_m:.4}"), format!("pulls with {force_n:.1} N"))
+                }
+                Drawn::Torsion { torque_nm } => ("-".into(), format!("turns with {torque_nm:.2} N m")),
+            };
+            let _ = writeln!(out, "  {name:<14} {length:>9}    {does}");
+        }
+        let _ = writeln!(out, "  The stiffness that springs add to the modes below is left out.");
     }
 
     fn modes_text(&self, out: &mut String) {
@@ -421,6 +452,13 @@ impl OnBearing<'_> {
     /// Moment at the centre of the bearing: its lever along the axis counts \[N m\].
     fn moment_with_offset_nm(&self) -> f64 {
         self.load.moment_nm + self.bearing.offset_m.unwrap_or_default().abs() * self.load.radial_n
+    }
+}
+
+fn spring_json(name: &str, drawn: &Drawn) -> Value {
+    match drawn {
+        Drawn::Line { length_m, force_n, .. } => json!({"name": name, "length_m": length_m, "force_n": force_n}),
+        Drawn::Torsion { torque_nm } => json!({"name": name, "torque_nm": torque_nm}),
     }
 }
 

@@ -10,9 +10,9 @@ use crate::arm::joint_law::Curve;
 use crate::arm::load::Payload;
 use crate::arm::load::Water;
 use crate::arm::section::{LinkMaterial, Section};
-use crate::arm::springs::Spring;
+use crate::arm::springs::{Side, Spring};
 use crate::arm::structure::Beam;
-use crate::arm::{JointModel, Link, LinkModel};
+use crate::arm::{JointModel, Link, LinkBody, LinkModel};
 use crate::catalog::gear::Gear;
 use crate::sizing::demand::JointMotion;
 use crate::sizing::drive::Drive;
@@ -378,8 +378,8 @@ impl DesignSpace {
         self.joints().any(|(_, joint)| joint.coupled.is_some())
     }
 
-    /// What the bounds of the exact search, of the verifier and of the relaxation do not cover in this space, in words for
-    /// people; `None` if they cover all of it.
+    /// What the bounds of the verifier and of the relaxation do not cover in this space, in words for people; `None` if they
+    /// cover all of it.
     pub fn beyond_bounds(&self) -> Option<&'static str> {
         match (self.has_linkages(), !self.springs.is_empty()) {
             (true, true) => Some("coupled joints and springs"),
@@ -387,6 +387,21 @@ impl DesignSpace {
             (false, true) => Some("springs"),
             (false, false) => None,
         }
+    }
+
+    /// Whether a piece is a tube, or may be one.
+    pub(crate) fn is_tube(&self, piece: usize) -> bool {
+        match &self.pieces[piece] {
+            SpacePiece::Choice(_) => true,
+            SpacePiece::Link(link) => matches!(link.body, LinkBody::Tube { .. }),
+            SpacePiece::Joint(_) => false,
+        }
+    }
+
+    /// Whether a spring pulls on a tube.
+    pub(crate) fn pulls_on_tubes(&self) -> bool {
+        let on_tube = |side| matches!(side, Side::Moving(piece) if self.is_tube(piece));
+        self.springs.iter().flat_map(Spring::sides).any(on_tube)
     }
 
     /// The joints with the numbers of their pieces, base to tip.

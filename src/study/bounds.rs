@@ -35,7 +35,7 @@ impl MassBounds<'_> {
             Self::InReach { space, catalogs, reach } => {
                 let options = reach.as_ref()?.options_as_good(objectives)?;
                 let space = space.of_options(&options)?;
-                if !Self::can_tabulate(&space) {
+                if !Self::can_tabulate(&space) || space.beyond_bounds().is_some() {
                     return None;
                 }
                 let problem = ArmProblem::new(&space, catalogs);

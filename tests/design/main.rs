@@ -26,6 +26,7 @@ mod paper_support;
 mod reference_arms;
 mod relaxation;
 mod search_fast_vs_full;
+mod springs;
 mod study_rerun;
 #[path = "../witness/mod.rs"]
 mod witness;
