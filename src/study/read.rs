@@ -24,9 +24,10 @@ use crate::arm::bearing::{BearingSource, Stated, read_bearing};
 use crate::arm::body::{read_joint_bodies, read_link_bodies};
 use crate::arm::extras::{ExtrasSource, read_extras_source};
 use crate::arm::file::{
-    read_coupling, read_curve, read_effects, read_gravity, read_joint_mass, read_link, read_name,
+    read_coupling, read_curve, read_effects, read_gravity, read_joint_mass, read_name,
 };
 use crate::arm::load::{vector, word};
+use crate::arm::pieces::{LINK_KEYS, elements_of, read_links};
 use crate::arm::{JointModel, LinkModel};
 use crate::catalog::Catalogs;
 use crate::catalog::gear::GearMass;
@@ -243,15 +244,17 @@ fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePi
         let problem = format!("has {} joints and links, and the limit is {MOST_ELEMENTS}", items.len());
         return node.fault(problem, "join links that lie in line, or study a part of the arm");
     }
-    let read: Vec<Option<SpacePiece>> = items
+    let read: Vec<Option<Vec<SpacePiece>>> = items
         .iter()
         .map(|n| match n.value().get("type").and_then(|v| v.as_str()) {
-            Some("joint") => read_space_joint(n, open).map(SpacePiece::Joint),
+            Some("joint") => read_space_joint(n, open).map(|joint| vec![SpacePiece::Joint(joint)]),
             Some("link") => read_space_link(n, open, aside),
             _ => n.fault("has no \"type\" of \"joint\" or \"link\"", "add \"type\": \"joint\" or \"link\""),
         })
         .collect();
-    let mut pieces = read.into_iter().collect::<Option<Vec<_>>>()?;
+    let mut pieces: Vec<SpacePiece> =
+        read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect();
+    let items: Vec<Node> = items.into_iter().flat_map(|n| std::iter::repeat_n(n.clone(), elements_of(&n))).collect();
     number_materials(&mut pieces);
     unique_names(node, &pieces)?;
     drivers_are_inboard(&items, &pieces)?;
@@ -419,15 +422,15 @@ fn read_given_drive(object: &Object, open: &Open) -> Option<DriveChoice> {
     Some(DriveChoice::Given { curve: curve?, mass_kg: mass_kg?, gear, motor })
 }
 
-fn read_space_link(node: &Node, open: &Open, aside: &mut Aside) -> Option<SpacePiece> {
-    let object =
-        node.object(&["type", "name", "vector_m", "material", "section", "mass_kg", "bodies", "choose"])?;
+fn read_space_link(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePiece>> {
+    let object = node.object(&[&LINK_KEYS[..], &["choose"]].concat())?;
     let Some(choose) = object.optional("choose") else {
-        return read_link(&object, &[], open.catalogs).map(SpacePiece::Link);
+        let links = read_links(&object, &[], open.catalogs)?;
+        return Some(links.into_iter().map(SpacePiece::Link).collect());
     };
     stray(
         &object,
-        &["material", "section", "mass_kg"],
+        &["material", "section", "mass_kg", "pieces", "stiffness_factor", "mass_factor"],
         "stands beside \"choose\"",
         "a link is either chosen or given; keep one",
     );
@@ -446,13 +449,13 @@ fn read_space_link(node: &Node, open: &Open, aside: &mut Aside) -> Option<SpaceP
     }
     let options = super::sections::options(&materials, &sections, open.constraints, name.as_deref()?, aside);
     let bodies = read_link_bodies(&object);
-    Some(SpacePiece::Choice(LinkChoice {
+    Some(vec![SpacePiece::Choice(LinkChoice {
         name: name?,
         vector_m: vector_m?,
         options,
         bodies: bodies?,
         excerpt: None,
-    }))
+    })])
 }
 
 fn read_constraints(node: &Node) -> Option<Constraints> {

@@ -8,7 +8,7 @@ use armwright::arm::{Arm, JointModel, LinkModel, LoadCase, Payload, read_arm_doc
 use armwright::catalog::Catalogs;
 use armwright::input::Document;
 use armwright::mechanics::{Chain, Statics};
-use armwright::space::{ArmProblem, evaluate};
+use armwright::space::{ArmProblem, OutwardIn, evaluate};
 use nalgebra::{Rotation3, Unit, Vector3};
 use serde_json::{Value, json};
 

@@ -13,6 +13,7 @@ mod compare;
 mod docs;
 mod drives;
 mod duty_cycles;
+mod example_arms;
 mod front_check;
 mod growth;
 mod hostile_names;
