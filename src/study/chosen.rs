@@ -5,6 +5,8 @@ use super::joint_obstacle::{first_fit_at, obstacle_at};
 use super::load::refuse_empty;
 use super::refusal::Refusal;
 use super::table::sizing_rows;
+use crate::arm::Arm;
+use crate::arm::load::LoadCase;
 use crate::catalog::Catalogs;
 use crate::sizing::checks::checks;
 use crate::sizing::demand::JointDemand;
@@ -13,6 +15,29 @@ use crate::space::design::number_of;
 use crate::space::design_space::{DesignSpace, SpacePiece};
 use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::SizedJoint;
+
+/// A design as an arm with every part resolved to numbers, and the cases in which it is judged; `None` if the study has no design
+/// of this number.
+pub(crate) fn arm_of_number(
+    study: &Study,
+    number: u128,
+    catalogs: &Catalogs,
+) -> Option<(Arm, Vec<LoadCase>)> {
+    let space = study.space.excerpt(catalogs, &[number])?;
+    let problem = ArmProblem::new(&space, catalogs);
+    let arm = problem.arm(&problem.options_of_whole(number)?)?;
+    Some((arm, problem.load_cases()))
+}
+
+/// A design, by its `design_id`, as an arm with every part resolved to numbers, and the cases in which it is judged.
+///
+/// # Errors
+/// The study has no such design.
+pub fn arm_of_design(study: &Study, id: &str, catalogs: &Catalogs) -> Result<(Arm, Vec<LoadCase>), Refusal> {
+    let found = number_of(id).and_then(|number| arm_of_number(study, number, catalogs));
+    let (arm, cases) = found.ok_or_else(|| no_design(id, study))?;
+    Ok((Arm { name: format!("{} {id}", study.name), ..arm }, cases))
+}
 
 /// The sizing of every joint of a design, tip first: the rows of `armwright size --json`. Without a `design_id` the links are
 /// those of median mass.

@@ -50,7 +50,7 @@ pub use ballast::{BallastFlags, ballast_flags};
 pub use budget::budgets;
 pub use capacity::{AtPose, Capacity, Limit, capacity_of};
 pub use check::{Claim, Completeness, FrontCheck, check_front};
-pub use chosen::sizing_of;
+pub use chosen::{arm_of_design, sizing_of};
 pub use definition::Study;
 pub use diagnose::{empty_pieces, why_infeasible};
 pub use effects::{CorrectedStudy, Correction, apply_corrections, left_out};
