@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
+# scripts/test-python runs a copy of the tests next to the installed wheel
+ROOT = Path(os.environ.get("ARMWRIGHT_ROOT", Path(__file__).resolve().parents[2]))
 
 LEVER = {
     "name": "lever",
