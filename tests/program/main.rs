@@ -25,6 +25,7 @@ mod operations;
 mod other_poses;
 mod pages;
 mod progress;
+mod public_api;
 mod same_bytes;
 mod shards;
 mod study_effects;
