@@ -19,6 +19,7 @@ pub(crate) mod effects;
 mod fit;
 mod harness;
 pub(crate) mod joint_obstacle;
+pub(crate) mod keys;
 mod limit;
 mod linkages;
 pub(crate) mod load;
