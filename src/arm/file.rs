@@ -7,10 +7,12 @@ use super::effect::channel::Channel;
 use super::effect::entry::Effect;
 use super::effect::servo_compliance;
 use super::extras::read_extras;
+use super::file_keys::{ARM, EFFECT, JOINT, LINK, MATERIAL};
 use super::joint_law::{Curve, Windup};
+use super::keys::WINDUP;
 use super::link_file::{DEFAULT_POISSON, NamedMaterial};
 use super::load::vector;
-use super::pieces::{LINK_KEYS, elements_of, read_links};
+use super::pieces::{elements_of, read_links};
 use super::section::LinkMaterial;
 use super::springs::Spring;
 use super::springs_file::{BodiesOf, Named, hang, read_counterweights, read_springs};
@@ -60,7 +62,7 @@ pub fn read_arm_document(document: Document, catalogs: &Catalogs) -> Result<Arm,
 
 /// Reads an arm from a node of a larger document.
 pub(crate) fn arm(node: &Node, catalogs: &Catalogs) -> Option<Arm> {
-    let root = node.object(&["name", "gravity_m_s2", "materials", "chain", "effects", "springs", "counterweights", "provenance"])?;
+    let root = node.shaped(&ARM)?;
     let name = root.or("name", "arm".to_string(), |n| n.string().map(String::from));
     let gravity = read_gravity(&root);
     let materials = root.or("materials", Vec::new(), read_materials).unwrap_or_default();
@@ -106,7 +108,7 @@ fn read_materials(node: &Node) -> Option<Vec<NamedMaterial>> {
 }
 
 fn read_material(node: &Node) -> Option<LinkMaterial> {
-    let object = node.object(&["youngs_modulus_pa", "shear_modulus_pa", "density_kg_m3", "poisson"])?;
+    let object = node.shaped(&MATERIAL)?;
     let positive = |key| object.required(key).and_then(|n| n.positive());
     let (youngs, shear, density) =
         (positive("youngs_modulus_pa"), positive("shear_modulus_pa"), positive("density_kg_m3"));
@@ -127,37 +129,22 @@ fn read_chain(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> 
     if items.is_empty() {
         return node.fault("is empty", "an arm has at least one joint or link");
     }
-    if items.len() > MOST_ELEMENTS {
-        let problem = format!("has {} joints and links, and the limit is {MOST_ELEMENTS}", items.len());
+    let elements: usize = items.iter().map(elements_of).sum();
+    if elements > MOST_ELEMENTS {
+        let problem = format!("has {elements} joints and links, and the limit is {MOST_ELEMENTS}");
         return node.fault(problem, "join links that lie in line, or model a part of the arm");
     }
     let read: Vec<_> = items.iter().map(|n| read_element(n, materials, catalogs)).collect();
     Some(read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect())
 }
 
-const JOINT_KEYS: [&str; 13] = [
-    "type",
-    "name",
-    "axis",
-    "stiffness_nm_per_rad",
-    "windup",
-    "gear",
-    "motor",
-    "gear_mass",
-    "mass_kg",
-    "bearing",
-    "extras",
-    "bodies",
-    "coupled",
-];
-
 /// Reads a joint, or a link with its pieces.
 fn read_element(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> Option<Vec<Element>> {
     let kind = node.value().get("type").and_then(|v| v.as_str());
     match kind {
-        Some("joint") => read_joint(&node.object(&JOINT_KEYS)?, catalogs).map(|joint| vec![Element::Joint(joint)]),
+        Some("joint") => read_joint(&node.shaped(&JOINT)?, catalogs).map(|joint| vec![Element::Joint(joint)]),
         Some("link") => {
-            let links = read_links(&node.object(&LINK_KEYS)?, materials, catalogs)?;
+            let links = read_links(&node.shaped(&LINK)?, materials, catalogs)?;
             Some(links.into_iter().map(Element::Link).collect())
         }
         _ => node.fault("has no \"type\" of \"joint\" or \"link\"", "add \"type\": \"joint\" or \"link\""),
@@ -236,7 +223,7 @@ pub(crate) fn read_curve(object: &Object, catalogs: &Catalogs) -> Option<Curve> 
 }
 
 fn read_windup(node: &Node) -> Option<Windup> {
-    let object = node.object(&["k1_nm_per_rad", "k2_nm_per_rad", "k3_nm_per_rad", "t1_nm", "t2_nm"])?;
+    let object = node.shaped(&WINDUP)?;
     let positive = |key| object.required(key).and_then(|n| n.positive());
     let [k1, k2, k3, t1, t2] =
         ["k1_nm_per_rad", "k2_nm_per_rad", "k3_nm_per_rad", "t1_nm", "t2_nm"].map(positive);
@@ -334,7 +321,7 @@ pub(crate) fn read_effects(node: &Node) -> Option<Vec<Effect>> {
 }
 
 fn read_effect(node: &Node) -> Option<Effect> {
-    let object = node.object(&["effect", "at", "parameters", "source"])?;
+    let object = node.shaped(&EFFECT)?;
     let text = |key| object.required(key).and_then(|n| n.string().map(String::from));
     let (effect, at) = (text("effect"), text("at"));
     let parameters = object.required("parameters").and_then(|n| read_parameters(&n));

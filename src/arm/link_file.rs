@@ -1,6 +1,7 @@
 //! Reads a link of an arm file or a study: its tube with section and material, or its rigid offset.
 
 use super::body::read_link_bodies;
+use super::keys::{RECTANGULAR_BAR, RECTANGULAR_TUBE, ROUND_BAR, ROUND_TUBE};
 use super::load::vector;
 use super::section::{LinkMaterial, Section};
 use super::section_file::{read_i_beam, read_stated_section};
@@ -115,25 +116,25 @@ pub(crate) fn read_section(node: &Node) -> Option<Section> {
     let shape = node.value().get("shape").and_then(|v| v.as_str());
     let section = match shape {
         Some("rectangular_tube") => {
-            let object = node.object(&["shape", "width_m", "height_m", "wall_m"])?;
+            let object = node.shaped(&RECTANGULAR_TUBE)?;
             let [width, height, wall] =
                 ["width_m", "height_m", "wall_m"].map(|k| object.required(k).and_then(|n| n.positive()));
             Section::RectangularTube { width_m: width?, height_m: height?, wall_m: wall? }
         }
         Some("round_tube") => {
-            let object = node.object(&["shape", "diameter_m", "wall_m"])?;
+            let object = node.shaped(&ROUND_TUBE)?;
             let [diameter, wall] =
                 ["diameter_m", "wall_m"].map(|k| object.required(k).and_then(|n| n.positive()));
             Section::RoundTube { diameter_m: diameter?, wall_m: wall? }
         }
         Some("rectangular_bar") => {
-            let object = node.object(&["shape", "width_m", "height_m"])?;
+            let object = node.shaped(&RECTANGULAR_BAR)?;
             let [width, height] =
                 ["width_m", "height_m"].map(|k| object.required(k).and_then(|n| n.positive()));
             Section::RectangularBar { width_m: width?, height_m: height? }
         }
         Some("round_bar") => {
-            let object = node.object(&["shape", "diameter_m"])?;
+            let object = node.shaped(&ROUND_BAR)?;
             Section::RoundBar { diameter_m: object.required("diameter_m").and_then(|n| n.positive())? }
         }
         Some("i_beam") => read_i_beam(node)?,

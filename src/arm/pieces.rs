@@ -4,7 +4,8 @@
 //! the section at their middle: of a tube whose height halves towards its end the deflection under a load at the end is then 0.23 % too large
 //! (the error falls with the square of the number of slices).
 
-use super::body::RigidBody;
+use super::body::{RigidBody, read_link_bodies};
+use super::keys::PIECE;
 use super::link_file::{NamedMaterial, read_link, read_name, read_tube};
 use super::load::vector;
 use super::section::{LinkMaterial, Section};
@@ -15,20 +16,6 @@ use nalgebra::Vector3;
 
 /// Number of slices of a taper.
 const SLICES: usize = 12;
-
-/// The keys of a link.
-pub(crate) const LINK_KEYS: [&str; 10] = [
-    "type",
-    "name",
-    "vector_m",
-    "material",
-    "section",
-    "mass_kg",
-    "bodies",
-    "pieces",
-    "stiffness_factor",
-    "mass_factor",
-];
 
 /// How many elements an item of a chain becomes.
 pub(crate) fn elements_of(item: &Node) -> usize {
@@ -137,7 +124,7 @@ fn read_pieces(
     }
     let name = object.required("name").and_then(|n| read_name(&n));
     let vector_m = object.required("vector_m").and_then(|n| vector(&n));
-    let bodies = super::body::read_link_bodies(object);
+    let bodies = read_link_bodies(object);
     let read: Vec<_> =
         pieces.array()?.iter().map(|piece| read_part(piece, object, materials, catalogs)).collect();
     let parts = read.into_iter().collect::<Option<Vec<_>>>()?;
@@ -159,8 +146,7 @@ fn read_part(
     materials: &[NamedMaterial],
     catalogs: &Catalogs,
 ) -> Option<LinkPart> {
-    let keys = ["length_m", "material", "section", "end_section", "stiffness_factor", "mass_factor"];
-    let object = node.object(&keys)?;
+    let object = node.shaped(&PIECE)?;
     let length = object.required("length_m").and_then(|n| n.positive());
     let factors = Factors::read(&object);
     // the material of the link is that of its pieces, unless they state their own

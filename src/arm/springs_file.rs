@@ -1,6 +1,7 @@
 //! Reads springs and counterweights, of arm files and of studies.
 
 use super::body::{JointBodies, RigidBody};
+use super::keys::{COUNTERWEIGHT, SPRING, SPRING_END, TORSION_SPRING};
 use super::load::vector;
 use super::springs::{Spring, SpringEnd, SpringKind, SpringLaw, SpringPlace};
 use crate::input::json::{Node, Object};
@@ -8,9 +9,6 @@ use nalgebra::{Matrix3, Vector3};
 
 /// What an element of the chain is called, and whether it is a joint.
 pub(crate) type Named<'a> = (&'a str, bool);
-
-const LINE_KEYS: [&str; 6] = ["name", "from", "to", "stiffness_n_per_m", "free_length_m", "force_n"];
-const TORSION_KEYS: [&str; 4] = ["name", "joint", "stiffness_nm_per_rad", "free_deg"];
 
 /// Reads the key `springs`; none without the key. `elements` are those of the chain, base to tip.
 pub(crate) fn read_springs(object: &Object, elements: &[Named]) -> Option<Vec<Spring>> {
@@ -33,7 +31,7 @@ pub(crate) fn read_springs(object: &Object, elements: &[Named]) -> Option<Vec<Sp
 
 fn read_spring(node: &Node, index: usize, elements: &[Named]) -> Option<Spring> {
     let is_torsion = node.value().get("joint").is_some();
-    let object = node.object(if is_torsion { &TORSION_KEYS } else { &LINE_KEYS })?;
+    let object = node.shaped(if is_torsion { &TORSION_SPRING } else { &SPRING })?;
     let name = object.or("name", format!("spring {}", index + 1), |n| match n.string()? {
         "" => n.fault("is empty", "give the spring a name, or leave the key away"),
         name => Some(name.to_string()),
@@ -93,7 +91,7 @@ fn read_law(object: &Object) -> Option<SpringLaw> {
 }
 
 fn read_end(node: &Node, elements: &[Named]) -> Option<SpringEnd> {
-    let object = node.object(&["at", "point_m"])?;
+    let object = node.shaped(&SPRING_END)?;
     let on = object.required("at").and_then(|n| read_place(&n, elements));
     let point_m = object.or("point_m", Vector3::zeros(), vector);
     Some(SpringEnd { on: on?, point_m: point_m? })
@@ -131,7 +129,7 @@ pub(crate) fn read_counterweights(object: &Object, elements: &[Named]) -> Option
 }
 
 fn read_counterweight(node: &Node, elements: &[Named]) -> Option<(usize, RigidBody)> {
-    let object = node.object(&["name", "at", "point_m", "mass_kg"])?;
+    let object = node.shaped(&COUNTERWEIGHT)?;
     let name = object.or("name", String::new(), |n| n.string().map(String::from));
     let at = object.required("at").and_then(|n| {
         element(&n, elements)?.or_else(|| {

@@ -12,6 +12,7 @@ use crate::report::file_names::file_name;
 use crate::report::number::{cost_words, fixed, percent, shortest, significant};
 use crate::report::picks::Pick;
 use crate::report::section::Figure;
+use crate::report::springs::springs_in;
 use crate::report::svg::arm::{ArmSketch, Pivot, Place, Tube};
 use crate::report::svg::bars::{Bar, Part, StackedBars};
 use crate::report::table::{Column, Table};
@@ -211,12 +212,11 @@ impl PickedArm {
     /// The ends of the springs between two points, in the plane of a view.
     fn springs(&self, case: &LoadCase, view: &View) -> Vec<(Place, Place)> {
         let chain = Chain::new(&self.arm.structure_in(case), case.links);
-        let pose_rad: Vec<f64> = case.pose_deg.iter().map(|angle| angle.to_radians()).collect();
-        let ends = |(_, drawn): (&str, Drawn)| match drawn {
+        let ends = |(_, drawn): (String, Drawn)| match drawn {
             Drawn::Line { ends_m: [a, b], .. } => Some((view.place(&a), view.place(&b))),
             Drawn::Torsion { .. } => None,
         };
-        chain.springs_in(&pose_rad).into_iter().filter_map(ends).collect()
+        springs_in(&chain, case).into_iter().filter_map(ends).collect()
     }
 
     /// Links with their sections and what follows from them (Eqs 5, 6).
