@@ -370,8 +370,7 @@ fn read_given_drive(object: &Object, open: &Open) -> Option<DriveChoice> {
 }
 
 fn read_space_link(node: &Node, open: &Open, aside: &mut Aside) -> Option<SpacePiece> {
-    let object =
-        node.shaped(&LINK)?;
+    let object = node.shaped(&LINK)?;
     let Some(choose) = object.optional("choose") else {
         return read_link(&object, &[], open.catalogs).map(SpacePiece::Link);
     };
