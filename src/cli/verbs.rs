@@ -8,6 +8,7 @@ use super::{
     size, slurm,
 };
 use crate::catalog::Catalogs;
+use crate::exact::run::WORKER_STACK_BYTES;
 use clap::{CommandFactory, Parser, Subcommand};
 use std::path::PathBuf;
 
@@ -86,10 +87,6 @@ impl Cli {
     }
 }
 
-/// Stack of a worker \[bytes\]: regions of an exact search are nested calls, and a waiting worker runs those
-/// of others on its own stack.
-const STACK: usize = 64 << 20;
-
 /// Executes a command line.
 ///
 /// # Errors
@@ -97,7 +94,7 @@ const STACK: usize = 64 << 20;
 pub fn run(cli: Cli) -> Result<Answer, Failure> {
     let workers = rayon::ThreadPoolBuilder::new()
         .num_threads(cli.threads.map_or(0, Into::into))
-        .stack_size(STACK)
+        .stack_size(WORKER_STACK_BYTES)
         .build_global();
     // A process that has run a command line before keeps the workers it has. Results do not depend on their number,
     // so only a number that was asked for and cannot be had is an error.

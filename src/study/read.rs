@@ -38,6 +38,7 @@ use crate::sizing::stated::StatedDuty;
 use crate::space::constraint::{Constraints, Servo};
 use crate::space::design_space::{DesignSpace, DriveChoice, LinkChoice, SpaceJoint, SpacePiece};
 use serde_json::Value;
+use std::sync::Arc;
 
 /// Reads a study. Materials, profiles and parts that it names are looked up in `catalogs`. The keys are in
 /// `docs/study-format.md`.
@@ -181,11 +182,8 @@ fn read_duty_of_only_joint(node: &Node, study: &Node) -> Option<StatedDuty> {
 /// Numbers the materials of all links through the study, in the order in which they first appear.
 fn number_materials(pieces: &mut [SpacePiece]) {
     let mut names: Vec<String> = Vec::new();
-    let options = pieces.iter_mut().filter_map(|p| match p {
-        SpacePiece::Choice(choice) => Some(&mut choice.options),
-        _ => None,
-    });
-    for option in options.flatten() {
+    let choices = pieces.iter_mut().filter_map(SpacePiece::as_choice_mut);
+    for option in choices.flat_map(|choice| Arc::make_mut(&mut choice.options)) {
         option.material_index = names.iter().position(|n| *n == option.material_name).unwrap_or_else(|| {
             names.push(option.material_name.clone());
             names.len() - 1
@@ -398,7 +396,7 @@ fn read_space_link(node: &Node, open: &Open, aside: &mut Aside) -> Option<SpaceP
     Some(SpacePiece::Choice(LinkChoice {
         name: name?,
         vector_m: vector_m?,
-        options,
+        options: options.into(),
         bodies: bodies?,
         excerpt: None,
     }))

@@ -26,6 +26,7 @@ mod operations;
 mod other_poses;
 mod pages;
 mod progress;
+mod public_api;
 mod same_bytes;
 mod schemas;
 mod shards;
