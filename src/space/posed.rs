@@ -7,8 +7,8 @@
 use super::design_space::{Case, DesignSpace, SpacePiece};
 use super::effects::{Carried, Layer, along};
 use super::station::{
-    Block, BlockSlot, Modal, OnAxis, OnTube, Place, Station, StationJoint, StationLink, StationSlot, Turned, Walk,
-    bodies_at, payload_in, weight_wrench,
+    Block, BlockSlot, Modal, OnAxis, OnTube, Place, Station, StationJoint, StationLink, StationSlot, Turned,
+    Walk, bodies_at, payload_in, weight_wrench,
 };
 use crate::arm::body::RigidBody;
 use crate::arm::springs::{EndLoad, Side};
@@ -120,7 +120,8 @@ impl Posed {
             .iter()
             .map(|(piece, layer)| {
                 let place = walk.place(*piece, layer);
-                let at = Builder { space, structure: &structure, place, tip_m: &walk.tip_m, springs: &springs };
+                let at =
+                    Builder { space, structure: &structure, place, tip_m: &walk.tip_m, springs: &springs };
                 at.build(*piece, layer)
             })
             .collect();
@@ -258,10 +259,9 @@ impl Builder<'_> {
         let place = self.place_of(vector_m);
         let pulls: Vec<&EndLoad> = self.springs_on(Side::Moving(piece)).collect();
         let on_axis = |load: &&EndLoad| pull_on(vector_m.norm(), &place.root_m, &place.frame, load);
-        let hung = bodies.iter().map(|body| OnAxis {
-            xi: along(vector_m, &body.cg_m),
-            wrench: of(std::slice::from_ref(body)).1,
-        });
+        let hung = bodies
+            .iter()
+            .map(|body| OnAxis { xi: along(vector_m, &body.cg_m), wrench: of(std::slice::from_ref(body)).1 });
         let pulled = pulls.iter().map(|load| OnAxis { xi: on_axis(load).0, wrench: wrench_of(load) });
         let carried = OnTube {
             inertia,

@@ -24,9 +24,7 @@ use crate::arm::MOST_ELEMENTS;
 use crate::arm::bearing::{BearingSource, Stated, read_bearing};
 use crate::arm::body::{read_joint_bodies, read_link_bodies};
 use crate::arm::extras::{ExtrasSource, read_extras_source};
-use crate::arm::file::{
-    read_coupling, read_curve, read_effects, read_gravity, read_joint_mass, read_name,
-};
+use crate::arm::file::{read_coupling, read_curve, read_effects, read_gravity, read_joint_mass, read_name};
 use crate::arm::load::{vector, word};
 use crate::arm::pieces::{elements_of, read_links};
 use crate::arm::{JointModel, LinkModel};

@@ -4,6 +4,7 @@
 mod architecture;
 mod bad_input;
 mod bearings;
+mod book;
 mod browser;
 mod capacity;
 mod catalog;
