@@ -34,6 +34,7 @@ pub(crate) mod size;
 pub(crate) mod slurm;
 pub(crate) mod supplements;
 pub(crate) mod time_limit;
+pub(crate) mod unfinished;
 pub(crate) mod values;
 pub(crate) mod verbs;
 pub(crate) mod version;

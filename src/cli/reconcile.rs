@@ -88,6 +88,7 @@ pub(crate) fn run(
     if let Some(study) = &args.study {
         let keep = |more: &[(String, Vec<u8>)]| folder.publish(&[&files, more].concat());
         let rerun = rerun(&outcome, (study, &args.how), catalogs, overlay, (&out, &keep), log)?;
+        folder.settle(Ok(rerun.exit))?;
         text.push_str(&rerun.text);
         exit = rerun.exit;
         add(&mut files, &outcome, rerun);

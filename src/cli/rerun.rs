@@ -7,6 +7,7 @@ use super::failure::Failure;
 use super::finished::{Keep, Written};
 use super::log::Log;
 use super::manifest::{Files, RUN, sealed};
+use super::result_folder::unfinished_in;
 use super::search::{SearchArgs, With, search};
 use super::supplements::SupplementArgs;
 use crate::catalog::Catalogs;
@@ -87,7 +88,8 @@ pub(super) fn rerun(
         let results = dir.join("study").join(folder);
         let supplements = &SupplementArgs::default();
         let keep = &|files: &[(String, Vec<u8>)]| keep(&[kept.clone(), placed(files, folder)?].concat());
-        let with = With { catalogs, overlay, dir: &results, keep, how, supplements, record: None, log };
+        let (record, unfinished) = (None, &unfinished_in(dir, folder));
+        let with = With { catalogs, overlay, dir: &results, keep, unfinished, how, supplements, record, log };
         match search(asked, &with) {
             Ok(written) => {
                 kept.extend(placed(&written.files, folder)?);
