@@ -1,6 +1,7 @@
 //! `armwright check`: are two folders of results the same?
 
 use super::failure::Failure;
+use super::manifest::SHARD;
 use clap::Args;
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -8,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 /// Compares two folders of results byte by byte, outside the places that tell of time and machine: elapsed_s,
 /// designs_per_s, threads and platform of run.json, the marked timing of summary.md and report.html, and the folder's own
-/// name in the commands there. The exit code is 9 if they differ.
+/// name in the commands there. Shards in a folder do not count. The exit code is 9 if they differ.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: armwright check --same results/monday results/tuesday")]
 pub(crate) struct CheckArgs {
@@ -50,7 +51,8 @@ pub(super) fn run(args: &CheckArgs) -> Result<String, Failure> {
     }
 }
 
-/// Names of all files of a folder and the folders in it; those that begin with a dot are left out.
+/// Names of all files of a folder and the folders in it. Left out are those that begin with a dot, and folders of shards: they
+/// are results of their own.
 fn files_of(folder: &Path) -> Result<BTreeSet<String>, Failure> {
     let mut names = BTreeSet::new();
     let mut open = vec![PathBuf::new()];
@@ -63,6 +65,7 @@ fn files_of(folder: &Path) -> Result<BTreeSet<String>, Failure> {
                 continue;
             }
             match entry.path().is_dir() {
+                true if entry.path().join(SHARD).is_file() => {}
                 true => open.push(name),
                 false => drop(names.insert(name.to_string_lossy().into_owned())),
             }

@@ -8,7 +8,7 @@ use super::finished::{Keep, Written};
 use super::log::Log;
 use super::manifest::{Files, RUN, sealed};
 use super::result_folder::unfinished_in;
-use super::search::{SearchArgs, With, search};
+use super::search::{SearchArgs, With, search, stopped_by_signal};
 use super::supplements::SupplementArgs;
 use crate::catalog::Catalogs;
 use crate::reconcile::verdict::outcome::{Outcome, Verdict};
@@ -23,6 +23,7 @@ use crate::space::levels::OutwardIn;
 use crate::space::problem::ArmProblem;
 use serde_json::{Value, json};
 use std::path::Path;
+use std::sync::atomic::Ordering;
 
 /// The file of all designs of either front under both models.
 pub(super) const CHANGES: &str = "study_changes.csv";
@@ -92,6 +93,10 @@ pub(super) fn rerun(
         let with = With { catalogs, overlay, dir: &results, keep, unfinished, how, supplements, record, log };
         match search(asked, &with) {
             Ok(written) => {
+                if written.exit == Exit::Interrupted {
+                    // this run was stopped; the other one has a signal of its own
+                    stopped_by_signal().store(false, Ordering::Relaxed);
+                }
                 kept.extend(placed(&written.files, folder)?);
                 found.push(written);
             }

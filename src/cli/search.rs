@@ -26,7 +26,7 @@ use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// How the front is searched for, and how long.
 #[derive(Debug, Clone, Copy, Default, Args)]
@@ -45,8 +45,8 @@ pub(crate) struct SearchArgs {
     /// gap_percent
     #[arg(long, value_name = "PERCENT", value_parser = part_or_none)]
     gap: Option<f64>,
-    /// Discard the state of an unfinished search in the folder of results, and begin anew. Without it the same command goes
-    /// on where the search was when it was stopped, killed, or lost its machine
+    /// Discard what an earlier run left in the folder of results, and begin anew. Without it the same command goes on where
+    /// a search was when it was stopped, killed, or lost its machine
     #[arg(long)]
     fresh: bool,
 }
@@ -125,6 +125,11 @@ impl SearchArgs {
             ));
         }
         Self { search: Some(SearchKind::Exhaustive), ..*self }.check(study, catalogs)
+    }
+
+    /// Whether what an earlier process left is not to be used.
+    pub(super) fn is_fresh(&self) -> bool {
+        self.fresh
     }
 
     /// Whether anything is asked for.
@@ -233,7 +238,7 @@ fn visit_all(asked: &Asked, with: &With) -> Result<Written, Failure> {
         }
         Status::Interrupted => {
             log.note(&format!(
-                "{}; the front of these is written, and the same command goes on from there",
+                "{}; the front of these is written without summary, page and plots, and the same command goes on from there",
                 stopped_words(&outcome)
             ));
             Exit::Interrupted
@@ -244,10 +249,10 @@ fn visit_all(asked: &Asked, with: &With) -> Result<Written, Failure> {
         _ => Exit::Done,
     };
     let finished = Finished::visit(asked, (&problem, &outcome), elapsed_s, (catalogs, overlay), dir);
-    // further searches are not for who wants to stop
-    let none = SupplementArgs::default();
-    let supplements = if exit == Exit::Interrupted { &none } else { supplements };
-    Ok(Written { exit, ..finished.keep(supplements, stop, keep)? })
+    let written = finished.keep(supplements, stop, keep)?;
+    // a signal that came after the search costs what goes with the front
+    let exit = if stop.load(Ordering::Relaxed) { Exit::Interrupted } else { exit };
+    Ok(Written { exit, ..written })
 }
 
 /// How far a visit came that was stopped.
@@ -289,8 +294,8 @@ fn search_exactly(asked: &Asked, with: &With) -> Result<Written, Failure> {
     let ExactStudy { study: part, outcome, boxes, gap, near, ties_listed } =
         run_exact(study, catalogs, stop, extent, Some(unfinished.resume()), watch)
             .map_err(|_| unfinished.damaged())?;
-    // what was found is written; a further signal stops that too
-    let is_interrupted = stop.swap(false, Ordering::Relaxed);
+    // what was found is written; a further signal ends that at once
+    let is_interrupted = stop.load(Ordering::Relaxed);
     match outcome.sweep.status {
         Status::Infeasible => {
             Err(Failure::Infeasible(why_infeasible(study, catalogs, stop, extent.deadline)))
@@ -319,12 +324,19 @@ fn search_exactly(asked: &Asked, with: &With) -> Result<Written, Failure> {
                 catalogs,
                 dir,
             };
+            let finishing = Instant::now();
             let mut written = finished.keep(supplements, stop, keep)?;
+            if how.time_limit.is_some() {
+                let more_s = finishing.elapsed().as_secs_f64();
+                written
+                    .terminal
+                    .push_str(&format!("Working out and writing the files took {more_s:.1} s more.\n"));
+            }
             if is_interrupted {
-                log.note("stopped; what was found is written, and the same command goes on with the search");
+                log.note("stopped; the front so far is written without summary, page and plots, and the same command goes on");
             }
             written.exit = match outcome.sweep.status {
-                _ if is_interrupted => Exit::Interrupted,
+                _ if stop.load(Ordering::Relaxed) => Exit::Interrupted,
                 Status::Partial => Exit::Partial,
                 _ => Exit::Done,
             };

@@ -103,9 +103,7 @@ pub fn run(cli: Cli) -> Result<Answer, Failure> {
     let text = match cli.verb {
         Verb::Run(args) => return super::run::run(&args, &catalogs?, overlay, log),
         Verb::Front(args) => return front::run(&args, &catalogs?),
-        Verb::Reconcile(args) => {
-            return reconcile::run(&args, &catalogs?, overlay, log).map(|(_, answer)| answer);
-        }
+        Verb::Reconcile(args) => return reconcile::run(&args, &catalogs?, overlay, log),
         Verb::Catalog(args) => catalog::run(&args, overlay),
         Verb::Studies => Ok(crate::study::list()),
         Verb::Size(args) => size::run(&args, &catalogs?),

@@ -108,7 +108,7 @@ pub fn sweep_shard(
 }
 
 /// Time between two looks at whether the state of a search is to be kept \[s\].
-const LOOK_EVERY: Duration = Duration::from_millis(50);
+const LOOK_EVERY: Duration = Duration::from_millis(10);
 
 /// Judges the candidates of a sweep by the full model.
 pub fn judge_swept(study: &Study, problem: &ArmProblem, outcome: SweepOutcome) -> StudyOutcome {
