@@ -272,36 +272,52 @@ fn status(found: &ExactOutcome) -> Status {
 }
 
 /// Finds the fronts of a space without visiting every design, and the designs near the front if they are
-/// asked for. It ends at the extent that is asked for or when `stop` is set. It goes on from the state that `resume` has,
-/// and its own states are kept. `watch` runs on another thread; it gets a function that returns what is known, and must
-/// return when its second argument is set.
-///
-/// # Errors
-/// The state is of another search, in words.
+/// asked for. It ends at the extent that is asked for or when `stop` is set. `watch` runs on another thread;
+/// it gets a function that returns what is known, and must return when its second argument is set.
 pub fn run_exact(
     study: &Study,
     catalogs: &Catalogs,
     stop: &AtomicBool,
-    Extent { deadline, gap, near }: Extent,
-    resume: Option<Resume>,
+    extent: Extent,
+    watch: impl FnOnce(&(dyn Fn() -> Known + Sync), &AtomicBool) + Send,
+) -> ExactStudy {
+    let search = Exact::new(&study.space, catalogs, stop, extent.deadline).to_gap(extent.gap);
+    searched_by(&search, study, catalogs, extent, watch)
+}
+
+/// As [`run_exact`], from the state that `resume` has; the states of this search are kept.
+///
+/// # Errors
+/// The state is of another search, in words.
+pub fn resume_exact(
+    study: &Study,
+    catalogs: &Catalogs,
+    stop: &AtomicBool,
+    extent: Extent,
+    resume: Resume,
     watch: impl FnOnce(&(dyn Fn() -> Known + Sync), &AtomicBool) + Send,
 ) -> Result<ExactStudy, String> {
-    let mut search = Exact::new(&study.space, catalogs, stop, deadline).to_gap(gap);
-    if let Some(resume) = resume {
-        search = search.resumed(resume)?;
-    }
+    let search = Exact::new(&study.space, catalogs, stop, extent.deadline).to_gap(extent.gap);
+    Ok(searched_by(&search.resumed(resume)?, study, catalogs, extent, watch))
+}
+
+fn searched_by(
+    search: &Exact,
+    study: &Study,
+    catalogs: &Catalogs,
+    Extent { near, .. }: Extent,
+    watch: impl FnOnce(&(dyn Fn() -> Known + Sync), &AtomicBool) + Send,
+) -> ExactStudy {
     let most = near.map(|slack| slack.most);
-    let searched = watched(
-        |finished| watch(&|| search.known(), finished),
-        || Searched::new(&search, &study.space, near),
-    );
+    let searched =
+        watched(|finished| watch(&|| search.known(), finished), || Searched::new(search, &study.space, near));
     let space = study.space.excerpt(catalogs, &searched.numbers()).unwrap_or_else(|| study.space.clone());
     let study = Study { space, ..study.clone() };
     let whole = &searched.whole;
     let (boxes, gap) = ([whole.boxes, whole.boxes_open], whole.gap);
     let ties_listed = whole.ties_listed;
     let (outcome, near) = searched.judged(&ArmProblem::new(&study.space, catalogs), most);
-    Ok(ExactStudy { study, outcome, boxes, gap, near, ties_listed })
+    ExactStudy { study, outcome, boxes, gap, near, ties_listed }
 }
 
 /// Evaluates candidates with the full model and keeps those that are not dominated.

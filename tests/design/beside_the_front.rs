@@ -334,15 +334,8 @@ fn an_exact_search_lists_the_same_materials_and_the_same_near_designs() {
         let slack = Slack { part: 0.03, most: if seed % 2 == 0 { 100_000 } else { 40 } };
         let problem = ArmProblem::new(&study.space, &catalogs);
         let visited = outcome(&study, &catalogs);
-        let exact = run_exact(
-            &study,
-            &catalogs,
-            &stop,
-            Extent { near: Some(slack), ..Extent::default() },
-            None,
-            |_, _| (),
-        )
-        .expect("nothing to go on from");
+        let exact =
+            run_exact(&study, &catalogs, &stop, Extent { near: Some(slack), ..Extent::default() }, |_, _| ());
         let excerpt = ArmProblem::new(&exact.study.space, &catalogs);
         let ids = |problem: &ArmProblem, front: &[Judged]| -> BTreeSet<String> {
             front.iter().map(|j| id_of(problem.whole_number(j.design.number))).collect()

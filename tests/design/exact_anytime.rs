@@ -103,7 +103,8 @@ fn the_designs_of_the_first_gap_change_no_front() {
     let mut study = light_arm(&catalogs);
     for piece in &mut study.space.pieces {
         if let SpacePiece::Choice(choice) = piece {
-            choice.options.retain(|option| option.material_index == 0);
+            choice.options =
+                choice.options.iter().filter(|option| option.material_index == 0).cloned().collect();
         }
     }
     let stop = AtomicBool::new(false);
