@@ -226,8 +226,10 @@ fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePi
         .collect();
     let mut pieces: Vec<SpacePiece> =
         read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect();
-    let repeated = |n: Node| std::iter::repeat_n(n.clone(), elements_of(&n));
-    let items: Vec<Node> = items.into_iter().flat_map(repeated).collect();
+    let items: Vec<Node> = items
+        .iter()
+        .flat_map(|item| std::iter::repeat_n(item.clone(), elements_of(item)))
+        .collect();
     number_materials(&mut pieces);
     unique_names(node, &pieces)?;
     drivers_are_inboard(&items, &pieces)?;
