@@ -6,6 +6,7 @@
 
 use super::bodies::impossible_bodies_remark;
 use super::cases::{Cases, read_cases};
+use super::choose_keys::CHOOSE;
 use super::connections::{connections_remark, with_connections};
 use super::creep::creep_remarks;
 use super::definition::Study;
@@ -13,7 +14,7 @@ use super::drives::{Drives, read_drives};
 use super::effects::check_effects;
 use super::fit::{fit_remarks, read_fit};
 use super::harness::{harness_effects, harness_remark};
-use super::keys::{CHOOSE, CONSTRAINTS, JOINT, LINK, MODELS, STUDY};
+use super::keys::{CONSTRAINTS, JOINT, LINK, MODELS, STUDY};
 use super::linkages::drivers_are_inboard;
 use super::motion::{read_duty, read_motion};
 use super::omissions::omissions;

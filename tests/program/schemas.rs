@@ -482,3 +482,33 @@ fn an_unknown_kind_is_refused_with_the_kinds_there_are() {
     let (code, said) = armwright(&project(), &["schema", "arms"]);
     assert!(code == 2 && said.contains("kinds: arm, cases, study, campaign, gears"), "{said}");
 }
+
+/// The cells of the rows of a page's tables whose first cell names keys.
+fn rows_of_keys(page: &str) -> Vec<Vec<String>> {
+    let text = fs::read_to_string(project().join(page)).expect(page);
+    let rows = text.lines().filter(|line| line.starts_with("| `"));
+    rows.map(|row| row.trim_matches('|').split(" | ").map(|cell| cell.trim().to_string()).collect()).collect()
+}
+
+#[test]
+fn the_format_pages_give_each_key_the_unit_and_the_number_that_the_tables_do() {
+    let all = rows_of_keys("docs/keys.md");
+    let mut compared = 0;
+    for page in ["docs/arm-format.md", "docs/study-format.md"] {
+        for row in rows_of_keys(page) {
+            for key in row[0].split('`').skip(1).step_by(2) {
+                let of_key = all.iter().filter(|known| known[0].trim_matches('`') == key);
+                let known: Vec<&Vec<String>> = of_key.collect();
+                // a row of several keys has no unit of its own; one without a default has three cells
+                let has_unit = !known.is_empty() && row[1] != "-" && !row[1].starts_with('`');
+                assert!(!has_unit || known.iter().any(|k| k[2] == row[1]), "{page}: {key} [{}]", row[1]);
+                let default = row[2].trim_matches('`');
+                let is_number = row.len() > 3 && !known.is_empty() && default.parse::<f64>().is_ok();
+                let agrees = |k: &&Vec<String>| k[3].trim_matches('`').parse() == default.parse::<f64>();
+                assert!(!is_number || known.iter().any(agrees), "{page}: {key} = {default} by default");
+                compared += usize::from(has_unit) + usize::from(is_number);
+            }
+        }
+    }
+    assert!(compared > 60, "only {compared} units and numbers were compared");
+}
