@@ -175,20 +175,23 @@ fn mutations(value: &Value) -> Vec<(String, Value)> {
 /// Holds a reader and a schema together over all mutations of a document; the number of them.
 fn hold_together(schema: &Schema, read: &Reader, base: &Value) -> usize {
     let mutations = mutations(base);
+    let mut apart = Vec::new();
     for (what, value) in &mutations {
-        let complaint = schema.complaint(value);
-        match (read(value), complaint) {
+        match (read(value), schema.complaint(value)) {
             (Ok(_), Some(complaint)) => {
-                panic!("{what}: the reader takes it and the schema does not: {complaint}")
+                apart.push(format!("{what}: the reader takes it and the schema does not: {complaint}"))
             }
             (Err(faults), None) => {
                 let form: Vec<String> =
                     faults.iter().filter(|f| is_about_form(f)).map(Fault::to_string).collect();
-                assert!(form.is_empty(), "{what}: the schema takes it and the reader says {form:?}");
+                if !form.is_empty() {
+                    apart.push(format!("{what}: the schema takes it and the reader says {form:?}"));
+                }
             }
             _ => {}
         }
     }
+    assert!(apart.is_empty(), "{} changes are judged differently:\n{}", apart.len(), apart.join("\n"));
     mutations.len()
 }
 
@@ -495,7 +498,7 @@ fn the_format_pages_give_each_key_the_unit_and_the_number_that_the_tables_do() {
     let all = rows_of_keys("docs/keys.md");
     let mut compared = 0;
     for page in ["docs/arm-format.md", "docs/study-format.md"] {
-        for row in rows_of_keys(page) {
+        for row in rows_of_keys(page).into_iter().filter(|row| row.len() > 2) {
             for key in row[0].split('`').skip(1).step_by(2) {
                 let of_key = all.iter().filter(|known| known[0].trim_matches('`') == key);
                 let known: Vec<&Vec<String>> = of_key.collect();
