@@ -5,8 +5,9 @@ use super::motor_kinds::MOTOR_WORDS;
 use crate::arm::case_keys::{JOINT_MODELS, LINK_MODELS};
 use crate::arm::file_keys::{EFFECT_LIST, GIVEN_LINK_RULES};
 use crate::arm::keys::{
-    BEARING_VALUE, COUPLING, EXTRAS, GEAR_MASS, GRAVITY, JOINT_BODIES, LINK_BODIES, PAYLOAD,
-    POSITIVE_OR_NULL, SECTION, VECTOR, WATER, WINDUP,
+    BEARING_VALUE, COUNTERWEIGHTS, COUPLING, EXTRAS, GEAR_MASS, GRAVITY, JOINT_BODIES, LINK_BODIES,
+    MASS_FACTOR, PAYLOAD, PIECES, POSITIVE_OR_NULL, SECTION, SPRINGS, STIFFNESS_FACTOR, VECTOR, WATER,
+    WINDUP,
 };
 use crate::catalog::gear::GearKind;
 use crate::input::key::{Kind, Rule, SCHEMA_ADDRESS, Shape, optional, required, words_of};
@@ -108,6 +109,8 @@ pub(super) static STUDY: Shape = Shape::new(
             "[]",
             "Physics beyond the nominal model that every design has.",
         ),
+        optional("springs", SPRINGS, "-", "[]", "Springs that balance every design."),
+        optional("counterweights", COUNTERWEIGHTS, "-", "[]", "Point masses that balance every design."),
         optional(
             "gap_percent",
             Kind::Below(100.0),
@@ -249,15 +252,21 @@ pub(super) static LINK: Shape = Shape::new(
             "[]",
             "Rigid parts with centre and inertia, whichever tube the link has.",
         ),
+        optional("pieces", PIECES, "-", "none", "Steps and tapers of a given link, instead of a section."),
+        STIFFNESS_FACTOR,
+        MASS_FACTOR,
     ],
     &LINK_RULES,
 );
 
-const LINK_RULES: [Rule; 4] = [
+const LINK_RULES: [Rule; 7] = [
     GIVEN_LINK_RULES[0],
     GIVEN_LINK_RULES[1],
     GIVEN_LINK_RULES[2],
-    Rule::Refuses("choose", &["material", "section", "mass_kg"]),
+    GIVEN_LINK_RULES[3],
+    GIVEN_LINK_RULES[4],
+    GIVEN_LINK_RULES[5],
+    Rule::Refuses("choose", &["material", "section", "mass_kg", "pieces", "stiffness_factor", "mass_factor"]),
 ];
 
 /// A pose of a study.
