@@ -7,6 +7,7 @@
 use super::balance::{balance_remarks, read_balance};
 use super::bodies::impossible_bodies_remark;
 use super::cases::{Cases, read_cases};
+use super::choose_keys::CHOOSE;
 use super::connections::{connections_remark, with_connections};
 use super::creep::creep_remarks;
 use super::definition::Study;
@@ -14,7 +15,7 @@ use super::drives::{Drives, read_drives};
 use super::effects::check_effects;
 use super::fit::{fit_remarks, read_fit};
 use super::harness::{harness_effects, harness_remark};
-use super::keys::{CHOOSE, CONSTRAINTS, JOINT, LINK, MODELS, STUDY};
+use super::keys::{CONSTRAINTS, JOINT, LINK, MODELS, STUDY};
 use super::linkages::drivers_are_inboard;
 use super::motion::{read_duty, read_motion};
 use super::omissions::omissions;
@@ -226,10 +227,8 @@ fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePi
         .collect();
     let mut pieces: Vec<SpacePiece> =
         read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect();
-    let items: Vec<Node> = items
-        .iter()
-        .flat_map(|item| std::iter::repeat_n(item.clone(), elements_of(item)))
-        .collect();
+    let items: Vec<Node> =
+        items.iter().flat_map(|item| std::iter::repeat_n(item.clone(), elements_of(item))).collect();
     number_materials(&mut pieces);
     unique_names(node, &pieces)?;
     drivers_are_inboard(&items, &pieces)?;
