@@ -2,8 +2,8 @@
 
 use super::effect::catalogue::NAMES as EFFECTS;
 use super::keys::{
-    BEARING_VALUE, COUPLING, EXTRAS, GEAR_MASS, GRAVITY, JOINT_BODIES, LINK_BODIES, POSITIVE_OR_NULL,
-    SECTION, STATED, VECTOR, WINDUP,
+    BEARING_VALUE, COUNTERWEIGHTS, COUPLING, EXTRAS, GEAR_MASS, GRAVITY, JOINT_BODIES, LINK_BODIES,
+    MASS_FACTOR, PIECES, POSITIVE_OR_NULL, SECTION, SPRINGS, STATED, STIFFNESS_FACTOR, VECTOR, WINDUP,
 };
 use crate::input::key::{Kind, Rule, SCHEMA_ADDRESS, Shape, optional, required};
 use crate::input::schema::FileKind;
@@ -42,6 +42,8 @@ pub(crate) static ARM: Shape = Shape::new(
             "Joints and links from base to tip.",
         ),
         optional("effects", EFFECT_LIST, "-", "[]", "Physics beyond the nominal model."),
+        optional("springs", SPRINGS, "-", "[]", "Springs that balance the arm."),
+        optional("counterweights", COUNTERWEIGHTS, "-", "[]", "Point masses that balance the arm."),
         optional("provenance", Kind::Anything, "-", "none", "Anything; kept for people."),
     ],
     &[],
@@ -156,14 +158,20 @@ pub(crate) static LINK: Shape = Shape::new(
         ),
         optional("mass_kg", Kind::NonNegative, "kg", "0", "Point mass at mid-length of a rigid offset."),
         optional("bodies", LINK_BODIES, "-", "[]", "Rigid parts with centre and inertia."),
+        optional("pieces", PIECES, "-", "none", "Steps and tapers, instead of a section."),
+        STIFFNESS_FACTOR,
+        MASS_FACTOR,
     ],
     &GIVEN_LINK_RULES,
 );
 
 /// What holds for the keys of a link with a given section.
-pub(crate) const GIVEN_LINK_RULES: [Rule; 3] = [
+pub(crate) const GIVEN_LINK_RULES: [Rule; 6] = [
     Rule::Refuses("mass_kg", &["section"]),
-    Rule::Needs("material", &["section"]),
+    Rule::Refuses("pieces", &["section", "mass_kg", "stiffness_factor", "mass_factor"]),
+    Rule::Needs("stiffness_factor", &["section"]),
+    Rule::Needs("mass_factor", &["section"]),
+    Rule::Needs("material", &["section", "pieces"]),
     Rule::When {
         key: "section",
         is: Kind::Object(&STATED),

@@ -1,7 +1,7 @@
 //! The keys of the parts of an arm, and of cases files: what the readers know, and what `armwright schema` prints.
 
 use super::{JointModel, LinkModel, Words};
-use crate::input::key::{Key, Kind, Shape, optional, required, words_of};
+use crate::input::key::{Key, Kind, Rule, Shape, optional, required, words_of};
 use crate::input::schema::FileKind;
 
 /// A cases file.
@@ -223,6 +223,132 @@ pub(crate) static STATED: Shape = Shape::new(
         required("gj_nm2", Kind::Positive, "N m²", "Torsional stiffness."),
         required("kg_per_m", Kind::Positive, "kg/m", "Mass per length."),
         optional("ea_n", Kind::Positive, "N", "does not stretch", "Axial stiffness."),
+    ],
+    &[],
+);
+
+/// Springs of an arm or a study.
+pub(crate) const SPRINGS: Kind =
+    Kind::List(&Kind::Either(&[Kind::Object(&SPRING), Kind::Object(&TORSION_SPRING)]));
+
+/// Counterweights of an arm or a study.
+pub(crate) const COUNTERWEIGHTS: Kind = Kind::List(&Kind::Object(&COUNTERWEIGHT));
+
+const SPRING_NAME: Key =
+    optional("name", Kind::Name, "-", "spring 1, ...", "Name, unique among the springs.");
+
+/// A spring between two points.
+pub(crate) static SPRING: Shape = Shape::new(
+    "spring",
+    "A spring between two points: its force is force_n + stiffness (length - free length).",
+    &[
+        SPRING_NAME,
+        required("from", Kind::Object(&SPRING_END), "-", "One end."),
+        required("to", Kind::Object(&SPRING_END), "-", "The other end, on another part of the arm."),
+        optional("stiffness_n_per_m", Kind::NonNegative, "N/m", "0", "Stiffness."),
+        optional(
+            "free_length_m",
+            Kind::NonNegative,
+            "m",
+            "0",
+            "Length at which the stiffness has no part in the force.",
+        ),
+        optional(
+            "force_n",
+            Kind::Number,
+            "N",
+            "0",
+            "Constant part of the force; negative pushes the ends apart.",
+        ),
+    ],
+    &[
+        Rule::Any(&["force_n", "stiffness_n_per_m"]),
+        Rule::Needs("stiffness_n_per_m", &["free_length_m"]),
+        Rule::Needs("free_length_m", &["stiffness_n_per_m"]),
+    ],
+);
+
+/// An end of a spring.
+pub(crate) static SPRING_END: Shape = Shape::new(
+    "end of a spring",
+    "An end of a spring.",
+    &[
+        required("at", Kind::Text, "-", "A joint or a link, base, or world."),
+        optional(
+            "point_m",
+            VECTOR,
+            "m",
+            "[0, 0, 0]",
+            "The point, from the start of the element in the frame that it carries.",
+        ),
+    ],
+    &[],
+);
+
+/// A spring about a joint.
+pub(crate) static TORSION_SPRING: Shape = Shape::new(
+    "torsion spring",
+    "A spring that turns a joint.",
+    &[
+        SPRING_NAME,
+        required("joint", Kind::Text, "-", "The joint."),
+        required("stiffness_nm_per_rad", Kind::Positive, "N m/rad", "Stiffness."),
+        required("free_deg", Kind::Number, "deg", "Angle of the joint at which it has no torque."),
+    ],
+    &[],
+);
+
+/// A counterweight.
+pub(crate) static COUNTERWEIGHT: Shape = Shape::new(
+    "counterweight",
+    "A point mass that balances the arm.",
+    &[
+        optional("name", Kind::Text, "-", "none", "Name, for people."),
+        required("at", Kind::Text, "-", "The joint or link that carries it; of a joint the side that turns."),
+        required(
+            "point_m",
+            VECTOR,
+            "m",
+            "Where it is, from the start of the element in the frame that it carries.",
+        ),
+        required("mass_kg", Kind::NonNegative, "kg", "Mass."),
+    ],
+    &[],
+);
+
+/// Pieces of a link.
+pub(crate) const PIECES: Kind = Kind::NonEmpty(&Kind::Object(&PIECE));
+
+/// What holes and inserts leave of a modulus.
+pub(crate) const STIFFNESS_FACTOR: Key = optional(
+    "stiffness_factor",
+    Kind::Positive,
+    "-",
+    "1",
+    "Factor on the moduli of a tube, for holes and inserts.",
+);
+
+/// What holes and inserts leave of a mass.
+pub(crate) const MASS_FACTOR: Key =
+    optional("mass_factor", Kind::Positive, "-", "1", "Factor on the mass of a tube, for holes and inserts.");
+
+/// A piece of a link.
+pub(crate) static PIECE: Shape = Shape::new(
+    "piece",
+    "A piece of a link: a step, or a taper.",
+    &[
+        required("length_m", Kind::Positive, "m", "Length; the pieces fill the link."),
+        optional("material", Kind::Text, "-", "the link's", "Name of its material."),
+        required("section", SECTION, "-", "The cross-section, of a taper at its start."),
+        optional(
+            "end_section",
+            SECTION,
+            "-",
+            "none",
+            "The cross-section at the end of a taper, of the same shape.",
+        ),
+        STIFFNESS_FACTOR,
+        MASS_FACTOR,
     ],
     &[],
 );

@@ -3,8 +3,9 @@
 use super::motor_kinds::MOTOR_WORDS;
 use crate::arm::file_keys::{EFFECT_LIST, GIVEN_LINK_RULES};
 use crate::arm::keys::{
-    BEARING_VALUE, COUPLING, EXTRAS, GEAR_MASS, GRAVITY, JOINT_BODIES, JOINT_MODELS, LINK_BODIES,
-    LINK_MODELS, PAYLOAD, POSITIVE_OR_NULL, SECTION, VECTOR, WATER, WINDUP,
+    BEARING_VALUE, COUNTERWEIGHTS, COUPLING, EXTRAS, GEAR_MASS, GRAVITY, JOINT_BODIES, JOINT_MODELS,
+    LINK_BODIES, LINK_MODELS, MASS_FACTOR, PAYLOAD, PIECES, POSITIVE_OR_NULL, SECTION, SPRINGS,
+    STIFFNESS_FACTOR, VECTOR, WATER, WINDUP,
 };
 use crate::catalog::gear::GearKind;
 use crate::catalog::profile::ProfileShape;
@@ -107,6 +108,8 @@ pub(super) static STUDY: Shape = Shape::new(
             "[]",
             "Physics beyond the nominal model that every design has.",
         ),
+        optional("springs", SPRINGS, "-", "[]", "Springs that balance every design."),
+        optional("counterweights", COUNTERWEIGHTS, "-", "[]", "Point masses that balance every design."),
         optional(
             "gap_percent",
             Kind::Below(100.0),
@@ -248,15 +251,21 @@ pub(super) static LINK: Shape = Shape::new(
             "[]",
             "Rigid parts with centre and inertia, whichever tube the link has.",
         ),
+        optional("pieces", PIECES, "-", "none", "Steps and tapers of a given link, instead of a section."),
+        STIFFNESS_FACTOR,
+        MASS_FACTOR,
     ],
     &LINK_RULES,
 );
 
-const LINK_RULES: [Rule; 4] = [
+const LINK_RULES: [Rule; 7] = [
     GIVEN_LINK_RULES[0],
     GIVEN_LINK_RULES[1],
     GIVEN_LINK_RULES[2],
-    Rule::Refuses("choose", &["material", "section", "mass_kg"]),
+    GIVEN_LINK_RULES[3],
+    GIVEN_LINK_RULES[4],
+    GIVEN_LINK_RULES[5],
+    Rule::Refuses("choose", &["material", "section", "mass_kg", "pieces", "stiffness_factor", "mass_factor"]),
 ];
 
 /// The options of an open link.

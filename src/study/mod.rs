@@ -1,6 +1,7 @@
 //! Named questions: read, resolve, run.
 
 pub(crate) mod alternatives;
+mod balance;
 pub(crate) mod ballast;
 pub(crate) mod bearing_remarks;
 pub(crate) mod bodies;

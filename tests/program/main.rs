@@ -4,6 +4,7 @@
 mod architecture;
 mod bad_input;
 mod bearings;
+mod book;
 mod browser;
 mod capacity;
 mod catalog;
@@ -13,6 +14,7 @@ mod compare;
 mod docs;
 mod drives;
 mod duty_cycles;
+mod example_arms;
 mod front_check;
 mod growth;
 mod hostile_names;

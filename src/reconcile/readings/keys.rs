@@ -22,7 +22,7 @@ const RATIO: Key = optional(
     "ratio",
     PER_JOINT,
     "-",
-    "1",
+    "not stated",
     "Turns of the motor for one of the output: one number, or one for each joint.",
 );
 const TORQUE_CONSTANT: Key = optional(
