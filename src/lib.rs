@@ -38,6 +38,7 @@ pub mod catalog;
 pub(crate) mod cli;
 pub mod exact;
 pub mod input;
+pub(crate) mod interchange;
 pub mod mechanics;
 pub mod paper;
 pub mod pareto;
