@@ -54,7 +54,7 @@ pub(crate) fn deck(model: &Model, step: Step, heading: &str, gravity_m_s2: &Vect
 fn nodes(out: &mut String, model: &Model) {
     out.push_str("*NODE, NSET=ALL\n");
     for (i, place) in model.nodes_m.iter().enumerate() {
-        let _ = writeln!(out, "{}, {:e}, {:e}, {:e}", i + 1, place.x, place.y, place.z);
+        let _ = writeln!(out, "{}, {:.12e}, {:.12e}, {:.12e}", i + 1, place.x, place.y, place.z);
     }
     let _ = writeln!(out, "*NSET, NSET=TIP\n{}", model.tip + 1);
 }
@@ -67,12 +67,12 @@ fn bricks(out: &mut String, solid: &Solid, k: usize, element: &mut usize) {
         let _ = writeln!(out, "{element}, {},\n{}", numbers[..10].join(", "), numbers[10..].join(", "));
     }
     let (constants, oriented) = elastic(&solid.beam);
-    let _ = writeln!(out, "*MATERIAL, NAME=M{k}\n{constants}\n*DENSITY\n{:e}", solid.density_kg_m3);
+    let _ = writeln!(out, "*MATERIAL, NAME=M{k}\n{constants}\n*DENSITY\n{:.12e}", solid.density_kg_m3);
     let orientation = if oriented {
         let (a, b) = (solid.frame.column(0), solid.frame.column(1));
         let _ = writeln!(
             out,
-            "*ORIENTATION, NAME=O{k}, SYSTEM=RECTANGULAR\n{:e}, {:e}, {:e}, {:e}, {:e}, {:e}",
+            "*ORIENTATION, NAME=O{k}, SYSTEM=RECTANGULAR\n{:.12e}, {:.12e}, {:.12e}, {:.12e}, {:.12e}, {:.12e}",
             a.x, a.y, a.z, b.x, b.y, b.z
         );
         format!(", ORIENTATION=O{k}")
@@ -91,11 +91,11 @@ fn elastic(beam: &Beam) -> (String, bool) {
     );
     let poisson = e_pa / (2.0 * g_pa) - 1.0;
     if ISOTROPIC.contains(&poisson) {
-        return (format!("*ELASTIC\n{e_pa:e}, {poisson:e}"), false);
+        return (format!("*ELASTIC\n{e_pa:.12e}, {poisson:.12e}"), false);
     }
     let nu = beam.material.poisson;
     let text = format!(
-        "*ELASTIC, TYPE=ENGINEERING CONSTANTS\n{e_pa:e}, {e_pa:e}, {e_pa:e}, {nu:e}, {nu:e}, {nu:e}, {g_pa:e}, {g_pa:e}\n{g_pa:e}"
+        "*ELASTIC, TYPE=ENGINEERING CONSTANTS\n{e_pa:.12e}, {e_pa:.12e}, {e_pa:.12e}, {nu:.12e}, {nu:.12e}, {nu:.12e}, {g_pa:.12e}, {g_pa:.12e}\n{g_pa:.12e}"
     );
     (text, true)
 }
@@ -103,7 +103,7 @@ fn elastic(beam: &Beam) -> (String, bool) {
 fn masses(out: &mut String, model: &Model, element: &mut usize) {
     for (node, kg) in &model.masses {
         *element += 1;
-        let _ = writeln!(out, "*ELEMENT, TYPE=MASS, ELSET=MASS{element}\n{element}, {}\n*MASS, ELSET=MASS{element}\n{kg:e}", node + 1);
+        let _ = writeln!(out, "*ELEMENT, TYPE=MASS, ELSET=MASS{element}\n{element}, {}\n*MASS, ELSET=MASS{element}\n{kg:.12e}", node + 1);
     }
     for (node, _) in &model.masses {
         for d in 1..=3 {
@@ -128,7 +128,7 @@ fn spring(out: &mut String, element: &mut usize, node: usize, direction: usize, 
     *element += 1;
     let _ = writeln!(
         out,
-        "*ELEMENT, TYPE=SPRING1, ELSET=SPRING{element}\n{element}, {}\n*SPRING, ELSET=SPRING{element}\n{direction}\n{stiffness:e}",
+        "*ELEMENT, TYPE=SPRING1, ELSET=SPRING{element}\n{element}, {}\n*SPRING, ELSET=SPRING{element}\n{direction}\n{stiffness:.12e}",
         node + 1
     );
 }
@@ -137,7 +137,7 @@ fn constraints(out: &mut String, model: &Model) {
     for terms in &model.equations {
         let _ = writeln!(out, "*EQUATION\n{}", terms.len());
         for line in terms.chunks(4) {
-            let line: Vec<String> = line.iter().map(|(n, d, c)| format!("{}, {}, {c:e}", n + 1, d + 1)).collect();
+            let line: Vec<String> = line.iter().map(|(n, d, c)| format!("{}, {}, {c:.12e}", n + 1, d + 1)).collect();
             let _ = writeln!(out, "{}", line.join(", "));
         }
     }
@@ -156,14 +156,14 @@ fn static_step(out: &mut String, model: &Model, gravity_m_s2: &Vector3<f64>) {
         let down = gravity_m_s2 / size;
         out.push_str("*DLOAD\n");
         for k in 0..model.solids.len() {
-            let _ = writeln!(out, "LINK{k}, GRAV, {size:e}, {:e}, {:e}, {:e}", down.x, down.y, down.z);
+            let _ = writeln!(out, "LINK{k}, GRAV, {size:.12e}, {:.12e}, {:.12e}, {:.12e}", down.x, down.y, down.z);
         }
     }
     if !model.loads.is_empty() {
         out.push_str("*CLOAD\n");
     }
     for (node, d, load) in &model.loads {
-        let _ = writeln!(out, "{}, {}, {load:e}", node + 1, d + 1);
+        let _ = writeln!(out, "{}, {}, {load:.12e}", node + 1, d + 1);
     }
     out.push_str("*NODE PRINT, NSET=TIP\nU\n*END STEP\n");
 }
