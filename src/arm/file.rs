@@ -7,7 +7,9 @@ use super::effect::channel::Channel;
 use super::effect::entry::Effect;
 use super::effect::servo_compliance;
 use super::extras::read_extras;
+use super::file_keys::{ARM, EFFECT, JOINT, LINK, MATERIAL};
 use super::joint_law::{Curve, Windup};
+use super::keys::{RECTANGULAR_BAR, RECTANGULAR_TUBE, ROUND_BAR, ROUND_TUBE, WINDUP};
 use super::load::vector;
 use super::section::{LinkMaterial, Section};
 use super::section_file::{read_i_beam, read_stated_section};
@@ -58,7 +60,7 @@ pub fn read_arm_document(document: Document, catalogs: &Catalogs) -> Result<Arm,
 
 /// Reads an arm from a node of a larger document.
 pub(crate) fn arm(node: &Node, catalogs: &Catalogs) -> Option<Arm> {
-    let root = node.object(&["name", "gravity_m_s2", "materials", "chain", "effects", "provenance"])?;
+    let root = node.shaped(&ARM)?;
     let name = root.or("name", "arm".to_string(), |n| n.string().map(String::from));
     let gravity = read_gravity(&root);
     let materials = root.or("materials", Vec::new(), read_materials).unwrap_or_default();
@@ -93,7 +95,7 @@ fn read_materials(node: &Node) -> Option<Vec<NamedMaterial>> {
 }
 
 fn read_material(node: &Node) -> Option<LinkMaterial> {
-    let object = node.object(&["youngs_modulus_pa", "shear_modulus_pa", "density_kg_m3", "poisson"])?;
+    let object = node.shaped(&MATERIAL)?;
     let positive = |key| object.required(key).and_then(|n| n.positive());
     let (youngs, shear, density) =
         (positive("youngs_modulus_pa"), positive("shear_modulus_pa"), positive("density_kg_m3"));
@@ -122,28 +124,11 @@ fn read_chain(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> 
     read.into_iter().collect()
 }
 
-const JOINT_KEYS: [&str; 13] = [
-    "type",
-    "name",
-    "axis",
-    "stiffness_nm_per_rad",
-    "windup",
-    "gear",
-    "motor",
-    "gear_mass",
-    "mass_kg",
-    "bearing",
-    "extras",
-    "bodies",
-    "coupled",
-];
-const LINK_KEYS: [&str; 7] = ["type", "name", "vector_m", "material", "section", "mass_kg", "bodies"];
-
 fn read_element(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> Option<Element> {
     let kind = node.value().get("type").and_then(|v| v.as_str());
     match kind {
-        Some("joint") => read_joint(&node.object(&JOINT_KEYS)?, catalogs).map(Element::Joint),
-        Some("link") => read_link(&node.object(&LINK_KEYS)?, materials, catalogs).map(Element::Link),
+        Some("joint") => read_joint(&node.shaped(&JOINT)?, catalogs).map(Element::Joint),
+        Some("link") => read_link(&node.shaped(&LINK)?, materials, catalogs).map(Element::Link),
         _ => node.fault("has no \"type\" of \"joint\" or \"link\"", "add \"type\": \"joint\" or \"link\""),
     }
 }
@@ -224,7 +209,7 @@ pub(crate) fn read_curve(object: &Object, catalogs: &Catalogs) -> Option<Curve> 
 }
 
 fn read_windup(node: &Node) -> Option<Windup> {
-    let object = node.object(&["k1_nm_per_rad", "k2_nm_per_rad", "k3_nm_per_rad", "t1_nm", "t2_nm"])?;
+    let object = node.shaped(&WINDUP)?;
     let positive = |key| object.required(key).and_then(|n| n.positive());
     let [k1, k2, k3, t1, t2] =
         ["k1_nm_per_rad", "k2_nm_per_rad", "k3_nm_per_rad", "t1_nm", "t2_nm"].map(positive);
@@ -405,25 +390,25 @@ pub(crate) fn read_section(node: &Node) -> Option<Section> {
     let shape = node.value().get("shape").and_then(|v| v.as_str());
     let section = match shape {
         Some("rectangular_tube") => {
-            let object = node.object(&["shape", "width_m", "height_m", "wall_m"])?;
+            let object = node.shaped(&RECTANGULAR_TUBE)?;
             let [width, height, wall] =
                 ["width_m", "height_m", "wall_m"].map(|k| object.required(k).and_then(|n| n.positive()));
             Section::RectangularTube { width_m: width?, height_m: height?, wall_m: wall? }
         }
         Some("round_tube") => {
-            let object = node.object(&["shape", "diameter_m", "wall_m"])?;
+            let object = node.shaped(&ROUND_TUBE)?;
             let [diameter, wall] =
                 ["diameter_m", "wall_m"].map(|k| object.required(k).and_then(|n| n.positive()));
             Section::RoundTube { diameter_m: diameter?, wall_m: wall? }
         }
         Some("rectangular_bar") => {
-            let object = node.object(&["shape", "width_m", "height_m"])?;
+            let object = node.shaped(&RECTANGULAR_BAR)?;
             let [width, height] =
                 ["width_m", "height_m"].map(|k| object.required(k).and_then(|n| n.positive()));
             Section::RectangularBar { width_m: width?, height_m: height? }
         }
         Some("round_bar") => {
-            let object = node.object(&["shape", "diameter_m"])?;
+            let object = node.shaped(&ROUND_BAR)?;
             Section::RoundBar { diameter_m: object.required("diameter_m").and_then(|n| n.positive())? }
         }
         Some("i_beam") => read_i_beam(node)?,
@@ -453,7 +438,7 @@ pub(crate) fn read_effects(node: &Node) -> Option<Vec<Effect>> {
 }
 
 fn read_effect(node: &Node) -> Option<Effect> {
-    let object = node.object(&["effect", "at", "parameters", "source"])?;
+    let object = node.shaped(&EFFECT)?;
     let text = |key| object.required(key).and_then(|n| n.string().map(String::from));
     let (effect, at) = (text("effect"), text("at"));
     let parameters = object.required("parameters").and_then(|n| read_parameters(&n));

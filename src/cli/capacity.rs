@@ -1,17 +1,15 @@
 //! `armwright capacity`: the largest payload of a study's arm.
 
-use super::asked::load_study;
 use super::failure::Failure;
-use super::size::{chosen_design, fails};
 use crate::arm::file::read_arm;
 use crate::arm::load::read_load_cases;
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::report::number::fixed;
-use crate::space::problem::ArmProblem;
 use crate::report::whole_file::folder_of;
 use crate::study::arm_capacity::{arm_capacity, limits_of_parts, read_limits};
-use crate::study::capacity::{Capacity, Limit, capacity};
+use crate::study::capacity::{Capacity, Limit, capacity_of};
+use crate::study::load::load_study;
 use clap::Args;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -50,20 +48,18 @@ pub(super) fn run(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Fa
         return of_arm(args, catalogs);
     }
     if args.cases.is_some() || args.limits.is_some() {
-        return Err(Failure::Usage("--cases and --limits are for arm files; a study has its own poses and drives".into()));
+        let words = "--cases and --limits are for arm files; a study has its own poses and drives";
+        return Err(Failure::Usage(words.into()));
     }
     let (study, _) = load_study(&args.study, catalogs)?;
-    let (space, chosen) = chosen_design(&study, args.design.as_deref(), catalogs)?;
-    let problem = ArmProblem::new(&space, catalogs);
-    let arm = problem.walk(&chosen, |_, _| {}).map_err(|slot| fails(&problem, &chosen, slot))?;
-    said(args, &study.name, &capacity(&space, catalogs, arm.slot_options()))
+    Ok(said(args, &study.name, &capacity_of(&study, args.design.as_deref(), catalogs)?))
 }
 
-fn said(args: &CapacityArgs, name: &str, found: &Capacity) -> Result<String, Failure> {
-    Ok(match args.json {
-        true => serde_json::to_string_pretty(&to_json(found)).expect("numbers and strings serialize"),
+fn said(args: &CapacityArgs, name: &str, found: &Capacity) -> String {
+    match args.json {
+        true => serde_json::to_string_pretty(&found.to_json()).expect("numbers and strings serialize"),
         false => to_text(name, found),
-    })
+    }
 }
 
 /// Whether the file is an arm and no study, which has poses.
@@ -102,25 +98,7 @@ fn of_arm(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Failure> {
             joints.first().copied().unwrap_or("j1")
         )));
     }
-    said(args, &arm.name, &arm_capacity(&arm, &cases, &limits))
-}
-
-/// A payload in JSON; null if nothing limits it.
-fn payload_json(limit: &Limit) -> Value {
-    if limit.payload_kg.is_finite() { json!(limit.payload_kg) } else { Value::Null }
-}
-
-fn to_json(found: &Capacity) -> Value {
-    let rows: Vec<Value> = found
-        .table
-        .iter()
-        .map(|at| {
-            json!({"reach_m": at.reach_m, "payload_kg": payload_json(&at.limit), "pose": at.pose,
-                "joint": at.limit.piece, "check": at.limit.check})
-        })
-        .collect();
-    json!({"payload_kg": payload_json(&found.limit), "pose": found.pose, "joint": found.limit.piece,
-        "check": found.limit.check, "table": rows})
+    Ok(said(args, &arm.name, &arm_capacity(&arm, &cases, &limits)))
 }
 
 fn kilograms(limit: &Limit) -> String {

@@ -10,7 +10,7 @@ use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::report::file_names::file_name;
 use crate::space::design::full_objectives;
-use crate::space::problem::ArmProblem;
+use crate::study::chosen::arm_of_number;
 use crate::study::read::read_study;
 use clap::Args;
 use serde_json::{Value, json};
@@ -56,12 +56,8 @@ pub(super) fn resolve_design(folder: &Path, id: &str, catalogs: &Catalogs) -> Re
         ))
     };
     let number = results.number_of(id).ok_or_else(unknown)?;
-    let space = study.space.excerpt(catalogs, &[number]).ok_or_else(unknown)?;
-    let problem = ArmProblem::new(&space, catalogs);
-    let chosen = problem.options_of_whole(number).ok_or_else(unknown)?;
-    let mut arm = problem.arm(&chosen).ok_or_else(unknown)?;
+    let (mut arm, cases) = arm_of_number(&study, number, catalogs).ok_or_else(unknown)?;
     arm.name = format!("{} {id}", study.name);
-    let cases = problem.load_cases();
     Ok(ResolvedDesign { study: study.name, arm, cases })
 }
 

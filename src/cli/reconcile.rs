@@ -1,6 +1,5 @@
 //! `armwright reconcile`: where model and measurement disagree, what is missing, and what that changes.
 
-use super::asked::load_study;
 use super::beside::{Beside, another_stands, say_missing};
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
@@ -18,6 +17,7 @@ use crate::reconcile::verdict::outcome::Outcome;
 use crate::reconcile::verdict::page::campaign_page;
 use crate::report::file_names::file_name;
 use crate::report::words::{TERMINAL, wrap};
+use crate::study::load::load_study;
 use clap::Args;
 use serde_json::Value;
 use std::path::{Path, PathBuf};

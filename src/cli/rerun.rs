@@ -1,6 +1,6 @@
 //! A study run twice, without and with the corrections of a reconciled arm, and what changes.
 
-use super::asked::{Asked, load_study};
+use super::asked::Asked;
 use super::corrections;
 use super::exit::Exit;
 use super::failure::Failure;
@@ -20,6 +20,7 @@ use crate::space::design::evaluate;
 use crate::space::design::{number, number_of};
 use crate::space::levels::OutwardIn;
 use crate::space::problem::ArmProblem;
+use crate::study::load::load_study;
 use serde_json::{Value, json};
 use std::path::Path;
 

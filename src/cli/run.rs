@@ -1,6 +1,6 @@
 //! `armwright run`: finds the front of a study and writes it.
 
-use super::asked::{Asked, load_study};
+use super::asked::Asked;
 use super::beside::{another_stands, say_missing};
 use super::corrections;
 use super::exit::Answer;
@@ -26,6 +26,7 @@ use crate::report::words::{TERMINAL, wrap};
 use crate::search::sweep::{Shard, Status};
 use crate::study::definition::Study;
 use crate::study::effects::left_out;
+use crate::study::load::load_study;
 use crate::study::read::read_study;
 use clap::Args;
 use serde_json::{Value, json};

@@ -1,6 +1,6 @@
 //! Searches a study: chooses the method and stops when asked.
 
-use super::asked::{Asked, refuse_empty};
+use super::asked::Asked;
 use super::exit::Exit;
 use super::failure::Failure;
 use super::finished::{Finished, FoundExactly, Keep, Written};
@@ -16,9 +16,9 @@ use crate::space::problem::ArmProblem;
 use crate::study::definition::Study;
 use crate::study::diagnose::why_infeasible;
 use crate::study::outcome::{ExactStudy, Extent, StudyOutcome, run_exact, run_study};
-use crate::study::search_cost::SearchCost;
+use crate::study::search_method::{SearchMethod, SearchWish};
 use crate::study::tolerance::part;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use std::path::Path;
 use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -30,7 +30,7 @@ pub(crate) struct SearchArgs {
     /// How the front is searched for. Default: exact with --gap or --time-limit, or where it is estimated to
     /// take less than half the processor time of visiting every design; else exhaustive
     #[arg(long, value_enum)]
-    search: Option<SearchKind>,
+    search: Option<SearchMethod>,
     /// Stop the exact search after so many seconds, as Ctrl-C does; write what it found and how much may be
     /// missing, which takes some seconds more for a front of thousands of designs
     #[arg(long, value_name = "SECONDS", value_parser = time_limit)]
@@ -43,32 +43,23 @@ pub(crate) struct SearchArgs {
     gap: Option<f64>,
 }
 
-/// The two methods of searching for a front.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum SearchKind {
-    /// Every design is visited
-    Exhaustive,
-    /// Groups (boxes) of designs that cannot be on the front are discarded without evaluation; for spaces of
-    /// any size
-    Exact,
-}
-
-/// Above this many designs an exhaustive search would take years.
-const MOST_CONCEIVABLE: u128 = 1_000_000_000_000_000;
-
 impl SearchArgs {
+    /// What is asked of the search.
+    fn wish(&self) -> SearchWish {
+        let (has_gap, has_time_limit) = (self.gap.is_some(), self.time_limit.is_some());
+        SearchWish { method: self.search, has_gap, has_time_limit }
+    }
+
     /// The search that was asked for, or the one that is estimated to cost less, which is told on the terminal.
     ///
     /// # Errors
     /// It does not suit the study, or would take years.
-    fn kind(&self, study: &Study, catalogs: &Catalogs, log: Log) -> Result<SearchKind, Failure> {
-        let designs = self.check(study, catalogs)?;
-        Ok(match (self.search, self.gap.is_some() || self.time_limit.is_some()) {
-            (Some(kind), _) => kind,
-            (None, true) => SearchKind::Exact,
-            (None, false) if study.space.has_linkages() => SearchKind::Exhaustive,
-            (None, false) => cheaper(study, catalogs, designs as f64, log),
-        })
+    fn kind(&self, study: &Study, catalogs: &Catalogs, log: Log) -> Result<SearchMethod, Failure> {
+        let (method, words) = self.wish().method(study, catalogs)?;
+        if let Some(words) = words {
+            log.note(&wrap(&words, TERMINAL, ""));
+        }
+        Ok(method)
     }
 
     /// Checks that what was asked for suits the study, and counts its designs.
@@ -76,34 +67,7 @@ impl SearchArgs {
     /// # Errors
     /// The study has nothing to choose from, what was asked for does not suit it, or it would take years.
     pub(super) fn check(&self, study: &Study, catalogs: &Catalogs) -> Result<u128, Failure> {
-        refuse_empty(study, catalogs)?;
-        let refused = |why: String| Err(Failure::Usage(why));
-        let Some(designs) = study.space.designs(catalogs) else {
-            return refused(format!("the study \"{}\" has more than 1e38 designs; thin a grid", study.name));
-        };
-        let exhaustive = self.search == Some(SearchKind::Exhaustive);
-        let by_bounds =
-            self.search == Some(SearchKind::Exact) || self.time_limit.is_some() || self.gap.is_some();
-        if study.space.has_linkages() && by_bounds {
-            return refused(format!(
-                "the study \"{}\" has coupled joints, which the bounds of the exact search do not cover; leave --search \
-                 exact, --gap and --time-limit away, and every design is visited",
-                study.name
-            ));
-        }
-        if exhaustive && designs > MOST_CONCEIVABLE {
-            return refused(format!(
-                "visiting the {:.1e} designs of the study \"{}\" would take years; use --search exact",
-                designs as f64, study.name
-            ));
-        }
-        if exhaustive && self.time_limit.is_some() {
-            return refused("--time-limit goes with --search exact".into());
-        }
-        if exhaustive && self.gap.is_some() {
-            return refused("--gap goes with --search exact".into());
-        }
-        Ok(designs)
+        Ok(self.wish().check(study, catalogs)?)
     }
 
     /// Checks that nothing but a visit to every design was asked for, and counts the designs.
@@ -111,27 +75,18 @@ impl SearchArgs {
     /// # Errors
     /// Something else was asked for, or the visit would take years.
     pub(super) fn check_exhaustive(&self, study: &Study, catalogs: &Catalogs) -> Result<u128, Failure> {
-        if self.search == Some(SearchKind::Exact) {
+        if self.search == Some(SearchMethod::Exact) {
             return Err(Failure::Usage(
                 "--shard goes with --search exhaustive: the exact search runs on one machine".into(),
             ));
         }
-        Self { search: Some(SearchKind::Exhaustive), ..*self }.check(study, catalogs)
+        Self { search: Some(SearchMethod::Exhaustive), ..*self }.check(study, catalogs)
     }
 
     /// Whether anything is asked for.
     pub(crate) fn is_default(&self) -> bool {
         self.search.is_none() && self.time_limit.is_none() && self.gap.is_none()
     }
-}
-
-/// The search that is estimated to cost less.
-fn cheaper(study: &Study, catalogs: &Catalogs, designs: f64, log: Log) -> SearchKind {
-    let cost = SearchCost::of(&study.space, catalogs, designs);
-    if let Some(words) = cost.words() {
-        log.note(&wrap(&words, TERMINAL, ""));
-    }
-    if cost.speaks_for_exact() { SearchKind::Exact } else { SearchKind::Exhaustive }
 }
 
 /// A percentage, which may be 0.
@@ -172,8 +127,8 @@ pub(super) fn search(asked: &Asked, with: &With) -> Result<Written, Failure> {
         )));
     }
     let written = match with.how.kind(&asked.study, with.catalogs, with.log)? {
-        SearchKind::Exhaustive => visit_all(asked, with),
-        SearchKind::Exact => search_exactly(asked, with),
+        SearchMethod::Exhaustive => visit_all(asked, with),
+        SearchMethod::Exact => search_exactly(asked, with),
     }?;
     if let Some(record) = with.record {
         record.add(written.elapsed_s, &written.progress)?;

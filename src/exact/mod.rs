@@ -67,4 +67,4 @@ pub(crate) mod work;
 
 pub use domain_reduction::DomainReduction;
 pub use live::Known;
-pub use run::{Exact, ExactOutcome, VAST};
+pub use run::{Exact, ExactOutcome, VAST, WORKER_STACK_BYTES};

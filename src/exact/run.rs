@@ -20,6 +20,10 @@ use crate::space::design_space::{DesignSpace, LinkOption};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
+/// Stack that each worker of a thread pool needs \[bytes\]: regions of an exact search are nested calls, and a waiting worker runs
+/// those of others on its own stack. A program that builds its own pool gives its workers as much.
+pub const WORKER_STACK_BYTES: usize = 64 << 20;
+
 /// Number of designs above which a space is searched in passes.
 const LARGE: f64 = 1e9;
 /// Number of designs above which a space is searched region by region.

@@ -6,14 +6,15 @@ use super::calculix::mesh::has_shape;
 use super::calculix::model::model;
 use super::design_table::design_csv;
 use super::left_out::{LeftOut, Remainder};
-use super::mjcf::{Motor, mjcf};
+use super::mjcf::{Motor, STAND_IN_KGM2, mjcf};
 use super::snapshot::Snapshot;
 use super::tree::TreeOptions;
 use super::urdf_out::{stiffness_file, urdf, with_several_drivers};
 use crate::arm::effect::entry::Effect;
 use crate::arm::load::{LoadCase, Payload};
 use crate::arm::structure::Piece;
-use crate::arm::{Arm, LinkModel, Words};
+use crate::arm::section::Section;
+use crate::arm::{Arm, LinkBody, LinkModel, Words};
 use crate::catalog::Catalogs;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -156,6 +157,14 @@ fn to_calculix(asked: &Asked) -> Export {
     if modes(&model) > 0 {
         out.files.push(("modes.inp".into(), file(Step::Frequency, "Stiffnesses of joints are tangents at this load")));
     }
+    let open = asked.arm.links().filter(|link| matches!(&link.body, LinkBody::Tube { section: Section::IBeam { .. }, .. }));
+    let open: Vec<&str> = open.map(|link| link.name.as_str()).collect();
+    if !open.is_empty() && links == LinkModel::Full {
+        out.notes.push(format!(
+            "rigid end faces hold the warping of open sections, so that they twist less than expected: {}",
+            open.join(", ")
+        ));
+    }
     if asked.case.links == LinkModel::Bending {
         out.notes.push("solids shear, twist and stretch: expected is the full model of links, not bending alone".into());
     }
@@ -233,6 +242,7 @@ fn motors(arm: &Arm, catalogs: &Catalogs, notes: &mut Vec<String>) -> BTreeMap<S
         let rotor_kgm2 = motor.and_then(|motor| motor.rotor_inertia_kgm2);
         let (Some(gear), Some(motor), Some(rotor_kgm2)) = (gear, motor, rotor_kgm2) else {
             unknown.push(joint.name.as_str());
+            out.insert(joint.name.clone(), Motor { armature_kgm2: STAND_IN_KGM2, peak_nm: None });
             continue;
         };
         let input_kgm2 = rotor_kgm2 + gear.inertia_input_kgm2.unwrap_or_default();
@@ -241,7 +251,10 @@ fn motors(arm: &Arm, catalogs: &Catalogs, notes: &mut Vec<String>) -> BTreeMap<S
         out.insert(joint.name.clone(), Motor { armature_kgm2, peak_nm });
     }
     if !unknown.is_empty() {
-        notes.push(format!("no armature, because the catalogs do not know the rotor's inertia: {}", unknown.join(", ")));
+        notes.push(format!(
+            "an armature of {STAND_IN_KGM2} kg m2 stands in where the catalogs do not know the rotor's inertia: {}",
+            unknown.join(", ")
+        ));
     }
     out
 }

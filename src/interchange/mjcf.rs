@@ -16,8 +16,12 @@ use std::collections::BTreeMap;
 /// body without both.
 const LEAST: f64 = 1e-9;
 
+/// Inertia that stands in for a rotor that nobody knows, at the joint \[kg m²\]. Without any, motor and gear would be two hinges of
+/// one axis with nothing between them, and the mass matrix singular. With motors held it changes nothing.
+pub(crate) const STAND_IN_KGM2: f64 = 0.1;
+
 /// What a motor adds to a joint.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Motor {
     /// Inertia of rotor and gear, at the joint \[kg m²\].
     pub armature_kgm2: f64,
@@ -111,9 +115,8 @@ fn joint(hinge: &Hinge, origin_m: &Vector3<f64>, motors: &BTreeMap<String, Motor
     ];
     match hinge.role {
         Role::Motor => {
-            let armature_kgm2 = motors.get(&hinge.name).map_or(0.0, |motor| motor.armature_kgm2);
-            if armature_kgm2 > 0.0 {
-                out.push(("armature", numbers(&[armature_kgm2])));
+            if let Some(motor) = motors.get(&hinge.name) {
+                out.push(("armature", numbers(&[motor.armature_kgm2])));
             }
         }
         Role::Spring(working) => {

@@ -1,5 +1,6 @@
 //! Results for people and programs: numbers, tables, pictures, pages (CSV, JSON, SVG, HTML, terminal).
 
+pub mod analysis;
 pub(crate) mod braille;
 pub mod budget;
 pub mod caveats;

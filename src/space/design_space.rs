@@ -20,6 +20,8 @@ use crate::sizing::requirement::MotionRequirement;
 use crate::sizing::select::DriveFilter;
 use crate::sizing::stated::StatedDuty;
 use nalgebra::{Unit, Vector3};
+use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// An arm with open choices, the cases in which it is judged, and the limits that every design must keep.
 ///
@@ -75,7 +77,7 @@ use nalgebra::{Unit, Vector3};
 ///         SpacePiece::Choice(LinkChoice {
 ///             name: "upper_arm".into(),
 ///             vector_m: Vector3::new(0.8, 0.0, 0.0),
-///             options: vec![tube(0.005), tube(0.010)],
+///             options: [tube(0.005), tube(0.010)].into(),
 ///             bodies: Vec::new(),
 ///             excerpt: None,
 ///         }),
@@ -169,6 +171,22 @@ impl SpacePiece {
             Self::Choice(choice) => &choice.name,
         }
     }
+
+    /// The choices of a link; `None` for a piece that leaves no section open.
+    pub(crate) fn as_choice(&self) -> Option<&LinkChoice> {
+        match self {
+            Self::Choice(choice) => Some(choice),
+            _ => None,
+        }
+    }
+
+    /// The choices of a link, to be changed; `None` for a piece that leaves no section open.
+    pub(crate) fn as_choice_mut(&mut self) -> Option<&mut LinkChoice> {
+        match self {
+            Self::Choice(choice) => Some(choice),
+            _ => None,
+        }
+    }
 }
 
 /// A joint and how its drive is found.
@@ -231,8 +249,8 @@ pub struct LinkChoice {
     pub name: String,
     /// From root to end \[m\].
     pub vector_m: Vector3<f64>,
-    /// The materials and sections to choose from.
-    pub options: Vec<LinkOption>,
+    /// The materials and sections to choose from; shared, so that a copy of a space of many is cheap.
+    pub options: Arc<[LinkOption]>,
     /// Rigid bodies that the link carries, whichever tube it has.
     pub bodies: Vec<RigidBody>,
     /// The places of these options in the whole list; `None` if this is the whole list.
@@ -430,18 +448,9 @@ impl DesignSpace {
 
     /// Names of the materials that links can be made of, in the study's order.
     pub fn material_names(&self) -> Vec<String> {
-        let mut names: Vec<(usize, &str)> = self
-            .pieces
-            .iter()
-            .filter_map(|p| match p {
-                SpacePiece::Choice(choice) => Some(&choice.options),
-                _ => None,
-            })
-            .flatten()
-            .map(|o| (o.material_index, o.material_name.as_str()))
-            .collect();
-        names.sort_unstable();
-        names.dedup();
+        let choices = self.pieces.iter().filter_map(SpacePiece::as_choice);
+        let options = choices.flat_map(|choice| choice.options.iter());
+        let names: BTreeSet<_> = options.map(|o| (o.material_index, o.material_name.as_str())).collect();
         names.into_iter().map(|(_, name)| name.to_string()).collect()
     }
 }

@@ -13,6 +13,7 @@ use super::drives::{Drives, read_drives};
 use super::effects::check_effects;
 use super::fit::{fit_remarks, read_fit};
 use super::harness::{harness_effects, harness_remark};
+use super::keys::{CHOOSE, CONSTRAINTS, JOINT, LINK, MODELS, STUDY};
 use super::linkages::drivers_are_inboard;
 use super::motion::{read_duty, read_motion};
 use super::omissions::omissions;
@@ -37,30 +38,7 @@ use crate::sizing::stated::StatedDuty;
 use crate::space::constraint::{Constraints, Servo};
 use crate::space::design_space::{DesignSpace, DriveChoice, LinkChoice, SpaceJoint, SpacePiece};
 use serde_json::Value;
-
-const KEYS: [&str; 21] = [
-    "name",
-    "question",
-    "gravity_m_s2",
-    "chain",
-    "payload",
-    "tip_force_n",
-    "tip_moment_nm",
-    "poses",
-    "environments",
-    "motion",
-    "duty",
-    "drives",
-    "extras",
-    "fit",
-    "harness_kg_per_m",
-    "connection_share",
-    "constraints",
-    "models",
-    "effects",
-    "gap_percent",
-    "notes",
-];
+use std::sync::Arc;
 
 /// Reads a study. Materials, profiles and parts that it names are looked up in `catalogs`. The keys are in
 /// `docs/study-format.md`.
@@ -89,7 +67,7 @@ pub fn read_study(document: Document, catalogs: &Catalogs) -> Result<Study, Faul
 }
 
 fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
-    let root = node.object(&KEYS)?;
+    let root = node.shaped(&STUDY)?;
     let text = |key| root.or(key, String::new(), |n| n.string().map(String::from));
     let name = root.required("name").and_then(|n| match n.string()? {
         name if name.chars().any(|c| c.is_ascii_alphanumeric()) => Some(name.to_string()),
@@ -204,11 +182,8 @@ fn read_duty_of_only_joint(node: &Node, study: &Node) -> Option<StatedDuty> {
 /// Numbers the materials of all links through the study, in the order in which they first appear.
 fn number_materials(pieces: &mut [SpacePiece]) {
     let mut names: Vec<String> = Vec::new();
-    let options = pieces.iter_mut().filter_map(|p| match p {
-        SpacePiece::Choice(choice) => Some(&mut choice.options),
-        _ => None,
-    });
-    for option in options.flatten() {
+    let choices = pieces.iter_mut().filter_map(SpacePiece::as_choice_mut);
+    for option in choices.flat_map(|choice| Arc::make_mut(&mut choice.options)) {
         option.material_index = names.iter().position(|n| *n == option.material_name).unwrap_or_else(|| {
             names.push(option.material_name.clone());
             names.len() - 1
@@ -263,28 +238,7 @@ fn unique_names(node: &Node, pieces: &[SpacePiece]) -> Option<()> {
 }
 
 fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
-    let object = node.object(&[
-        "type",
-        "name",
-        "axis",
-        "drive",
-        "stiffness_nm_per_rad",
-        "windup",
-        "gear",
-        "motor",
-        "gear_mass",
-        "mass_kg",
-        "max_speed_rad_s",
-        "bearing",
-        "extras",
-        "range_deg",
-        "brake",
-        "duty",
-        "drives",
-        "fit",
-        "bodies",
-        "coupled",
-    ])?;
+    let object = node.shaped(&JOINT)?;
     let name = read_name(&object);
     let axis = object.required("axis").and_then(|n| crate::arm::file::read_axis(&n));
     let max_speed = object.or("max_speed_rad_s", None, |n| n.positive().map(Some));
@@ -415,7 +369,7 @@ fn read_given_drive(object: &Object, open: &Open) -> Option<DriveChoice> {
 
 fn read_space_link(node: &Node, open: &Open, aside: &mut Aside) -> Option<SpacePiece> {
     let object =
-        node.object(&["type", "name", "vector_m", "material", "section", "mass_kg", "bodies", "choose"])?;
+        node.shaped(&LINK)?;
     let Some(choose) = object.optional("choose") else {
         return read_link(&object, &[], open.catalogs).map(SpacePiece::Link);
     };
@@ -429,7 +383,7 @@ fn read_space_link(node: &Node, open: &Open, aside: &mut Aside) -> Option<SpaceP
     let vector_m = object.required("vector_m").and_then(|n| vector(&n)).filter(|v| {
         v.norm() > 1e-6 || object.node().fault::<()>("has no length", "give a longer vector_m").is_some()
     });
-    let choices = choose.object(&["materials", "sections"])?;
+    let choices = choose.shaped(&CHOOSE)?;
     let materials = choices.required("materials").and_then(|n| read_materials(&n, open.catalogs));
     let sections = choices.required("sections").and_then(|n| read_sections(&n, open.catalogs));
     let (materials, sections) = (materials?, sections?);
@@ -443,23 +397,14 @@ fn read_space_link(node: &Node, open: &Open, aside: &mut Aside) -> Option<SpaceP
     Some(SpacePiece::Choice(LinkChoice {
         name: name?,
         vector_m: vector_m?,
-        options,
+        options: options.into(),
         bodies: bodies?,
         excerpt: None,
     }))
 }
 
 fn read_constraints(node: &Node) -> Option<Constraints> {
-    let object = node.object(&[
-        "tip_deflection_max_mm",
-        "mass_max_kg",
-        "lowest_mode_min_hz",
-        "servo_bandwidth_hz",
-        "servo_ratio",
-        "stress_safety_factor_min",
-        "wall_slenderness_max",
-        "material_cost_max_eur",
-    ])?;
+    let object = node.shaped(&CONSTRAINTS)?;
     let limit = |key| object.or(key, None, |n| n.positive().map(Some));
     let (deflection_mm, mass) = (limit("tip_deflection_max_mm"), limit("mass_max_kg"));
     let (mode, bandwidth) = (limit("lowest_mode_min_hz"), limit("servo_bandwidth_hz"));
@@ -487,7 +432,7 @@ fn read_constraints(node: &Node) -> Option<Constraints> {
 }
 
 fn read_models(node: &Node) -> Option<(LinkModel, JointModel)> {
-    let object = node.object(&["links", "joints"])?;
+    let object = node.shaped(&MODELS)?;
     let links = object.or("links", LinkModel::default(), word);
     let joints = object.or("joints", JointModel::default(), word);
     Some((links?, joints?))
