@@ -45,7 +45,11 @@ pub(super) struct ResolvedDesign {
 ///
 /// # Errors
 /// The folder is no whole result of these catalogs, or has no such design.
-pub(super) fn resolve_design(folder: &Path, id: &str, catalogs: &Catalogs) -> Result<ResolvedDesign, Failure> {
+pub(super) fn resolve_design(
+    folder: &Path,
+    id: &str,
+    catalogs: &Catalogs,
+) -> Result<ResolvedDesign, Failure> {
     let results = open_results(folder, catalogs)?;
     let (file, text) = results.text("study.json")?;
     let study = read_study(Document::parse(&file, &text)?, catalogs)?;

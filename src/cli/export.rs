@@ -102,7 +102,13 @@ pub(super) fn run(args: &ExportArgs, catalogs: &Catalogs) -> Result<String, Fail
 /// What is said of an export: what is left out, and the notes.
 fn said(exported: &Export) -> String {
     let left_out = exported.left_out.iter().map(|left| {
-        format!("  left out: {} at {} ({} of the deflection): {}\n", left.what, left.at, percent(100.0 * left.tip_share, 2), left.why)
+        format!(
+            "  left out: {} at {} ({} of the deflection): {}\n",
+            left.what,
+            left.at,
+            percent(100.0 * left.tip_share, 2),
+            left.why
+        )
     });
     let notes = exported.notes.iter().map(|note| format!("  {note}\n"));
     left_out.chain(notes).collect()
@@ -113,7 +119,9 @@ fn source(args: &ExportArgs, catalogs: &Catalogs) -> Result<(Arm, Vec<LoadCase>,
     let path = PathBuf::from(&args.source);
     if let (false, Some((folder, id))) = (path.is_file(), args.source.rsplit_once('#')) {
         if args.cases.is_some() || args.pose_deg.is_some() || args.payload_kg != 0.0 {
-            return Err(Failure::Usage("a design has the cases of its study: choose one with --case NAME".into()));
+            return Err(Failure::Usage(
+                "a design has the cases of its study: choose one with --case NAME".into(),
+            ));
         }
         let design = resolve_design(Path::new(folder), id, catalogs)?;
         return Ok((design.arm, design.cases, Vec::new()));
@@ -140,10 +148,15 @@ fn case_of_flags(args: &ExportArgs, arm: &Arm) -> Result<LoadCase, Failure> {
     if pose_deg.len() != joints.len() {
         let (given, needed) = (pose_deg.len(), joints.len());
         let names = joints.join(", ");
-        return Err(Failure::Usage(format!("--pose-deg has {given} angles, the arm has {needed} driven joints: {names}")));
+        return Err(Failure::Usage(format!(
+            "--pose-deg has {given} angles, the arm has {needed} driven joints: {names}"
+        )));
     }
     if !(args.payload_kg >= 0.0 && args.payload_kg.is_finite()) {
-        return Err(Failure::Usage(format!("--payload-kg {}: give a mass that is not negative", args.payload_kg)));
+        return Err(Failure::Usage(format!(
+            "--payload-kg {}: give a mass that is not negative",
+            args.payload_kg
+        )));
     }
     Ok(LoadCase {
         name: "case".into(),
@@ -161,7 +174,8 @@ fn case_of_flags(args: &ExportArgs, arm: &Arm) -> Result<LoadCase, Failure> {
 fn chosen_case<'c>(args: &ExportArgs, arm: &Arm, cases: &'c [LoadCase]) -> Result<&'c LoadCase, Failure> {
     if let Some(name) = &args.case {
         let names: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
-        let unknown = || Failure::Usage(format!("no case is called \"{name}\"; the cases are: {}", names.join(", ")));
+        let unknown =
+            || Failure::Usage(format!("no case is called \"{name}\"; the cases are: {}", names.join(", ")));
         return cases.iter().find(|case| case.name == *name).ok_or_else(unknown);
     }
     let deflection_m = |case: &LoadCase| {

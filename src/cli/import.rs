@@ -12,13 +12,11 @@ use std::path::PathBuf;
 
 /// Makes an arm file of a robot in a URDF file: of the joints and links from its root to a tip.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Example: armwright import ur5e.urdf --tip tool0 --out ur5e\n         \
+#[command(after_help = "Example: armwright import ur5e.urdf --tip tool0 --out ur5e\n         \
                         armwright analyze ur5e/arm.json --pose-deg 0,-90,90,0,0,0 --payload-kg 5\n\n\
                         Writes arm.json and import.json (what was lumped, guessed and left rigid; ranges and limits). A URDF says nothing of \
                         stiffness: without --stiffness every joint is rigid, and stiffness.json with all joints is written to be filled \
-                        in. Expand xacro files first."
-)]
+                        in. Expand xacro files first.")]
 pub(crate) struct ImportArgs {
     /// URDF file
     file: PathBuf,
@@ -51,7 +49,8 @@ pub(super) fn run(args: &ImportArgs, catalogs: &Catalogs) -> Result<String, Fail
     if args.stiffness.is_none() {
         files.push(("stiffness.json".into(), pretty(&blank(&robot.joints()))));
     }
-    let inputs: Vec<_> = [Some(args.file.as_path()), args.stiffness.as_deref()].into_iter().flatten().collect();
+    let inputs: Vec<_> =
+        [Some(args.file.as_path()), args.stiffness.as_deref()].into_iter().flatten().collect();
     write_all(&args.out, &files, &inputs)?;
     let out = args.out.display();
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();

@@ -4,8 +4,8 @@ use super::exit::{Answer, Exit};
 use super::failure::Failure;
 use super::log::{Log, LogForm};
 use super::{
-    analyze, capacity, catalog, check, compare, design, export, front, import, merge, new, predict, reconcile, schema,
-    shell, size, slurm,
+    analyze, capacity, catalog, check, compare, design, export, front, import, merge, new, predict,
+    reconcile, schema, shell, size, slurm,
 };
 use crate::catalog::Catalogs;
 use crate::exact::run::WORKER_STACK_BYTES;

@@ -66,8 +66,18 @@ pub(crate) fn bill(arm: &Arm, catalogs: &Catalogs) -> Vec<Row> {
 
 /// The bill as `bom.csv` has it.
 pub(crate) fn bill_csv(rows: &[Row]) -> Vec<u8> {
-    let header =
-        ["item", "count", "part", "kind", "mass_kg", "length_m", "source", "confidence", "cost_eur", "used_at"];
+    let header = [
+        "item",
+        "count",
+        "part",
+        "kind",
+        "mass_kg",
+        "length_m",
+        "source",
+        "confidence",
+        "cost_eur",
+        "used_at",
+    ];
     let number = |x: Option<f64>| x.map_or(String::new(), |x| format!("{x}"));
     let cells = rows.iter().enumerate().map(|(i, row)| {
         vec![
@@ -139,7 +149,9 @@ fn drive_parts(joint: &Joint, catalogs: &Catalogs) -> Vec<Row> {
         }
         (Some(gear), Some(motor)) => {
             let rest_kg = motor.mass_kg.map(|kg| joint.mass_kg - kg);
-            if let (Some(motor_kg), Some(which)) = (motor.mass_kg, rest_kg.and_then(|kg| which_mass(gear, kg))) {
+            if let (Some(motor_kg), Some(which)) =
+                (motor.mass_kg, rest_kg.and_then(|kg| which_mass(gear, kg)))
+            {
                 let part = format!("{} ({which})", gear.id);
                 return vec![
                     bought(at, &part, "gear", joint.mass_kg - motor_kg, &gear.provenance),
@@ -149,7 +161,13 @@ fn drive_parts(joint: &Joint, catalogs: &Catalogs) -> Vec<Row> {
         }
         (Some(gear), None) if joint.motor.is_none() => {
             if let Some(which) = which_mass(gear, joint.mass_kg) {
-                return vec![bought(at, &format!("{} ({which})", gear.id), "gear", joint.mass_kg, &gear.provenance)];
+                return vec![bought(
+                    at,
+                    &format!("{} ({which})", gear.id),
+                    "gear",
+                    joint.mass_kg,
+                    &gear.provenance,
+                )];
             }
         }
         _ => {}
@@ -164,7 +182,8 @@ fn drive_parts(joint: &Joint, catalogs: &Catalogs) -> Vec<Row> {
 
 /// Which of its printed masses a gear of this mass has.
 fn which_mass(gear: &Gear, mass_kg: f64) -> Option<&'static str> {
-    let is = |which| gear.mass_kg(which).is_some_and(|kg: f64| (kg - mass_kg).abs() <= ROUNDING * kg.max(1.0));
+    let is =
+        |which| gear.mass_kg(which).is_some_and(|kg: f64| (kg - mass_kg).abs() <= ROUNDING * kg.max(1.0));
     match (is(GearMass::HousedUnit), is(GearMass::ComponentSet)) {
         (true, _) => Some("housed unit"),
         (_, true) => Some("component set"),
@@ -207,11 +226,19 @@ pub(crate) fn section_words(section: &Section) -> String {
         Section::RectangularTube { width_m, height_m, wall_m } => {
             format!("tube {} x {} x {} mm", mm(width_m), mm(height_m), mm(wall_m))
         }
-        Section::RoundTube { diameter_m, wall_m } => format!("round tube {} x {} mm", mm(diameter_m), mm(wall_m)),
+        Section::RoundTube { diameter_m, wall_m } => {
+            format!("round tube {} x {} mm", mm(diameter_m), mm(wall_m))
+        }
         Section::RectangularBar { width_m, height_m } => format!("bar {} x {} mm", mm(width_m), mm(height_m)),
         Section::RoundBar { diameter_m } => format!("round bar {} mm", mm(diameter_m)),
         Section::IBeam { width_m, height_m, web_m, flange_m } => {
-            format!("I {} x {} mm, web {} mm, flange {} mm", mm(width_m), mm(height_m), mm(web_m), mm(flange_m))
+            format!(
+                "I {} x {} mm, web {} mm, flange {} mm",
+                mm(width_m),
+                mm(height_m),
+                mm(web_m),
+                mm(flange_m)
+            )
         }
         Section::Stated(stated) => format!("section of stated stiffness, {} kg/m", stated.kg_per_m),
     }

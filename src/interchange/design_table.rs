@@ -6,9 +6,27 @@ use crate::arm::joint_law::Curve;
 use crate::arm::{Arm, Element, Joint, Link, LinkBody};
 
 const HEADER: [&str; 21] = [
-    "element", "type", "axis_x", "axis_y", "axis_z", "x_m", "y_m", "z_m", "length_m", "section", "material",
-    "mass_kg", "gear", "motor", "k1_nm_per_rad", "k2_nm_per_rad", "k3_nm_per_rad", "t1_nm", "t2_nm",
-    "tilt_stiffness_nm_per_rad", "coupled",
+    "element",
+    "type",
+    "axis_x",
+    "axis_y",
+    "axis_z",
+    "x_m",
+    "y_m",
+    "z_m",
+    "length_m",
+    "section",
+    "material",
+    "mass_kg",
+    "gear",
+    "motor",
+    "k1_nm_per_rad",
+    "k2_nm_per_rad",
+    "k3_nm_per_rad",
+    "t1_nm",
+    "t2_nm",
+    "tilt_stiffness_nm_per_rad",
+    "coupled",
 ];
 
 /// The elements of an arm as `design.csv` has them.

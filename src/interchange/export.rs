@@ -12,8 +12,8 @@ use super::tree::TreeOptions;
 use super::urdf_out::{stiffness_file, urdf, with_several_drivers};
 use crate::arm::effect::entry::Effect;
 use crate::arm::load::{LoadCase, Payload};
-use crate::arm::structure::Piece;
 use crate::arm::section::Section;
+use crate::arm::structure::Piece;
 use crate::arm::{Arm, LinkBody, LinkModel, Words};
 use crate::catalog::Catalogs;
 use serde_json::{Value, json};
@@ -84,14 +84,20 @@ pub(crate) fn export(asked: &Asked, catalogs: &Catalogs) -> Export {
         Format::Mjcf => to_mjcf(asked, catalogs),
         Format::Urdf => to_urdf(asked),
         Format::Json => to_json(asked),
-        Format::Csv => Export { files: vec![("design.csv".into(), design_csv(asked.arm))], ..Export::default() },
-        Format::Bom => {
-            Export { files: vec![("bom.csv".into(), bill_csv(&bill(asked.arm, catalogs)))], ..Export::default() }
+        Format::Csv => {
+            Export { files: vec![("design.csv".into(), design_csv(asked.arm))], ..Export::default() }
         }
+        Format::Bom => Export {
+            files: vec![("bom.csv".into(), bill_csv(&bill(asked.arm, catalogs)))],
+            ..Export::default()
+        },
     };
     let ignored: Vec<String> = asked.arm.ignored_effects().into_iter().map(Effect::label).collect();
     if !ignored.is_empty() {
-        out.notes.push(format!("effects that describe a test and not the arm are not in the files: {}", ignored.join(", ")));
+        out.notes.push(format!(
+            "effects that describe a test and not the arm are not in the files: {}",
+            ignored.join(", ")
+        ));
     }
     out
 }
@@ -145,19 +151,27 @@ fn to_calculix(asked: &Asked) -> Export {
     let snapshot = Snapshot::new(rest.structure, asked.case, links);
     let model = model(&snapshot);
     let gravity = snapshot.structure.down * snapshot.structure.gravity_m_s2;
-    let file = |step, what: &str| {
-        deck(&model, step, &format!("{}. {what}", heading(asked)), &gravity).into_bytes()
-    };
+    let file =
+        |step, what: &str| deck(&model, step, &format!("{}. {what}", heading(asked)), &gravity).into_bytes();
     let mut out = Export {
-        files: vec![("static.inp".into(), file(Step::Static, "Stiffnesses of joints are secants at this load"))],
+        files: vec![(
+            "static.inp".into(),
+            file(Step::Static, "Stiffnesses of joints are secants at this load"),
+        )],
         left_out: rest.left_out,
         expected: snapshot.expected(),
         notes: vec!["run: ccx static, then ccx modes; static.dat has the displacement of the tip".into()],
     };
     if modes(&model) > 0 {
-        out.files.push(("modes.inp".into(), file(Step::Frequency, "Stiffnesses of joints are tangents at this load")));
+        out.files.push((
+            "modes.inp".into(),
+            file(Step::Frequency, "Stiffnesses of joints are tangents at this load"),
+        ));
     }
-    let open = asked.arm.links().filter(|link| matches!(&link.body, LinkBody::Tube { section: Section::IBeam { .. }, .. }));
+    let open = asked
+        .arm
+        .links()
+        .filter(|link| matches!(&link.body, LinkBody::Tube { section: Section::IBeam { .. }, .. }));
     let open: Vec<&str> = open.map(|link| link.name.as_str()).collect();
     if !open.is_empty() && links == LinkModel::Full {
         out.notes.push(format!(
@@ -166,11 +180,15 @@ fn to_calculix(asked: &Asked) -> Export {
         ));
     }
     if asked.case.links == LinkModel::Bending {
-        out.notes.push("solids shear, twist and stretch: expected is the full model of links, not bending alone".into());
+        out.notes.push(
+            "solids shear, twist and stretch: expected is the full model of links, not bending alone".into(),
+        );
     }
     if !model.impossible.is_empty() {
         let names = model.impossible.join(", ");
-        out.notes.push(format!("no solid has the inertia of a body, which is exported as near as point masses can: {names}"));
+        out.notes.push(format!(
+            "no solid has the inertia of a body, which is exported as near as point masses can: {names}"
+        ));
     }
     out
 }
@@ -220,14 +238,18 @@ fn plays(asked: &Asked, catalogs: &Catalogs, notes: &mut Vec<String>) -> BTreeMa
         return BTreeMap::new();
     }
     let arcmin_to_rad = PI / (180.0 * 60.0);
-    let of_gear = |name: &Option<String>| catalogs.gear(name.as_ref()?).ok()?.backlash_arcmin.filter(|x| *x > 0.0);
+    let of_gear =
+        |name: &Option<String>| catalogs.gear(name.as_ref()?).ok()?.backlash_arcmin.filter(|x| *x > 0.0);
     let joints = asked.arm.joints().filter(|joint| joint.coupled.is_none());
     let plays: BTreeMap<String, f64> = joints
         .filter_map(|joint| Some((joint.name.clone(), of_gear(&joint.gear)? / 2.0 * arcmin_to_rad)))
         .collect();
     notes.push(match plays.is_empty() {
         true => "no gear of the arm has a backlash in the catalogs: there is no deadband".into(),
-        false => format!("backlash is a free hinge with a range, at: {}", plays.keys().cloned().collect::<Vec<_>>().join(", ")),
+        false => format!(
+            "backlash is a free hinge with a range, at: {}",
+            plays.keys().cloned().collect::<Vec<_>>().join(", ")
+        ),
     });
     plays
 }
@@ -265,14 +287,19 @@ fn to_urdf(asked: &Asked) -> Export {
     rest.without_water();
     let case = rest.without_tip_load("a URDF has no load");
     rest.without_flexible_links("a URDF has rigid links");
-    rest.without_springs("a URDF has rigid joints; stiffness.json has the springs of joints and bearings, without effects");
+    rest.without_springs(
+        "a URDF has rigid joints; stiffness.json has the springs of joints and bearings, without effects",
+    );
     let snapshot = Snapshot::new(rest.structure, &case, LinkModel::Rigid);
     let mut notes =
         vec!["the payload is not part of the file; joints have no ranges and are continuous".to_string()];
     let several = with_several_drivers(asked.arm);
     if !several.is_empty() {
         let names: Vec<&str> = several.iter().map(|joint| joint.name.as_str()).collect();
-        notes.push(format!("passive joints with several drivers are free in the file, for <mimic> has one: {}", names.join(", ")));
+        notes.push(format!(
+            "passive joints with several drivers are free in the file, for <mimic> has one: {}",
+            names.join(", ")
+        ));
     }
     Export {
         files: vec![
@@ -289,7 +316,10 @@ fn to_urdf(asked: &Asked) -> Export {
 fn to_json(asked: &Asked) -> Export {
     let cases: Vec<Value> = asked.cases.iter().map(LoadCase::to_json).collect();
     Export {
-        files: vec![("arm.json".into(), pretty(&asked.arm.to_json())), ("cases.json".into(), pretty(&json!(cases)))],
+        files: vec![
+            ("arm.json".into(), pretty(&asked.arm.to_json())),
+            ("cases.json".into(), pretty(&json!(cases))),
+        ],
         ..Export::default()
     }
 }

@@ -53,7 +53,11 @@ impl<'a> Robot<'a> {
                 names.join(", "),
                 robot.tree.ends().join(", ")
             );
-            return Err(Faults(vec![robot.fault("--tip", format!("\"{tip}\" is no link of the robot"), hint)]));
+            return Err(Faults(vec![robot.fault(
+                "--tip",
+                format!("\"{tip}\" is no link of the robot"),
+                hint,
+            )]));
         }
         let faults = robot.unfit_joints();
         if faults.is_empty() { Ok(robot) } else { Err(Faults(faults)) }

@@ -75,7 +75,9 @@ impl Remainder {
             .pieces
             .iter()
             .filter_map(|piece| match piece {
-                Piece::Link(link) if link.beam.is_some_and(|beam| beam.flexibility > 0.0) => Some(link.name.clone()),
+                Piece::Link(link) if link.beam.is_some_and(|beam| beam.flexibility > 0.0) => {
+                    Some(link.name.clone())
+                }
                 _ => None,
             })
             .collect();
@@ -100,7 +102,8 @@ impl Remainder {
 
     /// Force and moment at the tip.
     pub(crate) fn without_tip_load(&mut self, why: &str) -> LoadCase {
-        let bare = LoadCase { tip_force_n: Vector3::zeros(), tip_moment_nm: Vector3::zeros(), ..self.case.clone() };
+        let bare =
+            LoadCase { tip_force_n: Vector3::zeros(), tip_moment_nm: Vector3::zeros(), ..self.case.clone() };
         if bare != self.case {
             let rest_m = Snapshot::new(self.structure.clone(), &bare, bare.links).tip_m();
             let whole_m = Snapshot::new(self.structure.clone(), &self.case, self.case.links).tip_m();
@@ -124,7 +127,8 @@ impl Remainder {
             });
             links.into_iter().any(|link| link == name)
         };
-        let springs = statics.shares_m.iter().filter(|(name, share)| !is_link(name) && *share != Vector3::zeros());
+        let springs =
+            statics.shares_m.iter().filter(|(name, share)| !is_link(name) && *share != Vector3::zeros());
         let out: Vec<LeftOut> = springs
             .map(|(name, share)| LeftOut {
                 what: "spring",

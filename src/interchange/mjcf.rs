@@ -38,7 +38,12 @@ pub(crate) struct Mjcf {
 }
 
 /// Writes an arm in a case as MJCF.
-pub(crate) fn mjcf(name: &str, snapshot: &Snapshot, options: &TreeOptions, motors: &BTreeMap<String, Motor>) -> Mjcf {
+pub(crate) fn mjcf(
+    name: &str,
+    snapshot: &Snapshot,
+    options: &TreeOptions,
+    motors: &BTreeMap<String, Motor>,
+) -> Mjcf {
     let nodes = tree(snapshot, options);
     let balanced = nodes.iter().any(|node| !is_solid(node));
     let case = &snapshot.case;
@@ -59,7 +64,11 @@ pub(crate) fn mjcf(name: &str, snapshot: &Snapshot, options: &TreeOptions, motor
     let gravity = snapshot.structure.down * snapshot.structure.gravity_m_s2;
     xml.leaf(
         "option",
-        &[("gravity", triple(&gravity)), ("integrator", "implicitfast".into()), ("timestep", "0.0001".into())],
+        &[
+            ("gravity", triple(&gravity)),
+            ("integrator", "implicitfast".into()),
+            ("timestep", "0.0001".into()),
+        ],
     );
     xml.open("worldbody", &[]);
     let mut before_m = Vector3::zeros();
@@ -68,7 +77,10 @@ pub(crate) fn mjcf(name: &str, snapshot: &Snapshot, options: &TreeOptions, motor
         before_m = node.origin_m;
     }
     let posed = snapshot.at_zero();
-    xml.leaf("site", &[("name", "tip".into()), ("pos", triple(&(posed.tip_m - before_m))), ("size", "0.01".into())]);
+    xml.leaf(
+        "site",
+        &[("name", "tip".into()), ("pos", triple(&(posed.tip_m - before_m))), ("size", "0.01".into())],
+    );
     nodes.iter().for_each(|_| xml.close());
     xml.close();
     couplings(&mut xml, snapshot, &nodes);
@@ -89,7 +101,11 @@ fn body(xml: &mut Xml, node: &Node, before_m: &Vector3<f64>, motors: &BTreeMap<S
     let full = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|at| inertia[at]);
     xml.leaf(
         "inertial",
-        &[("pos", triple(&(cg_m - node.origin_m))), ("mass", numbers(&[mass_kg])), ("fullinertia", numbers(&full))],
+        &[
+            ("pos", triple(&(cg_m - node.origin_m))),
+            ("mass", numbers(&[mass_kg])),
+            ("fullinertia", numbers(&full)),
+        ],
     );
     for (from_m, to_m, radius_m) in &node.rods {
         let ends = format!("{} {}", triple(&(from_m - node.origin_m)), triple(&(to_m - node.origin_m)));
@@ -106,7 +122,11 @@ fn body(xml: &mut Xml, node: &Node, before_m: &Vector3<f64>, motors: &BTreeMap<S
     }
 }
 
-fn joint(hinge: &Hinge, origin_m: &Vector3<f64>, motors: &BTreeMap<String, Motor>) -> Vec<(&'static str, String)> {
+fn joint(
+    hinge: &Hinge,
+    origin_m: &Vector3<f64>,
+    motors: &BTreeMap<String, Motor>,
+) -> Vec<(&'static str, String)> {
     let mut out = vec![
         ("name", hinge.name.clone()),
         ("type", if hinge.slides { "slide" } else { "hinge" }.to_string()),
@@ -131,7 +151,8 @@ fn joint(hinge: &Hinge, origin_m: &Vector3<f64>, motors: &BTreeMap<String, Motor
 /// A passive joint follows the motors and the gears of its drivers: a tendon that stays at zero.
 fn couplings(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
     let driven: Vec<&str> = snapshot.case_joints();
-    let has_gear = |joint: &str| nodes.iter().flat_map(|n| &n.hinges).any(|h| h.name == format!("{joint}.gear"));
+    let has_gear =
+        |joint: &str| nodes.iter().flat_map(|n| &n.hinges).any(|h| h.name == format!("{joint}.gear"));
     let passive: Vec<_> = snapshot.structure.joints().filter(|joint| !joint.is_driven()).collect();
     if passive.is_empty() {
         return;

@@ -119,7 +119,8 @@ impl ImportReport {
         }
         let outboard = tree.child_joints(name).count();
         if outboard > 0 {
-            self.guessed.push(format!("what the tip link \"{name}\" carries is part of the arm, held at zero"));
+            self.guessed
+                .push(format!("what the tip link \"{name}\" carries is part of the arm, held at zero"));
         }
         self.guessed.push(
             "links are rigid: a URDF has neither sections nor materials, and its bodies have the drives in them".into(),
@@ -166,7 +167,8 @@ impl ImportReport {
             self.lumped.len()
         );
         if !self.left_rigid.is_empty() {
-            out += &format!("  left rigid, because nothing gives a stiffness: {}\n", self.left_rigid.join(", "));
+            out +=
+                &format!("  left rigid, because nothing gives a stiffness: {}\n", self.left_rigid.join(", "));
         }
         if !self.impossible.is_empty() {
             out += &format!("  no solid has the inertia of: {}\n", self.impossible.join(", "));

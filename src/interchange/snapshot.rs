@@ -3,9 +3,9 @@
 //! A curve has no single stiffness. At the load of a case it has a *secant* (deflection over load), with which a linear program
 //! finds the deflection, and a *tangent*, with which it finds the frequencies.
 
+use crate::arm::LinkModel;
 use crate::arm::load::LoadCase;
 use crate::arm::structure::{LinkPiece, Piece, Structure};
-use crate::arm::LinkModel;
 use crate::mechanics::chain::{Chain, Item, Posed, Yielding};
 use nalgebra::Vector3;
 use serde_json::{Map, Value, json};

@@ -5,11 +5,11 @@
 //! equal parts two hinges bend, one twists, and three slides shear and stretch. That converges with 1/N².
 
 use super::snapshot::{Snapshot, Working};
+use crate::arm::LinkModel;
 use crate::arm::structure::{Beam, LinkPiece};
 use crate::mechanics::beam::{line_stiffnesses, tube_inertia};
 use crate::mechanics::chain::{ElasticElement, Item, OwnMass, Yielding};
 use crate::mechanics::{Twist, angular, body_inertia, linear};
-use crate::arm::LinkModel;
 use nalgebra::{Matrix3, Matrix6, Vector3};
 use std::collections::BTreeMap;
 

@@ -125,12 +125,20 @@ impl UrdfTree {
     fn joint_problems(&self, joint: &Joint, out: &mut Vec<(String, String, &'static str)>) {
         for end in [&joint.parent.link, &joint.child.link] {
             if self.link(end).is_none() {
-                out.push((joint.name.clone(), format!("names the link \"{end}\", which is not in the file"), ""));
+                out.push((
+                    joint.name.clone(),
+                    format!("names the link \"{end}\", which is not in the file"),
+                    "",
+                ));
             }
         }
         let axis = Vector3::from(joint.axis.xyz.0);
         if moves(joint) && !(axis.norm() > 0.0 && axis.norm().is_finite()) {
-            out.push((joint.name.clone(), "has an axis without direction".into(), "give <axis xyz=\"0 0 1\"/>"));
+            out.push((
+                joint.name.clone(),
+                "has an axis without direction".into(),
+                "give <axis xyz=\"0 0 1\"/>",
+            ));
         }
         if let Some(mimic) = &joint.mimic
             && !self.joints.iter().any(|other| other.name == mimic.joint)
@@ -180,7 +188,11 @@ impl UrdfTree {
 fn body_problems(link: &Link, out: &mut Vec<(String, String, &'static str)>) {
     let mass_kg = link.inertial.mass.value;
     if !(mass_kg >= 0.0 && mass_kg.is_finite()) {
-        out.push((link.name.clone(), format!("has a mass of {mass_kg} kg"), "give a mass that is not negative"));
+        out.push((
+            link.name.clone(),
+            format!("has a mass of {mass_kg} kg"),
+            "give a mass that is not negative",
+        ));
     }
     let tensor = tensor(link);
     if tensor.iter().any(|entry| !entry.is_finite()) {
@@ -190,7 +202,11 @@ fn body_problems(link: &Link, out: &mut Vec<(String, String, &'static str)>) {
     let least = SymmetricEigen::new(tensor).eigenvalues.min();
     if least < -ROUNDING * tensor.amax() {
         let problem = format!("has a negative principal moment of inertia, {least} kg m²");
-        out.push((link.name.clone(), problem, "check the signs of ixy, ixz and iyz: they are entries of the tensor"));
+        out.push((
+            link.name.clone(),
+            problem,
+            "check the signs of ixy, ixz and iyz: they are entries of the tensor",
+        ));
     }
 }
 

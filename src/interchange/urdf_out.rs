@@ -24,7 +24,12 @@ pub(crate) fn urdf(arm: &Arm, snapshot: &Snapshot) -> String {
         link(&mut xml, &link_name(i, node), node);
     }
     for (i, pair) in nodes.windows(2).enumerate() {
-        joint(&mut xml, snapshot, (&link_name(i, &pair[0]), &pair[0]), (&link_name(i + 1, &pair[1]), &pair[1]));
+        joint(
+            &mut xml,
+            snapshot,
+            (&link_name(i, &pair[0]), &pair[0]),
+            (&link_name(i + 1, &pair[1]), &pair[1]),
+        );
     }
     if let Some((i, last)) = nodes.iter().enumerate().last() {
         let tip_m = snapshot.at_zero().tip_m - last.origin_m;

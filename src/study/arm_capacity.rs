@@ -31,7 +31,9 @@ pub(crate) fn read_limits(document: Document) -> Result<Vec<TorqueLimit>, Faults
     let root = document.root();
     let limits = match root.value().get("joints") {
         Some(_) => joints(&root),
-        None => root.fault("has no \"joints\"", "write {\"joints\": [{\"name\": \"j1\", \"max_torque_nm\": 87}]}"),
+        None => {
+            root.fault("has no \"joints\"", "write {\"joints\": [{\"name\": \"j1\", \"max_torque_nm\": 87}]}")
+        }
     };
     document.finish(limits)
 }
@@ -50,7 +52,9 @@ fn joints(root: &Node) -> Option<Vec<TorqueLimit>> {
             let joint = name.string()?.to_string();
             match of("max_torque_nm").filter(|node| !node.is_null()) {
                 None => Some(None),
-                Some(node) => Some(Some(TorqueLimit { joint, check: "torque limit", most_nm: node.positive()? })),
+                Some(node) => {
+                    Some(Some(TorqueLimit { joint, check: "torque limit", most_nm: node.positive()? }))
+                }
             }
         })
         .collect();
@@ -69,7 +73,10 @@ pub(crate) fn limits_of_parts(arm: &Arm, catalogs: &Catalogs) -> Vec<TorqueLimit
         let limit = |check, most_nm: Option<f64>| {
             most_nm.map(|most_nm| TorqueLimit { joint: joint.name.clone(), check, most_nm })
         };
-        [limit("average torque of the gear", average_nm), limit("continuous torque of the motor", continuous_nm)]
+        [
+            limit("average torque of the gear", average_nm),
+            limit("continuous torque of the motor", continuous_nm),
+        ]
     };
     arm.joints().filter(|joint| joint.coupled.is_none()).flat_map(of_joint).flatten().collect()
 }
@@ -92,7 +99,9 @@ pub(crate) fn arm_capacity(arm: &Arm, cases: &[LoadCase], limits: &[TorqueLimit]
     let least = table.iter().min_by(|a, b| a.limit.payload_kg.total_cmp(&b.limit.payload_kg));
     let (limit, pose) = match least {
         Some(at) => (at.limit.clone(), at.pose.clone()),
-        None => (Limit { payload_kg: f64::INFINITY, piece: String::new(), check: String::new() }, String::new()),
+        None => {
+            (Limit { payload_kg: f64::INFINITY, piece: String::new(), check: String::new() }, String::new())
+        }
     };
     Capacity { limit, pose, table }
 }
@@ -133,7 +142,8 @@ mod tests {
         // 2 kg in the middle of 1 m and m at its end, on 50 N m: m = (50/9.81 - 1)/1; folded up nothing limits it
         let text = r#"{"chain": [{"type": "joint", "name": "j", "axis": [0, 1, 0], "stiffness_nm_per_rad": null},
             {"type": "link", "name": "l", "vector_m": [1, 0, 0], "mass_kg": 2}]}"#;
-        let arm = read_arm_document(Document::parse("a", text).expect("JSON"), &Catalogs::default()).expect("an arm");
+        let arm = read_arm_document(Document::parse("a", text).expect("JSON"), &Catalogs::default())
+            .expect("an arm");
         let cases = r#"[{"name": "out", "pose_deg": [0]}, {"name": "half", "pose_deg": [-60]}]"#;
         let cases = read_load_cases(Document::parse("c", cases).expect("JSON"), &["j"]).expect("cases");
         let limits = r#"{"robot": "r", "joints": [{"name": "j", "max_torque_nm": 50}, {"name": "k", "max_torque_nm": null}]}"#;
@@ -144,6 +154,9 @@ mod tests {
         assert!((found.table[0].limit.payload_kg - (100.0 / 9.81 - 1.0)).abs() < 1e-9, "{found:?}");
         assert_eq!((found.limit.piece.as_str(), found.limit.check.as_str()), ("j", "torque limit"));
         let faulty = r#"{"joints": [{"name": "j", "max_torque_nm": -5}, {"max_torque_nm": 5}]}"#;
-        assert_eq!(read_limits(Document::parse("l", faulty).expect("JSON")).expect_err("two faults").0.len(), 2);
+        assert_eq!(
+            read_limits(Document::parse("l", faulty).expect("JSON")).expect_err("two faults").0.len(),
+            2
+        );
     }
 }

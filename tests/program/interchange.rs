@@ -43,7 +43,8 @@ fn done(words: &[&str]) -> String {
 }
 
 fn read(path: impl AsRef<Path>) -> Value {
-    let text = fs::read_to_string(path.as_ref()).unwrap_or_else(|e| panic!("{}: {e}", path.as_ref().display()));
+    let text =
+        fs::read_to_string(path.as_ref()).unwrap_or_else(|e| panic!("{}: {e}", path.as_ref().display()));
     serde_json::from_str(&text).expect("JSON")
 }
 
@@ -72,7 +73,11 @@ fn torques_nm(robot: &urdf_rs::Robot, angles: &BTreeMap<String, f64>) -> BTreeMa
         Isometry3::from_parts(Translation3::from(Vector3::from(pose.xyz.0)), turn)
     };
     // angle of a joint, and its slope with respect to each joint of `angles`
-    fn angle(robot: &urdf_rs::Robot, name: &str, angles: &BTreeMap<String, f64>) -> (f64, BTreeMap<String, f64>) {
+    fn angle(
+        robot: &urdf_rs::Robot,
+        name: &str,
+        angles: &BTreeMap<String, f64>,
+    ) -> (f64, BTreeMap<String, f64>) {
         let joint = robot.joints.iter().find(|j| j.name == name).expect("a joint");
         if let Some(mimic) = &joint.mimic {
             let factor = mimic.multiplier.unwrap_or(1.0);
@@ -99,7 +104,8 @@ fn torques_nm(robot: &urdf_rs::Robot, angles: &BTreeMap<String, f64>) -> BTreeMa
         for joint in above.iter().rev() {
             frame *= place(&joint.origin);
             let axis = Unit::new_normalize(Vector3::from(joint.axis.xyz.0));
-            let turns = matches!(joint.joint_type, urdf_rs::JointType::Revolute | urdf_rs::JointType::Continuous);
+            let turns =
+                matches!(joint.joint_type, urdf_rs::JointType::Revolute | urdf_rs::JointType::Continuous);
             if turns {
                 let (value, slopes) = angle(robot, &joint.name, angles);
                 axes.push((frame.rotation * axis.into_inner(), frame.translation.vector, slopes));
@@ -110,7 +116,8 @@ fn torques_nm(robot: &urdf_rs::Robot, angles: &BTreeMap<String, f64>) -> BTreeMa
         let weight_n = Vector3::new(0.0, 0.0, -9.81 * link.inertial.mass.value);
         for (axis, at, slopes) in axes {
             for (joint, slope) in slopes {
-                *out.get_mut(&joint).expect("a joint of the arm") += slope * axis.dot(&(centre - at).cross(&weight_n));
+                *out.get_mut(&joint).expect("a joint of the arm") +=
+                    slope * axis.dot(&(centre - at).cross(&weight_n));
             }
         }
     }
@@ -134,11 +141,13 @@ fn imported_robots_have_the_torques_of_their_files() {
             .collect();
         assert!(joints.len() >= 4, "{name}: {joints:?}");
         let mut random = numbers();
-        let poses: Vec<Vec<f64>> = (0..POSES).map(|_| joints.iter().map(|_| 150.0 * random()).collect()).collect();
+        let poses: Vec<Vec<f64>> =
+            (0..POSES).map(|_| joints.iter().map(|_| 150.0 * random()).collect()).collect();
         let cases = json!(poses.iter().map(|pose| json!({"pose_deg": pose})).collect::<Vec<_>>());
         let cases = write(&out.join("cases.json"), &cases);
         let arm = out.join("arm.json").display().to_string();
-        let found: Value = serde_json::from_str(&done(&["analyze", &arm, "--cases", &cases, "--json"])).expect("JSON");
+        let found: Value =
+            serde_json::from_str(&done(&["analyze", &arm, "--cases", &cases, "--json"])).expect("JSON");
         let robot = urdf_rs::read_file(urdf(name)).expect("a URDF");
         let whole: f64 = robot.links.iter().map(|link| link.inertial.mass.value).sum();
         assert!((report["mass_kg"].as_f64().expect("kg") / whole - 1.0).abs() < 1e-12, "{name}: mass");
@@ -170,7 +179,8 @@ fn what_an_import_lumps_guesses_and_leaves_rigid_is_said() {
     assert_eq!(report["joints"][3]["coupled"], json!({"elbow": -0.8}));
     assert_eq!(report["joints"][4]["coupled"], json!({"elbow": -0.4}));
     let guessed = report["guessed"].to_string();
-    for part in ["turn: continuous", "camera_tilt: beside the way to the tip, held at zero, which is outside"] {
+    for part in ["turn: continuous", "camera_tilt: beside the way to the tip, held at zero, which is outside"]
+    {
         assert!(guessed.contains(part), "{part} in {guessed}");
     }
     // the stiffness file comes back filled in
@@ -181,10 +191,12 @@ fn what_an_import_lumps_guesses_and_leaves_rigid_is_said() {
     let given = write(&stiffness, &given);
     done(&["import", &file, "--tip", "flange", "--stiffness", &given, "--out", &out]);
     let arm = read(folder.path().join("arm.json"));
-    let elbow = arm["chain"].as_array().expect("a chain").iter().find(|e| e["name"] == "elbow").expect("the elbow");
+    let elbow =
+        arm["chain"].as_array().expect("a chain").iter().find(|e| e["name"] == "elbow").expect("the elbow");
     assert!(elbow["windup"]["k1_nm_per_rad"].as_f64().is_some_and(|k| k > 0.0));
     assert_eq!(elbow["mass_kg"], 0.0);
-    let solved: Value = serde_json::from_str(&done(&["analyze", &format!("{out}/arm.json"), "--json"])).expect("JSON");
+    let solved: Value =
+        serde_json::from_str(&done(&["analyze", &format!("{out}/arm.json"), "--json"])).expect("JSON");
     assert!(solved["modes"][0]["frequency_hz"].as_f64().is_some_and(|hz| hz > 1.0));
 }
 
@@ -213,7 +225,11 @@ fn faults_of_an_import_are_said_with_what_to_try() {
         &json!({"joints": {"panda_joint9": {"stiffness_nm_per_rad": 1e4}, "panda_joint1": {"stiffness_nm_per_rad": -1}}}),
     );
     let words = ["import", &panda, "--tip", "panda_hand", "--stiffness", &given, "--out", &out];
-    fails(&words, 3, &["2 faults", "\"panda_joint9\" is no moving joint", "panda_joint1.stiffness_nm_per_rad"]);
+    fails(
+        &words,
+        3,
+        &["2 faults", "\"panda_joint9\" is no moving joint", "panda_joint1.stiffness_nm_per_rad"],
+    );
     fails(&["import", "no.urdf", "--tip", "a", "--out", &out], 7, &["no.urdf"]);
     assert!(!folder.path().join("out").exists());
 }
@@ -226,7 +242,8 @@ fn the_capacity_of_an_imported_robot_takes_a_joint_to_its_limit() {
     let cases = json!([{"name": "out", "pose_deg": [0, 0, 0, 0, 0, 0]}, {"name": "bent", "pose_deg": [10, -70, 100, -30, 20, 0]}]);
     let cases = write(&folder.path().join("cases.json"), &cases);
     let arm = format!("{out}/arm.json");
-    let found: Value = serde_json::from_str(&done(&["capacity", &arm, "--cases", &cases, "--json"])).expect("JSON");
+    let found: Value =
+        serde_json::from_str(&done(&["capacity", &arm, "--cases", &cases, "--json"])).expect("JSON");
     assert_eq!((found["pose"].as_str(), found["check"].as_str()), (Some("out"), Some("torque limit")));
     let payload_kg = found["payload_kg"].as_f64().expect("kg");
     assert!(payload_kg > 3.0 && payload_kg < 30.0, "{payload_kg}");
@@ -268,7 +285,8 @@ fn arm() -> Value {
 fn exported(folder: &Path, form: &str, flags: &[&str]) -> Value {
     let file = write(&folder.join("arm.json"), &arm());
     let out = folder.join(form).display().to_string();
-    let words = ["export", &file, "--pose-deg", "20,-30,70", "--payload-kg", "6", "--to", form, "--out", &out];
+    let words =
+        ["export", &file, "--pose-deg", "20,-30,70", "--payload-kg", "6", "--to", form, "--out", &out];
     done(&[words.as_slice(), flags].concat());
     read(folder.join(form).join("export.json"))
 }
@@ -292,7 +310,10 @@ fn a_bill_of_materials_weighs_what_the_arm_weighs() {
     for kind in ["housing", "brake", "bearing", "drive", "offset", "link", "body"] {
         assert!(!of(kind).is_empty(), "no {kind}");
     }
-    assert!(of("link").iter().any(|row| &row[5] == "0.5" && !row[8].is_empty()), "a link with length and cost");
+    assert!(
+        of("link").iter().any(|row| &row[5] == "0.5" && !row[8].is_empty()),
+        "a link with length and cost"
+    );
 }
 
 #[test]
@@ -307,7 +328,8 @@ fn what_is_left_out_and_what_stays_make_the_whole_deflection() {
         let record = exported(folder.path(), form, flags);
         let words = ["analyze", &file, "--pose-deg", "20,-30,70", "--payload-kg", "6", "--json"];
         let whole: Value = serde_json::from_str(&done(&words)).expect("JSON");
-        let vector = |value: &Value| Vector3::from_iterator((0..3).map(|i| value[i].as_f64().expect("a number")));
+        let vector =
+            |value: &Value| Vector3::from_iterator((0..3).map(|i| value[i].as_f64().expect("a number")));
         let whole = vector(&whole["tip_displacement_m"]);
         let stays = vector(&record["expected"]["tip_displacement_m"]).dot(&whole) / whole.norm_squared();
         let items = record["left_out"].as_array().expect("a list");
@@ -328,14 +350,22 @@ fn an_arm_that_goes_out_as_urdf_comes_back_the_same() {
     let (out, back) = (folder.path().join("out"), folder.path().join("back"));
     done(&["export", &file, "--to", "urdf", "--out", &out.display().to_string()]);
     let (urdf, stiffness) = (out.join("arm.urdf"), out.join("stiffness.json"));
-    let words = ["import", &urdf.display().to_string(), "--tip", "tip", "--stiffness", &stiffness.display().to_string()];
+    let words = [
+        "import",
+        &urdf.display().to_string(),
+        "--tip",
+        "tip",
+        "--stiffness",
+        &stiffness.display().to_string(),
+    ];
     done(&[words.as_slice(), &["--out", &back.display().to_string()]].concat());
     let again = back.join("arm.json").display().to_string();
     let mut random = numbers();
     for _ in 0..5 {
         let pose = [0; 3].map(|_| format!("{}", 150.0 * random())).join(",");
         let solve = |file: &str| -> Value {
-            let words = ["analyze", file, "--pose-deg", &pose, "--payload-kg", "6", "--links", "rigid", "--json"];
+            let words =
+                ["analyze", file, "--pose-deg", &pose, "--payload-kg", "6", "--links", "rigid", "--json"];
             serde_json::from_str(&done(&words)).expect("JSON")
         };
         let (before, after) = (solve(&file), solve(&again));
@@ -362,7 +392,9 @@ fn exports_have_the_same_bytes_and_refuse_what_they_cannot() {
         let bytes = || {
             let record = exported(folder.path(), form, &[]);
             let names = record["files"].as_array().expect("files").iter();
-            let file = |name: &Value| fs::read(folder.path().join(form).join(name.as_str().expect("a name"))).expect("a file");
+            let file = |name: &Value| {
+                fs::read(folder.path().join(form).join(name.as_str().expect("a name"))).expect("a file")
+            };
             names.map(file).collect::<Vec<_>>()
         };
         let first = bytes();
@@ -391,7 +423,10 @@ fn python() -> Option<String> {
     let own = project().join("target/mujoco/bin/python").display().to_string();
     let candidates = [std::env::var("ARMWRIGHT_PYTHON").ok(), Some(own), Some("python3".into())];
     candidates.into_iter().flatten().find(|python| {
-        Command::new(python).args(["-c", "import mujoco, numpy"]).output().is_ok_and(|output| output.status.success())
+        Command::new(python)
+            .args(["-c", "import mujoco, numpy"])
+            .output()
+            .is_ok_and(|output| output.status.success())
     })
 }
 

@@ -103,7 +103,11 @@ fn elastic(beam: &Beam) -> (String, bool) {
 fn masses(out: &mut String, model: &Model, element: &mut usize) {
     for (node, kg) in &model.masses {
         *element += 1;
-        let _ = writeln!(out, "*ELEMENT, TYPE=MASS, ELSET=MASS{element}\n{element}, {}\n*MASS, ELSET=MASS{element}\n{kg:.12e}", node + 1);
+        let _ = writeln!(
+            out,
+            "*ELEMENT, TYPE=MASS, ELSET=MASS{element}\n{element}, {}\n*MASS, ELSET=MASS{element}\n{kg:.12e}",
+            node + 1
+        );
     }
     for (node, _) in &model.masses {
         for d in 1..=3 {
@@ -137,7 +141,8 @@ fn constraints(out: &mut String, model: &Model) {
     for terms in &model.equations {
         let _ = writeln!(out, "*EQUATION\n{}", terms.len());
         for line in terms.chunks(4) {
-            let line: Vec<String> = line.iter().map(|(n, d, c)| format!("{}, {}, {c:.12e}", n + 1, d + 1)).collect();
+            let line: Vec<String> =
+                line.iter().map(|(n, d, c)| format!("{}, {}, {c:.12e}", n + 1, d + 1)).collect();
             let _ = writeln!(out, "{}", line.join(", "));
         }
     }
@@ -156,7 +161,11 @@ fn static_step(out: &mut String, model: &Model, gravity_m_s2: &Vector3<f64>) {
         let down = gravity_m_s2 / size;
         out.push_str("*DLOAD\n");
         for k in 0..model.solids.len() {
-            let _ = writeln!(out, "LINK{k}, GRAV, {size:.12e}, {:.12e}, {:.12e}, {:.12e}", down.x, down.y, down.z);
+            let _ = writeln!(
+                out,
+                "LINK{k}, GRAV, {size:.12e}, {:.12e}, {:.12e}, {:.12e}",
+                down.x, down.y, down.z
+            );
         }
     }
     if !model.loads.is_empty() {

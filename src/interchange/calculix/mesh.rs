@@ -79,7 +79,8 @@ pub(crate) fn mesh(
 ) -> Option<Mesh> {
     let grid = grid(section)?;
     let (width_m, height_m) = section.outer_m();
-    let along = (2.0 * length_m / width_m.max(height_m)).ceil().clamp(ALONG.0 as f64, ALONG.1 as f64) as usize;
+    let along =
+        (2.0 * length_m / width_m.max(height_m)).ceil().clamp(ALONG.0 as f64, ALONG.1 as f64) as usize;
     let mut out = Mesh { stations: vec![Vec::new(); along + 1], ..Mesh::default() };
     let mut numbers: BTreeMap<(usize, usize, usize), usize> = BTreeMap::new();
     let (across, through) = grid.bricks;
@@ -181,7 +182,18 @@ mod tests {
     /// edges are straight, so sections with corners are compared to rounding.
     fn volume_m3(mesh: &Mesh) -> f64 {
         let g = 1.0 / 3f64.sqrt();
-        let corner = |n: usize| [(-1.0, -1.0, -1.0), (1.0, -1.0, -1.0), (1.0, 1.0, -1.0), (-1.0, 1.0, -1.0), (-1.0, -1.0, 1.0), (1.0, -1.0, 1.0), (1.0, 1.0, 1.0), (-1.0, 1.0, 1.0)][n];
+        let corner = |n: usize| {
+            [
+                (-1.0, -1.0, -1.0),
+                (1.0, -1.0, -1.0),
+                (1.0, 1.0, -1.0),
+                (-1.0, 1.0, -1.0),
+                (-1.0, -1.0, 1.0),
+                (1.0, -1.0, 1.0),
+                (1.0, 1.0, 1.0),
+                (-1.0, 1.0, 1.0),
+            ][n]
+        };
         let mut volume = 0.0;
         for brick in &mesh.bricks {
             for (x, y, z) in (0..8).map(corner).map(|(a, b, c)| (a * g, b * g, c * g)) {

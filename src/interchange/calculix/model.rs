@@ -127,7 +127,11 @@ impl Builder<'_> {
             if element.torque_nm != 0.0 {
                 self.model.loads.push((node, 0, element.torque_nm));
             }
-            let name = if element.twists.len() == 1 { element.name.clone() } else { format!("{}_{}", element.name, i + 1) };
+            let name = if element.twists.len() == 1 {
+                element.name.clone()
+            } else {
+                format!("{}_{}", element.name, i + 1)
+            };
             self.model.hinges.push(HingeNode { name, node, working: *working });
             self.region.hinges.push((node, *twist));
         }
@@ -234,7 +238,15 @@ impl Builder<'_> {
             let turn = own.frame * crate::mechanics::beam::section_frame(&link.vector_m).transpose();
             let at_m = own.root_m + turn * body.cg_m;
             let inertia = turn * body.inertia_kgm2 * turn.transpose();
-            self.body_on_link(&mesh, first, own, link.vector_m.norm(), &root, (body.mass_kg, at_m, inertia), &link.name);
+            self.body_on_link(
+                &mesh,
+                first,
+                own,
+                link.vector_m.norm(),
+                &root,
+                (body.mass_kg, at_m, inertia),
+                &link.name,
+            );
         }
     }
 
@@ -257,7 +269,10 @@ impl Builder<'_> {
             let node = self.node(point_m);
             match station {
                 0 => {
-                    let region = std::mem::replace(&mut self.region, Region { frame: root.frame, hinges: root.hinges.clone() });
+                    let region = std::mem::replace(
+                        &mut self.region,
+                        Region { frame: root.frame, hinges: root.hinges.clone() },
+                    );
                     self.tie(node);
                     self.region = region;
                 }
@@ -287,7 +302,8 @@ impl Builder<'_> {
             let mut terms = vec![(node, d, -1.0)];
             for (n, p) in &places {
                 // θ = S⁻¹ Σ r × u, and θ × a at the node
-                let moved = Matrix3::identity() / count - arm_m.cross_matrix() * inverse * (p - centre_m).cross_matrix();
+                let moved = Matrix3::identity() / count
+                    - arm_m.cross_matrix() * inverse * (p - centre_m).cross_matrix();
                 terms.extend((0..3).map(|e| (*n, e, moved[(d, e)])));
             }
             self.equation(terms);
@@ -344,7 +360,8 @@ impl Builder<'_> {
             self.model.loads.extend((0..3).map(|d| (rotation, d, moment_nm[d])));
         }
         let work = |twist: &Twist| angular(twist).dot(moment_nm);
-        let on_hinges: Vec<Term> = self.region.hinges.iter().map(|(node, twist)| (*node, 0, work(twist))).collect();
+        let on_hinges: Vec<Term> =
+            self.region.hinges.iter().map(|(node, twist)| (*node, 0, work(twist))).collect();
         self.model.loads.extend(on_hinges);
         debug_assert!(linear(&Twist::zeros()) == Vector3::zeros());
     }
