@@ -7,6 +7,7 @@ pub(crate) mod bearing_remarks;
 pub(crate) mod bodies;
 pub(crate) mod bounds;
 pub(crate) mod budget;
+pub(crate) mod arm_capacity;
 pub(crate) mod capacity;
 pub(crate) mod cases;
 pub(crate) mod check;
