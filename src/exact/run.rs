@@ -245,14 +245,7 @@ impl<'p> Exact<'p> {
                 let keep = |state: &SearchState, open: &[OpenBox]| {
                     self.journal.keep_round(&self.budget, || between(state), (slack, open));
                 };
-                pass_by_boxes(
-                    &self.budget,
-                    whole,
-                    state,
-                    (slack, left.take().map(|(_, boxes)| boxes)),
-                    live,
-                    keep,
-                )
+                pass_by_boxes(&self.budget, whole, state, (slack, from), live, keep)
             };
             if !open.is_empty() {
                 // What was told once stays true of the designs found since.

@@ -158,6 +158,7 @@ impl<'a> Robot<'a> {
             down: -Vector3::z(),
             chain: walk.chain,
             effects: Vec::new(),
+            springs: Vec::new(),
         };
         report.impossible = arm.impossible_bodies().into_iter().map(String::from).collect();
         report.mass_kg = arm.mass_kg();

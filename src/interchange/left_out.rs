@@ -68,6 +68,17 @@ impl Remainder {
         }
     }
 
+    /// Springs that balance the arm, one by one.
+    pub(crate) fn without_balance_springs(&mut self) {
+        let names: Vec<String> = self.structure.springs.iter().map(|spring| spring.name.clone()).collect();
+        for name in names {
+            let why = "the file has no springs that balance the arm: its joints hold their torque too";
+            self.remove("balance_spring", &name, why, |structure| {
+                structure.springs.retain(|spring| spring.name != name);
+            });
+        }
+    }
+
     /// The compliance of every link.
     pub(crate) fn without_flexible_links(&mut self, why: &str) {
         let names: Vec<String> = self

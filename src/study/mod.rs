@@ -1,13 +1,13 @@
 //! Named questions: read, resolve, run.
 
 pub(crate) mod alternatives;
+pub(crate) mod arm_capacity;
 mod balance;
 pub(crate) mod ballast;
 pub(crate) mod bearing_remarks;
 pub(crate) mod bodies;
 pub(crate) mod bounds;
 pub(crate) mod budget;
-pub(crate) mod arm_capacity;
 pub(crate) mod capacity;
 pub(crate) mod cases;
 pub(crate) mod check;

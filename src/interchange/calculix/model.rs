@@ -88,6 +88,8 @@ pub(crate) fn model(snapshot: &Snapshot) -> Model {
     for item in &posed.items {
         match item {
             Item::Body(body) => builder.body(body),
+            // springs that balance the arm are left out of every file
+            Item::Load(_) => {}
             Item::Elastic(element) => {
                 let workings = workings.next().unwrap_or_default();
                 match &element.own {
