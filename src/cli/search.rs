@@ -66,7 +66,7 @@ impl SearchArgs {
         Ok(match (self.search, self.gap.is_some() || self.time_limit.is_some()) {
             (Some(kind), _) => kind,
             (None, true) => SearchKind::Exact,
-            (None, false) if study.space.has_linkages() => SearchKind::Exhaustive,
+            (None, false) if study.space.beyond_bounds().is_some() => SearchKind::Exhaustive,
             (None, false) => cheaper(study, catalogs, designs as f64, log),
         })
     }
@@ -84,9 +84,9 @@ impl SearchArgs {
         let exhaustive = self.search == Some(SearchKind::Exhaustive);
         let by_bounds =
             self.search == Some(SearchKind::Exact) || self.time_limit.is_some() || self.gap.is_some();
-        if study.space.has_linkages() && by_bounds {
+        if let Some(unknown) = study.space.beyond_bounds().filter(|_| by_bounds) {
             return refused(format!(
-                "the study \"{}\" has coupled joints, which the bounds of the exact search do not cover; leave --search \
+                "the study \"{}\" has {unknown}, which the bounds of the exact search do not cover; leave --search \
                  exact, --gap and --time-limit away, and every design is visited",
                 study.name
             ));

@@ -172,9 +172,9 @@ pub(crate) struct RowChunk<'a, 'c> {
 
 impl Row {
     /// Compiles the row level. Returns `None` if there is no level, or if a given tube inboard of it is too slender,
-    /// so that no design holds, or if there are linkages, which lanes do not know.
+    /// so that no design holds, or if there are linkages or laws that lanes do not know: these are what bounds do not know.
     pub(crate) fn new(problem: &ArmProblem) -> Option<Self> {
-        if problem.space().has_linkages() {
+        if problem.space().beyond_bounds().is_some() {
             return None;
         }
         let first = problem.row_slot()?;

@@ -368,10 +368,20 @@ pub(crate) struct SpaceLinkage {
 }
 
 impl DesignSpace {
-    /// Whether linkages turn passive joints. The bounds of the exact search, of the verifier and of the relaxation do not
-    /// cover them.
+    /// Whether linkages turn passive joints.
     pub fn has_linkages(&self) -> bool {
         self.joints().any(|(_, joint)| joint.coupled.is_some())
+    }
+
+    /// What the bounds of the exact search, of the verifier and of the relaxation do not cover, in words; `None` if they
+    /// cover everything.
+    pub fn beyond_bounds(&self) -> Option<String> {
+        if self.has_linkages() {
+            return Some("coupled joints".into());
+        }
+        let is_known =
+            |effect: &&Effect| effect.is_of_test() || effect.kind().is_none_or(|kind| kind.traits.in_bounds);
+        self.effects.iter().find(|effect| !is_known(effect)).map(Effect::label)
     }
 
     /// The joints with the numbers of their pieces, base to tip.

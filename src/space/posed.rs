@@ -4,7 +4,7 @@
 //! few at a time, put into every case with the same surroundings, and forgotten. What remains is the stations: their
 //! memory grows as options times cases.
 
-use super::design_space::{Case, DesignSpace, SpacePiece};
+use super::design_space::{Case, DesignSpace, SpaceJoint, SpacePiece};
 use super::effects::{Carried, Layer};
 use super::station::{
     Block, BlockSlot, Modal, OnTube, Place, Station, StationJoint, StationLink, StationSlot, Turned, Walk,
@@ -111,8 +111,8 @@ impl Posed {
         let mut slots: Vec<StationSlot> = layers
             .iter()
             .map(|(piece, layer)| {
-                let place = walk.place(*piece, layer);
-                Builder { space, structure: &structure, place, tip_m: &walk.tip_m }.build(layer)
+                let (place, angle_rad) = (walk.place(*piece, layer), walk.angles_rad[*piece]);
+                Builder { space, structure: &structure, place, angle_rad, tip_m: &walk.tip_m }.build(layer)
             })
             .collect();
         link_up(space, layers, &mut slots);
@@ -160,6 +160,8 @@ struct Builder<'a> {
     space: &'a DesignSpace,
     structure: &'a Structure,
     place: &'a (Vector3<f64>, nalgebra::Rotation3<f64>),
+    /// Angle of the joint that stands here \[rad\].
+    angle_rad: f64,
     tip_m: &'a Vector3<f64>,
 }
 
@@ -174,12 +176,23 @@ impl Builder<'_> {
                 let (inertia, weight) = bodies_at(bodies, self.space, self.place);
                 StationSlot::Body { inertia, weight }
             }
-            Layer::Piece(SpacePiece::Joint(joint)) => self.hinge(&(rotation * joint.axis)),
+            Layer::Piece(SpacePiece::Joint(joint)) => self.joint(joint),
             Layer::Piece(SpacePiece::Link(link)) => self.link(link),
             Layer::Piece(SpacePiece::Choice(choice)) => {
                 self.tube(&choice.vector_m, &choice.bodies, choice.options.len())
             }
         }
+    }
+
+    /// A joint at its angle, with the torque that acts on it beside weight and load.
+    fn joint(&self, joint: &SpaceJoint) -> StationSlot {
+        let (_, rotation) = self.place;
+        let mut slot = self.hinge(&(rotation * joint.axis));
+        if let StationSlot::Joint(station) = &mut slot {
+            station.angle_rad = self.angle_rad;
+            station.own_nm = self.space.joint_torque(joint).at(self.angle_rad);
+        }
+        slot
     }
 
     /// A joint or a spring that turns about an axis of the world through this place.
@@ -190,6 +203,8 @@ impl Builder<'_> {
             twist,
             at_m: *at_m,
             tip_m_per_rad: displacement_at(&twist, self.tip_m),
+            angle_rad: 0.0,
+            own_nm: 0.0,
             inertia_per_kg: body_inertia(1.0, at_m, &Matrix3::zeros()),
             weight_per_kg: weight_wrench(self.structure.gravity_m_s2, &self.structure.down, at_m),
             // rounding leaves traces of the other plane in an axis that was turned
@@ -278,9 +293,14 @@ fn link_up(space: &DesignSpace, layers: &[(usize, Layer)], slots: &mut [StationS
         };
         let StationSlot::Joint(passive) = &mut slots[slot] else { continue };
         passive.is_passive = true;
-        let (twist, tip_m_per_rad) = (passive.twist * linkage.factor, passive.tip_m_per_rad * linkage.factor);
+        let turned = Turned {
+            slot,
+            twist: passive.twist * linkage.factor,
+            tip_m_per_rad: passive.tip_m_per_rad * linkage.factor,
+            own_nm: passive.own_nm * linkage.factor,
+        };
         if let StationSlot::Joint(joint) = &mut slots[driver] {
-            joint.turns.push(Turned { slot, twist, tip_m_per_rad });
+            joint.turns.push(turned);
         }
     }
 }
