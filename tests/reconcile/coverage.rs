@@ -53,7 +53,7 @@ fn intervals_hold_in_each_kind_of_readings() {
     let folder = tempfile::tempdir().expect("temporary folder");
     for channel in ["static", "modal", "windup"] {
         let mut names = Vec::new();
-        for number in 0..campaigns(2) {
+        for number in 0..campaigns(1) {
             let (name, _) = generator::make(folder.path(), channel, "one", 301, number, 0);
             let outcome = reconciled(&folder.path().join("campaigns").join(&name));
             outcome.write(&folder.path().join("verdicts").join(&name)).expect("written");
@@ -76,7 +76,7 @@ fn intervals_hold_in_each_kind_of_readings() {
 fn intervals_of_positions_leave_room_for_what_yields_too_little_to_be_named() {
     let folder = tempfile::tempdir().expect("temporary folder");
     let mut coverage = Coverage::default();
-    for seed in 0..campaigns(2) as u64 {
+    for seed in 0..campaigns(1) as u64 {
         let own = folder.path().join(seed.to_string());
         let truth = yielding_arm::make(&own, 400 + seed);
         let outcome = reconciled(&own);

@@ -79,8 +79,8 @@ impl Plan {
     /// Much clean data of one kind of readings.
     fn of_channel(channel: &str) -> Self {
         let (static_poses, modal_poses) = match channel {
-            "static" => (40, 0),
-            "modal" => (0, 24),
+            "static" => (24, 0),
+            "modal" => (0, 16),
             _ => (0, 0),
         };
         Self { static_poses, modal_poses, bench: channel == "windup", ..Self::plain() }
