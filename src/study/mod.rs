@@ -1,6 +1,7 @@
 //! Named questions: read, resolve, run.
 
 pub(crate) mod alternatives;
+pub(crate) mod arm_capacity;
 mod balance;
 pub(crate) mod ballast;
 pub(crate) mod bearing_remarks;

@@ -212,7 +212,8 @@ fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePi
     if items.is_empty() {
         return node.fault("is empty", "an arm has at least one joint or link");
     }
-    let elements: usize = items.iter().map(elements_of).sum();
+    let counts: Vec<usize> = items.iter().map(elements_of).collect();
+    let elements: usize = counts.iter().sum();
     if elements > MOST_ELEMENTS {
         let problem = format!("has {elements} joints and links, and the limit is {MOST_ELEMENTS}");
         return node.fault(problem, "join links that lie in line, or study a part of the arm");
@@ -227,8 +228,8 @@ fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePi
         .collect();
     let mut pieces: Vec<SpacePiece> =
         read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect();
-    let items: Vec<Node> =
-        items.into_iter().flat_map(|n| std::iter::repeat_n(n.clone(), elements_of(&n))).collect();
+    let repeated = items.into_iter().zip(counts).flat_map(|(n, count)| std::iter::repeat_n(n, count));
+    let items: Vec<Node> = repeated.collect();
     number_materials(&mut pieces);
     unique_names(node, &pieces)?;
     drivers_are_inboard(&items, &pieces)?;
