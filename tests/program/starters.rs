@@ -110,6 +110,7 @@ fn check_says_what_each_file_is_and_reports_every_fault_of_every_file() {
         "arm.json",
         "broken.json",
         "other.json",
+        "list.json",
         "motors.csv",
         "absent.json",
         "sound.json",
