@@ -52,6 +52,7 @@ enum NoFront {
 }
 
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "they are those of the Python function")]
 #[pyo3(signature = (catalogs, study, method, gap_percent, time_limit_s, threads, progress))]
 pub(crate) fn run(
     py: Python<'_>,

@@ -5,6 +5,7 @@ use super::values::{choice, number_list, numbers};
 use crate::arm::effect::entry::Effect;
 use crate::arm::file::read_arm;
 use crate::arm::load::{LoadCase, Payload, read_load_cases};
+use crate::arm::pieces::factors_sentence;
 use crate::arm::{Arm, Element, JointModel, Link, LinkBody, LinkModel};
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
@@ -149,7 +150,7 @@ fn ignored_text(ignored: &[String]) -> String {
     }
 }
 
-/// What is said of the arm's materials that creep.
+/// What is said of the arm's materials that creep, and of links with stated factors.
 fn creep_text(arm: &Arm, catalogs: &Catalogs) -> String {
     let tubes = arm.chain.iter().filter_map(|element| match element {
         Element::Link(Link { name, body: LinkBody::Tube { material_name, .. }, .. }) => {
@@ -157,8 +158,12 @@ fn creep_text(arm: &Arm, catalogs: &Catalogs) -> String {
         }
         _ => None,
     });
-    let sentences = tubes.filter_map(|(material, link)| creep_sentence(catalogs, material, link));
-    sentences.map(|sentence| wrap(&sentence, TERMINAL, "")).collect()
+    let tubes: Vec<(&str, &str)> = tubes.map(|(material, link)| (material.as_str(), link.as_str())).collect();
+    let creep = tubes.iter().filter_map(|(material, link)| creep_sentence(catalogs, material, link));
+    creep
+        .chain(factors_sentence(tubes.iter().copied()))
+        .map(|sentence| wrap(&sentence, TERMINAL, ""))
+        .collect()
 }
 
 fn pretty(value: &Value) -> String {

@@ -16,7 +16,7 @@ use std::path::PathBuf;
 ///
 /// --same compares two folders of results byte by byte, outside the places that tell of time and machine: elapsed_s,
 /// designs_per_s, threads and platform of run.json, the marked timing of summary.md and report.html, and the folder's own
-/// name in the commands there. The exit code is 9 if they differ.
+/// name in the commands there. Shards in a folder do not count. The exit code is 9 if they differ.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  armwright check study.json arm.json campaigns/may my-parts\n  \
     armwright check results/compare-materials\n  \

@@ -41,6 +41,7 @@ pub(crate) mod slurm;
 mod starter_files;
 pub(crate) mod supplements;
 pub(crate) mod time_limit;
+pub(crate) mod unfinished;
 pub(crate) mod values;
 pub(crate) mod verbs;
 pub(crate) mod version;

@@ -115,9 +115,7 @@ pub fn run(cli: Cli) -> Result<Answer, Failure> {
         Verb::Completions(args) => Ok(shell::completions(&args, Cli::command())),
         Verb::Man(args) => shell::man(&args, Cli::command()),
         Verb::Schema(args) => schema::run(&args),
-        Verb::Reconcile(args) => {
-            return reconcile::run(&args, &catalogs?, overlay, log).map(|(_, answer)| answer);
-        }
+        Verb::Reconcile(args) => return reconcile::run(&args, &catalogs?, overlay, log),
         Verb::Catalog(args) => catalog::run(&args, overlay),
         Verb::Studies => Ok(crate::study::list()),
         Verb::Size(args) => size::run(&args, &catalogs?),

@@ -38,6 +38,7 @@ pub(crate) mod incumbents;
 pub(crate) mod interval;
 pub(crate) mod intervals;
 pub(crate) mod joint_play;
+pub(crate) mod journal;
 pub(crate) mod judge;
 pub(crate) mod kinds;
 pub(crate) mod lagrangian;

@@ -68,6 +68,16 @@ impl Remainder {
         }
     }
 
+    /// Springs that balance the arm, all together: the force of one changes with that of no other, but torsion curves see their sum.
+    pub(crate) fn without_balance(&mut self) {
+        if !self.structure.springs.is_empty() {
+            let names: Vec<String> =
+                self.structure.springs.iter().map(|spring| spring.name.clone()).collect();
+            let why = "the file has no springs between parts of the arm: add them in the other program";
+            self.remove("springs", &names.join(", "), why, |structure| structure.springs.clear());
+        }
+    }
+
     /// The compliance of every link.
     pub(crate) fn without_flexible_links(&mut self, why: &str) {
         let names: Vec<String> = self
@@ -123,7 +133,7 @@ impl Remainder {
         let is_link = |name: &str| {
             let links = self.structure.pieces.iter().filter_map(|piece| match piece {
                 Piece::Link(link) => Some(&link.name),
-                Piece::Joint(_) => None,
+                _ => None,
             });
             links.into_iter().any(|link| link == name)
         };

@@ -2,8 +2,10 @@
 
 use super::number::percent;
 use super::small_displacement::too_far;
+use super::springs::{spring_json, springs_in, springs_text};
 use crate::arm::effect::entry::Effect;
 use crate::arm::load::LoadCase;
+use crate::arm::springs::Drawn;
 use crate::arm::{Arm, Bearing, Element, LinkModel};
 use crate::mechanics::chain::Chain;
 use crate::mechanics::modes::Mode;
@@ -56,6 +58,8 @@ pub struct Analysis {
     pub response: Option<Vec<Response>>,
     /// Effects on the bending of links, if the case holds links rigid.
     unbent: Vec<String>,
+    /// The springs in the pose of the case.
+    springs: Vec<(String, Drawn)>,
 }
 
 impl Analysis {
@@ -70,7 +74,8 @@ impl Analysis {
             harmonic.map(|h| frequency_response(&posed, &statics, &h.force_n, h.damping, &h.frequencies_hz));
         let rigid = case.links == LinkModel::Rigid;
         let unbent = arm.effects.iter().filter(|e| rigid && e.is_of_bending()).map(Effect::label).collect();
-        Self { case, statics, modes, response, unbent }
+        let springs = springs_in(&chain, &case);
+        Self { case, statics, modes, response, unbent, springs }
     }
 
     /// The analysis as `armwright analyze --json` prints it; `docs/arm-format.md` has its keys.
@@ -96,6 +101,10 @@ impl Analysis {
             "shares": shares,
             "modes": self.modes.iter().map(mode_json).collect::<Vec<_>>(),
         });
+        if !self.springs.is_empty() {
+            out["springs"] = self.springs.iter().map(spring_json).collect();
+            out["springs_stiffen_modes"] = json!(false);
+        }
         let impossible = arm.impossible_bodies();
         if !impossible.is_empty() {
             out["impossible_inertias"] = json!(impossible);
@@ -213,6 +222,7 @@ impl Analysis {
         if !rigid.is_empty() {
             let _ = writeln!(out, "  rigid output bearing without mass: {}", rigid.join(", "));
         }
+        springs_text(&self.springs, &mut out);
         self.modes_text(&mut out);
         self.response_text(&mut out);
         out

@@ -16,6 +16,7 @@ pub mod picks;
 pub(crate) mod resonance;
 pub(crate) mod section;
 pub(crate) mod small_displacement;
+pub(crate) mod springs;
 pub mod summary;
 pub(crate) mod supplement;
 pub mod svg;

@@ -10,8 +10,9 @@ use crate::arm::joint_law::Curve;
 use crate::arm::load::Payload;
 use crate::arm::load::Water;
 use crate::arm::section::{LinkMaterial, Section};
+use crate::arm::springs::{Side, Spring};
 use crate::arm::structure::Beam;
-use crate::arm::{JointModel, Link, LinkModel};
+use crate::arm::{JointModel, Link, LinkBody, LinkModel};
 use crate::catalog::gear::Gear;
 use crate::sizing::demand::JointMotion;
 use crate::sizing::drive::Drive;
@@ -97,6 +98,7 @@ use std::sync::Arc;
 ///     joints: JointModel::ThreeSegment,
 ///     constraints: Constraints::default(),
 ///     effects: Vec::new(),
+///     springs: Vec::new(),
 /// };
 /// assert_eq!(space.link_options(), 2);
 /// let catalogs = Catalogs::builtin();
@@ -132,6 +134,8 @@ pub struct DesignSpace {
     pub constraints: Constraints,
     /// Physics beyond the nominal model. Effects that describe a test are left out of every calculation.
     pub effects: Vec<Effect>,
+    /// Springs that balance every design; their elements are numbered as the pieces are.
+    pub springs: Vec<Spring>,
 }
 
 /// One case of a study: a pose, a load, and what is around the arm.
@@ -390,6 +394,32 @@ impl DesignSpace {
     /// cover them.
     pub fn has_linkages(&self) -> bool {
         self.joints().any(|(_, joint)| joint.coupled.is_some())
+    }
+
+    /// What the bounds of the verifier and of the relaxation do not cover in this space, in words for people; `None` if they
+    /// cover all of it.
+    pub fn beyond_bounds(&self) -> Option<&'static str> {
+        match (self.has_linkages(), !self.springs.is_empty()) {
+            (true, true) => Some("coupled joints and springs"),
+            (true, false) => Some("coupled joints"),
+            (false, true) => Some("springs"),
+            (false, false) => None,
+        }
+    }
+
+    /// Whether a piece is a tube, or may be one.
+    pub(crate) fn is_tube(&self, piece: usize) -> bool {
+        match &self.pieces[piece] {
+            SpacePiece::Choice(_) => true,
+            SpacePiece::Link(link) => matches!(link.body, LinkBody::Tube { .. }),
+            SpacePiece::Joint(_) => false,
+        }
+    }
+
+    /// Whether a spring pulls on a tube.
+    pub(crate) fn pulls_on_tubes(&self) -> bool {
+        let on_tube = |side| matches!(side, Side::Moving(piece) if self.is_tube(piece));
+        self.springs.iter().flat_map(Spring::sides).any(on_tube)
     }
 
     /// The joints with the numbers of their pieces, base to tip.

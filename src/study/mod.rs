@@ -1,6 +1,7 @@
 //! Named questions: read, resolve, run.
 
 pub(crate) mod alternatives;
+mod balance;
 pub(crate) mod ballast;
 pub(crate) mod bearing_remarks;
 pub(crate) mod bodies;
@@ -60,8 +61,8 @@ pub use load::{load_study, refuse_empty};
 pub use named::{NAMED, list, named, names};
 pub use near::{NearFront, near_front};
 pub use outcome::{
-    ExactStudy, Extent, Front, Judged, OfMaterial, StudyOutcome, judge_swept, run_exact, run_study,
-    sweep_shard,
+    ExactStudy, Extent, Front, Judged, OfMaterial, StudyOutcome, judge_swept, resume_exact, run_exact,
+    run_study, sweep_shard,
 };
 pub use page::study_page;
 pub use pick_poses::{PicksInPoses, picks_in_poses};

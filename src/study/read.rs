@@ -4,6 +4,7 @@
 //! Lengths of sections and limits are in millimetres because that is how profiles are sold; everything
 //! else is SI. The resolved [`DesignSpace`] is SI throughout.
 
+use super::balance::{balance_remarks, read_balance};
 use super::bodies::impossible_bodies_remark;
 use super::cases::{Cases, read_cases};
 use super::connections::{connections_remark, with_connections};
@@ -23,10 +24,9 @@ use crate::arm::MOST_ELEMENTS;
 use crate::arm::bearing::{BearingSource, Stated, read_bearing};
 use crate::arm::body::{read_joint_bodies, read_link_bodies};
 use crate::arm::extras::{ExtrasSource, read_extras_source};
-use crate::arm::file::{
-    read_coupling, read_curve, read_effects, read_gravity, read_joint_mass, read_link, read_name,
-};
+use crate::arm::file::{read_coupling, read_curve, read_effects, read_gravity, read_joint_mass, read_name};
 use crate::arm::load::{vector, word};
+use crate::arm::pieces::{elements_of, read_links};
 use crate::arm::{JointModel, LinkModel};
 use crate::catalog::Catalogs;
 use crate::catalog::gear::GearMass;
@@ -106,7 +106,8 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     if gravity_m_s2 > 0.0 {
         motion.gravity_m_s2 = gravity_m_s2;
     }
-    let (chain, mut effects, harness_kg_per_m) = (chain?, effects?, harness_kg_per_m?);
+    let (mut chain, mut effects, harness_kg_per_m) = (chain?, effects?, harness_kg_per_m?);
+    let springs = read_balance(&root, &mut chain);
     effects.extend(harness_effects(&chain, harness_kg_per_m, &effects));
     let space = DesignSpace {
         name: name.clone()?,
@@ -121,6 +122,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
         joints: joint_model,
         constraints: constraints?,
         effects,
+        springs: springs?,
     };
     check_effects(&space, &root)?;
     in_range?;
@@ -131,6 +133,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     remarks.extend(omissions(&space));
     remarks.extend(creep_remarks(&space, catalogs));
     remarks.extend(impossible_bodies_remark(&space));
+    remarks.extend(balance_remarks(&space));
     Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks })
 }
 
@@ -208,19 +211,23 @@ fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePi
     if items.is_empty() {
         return node.fault("is empty", "an arm has at least one joint or link");
     }
-    if items.len() > MOST_ELEMENTS {
-        let problem = format!("has {} joints and links, and the limit is {MOST_ELEMENTS}", items.len());
+    let elements: usize = items.iter().map(elements_of).sum();
+    if elements > MOST_ELEMENTS {
+        let problem = format!("has {elements} joints and links, and the limit is {MOST_ELEMENTS}");
         return node.fault(problem, "join links that lie in line, or study a part of the arm");
     }
-    let read: Vec<Option<SpacePiece>> = items
+    let read: Vec<Option<Vec<SpacePiece>>> = items
         .iter()
         .map(|n| match n.value().get("type").and_then(|v| v.as_str()) {
-            Some("joint") => read_space_joint(n, open).map(SpacePiece::Joint),
+            Some("joint") => read_space_joint(n, open).map(|joint| vec![SpacePiece::Joint(joint)]),
             Some("link") => read_space_link(n, open, aside),
             _ => n.fault("has no \"type\" of \"joint\" or \"link\"", "add \"type\": \"joint\" or \"link\""),
         })
         .collect();
-    let mut pieces = read.into_iter().collect::<Option<Vec<_>>>()?;
+    let mut pieces: Vec<SpacePiece> =
+        read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect();
+    let repeated = |n: Node| std::iter::repeat_n(n.clone(), elements_of(&n));
+    let items: Vec<Node> = items.into_iter().flat_map(repeated).collect();
     number_materials(&mut pieces);
     unique_names(node, &pieces)?;
     drivers_are_inboard(&items, &pieces)?;
@@ -367,15 +374,15 @@ fn read_given_drive(object: &Object, open: &Open) -> Option<DriveChoice> {
     Some(DriveChoice::Given { curve: curve?, mass_kg: mass_kg?, gear, motor })
 }
 
-fn read_space_link(node: &Node, open: &Open, aside: &mut Aside) -> Option<SpacePiece> {
-    let object =
-        node.shaped(&LINK)?;
+fn read_space_link(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePiece>> {
+    let object = node.shaped(&LINK)?;
     let Some(choose) = object.optional("choose") else {
-        return read_link(&object, &[], open.catalogs).map(SpacePiece::Link);
+        let links = read_links(&object, &[], open.catalogs)?;
+        return Some(links.into_iter().map(SpacePiece::Link).collect());
     };
     stray(
         &object,
-        &["material", "section", "mass_kg"],
+        &["material", "section", "mass_kg", "pieces", "stiffness_factor", "mass_factor"],
         "stands beside \"choose\"",
         "a link is either chosen or given; keep one",
     );
@@ -394,13 +401,13 @@ fn read_space_link(node: &Node, open: &Open, aside: &mut Aside) -> Option<SpaceP
     }
     let options = super::sections::options(&materials, &sections, open.constraints, name.as_deref()?, aside);
     let bodies = read_link_bodies(&object);
-    Some(SpacePiece::Choice(LinkChoice {
+    Some(vec![SpacePiece::Choice(LinkChoice {
         name: name?,
         vector_m: vector_m?,
         options: options.into(),
         bodies: bodies?,
         excerpt: None,
-    }))
+    })])
 }
 
 fn read_constraints(node: &Node) -> Option<Constraints> {

@@ -266,6 +266,10 @@ impl Campaign {
                 faults.extend(table.into_faults());
             }
         }
+        if !campaign.positions.is_empty() {
+            let arms = std::iter::once(&campaign.arm).chain(&campaign.other_arms);
+            faults.extend(arms.filter_map(|arm| arm.springs_fault(&arm.name)));
+        }
         let (names, specs) = (campaign.driven_joint_names(), &campaign.statement.records);
         campaign.records = read_all(folder, specs, &names, &mut faults)?;
         let declared = declared::problems(&campaign.statement.positions.sessions, &campaign.positions);
