@@ -3,7 +3,9 @@
 //! The centre is measured from the start of the element and the inertia is taken about the centre; both are written in the
 //! carried frame, like the vector of a link. Bodies come on top of everything else that an element weighs.
 
+use super::keys::{JOINT_BODY, LINK_BODY};
 use crate::input::json::{Node, Object};
+use crate::input::key::Shape;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use serde_json::{Value, json};
 
@@ -29,8 +31,8 @@ impl RigidBody {
         2.0 * moments.max() > moments.sum() + ROUNDING * moments.max()
     }
 
-    fn read(node: &Node, keys: &[&str]) -> Option<(Self, bool)> {
-        let object = node.object(keys)?;
+    fn read(node: &Node, shape: &Shape) -> Option<(Self, bool)> {
+        let object = node.shaped(shape)?;
         let mass_kg = object.required("mass_kg").and_then(|n| n.non_negative());
         let cg_m = object.or("cg_m", Vector3::zeros(), |n| n.numbers::<3>().map(Vector3::from));
         let inertia_kgm2 = object.or("inertia_kgm2", Matrix3::zeros(), read_inertia);
@@ -85,22 +87,22 @@ pub(crate) fn total_kg(bodies: &[RigidBody]) -> f64 {
 
 /// Reads the key `bodies` of a link; none without the key.
 pub(crate) fn read_link_bodies(object: &Object) -> Option<Vec<RigidBody>> {
-    let bodies = read(object, &["mass_kg", "cg_m", "inertia_kgm2"])?;
+    let bodies = read(object, &LINK_BODY)?;
     Some(bodies.into_iter().map(|(body, _)| body).collect())
 }
 
 /// Reads the key `bodies` of a joint; none without the key.
 pub(crate) fn read_joint_bodies(object: &Object) -> Option<JointBodies> {
     let mut out = JointBodies::default();
-    for (body, rotates) in read(object, &["mass_kg", "cg_m", "inertia_kgm2", "rotates"])? {
+    for (body, rotates) in read(object, &JOINT_BODY)? {
         if rotates { &mut out.rotating } else { &mut out.fixed }.push(body);
     }
     Some(out)
 }
 
-fn read(object: &Object, keys: &[&str]) -> Option<Vec<(RigidBody, bool)>> {
+fn read(object: &Object, shape: &Shape) -> Option<Vec<(RigidBody, bool)>> {
     object.or("bodies", Vec::new(), |n| {
-        let read: Vec<_> = n.array()?.iter().map(|n| RigidBody::read(n, keys)).collect();
+        let read: Vec<_> = n.array()?.iter().map(|n| RigidBody::read(n, shape)).collect();
         read.into_iter().collect()
     })
 }

@@ -1,5 +1,6 @@
 //! Load cases: a pose, a payload, a force at the tip, and the models to use.
 
+use super::keys::{CASE, PAYLOAD, WATER};
 use super::{JointModel, LinkModel, Words};
 use crate::input::json::{Document, Faults, Node, Object};
 use nalgebra::Vector3;
@@ -87,7 +88,7 @@ impl Payload {
 
     /// Reads a payload object.
     pub fn read(node: &Node) -> Option<Self> {
-        let object = node.object(&["mass_kg", "cg_m", "inertia_about_cg_kgm2"])?;
+        let object = node.shaped(&PAYLOAD)?;
         let mass_kg = object.required("mass_kg").and_then(|n| n.non_negative());
         let cg_m = object.or("cg_m", Vector3::zeros(), vector);
         let inertia = object.or("inertia_about_cg_kgm2", Vector3::zeros(), read_inertia);
@@ -118,7 +119,7 @@ impl Water {
 
     /// Reads a water object. Where it gives no density of the payload, the payload is of steel.
     pub fn read(node: &Node) -> Option<Self> {
-        let object = node.object(&["density_kg_m3", "added_mass_coefficient", "payload_density_kg_m3"])?;
+        let object = node.shaped(&WATER)?;
         let density_kg_m3 = object.required("density_kg_m3").and_then(|n| n.positive());
         let added_mass_coefficient = object.or("added_mass_coefficient", 1.0, Node::non_negative);
         let payload_density_kg_m3 = object.or("payload_density_kg_m3", 7850.0, Node::positive);
@@ -169,16 +170,7 @@ pub fn read_load_cases(document: Document, driven_joints: &[&str]) -> Result<Vec
 }
 
 fn read_case(node: &Node, driven_joints: &[&str]) -> Option<LoadCase> {
-    let object = node.object(&[
-        "name",
-        "pose_deg",
-        "payload",
-        "tip_force_n",
-        "tip_moment_nm",
-        "links",
-        "joints",
-        "water",
-    ])?;
+    let object = node.shaped(&CASE)?;
     let name = object.or("name", node.path().to_string(), |n| n.string().map(String::from));
     let pose_deg = object.required("pose_deg").and_then(|n| read_pose(&n, driven_joints));
     let payload = object.or("payload", Payload::default(), Payload::read);

@@ -27,7 +27,7 @@ pub fn why_infeasible(
     let deadline = deadline.map_or(latest, |deadline| deadline.min(latest));
     let limited = Limited { space: &study.space, catalogs, stop, deadline };
     let without_limits = DesignSpace { constraints: Constraints::default(), ..study.space.clone() };
-    let reasons = match study.space.beyond_bounds() {
+    let reasons = match study.space.beyond_exact() {
         Some(unknown) => obstacles_alone(&without_limits, catalogs, &unknown),
         None => reasons(&limited, &without_limits),
     };

@@ -23,9 +23,11 @@ mod mechanics_reference;
 mod motor_heat;
 mod paper;
 mod paper_support;
+mod pieces;
 mod reference_arms;
 mod relaxation;
 mod search_fast_vs_full;
+mod springs;
 mod study_rerun;
 #[path = "../witness/mod.rs"]
 mod witness;
