@@ -20,6 +20,7 @@ mod growth;
 mod hostile_names;
 mod imports;
 mod infeasible;
+mod interchange;
 mod kept;
 mod left_out;
 mod links;
