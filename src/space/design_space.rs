@@ -402,7 +402,7 @@ impl DesignSpace {
     }
 
     /// What the bounds of the exact search do not cover in this space, in words for people; `None` if they cover all of it.
-    pub fn beyond_exact(&self) -> Option<String> {
+    pub(crate) fn beyond_exact(&self) -> Option<String> {
         let is_known =
             |effect: &&Effect| effect.is_of_test() || effect.kind().is_none_or(|kind| kind.traits.in_bounds);
         let law = self.effects.iter().find(|effect| !is_known(effect)).map(Effect::label);
