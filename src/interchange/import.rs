@@ -94,18 +94,11 @@ impl<'a> Robot<'a> {
     /// Names of the joints of the arm, base to tip, passive ones included.
     pub(crate) fn joints(&self) -> Vec<&str> {
         let path = self.tree.path_to(self.tip);
-        let moving = path.iter().filter(|joint| !matches!(self.motion(joint), Moves::Not(_)));
+        let moving = path.iter().filter(|joint| !matches!(self.motion_of(&joint.name), Moves::Not(_)));
         moving.map(|joint| joint.name.as_str()).collect()
     }
 
-    /// How a joint of the way moves. A mimic of a mimic follows the joint that both follow in the end.
-    fn motion(&self, joint: &'a urdf_rs::Joint) -> Moves<'_>
-    where
-        Self: 'a,
-    {
-        self.motion_of(&joint.name)
-    }
-
+    /// How a joint moves. A mimic of a mimic follows the joint that both follow in the end.
     fn motion_of(&self, name: &str) -> Moves<'_> {
         let (mut factor, mut offset_rad) = (1.0, 0.0);
         let on_way: BTreeSet<&str> = self.tree.path_to(self.tip).iter().map(|j| j.name.as_str()).collect();

@@ -91,7 +91,7 @@ impl Snapshot {
     pub(crate) fn link(&self, piece: usize) -> Option<&LinkPiece> {
         match self.structure.pieces.get(piece)? {
             Piece::Link(link) => Some(link),
-            Piece::Joint(_) => None,
+            _ => None,
         }
     }
 
@@ -109,7 +109,7 @@ impl Snapshot {
         for item in posed.items.iter().rev() {
             match item {
                 Item::Body(body) => wrench += body.weight(),
-                Item::Load(load) => wrench += *load,
+                Item::Load(load) => wrench += load,
                 Item::Elastic(element) => {
                     let torque = statics.joint_torques_nm.iter().find(|(name, _)| *name == element.name);
                     loads.push(match (&element.yielding, torque) {

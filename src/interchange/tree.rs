@@ -95,12 +95,12 @@ pub(crate) fn tree(snapshot: &Snapshot, options: &TreeOptions) -> Vec<Node> {
     for item in &posed.items {
         match item {
             Item::Body(body) => builder.last().inertia += body.inertia(),
-            // springs that balance the arm are left out of every file
+            // forces are no part of a tree
             Item::Load(_) => {}
             Item::Elastic(element) => {
                 let workings = workings.next().unwrap_or_default();
                 match &element.own {
-                    Some(own) => builder.link(snapshot.link(own.piece), own, &element.name),
+                    Some(own) => builder.link(snapshot.link(own.piece), own),
                     None => builder.springs(element, &workings),
                 }
             }
@@ -167,7 +167,7 @@ impl Builder<'_> {
     }
 
     /// Adds a link with mass along it, whole or in pieces.
-    fn link(&mut self, link: Option<&LinkPiece>, own: &OwnMass, name: &str) {
+    fn link(&mut self, link: Option<&LinkPiece>, own: &OwnMass) {
         let Some(link) = link else { return };
         let vector_m = own.frame.column(0) * link.vector_m.norm();
         let radius_m = link.beam.map_or(THIN_M, |beam| {
@@ -182,7 +182,6 @@ impl Builder<'_> {
                 node.rods.push((own.root_m, own.root_m + vector_m, radius_m));
             }
         }
-        debug_assert!(!name.is_empty());
     }
 
     /// Adds a link as pieces with springs between them.

@@ -322,8 +322,8 @@ fn what_is_left_out_and_what_stays_make_the_whole_deflection() {
     let file = folder.path().join("arm.json").display().to_string();
     for (form, flags, left) in [
         ("mjcf", [].as_slice(), vec!["water", "link_compliance", "link_compliance"]),
-        ("mjcf", &["--flexible", "4"], vec!["water"]),
-        ("calculix", &[], vec!["water"]),
+        ("mjcf", ["--flexible", "4"].as_slice(), vec!["water"]),
+        ("calculix", [].as_slice(), vec!["water"]),
     ] {
         let record = exported(folder.path(), form, flags);
         let words = ["analyze", &file, "--pose-deg", "20,-30,70", "--payload-kg", "6", "--json"];
@@ -347,18 +347,12 @@ fn an_arm_that_goes_out_as_urdf_comes_back_the_same() {
     let mut dry = arm();
     dry["effects"] = json!([]);
     let file = write(&folder.path().join("dry.json"), &dry);
-    let (out, back) = (folder.path().join("out"), folder.path().join("back"));
-    done(&["export", &file, "--to", "urdf", "--out", &out.display().to_string()]);
-    let (urdf, stiffness) = (out.join("arm.urdf"), out.join("stiffness.json"));
-    let words = [
-        "import",
-        &urdf.display().to_string(),
-        "--tip",
-        "tip",
-        "--stiffness",
-        &stiffness.display().to_string(),
-    ];
-    done(&[words.as_slice(), &["--out", &back.display().to_string()]].concat());
+    let back = folder.path().join("back");
+    let out = folder.path().join("out").display().to_string();
+    let into = back.display().to_string();
+    done(&["export", &file, "--to", "urdf", "--out", &out]);
+    let (urdf, stiffness) = (format!("{out}/arm.urdf"), format!("{out}/stiffness.json"));
+    done(&["import", &urdf, "--tip", "tip", "--stiffness", &stiffness, "--out", &into]);
     let again = back.join("arm.json").display().to_string();
     let mut random = numbers();
     for _ in 0..5 {
@@ -409,7 +403,7 @@ fn exports_have_the_same_bytes_and_refuse_what_they_cannot() {
         (vec!["--to", "mjcf", "--pose-deg", "1,2"], 2, "3 driven joints: j1, j2, j3"),
         (vec!["--to", "mjcf", "--case", "up"], 2, "the cases are: case"),
     ] {
-        let output = armwright(&[&["export", &file, "--out", &out], words.as_slice()].concat());
+        let output = armwright(&[["export", &file, "--out", &out].as_slice(), words.as_slice()].concat());
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(exit), "{words:?}: {said}");
         assert!(said.contains(part), "{part} in {said}");

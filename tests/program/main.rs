@@ -31,6 +31,7 @@ mod pages;
 mod progress;
 mod public_api;
 mod resume;
+mod running;
 mod same_bytes;
 mod schemas;
 mod shards;

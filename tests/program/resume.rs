@@ -3,6 +3,7 @@
 //!
 //! `ARMWRIGHT_KILLS=50` kills at so many random moments; the default is 5.
 
+use crate::running::{command, said};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
@@ -31,21 +32,8 @@ fn study(name: &str, walls: u32) -> String {
     .to_string()
 }
 
-fn armwright(folder: &Path, words: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_armwright"));
-    command.current_dir(folder).args(words);
-    command
-}
-
-/// Exit code, -1 after a signal, and everything that was said.
-fn said(command: &mut Command) -> (i32, String) {
-    let output = command.output().expect("it runs");
-    let text = [output.stdout, output.stderr].concat();
-    (output.status.code().unwrap_or(-1), String::from_utf8_lossy(&text).into_owned())
-}
-
 fn succeeds(folder: &Path, words: &[&str]) -> String {
-    let (code, text) = said(&mut armwright(folder, words));
+    let (code, text) = said(&mut command(folder, words));
     assert_eq!(code, 0, "{words:?}: {text}");
     text
 }
@@ -79,7 +67,7 @@ fn has_faults() -> bool {
 
 /// A search that keeps its state whenever it looks.
 fn keeping(here: &Path, search: &str) -> Command {
-    let mut command = armwright(here, &run(search));
+    let mut command = command(here, &run(search));
     command.env("ARMWRIGHT_KEEP_EVERY_MS", "0");
     command
 }
@@ -131,10 +119,10 @@ fn another_study_in_the_same_folder_is_refused_until_it_is_asked_for_anew() {
     said(keeping(here.path(), "exhaustive").env("ARMWRIGHT_FAULT", "kill:7"));
     let state = here.path().join("out/.armwright/search.unfinished");
     let kept = fs::read(&state).expect("a state");
-    let (code, text) = said(&mut armwright(here.path(), &run("exact")));
+    let (code, text) = said(&mut command(here.path(), &run("exact")));
     assert!(code == 2 && text.contains("another search") && text.contains("--fresh"), "{code} {text}");
     fs::write(here.path().join("study.json"), study("short arm", EXHAUSTIVE - 1)).expect("written");
-    let (code, text) = said(&mut armwright(here.path(), &run("exhaustive")));
+    let (code, text) = said(&mut command(here.path(), &run("exhaustive")));
     assert!(code == 2 && text.contains("another study"), "{code} {text}");
     assert_eq!(fs::read(&state).expect("still there"), kept);
     // a byte that changed is found
@@ -142,7 +130,7 @@ fn another_study_in_the_same_folder_is_refused_until_it_is_asked_for_anew() {
     let mut damaged = kept.clone();
     *damaged.last_mut().expect("a byte") ^= 1;
     fs::write(&state, damaged).expect("written");
-    let (code, text) = said(&mut armwright(here.path(), &run("exhaustive")));
+    let (code, text) = said(&mut command(here.path(), &run("exhaustive")));
     assert!(code == 7 && text.contains("damaged"), "{code} {text}");
     let text = succeeds(here.path(), &[&run("exhaustive")[..], &["--fresh"]].concat());
     assert!(!text.contains(GOES_ON), "{text}");
@@ -158,7 +146,7 @@ fn a_shard_goes_on_too() {
     for part in ["1/2", "2/2"] {
         let out = format!("parts/{}", &part[..1]);
         let words = ["run", "study.json", "--shard", part, "--out", &out];
-        let mut dies = armwright(here.path(), &words);
+        let mut dies = command(here.path(), &words);
         dies.env("ARMWRIGHT_KEEP_EVERY_MS", "0").env("ARMWRIGHT_FAULT", "kill:6");
         assert_eq!(said(&mut dies).0, -1);
         assert!(succeeds(here.path(), &words).contains(GOES_ON));
@@ -178,7 +166,7 @@ fn a_signal_is_answered_within_a_second_and_what_was_found_is_kept() {
     for (search, walls, signal) in [("exhaustive", 400, "INT"), ("exact", 400, "TERM")] {
         let here = tempfile::tempdir().expect("a folder");
         fs::write(here.path().join("study.json"), study("short arm", walls)).expect("written");
-        let mut child = spawn(&mut armwright(here.path(), &run(search)));
+        let mut child = spawn(&mut command(here.path(), &run(search)));
         std::thread::sleep(Duration::from_millis(1500));
         let sent = Instant::now();
         let pid = child.id().to_string();
@@ -194,7 +182,7 @@ fn a_signal_is_answered_within_a_second_and_what_was_found_is_kept() {
             eprintln!("{search}: nothing was found in this time");
             continue;
         }
-        let (code, text) = said(&mut armwright(here.path(), &["front", "check", "out", "--time-limit", "1"]));
+        let (code, text) = said(&mut command(here.path(), &["front", "check", "out", "--time-limit", "1"]));
         assert!(code == 0 || code == 11, "{search}: {code} {text}");
     }
 }

@@ -7,11 +7,13 @@
 //! constraints are not needed, and bearings, frames and linkages are more hinges.
 
 use super::mesh::{Mesh, has_shape, mesh};
+use crate::arm::RigidBody;
 use crate::arm::structure::Beam;
 use crate::interchange::snapshot::{Snapshot, Working};
 use crate::interchange::tree::mass_properties;
+use crate::mechanics::beam::section_frame;
 use crate::mechanics::chain::{Body, ElasticElement, Item, OwnMass, Yielding};
-use crate::mechanics::{Twist, angular, displacement_at, linear};
+use crate::mechanics::{Twist, angular, displacement_at};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
 /// Coefficients below this do not count, relative to the largest of an equation.
@@ -67,7 +69,19 @@ pub(crate) struct Model {
     pub impossible: Vec<String>,
 }
 
+/// A link of bricks while bodies are put on it.
+struct Meshed<'m> {
+    mesh: &'m Mesh,
+    /// Number of its first node in the model.
+    first: usize,
+    own: &'m OwnMass,
+    length_m: f64,
+    /// What its root face is in.
+    root: Region,
+}
+
 /// What moves as one body.
+#[derive(Clone)]
 struct Region {
     /// Reference node, rotation node and their place; the ground has none.
     frame: Option<(usize, usize, Vector3<f64>)>,
@@ -88,7 +102,7 @@ pub(crate) fn model(snapshot: &Snapshot) -> Model {
     for item in &posed.items {
         match item {
             Item::Body(body) => builder.body(body),
-            // springs that balance the arm are left out of every file
+            // springs are taken away before (see `Remainder`)
             Item::Load(_) => {}
             Item::Elastic(element) => {
                 let workings = workings.next().unwrap_or_default();
@@ -235,51 +249,34 @@ impl Builder<'_> {
             density_kg_m3: beam.material.density_kg_m3 * (1.0 + link.harness_kg_per_m / tube_kg_per_m),
             bricks: mesh.bricks.iter().map(|brick| brick.map(|n| first + n)).collect(),
         });
+        let meshed = Meshed { mesh: &mesh, first, own, length_m: link.vector_m.norm(), root };
+        // the carried frame at the link's root, from the section frame
+        let turn = own.frame * section_frame(&link.vector_m).transpose();
         for body in &link.bodies {
-            // the carried frame at the link's root, from the section frame
-            let turn = own.frame * crate::mechanics::beam::section_frame(&link.vector_m).transpose();
-            let at_m = own.root_m + turn * body.cg_m;
-            let inertia = turn * body.inertia_kgm2 * turn.transpose();
-            self.body_on_link(
-                &mesh,
-                first,
-                own,
-                link.vector_m.norm(),
-                &root,
-                (body.mass_kg, at_m, inertia),
-                &link.name,
-            );
+            let in_world = RigidBody {
+                mass_kg: body.mass_kg,
+                cg_m: own.root_m + turn * body.cg_m,
+                inertia_kgm2: turn * body.inertia_kgm2 * turn.transpose(),
+            };
+            self.body_on_link(&meshed, &in_world, &link.name);
         }
     }
 
-    /// Adds a body that moves with the cross-section nearest to its centre.
-    #[allow(clippy::too_many_arguments)]
-    fn body_on_link(
-        &mut self,
-        mesh: &Mesh,
-        first: usize,
-        own: &OwnMass,
-        length_m: f64,
-        root: &Region,
-        (mass_kg, at_m, inertia): (f64, Vector3<f64>, Matrix3<f64>),
-        name: &str,
-    ) {
-        let last = mesh.stations.len() - 1;
-        let xi = own.frame.column(0).dot(&(at_m - own.root_m)) / length_m;
+    /// Adds a body, in world axes, that moves with the cross-section nearest to its centre.
+    fn body_on_link(&mut self, link: &Meshed, body: &RigidBody, name: &str) {
+        let last = link.mesh.stations.len() - 1;
+        let xi = link.own.frame.column(0).dot(&(body.cg_m - link.own.root_m)) / link.length_m;
         let station = (xi.clamp(0.0, 1.0) * last as f64).round() as usize;
-        for (point_m, kg) in self.points(mass_kg, &at_m, &inertia, name) {
+        for (point_m, kg) in self.points(body.mass_kg, &body.cg_m, &body.inertia_kgm2, name) {
             let node = self.node(point_m);
             match station {
                 0 => {
-                    let region = std::mem::replace(
-                        &mut self.region,
-                        Region { frame: root.frame, hinges: root.hinges.clone() },
-                    );
+                    let end = std::mem::replace(&mut self.region, link.root.clone());
                     self.tie(node);
-                    self.region = region;
+                    self.region = end;
                 }
                 s if s == last => self.tie(node),
-                s => self.average(node, first, &mesh.stations[s]),
+                s => self.average(node, link.first, &link.mesh.stations[s]),
             }
             self.point_mass(node, kg);
         }
@@ -365,6 +362,5 @@ impl Builder<'_> {
         let on_hinges: Vec<Term> =
             self.region.hinges.iter().map(|(node, twist)| (*node, 0, work(twist))).collect();
         self.model.loads.extend(on_hinges);
-        debug_assert!(linear(&Twist::zeros()) == Vector3::zeros());
     }
 }
