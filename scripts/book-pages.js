@@ -24,10 +24,12 @@ function walk(list, visit) {
   }
 }
 
-// Code stays as it is: fences first, then spans.
+// Code stays as it is, fences and spans: a mark takes its place while the rest changes.
 function page(text, place) {
-  const pieces = text.split(/(^```[\s\S]*?^```[^\n]*$|`[^`\n]*`)/m);
-  return pieces.map((piece, i) => (i % 2 ? piece : links(equations(piece, place), place))).join("");
+  const code = [];
+  const marked = text.replace(/^```[\s\S]*?^```[^\n]*$|`[^`\n]*`/gm, (piece) => `\u0001${code.push(piece) - 1}\u0001`);
+  const changed = links(equations(marked, place), place);
+  return changed.replace(/\u0001(\d+)\u0001/g, (_, i) => code[i]);
 }
 
 function equations(text, place) {

@@ -142,8 +142,8 @@ def run(
 ) -> Front:
     """The front of a study: the designs that no other dominates in tip deflection, mass and lowest mode.
 
-    The interpreter's lock is free while it works. Ctrl-C ends it within a second and raises :class:`Interrupted`, whose ``front``
-    has what was found. Nothing is written to disk.
+    The interpreter's lock is free while it works. Ctrl-C ends it and raises :class:`Interrupted`, whose ``front`` has what was
+    found. Nothing is written to disk.
 
     :param study: name of a built-in study, path, dict or JSON text
     :param progress: is called five times a second with a dict of ``elapsed_s``, ``designs``, ``designs_total``, ``gap`` (a

@@ -40,8 +40,9 @@ def test_size_and_capacity_equal_the_programs_json(program):
 
 
 @pytest.mark.parametrize("search", ["exhaustive", "exact"])
-def test_a_front_equals_the_programs_front(program, tmp_path, search):
-    study = ROOT / "examples" / "bench-arm.json"
+def test_a_front_equals_the_programs_front(program, tmp_path, search, bench_arm):
+    study = tmp_path / "bench-arm.json"
+    study.write_text(json.dumps(bench_arm))
     flags = ["--gap", "0%"] if search == "exact" else []
     program("run", study, "--search", search, *flags, "--out", tmp_path / "out", "--quiet")
     front = armwright.run(study, search=search, gap_percent=0 if flags else None)
@@ -55,8 +56,9 @@ def test_a_front_equals_the_programs_front(program, tmp_path, search):
         assert theirs is None or front.by_material[material["name"]].to_csv() == theirs
 
 
-def test_a_design_equals_the_programs_design(program, tmp_path):
-    study = ROOT / "examples" / "bench-arm.json"
+def test_a_design_equals_the_programs_design(program, tmp_path, bench_arm):
+    study = tmp_path / "bench-arm.json"
+    study.write_text(json.dumps(bench_arm))
     program("run", study, "--search", "exhaustive", "--out", tmp_path / "out", "--quiet")
     front = armwright.run(study, search="exhaustive")
     chosen = front.lightest()

@@ -9,7 +9,7 @@ use crate::input::key::{Kind, Rule, SCHEMA_ADDRESS, Shape, optional, required};
 use crate::input::schema::FileKind;
 
 /// An arm file.
-pub(crate) const ARM_FILE: FileKind =
+pub const ARM_FILE: FileKind =
     FileKind { name: "arm", about: "An arm from base to tip.", root: Kind::Object(&ARM) };
 
 /// A list of effects.

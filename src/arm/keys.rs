@@ -1,15 +1,6 @@
-//! The keys of the parts of an arm, and of cases files: what the readers know, and what `armwright schema` prints.
+//! The keys of the parts of an arm, and of payload and water: what the readers know, and what `armwright schema` prints.
 
-use super::{JointModel, LinkModel, Words};
-use crate::input::key::{Key, Kind, Rule, Shape, optional, required, words_of};
-use crate::input::schema::FileKind;
-
-/// A cases file.
-pub(crate) const CASES_FILE: FileKind = FileKind {
-    name: "cases",
-    about: "Load cases of an arm, for `armwright analyze --cases`.",
-    root: Kind::NonEmpty(&Kind::Object(&CASE)),
-};
+use crate::input::key::{Key, Kind, Rule, Shape, optional, required};
 
 /// Three numbers.
 pub(crate) const VECTOR: Kind = Kind::Array(3, &Kind::Number);
@@ -34,12 +25,6 @@ pub(crate) const JOINT_BODIES: Kind = Kind::List(&Kind::Object(&JOINT_BODY));
 
 /// Driven joints with their factors.
 pub(crate) const COUPLING: Kind = Kind::Map(&Kind::Number);
-
-/// Words of the models of links.
-pub(crate) const LINK_MODELS: Kind = Kind::Word(&words_of::<LinkModel, 3>(LinkModel::WORDS));
-
-/// Words of the models of joints.
-pub(crate) const JOINT_MODELS: Kind = Kind::Word(&words_of::<JointModel, 3>(JointModel::WORDS));
 
 /// The section of a given link.
 pub(crate) const SECTION: Kind = Kind::Either(&[
@@ -391,23 +376,6 @@ pub(crate) static WATER: Shape = Shape::new(
             "7850",
             "Density of the payload, for its buoyancy.",
         ),
-    ],
-    &[],
-);
-
-/// A load case.
-pub(crate) static CASE: Shape = Shape::new(
-    "case",
-    "A load case: a pose, a load and the models to use.",
-    &[
-        optional("name", Kind::Text, "-", "its place in the list", "Name."),
-        required("pose_deg", Kind::List(&Kind::Number), "deg", "One angle a driven joint, base to tip."),
-        optional("payload", Kind::Object(&PAYLOAD), "-", "none", "What the arm holds."),
-        optional("tip_force_n", VECTOR, "N", "[0, 0, 0]", "Force at the tip, in world axes."),
-        optional("tip_moment_nm", VECTOR, "N m", "[0, 0, 0]", "Moment at the tip, in world axes."),
-        optional("links", LINK_MODELS, "-", "\"full\"", "Physics of the links."),
-        optional("joints", JOINT_MODELS, "-", "\"three_segment\"", "Physics of the joints."),
-        optional("water", Kind::Object(&WATER), "-", "dry", "Water around the arm."),
     ],
     &[],
 );

@@ -16,8 +16,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Folder of what is in work, in a folder of results.
+/// Folder of what is in work, in a folder of results, and the lock in it.
 const STATE: &str = ".armwright";
+const LOCK: &str = "lock";
 /// How often, and after which time each, a reader looks whether a writer is done.
 const READER_WAITS: (u32, Duration) = (20, Duration::from_millis(100));
 
@@ -44,7 +45,7 @@ impl ResultFolder {
         create_folder(&state).map_err(|e| Failure::file(folder, "create", &e))?;
         // made first: whatever fails from here on, empty folders are removed again
         let mut out = Self { folder: folder.to_path_buf(), manifest, lock: None };
-        out.lock = Some(Lock::take(&state.join("lock"), folder)?);
+        out.lock = Some(Lock::take(&state.join(LOCK), folder)?);
         roll_forward(folder).map_err(|e| Failure::file(folder, "complete", &e))?;
         sweep(&state.join("next")).map_err(|e| Failure::file(folder, "write in", &e))?;
         let earlier = Earlier::read(folder, manifest)?;
@@ -152,7 +153,7 @@ pub(super) fn complete(folder: &Path) -> Result<(), Failure> {
     let state = folder.join(STATE);
     let (mut waits, wait) = READER_WAITS;
     while state.join("ready").exists() {
-        match Lock::take(&state.join("lock"), folder) {
+        match Lock::take(&state.join(LOCK), folder) {
             Ok(_lock) => {
                 return roll_forward(folder).map_err(|e| {
                     Failure::File(format!(

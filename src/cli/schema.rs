@@ -1,13 +1,11 @@
 //! `armwright schema`: what a kind of file may hold, for editors and other programs.
 
 use super::failure::Failure;
-use crate::arm::file_keys::ARM_FILE;
-use crate::arm::keys::CASES_FILE;
+use crate::arm::{ARM_FILE, CASES_FILE};
 use crate::catalog::schema::CatalogFile;
-use crate::catalog::table_schema::table_schema;
 use crate::input::schema::FileKind;
-use crate::reconcile::readings::keys::CAMPAIGN_FILE;
-use crate::study::keys::STUDY_FILE;
+use crate::reconcile::CAMPAIGN_FILE;
+use crate::study::STUDY_FILE;
 use clap::Args;
 use serde_json::Value;
 
@@ -52,7 +50,7 @@ pub(super) fn run(args: &SchemaArgs) -> Result<String, Failure> {
 }
 
 fn catalog_schema(name: &str) -> Option<Value> {
-    CatalogFile::ALL.into_iter().find(|file| stem(*file) == name).map(table_schema)
+    CatalogFile::ALL.into_iter().find(|file| stem(*file) == name).map(CatalogFile::table_schema)
 }
 
 /// Name of a catalog file without its ending.

@@ -12,7 +12,7 @@ use crate::search::resume::{KeepState, Resume};
 use serde_json::{Value, json};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Least time between two states.
@@ -42,6 +42,8 @@ pub(super) struct Unfinished {
 
 struct Due {
     at: Instant,
+    /// When a state was found to be due that is not kept yet: from then on it costs time.
+    since: Option<Instant>,
     every: Duration,
     has_failed: bool,
 }
@@ -54,7 +56,7 @@ impl Unfinished {
     /// The state is of another search, is damaged, or cannot be read.
     pub(super) fn open(path: &Path, search: Value, is_fresh: bool, log: Log) -> Result<Self, Failure> {
         let every = keep_every();
-        let due = Mutex::new(Due { at: Instant::now() + every, every, has_failed: false });
+        let due = Mutex::new(Due { at: Instant::now() + every, since: None, every, has_failed: false });
         let (path, started) = (path.to_path_buf(), Instant::now());
         let mut out = Self { path, search, from: None, earlier: Duration::ZERO, started, due, log };
         match std::fs::read(&out.path) {
@@ -93,6 +95,10 @@ impl Unfinished {
         ))
     }
 
+    fn due(&self) -> MutexGuard<'_, Due> {
+        self.due.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// The folder of results, for messages.
     fn folder(&self) -> std::path::Display<'_> {
         self.path.ancestors().nth(2).unwrap_or(&self.path).display()
@@ -111,16 +117,18 @@ impl Unfinished {
 
 impl KeepState for Unfinished {
     fn is_due(&self) -> bool {
-        Instant::now() >= self.due.lock().unwrap_or_else(PoisonError::into_inner).at
+        let (now, mut due) = (Instant::now(), self.due());
+        due.since = (now >= due.at).then_some(now);
+        due.since.is_some()
     }
 
     fn keep(&self, state: &[u8]) {
-        let begun = Instant::now();
+        let begun = self.due().since.take().unwrap_or_else(Instant::now);
         let mut head = self.search.clone();
         head["elapsed_s"] = json!(self.started().elapsed().as_secs_f64());
         head["hash"] = json!(hash(state));
         let written = write_whole(&self.path, &[format!("{head}\n").as_bytes(), state].concat());
-        let mut due = self.due.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut due = self.due();
         due.at = Instant::now() + due.every.max(begun.elapsed() * SHARE);
         if let Err(e) = written
             && !std::mem::replace(&mut due.has_failed, true)

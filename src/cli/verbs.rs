@@ -66,7 +66,7 @@ enum Verb {
     Status(merge::StatusArgs),
     /// Print a script that runs a study as shards on a Slurm cluster
     Slurm(slurm::SlurmArgs),
-    /// Say what files are, with all their faults; or whether two folders of results are the same
+    /// Say what files are, and all their faults; or compare two results
     Check(check::CheckArgs),
     /// Print the schema of a kind of file
     Schema(schema::SchemaArgs),

@@ -8,9 +8,9 @@
 use super::bound::{BoxBound, DesignBox};
 use super::boxes::OpenBox;
 use super::budget::Budget;
+use super::outcome::ExactOutcome;
 use super::plan::Pass;
 use super::problem::Problem;
-use super::run::ExactOutcome;
 use super::search_state::{KeptState, SearchState};
 use super::shape::Shape;
 use crate::search::resume::{KeepState, Resume};

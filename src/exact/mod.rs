@@ -47,6 +47,7 @@ pub(crate) mod local_upper_bounds;
 pub(crate) mod lowest_eigenvalue;
 pub(crate) mod matrix_game;
 pub(crate) mod near;
+pub(crate) mod outcome;
 pub(crate) mod parts;
 pub(crate) mod plan;
 pub(crate) mod pose;
@@ -68,4 +69,5 @@ pub(crate) mod work;
 
 pub use domain_reduction::DomainReduction;
 pub use live::Known;
-pub use run::{Exact, ExactOutcome, VAST, WORKER_STACK_BYTES};
+pub use outcome::ExactOutcome;
+pub use run::{Exact, VAST, WORKER_STACK_BYTES};

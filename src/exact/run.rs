@@ -9,6 +9,7 @@ use super::gap::gap;
 use super::journal::{Begun, Journal};
 use super::kinds::Ties;
 use super::live::{Known, Live, least};
+use super::outcome::ExactOutcome;
 use super::plan::{Pass, Plan};
 use super::probe::probe;
 use super::problem::Problem;
@@ -17,9 +18,7 @@ use super::search_state::SearchState;
 use crate::catalog::Catalogs;
 use crate::pareto::objectives::{Objective, Objectives};
 use crate::search::resume::Resume;
-use crate::search::sweep::Candidate;
 use crate::space::design_space::{DesignSpace, LinkOption};
-use serde::{Deserialize, Serialize};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
@@ -87,29 +86,6 @@ pub struct Exact<'p> {
 struct Ended {
     gap: Option<f64>,
     open: Vec<BoxBound>,
-}
-
-/// The result of the search.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ExactOutcome {
-    /// Number of designs in the space.
-    pub designs_total: u128,
-    /// Number of designs whose three objectives were computed.
-    pub designs_evaluated: u64,
-    /// Number of boxes bounded.
-    pub boxes: u64,
-    /// Number of boxes or regions that were still open when the search was stopped. It is 0 if the front is
-    /// certified.
-    pub boxes_open: u64,
-    /// The greatest factor, less one, by which an undiscovered design may be better than the whole front in every
-    /// objective at once. After a complete search this is the gap that was asked for, 0 for the whole front. `None`
-    /// if nothing is known.
-    pub gap: Option<f64>,
-    /// The designs found that no other dominates.
-    pub front: Vec<Candidate>,
-    /// Whether the front lists every design that differs only in drives of equal mass and curve. If there are too
-    /// many, one of each set of ties is listed.
-    pub ties_listed: bool,
 }
 
 impl<'p> Exact<'p> {
@@ -258,7 +234,7 @@ impl<'p> Exact<'p> {
         let mut open = Vec::new();
         let begun = |left: &Option<(f64, Vec<OpenBox>)>| left.as_ref().map(|(slack, _)| *slack);
         while let Some(slack) = begun(&left).or_else(|| plan.next(&done, self.budget.left_s())) {
-            let started = Instant::now();
+            let (started, from) = (Instant::now(), left.take().map(|(_, boxes)| boxes));
             let told = || live.and_then(|live| live.known().gap);
             let between = |state: &SearchState| Begun::between(state, &done, told());
             open = if by_regions {
@@ -269,14 +245,7 @@ impl<'p> Exact<'p> {
                 let keep = |state: &SearchState, open: &[OpenBox]| {
                     self.journal.keep_round(&self.budget, || between(state), (slack, open));
                 };
-                pass_by_boxes(
-                    &self.budget,
-                    whole,
-                    state,
-                    (slack, left.take().map(|(_, boxes)| boxes)),
-                    live,
-                    keep,
-                )
+                pass_by_boxes(&self.budget, whole, state, (slack, from), live, keep)
             };
             if !open.is_empty() {
                 // What was told once stays true of the designs found since.

@@ -128,8 +128,13 @@ pub(crate) const fn optional(
 }
 
 /// The address of the schema, which editors look for in a file; programs ignore it.
-pub(crate) const SCHEMA_ADDRESS: Key =
-    optional("$schema", Kind::Text, "-", "none", "Where an editor finds the schema of this file; ignored.");
+pub(crate) const SCHEMA_ADDRESS: Key = optional(
+    "$schema",
+    Kind::Anything,
+    "-",
+    "none",
+    "Where an editor finds the schema of this file; ignored.",
+);
 
 /// The words of a table of words and values.
 pub(crate) const fn words_of<T, const N: usize>(pairs: &[(&'static str, T)]) -> [&'static str; N] {

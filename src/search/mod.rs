@@ -26,5 +26,5 @@ pub mod sweep;
 pub(crate) mod visit;
 
 pub use finish::FinishRows;
-pub use resume::{KeepState, Resume, SweepState};
-pub use sweep::{Status, Sweep, SweepOutcome};
+pub use resume::{KeepState, Resume};
+pub use sweep::{Status, Sweep, SweepOutcome, SweepState};

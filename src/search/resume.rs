@@ -4,7 +4,6 @@
 //! found so far. A task that was only begun is done again: what it found before is found again, so the candidates are the
 //! same in the end, and the counts are those of whole tasks.
 
-use super::sweep::Candidate;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -24,36 +23,6 @@ pub struct Resume<'s> {
     pub from: Option<&'s [u8]>,
     /// Who keeps the states of this process.
     pub keeper: &'s dyn KeepState,
-}
-
-/// The state of a sweep.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct SweepState {
-    /// Number of tasks of the sweep.
-    pub(super) tasks: u64,
-    /// Which of them are done.
-    pub(super) done: Done,
-    /// Designs of these tasks that were evaluated, and those that cannot hold.
-    pub(super) evaluated: u64,
-    pub(super) excluded: u128,
-    /// Candidates of the front of all designs, and of the front of each group.
-    pub(super) front: Vec<Candidate>,
-    pub(super) groups: Vec<Vec<Candidate>>,
-}
-
-impl SweepState {
-    /// The state as bytes.
-    pub fn to_bytes(&self) -> Vec<u8> {
-        postcard::to_stdvec(self).expect("numbers can be written to memory")
-    }
-
-    /// Reads [`to_bytes`](Self::to_bytes).
-    ///
-    /// # Errors
-    /// The bytes are no state, in words.
-    pub fn from_bytes(bytes: &[u8]) -> Result<Self, String> {
-        postcard::from_bytes(bytes).map_err(|e| e.to_string())
-    }
 }
 
 /// A set of tasks, as ranges that do not touch each other: the end of each range by its start.
@@ -97,14 +66,5 @@ mod tests {
         let there: Vec<u64> = (0..12).filter(|&task| done.has(task)).collect();
         assert_eq!(there, [0, 3, 4, 5, 8, 9]);
         assert!(done.is_within(10) && !done.is_within(9));
-    }
-
-    #[test]
-    fn any_bytes_are_a_state_or_an_error() {
-        let state = SweepState { tasks: 7, evaluated: 3, groups: vec![vec![], vec![]], ..Default::default() };
-        let bytes = state.to_bytes();
-        assert_eq!(SweepState::from_bytes(&bytes), Ok(state));
-        assert!(SweepState::from_bytes(&bytes[..bytes.len() - 1]).is_err());
-        assert!(SweepState::from_bytes(&[0xff; 40]).is_err());
     }
 }

@@ -6,7 +6,7 @@
 //! the order of visits or on the number of threads.
 
 use super::finish::FinishRows;
-use super::resume::{Done, SweepState};
+use super::resume::Done;
 use super::visit::{Tasks, Visit, Walked, blocks};
 use crate::pareto::archive::Archive;
 use crate::pareto::front::not_clearly_beaten;
@@ -78,6 +78,36 @@ pub struct SweepOutcome {
     pub front: Vec<Candidate>,
     /// Candidates of the front of each group (material).
     pub groups: Vec<Vec<Candidate>>,
+}
+
+/// The state of a sweep.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct SweepState {
+    /// Number of tasks of the sweep.
+    tasks: u64,
+    /// Which of them are done.
+    done: Done,
+    /// Designs of these tasks that were evaluated, and those that cannot hold.
+    evaluated: u64,
+    excluded: u128,
+    /// Candidates of the front of all designs, and of the front of each group.
+    front: Vec<Candidate>,
+    groups: Vec<Vec<Candidate>>,
+}
+
+impl SweepState {
+    /// The state as bytes.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        postcard::to_stdvec(self).expect("numbers can be written to memory")
+    }
+
+    /// Reads [`to_bytes`](Self::to_bytes).
+    ///
+    /// # Errors
+    /// The bytes are no state, in words.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, String> {
+        postcard::from_bytes(bytes).map_err(|e| e.to_string())
+    }
 }
 
 /// A shard: part `number` of `of` parts of a space, counted from 1. Each is swept by itself.
@@ -414,5 +444,19 @@ impl Worker<'_> {
             pool.empty(buffer);
         }
         self.tally
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn any_bytes_are_a_state_or_an_error() {
+        let state = SweepState { tasks: 7, evaluated: 3, groups: vec![vec![], vec![]], ..Default::default() };
+        let bytes = state.to_bytes();
+        assert_eq!(SweepState::from_bytes(&bytes), Ok(state));
+        assert!(SweepState::from_bytes(&bytes[..bytes.len() - 1]).is_err());
+        assert!(SweepState::from_bytes(&[0xff; 40]).is_err());
     }
 }

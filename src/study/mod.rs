@@ -1,16 +1,17 @@
 //! Named questions: read, resolve, run.
 
 pub(crate) mod alternatives;
+pub(crate) mod arm_capacity;
 mod balance;
 pub(crate) mod ballast;
 pub(crate) mod bearing_remarks;
 pub(crate) mod bodies;
 pub(crate) mod bounds;
 pub(crate) mod budget;
-pub(crate) mod arm_capacity;
 pub(crate) mod capacity;
 pub(crate) mod cases;
 pub(crate) mod check;
+mod choose_keys;
 pub(crate) mod chosen;
 mod connections;
 pub(crate) mod creep;
@@ -57,6 +58,7 @@ pub use chosen::{arm_of_design, sizing_of};
 pub use definition::Study;
 pub use diagnose::{empty_pieces, why_infeasible};
 pub use effects::{CorrectedStudy, Correction, apply_corrections, left_out};
+pub use keys::STUDY_FILE;
 pub use load::{load_study, refuse_empty};
 pub use named::{NAMED, list, named, names};
 pub use near::{NearFront, near_front};

@@ -3,11 +3,12 @@
 use super::definition::Study;
 use crate::catalog::Catalogs;
 use crate::exact::Known;
-use crate::exact::run::{Exact, ExactOutcome};
+use crate::exact::outcome::ExactOutcome;
+use crate::exact::run::Exact;
 use crate::pareto::front::nondominated;
 use crate::search::near::{NearDesign, NearDesigns, Slack};
-use crate::search::resume::{Resume, SweepState};
-use crate::search::sweep::{Candidate, Shard, Status, Sweep, SweepOutcome};
+use crate::search::resume::Resume;
+use crate::search::sweep::{Candidate, Shard, Status, Sweep, SweepOutcome, SweepState};
 use crate::space::design::number;
 use crate::space::design::{Evaluated, evaluate};
 use crate::space::design_space::DesignSpace;

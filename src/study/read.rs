@@ -7,6 +7,7 @@
 use super::balance::{balance_remarks, read_balance};
 use super::bodies::impossible_bodies_remark;
 use super::cases::{Cases, read_cases};
+use super::choose_keys::CHOOSE;
 use super::connections::{connections_remark, with_connections};
 use super::creep::creep_remarks;
 use super::definition::Study;
@@ -14,7 +15,7 @@ use super::drives::{Drives, read_drives};
 use super::effects::check_effects;
 use super::fit::{fit_remarks, read_fit};
 use super::harness::{harness_effects, harness_remark};
-use super::keys::{CHOOSE, CONSTRAINTS, JOINT, LINK, MODELS, STUDY};
+use super::keys::{CONSTRAINTS, JOINT, LINK, MODELS, STUDY};
 use super::linkages::drivers_are_inboard;
 use super::motion::{read_duty, read_motion};
 use super::omissions::omissions;
@@ -211,7 +212,8 @@ fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePi
     if items.is_empty() {
         return node.fault("is empty", "an arm has at least one joint or link");
     }
-    let elements: usize = items.iter().map(elements_of).sum();
+    let counts: Vec<usize> = items.iter().map(elements_of).collect();
+    let elements: usize = counts.iter().sum();
     if elements > MOST_ELEMENTS {
         let problem = format!("has {elements} joints and links, and the limit is {MOST_ELEMENTS}");
         return node.fault(problem, "join links that lie in line, or study a part of the arm");
@@ -226,8 +228,8 @@ fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePi
         .collect();
     let mut pieces: Vec<SpacePiece> =
         read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect();
-    let repeated = |n: Node| std::iter::repeat_n(n.clone(), elements_of(&n));
-    let items: Vec<Node> = items.into_iter().flat_map(repeated).collect();
+    let repeated = items.into_iter().zip(counts).flat_map(|(n, count)| std::iter::repeat_n(n, count));
+    let items: Vec<Node> = repeated.collect();
     number_materials(&mut pieces);
     unique_names(node, &pieces)?;
     drivers_are_inboard(&items, &pieces)?;

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// Mutations of each reader, if nothing is said.
-const DEFAULT: u64 = 120;
+const DEFAULT: u64 = 100;
 /// A file that takes longer hangs the program, as far as a user can tell. A debug build beside others is slow.
 const LONGEST: Duration = Duration::from_secs(20);
 
@@ -187,7 +187,12 @@ fn change_value(value: &mut Value, dice: &mut Dice) {
 
 /// Gives a reader changed versions of a file in a folder. `read` says why it failed if that is no answer at all.
 fn every_change(what: &str, folder: &Path, file: &str, read: impl Fn(&Path) -> Result<(), String>) {
-    let (count, from) = (from_env("ARMWRIGHT_MUTATIONS", DEFAULT), from_env("ARMWRIGHT_MUTATIONS_FROM", 1));
+    changes(from_env("ARMWRIGHT_MUTATIONS", DEFAULT), what, folder, file, read);
+}
+
+/// The same with so many changes.
+fn changes(count: u64, what: &str, folder: &Path, file: &str, read: impl Fn(&Path) -> Result<(), String>) {
+    let from = from_env("ARMWRIGHT_MUTATIONS_FROM", 1);
     let path = folder.join(file);
     let sound = fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     read(folder).unwrap_or_else(|why| panic!("{what}: the file as it is: {why}"));
@@ -339,7 +344,11 @@ fn a_changed_result_is_read_or_refused() {
     let out = here.path().join("out");
     answers(&["run", word(&study), "--out", word(&out)]).expect("it runs");
     let design = word(&here.path().join("design")).to_string();
-    every_change("run.json", &out, "run.json", |out| answers(&["design", word(out), "x0", "--out", &design]));
+    // a reader looks again for half a second before it says that files do not belong together
+    let fewer = from_env("ARMWRIGHT_MUTATIONS", DEFAULT) / 5;
+    changes(fewer, "run.json", &out, "run.json", |out| {
+        answers(&["design", word(out), "x0", "--out", &design])
+    });
     let parts = here.path().join("parts");
     let part = parts.join("1-of-1");
     answers(&["run", word(&study), "--shard", "1/1", "--out", word(&part)]).expect("it runs");

@@ -48,7 +48,7 @@ impl Cluster {
         fs::write(here.path().join("slurm.conf"), config(here.path(), &name, &user)).expect("written");
         fs::write(here.path().join("cgroup.conf"), "").expect("written");
         let mut out = Self { here, daemons: Vec::new() };
-        let mut spawn = |command: &mut Command| {
+        let spawn = |command: &mut Command| {
             let command = command.env("SLURM_CONF", out.here.path().join("slurm.conf"));
             let silent = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
             silent.spawn().expect("a daemon starts")

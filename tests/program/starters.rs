@@ -118,7 +118,7 @@ fn check_says_what_each_file_is_and_reports_every_fault_of_every_file() {
     for words in [
         "sound.json: study, sound\n",
         "study.json: study, 3 faults\n",
-        "study.json:17: payload.mass_kg: = -3 must not be negative",
+        "study.json:15: payload.mass_kg: = -3 must not be negative",
         "pose: unknown key; did you mean \"poses\"?",
         "arm.json: arm, 2 faults\n",
         "arm.json:1: chian: unknown key; did you mean \"chain\"?",
@@ -162,7 +162,9 @@ fn verbs(here: &Path, words: &[&str]) -> Vec<String> {
     let (code, help) = armwright(here, &[words, &["--help"]].concat());
     assert_eq!(code, 0, "{help}");
     let list = help.split("Commands:\n").nth(1).unwrap_or_default().split("\n\n").next().unwrap_or_default();
-    let names = list.lines().filter_map(|line| line.strip_prefix("  ")?.split_whitespace().next());
+    let names = list.lines().filter_map(|line| {
+        line.strip_prefix("  ").filter(|line| !line.starts_with(' '))?.split_whitespace().next()
+    });
     names.filter(|name| *name != "help").map(String::from).collect()
 }
 

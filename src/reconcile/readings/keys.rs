@@ -5,7 +5,7 @@ use crate::input::key::{Key, Kind, SCHEMA_ADDRESS, Shape, optional, required};
 use crate::input::schema::FileKind;
 
 /// The statement of a campaign.
-pub(crate) const CAMPAIGN_FILE: FileKind = FileKind {
+pub const CAMPAIGN_FILE: FileKind = FileKind {
     name: "campaign",
     about: "What is stated about a set of measurements of one arm: `campaign.json`.",
     root: Kind::Object(&CAMPAIGN),
