@@ -11,6 +11,7 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
 from . import _armwright
 from ._armwright import Catalogs
 from ._input import catalogs_or_builtin, source
+from .errors import FileError
 from .table import Front, Prediction, Table
 
 PathLike = Union[str, "os.PathLike[str]"]
@@ -128,6 +129,38 @@ def design(
     """A design of a study as an arm file with every part resolved to numbers, and the cases in which it is judged."""
     arm, cases = _armwright.design(catalogs_or_builtin(catalogs), source(study, "study"), design_id)
     return json.loads(arm), json.loads(cases)
+
+
+def from_urdf(
+    file: PathLike,
+    tip: str,
+    *,
+    stiffness: Union[None, PathLike, Mapping] = None,
+    catalogs: Optional[Catalogs] = None,
+) -> Dict[str, Any]:
+    """An arm file, as a dict, of the joints and links of a URDF file from its root to a link, as ``armwright import`` writes it.
+
+    :param file: path of the URDF file, or its text
+    :param tip: link where the arm ends
+    :param stiffness: stiffness of each joint by its name [N m/rad], or a mapping of its keys in arm files; or the path of a
+        stiffness file (docs/interchange.md). A joint without one is rigid.
+    :returns: dict for :func:`analyze`; ``provenance`` has what ``import.json`` says of what was lumped and left rigid
+    :raises InputError: every fault of the URDF, or of the stiffness
+    """
+    given = None
+    if isinstance(stiffness, Mapping):
+        keys = lambda value: value if isinstance(value, Mapping) else {"stiffness_nm_per_rad": value}
+        given = source({"joints": {joint: keys(value) for joint, value in stiffness.items()}}, "stiffness")
+    elif stiffness is not None:
+        given = source(stiffness, "stiffness")
+    is_text = isinstance(file, str) and file.lstrip().startswith("<")
+    try:
+        text = str(file) if is_text else Path(file).read_text(encoding="utf-8")
+    except OSError as reason:
+        raise FileError(f"cannot read {os.fspath(file)}: {reason.strerror}") from None
+    name = "urdf" if is_text else os.fspath(file)
+    arm, report = _armwright.from_urdf(catalogs_or_builtin(catalogs), name, text, tip, given)
+    return {**json.loads(arm), "provenance": json.loads(report)}
 
 
 def run(

@@ -135,16 +135,40 @@ def test_ctrl_c_ends_a_search_and_other_threads_run_meanwhile():
     assert isinstance(raised.value, armwright.Interrupted)
     # the lock was free: the other thread counted all the while (100 at best)
     assert len(counted) > 5
-    assert time.monotonic() - started < 60
+    assert time.monotonic() - started < 120
 
 
 def test_a_campaign_has_a_verdict(tmp_path):
     from conftest import ROOT
 
-    found = armwright.reconcile(ROOT / "tests" / "data" / "campaigns" / "plain-0251e")
+    found = armwright.reconcile(ROOT / "examples" / "paper-frequencies")
     assert found.verdict in ("no_gap", "explained", "unexplained", "insufficient_data")
     assert found.corrected_arm["chain"] and len(found.residuals) > 0
     assert found.text and found.json["verdict"] == found.verdict
+
+
+URDF = """<robot name="two"><link name="base"/>
+  <link name="arm"><inertial><origin xyz="0.4 0 0"/><mass value="2"/>
+    <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link>
+  <link name="hand"/>
+  <joint name="j" type="continuous"><parent link="base"/><child link="arm"/><axis xyz="0 1 0"/></joint>
+  <joint name="f" type="fixed"><parent link="arm"/><child link="hand"/><origin xyz="0.8 0 0"/></joint></robot>"""
+
+
+def test_a_urdf_becomes_an_arm(tmp_path):
+    path = tmp_path / "two.urdf"
+    path.write_text(URDF)
+    arm = armwright.from_urdf(path, "hand", stiffness={"j": 2e4})
+    torque_nm = 2 * 9.81 * 0.4
+    solved = armwright.analyze(arm)
+    assert solved["joint_torque_nm"]["j"] == pytest.approx(torque_nm, rel=1e-12)
+    assert solved["tip_displacement_m"][2] == pytest.approx(-torque_nm / 2e4 * 0.8, rel=1e-9)
+    rigid = armwright.from_urdf(URDF, "hand")
+    assert np.linalg.norm(armwright.analyze(rigid)["tip_displacement_m"]) == 0
+    with pytest.raises(armwright.InputError, match="hand"):
+        armwright.from_urdf(path, "finger")
+    with pytest.raises(armwright.FileError):
+        armwright.from_urdf(tmp_path / "none.urdf", "hand")
 
 
 def test_the_paper_is_computed():

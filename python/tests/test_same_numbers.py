@@ -72,15 +72,18 @@ def test_a_design_equals_the_programs_design(program, tmp_path, bench_arm):
 
 
 def test_a_verdict_equals_the_programs_verdict(program, tmp_path):
-    campaign = ROOT / "tests" / "data" / "campaigns" / "plain-0251e"
+    campaign = ROOT / "examples" / "paper-frequencies"
     program("reconcile", campaign, "--out", tmp_path / "out")
     found = armwright.reconcile(campaign)
     found.write(tmp_path / "ours")
     for name in ["verdict.json", "verdict.txt", "arm.corrected.json", "residuals.csv"]:
         assert (tmp_path / "ours" / name).read_bytes() == (tmp_path / "out" / name).read_bytes(), name
-    arm = tmp_path / "out" / "arm.corrected.json"
-    text = program("predict", arm, campaign / "static.csv", "--campaign", campaign / "campaign.json")
-    ours = armwright.predict(arm, campaign / "static.csv", campaign / "campaign.json")
+
+
+def test_a_prediction_equals_the_programs_prediction(program):
+    arm, readings, campaign = MEASURED / "arm.json", MEASURED / "static.csv", MEASURED / "campaign.json"
+    text = program("predict", arm, readings, "--campaign", campaign)
+    ours = armwright.predict(arm, readings, campaign)
     theirs = list(csv.reader(text.splitlines()))
     assert ours.columns == theirs[0]
     assert np.array_equal(ours["model_dz_mm"], [float(row[theirs[0].index("model_dz_mm")]) for row in theirs[1:]])

@@ -4,6 +4,7 @@ use super::exit::{Answer, Exit};
 use super::failure::Failure;
 use super::manifest::{MANIFESTS, hash, listed};
 use super::schema::FILES;
+use crate::arm::case_keys::CASE;
 use crate::arm::{Arm, read_arm, read_arm_document, read_load_cases};
 use crate::catalog::Catalogs;
 use crate::catalog::schema::CatalogFile;
@@ -130,10 +131,13 @@ fn look_at_file(path: &Path, catalogs: &Catalogs) -> Look {
     }
 }
 
-/// The kind of file that knows most of the keys of a document; of several, the first.
+/// The kind of file that knows most of the keys of a document, or of the objects in its list; of several, the first.
 fn kind_of(value: &Value) -> Option<&'static str> {
-    let Value::Object(map) = value else { return value.is_array().then_some("cases") };
-    let known = |shape: &Shape| map.keys().filter(|key| shape.keys.iter().any(|k| k.name == *key)).count();
+    let Value::Object(map) = value else {
+        let is_case = |item: &Value| item.as_object().is_some_and(|map| map.keys().any(|key| CASE.has(key)));
+        return value.as_array()?.iter().any(is_case).then_some("cases");
+    };
+    let known = |shape: &Shape| map.keys().filter(|key| shape.has(key)).count();
     let of_itself = map.contains_key(SCHEMA_ADDRESS.name) as usize;
     let mut best = (of_itself, None);
     for file in &FILES {

@@ -9,12 +9,13 @@ use crate::study::STUDY_FILE;
 use clap::Args;
 use serde_json::Value;
 
-/// Prints the JSON Schema of a kind of file (draft 2020-12), or the Table Schema of a catalog file; without a kind, lists
-/// the kinds. An editor that knows the schema completes keys and marks faults while one types.
+/// Arguments of `schema`.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  armwright schema\n  armwright schema study > study.schema.json\n  \
     armwright schema gears\n  armwright schema arm --markdown\n\n\
-    A file may name its schema: {\"$schema\": \"study.schema.json\", ...}")]
+    Prints the JSON Schema of a kind of file (draft 2020-12), or the Table Schema of a catalog file; without a kind, lists the \
+    kinds. An editor that knows the schema completes keys and marks faults while one types. A file may name its schema: \
+    {\"$schema\": \"study.schema.json\", ...}")]
 pub(crate) struct SchemaArgs {
     /// Kind of file
     #[arg(value_name = "KIND")]

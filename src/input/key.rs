@@ -105,6 +105,11 @@ impl Shape {
         Self { name, about, keys, rules, others: None }
     }
 
+    /// Whether it has a key of this name.
+    pub fn has(&self, name: &str) -> bool {
+        self.keys.iter().any(|key| key.name == name)
+    }
+
     /// The names of its keys.
     pub fn names(&self) -> Vec<&'static str> {
         self.keys.iter().map(|key| key.name).collect()

@@ -102,6 +102,7 @@ fn check_says_what_each_file_is_and_reports_every_fault_of_every_file() {
     write("cases.json", r#"[{"pose_deg": [0], "payload": {"mass": 1}}]"#);
     write("broken.json", "{\n \"name\": 1,}");
     write("other.json", r#"{"zzzz": 1}"#);
+    write("list.json", r#"[{"effect": "outlier"}]"#);
     write("motors.csv", "type,model,source,confidence\nac-servo,M,s,sure\n");
     let names = [
         "sound.json",
@@ -109,6 +110,7 @@ fn check_says_what_each_file_is_and_reports_every_fault_of_every_file() {
         "arm.json",
         "broken.json",
         "other.json",
+        "list.json",
         "motors.csv",
         "absent.json",
         "sound.json",
@@ -125,6 +127,7 @@ fn check_says_what_each_file_is_and_reports_every_fault_of_every_file() {
         "broken.json: unknown, 1 fault\n",
         "broken.json:2: column",
         "other.json: has no key of a file that is known; `armwright schema`",
+        "list.json: has no key of a file that is known",
         ": catalogs, 1 fault\n",
         "confidence",
         "absent.json: unknown, cannot be read\n",
