@@ -136,7 +136,7 @@ fn heading(asked: &Asked) -> String {
 fn to_calculix(asked: &Asked) -> Export {
     let mut rest = Remainder::new(asked.arm.structure_in(asked.case), asked.case);
     rest.without_water();
-    rest.without_balance();
+    rest.without_balance_springs();
     let links = rest.structure.pieces.iter().filter_map(|piece| match piece {
         Piece::Link(link) => link.beam.filter(|beam| !has_shape(&beam.section)).map(|_| link.name.clone()),
         _ => None,
@@ -197,7 +197,7 @@ fn to_calculix(asked: &Asked) -> Export {
 fn to_mjcf(asked: &Asked, catalogs: &Catalogs) -> Export {
     let mut rest = Remainder::new(asked.arm.structure_in(asked.case), asked.case);
     rest.without_water();
-    rest.without_balance();
+    rest.without_balance_springs();
     let case = rest.without_tip_load("an MJCF file has no load: apply it at the site \"tip\" (xfrc_applied)");
     if asked.pieces == 0 {
         rest.without_flexible_links("links are rigid: ask for pieces with --flexible N");
@@ -287,7 +287,7 @@ fn to_urdf(asked: &Asked) -> Export {
     let case = LoadCase { payload: Payload::default(), ..asked.case.clone() };
     let mut rest = Remainder::new(asked.arm.structure_in(asked.case), &case);
     rest.without_water();
-    rest.without_balance();
+    rest.without_balance_springs();
     let case = rest.without_tip_load("a URDF has no load");
     rest.without_flexible_links("a URDF has rigid links");
     rest.without_springs(

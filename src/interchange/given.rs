@@ -5,7 +5,7 @@
 //! ```
 //!
 //! Each joint has the keys that it has in an arm file: `stiffness_nm_per_rad` (null is rigid), `windup` or `gear`; `motor`;
-//! `bearing`. The masses of named parts are not added, because the bodies of a URDF have them.
+//! `bearing`. The masses of named parts and of bearings are not added, because the bodies of a URDF have them.
 
 use crate::arm::bearing::Bearing;
 use crate::arm::file::{read_curve, read_joint_bearing};
@@ -62,7 +62,9 @@ fn read_joint(name: &str, node: &Node, joints: &[&str], catalogs: &Catalogs) -> 
     let (gear, motor) = (text("gear"), text("motor"));
     let curve = read_curve(&object, catalogs);
     let bearing = read_joint_bearing(&object, catalogs);
-    Some(GivenJoint { name: name.into(), curve: curve?, bearing: bearing?, gear: gear?, motor: motor? })
+    // the bodies of the file have the bearing's mass in them
+    let bearing = bearing?.map(|bearing| Bearing { mass_kg: 0.0, ..bearing });
+    Some(GivenJoint { name: name.into(), curve: curve?, bearing, gear: gear?, motor: motor? })
 }
 
 /// A stiffness file that leaves all joints rigid, to be filled in.

@@ -68,13 +68,14 @@ impl Remainder {
         }
     }
 
-    /// Springs that balance the arm, all together: the force of one changes with that of no other, but torsion curves see their sum.
-    pub(crate) fn without_balance(&mut self) {
-        if !self.structure.springs.is_empty() {
-            let names: Vec<String> =
-                self.structure.springs.iter().map(|spring| spring.name.clone()).collect();
-            let why = "the file has no springs between parts of the arm: add them in the other program";
-            self.remove("springs", &names.join(", "), why, |structure| structure.springs.clear());
+    /// Springs that balance the arm, one by one.
+    pub(crate) fn without_balance_springs(&mut self) {
+        let names: Vec<String> = self.structure.springs.iter().map(|spring| spring.name.clone()).collect();
+        for name in names {
+            let why = "the file has no springs that balance the arm: its joints hold their torque too";
+            self.remove("balance_spring", &name, why, |structure| {
+                structure.springs.retain(|spring| spring.name != name);
+            });
         }
     }
 
