@@ -31,7 +31,6 @@ impl MassBounds<'_> {
         match self {
             // the relaxation knows neither linkages, springs nor laws
             Self::Tabulated(problem, _) if problem.space().beyond_bounds().is_some() => None,
-            Self::InReach { space, .. } if space.beyond_bounds().is_some() => None,
             Self::Tabulated(problem, relaxation) => bound(problem, relaxation, known, objectives),
             Self::InReach { space, catalogs, reach } => {
                 let options = reach.as_ref()?.options_as_good(objectives)?;
