@@ -9,6 +9,8 @@ use super::effect::servo_compliance;
 use super::extras::read_extras;
 use super::joint_law::{Curve, Windup};
 use super::load::vector;
+use super::pose::Motion;
+use super::prismatic::{PRISMATIC_KEYS, Prismatic};
 use super::section::{LinkMaterial, Section};
 use super::section_file::{read_i_beam, read_stated_section};
 use super::{Arm, Element, Joint, Link, LinkBody};
@@ -139,12 +141,19 @@ const JOINT_KEYS: [&str; 13] = [
 ];
 const LINK_KEYS: [&str; 7] = ["type", "name", "vector_m", "material", "section", "mass_kg", "bodies"];
 
+/// What is wrong with an element of no known type, and what to try.
+pub(crate) const NO_TYPE: (&str, &str) = (
+    "has no \"type\" of \"joint\", \"prismatic\" or \"link\"",
+    "add \"type\": \"joint\" (it turns), \"prismatic\" (it slides) or \"link\"",
+);
+
 fn read_element(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> Option<Element> {
     let kind = node.value().get("type").and_then(|v| v.as_str());
     match kind {
         Some("joint") => read_joint(&node.object(&JOINT_KEYS)?, catalogs).map(Element::Joint),
+        Some("prismatic") => Prismatic::read(&node.object(&PRISMATIC_KEYS)?).map(Element::Prismatic),
         Some("link") => read_link(&node.object(&LINK_KEYS)?, materials, catalogs).map(Element::Link),
-        _ => node.fault("has no \"type\" of \"joint\" or \"link\"", "add \"type\": \"joint\" or \"link\""),
+        _ => node.fault(NO_TYPE.0, NO_TYPE.1),
     }
 }
 
@@ -514,12 +523,17 @@ fn check_names(arm: &Arm, root: &Object) -> Option<()> {
             sound = false;
         }
     }
-    let driven = arm.driven_joint_names();
+    let driven: Vec<String> = arm
+        .driven_joints()
+        .into_iter()
+        .filter(|joint| joint.motion == Motion::Turns)
+        .map(|joint| joint.name)
+        .collect();
     for (element, node) in arm.chain.iter().zip(&chain) {
         let Element::Joint(Joint { coupled: Some(terms), .. }) = element else { continue };
-        for (name, _) in terms.iter().filter(|(name, _)| !driven.contains(&name.as_str())) {
+        for (name, _) in terms.iter().filter(|(name, _)| !driven.contains(name)) {
             node.fault::<()>(
-                format!("is coupled to \"{name}\", which is no driven joint"),
+                format!("is coupled to \"{name}\", which is no driven joint that turns"),
                 &format!("driven joints: {}", driven.join(", ")),
             );
             sound = false;

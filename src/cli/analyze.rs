@@ -1,18 +1,20 @@
 //! `armwright analyze`: statics, modes and response of an arm file.
 
 use super::failure::Failure;
-use super::values::{choice, number_list, numbers};
+use super::values::{choice, entries, number_list, numbers};
 use crate::arm::effect::entry::Effect;
 use crate::arm::file::read_arm;
 use crate::arm::load::{LoadCase, Payload, read_load_cases};
+use crate::arm::pose::{DrivenJoint, any_slides, pose_of_keys};
 use crate::arm::{Arm, Bearing, Element, JointModel, Link, LinkBody, LinkModel};
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::mechanics::chain::Chain;
 use crate::mechanics::modes::Mode;
+use crate::mechanics::prismatic::GuideLoad;
 use crate::mechanics::response::{Response, frequency_response};
 use crate::mechanics::statics::{JointLoad, Statics};
-use crate::report::number::percent;
+use crate::report::number::{percent, shortest};
 use crate::report::small_displacement::too_far;
 use crate::report::words::{TERMINAL, wrap};
 use crate::space::bearing_loads::resolved;
@@ -28,6 +30,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: armwright analyze arm.json --pose-deg 0,-30,60 --payload-kg 5 --payload-cg-m 0.05,0,0\n\
+                        With a rail: armwright analyze gantry.json --pose rail_mm=250,j2_deg=30\n\
                         Response: armwright analyze arm.json --response-n 0,0,1 --response-hz 1,100,200 --damping 0.02"
 )]
 pub(crate) struct AnalyzeArgs {
@@ -36,6 +39,9 @@ pub(crate) struct AnalyzeArgs {
     /// One angle per joint, base to tip [deg]; default all zero
     #[arg(long, value_name = "Q1,Q2,...", allow_hyphen_values = true, value_parser = pose)]
     pose_deg: Option<Pose>,
+    /// Angles and travels by joint, each with its unit; default all zero. For arms with prismatic joints
+    #[arg(long, value_name = "RAIL_mm=250,J2_deg=30,...", conflicts_with = "pose_deg", value_parser = pose_entries)]
+    pose: Option<PoseEntries>,
     /// Payload mass [kg]
     #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_parser = non_negative)]
     payload_kg: f64,
@@ -62,7 +68,7 @@ pub(crate) struct AnalyzeArgs {
     #[arg(long, default_value_t = 6)]
     modes: usize,
     /// Take pose, payload and models from a cases file instead of these options
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["pose_deg", "payload_kg", "payload_cg_m", "payload_inertia_kgm2", "force_n", "moment_nm", "links", "joints"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["pose_deg", "pose", "payload_kg", "payload_cg_m", "payload_inertia_kgm2", "force_n", "moment_nm", "links", "joints"])]
     cases: Option<PathBuf>,
     /// Amplitude of a harmonic force at the tip, world axes [N]: prints the tip's response (Eq 16)
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = numbers::<3>)]
@@ -83,6 +89,13 @@ struct Pose(Vec<f64>);
 
 fn pose(text: &str) -> Result<Pose, String> {
     number_list(text).map(Pose)
+}
+
+#[derive(Debug, Clone)]
+struct PoseEntries(Vec<(String, f64)>);
+
+fn pose_entries(text: &str) -> Result<PoseEntries, String> {
+    entries(text).map(PoseEntries)
 }
 
 /// Three moments of inertia, none negative.
@@ -131,7 +144,7 @@ struct Solved {
 pub(super) fn run(args: &AnalyzeArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let arm = read_arm(&args.arm, catalogs)?;
     let cases = match &args.cases {
-        Some(path) => read_load_cases(Document::read(path)?, &arm.driven_joint_names())?,
+        Some(path) => read_load_cases(Document::read(path)?, &arm.driven_joints())?,
         None => vec![case_of_flags(args, &arm)?],
     };
     let ignored: Vec<String> = arm.ignored_effects().into_iter().map(Effect::label).collect();
@@ -173,19 +186,9 @@ fn pretty(value: &Value) -> String {
 }
 
 fn case_of_flags(args: &AnalyzeArgs, arm: &Arm) -> Result<LoadCase, Failure> {
-    let joints = arm.driven_joint_names();
-    let pose_deg = args.pose_deg.clone().map_or(vec![0.0; joints.len()], |p| p.0);
-    if pose_deg.len() != joints.len() {
-        return Err(Failure::Usage(format!(
-            "--pose-deg has {} angles, the arm has {} driven joints: {}",
-            pose_deg.len(),
-            joints.len(),
-            joints.join(", ")
-        )));
-    }
     Ok(LoadCase {
         name: "case".into(),
-        pose_deg,
+        pose_deg: pose_of_flags(args, &arm.driven_joints())?,
         payload: Payload {
             mass_kg: args.payload_kg,
             cg_m: args.payload_cg_m.into(),
@@ -197,6 +200,34 @@ fn case_of_flags(args: &AnalyzeArgs, arm: &Arm) -> Result<LoadCase, Failure> {
         joints: args.joints,
         water: None,
     })
+}
+
+/// The pose that the options give, every joint at 0 by default.
+fn pose_of_flags(args: &AnalyzeArgs, driven: &[DrivenJoint]) -> Result<Vec<f64>, Failure> {
+    if let Some(PoseEntries(given)) = &args.pose {
+        let given = given.iter().map(|(key, entry)| (key.as_str(), *entry));
+        return pose_of_keys(driven, given).map_err(|(key, hint)| {
+            Failure::Usage(format!("--pose: \"{key}\" is no entry of a pose: {hint}"))
+        });
+    }
+    let Some(Pose(angles_deg)) = &args.pose_deg else { return Ok(vec![0.0; driven.len()]) };
+    if any_slides(driven) {
+        let keys: Vec<String> = driven.iter().map(|joint| format!("{}=0", joint.key())).collect();
+        return Err(Failure::Usage(format!(
+            "--pose-deg has angles, and the arm has prismatic joints: write --pose {} with your numbers",
+            keys.join(",")
+        )));
+    }
+    if angles_deg.len() != driven.len() {
+        let names: Vec<&str> = driven.iter().map(|joint| joint.name.as_str()).collect();
+        return Err(Failure::Usage(format!(
+            "--pose-deg has {} angles, the arm has {} driven joints: {}",
+            angles_deg.len(),
+            driven.len(),
+            names.join(", ")
+        )));
+    }
+    Ok(angles_deg.clone())
 }
 
 fn solve(args: &AnalyzeArgs, arm: &Arm, case: LoadCase) -> Solved {
@@ -236,6 +267,7 @@ impl Solved {
             "shares": shares,
             "modes": self.modes.iter().map(mode_json).collect::<Vec<_>>(),
         });
+        self.guides_json(&mut out);
         let impossible = arm.impossible_bodies();
         if !impossible.is_empty() {
             out["impossible_inertias"] = json!(impossible);
@@ -257,6 +289,35 @@ impl Solved {
                 .collect();
         }
         out
+    }
+
+    /// Adds what drives and guides of prismatic joints hold, if there are any.
+    fn guides_json(&self, out: &mut Value) {
+        if self.statics.guide_loads.is_empty() {
+            return;
+        }
+        let each = |of: &dyn Fn(&GuideLoad) -> Value| -> Value {
+            Value::Object(self.statics.guide_loads.iter().map(|load| (load.name.clone(), of(load))).collect())
+        };
+        let forces = self.statics.joint_forces_n.iter().map(|(name, n)| (name.clone(), json!(n)));
+        out["joint_force_n"] = Value::Object(forces.collect());
+        out["guide_force_n"] = each(&|load| json!([load.force_n.y, load.force_n.z]));
+        out["guide_moment_nm"] = each(&|load| json!(load.moment_nm.as_slice()));
+    }
+
+    /// What the guides of prismatic joints carry across their travel.
+    fn guides_text(&self, out: &mut String) {
+        if self.statics.guide_loads.is_empty() {
+            return;
+        }
+        let _ = writeln!(out, "  guide          force across N (y, z)    moment Nm (roll, pitch, yaw)");
+        for GuideLoad { name, force_n, moment_nm } in &self.statics.guide_loads {
+            let _ = writeln!(
+                out,
+                "  {name:<14} {:10.3} {:10.3}    {:10.3} {:10.3} {:10.3}",
+                force_n.y, force_n.z, moment_nm.x, moment_nm.y, moment_nm.z
+            );
+        }
     }
 
     /// The joints with what their output bearings carry at rest.
@@ -312,8 +373,8 @@ impl Solved {
     }
 
     fn to_text(&self, arm: &Arm) -> String {
-        let mut out =
-            format!("{}, case \"{}\": pose {:?} deg\n", arm.name, self.case.name, self.case.pose_deg);
+        let pose = pose_words(&arm.driven_joints(), &self.case.pose_deg);
+        let mut out = format!("{}, case \"{}\": pose {pose}\n", arm.name, self.case.name);
         let _ = writeln!(out, "  arm mass            {:10.3} kg", arm.mass_kg());
         let added_kg = arm.structure_in(&self.case).mass_kg() - arm.mass_kg();
         if added_kg.abs() > 1e-9 {
@@ -338,6 +399,7 @@ impl Solved {
             let _ = writeln!(out, "  ignored, because links are held rigid: {}", self.unbent.join(", "));
         }
         self.shares_text(&mut out);
+        self.guides_text(&mut out);
         self.bearings_text(arm, &mut out);
         let impossible = arm.impossible_bodies();
         if !impossible.is_empty() {
@@ -361,7 +423,12 @@ impl Solved {
         let _ = writeln!(out, "  element          torque Nm    moves the tip by mm (x, y, z)      share");
         for (name, share) in &self.statics.shares_m {
             let torque = self.statics.joint_torques_nm.iter().find(|(n, _)| n == name);
-            let torque = torque.map_or(String::new(), |(_, t)| format!("{t:.3}"));
+            let force = self.statics.joint_forces_n.iter().find(|(n, _)| n == name);
+            let torque = match (torque, force) {
+                (Some((_, nm)), _) => format!("{nm:.3}"),
+                (_, Some((_, newton))) => format!("{newton:.3} N"),
+                _ => String::new(),
+            };
             let part = 100.0 * share.dot(&total) / total.norm_squared().max(f64::MIN_POSITIVE);
             let mm = share * 1e3;
             let _ = writeln!(
@@ -403,6 +470,18 @@ impl Solved {
             );
         }
     }
+}
+
+/// A pose in words: a list of angles, or each joint with its entry and unit where one slides.
+fn pose_words(driven: &[DrivenJoint], pose: &[f64]) -> String {
+    if !any_slides(driven) {
+        return format!("{pose:?} deg");
+    }
+    let entries = driven
+        .iter()
+        .zip(pose)
+        .map(|(joint, entry)| format!("{} {} {}", joint.name, shortest(*entry), joint.motion.unit()));
+    entries.collect::<Vec<_>>().join(", ")
 }
 
 /// The joints with a gear whose output bearing the arm file leaves out.

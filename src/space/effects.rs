@@ -224,6 +224,7 @@ impl DesignSpace {
             .filter_map(|piece| self.affected(piece))
             .map(|piece| match piece {
                 Piece::Joint(joint) => joint.mass_kg,
+                Piece::Prismatic(joint) => joint.total_mass_kg(),
                 Piece::Link(link) => link.harness_kg_per_m * link.vector_m.norm(),
             })
             .sum()

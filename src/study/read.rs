@@ -26,6 +26,7 @@ use crate::arm::file::{
     read_coupling, read_curve, read_effects, read_gravity, read_joint_mass, read_link, read_name,
 };
 use crate::arm::load::{vector, word};
+use crate::arm::pose::{DrivenJoint, Motion};
 use crate::arm::{JointModel, LinkModel};
 use crate::catalog::Catalogs;
 use crate::catalog::gear::GearMass;
@@ -113,7 +114,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
         let open = Open { catalogs, drives, constraints, extras, fit, connection_share, duty };
         read_chain(&n, &open, &mut aside)
     });
-    let joints = joint_names(node);
+    let joints = driven_joints(node);
     let cases = read_cases(&root, &joints);
     let in_range = check_poses(&root, chain.as_deref(), cases.as_ref().map(|read| &read.cases[..]));
     let motion = root.or("motion", MotionRequirement::default(), read_motion);
@@ -183,18 +184,25 @@ fn read_gap(node: &Node) -> Option<f64> {
     }
 }
 
-/// Names of the driven joints as written, so that poses are checked even when the chain is faulty.
-fn joint_names(study: &Node) -> Vec<String> {
+/// The driven joints as written, so that poses are checked even when the chain is faulty.
+fn driven_joints(study: &Node) -> Vec<DrivenJoint> {
     let chain = study.value().get("chain").and_then(|c| c.as_array());
-    let is_driven = |e: &&Value| e.get("type").is_some_and(|t| t == "joint") && e.get("coupled").is_none();
-    let joints = chain.into_iter().flatten().filter(is_driven);
-    joints.map(|j| j.get("name").and_then(|n| n.as_str()).unwrap_or("(unnamed)").to_string()).collect()
+    let joint = |e: &Value| {
+        let motion = match e.get("type")?.as_str()? {
+            "joint" if e.get("coupled").is_none() => Motion::Turns,
+            "prismatic" => Motion::Slides,
+            _ => return None,
+        };
+        let name = e.get("name").and_then(|n| n.as_str()).unwrap_or("(unnamed)").to_string();
+        Some(DrivenJoint { name, motion })
+    };
+    chain.into_iter().flatten().filter_map(joint).collect()
 }
 
 /// A duty beside the chain. It is meant for a study of a single joint, such as the worked examples of vendors.
 fn read_duty_of_only_joint(node: &Node, study: &Node) -> Option<StatedDuty> {
     let duty = read_duty(node);
-    match joint_names(study).len() {
+    match driven_joints(study).len() {
         0 | 1 => duty,
         joints => node
             .fault(format!("stands beside {joints} joints"), "write \"duty\" into the joint it belongs to"),

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 /// The worst value of one objective over poses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WorstPose {
-    /// The pose: one angle per driven joint, base to tip \[deg\].
+    /// The pose: one entry per driven joint, base to tip: an angle \[deg\], or the travel of a prismatic joint \[mm\].
     pub pose_deg: Vec<f64>,
     /// Name of the judged case whose load the arm has in it.
     pub load_of: String,
@@ -76,7 +76,7 @@ fn worst_under(
     let structure = arm.structure_in(load);
     let chain = Chain::new(&structure, load.links);
     let posed = |pose_deg: &[f64]| {
-        let pose_rad: Vec<f64> = pose_deg.iter().map(|angle| angle.to_radians()).collect();
+        let pose_rad = chain.pose_si(pose_deg);
         let posed = chain.pose_rad(&pose_rad, &load.payload, load.tip_force_n);
         Posed { tip_moment_nm: load.tip_moment_nm, ..posed }
     };

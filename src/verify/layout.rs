@@ -115,6 +115,7 @@ impl Layout {
                     // outboard of the joint, and inboard of whatever comes next
                     layout.add_bodies(piece_rank(place) + 1, &joint.bodies.rotating, &rotation);
                 }
+                Piece::Prismatic(_) => {}
                 Piece::Link(link) => layout.add_link(place, link, &rotation),
             }
             if place == 0 {

@@ -231,6 +231,7 @@ fn levels(question: &Question, structure: &Structure) -> Vec<Place> {
                 joints += 1;
                 Place::Joint(joints - 1)
             }
+            Piece::Prismatic(_) => continue,
             Piece::Link(link) => {
                 // an open link without any tube has no line either; it stands for itself
                 let is_tube = matches!(asked, AskedPiece::Choice(_)) || super::layout::has_line(link);

@@ -1,6 +1,7 @@
 //! Finds the pieces of an arm by name, and the places where an effect can sit.
 
 use super::kind::Place;
+use crate::arm::prismatic::PrismaticPiece;
 use crate::arm::structure::{JointPiece, LinkPiece, Piece, Structure};
 
 impl Structure {
@@ -30,11 +31,11 @@ impl Structure {
         }
     }
 
-    /// The joints, base to tip.
+    /// The rotary joints, base to tip.
     pub fn joints(&self) -> impl Iterator<Item = &JointPiece> {
         self.pieces.iter().filter_map(|p| match p {
             Piece::Joint(joint) => Some(joint),
-            Piece::Link(_) => None,
+            _ => None,
         })
     }
 
@@ -42,7 +43,7 @@ impl Structure {
     pub fn links(&self) -> impl Iterator<Item = &LinkPiece> {
         self.pieces.iter().filter_map(|p| match p {
             Piece::Link(link) => Some(link),
-            Piece::Joint(_) => None,
+            _ => None,
         })
     }
 
@@ -50,6 +51,22 @@ impl Structure {
     pub fn joint_mut(&mut self, name: &str) -> Option<&mut JointPiece> {
         self.pieces.iter_mut().find_map(|p| match p {
             Piece::Joint(joint) if joint.name == name => Some(joint),
+            _ => None,
+        })
+    }
+
+    /// The prismatic joints, base to tip.
+    pub fn prismatics(&self) -> impl Iterator<Item = &PrismaticPiece> {
+        self.pieces.iter().filter_map(|p| match p {
+            Piece::Prismatic(joint) => Some(joint),
+            _ => None,
+        })
+    }
+
+    /// The prismatic joint of a name.
+    pub fn prismatic_mut(&mut self, name: &str) -> Option<&mut PrismaticPiece> {
+        self.pieces.iter_mut().find_map(|p| match p {
+            Piece::Prismatic(joint) if joint.name == name => Some(joint),
             _ => None,
         })
     }

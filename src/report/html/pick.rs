@@ -186,6 +186,11 @@ impl PickedArm {
                 LinkBody::Offset { .. } => 0.0,
             },
         });
+        let ways = self.arm.prismatics().map(|joint| Tube {
+            name: joint.name.clone(),
+            line: own(&joint.name),
+            size_m: 0.0,
+        });
         let pivots = line.iter().filter_map(|s| {
             let axis = s.axis?;
             let across = axis.dot(&view.across()).abs() > 0.7;
@@ -197,7 +202,7 @@ impl PickedArm {
         });
         let tip = line.last().map_or(Vector3::zeros(), |s| s.moved_m);
         ArmSketch {
-            tubes: tubes.collect(),
+            tubes: ways.chain(tubes).collect(),
             pivots: pivots.collect(),
             payload: (solved.case.payload.mass_kg > 0.0)
                 .then(|| (view.place(&solved.payload_m), view.place(&tip))),
@@ -227,7 +232,7 @@ impl PickedArm {
                 }
                 LinkBody::Offset { .. } => None,
             },
-            Element::Joint(_) => None,
+            Element::Joint(_) | Element::Prismatic(_) => None,
         };
         self.arm.chain.iter().filter_map(element).collect()
     }
@@ -270,7 +275,7 @@ fn solve<'a>(arm: &Arm, case: &'a LoadCase) -> Solved<'a> {
     let chain = Chain::new(&structure, case.links);
     let posed = chain.pose(case);
     let statics = posed.statics();
-    let pose_rad: Vec<f64> = case.pose_deg.iter().map(|a| a.to_radians()).collect();
+    let pose_rad = chain.pose_si(&case.pose_deg);
     let modes = posed.modes(&statics, MODES);
     Solved {
         case,
