@@ -6,6 +6,7 @@ use super::body::{read_joint_bodies, read_link_bodies};
 use super::effect::channel::Channel;
 use super::effect::entry::Effect;
 use super::effect::servo_compliance;
+use super::element_keys::{read_axis, read_name};
 use super::extras::read_extras;
 use super::joint_law::{Curve, Windup};
 use super::load::vector;
@@ -191,28 +192,6 @@ pub(crate) fn read_joint_bearing(object: &Object, catalogs: &Catalogs) -> Option
     // a name beside explicit numbers need not be a catalog's
     let gear = object.optional("gear").and_then(|n| catalogs.gear(n.value().as_str()?).ok());
     Some(gear.and_then(|gear| Bearing::of_gear(gear, which)))
-}
-
-pub(crate) fn read_name(object: &Object) -> Option<String> {
-    let node = object.required("name")?;
-    match node.string()? {
-        "" => node.fault("is empty", "give every element a name"),
-        name => Some(name.to_string()),
-    }
-}
-
-pub(crate) fn read_axis(node: &Node) -> Option<Unit<Vector3<f64>>> {
-    let axis = vector(node)?;
-    if (axis.norm_squared() - 1.0).abs() <= 4.0 * f64::EPSILON {
-        // a vector of unit length is kept to the last bit, so that a written arm reads back the same
-        return Some(Unit::new_unchecked(axis));
-    }
-    // scaled by its largest entry first, since very long and very short vectors have a direction too
-    let largest = axis.amax();
-    let direction = if largest > 0.0 { Unit::try_new(axis / largest, 0.5) } else { None };
-    direction.or_else(|| {
-        node.fault("has no direction", "give a vector such as [0, 1, 0]; its length does not matter")
-    })
 }
 
 /// The torsion curve of a joint: explicit numbers if there are any, else the curve of the gear in the catalog.

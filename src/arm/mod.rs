@@ -13,6 +13,7 @@ pub(crate) mod base_lift;
 pub(crate) mod bearing;
 pub(crate) mod body;
 pub mod effect;
+pub(crate) mod element_keys;
 pub(crate) mod extras;
 pub(crate) mod file;
 pub(crate) mod joint_law;

@@ -10,7 +10,7 @@
 //! them the further it travels.
 
 use super::body::{JointBodies, read_joint_bodies_that};
-use super::file::{read_axis, read_name};
+use super::element_keys::{read_axis, read_name};
 use crate::input::json::{Node, Object};
 use nalgebra::{Unit, Vector3};
 use serde_json::{Map, Value, json};

@@ -14,7 +14,8 @@ use crate::mechanics::modes::Mode;
 use crate::mechanics::prismatic::GuideLoad;
 use crate::mechanics::response::{Response, frequency_response};
 use crate::mechanics::statics::{JointLoad, Statics};
-use crate::report::number::{percent, shortest};
+use crate::report::number::percent;
+use crate::report::pose::pose_words;
 use crate::report::small_displacement::too_far;
 use crate::report::words::{TERMINAL, wrap};
 use crate::space::bearing_loads::resolved;
@@ -373,7 +374,11 @@ impl Solved {
     }
 
     fn to_text(&self, arm: &Arm) -> String {
-        let pose = pose_words(&arm.driven_joints(), &self.case.pose_deg);
+        let driven = arm.driven_joints();
+        let pose = match any_slides(&driven) {
+            true => pose_words(&driven, &self.case.pose_deg),
+            false => format!("{:?} deg", self.case.pose_deg),
+        };
         let mut out = format!("{}, case \"{}\": pose {pose}\n", arm.name, self.case.name);
         let _ = writeln!(out, "  arm mass            {:10.3} kg", arm.mass_kg());
         let added_kg = arm.structure_in(&self.case).mass_kg() - arm.mass_kg();
@@ -470,18 +475,6 @@ impl Solved {
             );
         }
     }
-}
-
-/// A pose in words: a list of angles, or each joint with its entry and unit where one slides.
-fn pose_words(driven: &[DrivenJoint], pose: &[f64]) -> String {
-    if !any_slides(driven) {
-        return format!("{pose:?} deg");
-    }
-    let entries = driven
-        .iter()
-        .zip(pose)
-        .map(|(joint, entry)| format!("{} {} {}", joint.name, shortest(*entry), joint.motion.unit()));
-    entries.collect::<Vec<_>>().join(", ")
 }
 
 /// The joints with a gear whose output bearing the arm file leaves out.

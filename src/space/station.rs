@@ -9,7 +9,7 @@
 //! then found in two blocks of three motions instead of one block of six, which is less work.
 
 use super::design_space::{Case, DesignSpace, SpacePiece};
-use super::effects::{Carried, Carrier, Layer};
+use super::effects::Layer;
 use crate::arm::body::RigidBody;
 use crate::arm::load::Water;
 use crate::mechanics::lowest::BlockLink;
@@ -195,6 +195,7 @@ impl Walk {
     /// Forward kinematics of a case, base to tip.
     pub(crate) fn new(space: &DesignSpace, case: &Case) -> Self {
         let mut angles = space.angles_rad(case).into_iter();
+        let mut travels = space.travels_m(case).into_iter();
         let (mut at_m, mut rotation) = (Vector3::zeros(), Rotation3::identity());
         let mut places = Vec::with_capacity(space.pieces.len());
         for piece in &space.pieces {
@@ -202,6 +203,9 @@ impl Walk {
             match piece {
                 SpacePiece::Joint(joint) => {
                     rotation *= Rotation3::from_axis_angle(&joint.axis, angles.next().unwrap_or_default());
+                }
+                SpacePiece::Prismatic(slide) => {
+                    at_m += rotation * slide.joint.axis.into_inner() * travels.next().unwrap_or_default();
                 }
                 SpacePiece::Link(link) => at_m += rotation * link.vector_m,
                 SpacePiece::Choice(choice) => at_m += rotation * choice.vector_m,
@@ -215,10 +219,7 @@ impl Walk {
 impl Walk {
     /// The place and attitude in which a layer of a piece stands.
     pub(crate) fn place(&self, piece: usize, layer: &Layer) -> &(Vector3<f64>, Rotation3<f64>) {
-        match layer {
-            Layer::Bodies(Carried { by: Carrier::RotatedFrame, .. }) => &self.places[piece + 1],
-            _ => &self.places[piece],
-        }
+        &self.places[piece + usize::from(layer.is_at_end())]
     }
 }
 

@@ -21,12 +21,14 @@ use super::sections::{Aside, MOST_OPTIONS, read_materials, read_sections};
 use crate::arm::MOST_ELEMENTS;
 use crate::arm::bearing::{BearingSource, Stated, read_bearing};
 use crate::arm::body::{read_joint_bodies, read_link_bodies};
+use crate::arm::element_keys::{read_axis, read_name};
 use crate::arm::extras::{ExtrasSource, read_extras_source};
 use crate::arm::file::{
-    read_coupling, read_curve, read_effects, read_gravity, read_joint_mass, read_link, read_name,
+    NO_TYPE, read_coupling, read_curve, read_effects, read_gravity, read_joint_mass, read_link,
 };
 use crate::arm::load::{vector, word};
 use crate::arm::pose::{DrivenJoint, Motion};
+use crate::arm::prismatic::{PRISMATIC_KEYS, Prismatic};
 use crate::arm::{JointModel, LinkModel};
 use crate::catalog::Catalogs;
 use crate::catalog::gear::GearMass;
@@ -37,6 +39,7 @@ use crate::sizing::requirement::MotionRequirement;
 use crate::sizing::stated::StatedDuty;
 use crate::space::constraint::{Constraints, Servo};
 use crate::space::design_space::{DesignSpace, DriveChoice, LinkChoice, SpaceJoint, SpacePiece};
+use crate::space::prismatic::SpacePrismatic;
 use serde_json::Value;
 
 const KEYS: [&str; 21] = [
@@ -249,8 +252,9 @@ fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePi
         .iter()
         .map(|n| match n.value().get("type").and_then(|v| v.as_str()) {
             Some("joint") => read_space_joint(n, open).map(SpacePiece::Joint),
+            Some("prismatic") => read_space_prismatic(n).map(SpacePiece::Prismatic),
             Some("link") => read_space_link(n, open, aside),
-            _ => n.fault("has no \"type\" of \"joint\" or \"link\"", "add \"type\": \"joint\" or \"link\""),
+            _ => n.fault(NO_TYPE.0, NO_TYPE.1),
         })
         .collect();
     let mut pieces = read.into_iter().collect::<Option<Vec<_>>>()?;
@@ -294,7 +298,7 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
         "coupled",
     ])?;
     let name = read_name(&object);
-    let axis = object.required("axis").and_then(|n| crate::arm::file::read_axis(&n));
+    let axis = object.required("axis").and_then(|n| read_axis(&n));
     let max_speed = object.or("max_speed_rad_s", None, |n| n.positive().map(Some));
     let brake = object.or("brake", false, Node::boolean);
     let duty = object.or("duty", open.duty.cloned(), |n| read_duty(n).map(Some));
@@ -366,6 +370,21 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
         connection_share,
         coupled: coupled?,
     })
+}
+
+/// Reads a prismatic joint, whose numbers a study gives.
+fn read_space_prismatic(node: &Node) -> Option<SpacePrismatic> {
+    const OF_DRIVES: [&str; 5] = ["drive", "drives", "gear", "motor", "max_speed_m_s"];
+    let object = node.object(&[&PRISMATIC_KEYS[..], &["range_mm"], &OF_DRIVES].concat())?;
+    stray(
+        &object,
+        &OF_DRIVES,
+        "stands at a prismatic joint, whose drive is not sized",
+        "give the joint in numbers: stiffness_n_per_m of screw or rack, guide, mass_kg and fixed_mass_kg",
+    );
+    let range_mm = object.or("range_mm", None, |n| read_range(n).map(Some));
+    let joint = Prismatic::read(&object);
+    Some(SpacePrismatic::new(joint?, range_mm?))
 }
 
 /// Where the bearing of a joint comes from. A component set has none of its own, so a joint that is sized with component
