@@ -14,3 +14,11 @@ pub(crate) fn pose_words(driven: &[DrivenJoint], pose: &[f64]) -> String {
         entries.map(|(joint, entry)| format!("{} {} {}", joint.name, shortest(*entry), joint.motion.unit()));
     words.collect::<Vec<_>>().join(", ")
 }
+
+/// A pose in signs, `0°, -45°, 90°`, or in words where a joint slides.
+pub(crate) fn pose_signs(driven: &[DrivenJoint], pose: &[f64]) -> String {
+    if any_slides(driven) {
+        return pose_words(driven, pose);
+    }
+    pose.iter().map(|angle| format!("{}°", shortest(*angle))).collect::<Vec<_>>().join(", ")
+}

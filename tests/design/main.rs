@@ -23,6 +23,7 @@ mod mechanics_reference;
 mod motor_heat;
 mod paper;
 mod paper_support;
+mod prismatic;
 mod reference_arms;
 mod relaxation;
 mod search_fast_vs_full;

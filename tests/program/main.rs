@@ -24,6 +24,7 @@ mod links;
 mod operations;
 mod other_poses;
 mod pages;
+mod prismatic;
 mod progress;
 mod same_bytes;
 mod shards;

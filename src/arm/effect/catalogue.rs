@@ -4,14 +4,14 @@
 use super::kind::Kind;
 use super::{
     base_compliance, base_lift, bearing_tilt, connection_compliance, drift, empirical, extra_mass,
-    frame_compliance, harness_mass, hysteresis, immersion, joint_compliance, joint_torque, link_flexibility,
-    lost_motion, modulus_error, outlier, payload_cg_error, payload_mass_error, sensor_bias, sensor_gain,
-    servo_compliance, soft_windup, stiffness_waves, test_mass, thermal_modulus, time_shift,
-    transmission_error, wrong_unit,
+    frame_compliance, guide_tilt, harness_mass, hysteresis, immersion, joint_compliance, joint_torque,
+    link_flexibility, lost_motion, modulus_error, outlier, payload_cg_error, payload_mass_error, sensor_bias,
+    sensor_gain, servo_compliance, soft_windup, stiffness_waves, test_mass, thermal_modulus, time_shift,
+    transmission_error, travel_compliance, wrong_unit,
 };
 
 /// Every effect, in the order of the documentation.
-pub static KINDS: [&Kind; 29] = [
+pub static KINDS: [&Kind; 31] = [
     &connection_compliance::KIND,
     &soft_windup::KIND,
     &lost_motion::KIND,
@@ -20,6 +20,8 @@ pub static KINDS: [&Kind; 29] = [
     &base_compliance::KIND,
     &base_lift::KIND,
     &frame_compliance::KIND,
+    &travel_compliance::KIND,
+    &guide_tilt::KIND,
     &payload_mass_error::KIND,
     &payload_cg_error::KIND,
     &extra_mass::KIND,

@@ -9,6 +9,7 @@ impl Structure {
     pub fn place(&self, at: &str, allowed: &[Place]) -> Option<Place> {
         allowed.iter().copied().find(|place| match place {
             Place::Joint => self.joints().any(|j| j.name == at),
+            Place::Prismatic => self.prismatics().any(|j| j.name == at),
             Place::Link => self.links().any(|l| l.name == at),
             Place::Tube => self.links().any(|l| l.name == at && l.beam.is_some()),
             Place::Base => at == "base",
@@ -22,6 +23,7 @@ impl Structure {
     pub fn places(&self, place: Place) -> Vec<String> {
         match place {
             Place::Joint => self.joints().map(|j| j.name.clone()).collect(),
+            Place::Prismatic => self.prismatics().map(|j| j.name.clone()).collect(),
             Place::Link => self.links().map(|l| l.name.clone()).collect(),
             Place::Tube => self.links().filter(|l| l.beam.is_some()).map(|l| l.name.clone()).collect(),
             Place::Base => vec!["base".into()],

@@ -2,7 +2,6 @@
 
 use super::gallery::{Gallery, table};
 use crate::arm::load::LoadCase;
-use crate::arm::pose::any_slides;
 use crate::arm::{Arm, Element, Link, LinkBody};
 use crate::mechanics::centre_line::Station;
 use crate::mechanics::chain::{Chain, Posed};
@@ -11,7 +10,7 @@ use crate::mechanics::statics::Statics;
 use crate::report::file_names::file_name;
 use crate::report::number::{cost_words, fixed, percent, shortest, significant};
 use crate::report::picks::Pick;
-use crate::report::pose::pose_words;
+use crate::report::pose::pose_signs;
 use crate::report::section::Figure;
 use crate::report::svg::arm::{ArmSketch, Pivot, Place, Tube};
 use crate::report::svg::bars::{Bar, Part, StackedBars};
@@ -136,13 +135,13 @@ impl PickedArm {
         sketch.description = format!(
             "{} Pose {}. Grey: without weight. Blue: bent by gravity and load, {factor} times exaggerated.",
             view.words,
-            pose_text(&self.arm, &solved.case.pose_deg)
+            pose_signs(&self.arm.driven_joints(), &solved.case.pose_deg)
         );
         sketch.width_px = 620.0;
         let caption = format!(
             "{} Pose {}, payload {} kg (square).",
             view.words,
-            pose_text(&self.arm, &solved.case.pose_deg),
+            pose_signs(&self.arm.driven_joints(), &solved.case.pose_deg),
             shortest(solved.case.payload.mass_kg)
         );
         Figure {
@@ -287,17 +286,6 @@ fn solve<'a>(arm: &Arm, case: &'a LoadCase) -> Solved<'a> {
         modes: modes.into_iter().map(|m| (m.clone(), posed.centre_line(&pose_rad, &m.coordinates))).collect(),
         payload_m: payload_place(&posed, case),
     }
-}
-
-/// The pose of an arm in words.
-fn pose_text(arm: &Arm, pose: &[f64]) -> String {
-    let driven = arm.driven_joints();
-    if any_slides(&driven) { pose_words(&driven, pose) } else { degrees(pose) }
-}
-
-/// A pose of angles in words: `0°, -45°, 90°`.
-pub(crate) fn degrees(pose_deg: &[f64]) -> String {
-    pose_deg.iter().map(|a| format!("{}°", shortest(*a))).collect::<Vec<_>>().join(", ")
 }
 
 fn payload_place(posed: &Posed, case: &LoadCase) -> Vector3<f64> {
