@@ -177,6 +177,9 @@ fn meaning(channel: Channel, column: &str) -> (&'static str, &'static str) {
         "point" => ("-", "name of the point on the tool; `tip` if there is one only"),
         "x_mm" => ("mm", "its place along the instrument's x; blank if it was not measured"),
         "y_mm" | "z_mm" => ("mm", "the same along y, z"),
+        travel if travel.starts_with("q_") && travel.ends_with("_mm") => {
+            ("mm", "travel of the prismatic joint along its axis in `arm.json`")
+        }
         angle if angle.starts_with("q_") => {
             ("deg", "angle of the joint, right-handed about its axis in `arm.json`")
         }
