@@ -20,7 +20,7 @@
 //! - [`reconcile`]: where an arm and its measurements disagree, and which effect is missing.
 //! - [`paper`]: the numbers of the paper, computed.
 //! - [`study`]: named questions: read, run, evaluate.
-//! - [`command_line`]: the program itself: parse, run, print.
+//! - `command_line`: the program itself: parse, run, print (feature `cli`, on by default).
 //!
 //! `docs/library.md` says what to start with; `docs/architecture.md` says where in the source everything is.
 //!
@@ -30,11 +30,14 @@
 #![doc = ""]
 #![doc = include_str!("../docs/model.md")]
 #![deny(unreachable_pub)]
+// what only the program uses is not dead, only far away
+#![cfg_attr(not(feature = "cli"), allow(dead_code, unused_imports))]
 // in tests any sine is good enough
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 pub mod arm;
 pub mod catalog;
+#[cfg(feature = "cli")]
 pub(crate) mod cli;
 pub mod exact;
 pub mod input;
@@ -50,7 +53,8 @@ pub mod space;
 pub mod study;
 pub mod verify;
 
-/// The command line, for a program that is one: parse, run, print.
+/// The command line, for a program that is one: parse, run, print. It needs the feature `cli`, which is on by default.
+#[cfg(feature = "cli")]
 pub mod command_line {
     pub use crate::cli::{Answer, Cli, Exit, Failure, Log, print, printed, run};
 }

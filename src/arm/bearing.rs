@@ -4,6 +4,7 @@
 //! stiffness, which is the same about both axes: `γ = M / K` (Harmonic Drive AG, engineering data SHG-2UH 1021387,
 //! page 45).
 
+use super::keys::BEARING;
 use crate::catalog::Catalogs;
 use crate::catalog::gear::{BearingRatings, Gear, GearMass};
 use crate::input::json::{Node, Object};
@@ -24,16 +25,6 @@ pub struct Bearing {
     /// What the vendor rates the bearing for.
     pub ratings: BearingRatings,
 }
-
-const KEYS: [&str; 7] = [
-    "tilt_stiffness_nm_per_rad",
-    "permissible_moment_nm",
-    "mass_kg",
-    "offset_m",
-    "pitch_diameter_m",
-    "static_load_rating_n",
-    "dynamic_load_rating_n",
-];
 
 impl Bearing {
     /// The bearing inside a gear of the catalog; `None` for a component set, which has none.
@@ -68,7 +59,7 @@ impl Bearing {
 
     /// Reads a bearing that is written as an object.
     fn read(node: &Node) -> Option<Self> {
-        let object = node.object(&KEYS)?;
+        let object = node.shaped(&BEARING)?;
         let positive =
             |key| object.or(key, None, |n| if n.is_null() { Some(None) } else { n.positive().map(Some) });
         let stiffness = positive("tilt_stiffness_nm_per_rad");

@@ -3,7 +3,10 @@
 //! The centre is measured from the start of the element and the inertia is taken about the centre; both are written in the
 //! carried frame, like the vector of a link. Bodies come on top of everything else that an element weighs.
 
+use super::keys::{JOINT_BODY, LINK_BODY};
+use super::prismatic_keys::PRISMATIC_BODY;
 use crate::input::json::{Node, Object};
+use crate::input::key::Shape;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use serde_json::{Value, json};
 
@@ -29,8 +32,8 @@ impl RigidBody {
         2.0 * moments.max() > moments.sum() + ROUNDING * moments.max()
     }
 
-    fn read(node: &Node, keys: &[&str], moves: &str) -> Option<(Self, bool)> {
-        let object = node.object(keys)?;
+    fn read(node: &Node, shape: &Shape, moves: &str) -> Option<(Self, bool)> {
+        let object = node.shaped(shape)?;
         let mass_kg = object.required("mass_kg").and_then(|n| n.non_negative());
         let cg_m = object.or("cg_m", Vector3::zeros(), |n| n.numbers::<3>().map(Vector3::from));
         let inertia_kgm2 = object.or("inertia_kgm2", Matrix3::zeros(), read_inertia);
@@ -90,27 +93,32 @@ pub(crate) fn total_kg(bodies: &[RigidBody]) -> f64 {
 
 /// Reads the key `bodies` of a link; none without the key.
 pub(crate) fn read_link_bodies(object: &Object) -> Option<Vec<RigidBody>> {
-    let bodies = read(object, &["mass_kg", "cg_m", "inertia_kgm2"], "")?;
+    let bodies = read(object, &LINK_BODY, "")?;
     Some(bodies.into_iter().map(|(body, _)| body).collect())
 }
 
 /// Reads the key `bodies` of a joint; none without the key.
 pub(crate) fn read_joint_bodies(object: &Object) -> Option<JointBodies> {
-    read_joint_bodies_that(object, "rotates")
+    read_bodies_that(object, &JOINT_BODY, "rotates")
 }
 
-/// Reads the key `bodies` of a joint; the key `moves` is true of the bodies outboard of its springs.
-pub(crate) fn read_joint_bodies_that(object: &Object, moves: &str) -> Option<JointBodies> {
+/// Reads the key `bodies` of a prismatic joint; none without the key.
+pub(crate) fn read_prismatic_bodies(object: &Object) -> Option<JointBodies> {
+    read_bodies_that(object, &PRISMATIC_BODY, "travels")
+}
+
+/// Reads bodies, of which the key `moves` is true of those outboard of the springs.
+fn read_bodies_that(object: &Object, shape: &Shape, moves: &str) -> Option<JointBodies> {
     let mut out = JointBodies::default();
-    for (body, is_outboard) in read(object, &["mass_kg", "cg_m", "inertia_kgm2", moves], moves)? {
+    for (body, is_outboard) in read(object, shape, moves)? {
         if is_outboard { &mut out.rotating } else { &mut out.fixed }.push(body);
     }
     Some(out)
 }
 
-fn read(object: &Object, keys: &[&str], moves: &str) -> Option<Vec<(RigidBody, bool)>> {
+fn read(object: &Object, shape: &Shape, moves: &str) -> Option<Vec<(RigidBody, bool)>> {
     object.or("bodies", Vec::new(), |n| {
-        let read: Vec<_> = n.array()?.iter().map(|n| RigidBody::read(n, keys, moves)).collect();
+        let read: Vec<_> = n.array()?.iter().map(|n| RigidBody::read(n, shape, moves)).collect();
         read.into_iter().collect()
     })
 }

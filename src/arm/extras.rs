@@ -7,6 +7,7 @@
 //! Drive's SHA actuators of sizes 20, 25 and 32 weigh more with a brake than without (0.10, 0.15 and 0.28 kg here). The
 //! flange is a disc of aluminium; that and the cables are representative figures without a source.
 
+use super::keys::EXTRAS;
 use crate::catalog::gear::{Gear, GearKind, GearMass};
 use crate::catalog::motor::{Motor, MotorKind};
 use crate::input::json::{Node, Object};
@@ -62,8 +63,6 @@ fn diameter_m(gear: &Gear) -> f64 {
     };
     gear.envelope.outer_diameter_m.unwrap_or(by_size)
 }
-
-const KEYS: [&str; 5] = ["housing_kg", "brake_kg", "encoder_kg", "flange_kg", "cable_kg"];
 
 impl Extras {
     /// What a joint of these parts usually has. An actuator has all but its cables in it.
@@ -123,9 +122,10 @@ impl Extras {
     }
 
     fn read(node: &Node) -> Option<Self> {
-        let object = node.object(&KEYS)?;
+        let object = node.shaped(&EXTRAS)?;
         let [housing_kg, brake_kg, encoder_kg, flange_kg, cable_kg] =
-            KEYS.map(|key| object.or(key, 0.0, Node::non_negative));
+            ["housing_kg", "brake_kg", "encoder_kg", "flange_kg", "cable_kg"]
+                .map(|key| object.or(key, 0.0, Node::non_negative));
         Some(Self {
             housing_kg: housing_kg?,
             brake_kg: brake_kg?,

@@ -2,19 +2,25 @@
 
 use super::MOST_ELEMENTS;
 use super::bearing::{Bearing, Stated, read_bearing};
-use super::body::{read_joint_bodies, read_link_bodies};
+use super::body::read_joint_bodies;
 use super::effect::channel::Channel;
 use super::effect::entry::Effect;
 use super::effect::servo_compliance;
 use super::element_keys::{read_axis, read_name};
 use super::extras::read_extras;
+use super::file_keys::{ARM, EFFECT, JOINT, LINK, MATERIAL};
 use super::joint_law::{Curve, Windup};
+use super::keys::WINDUP;
+use super::link_file::{DEFAULT_POISSON, NamedMaterial};
 use super::load::vector;
+use super::pieces::{elements_of, read_links};
 use super::pose::Motion;
-use super::prismatic::{PRISMATIC_KEYS, Prismatic};
-use super::section::{LinkMaterial, Section};
-use super::section_file::{read_i_beam, read_stated_section};
-use super::{Arm, Element, Joint, Link, LinkBody};
+use super::prismatic::Prismatic;
+use super::prismatic_keys::PRISMATIC;
+use super::section::LinkMaterial;
+use super::springs::Spring;
+use super::springs_file::{BodiesOf, Named, hang, read_counterweights, read_springs};
+use super::{Arm, Element, Joint};
 use crate::catalog::Catalogs;
 use crate::catalog::gear::{Gear, GearMass};
 use crate::input::json::{Document, Faults, InputError, Node, Object};
@@ -23,7 +29,6 @@ use serde_json::Value;
 use std::path::Path;
 
 const DEFAULT_GRAVITY_M_S2: f64 = 9.81;
-const DEFAULT_POISSON: f64 = 0.3;
 
 /// Reads an arm file. Gears, motors and materials that it names are looked up in `catalogs`.
 ///
@@ -61,17 +66,32 @@ pub fn read_arm_document(document: Document, catalogs: &Catalogs) -> Result<Arm,
 
 /// Reads an arm from a node of a larger document.
 pub(crate) fn arm(node: &Node, catalogs: &Catalogs) -> Option<Arm> {
-    let root = node.object(&["name", "gravity_m_s2", "materials", "chain", "effects", "provenance"])?;
+    let root = node.shaped(&ARM)?;
     let name = root.or("name", "arm".to_string(), |n| n.string().map(String::from));
     let gravity = read_gravity(&root);
     let materials = root.or("materials", Vec::new(), read_materials).unwrap_or_default();
     let chain = root.required("chain").and_then(|n| read_chain(&n, &materials, catalogs));
     let effects = root.or("effects", Vec::new(), read_effects);
     let (gravity_m_s2, down) = gravity?;
-    let arm = Arm { name: name?, gravity_m_s2, down, chain: chain?, effects: effects? };
+    let mut chain = chain?;
+    let springs = read_balance(&root, &mut chain);
+    let arm = Arm { name: name?, gravity_m_s2, down, chain, effects: effects?, springs: springs? };
     check_names(&arm, &root)?;
     check_effects(&arm, &root)?;
     Some(arm)
+}
+
+/// Reads the springs of an arm, and hangs its counterweights on the elements that carry them.
+fn read_balance(root: &Object, chain: &mut [Element]) -> Option<Vec<Spring>> {
+    let named: Vec<Named> = chain.iter().map(|e| (e.name(), matches!(e, Element::Joint(_)))).collect();
+    let (springs, counterweights) = (read_springs(root, &named), read_counterweights(root, &named));
+    let bodies = chain.iter_mut().map(|element| match element {
+        Element::Joint(joint) => BodiesOf::Joint(&mut joint.bodies),
+        Element::Prismatic(joint) => BodiesOf::Joint(&mut joint.bodies),
+        Element::Link(link) => BodiesOf::Link(&mut link.bodies),
+    });
+    hang(counterweights?, bodies.collect());
+    springs
 }
 
 /// Reads the key `gravity_m_s2`: the acceleration along world -z, or a vector in the world; 0 is none. The result is the
@@ -88,15 +108,12 @@ pub(crate) fn read_gravity(object: &Object) -> Option<(f64, Vector3<f64>)> {
     })
 }
 
-/// A material of the file with its name; `None` if it is faulty, in which case the fault is recorded.
-pub(crate) type NamedMaterial = (String, Option<LinkMaterial>);
-
 fn read_materials(node: &Node) -> Option<Vec<NamedMaterial>> {
     Some(node.entries()?.iter().map(|(name, n)| (name.to_string(), read_material(n))).collect())
 }
 
 fn read_material(node: &Node) -> Option<LinkMaterial> {
-    let object = node.object(&["youngs_modulus_pa", "shear_modulus_pa", "density_kg_m3", "poisson"])?;
+    let object = node.shaped(&MATERIAL)?;
     let positive = |key| object.required(key).and_then(|n| n.positive());
     let (youngs, shear, density) =
         (positive("youngs_modulus_pa"), positive("shear_modulus_pa"), positive("density_kg_m3"));
@@ -117,30 +134,14 @@ fn read_chain(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> 
     if items.is_empty() {
         return node.fault("is empty", "an arm has at least one joint or link");
     }
-    if items.len() > MOST_ELEMENTS {
-        let problem = format!("has {} joints and links, and the limit is {MOST_ELEMENTS}", items.len());
+    let elements: usize = items.iter().map(elements_of).sum();
+    if elements > MOST_ELEMENTS {
+        let problem = format!("has {elements} joints and links, and the limit is {MOST_ELEMENTS}");
         return node.fault(problem, "join links that lie in line, or model a part of the arm");
     }
     let read: Vec<_> = items.iter().map(|n| read_element(n, materials, catalogs)).collect();
-    read.into_iter().collect()
+    Some(read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect())
 }
-
-const JOINT_KEYS: [&str; 13] = [
-    "type",
-    "name",
-    "axis",
-    "stiffness_nm_per_rad",
-    "windup",
-    "gear",
-    "motor",
-    "gear_mass",
-    "mass_kg",
-    "bearing",
-    "extras",
-    "bodies",
-    "coupled",
-];
-const LINK_KEYS: [&str; 7] = ["type", "name", "vector_m", "material", "section", "mass_kg", "bodies"];
 
 /// What is wrong with an element of no known type, and what to try.
 pub(crate) const NO_TYPE: (&str, &str) = (
@@ -148,12 +149,18 @@ pub(crate) const NO_TYPE: (&str, &str) = (
     "add \"type\": \"joint\" (it turns), \"prismatic\" (it slides) or \"link\"",
 );
 
-fn read_element(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> Option<Element> {
+/// Reads a joint, or a link with its pieces.
+fn read_element(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> Option<Vec<Element>> {
     let kind = node.value().get("type").and_then(|v| v.as_str());
     match kind {
-        Some("joint") => read_joint(&node.object(&JOINT_KEYS)?, catalogs).map(Element::Joint),
-        Some("prismatic") => Prismatic::read(&node.object(&PRISMATIC_KEYS)?).map(Element::Prismatic),
-        Some("link") => read_link(&node.object(&LINK_KEYS)?, materials, catalogs).map(Element::Link),
+        Some("joint") => read_joint(&node.shaped(&JOINT)?, catalogs).map(|joint| vec![Element::Joint(joint)]),
+        Some("prismatic") => {
+            Prismatic::read(&node.shaped(&PRISMATIC)?).map(|joint| vec![Element::Prismatic(joint)])
+        }
+        Some("link") => {
+            let links = read_links(&node.shaped(&LINK)?, materials, catalogs)?;
+            Some(links.into_iter().map(Element::Link).collect())
+        }
         _ => node.fault(NO_TYPE.0, NO_TYPE.1),
     }
 }
@@ -212,7 +219,7 @@ pub(crate) fn read_curve(object: &Object, catalogs: &Catalogs) -> Option<Curve> 
 }
 
 fn read_windup(node: &Node) -> Option<Windup> {
-    let object = node.object(&["k1_nm_per_rad", "k2_nm_per_rad", "k3_nm_per_rad", "t1_nm", "t2_nm"])?;
+    let object = node.shaped(&WINDUP)?;
     let positive = |key| object.required(key).and_then(|n| n.positive());
     let [k1, k2, k3, t1, t2] =
         ["k1_nm_per_rad", "k2_nm_per_rad", "k3_nm_per_rad", "t1_nm", "t2_nm"].map(positive);
@@ -303,137 +310,6 @@ pub(crate) fn read_coupling(node: &Node) -> Option<Vec<(String, f64)>> {
     read.into_iter().collect()
 }
 
-pub(crate) fn read_link(object: &Object, materials: &[NamedMaterial], catalogs: &Catalogs) -> Option<Link> {
-    let name = read_name(object);
-    let vector_m = object.required("vector_m").and_then(|n| vector(&n));
-    let body = match object.optional("section") {
-        Some(section) => read_tube(object, &section, vector_m, materials, catalogs),
-        None => {
-            if let Some(material) = object.optional("material") {
-                material.fault::<()>(
-                    "stands without a section",
-                    "give the tube's section, or leave the material away for a rigid link",
-                );
-            }
-            object.or("mass_kg", 0.0, Node::non_negative).map(|mass_kg| LinkBody::Offset { mass_kg })
-        }
-    };
-    let bodies = read_link_bodies(object);
-    Some(Link { name: name?, vector_m: vector_m?, body: body?, bodies: bodies? })
-}
-
-/// Name of the material that stands for a section of stated stiffnesses.
-const STATED_MATERIAL: &str = "(stated stiffness)";
-
-fn read_tube(
-    object: &Object,
-    section: &Node,
-    vector_m: Option<Vector3<f64>>,
-    materials: &[NamedMaterial],
-    catalogs: &Catalogs,
-) -> Option<LinkBody> {
-    if let Some(mass) = object.optional("mass_kg") {
-        mass.fault::<()>(
-            "is given together with a section",
-            "a tube's mass follows from section and density; remove it",
-        );
-    }
-    if vector_m.is_some_and(|v| v.norm() < 1e-6) {
-        object.node().fault::<()>("is a tube without length", "give a longer vector_m, or no section");
-    }
-    let section = read_section(section);
-    if let Some(Section::Stated(stated)) = section {
-        if let Some(material) = object.optional("material") {
-            material.fault::<()>("stands beside a section of stated stiffness and mass", "remove it");
-        }
-        let (material_name, material) = (STATED_MATERIAL.to_string(), stated.material());
-        return Some(LinkBody::Tube { material_name, material, section: Section::Stated(stated) });
-    }
-    let material = object.required("material").and_then(|n| {
-        let name = n.string()?;
-        find_material(&n, name, materials, catalogs).map(|m| (name.to_string(), m))
-    });
-    let (material_name, material) = material?;
-    Some(LinkBody::Tube { material_name, material, section: section? })
-}
-
-fn find_material(
-    node: &Node,
-    name: &str,
-    materials: &[NamedMaterial],
-    catalogs: &Catalogs,
-) -> Option<LinkMaterial> {
-    if let Some((_, material)) = materials.iter().find(|(n, _)| n == name) {
-        return *material;
-    }
-    let known: Vec<&str> = materials.iter().map(|(n, _)| n.as_str()).collect();
-    let Some(row) = catalogs.materials.iter().find(|m| m.name == name) else {
-        return node.fault(
-            format!("material \"{name}\" is not known"),
-            &format!(
-                "the file's materials: {}; `armwright catalog show materials` lists the catalog's",
-                known.join(", ")
-            ),
-        );
-    };
-    let Some(shear_modulus_pa) = row.shear_modulus_pa else {
-        return node
-            .fault(format!("material \"{name}\" has no shear modulus"), "add the material to the file");
-    };
-    Some(LinkMaterial {
-        youngs_modulus_pa: row.youngs_modulus_pa,
-        shear_modulus_pa,
-        density_kg_m3: row.density_kg_m3,
-        poisson: row.poisson.unwrap_or(DEFAULT_POISSON),
-    })
-}
-
-/// Reads a section object.
-pub(crate) fn read_section(node: &Node) -> Option<Section> {
-    let shape = node.value().get("shape").and_then(|v| v.as_str());
-    let section = match shape {
-        Some("rectangular_tube") => {
-            let object = node.object(&["shape", "width_m", "height_m", "wall_m"])?;
-            let [width, height, wall] =
-                ["width_m", "height_m", "wall_m"].map(|k| object.required(k).and_then(|n| n.positive()));
-            Section::RectangularTube { width_m: width?, height_m: height?, wall_m: wall? }
-        }
-        Some("round_tube") => {
-            let object = node.object(&["shape", "diameter_m", "wall_m"])?;
-            let [diameter, wall] =
-                ["diameter_m", "wall_m"].map(|k| object.required(k).and_then(|n| n.positive()));
-            Section::RoundTube { diameter_m: diameter?, wall_m: wall? }
-        }
-        Some("rectangular_bar") => {
-            let object = node.object(&["shape", "width_m", "height_m"])?;
-            let [width, height] =
-                ["width_m", "height_m"].map(|k| object.required(k).and_then(|n| n.positive()));
-            Section::RectangularBar { width_m: width?, height_m: height? }
-        }
-        Some("round_bar") => {
-            let object = node.object(&["shape", "diameter_m"])?;
-            Section::RoundBar { diameter_m: object.required("diameter_m").and_then(|n| n.positive())? }
-        }
-        Some("i_beam") => read_i_beam(node)?,
-        Some("stated") => read_stated_section(node).map(Section::Stated)?,
-        _ => {
-            return node.fault(
-                "has no known \"shape\"",
-                "choose one of: rectangular_tube, round_tube, rectangular_bar, round_bar, i_beam, stated",
-            );
-        }
-    };
-    let (width, height) = section.outer_m();
-    let wall = section.wall_m();
-    if 2.0 * wall > width.min(height) {
-        return node.fault(
-            format!("wall_m = {wall} leaves no hollow in {width} x {height} m"),
-            "the wall is at most half of the smaller outer dimension, which is a solid bar",
-        );
-    }
-    Some(section.closed())
-}
-
 /// Reads a list of effects. Whether each effect fits its arm is checked later.
 pub(crate) fn read_effects(node: &Node) -> Option<Vec<Effect>> {
     let read: Vec<_> = node.array()?.iter().map(read_effect).collect();
@@ -441,7 +317,7 @@ pub(crate) fn read_effects(node: &Node) -> Option<Vec<Effect>> {
 }
 
 fn read_effect(node: &Node) -> Option<Effect> {
-    let object = node.object(&["effect", "at", "parameters", "source"])?;
+    let object = node.shaped(&EFFECT)?;
     let text = |key| object.required(key).and_then(|n| n.string().map(String::from));
     let (effect, at) = (text("effect"), text("at"));
     let parameters = object.required("parameters").and_then(|n| read_parameters(&n));
@@ -494,7 +370,8 @@ fn check_effects(arm: &Arm, root: &Object) -> Option<()> {
 fn check_names(arm: &Arm, root: &Object) -> Option<()> {
     let mut sound = true;
     let names: Vec<&str> = arm.chain.iter().map(Element::name).collect();
-    let chain = root.required("chain")?.array()?;
+    let items = root.required("chain")?.array()?;
+    let chain: Vec<&Node> = items.iter().flat_map(|n| std::iter::repeat_n(n, elements_of(n))).collect();
     for (i, name) in names.iter().enumerate() {
         if names[..i].contains(name) {
             chain[i]

@@ -1,5 +1,6 @@
 //! Load cases: a pose, a payload, a force at the tip, and the models to use.
 
+use super::keys::{CASE, PAYLOAD, WATER};
 use super::pose::{DrivenJoint, pose_json, read_pose};
 use super::{JointModel, LinkModel, Words};
 use crate::input::json::{Document, Faults, Node, Object};
@@ -91,7 +92,7 @@ impl Payload {
 
     /// Reads a payload object.
     pub fn read(node: &Node) -> Option<Self> {
-        let object = node.object(&["mass_kg", "cg_m", "inertia_about_cg_kgm2"])?;
+        let object = node.shaped(&PAYLOAD)?;
         let mass_kg = object.required("mass_kg").and_then(|n| n.non_negative());
         let cg_m = object.or("cg_m", Vector3::zeros(), vector);
         let inertia = object.or("inertia_about_cg_kgm2", Vector3::zeros(), read_inertia);
@@ -122,7 +123,7 @@ impl Water {
 
     /// Reads a water object. Where it gives no density of the payload, the payload is of steel.
     pub fn read(node: &Node) -> Option<Self> {
-        let object = node.object(&["density_kg_m3", "added_mass_coefficient", "payload_density_kg_m3"])?;
+        let object = node.shaped(&WATER)?;
         let density_kg_m3 = object.required("density_kg_m3").and_then(|n| n.positive());
         let added_mass_coefficient = object.or("added_mass_coefficient", 1.0, Node::non_negative);
         let payload_density_kg_m3 = object.or("payload_density_kg_m3", 7850.0, Node::positive);
@@ -173,17 +174,7 @@ pub fn read_load_cases(document: Document, driven_joints: &[DrivenJoint]) -> Res
 }
 
 fn read_case(node: &Node, driven_joints: &[DrivenJoint]) -> Option<LoadCase> {
-    let object = node.object(&[
-        "name",
-        "pose_deg",
-        "pose",
-        "payload",
-        "tip_force_n",
-        "tip_moment_nm",
-        "links",
-        "joints",
-        "water",
-    ])?;
+    let object = node.shaped(&CASE)?;
     let name = object.or("name", node.path().to_string(), |n| n.string().map(String::from));
     let pose_deg = read_pose(&object, driven_joints);
     let payload = object.or("payload", Payload::default(), Payload::read);

@@ -16,14 +16,21 @@ pub mod effect;
 pub(crate) mod element_keys;
 pub(crate) mod extras;
 pub(crate) mod file;
+pub(crate) mod file_keys;
 pub(crate) mod joint_law;
 pub(crate) mod joint_torque;
+pub(crate) mod keys;
+mod link_file;
 pub(crate) mod linkage;
 pub(crate) mod load;
+pub(crate) mod pieces;
 pub(crate) mod pose;
 pub(crate) mod prismatic;
+pub(crate) mod prismatic_keys;
 pub(crate) mod section;
 mod section_file;
+pub(crate) mod springs;
+pub(crate) mod springs_file;
 pub(crate) mod structure;
 pub(crate) mod torsion;
 pub(crate) mod write;
@@ -39,6 +46,7 @@ pub use load::{LoadCase, Payload, Water, read_load_cases};
 pub use pose::{DrivenJoint, Motion, any_slides, pose_json, pose_si};
 pub use prismatic::{Guide, Moves, Prismatic, PrismaticPiece};
 pub use section::{LinkMaterial, Section, SectionProperties, StatedSection};
+pub use springs::{Drawn, Spring, SpringEnd, SpringKind, SpringLaw, SpringPlace};
 pub use structure::{Beam, FrameCompliance, JointAngle, JointPiece, LinkPiece, Piece, Structure};
 
 use crate::input::json::Fault;
@@ -141,7 +149,7 @@ impl JointModel {
 /// let body = LinkBody::Offset { mass_kg: 5.0 };
 /// let link = Link { name: "upper_arm".into(), vector_m: Vector3::new(0.8, 0.0, 0.0), body, bodies: Vec::new() };
 /// let chain = vec![Element::Joint(joint), Element::Link(link)];
-/// let arm = Arm { name: "two pieces".into(), gravity_m_s2: 9.81, down: -Vector3::z(), chain, effects: Vec::new() };
+/// let arm = Arm { name: "two pieces".into(), gravity_m_s2: 9.81, down: -Vector3::z(), chain, effects: Vec::new(), springs: Vec::new() };
 /// assert_eq!(arm.mass_kg(), 17.2);
 /// assert_eq!(arm.reach_m(), 0.8);
 /// assert_eq!(arm.to_json()["chain"][0]["stiffness_nm_per_rad"], 607e3);
@@ -158,6 +166,8 @@ pub struct Arm {
     pub chain: Vec<Element>,
     /// Physics beyond the nominal model.
     pub effects: Vec<Effect>,
+    /// Springs that balance the arm.
+    pub springs: Vec<Spring>,
 }
 
 /// One element of the chain.
@@ -314,6 +324,20 @@ impl Arm {
             field: "gravity_m_s2".into(),
             problem: "is a vector, and readings are compared with arms that stand upright alone".into(),
             hint: "write the arm in a world whose z axis is up, with a number for gravity; `analyze` and studies take vectors"
+                .into(),
+        })
+    }
+
+    /// The fault that springs balance the arm; `None` if none do. The model of absolute positions lacks them. `file` is the
+    /// name of the arm's file.
+    pub(crate) fn springs_fault(&self, file: &str) -> Option<Fault> {
+        (!self.springs.is_empty()).then(|| Fault {
+            file: file.into(),
+            line: None,
+            field: "springs".into(),
+            problem: "stand in an arm whose absolute positions are measured, and the model of positions has no springs".into(),
+            hint: "campaigns of static, modal and windup readings take springs; for positions state what the springs leave \
+                   over as the effect joint_torque"
                 .into(),
         })
     }

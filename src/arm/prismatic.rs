@@ -9,8 +9,9 @@
 //! them is the same at every travel. The blocks of a `ram` stay where the joint begins, and the ram reaches further out of
 //! them the further it travels.
 
-use super::body::{JointBodies, read_joint_bodies_that};
+use super::body::{JointBodies, read_prismatic_bodies};
 use super::element_keys::{read_axis, read_name};
+use super::prismatic_keys::GUIDE;
 use crate::input::json::{Node, Object};
 use nalgebra::{Unit, Vector3};
 use serde_json::{Map, Value, json};
@@ -89,7 +90,7 @@ impl Guide {
     }
 
     fn read(node: &Node) -> Option<Self> {
-        let object = node.object(&GUIDE_KEYS)?;
+        let object = node.shaped(&GUIDE)?;
         let [roll, pitch, yaw] = GUIDE_KEYS.map(|key| object.or(key, None, positive_or_rigid));
         Some(Self { roll_nm_per_rad: roll?, pitch_nm_per_rad: pitch?, yaw_nm_per_rad: yaw? })
     }
@@ -105,10 +106,6 @@ impl Guide {
 fn positive_or_rigid(node: &Node) -> Option<Option<f64>> {
     if node.is_null() { Some(None) } else { node.positive().map(Some) }
 }
-
-/// Keys of a prismatic joint in an arm file.
-pub(crate) const PRISMATIC_KEYS: [&str; 9] =
-    ["type", "name", "axis", "stiffness_n_per_m", "guide", "moves", "mass_kg", "fixed_mass_kg", "bodies"];
 
 impl Prismatic {
     /// All that the joint weighs \[kg\].
@@ -131,7 +128,7 @@ impl Prismatic {
         let moves = object.or("moves", Moves::default(), read_moves);
         let mass_kg = object.or("mass_kg", 0.0, Node::non_negative);
         let fixed_mass_kg = object.or("fixed_mass_kg", 0.0, Node::non_negative);
-        let bodies = read_joint_bodies_that(object, "travels");
+        let bodies = read_prismatic_bodies(object);
         Some(Self {
             name: name?,
             axis: axis?,

@@ -1,11 +1,12 @@
 //! Sections in an arm file that are neither tubes nor bars: I sections, and stiffnesses as stated.
 
+use super::keys::{I_BEAM, STATED};
 use super::section::{Section, StatedSection};
 use crate::input::json::Node;
 
 /// Reads an I section.
 pub(super) fn read_i_beam(node: &Node) -> Option<Section> {
-    let object = node.object(&["shape", "width_m", "height_m", "web_m", "flange_m"])?;
+    let object = node.shaped(&I_BEAM)?;
     let [width_m, height_m, web_m, flange_m] =
         ["width_m", "height_m", "web_m", "flange_m"].map(|k| object.required(k).and_then(|n| n.positive()));
     let (width_m, height_m, web_m, flange_m) = (width_m?, height_m?, web_m?, flange_m?);
@@ -21,7 +22,7 @@ pub(super) fn read_i_beam(node: &Node) -> Option<Section> {
 /// Reads a section that states its stiffnesses and its mass.
 pub(super) fn read_stated_section(node: &Node) -> Option<StatedSection> {
     let keys = ["width_m", "height_m", "ei_y_nm2", "ei_z_nm2", "gj_nm2", "kg_per_m"];
-    let object = node.object(&[&keys[..], &["shape", "ea_n"]].concat())?;
+    let object = node.shaped(&STATED)?;
     let [width, height, ei_y, ei_z, gj, kg] = keys.map(|k| object.required(k).and_then(|n| n.positive()));
     let ea_n = object.or("ea_n", f64::INFINITY, Node::positive);
     Some(StatedSection {

@@ -8,6 +8,7 @@ use super::load::{LoadCase, Water};
 use super::pose::{DrivenJoint, Motion};
 use super::prismatic::PrismaticPiece;
 use super::section::{LinkMaterial, Section};
+use super::springs::Spring;
 use super::{Arm, Element, Joint, JointModel, Link, LinkBody};
 use nalgebra::{Matrix3, SymmetricEigen, Unit, Vector3};
 
@@ -28,6 +29,8 @@ pub struct Structure {
     pub water: Option<Water>,
     /// Joints and links from base to tip.
     pub pieces: Vec<Piece>,
+    /// Springs that balance the arm; their elements are numbered as the pieces are.
+    pub springs: Vec<Spring>,
 }
 
 /// Rotation of a frame per moment \[rad/(N m)\], as a symmetric matrix over its three axes.
@@ -191,7 +194,11 @@ impl Arm {
                 Element::Link(link) => Piece::Link(link_piece(link)),
             })
             .collect();
-        Structure { down: self.down, ..Structure::nominal(self.gravity_m_s2, pieces) }
+        Structure {
+            down: self.down,
+            springs: self.springs.clone(),
+            ..Structure::nominal(self.gravity_m_s2, pieces)
+        }
     }
 }
 
@@ -232,6 +239,7 @@ impl Structure {
             base_frame: FrameCompliance::default(),
             water: None,
             pieces,
+            springs: Vec::new(),
         }
     }
 }

@@ -13,13 +13,18 @@ impl Arm {
     /// The arm as its file has it. Every part is resolved to numbers; the names of parts stand next to them. Reading the
     /// file gives the same arm to the last digit.
     pub fn to_json(&self) -> Value {
-        json!({
+        let mut value = json!({
             "name": self.name,
             "gravity_m_s2": self.gravity_json(),
             "materials": self.materials_json(),
             "chain": self.chain.iter().map(Element::to_json).collect::<Vec<_>>(),
             "effects": self.effects.iter().map(Effect::to_json).collect::<Vec<_>>(),
-        })
+        });
+        if !self.springs.is_empty() {
+            let names: Vec<&str> = self.chain.iter().map(Element::name).collect();
+            value["springs"] = self.springs.iter().map(|spring| spring.to_json(&names)).collect();
+        }
+        value
     }
 
     /// A number if the arm stands upright, else a vector in the world.

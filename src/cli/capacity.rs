@@ -1,14 +1,12 @@
 //! `armwright capacity`: the largest payload of a study's arm.
 
-use super::asked::load_study;
 use super::failure::Failure;
-use super::size::{chosen_design, fails};
 use crate::catalog::Catalogs;
 use crate::report::number::fixed;
-use crate::space::problem::ArmProblem;
-use crate::study::capacity::{Capacity, Limit, capacity};
+use crate::study::capacity::{Capacity, Limit, capacity_of};
+use crate::study::load::load_study;
 use clap::Args;
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::fmt::Write;
 
 /// Finds the largest payload that an arm holds with the drives it has, in every sizing pose and in all of them together, and
@@ -31,13 +29,11 @@ pub(crate) struct CapacityArgs {
 
 /// Executes the verb.
 pub(super) fn run(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Failure> {
-    let (study, _) = load_study(&args.study, catalogs).map_err(|failure| of_arm_file(args, failure))?;
-    let (space, chosen) = chosen_design(&study, args.design.as_deref(), catalogs)?;
-    let problem = ArmProblem::new(&space, catalogs);
-    let arm = problem.walk(&chosen, |_, _| {}).map_err(|slot| fails(&problem, &chosen, slot))?;
-    let found = capacity(&space, catalogs, arm.slot_options());
+    let loaded = load_study(&args.study, catalogs).map_err(Failure::from);
+    let (study, _) = loaded.map_err(|failure| of_arm_file(args, failure))?;
+    let found = capacity_of(&study, args.design.as_deref(), catalogs)?;
     Ok(match args.json {
-        true => serde_json::to_string_pretty(&to_json(&found)).expect("numbers and strings serialize"),
+        true => serde_json::to_string_pretty(&found.to_json()).expect("numbers and strings serialize"),
         false => to_text(&study.name, &found),
     })
 }
@@ -53,24 +49,6 @@ fn of_arm_file(args: &CapacityArgs, failure: Failure) -> Failure {
         )),
         false => failure,
     }
-}
-
-/// A payload in JSON; null if nothing limits it.
-fn payload_json(limit: &Limit) -> Value {
-    if limit.payload_kg.is_finite() { json!(limit.payload_kg) } else { Value::Null }
-}
-
-fn to_json(found: &Capacity) -> Value {
-    let rows: Vec<Value> = found
-        .table
-        .iter()
-        .map(|at| {
-            json!({"reach_m": at.reach_m, "payload_kg": payload_json(&at.limit), "pose": at.pose,
-                "joint": at.limit.piece, "check": at.limit.check})
-        })
-        .collect();
-    json!({"payload_kg": payload_json(&found.limit), "pose": found.pose, "joint": found.limit.piece,
-        "check": found.limit.check, "table": rows})
 }
 
 fn kilograms(limit: &Limit) -> String {

@@ -1,107 +1,46 @@
-//! `armwright check`: are two folders of results the same?
+//! `armwright check`: what files are and all their faults; or whether two folders of results are the same.
 
+use super::check_files;
+use super::check_same::same;
+use super::exit::Answer;
 use super::failure::Failure;
+use crate::catalog::Catalogs;
 use clap::Args;
-use serde_json::Value;
-use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-/// Compares two folders of results byte by byte, outside the places that tell of time and machine: elapsed_s,
+/// Says of each file or folder what it is, and reports all faults of all of them: arms, cases, studies, campaigns,
+/// catalogs and folders of results. Files that belong together are read together: readings with their campaign, cases with
+/// the arm.json in their folder, a catalog with its folder. The files of a result are compared with the hashes in it.
+///
+/// The exit code is 3 if a file has a fault, 9 if a result is not what was written, 7 if a file cannot be read.
+///
+/// --same compares two folders of results byte by byte, outside the places that tell of time and machine: elapsed_s,
 /// designs_per_s, threads and platform of run.json, the marked timing of summary.md and report.html, and the folder's own
-/// name in the commands there. The exit code is 9 if they differ.
+/// name in the commands there. Shards in a folder do not count. The exit code is 9 if they differ.
 #[derive(Debug, Args)]
-#[command(after_help = "Example: armwright check --same results/monday results/tuesday")]
+#[command(after_help = "Examples:\n  armwright check study.json arm.json campaigns/may my-parts\n  \
+    armwright check results/compare-materials\n  \
+    armwright check --same results/monday results/tuesday")]
 pub(crate) struct CheckArgs {
+    /// Files and folders
+    #[arg(value_name = "FILE", required_unless_present = "same", conflicts_with = "same")]
+    files: Vec<PathBuf>,
+    /// Print the findings as JSON
+    #[arg(long, conflicts_with = "same")]
+    json: bool,
     /// Two folders of results
-    #[arg(long, num_args = 2, value_names = ["A", "B"], required = true)]
-    same: Vec<PathBuf>,
+    #[arg(long, num_args = 2, value_names = ["A", "B"])]
+    same: Option<Vec<PathBuf>>,
 }
-
-/// Keys of run.json that differ from run to run, and the hashes of files that tell of them.
-const OF_A_RUN: [&str; 5] = ["elapsed_s", "designs_per_s", "threads", "platform", "files"];
-/// What stands around timings.
-const TIMING: [&str; 2] = ["<!-- timing -->", "<!-- /timing -->"];
-/// Commands that name the folder of results.
-const COMMANDS: [&str; 5] =
-    ["armwright design ", "armwright analyze ", "armwright compare ", "armwright front check ", " --cases "];
 
 /// Executes the verb.
-pub(super) fn run(args: &CheckArgs) -> Result<String, Failure> {
-    let [a, b] = &args.same[..] else { return Err(Failure::Usage("--same takes two folders".into())) };
-    let names = files_of(a)?;
-    let others = files_of(b)?;
-    let mut faults = Vec::new();
-    for name in names.union(&others) {
-        match (names.contains(name), others.contains(name)) {
-            (true, false) => faults.push(format!("{name} is only in {}", a.display())),
-            (false, true) => faults.push(format!("{name} is only in {}", b.display())),
-            _ if neutral(a, name)? != neutral(b, name)? => faults.push(format!("{name} differs")),
-            _ => {}
-        }
+///
+/// # Errors
+/// Two folders of results are not the same, or cannot be read.
+pub(super) fn run(args: &CheckArgs, catalogs: &Catalogs) -> Result<Answer, Failure> {
+    match args.same.as_deref() {
+        Some([a, b]) => same(a, b).map(Answer::from),
+        Some(_) => Err(Failure::Usage("--same takes two folders".into())),
+        None => Ok(check_files::report(&args.files, args.json, catalogs)),
     }
-    match faults.is_empty() {
-        true => Ok(format!("{} files are the same outside of the marked timings\n", names.len())),
-        false => Err(Failure::Check(format!(
-            "{} and {} are not the same\n  {}",
-            a.display(),
-            b.display(),
-            faults.join("\n  ")
-        ))),
-    }
-}
-
-/// Names of all files of a folder and the folders in it; those that begin with a dot are left out.
-fn files_of(folder: &Path) -> Result<BTreeSet<String>, Failure> {
-    let mut names = BTreeSet::new();
-    let mut open = vec![PathBuf::new()];
-    while let Some(inside) = open.pop() {
-        let here = folder.join(&inside);
-        for entry in fs_err::read_dir(&here).map_err(|e| Failure::File(e.to_string()))? {
-            let entry = entry.map_err(|e| Failure::file(&here, "read", &e))?;
-            let name = inside.join(entry.file_name());
-            if entry.file_name().to_string_lossy().starts_with('.') {
-                continue;
-            }
-            match entry.path().is_dir() {
-                true => open.push(name),
-                false => drop(names.insert(name.to_string_lossy().into_owned())),
-            }
-        }
-    }
-    Ok(names)
-}
-
-/// The bytes of a file without what tells of time, machine and folder.
-fn neutral(folder: &Path, name: &str) -> Result<Vec<u8>, Failure> {
-    let bytes = fs_err::read(folder.join(name)).map_err(|e| Failure::File(e.to_string()))?;
-    Ok(match name {
-        "run.json" => without_keys(bytes),
-        "summary.md" | "report.html" => without_timing(bytes, typed_as(folder).as_deref()),
-        _ => bytes,
-    })
-}
-
-fn without_keys(bytes: Vec<u8>) -> Vec<u8> {
-    let Ok(Value::Object(mut run)) = serde_json::from_slice(&bytes) else { return bytes };
-    OF_A_RUN.iter().for_each(|key| drop(run.remove(*key)));
-    Value::Object(run).to_string().into_bytes()
-}
-
-fn without_timing(bytes: Vec<u8>, folder: Option<&str>) -> Vec<u8> {
-    let Ok(mut text) = String::from_utf8(bytes.clone()) else { return bytes };
-    while let Some(start) = text.find(TIMING[0])
-        && let Some(length) = text[start..].find(TIMING[1])
-    {
-        text.replace_range(start..start + length + TIMING[1].len(), "");
-    }
-    for command in COMMANDS.iter().filter(|_| folder.is_some()) {
-        text = text.replace(&format!("{command}{}", folder.unwrap_or_default()), command);
-    }
-    text.into_bytes()
-}
-
-/// The folder as it was typed when the results were written, from the commands of its summary.
-fn typed_as(folder: &Path) -> Option<String> {
-    let summary = std::fs::read_to_string(folder.join("summary.md")).ok()?;
-    summary.lines().find_map(|line| line.strip_prefix(COMMANDS[2])).map(String::from)
 }

@@ -8,7 +8,7 @@ use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::report::file_names::file_name;
 use crate::space::design::full_objectives;
-use crate::space::problem::ArmProblem;
+use crate::study::chosen::arm_of_number;
 use crate::study::read::read_study;
 use clap::Args;
 use serde_json::{Value, json};
@@ -42,12 +42,8 @@ pub(super) fn run(args: &DesignArgs, catalogs: &Catalogs) -> Result<String, Fail
         ))
     };
     let number = results.number_of(&args.id).ok_or_else(unknown)?;
-    let space = study.space.excerpt(catalogs, &[number]).ok_or_else(unknown)?;
-    let problem = ArmProblem::new(&space, catalogs);
-    let chosen = problem.options_of_whole(number).ok_or_else(unknown)?;
-    let mut arm = problem.arm(&chosen).ok_or_else(unknown)?;
+    let (mut arm, cases) = arm_of_number(&study, number, catalogs).ok_or_else(unknown)?;
     arm.name = format!("{} {}", study.name, args.id);
-    let cases = problem.load_cases();
     let objectives = full_objectives(&arm, &cases);
     let dir =
         args.out.clone().unwrap_or_else(|| args.results.join(format!("design-{}", file_name(&args.id))));

@@ -2,6 +2,7 @@
 
 use super::exit::Exit;
 use crate::input::json::{Faults, InputError};
+use crate::study::refusal::Refusal;
 use std::path::Path;
 
 /// Why a verb failed; each reason has an exit code of its own.
@@ -90,6 +91,18 @@ impl From<InputError> for Failure {
 impl From<crate::catalog::lookup::PartError> for Failure {
     fn from(error: crate::catalog::lookup::PartError) -> Self {
         Failure::Usage(error.to_string())
+    }
+}
+
+impl From<Refusal> for Failure {
+    fn from(refusal: Refusal) -> Self {
+        match refusal {
+            Refusal::Unknown(words) => Failure::Usage(words),
+            Refusal::Unreadable(words) => Failure::File(words),
+            Refusal::Faulty(faults) => Failure::Input(faults),
+            Refusal::EmptySpace(words) => Failure::EmptySpace(words),
+            Refusal::Infeasible(words) => Failure::Infeasible(words),
+        }
     }
 }
 

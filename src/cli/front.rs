@@ -54,9 +54,9 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<Answer, Failu
     let run = &results.run;
     let (file, text) = results.text("study.json")?;
     let study = read_study(Document::parse(&file, &text)?, catalogs)?;
-    if study.space.has_linkages() {
+    if let Some(what) = study.space.beyond_bounds() {
         return Err(Failure::Usage(format!(
-            "the study \"{}\" has coupled joints, which the bounds of this check do not cover; `armwright design` and \
+            "the study \"{}\" has {what}, which the bounds of this check do not cover; `armwright design` and \
              `armwright analyze --cases` compute a row again",
             study.name
         )));

@@ -1,6 +1,7 @@
 //! `armwright new`: starts a folder to be filled in.
 
 use super::failure::Failure;
+use super::starter_files::{ARM, PAGE, PARTS, STUDY, filled};
 use super::write::write_all;
 use crate::arm::file::read_arm;
 use crate::catalog::Catalogs;
@@ -10,7 +11,8 @@ use std::path::{Path, PathBuf};
 
 /// Arguments of `new`.
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  armwright new campaign arm.json --out campaigns/may")]
+#[command(after_help = "Examples:\n  armwright new study --out lift\n  armwright new arm --out my-arm\n  \
+    armwright new parts --out my-parts\n  armwright new campaign arm.json --out campaigns/may")]
 pub(crate) struct NewArgs {
     #[command(subcommand)]
     what: What,
@@ -18,8 +20,25 @@ pub(crate) struct NewArgs {
 
 #[derive(Debug, Subcommand)]
 enum What {
+    /// Start a study: study.json, which runs as it is, and a page that explains each block
+    #[command(after_help = "Example: armwright new study --out lift")]
+    Study(FolderArgs),
+    /// Start an arm: arm.json and cases.json, and a page that explains each block
+    #[command(after_help = "Example: armwright new arm --out my-arm")]
+    Arm(FolderArgs),
+    /// Start parts of your own: catalog files with an example row each, and a page that explains them
+    #[command(after_help = "Example: armwright new parts --out my-parts")]
+    Parts(FolderArgs),
     /// Start a campaign of measurements: the tables to fill in for an arm, and what to measure
     Campaign(CampaignArgs),
+}
+
+/// Arguments of the things that need nothing but a folder.
+#[derive(Debug, Args)]
+struct FolderArgs {
+    /// New folder, made with its parents; its name is the name of the study or arm. Nothing that is there is overwritten.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
 }
 
 /// Arguments of `new campaign`.
@@ -42,17 +61,37 @@ struct CampaignArgs {
 /// # Errors
 /// All faults of the arm file, a folder that has one of the files, or one that cannot be written.
 pub(crate) fn run(args: &NewArgs, catalogs: &Catalogs) -> Result<String, Failure> {
-    let What::Campaign(args) = &args.what;
+    match &args.what {
+        What::Study(args) => start(STUDY, &args.out, "armwright run", "study.json"),
+        What::Arm(args) => start(ARM, &args.out, "armwright analyze", "arm.json"),
+        What::Parts(args) => start(PARTS, &args.out, "armwright check", ""),
+        What::Campaign(args) => campaign(args, catalogs),
+    }
+}
+
+/// Writes the files of a starter.
+fn start(
+    texts: &'static [(&'static str, &'static str)],
+    out: &Path,
+    verb: &str,
+    file: &str,
+) -> Result<String, Failure> {
+    write_new(out, &filled(texts, &name_of(out), &out.display().to_string()), &[])?;
+    let (shown, what) = (out.display(), if file.is_empty() { out.to_path_buf() } else { out.join(file) });
+    Ok(format!(
+        "written to {shown}\n\nRead {}, and run: {verb} {}\n",
+        out.join(PAGE).display(),
+        what.display()
+    ))
+}
+
+fn campaign(args: &CampaignArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let arm = read_arm(&args.arm, catalogs)?;
     let arm_text = fs_err::read(&args.arm).map_err(|e| Failure::file(&args.arm, "read", &e))?;
     let mut files = vec![("arm.json".to_string(), arm_text)];
     let texts = starter::files(&arm, &name_of(&args.out));
     files.extend(texts.into_iter().map(|(name, text)| (name, text.into_bytes())));
-    if let Some((name, _)) = files.iter().find(|(name, _)| args.out.join(name).exists()) {
-        let there = args.out.join(name);
-        return Err(Failure::Usage(format!("{} is there already: choose another folder", there.display())));
-    }
-    write_all(&args.out, &files, &[&args.arm])?;
+    write_new(&args.out, &files, &[&args.arm])?;
     let out = args.out.display();
     Ok(format!(
         "written to {out}\n\nRead {}, fill in the tables, and run: armwright reconcile {out}\n",
@@ -60,6 +99,18 @@ pub(crate) fn run(args: &NewArgs, catalogs: &Catalogs) -> Result<String, Failure
     ))
 }
 
+/// Writes files, none of which is there.
+fn write_new(out: &Path, files: &[(String, Vec<u8>)], inputs: &[&Path]) -> Result<(), Failure> {
+    match files.iter().find(|(name, _)| out.join(name).exists()) {
+        Some((name, _)) => {
+            let there = out.join(name);
+            Err(Failure::Usage(format!("{} is there already: choose another folder", there.display())))
+        }
+        None => write_all(out, files, inputs),
+    }
+}
+
+/// The name of what is started: that of its folder.
 fn name_of(folder: &Path) -> String {
-    folder.file_name().map_or("campaign".into(), |name| name.to_string_lossy().into_owned())
+    folder.file_name().map_or("new".into(), |name| name.to_string_lossy().into_owned())
 }

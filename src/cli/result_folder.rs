@@ -5,9 +5,11 @@
 //! last. A process that dies before the decision leaves the old result, and one that dies after it leaves the rest of the
 //! work to whoever next reads or writes the folder ([`complete`]).
 
+use super::exit::Exit;
 use super::failure::Failure;
 use super::lock::Lock;
 use super::manifest::{Earlier, Files, MANIFESTS, sealed};
+use super::unfinished::{ENDING, remove};
 use crate::report::whole_file::{create_folder, folder_of, remove_file, rename, sync_folder, write_staged};
 use std::collections::BTreeSet;
 use std::io;
@@ -87,6 +89,21 @@ impl ResultFolder {
         Ok(foreign.into_iter().map(|(name, _)| name).collect())
     }
 
+    /// Removes the states of unfinished searches, unless the user stopped them or what they found could not be kept.
+    ///
+    /// # Errors
+    /// A state cannot be removed.
+    pub(super) fn settle(&self, end: Result<Exit, &Failure>) -> Result<(), Failure> {
+        let is_over = match end {
+            Ok(exit) => exit != Exit::Interrupted,
+            Err(failure) => matches!(failure, Failure::Infeasible(_) | Failure::Partial(_)),
+        };
+        let entries = std::fs::read_dir(self.folder.join(STATE)).into_iter().flatten().flatten();
+        let states =
+            entries.map(|entry| entry.path()).filter(|path| path.to_string_lossy().ends_with(ENDING));
+        states.filter(|_| is_over).try_for_each(|path| remove(&path))
+    }
+
     /// Whether a file of this name and content is there already.
     fn has(&self, name: &str, bytes: &[u8]) -> bool {
         let path = self.folder.join(name);
@@ -120,6 +137,11 @@ impl Drop for ResultFolder {
         let _ = std::fs::remove_dir(self.folder.join(STATE));
         let _ = std::fs::remove_dir(&self.folder);
     }
+}
+
+/// The file of the state of an unfinished search in a folder of results.
+pub(super) fn unfinished_in(folder: &Path, name: &str) -> PathBuf {
+    folder.join(STATE).join(format!("{name}{ENDING}"))
 }
 
 /// Completes a result whose writer died after the new files were decided on. A reader calls this first.

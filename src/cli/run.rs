@@ -1,6 +1,6 @@
 //! `armwright run`: finds the front of a study and writes it.
 
-use super::asked::{Asked, load_study};
+use super::asked::Asked;
 use super::beside::{another_stands, say_missing};
 use super::corrections;
 use super::exit::Answer;
@@ -9,7 +9,7 @@ use super::finished::{catalogs_hash, facts_of, front_of_material, is_front_of_ma
 use super::log::Log;
 use super::manifest::{RUN, SHARD};
 use super::progress::Record;
-use super::result_folder::ResultFolder;
+use super::result_folder::{ResultFolder, unfinished_in};
 use super::search::{SearchArgs, With, search};
 use super::shard::{CANDIDATES, STUDY, folder_of, run_shard, shard_of};
 use super::supplements::{FILES, SupplementArgs};
@@ -26,6 +26,7 @@ use crate::report::words::{TERMINAL, wrap};
 use crate::search::sweep::{Shard, Status};
 use crate::study::definition::Study;
 use crate::study::effects::left_out;
+use crate::study::load::load_study;
 use crate::study::read::read_study;
 use clap::Args;
 use serde_json::{Value, json};
@@ -166,8 +167,11 @@ pub(super) fn run(
     let folder = ResultFolder::open(&dir, RUN, &planned)?;
     let (how, supplements, record) = (&args.search, &args.supplements, record.as_ref());
     let keep = |files: &[(String, Vec<u8>)]| folder.publish(files);
-    let with = With { catalogs, overlay, dir: &dir, keep: &keep, how, supplements, record, log };
-    let written = search(&asked, &with)?;
+    let unfinished = &unfinished_in(&dir, "search");
+    let with = With { catalogs, overlay, dir: &dir, keep: &keep, unfinished, how, supplements, record, log };
+    let written = search(&asked, &with);
+    folder.settle(written.as_ref().map(|written| written.exit))?;
+    let written = written?;
     let applied = corrections::to_text(&asked.corrections);
     let text = format!("{}{applied}\n{}{}", written.terminal, told(&dir, &written.files), written.timing);
     Ok(Answer { text, exit: written.exit })
@@ -199,8 +203,11 @@ fn run_part(
     let (how, supplements, record) = (&args.search, &args.supplements, record.as_ref());
     let folder = ResultFolder::open(&dir, SHARD, &[SHARD, CANDIDATES, STUDY])?;
     let keep = |files: &[(String, Vec<u8>)]| folder.publish(files);
-    let with = With { catalogs, overlay, dir: &dir, keep: &keep, how, supplements, record, log };
-    run_shard(asked, shard, words, &with)
+    let unfinished = &unfinished_in(&dir, "search");
+    let with = With { catalogs, overlay, dir: &dir, keep: &keep, unfinished, how, supplements, record, log };
+    let answer = run_shard(asked, shard, words, &with);
+    folder.settle(answer.as_ref().map(|answer| answer.exit))?;
+    answer
 }
 
 /// Runs one of the paper's studies, which are computed without a search.

@@ -1,24 +1,21 @@
 //! `armwright size`: sizes the drive of every joint from the tip inward, and says why other drives were
 //! rejected.
 
-use super::asked::{load_study, refuse_empty};
 use super::failure::Failure;
 use super::write::write_all;
 use crate::catalog::Catalogs;
 use crate::report::tube::section_size;
 use crate::report::words::{TERMINAL, wrap};
 use crate::sizing::bearing::{BearingDemand, BearingLoad};
-use crate::sizing::checks::checks;
 use crate::sizing::demand::JointDemand;
 use crate::sizing::fit::LinkRoom;
 use crate::sizing::select::DriveTable;
 use crate::sizing::sheet::render_rows;
-use crate::space::design::number_of;
-use crate::space::design_space::{DesignSpace, SpacePiece};
+use crate::space::design_space::SpacePiece;
 use crate::space::problem::{ArmProblem, Partial};
-use crate::space::slot::SizedJoint;
+use crate::study::chosen::{chosen_design, why_not_held};
 use crate::study::definition::Study;
-use crate::study::joint_obstacle::{first_fit_at, obstacle_at};
+use crate::study::load::{load_study, refuse_empty};
 use crate::study::table::sizing_rows;
 use clap::Args;
 use std::fmt::Write;
@@ -63,7 +60,8 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failur
     if let Some(joint) = &args.all_fits {
         return all_fits(&problem, &chosen, joint);
     }
-    let rows = sizing_rows(&problem, catalogs, &chosen).map_err(|slot| fails(&problem, &chosen, slot))?;
+    let rows =
+        sizing_rows(&problem, catalogs, &chosen).map_err(|slot| why_not_held(&problem, &chosen, slot))?;
     let remarks: String = study.remarks.iter().map(|words| wrap(words, TERMINAL, "")).collect();
     let text = format!("{}{}\n{remarks}", heading(&study, &problem, &chosen), render_rows(&rows));
     let json = serde_json::to_string_pretty(&rows).expect("rows of numbers and strings serialize");
@@ -76,61 +74,6 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failur
         )?;
     }
     Ok(if args.json { json } else { text })
-}
-
-/// The most options of a link among which the one of median mass is looked for.
-const MOST_OPTIONS: u32 = 4096;
-
-/// The space of a design that is named, or of links among which that of median mass is taken, with its options.
-///
-/// # Errors
-/// The study has no such design.
-pub(super) fn chosen_design(
-    study: &Study,
-    id: Option<&str>,
-    catalogs: &Catalogs,
-) -> Result<(DesignSpace, Vec<u32>), Failure> {
-    let Some(id) = id else {
-        let space = study.space.middle(MOST_OPTIONS);
-        let chosen = middle(&ArmProblem::new(&space, catalogs));
-        return Ok((space, chosen));
-    };
-    let none = || no_design(id, study);
-    let number = number_of(id).ok_or_else(none)?;
-    let space = study.space.excerpt(catalogs, &[number]).ok_or_else(none)?;
-    let chosen = ArmProblem::new(&space, catalogs).options_of_whole(number).ok_or_else(none)?;
-    Ok((space, chosen))
-}
-
-fn no_design(id: &str, study: &Study) -> Failure {
-    Failure::Usage(format!("the study \"{}\" has no design \"{id}\"", study.name))
-}
-
-/// Takes the option of median mass of every open link and the first drive that holds for every joint with `all_fits`.
-fn middle(problem: &ArmProblem) -> Vec<u32> {
-    let mut out = Vec::new();
-    for (piece, what) in problem.space().pieces.iter().enumerate().rev() {
-        match (what, problem.sized_joint(piece)) {
-            (SpacePiece::Choice(choice), _) => {
-                out.push(nearest_to_median(problem, &out, piece, &choice.by_mass()));
-            }
-            (_, Some(sized)) if sized.is_level() => out.push(first_fit_at(problem, &out, piece)),
-            _ => {}
-        }
-    }
-    out
-}
-
-/// The option nearest to the median that keeps the link's own limits; `by_mass` goes from the lightest to the heaviest.
-fn nearest_to_median(problem: &ArmProblem, outboard: &[u32], piece: usize, by_mass: &[u32]) -> u32 {
-    let median = by_mass.len() / 2;
-    let mut order: Vec<usize> = (0..by_mass.len()).collect();
-    order.sort_by_key(|&rank| rank.abs_diff(median));
-    let holds = |&option: &u32| match problem.walk(&[outboard, &[option]].concat(), |_, _| {}) {
-        Ok(_) => true,
-        Err(slot) => problem.piece_of_slot(slot) != piece,
-    };
-    order.into_iter().map(|rank| by_mass[rank]).find(holds).unwrap_or(by_mass[median])
 }
 
 fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32]) -> String {
@@ -171,7 +114,7 @@ fn before(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<(usize, u
     });
     match (found, walked) {
         (Some(found), _) => Ok(found),
-        (None, Err(slot)) => Err(fails(problem, chosen, slot)),
+        (None, Err(slot)) => Err(why_not_held(problem, chosen, slot).into()),
         (None, Ok(_)) => Err(Failure::Internal(format!("joint \"{joint}\" was not met on the way"))),
     }
 }
@@ -255,49 +198,4 @@ fn bearing_line(joint: &str, demand: &BearingDemand) -> String {
         words(&demand.running),
         words(&demand.in_stop)
     )
-}
-
-pub(super) fn fails(problem: &ArmProblem, chosen: &[u32], slot: usize) -> Failure {
-    let mut last = Partial::default();
-    let _ = problem.walk(chosen, |_, partial| last = partial.clone());
-    let piece = problem.piece_of_slot(slot);
-    match problem.sized_joint(piece) {
-        Some(sized) => {
-            let demand = problem.demand_at(&last, slot);
-            let too_weak = || too_weak(problem, chosen, piece, sized, &demand);
-            let internal = || format!("joint {}: its drive does not hold", sized.table.joint());
-            let why = obstacle_at(&sized.table, &demand).or_else(too_weak).unwrap_or_else(internal);
-            Failure::Infeasible(format!("with these links, {why}"))
-        }
-        None => Failure::Infeasible(
-            "a link breaks a limit on stress, wall slenderness, cost or mass: choose another with --design"
-                .into(),
-        ),
-    }
-}
-
-/// Why the drive of a design is too weak at a joint where another drive would hold.
-fn too_weak(
-    problem: &ArmProblem,
-    chosen: &[u32],
-    piece: usize,
-    sized: &SizedJoint,
-    demand: &JointDemand,
-) -> Option<String> {
-    let table = &sized.table;
-    table.first_fit(demand).filter(|_| sized.is_level())?;
-    let is_level = |p: usize| match &problem.space().pieces[p] {
-        SpacePiece::Choice(_) => true,
-        _ => problem.sized_joint(p).is_some_and(SizedJoint::is_level),
-    };
-    let outboard = (piece + 1..problem.space().pieces.len()).filter(|&p| is_level(p)).count();
-    let drive = table.drive(*chosen.get(outboard)? as usize);
-    let failing = checks(&drive, table.motion(), demand).into_iter().find(|check| !check.holds())?;
-    Some(format!(
-        "joint {joint}: {} with {}, the drive of this design, does not hold: {failing}; `--all-fits {joint}` lists \
-         those that do",
-        drive.gear.id,
-        drive.motor.id,
-        joint = table.joint(),
-    ))
 }

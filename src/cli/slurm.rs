@@ -1,11 +1,11 @@
 //! `armwright slurm`: a script that runs a study as an array of shards on a Slurm cluster and joins them.
 
-use super::asked::{load_study, refuse_empty};
 use super::failure::Failure;
 use super::merge::shell_word;
 use super::shard::MOST_SHARDS;
 use crate::catalog::Catalogs;
 use crate::report::file_names::file_name;
+use crate::study::load::{load_study, refuse_empty};
 use clap::Args;
 use std::path::{Path, PathBuf};
 

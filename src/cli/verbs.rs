@@ -4,10 +4,12 @@ use super::exit::{Answer, Exit};
 use super::failure::Failure;
 use super::log::{Log, LogForm};
 use super::{
-    analyze, capacity, catalog, check, compare, design, front, merge, new, predict, reconcile, size, slurm,
+    analyze, capacity, catalog, check, compare, design, front, merge, new, predict, reconcile, schema, shell,
+    size, slurm,
 };
 use crate::catalog::Catalogs;
-use clap::{Parser, Subcommand};
+use crate::exact::run::WORKER_STACK_BYTES;
+use clap::{CommandFactory, Parser, Subcommand};
 use std::path::PathBuf;
 
 /// Sizes high-precision robot arms and finds their Pareto-optimal designs.
@@ -60,9 +62,15 @@ enum Verb {
     Status(merge::StatusArgs),
     /// Print a script that runs a study as shards on a Slurm cluster
     Slurm(slurm::SlurmArgs),
-    /// Check whether two folders of results are the same
+    /// Say what files are, with all their faults; or whether two folders of results are the same
     Check(check::CheckArgs),
-    /// Start a campaign of measurements
+    /// Print the schema of a kind of file
+    Schema(schema::SchemaArgs),
+    /// Print the completions of a shell
+    Completions(shell::CompletionsArgs),
+    /// Write manual pages
+    Man(shell::ManArgs),
+    /// Start a study, an arm, parts of your own or a campaign of measurements
     New(new::NewArgs),
     /// Find where an arm and its measurements disagree and which physics is missing
     Reconcile(reconcile::ReconcileArgs),
@@ -79,10 +87,6 @@ impl Cli {
     }
 }
 
-/// Stack of a worker \[bytes\]: regions of an exact search are nested calls, and a waiting worker runs those
-/// of others on its own stack.
-const STACK: usize = 64 << 20;
-
 /// Executes a command line.
 ///
 /// # Errors
@@ -90,7 +94,7 @@ const STACK: usize = 64 << 20;
 pub fn run(cli: Cli) -> Result<Answer, Failure> {
     let workers = rayon::ThreadPoolBuilder::new()
         .num_threads(cli.threads.map_or(0, Into::into))
-        .stack_size(STACK)
+        .stack_size(WORKER_STACK_BYTES)
         .build_global();
     // A process that has run a command line before keeps the workers it has. Results do not depend on their number,
     // so only a number that was asked for and cannot be had is an error.
@@ -103,16 +107,17 @@ pub fn run(cli: Cli) -> Result<Answer, Failure> {
     let text = match cli.verb {
         Verb::Run(args) => return super::run::run(&args, &catalogs?, overlay, log),
         Verb::Front(args) => return front::run(&args, &catalogs?),
-        Verb::Reconcile(args) => {
-            return reconcile::run(&args, &catalogs?, overlay, log).map(|(_, answer)| answer);
-        }
+        Verb::Check(args) => return check::run(&args, &catalogs?),
+        Verb::Completions(args) => Ok(shell::completions(&args, Cli::command())),
+        Verb::Man(args) => shell::man(&args, Cli::command()),
+        Verb::Schema(args) => schema::run(&args),
+        Verb::Reconcile(args) => return reconcile::run(&args, &catalogs?, overlay, log),
         Verb::Catalog(args) => catalog::run(&args, overlay),
         Verb::Studies => Ok(crate::study::list()),
         Verb::Size(args) => size::run(&args, &catalogs?),
         Verb::Merge(args) => return merge::merge(&args, &catalogs?, overlay),
         Verb::Status(args) => merge::status(&args),
         Verb::Slurm(args) => slurm::run(&args, &catalogs?, overlay),
-        Verb::Check(args) => check::run(&args),
         Verb::Capacity(args) => capacity::run(&args, &catalogs?),
         Verb::Compare(args) => compare::run(&args),
         Verb::Analyze(args) => analyze::run(&args, &catalogs?),

@@ -136,7 +136,7 @@ impl<'c> Problem<'c> {
                 Layer::Tilt(tilt) => Part::Given { mass_kg: 0.0, curve: CurveBox::of(&tilt.law()) },
                 Layer::Guide(spring) => Part::Given { mass_kg: 0.0, curve: CurveBox::of(&spring.law()) },
                 // A given mass beyond the parts loads the arm, but a design's mass does not count it.
-                Layer::Mass(_) | Layer::Travelling(_) => Part::Offset { mass_kg: 0.0 },
+                Layer::Mass(_) | Layer::Travelling(_) | Layer::Springs(_) => Part::Offset { mass_kg: 0.0 },
                 Layer::Extra(mass_kg) => Part::Offset { mass_kg },
                 Layer::Bodies(carried) => Part::Offset { mass_kg: carried.mass_kg() },
                 // The tilts of a gear's bearing are coordinates of its joint.

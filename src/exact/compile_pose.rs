@@ -9,14 +9,15 @@
 use super::bearing_rows::{BearingRows, Loads, Ramp};
 use super::parts::{INERTIAS, inertia};
 use super::pose::{
-    COORDINATES, ENDS, InertiaRow, Pose, PosedBodies, PosedPiece, PosedTube, Row, StressRow, TILT, TORSION,
-    TubeForms,
+    COORDINATES, ENDS, InertiaRow, Pose, PosedBodies, PosedPiece, PosedTube, Pulls, Row, StressRow, TILT,
+    TORSION, TubeForms,
 };
 use crate::arm::LinkModel;
 use crate::arm::load::Water;
+use crate::arm::springs::{EndLoad, Side};
 use crate::arm::structure::LinkPiece;
-use crate::mechanics::beam::{PreparedBeam, section_frame};
-use crate::mechanics::chain::across;
+use crate::mechanics::beam::{PreparedBeam, pull_on, section_frame};
+use crate::mechanics::chain::{across, wrench_of};
 use crate::mechanics::{
     Twist, Wrench, angular, body_inertia, displacement_at, linear, rotation_twist, stack,
 };
@@ -43,10 +44,19 @@ impl Pose {
         let water = case.water.or(space.surroundings().water);
         let walk = Walk::new(space, case);
         let (payload_wrench, payload_inertia) = payload_in(space, case, water, &walk);
-        let (mut pieces, mut needs) = (Vec::new(), Vec::new());
+        let springs = walk.spring_loads(space);
+        let (mut pieces, mut needs, mut loads) = (Vec::new(), Vec::new(), Vec::new());
         for (place, layer) in space.layers() {
             let (at, joint) = (walk.place(place, &layer), joints[place]);
-            let Some(posed) = posed(space, water, layer, joint.tilts, at) else { continue };
+            let on = |side: Side| springs.iter().filter(move |load| load.on == side);
+            let pulls: Vec<&EndLoad> = on(Side::Moving(place)).collect();
+            let Some(posed) = posed(space, water, layer, (joint.tilts, &pulls), at) else { continue };
+            // a tube has what springs do to it
+            if let Layer::Springs(side) = layer
+                && (side != Side::Moving(place) || !space.is_tube(place))
+            {
+                loads.push((pieces.len(), on(side).map(wrench_of).sum()));
+            }
             if let Layer::Piece(SpacePiece::Joint(_)) = layer {
                 needs.push((pieces.len(), joint));
             }
@@ -69,17 +79,17 @@ impl Pose {
             inertia_about: Vec::new(),
             bearings: Vec::new(),
         };
-        pose.compile(space, payload_wrench, &walk.tip_m, &needs);
+        pose.compile(space, (payload_wrench, &loads), &walk.tip_m, &needs);
         pose.contributions_align = pose.contributions_align();
         pose
     }
 
     /// Goes inward from the tip. The wrench of everything outboard is kept as a linear function of the
-    /// weights. `joints` are the joints of the chain by their pieces.
+    /// weights. `joints` are the joints of the chain by their pieces, and so are the `springs` that load them.
     fn compile(
         &mut self,
         space: &DesignSpace,
-        payload: Wrench,
+        (payload, springs): (Wrench, &[(usize, Wrench)]),
         tip_m: &Vector3<f64>,
         joints: &[(usize, JointNeeds)],
     ) {
@@ -102,6 +112,8 @@ impl Pose {
                 PosedPiece::Body(body) => {
                     self.inertia_about.push(None);
                     outboard.add_body(body, space);
+                    let pulls = springs.iter().filter(|(at, _)| *at == piece);
+                    outboard.fixed += pulls.map(|(_, load)| load).sum::<Wrench>();
                 }
                 PosedPiece::Tube(tube) => {
                     self.inertia_about.push(None);
@@ -117,11 +129,12 @@ impl Pose {
                         // tube.
                         let own = areas[end];
                         let mut row = outboard.row(piece, coordinate, &tube.ends[end], own, tip_m);
-                        row.fixed += bodies[end];
+                        row.fixed += bodies[end] + tube.pulls.end_forces[end];
                         self.rows.push(row);
                     }
                     let middle_m = tube.root_m + tube.frame * Vector3::x() * (tube.length_m / 2.0);
                     outboard.push(weight_wrench(1.0, &space.down, &middle_m), tube.rigid_forms());
+                    outboard.fixed += tube.pulls.wrench;
                     if let Some(bodies) = &tube.bodies {
                         outboard.fixed += bodies.weight;
                         outboard.fixed_inertia += bodies.rigid;
@@ -165,13 +178,13 @@ impl Pose {
     }
 }
 
-/// One layer of the chain at its place in the pose. `None` for the springs of a gear's bearing, which are coordinates of
-/// its joint.
+/// One layer of the chain at its place in the pose: whether the bearing of a joint `tilts`, and what springs do to a tube.
+/// `None` for the springs of a gear's bearing, which are coordinates of its joint.
 fn posed(
     space: &DesignSpace,
     water: Option<Water>,
     layer: Layer,
-    tilts: bool,
+    (tilts, pulls): (bool, &[&EndLoad]),
     (at_m, rotation): &(Vector3<f64>, Rotation3<f64>),
 ) -> Option<PosedPiece> {
     let hinge = |axis: &Vector3<f64>, across: Option<[Vector3<f64>; 2]>| PosedPiece::Joint {
@@ -189,7 +202,9 @@ fn posed(
             body(mass_kg, at_m, Matrix3::zeros())
         }
         Layer::Bearing(_) => return None,
-        Layer::Bodies(Carried { by: Carrier::Tube, .. }) => PosedPiece::Body(Matrix6::zeros()),
+        Layer::Springs(_) | Layer::Bodies(Carried { by: Carrier::Tube, .. }) => {
+            PosedPiece::Body(Matrix6::zeros())
+        }
         Layer::Bodies(Carried { bodies, .. }) => {
             PosedPiece::Body(bodies_at(bodies, space, &(*at_m, *rotation)).0)
         }
@@ -203,12 +218,13 @@ fn posed(
             across: None,
         },
         Layer::Piece(SpacePiece::Choice(choice)) => {
-            posed_tube(space, water, &space.link_piece(&choice.first_link()), at_m, rotation.matrix(), true)
+            let link = space.link_piece(&choice.first_link());
+            posed_tube(space, water, (&link, pulls), (at_m, rotation.matrix()), true)
         }
         Layer::Piece(SpacePiece::Link(link)) => {
             let link = space.link_piece(link);
             if link.beam.is_some() && link.vector_m.norm() > 0.0 {
-                return Some(posed_tube(space, water, &link, at_m, rotation.matrix(), false));
+                return Some(posed_tube(space, water, (&link, pulls), (at_m, rotation.matrix()), false));
             }
             // A harness along a rigid offset is a slender rod.
             let vector_m = rotation * link.vector_m;
@@ -223,9 +239,8 @@ fn posed(
 fn posed_tube(
     space: &DesignSpace,
     water: Option<Water>,
-    link: &LinkPiece,
-    root_m: &Vector3<f64>,
-    rotation: &Matrix3<f64>,
+    (link, pulls): (&LinkPiece, &[&EndLoad]),
+    (root_m, rotation): (&Vector3<f64>, &Matrix3<f64>),
     chosen: bool,
 ) -> PosedPiece {
     let structure = space.structure_of(Vec::new());
@@ -249,6 +264,7 @@ fn posed_tube(
         added_kg_m3: water.map_or(0.0, |w| w.added_mass_coefficient * w.density_kg_m3),
         chosen,
         bodies: PosedBodies::new(space, link, &beam, (root_m, rotation)).map(Box::new),
+        pulls: Pulls::new(&beam, (root_m, &frame), pulls),
     }))
 }
 
@@ -280,6 +296,22 @@ impl PosedBodies {
             }
         }
         Some(out)
+    }
+}
+
+impl Pulls {
+    /// What springs do to a tube whose root and section frame are known.
+    fn new(beam: &PreparedBeam, (root_m, frame): (&Vector3<f64>, &Matrix3<f64>), loads: &[&EndLoad]) -> Self {
+        let mut out = Self::default();
+        for load in loads {
+            out.wrench += wrench_of(load);
+            let (xi, local) = pull_on(beam.length_m, root_m, frame, load);
+            let fields = beam.fields(xi);
+            for (force, coordinate) in out.end_forces.iter_mut().zip(ENDS) {
+                *force += fields.column(6 + coordinate).dot(&local);
+            }
+        }
+        out
     }
 }
 

@@ -38,6 +38,7 @@ pub(crate) mod incumbents;
 pub(crate) mod interval;
 pub(crate) mod intervals;
 pub(crate) mod joint_play;
+pub(crate) mod journal;
 pub(crate) mod judge;
 pub(crate) mod kinds;
 pub(crate) mod lagrangian;
@@ -67,4 +68,4 @@ pub(crate) mod work;
 
 pub use domain_reduction::DomainReduction;
 pub use live::Known;
-pub use run::{Exact, ExactOutcome, VAST};
+pub use run::{Exact, ExactOutcome, VAST, WORKER_STACK_BYTES};

@@ -99,6 +99,8 @@ pub(super) struct PosedTube {
     pub chosen: bool,
     /// The bodies on the tube; `None` if there are none.
     pub bodies: Option<Box<PosedBodies>>,
+    /// What springs do to the tube.
+    pub pulls: Pulls,
 }
 
 /// Given bodies on a tube, each of which moves with a point of the axis.
@@ -109,6 +111,15 @@ pub(super) struct PosedBodies {
     pub rigid: Matrix6<f64>,
     pub weight: Wrench,
     /// Force of the weight on each of the coordinates [`ENDS`].
+    pub end_forces: [f64; 8],
+}
+
+/// What springs do to a tube.
+#[derive(Default)]
+pub(super) struct Pulls {
+    /// Force and moment about the world's origin.
+    pub wrench: Wrench,
+    /// Force on each of the coordinates [`ENDS`].
     pub end_forces: [f64; 8],
 }
 

@@ -6,6 +6,7 @@
 
 pub use super::lines::LineCounter;
 
+use super::key::Shape;
 use super::names::visible;
 use super::path::join;
 use serde_json::{Map, Value};
@@ -221,7 +222,13 @@ impl<'a> Node<'a> {
         None
     }
 
-    /// This node as an object. Keys that are not among `known` are faults.
+    /// This node as an object of a shape. Keys that the shape does not have are faults.
+    pub fn shaped(&self, shape: &Shape) -> Option<Object<'a>> {
+        self.object(&shape.names())
+    }
+
+    /// This node as an object. Keys that are not among `known` are faults. Objects of files are read by
+    /// [`Node::shaped`], so that their keys are in the schema too.
     pub fn object(&self, known: &[&str]) -> Option<Object<'a>> {
         let Value::Object(map) = self.value else {
             return self.fault(format!("is {}, not an object", kind(self.value)), "write { ... }");

@@ -3,9 +3,13 @@
 pub(crate) mod csv;
 pub(crate) mod duplicates;
 pub(crate) mod json;
+pub(crate) mod key;
 pub(crate) mod lines;
 pub(crate) mod names;
 pub(crate) mod path;
+pub(crate) mod schema;
 pub(crate) mod texts;
 
 pub use json::*;
+pub use key::{Key, Kind, Rule, Shape};
+pub use schema::FileKind;

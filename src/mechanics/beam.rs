@@ -19,6 +19,7 @@
 use super::{Wrench, body_inertia, force_wrench, stack};
 use crate::arm::LinkModel;
 use crate::arm::body::RigidBody;
+use crate::arm::springs::EndLoad;
 use crate::arm::structure::{Beam, LinkPiece, Structure};
 use nalgebra::{DMatrix, Matrix3, Matrix3xX, Matrix6xX, SMatrix, Vector3};
 
@@ -248,6 +249,21 @@ impl PreparedBeam {
         self.area_fields = areas;
         self.bodies.fields = Matrix3xX::zeros(n - 6);
     }
+}
+
+/// Where along the axis of a link a spring pulls (0 to 1), and its force and moment about that point in the section frame.
+/// The root is at `root_m`, and `frame` is the section frame in the world.
+pub(crate) fn pull_on(
+    length_m: f64,
+    root_m: &Vector3<f64>,
+    frame: &Matrix3<f64>,
+    load: &EndLoad,
+) -> (f64, Wrench) {
+    let at_m = frame.tr_mul(&(load.at_m - root_m));
+    let xi = (at_m.x / length_m).clamp(0.0, 1.0);
+    let arm_m = at_m - Vector3::x() * (xi * length_m);
+    let force_n = frame.tr_mul(&load.force_n);
+    (xi, stack(&force_n, &(frame.tr_mul(&load.moment_nm) + arm_m.cross(&force_n))))
 }
 
 /// Slope `L ∫P_i` and deflection `L² ∬P_i` at `xi`. Both are zero at the root. They follow from

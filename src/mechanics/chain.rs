@@ -2,7 +2,7 @@
 //!
 //! A posed arm is a list of elastic elements with their twists and of bodies with their inertia, from base to tip.
 
-use super::beam::PreparedBeam;
+use super::beam::{PreparedBeam, pull_on};
 use super::{Twist, Wrench, body_inertia, force_wrench, rotation_twist, stack};
 use crate::arm::LinkModel;
 use crate::arm::base_lift::BaseLift;
@@ -14,6 +14,7 @@ use crate::arm::load::Water;
 use crate::arm::load::{LoadCase, Payload};
 use crate::arm::pose::{DrivenJoint, pose_si};
 use crate::arm::prismatic::PrismaticPiece;
+use crate::arm::springs::{Drawn, ElementFrame, EndLoad, Side, Spring, end_loads};
 use crate::arm::structure::{FrameCompliance, JointPiece, LinkPiece, Piece, Structure};
 use nalgebra::{DMatrix, Matrix3, Matrix6, Matrix6xX, Rotation3, Vector3};
 
@@ -56,6 +57,7 @@ pub struct Chain {
     pub(super) pieces: Vec<Prepared>,
     linkages: Vec<Linkage>,
     driven: Vec<DrivenJoint>,
+    springs: Vec<Spring>,
 }
 
 /// A piece of the chain with everything that does not depend on the pose.
@@ -111,9 +113,9 @@ pub struct OwnMass {
     pub coupling: Matrix6xX<f64>,
     /// Generalized inertia between the coordinates.
     pub inner: DMatrix<f64>,
-    /// Weight as a wrench about the world's origin.
+    /// Weight, and what springs do along the link, as a wrench about the world's origin.
     pub weight: Wrench,
-    /// Work of the weight per unit of each coordinate.
+    /// Work of both per unit of each coordinate.
     pub weight_work: Vec<f64>,
 }
 
@@ -132,13 +134,15 @@ pub struct Body {
     pub down: Vector3<f64>,
 }
 
-/// An item of a posed arm. A body is moved by every element that comes before it.
+/// An item of a posed arm. Every element that comes before a body or a load moves it.
 #[derive(Debug, Clone)]
 pub enum Item {
     /// An elastic element.
     Elastic(ElasticElement),
     /// A rigid body.
     Body(Body),
+    /// Force and moment of springs about the world's origin.
+    Load(Wrench),
 }
 
 /// An arm in a pose under a load.
@@ -181,6 +185,7 @@ impl Chain {
             pieces,
             linkages: linkages(structure),
             driven: structure.driven_joints(),
+            springs: structure.springs.clone(),
         }
     }
 
@@ -199,24 +204,7 @@ impl Chain {
 
     /// Puts the arm into a pose given in radians (metres where a joint slides), with a payload and a force at the tip \[N\].
     pub fn pose_rad(&self, pose_rad: &[f64], payload: &Payload, tip_force_n: Vector3<f64>) -> Posed<'_> {
-        let mut walk = Walk {
-            items: Vec::new(),
-            at_m: Vector3::zeros(),
-            rotation: Rotation3::identity(),
-            gravity: (self.gravity_m_s2, self.down),
-        };
-        if self.base_tilt_rad_per_nm > 0.0 {
-            walk.tilt("base".into(), &[Vector3::x(), Vector3::y()], self.base_tilt_rad_per_nm);
-        }
-        walk.lift(self.base_lift);
-        walk.frame("base", &self.base_frame);
-        for (index, piece) in self.pieces.iter().enumerate() {
-            match piece {
-                Prepared::Joint(joint) => walk.joint(joint, joint.angle.of(pose_rad)),
-                Prepared::Prismatic(joint) => walk.prismatic(joint, pose_rad[joint.entry]),
-                Prepared::Link(link, beam) => walk.link(index, link, beam.as_ref()),
-            }
-        }
+        let mut walk = self.walk(pose_rad, self.spring_loads(pose_rad));
         // the payload is the last body, so every element moves it
         walk.items.push(Item::Body(self.payload_body(payload, &walk)));
         Posed {
@@ -227,6 +215,47 @@ impl Chain {
             tip_force_n,
             tip_moment_nm: Vector3::zeros(),
         }
+    }
+
+    /// Walks from base to tip. The springs load the arm on the way.
+    fn walk(&self, pose_rad: &[f64], springs: Vec<EndLoad>) -> Walk {
+        let mut walk = Walk {
+            items: Vec::new(),
+            at_m: Vector3::zeros(),
+            rotation: Rotation3::identity(),
+            gravity: (self.gravity_m_s2, self.down),
+            springs,
+            frames: Vec::with_capacity(self.pieces.len()),
+        };
+        if self.base_tilt_rad_per_nm > 0.0 {
+            walk.tilt("base".into(), &[Vector3::x(), Vector3::y()], self.base_tilt_rad_per_nm);
+        }
+        walk.lift(self.base_lift);
+        walk.frame("base", &self.base_frame);
+        walk.load(Side::Base);
+        for (index, piece) in self.pieces.iter().enumerate() {
+            match piece {
+                Prepared::Joint(joint) => walk.joint(index, joint, joint.angle.of(pose_rad)),
+                Prepared::Prismatic(joint) => walk.prismatic(index, joint, pose_rad[joint.entry]),
+                Prepared::Link(link, beam) => walk.link(index, link, beam.as_ref()),
+            }
+        }
+        walk
+    }
+
+    /// What the springs do to the arm in a pose. Where their ends are must be known before they load anything.
+    fn spring_loads(&self, pose_rad: &[f64]) -> Vec<EndLoad> {
+        match self.springs.is_empty() {
+            true => Vec::new(),
+            false => end_loads(&self.springs, &self.walk(pose_rad, Vec::new()).frames),
+        }
+    }
+
+    /// The springs in a pose given in radians, each with its name.
+    pub fn springs_in(&self, pose_rad: &[f64]) -> Vec<(&str, Drawn)> {
+        let frames = self.walk(pose_rad, Vec::new()).frames;
+        let drawn = |spring: &'_ Spring| spring.drawn(&frames);
+        self.springs.iter().filter_map(|spring| Some((spring.name.as_str(), drawn(spring)?))).collect()
     }
 
     /// The linkages, which turn the passive joints.
@@ -265,13 +294,18 @@ pub(super) struct Walk {
     pub(super) rotation: Rotation3<f64>,
     /// Acceleration of gravity \[m/s²\] and its direction.
     gravity: (f64, Vector3<f64>),
+    /// What the springs do to the arm.
+    springs: Vec<EndLoad>,
+    /// Where each piece is.
+    pub(super) frames: Vec<ElementFrame>,
 }
 
 impl Walk {
     /// Adds a joint. Its mass is inboard of its springs; the springs of its bearing come before its torsion.
-    fn joint(&mut self, joint: &JointPiece, angle_rad: f64) {
+    fn joint(&mut self, index: usize, joint: &JointPiece, angle_rad: f64) {
         self.point_mass(joint.mass_kg, self.at_m);
         self.bodies(&joint.bodies.fixed);
+        self.load(Side::Fixed(index));
         let axis = self.rotation * joint.axis;
         if joint.tilt_rad_per_nm > 0.0 {
             let across = across(&axis);
@@ -287,6 +321,9 @@ impl Walk {
         }));
         self.rotation *= Rotation3::from_axis_angle(&joint.axis, angle_rad);
         self.bodies(&joint.bodies.rotating);
+        self.load(Side::Moving(index));
+        let hinge = Some((axis.into_inner(), angle_rad));
+        self.frames.push(ElementFrame { at_m: self.at_m, rotation: self.rotation, hinge });
     }
 
     /// Adds a link, with the frame at its root.
@@ -301,7 +338,9 @@ impl Walk {
         // a tube has its bodies: each moves with a point of its axis
         if link.beam.is_none() {
             self.bodies(&link.bodies);
+            self.load(Side::Moving(piece));
         }
+        self.frames.push(ElementFrame { at_m: self.at_m, rotation: self.rotation, hinge: None });
         self.at_m = end_m;
     }
 
@@ -328,8 +367,27 @@ impl Walk {
             twists,
             yielding: Yielding::Linear(beam.compliances.clone()),
             torque_nm: 0.0,
-            own: Some(own_mass(piece, beam, &frame, &self.at_m, &self.gravity.1)),
+            own: Some(self.own_mass(piece, link, beam, &frame)),
         }
+    }
+
+    /// The distributed mass of a link with this section frame, and what the springs do along a tube.
+    fn own_mass(&self, piece: usize, link: &LinkPiece, beam: &PreparedBeam, frame: &Matrix3<f64>) -> OwnMass {
+        let mut own = own_mass(piece, beam, frame, &self.at_m, &self.gravity.1);
+        let on_tube = |load: &&EndLoad| link.beam.is_some() && load.on == Side::Moving(piece);
+        for load in self.springs.iter().filter(on_tube) {
+            own.weight += wrench_of(load);
+            let (xi, local) = pull_on(beam.length_m, &self.at_m, frame, load);
+            let work = beam.fields(xi).columns_range(6..).tr_mul(&local);
+            own.weight_work.iter_mut().zip(work.iter()).for_each(|(sum, work)| *sum += work);
+        }
+        own
+    }
+
+    /// Adds what the springs do to a part of the arm, if they load it.
+    pub(super) fn load(&mut self, on: Side) {
+        let loads = self.springs.iter().filter(|load| load.on == on);
+        self.items.extend(loads.map(|load| Item::Load(wrench_of(load))).collect::<Vec<_>>());
     }
 
     /// Adds two equal rotational springs about axes through the present place.
@@ -400,6 +458,11 @@ impl Walk {
             }));
         }
     }
+}
+
+/// What a spring does, as a wrench about the world's origin.
+pub(crate) fn wrench_of(load: &EndLoad) -> Wrench {
+    force_wrench(&load.force_n, &load.at_m) + stack(&Vector3::zeros(), &load.moment_nm)
 }
 
 /// Two unit vectors at right angles to `axis` and to each other.

@@ -33,13 +33,15 @@ pub(crate) struct CondensedLink {
     pub end_per_line_load: SMatrix<f64, 6, 3>,
     /// End coordinates under the weight of the bodies on the link, if it acts along each axis of the section.
     pub end_under_bodies: SMatrix<f64, 6, 3>,
+    /// End coordinates per force and moment about each point of the axis at which a spring pulls, in the section frame.
+    pub end_per_pull: Vec<Matrix6<f64>>,
     /// Sum of `1/λ` over the inner modes with root and end held \[s²\]. It is an upper bound of each `1/λ`.
     pub inner_trace_s2: f64,
 }
 
 impl CondensedLink {
-    /// Condenses a prepared link.
-    pub(crate) fn new(beam: &PreparedBeam) -> Self {
+    /// Condenses a prepared link, on which springs pull at these places (0 to 1) of its axis.
+    pub(crate) fn new(beam: &PreparedBeam, pulled_at: &[f64]) -> Self {
         let n = beam.compliances.len();
         let compliance = DMatrix::from_diagonal(&nalgebra::DVector::from_column_slice(&beam.compliances));
         let end_fields = DMatrix::from_iterator(6, n, beam.end_fields.iter().copied());
@@ -67,6 +69,7 @@ impl CondensedLink {
             end,
             end_per_line_load: SMatrix::from_iterator((spread.transpose() * areas).iter().copied()),
             end_under_bodies: SMatrix::from_iterator((spread.transpose() * bodies).iter().copied()),
+            end_per_pull: pulled_at.iter().map(|xi| end_per_pull(beam, &spread, *xi)).collect(),
             // rounding may make a trace of nothing negative
             inner_trace_s2: (&inner * inner_mass).trace().max(0.0),
         }
@@ -100,6 +103,13 @@ impl CondensedLink {
             inner_trace_s2: self.inner_trace_s2,
         }
     }
+}
+
+/// End coordinates per force and moment about a place of the axis. `spread` has the coordinates per end coordinate.
+fn end_per_pull(beam: &PreparedBeam, spread: &DMatrix<f64>, xi: f64) -> Matrix6<f64> {
+    let fields = beam.fields(xi).columns_range(6..).into_owned();
+    let per_end = fields * spread;
+    Matrix6::from_iterator(per_end.transpose().iter().copied())
 }
 
 /// A condensed link in a pose. Motions are twists about the world's origin.

@@ -32,6 +32,7 @@ impl Posed<'_> {
         for item in self.items.iter().rev() {
             match item {
                 Item::Body(body) => wrench += body.weight(),
+                Item::Load(load) => wrench += load,
                 Item::Elastic(element) => {
                     out.extend(linkages.iter().filter(|l| l.passive == element.name).map(|l| {
                         let twist = element.twists[0] * l.factor;

@@ -100,7 +100,7 @@ impl Posed<'_> {
     pub fn elements(&self) -> impl Iterator<Item = &ElasticElement> {
         self.items.iter().filter_map(|item| match item {
             Item::Elastic(element) => Some(element),
-            Item::Body(_) => None,
+            Item::Body(_) | Item::Load(_) => None,
         })
     }
 
@@ -114,6 +114,7 @@ impl Posed<'_> {
         for item in self.items.iter().rev() {
             match item {
                 Item::Body(body) => outboard += body.inertia(),
+                Item::Load(_) => {}
                 Item::Elastic(element) => {
                     let start = end - element.twists.len();
                     add_element(&mut mass, element, &outboard, start, &twists);
@@ -181,6 +182,7 @@ impl Posed<'_> {
         for item in &self.items {
             match item {
                 Item::Body(body) => energy.add_body(body, &motion),
+                Item::Load(_) => {}
                 Item::Elastic(element) => {
                     let rates: Vec<f64> = coordinate.by_ref().take(element.twists.len()).copied().collect();
                     if let Some(own) = &element.own {

@@ -9,6 +9,7 @@ use super::beam::section_frame;
 use super::chain::{ElasticElement, Item, Walk, Yielding};
 use super::{Wrench, angular, linear, rotation_twist, stack};
 use crate::arm::prismatic::{Moves, PrismaticPiece};
+use crate::arm::springs::{ElementFrame, Side};
 use nalgebra::{Matrix3, Vector3};
 
 /// What the guide of a prismatic joint carries, at the point of its springs.
@@ -38,7 +39,7 @@ pub(crate) fn guide_name(joint: &str) -> String {
 
 impl Walk {
     /// Adds a prismatic joint at a travel \[m\]: what stays, the springs of guide and drive, what travels.
-    pub(super) fn prismatic(&mut self, joint: &PrismaticPiece, travel_m: f64) {
+    pub(super) fn prismatic(&mut self, index: usize, joint: &PrismaticPiece, travel_m: f64) {
         self.point_mass(joint.fixed_mass_kg, self.at_m);
         self.bodies(&joint.bodies.fixed);
         let frame = self.rotation.matrix() * section_frame(&joint.axis);
@@ -61,6 +62,9 @@ impl Walk {
         self.at_m = moved_m;
         self.point_mass(joint.mass_kg, moved_m);
         self.bodies(&joint.bodies.rotating);
+        // a spring on the joint pulls at what travels
+        self.frames.push(ElementFrame { at_m: moved_m, rotation: self.rotation, hinge: None });
+        self.load(Side::Moving(index));
     }
 }
 

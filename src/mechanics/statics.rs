@@ -93,6 +93,7 @@ impl Posed<'_> {
         for item in self.items.iter().rev() {
             match item {
                 Item::Body(body) => wrench += body.weight(),
+                Item::Load(load) => wrench += load,
                 Item::Elastic(element) => self.yield_to(element, &transferred, &mut wrench, &mut out),
             }
         }

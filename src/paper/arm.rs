@@ -123,6 +123,7 @@ impl PaperArm {
             down: -Vector3::z(),
             chain,
             effects: Vec::new(),
+            springs: Vec::new(),
         }
     }
 

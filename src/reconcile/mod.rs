@@ -10,7 +10,7 @@
 //! - [`verdict`] holds the outcome, its files and its page, and says what to measure next.
 //! - `positions` does all of it for absolute positions, and [`records`] for records against time.
 //! - `analysis` draws the conclusion from displacements, frequencies and bench readings, `together` from
-//!   these and positions. [`predict`] writes the model's values next to readings.
+//!   these and positions. [`predict`] writes the model's values next to readings, [`predict_files`] reads the files for it.
 
 pub(crate) mod analysis;
 pub mod fit;
@@ -18,6 +18,7 @@ pub mod forward;
 pub mod model;
 pub(crate) mod positions;
 pub mod predict;
+pub mod predict_files;
 pub mod readings;
 pub mod records;
 pub(crate) mod select;

@@ -1,5 +1,6 @@
 //! Results for people and programs: numbers, tables, pictures, pages (CSV, JSON, SVG, HTML, terminal).
 
+pub mod analysis;
 pub(crate) mod braille;
 pub mod budget;
 pub mod caveats;
@@ -16,6 +17,7 @@ pub(crate) mod pose;
 pub(crate) mod resonance;
 pub(crate) mod section;
 pub(crate) mod small_displacement;
+pub(crate) mod springs;
 pub mod summary;
 pub(crate) mod supplement;
 pub mod svg;

@@ -18,6 +18,7 @@ use crate::space::problem::{ArmProblem, Partial, objectives_over};
 use crate::space::slot::Slot;
 use crate::space::station::{Station, StationSlot};
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// A catalog rating that scatters, with the name of its row.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -242,7 +243,7 @@ fn with_moduli(space: &DesignSpace, factors: &Factors) -> DesignSpace {
     for piece in &mut out.pieces {
         match piece {
             SpacePiece::Choice(choice) => {
-                for option in &mut choice.options {
+                for option in Arc::make_mut(&mut choice.options) {
                     option.material = option.material.stiffened(factor(&option.material_name));
                 }
             }

@@ -129,6 +129,7 @@ impl<'c> ArmProblem<'c> {
             down: space.down,
             chain: with_levers(chain),
             effects: space.effects.clone(),
+            springs: space.springs.clone(),
         })
     }
 

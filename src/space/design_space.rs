@@ -12,8 +12,9 @@ use crate::arm::load::Payload;
 use crate::arm::load::Water;
 use crate::arm::pose::{DrivenJoint, Motion};
 use crate::arm::section::{LinkMaterial, Section};
+use crate::arm::springs::{Side, Spring};
 use crate::arm::structure::Beam;
-use crate::arm::{JointModel, Link, LinkModel};
+use crate::arm::{JointModel, Link, LinkBody, LinkModel};
 use crate::catalog::gear::Gear;
 use crate::sizing::demand::JointMotion;
 use crate::sizing::drive::Drive;
@@ -22,6 +23,8 @@ use crate::sizing::requirement::MotionRequirement;
 use crate::sizing::select::DriveFilter;
 use crate::sizing::stated::StatedDuty;
 use nalgebra::{Unit, Vector3};
+use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// An arm with open choices, the cases in which it is judged, and the limits that every design must keep.
 ///
@@ -77,7 +80,7 @@ use nalgebra::{Unit, Vector3};
 ///         SpacePiece::Choice(LinkChoice {
 ///             name: "upper_arm".into(),
 ///             vector_m: Vector3::new(0.8, 0.0, 0.0),
-///             options: vec![tube(0.005), tube(0.010)],
+///             options: [tube(0.005), tube(0.010)].into(),
 ///             bodies: Vec::new(),
 ///             excerpt: None,
 ///         }),
@@ -97,6 +100,7 @@ use nalgebra::{Unit, Vector3};
 ///     joints: JointModel::ThreeSegment,
 ///     constraints: Constraints::default(),
 ///     effects: Vec::new(),
+///     springs: Vec::new(),
 /// };
 /// assert_eq!(space.link_options(), 2);
 /// let catalogs = Catalogs::builtin();
@@ -132,6 +136,8 @@ pub struct DesignSpace {
     pub constraints: Constraints,
     /// Physics beyond the nominal model. Effects that describe a test are left out of every calculation.
     pub effects: Vec<Effect>,
+    /// Springs that balance every design; their elements are numbered as the pieces are.
+    pub springs: Vec<Spring>,
 }
 
 /// One case of a study: a pose, a load, and what is around the arm.
@@ -172,6 +178,22 @@ impl SpacePiece {
             Self::Prismatic(slide) => &slide.joint.name,
             Self::Link(link) => &link.name,
             Self::Choice(choice) => &choice.name,
+        }
+    }
+
+    /// The choices of a link; `None` for a piece that leaves no section open.
+    pub(crate) fn as_choice(&self) -> Option<&LinkChoice> {
+        match self {
+            Self::Choice(choice) => Some(choice),
+            _ => None,
+        }
+    }
+
+    /// The choices of a link, to be changed; `None` for a piece that leaves no section open.
+    pub(crate) fn as_choice_mut(&mut self) -> Option<&mut LinkChoice> {
+        match self {
+            Self::Choice(choice) => Some(choice),
+            _ => None,
         }
     }
 }
@@ -236,8 +258,8 @@ pub struct LinkChoice {
     pub name: String,
     /// From root to end \[m\].
     pub vector_m: Vector3<f64>,
-    /// The materials and sections to choose from.
-    pub options: Vec<LinkOption>,
+    /// The materials and sections to choose from; shared, so that a copy of a space of many is cheap.
+    pub options: Arc<[LinkOption]>,
     /// Rigid bodies that the link carries, whichever tube it has.
     pub bodies: Vec<RigidBody>,
     /// The places of these options in the whole list; `None` if this is the whole list.
@@ -379,6 +401,32 @@ impl DesignSpace {
         self.joints().any(|(_, joint)| joint.coupled.is_some())
     }
 
+    /// What the bounds of the verifier and of the relaxation do not cover in this space, in words for people; `None` if they
+    /// cover all of it.
+    pub fn beyond_bounds(&self) -> Option<&'static str> {
+        match (self.has_linkages(), !self.springs.is_empty()) {
+            (true, true) => Some("coupled joints and springs"),
+            (true, false) => Some("coupled joints"),
+            (false, true) => Some("springs"),
+            (false, false) => None,
+        }
+    }
+
+    /// Whether a piece is a tube, or may be one.
+    pub(crate) fn is_tube(&self, piece: usize) -> bool {
+        match &self.pieces[piece] {
+            SpacePiece::Choice(_) => true,
+            SpacePiece::Link(link) => matches!(link.body, LinkBody::Tube { .. }),
+            SpacePiece::Joint(_) | SpacePiece::Prismatic(_) => false,
+        }
+    }
+
+    /// Whether a spring pulls on a tube.
+    pub(crate) fn pulls_on_tubes(&self) -> bool {
+        let on_tube = |side| matches!(side, Side::Moving(piece) if self.is_tube(piece));
+        self.springs.iter().flat_map(Spring::sides).any(on_tube)
+    }
+
     /// The joints with the numbers of their pieces, base to tip.
     pub(crate) fn joints(&self) -> impl Iterator<Item = (usize, &SpaceJoint)> {
         self.pieces.iter().enumerate().filter_map(|(piece, what)| match what {
@@ -453,18 +501,9 @@ impl DesignSpace {
 
     /// Names of the materials that links can be made of, in the study's order.
     pub fn material_names(&self) -> Vec<String> {
-        let mut names: Vec<(usize, &str)> = self
-            .pieces
-            .iter()
-            .filter_map(|p| match p {
-                SpacePiece::Choice(choice) => Some(&choice.options),
-                _ => None,
-            })
-            .flatten()
-            .map(|o| (o.material_index, o.material_name.as_str()))
-            .collect();
-        names.sort_unstable();
-        names.dedup();
+        let choices = self.pieces.iter().filter_map(SpacePiece::as_choice);
+        let options = choices.flat_map(|choice| choice.options.iter());
+        let names: BTreeSet<_> = options.map(|o| (o.material_index, o.material_name.as_str())).collect();
         names.into_iter().map(|(_, name)| name.to_string()).collect()
     }
 }

@@ -12,6 +12,7 @@ use crate::arm::effect::subject::Subject;
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::arm::joint_torque::JointTorque;
 use crate::arm::prismatic::{Moves, PrismaticPiece};
+use crate::arm::springs::{Side, SpringKind, SpringPlace};
 use crate::arm::structure::{JointAngle, JointPiece, LinkPiece, Piece, Structure, link_piece};
 use crate::arm::{Link, LinkBody};
 use crate::mechanics::beam::section_frame;
@@ -38,6 +39,8 @@ pub(crate) enum Layer<'s> {
     Extra(f64),
     /// Rigid bodies, which count in the mass of the design.
     Bodies(Carried<'s>),
+    /// What the springs that balance the arm do to a part of it.
+    Springs(Side),
 }
 
 /// Rigid bodies of a piece.
@@ -186,17 +189,20 @@ impl DesignSpace {
                     let is_tube = matches!(link.body, LinkBody::Tube { .. });
                     let by = if is_tube { Carrier::Tube } else { Carrier::Frame };
                     out.extend(carried(&link.bodies, by).map(|bodies| (index, bodies)));
+                    out.extend(self.pulled(index, Side::Moving(index)));
                     out.extend(self.root_springs(link).map(|tilt| (index, tilt)));
                     continue;
                 }
                 SpacePiece::Choice(choice) => {
                     out.push((index, Layer::Piece(piece)));
                     out.extend(carried(&choice.bodies, Carrier::Tube).map(|bodies| (index, bodies)));
+                    out.extend(self.pulled(index, Side::Moving(index)));
                     out.extend(self.root_springs(&choice.first_link()).map(|tilt| (index, tilt)));
                     continue;
                 }
             };
             out.extend(carried(&joint.bodies.rotating, Carrier::RotatedFrame).map(|bodies| (index, bodies)));
+            out.extend(self.pulled(index, Side::Moving(index)));
             let bearing = joint.bearing.stated();
             let affected = self.joint_piece(joint, Curve::Rigid, bearing);
             if joint.bearing_is_open() {
@@ -214,7 +220,9 @@ impl DesignSpace {
                 out.push((index, Layer::Mass(affected.mass_kg)));
             }
             out.extend(carried(&joint.bodies.fixed, Carrier::Frame).map(|bodies| (index, bodies)));
+            out.extend(self.pulled(index, Side::Fixed(index)));
         }
+        out.extend(self.pulled(0, Side::Base));
         let base = self.surroundings();
         let fixed = base.base_frame.springs().into_iter();
         out.extend(
@@ -227,7 +235,7 @@ impl DesignSpace {
 
     /// Adds the layers of a prismatic joint: what travels, drive and guide, what stays.
     fn add_prismatic<'s>(
-        &self,
+        &'s self,
         index: usize,
         piece: &'s SpacePiece,
         slide: &'s SpacePrismatic,
@@ -239,6 +247,7 @@ impl DesignSpace {
         if added_kg != 0.0 {
             out.push((index, Layer::Travelling(added_kg)));
         }
+        out.extend(self.pulled(index, Side::Moving(index)));
         out.push((index, Layer::Piece(piece)));
         let springs = affected.guide_rad_per_nm.iter().enumerate().filter(|(_, c)| **c > 0.0);
         out.extend(
@@ -259,6 +268,27 @@ impl DesignSpace {
     /// Way of a prismatic joint along its travel under a force, as a law of a coordinate \[m/N\].
     pub(crate) fn slide_law(&self, slide: &SpacePrismatic) -> JointLaw {
         linear_law(self.prismatic_piece(slide).m_per_n)
+    }
+
+    /// Where along a piece springs pull (0 to 1), in the order in which they load it; none if it is no tube.
+    pub(crate) fn pulled_at(&self, piece: usize) -> Vec<f64> {
+        let vector_m = match &self.pieces[piece] {
+            SpacePiece::Link(link) => link.vector_m,
+            SpacePiece::Choice(choice) => choice.vector_m,
+            SpacePiece::Joint(_) | SpacePiece::Prismatic(_) => return Vec::new(),
+        };
+        let ends = self.springs.iter().flat_map(|spring| match &spring.kind {
+            SpringKind::Line { ends, .. } => ends.to_vec(),
+            SpringKind::Torsion { .. } => Vec::new(),
+        });
+        let here = ends.filter(|end| end.on == SpringPlace::Element(piece));
+        here.map(|end| along(&vector_m, &end.point_m)).collect()
+    }
+
+    /// Layer of what springs do to a part of a piece; none if they do not load it.
+    fn pulled(&self, piece: usize, on: Side) -> Option<(usize, Layer<'_>)> {
+        let is_pulled = self.springs.iter().any(|spring| spring.sides().contains(&on));
+        is_pulled.then_some((piece, Layer::Springs(on)))
     }
 
     /// The springs of the frame at the root of a link.
@@ -364,4 +394,9 @@ fn nominal_joint(joint: &SpaceJoint, curve: Curve) -> JointPiece {
 fn tilts(axes: [About<'_>; 2], rad_per_nm: f64) -> impl Iterator<Item = Layer<'_>> {
     let present = axes.into_iter().filter(move |_| rad_per_nm > 0.0);
     present.map(move |about| Layer::Tilt(Tilt { about, rad_per_nm }))
+}
+
+/// Where along a link a point of its frame is nearest (0 to 1).
+pub(crate) fn along(vector_m: &Vector3<f64>, point_m: &Vector3<f64>) -> f64 {
+    (vector_m.dot(point_m) / vector_m.norm_squared()).clamp(0.0, 1.0)
 }

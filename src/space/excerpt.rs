@@ -11,6 +11,7 @@ use super::slot::{Slot, joint_slot};
 use super::station::reaches_m;
 use crate::catalog::Catalogs;
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 impl DesignSpace {
     /// Number of options of each level, tip first. It is found without tabulating the options of links.
@@ -90,19 +91,13 @@ impl DesignSpace {
 
     /// Numbers the materials that are left without gaps, in the order of the study.
     pub(crate) fn renumber_materials(&mut self) {
-        let options = |piece: &mut SpacePiece| match piece {
-            SpacePiece::Choice(choice) => std::mem::take(&mut choice.options),
-            _ => Vec::new(),
-        };
-        let mut taken: Vec<Vec<LinkOption>> = self.pieces.iter_mut().map(options).collect();
-        let used: BTreeSet<usize> = taken.iter().flatten().map(|o| o.material_index).collect();
+        let choices = self.pieces.iter().filter_map(SpacePiece::as_choice);
+        let used: BTreeSet<usize> =
+            choices.flat_map(|c| c.options.iter()).map(|o| o.material_index).collect();
         let place: Vec<usize> = used.into_iter().collect();
-        for option in taken.iter_mut().flatten() {
-            option.material_index = place.binary_search(&option.material_index).unwrap_or_default();
-        }
-        for (piece, taken) in self.pieces.iter_mut().zip(taken) {
-            if let SpacePiece::Choice(choice) = piece {
-                choice.options = taken;
+        for choice in self.pieces.iter_mut().filter_map(SpacePiece::as_choice_mut) {
+            for option in Arc::make_mut(&mut choice.options) {
+                option.material_index = place.binary_search(&option.material_index).unwrap_or_default();
             }
         }
     }

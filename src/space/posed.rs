@@ -5,18 +5,20 @@
 //! memory grows as options times cases.
 
 use super::design_space::{Case, DesignSpace, SpacePiece};
-use super::effects::{Carried, Layer};
+use super::effects::{Carried, Layer, along};
 use super::station::{
-    Block, BlockSlot, Modal, OnTube, Place, Station, StationJoint, StationLink, StationSlot, Turned, Walk,
-    bodies_at, payload_in, weight_wrench,
+    Block, BlockSlot, Modal, OnAxis, OnTube, Place, Station, StationJoint, StationLink, StationSlot, Turned,
+    Walk, bodies_at, payload_in, weight_wrench,
 };
 use crate::arm::body::RigidBody;
+use crate::arm::springs::{EndLoad, Side};
 use crate::arm::structure::{LinkPiece, Structure};
 use crate::arm::{Link, LinkModel};
-use crate::mechanics::beam::{PreparedBeam, section_frame};
+use crate::mechanics::beam::{PreparedBeam, pull_on, section_frame};
+use crate::mechanics::chain::wrench_of;
 use crate::mechanics::condensed::{CondensedLink, PlacedLink};
 use crate::mechanics::lowest::BlockLink;
-use crate::mechanics::{Twist, body_inertia, displacement_at, rotation_twist, stack};
+use crate::mechanics::{Twist, Wrench, body_inertia, displacement_at, rotation_twist, stack};
 use nalgebra::{Matrix3, Matrix3x6, Matrix6, SMatrix, SVector, Vector3};
 use rayon::prelude::*;
 
@@ -42,9 +44,10 @@ impl Station {
                 surroundings.push(of.structure.clone());
             }
         }
-        for (slot, (_, layer)) in layers.iter().enumerate() {
+        for (slot, (piece, layer)) in layers.iter().enumerate() {
+            let pulled_at = space.pulled_at(*piece);
             for structure in &surroundings {
-                for tubes in few_at_a_time(space, structure, layer) {
+                for tubes in few_at_a_time(space, structure, layer, &pulled_at) {
                     let alike = posed.iter_mut().filter(|of| of.structure == *structure);
                     alike.for_each(|of| of.add_options(slot, &tubes));
                 }
@@ -63,10 +66,10 @@ struct Tube {
 }
 
 impl Tube {
-    /// Condenses a link; `None` for a rigid offset without mass along it, or without length.
-    fn new(link: &LinkPiece, structure: &Structure, model: LinkModel) -> Option<Self> {
+    /// Condenses a link, on which springs pull at these places (0 to 1); `None` for a rigid offset without mass along it, or without length.
+    fn new(link: &LinkPiece, structure: &Structure, model: LinkModel, pulled_at: &[f64]) -> Option<Self> {
         let beam = PreparedBeam::new(link, structure, model)?;
-        let condensed = CondensedLink::new(&beam);
+        let condensed = CondensedLink::new(&beam, pulled_at);
         Some(Self { condensed, length_m: beam.length_m, weight_n_per_m: beam.weight_n_per_m })
     }
 }
@@ -76,6 +79,7 @@ fn few_at_a_time<'a>(
     space: &'a DesignSpace,
     structure: &'a Structure,
     layer: &'a Layer,
+    pulled_at: &'a [f64],
 ) -> impl Iterator<Item = Vec<Tube>> + 'a {
     let options = match layer {
         Layer::Piece(SpacePiece::Link(_)) => 1,
@@ -83,9 +87,12 @@ fn few_at_a_time<'a>(
         _ => 0,
     };
     let tube = move |option: usize| match layer {
-        Layer::Piece(SpacePiece::Link(link)) => Tube::new(&space.link_piece(link), structure, space.links),
+        Layer::Piece(SpacePiece::Link(link)) => {
+            Tube::new(&space.link_piece(link), structure, space.links, pulled_at)
+        }
         Layer::Piece(SpacePiece::Choice(choice)) => {
-            Tube::new(&space.link_piece(&choice.link(&choice.options[option])), structure, space.links)
+            let link = choice.link(&choice.options[option]);
+            Tube::new(&space.link_piece(&link), structure, space.links, pulled_at)
         }
         _ => None,
     };
@@ -108,11 +115,14 @@ impl Posed {
         let structure = Structure { water: case.water.or(around.water), ..around };
         let walk = Walk::new(space, case);
         let (start_wrench, start_inertia) = payload_in(space, case, structure.water, &walk);
+        let springs = walk.spring_loads(space);
         let mut slots: Vec<StationSlot> = layers
             .iter()
             .map(|(piece, layer)| {
                 let place = walk.place(*piece, layer);
-                Builder { space, structure: &structure, place, tip_m: &walk.tip_m }.build(layer)
+                let at =
+                    Builder { space, structure: &structure, place, tip_m: &walk.tip_m, springs: &springs };
+                at.build(*piece, layer)
             })
             .collect();
         link_up(space, layers, &mut slots);
@@ -144,7 +154,12 @@ impl Posed {
         };
         let placed: Vec<PlacedLink> = tubes.par_iter().map(placed).collect();
         let is_planar = matches!(self.station.modal, Modal::Planar(_));
-        let option = |(tube, placed)| station_link(tube, placed, place, (&self.tip_m, down), is_planar);
+        let option = |(tube, placed)| {
+            let mut link = station_link(tube, placed, place, (&self.tip_m, down), is_planar);
+            let pulls = tube.condensed.end_per_pull.iter().zip(&carried.pulls);
+            pulls.for_each(|(end, (_, pull))| link.own_weight_end += end * pull);
+            link
+        };
         options.par_extend(tubes.par_iter().zip(&placed).map(option));
         match &mut self.station.modal {
             Modal::Planar(blocks) => {
@@ -161,10 +176,12 @@ struct Builder<'a> {
     structure: &'a Structure,
     place: &'a (Vector3<f64>, nalgebra::Rotation3<f64>),
     tip_m: &'a Vector3<f64>,
+    /// What springs do to the arm in the pose.
+    springs: &'a [EndLoad],
 }
 
 impl Builder<'_> {
-    fn build(&self, layer: &Layer) -> StationSlot {
+    fn build(&self, piece: usize, layer: &Layer) -> StationSlot {
         let (at_m, rotation) = self.place;
         match layer {
             Layer::Tilt(tilt) => self.hinge(&tilt.axis(rotation)),
@@ -182,9 +199,13 @@ impl Builder<'_> {
                 let along = rotation * slide.joint.axis.into_inner();
                 self.spring(stack(&along, &Vector3::zeros()))
             }
-            Layer::Piece(SpacePiece::Link(link)) => self.link(link),
+            Layer::Springs(side) => {
+                let weight = self.springs_on(*side).map(wrench_of).sum();
+                StationSlot::Body { inertia: Matrix6::zeros(), weight }
+            }
+            Layer::Piece(SpacePiece::Link(link)) => self.link(piece, link),
             Layer::Piece(SpacePiece::Choice(choice)) => {
-                self.tube(&choice.vector_m, &choice.bodies, choice.options.len())
+                self.tube(piece, (&choice.vector_m, &choice.bodies), choice.options.len())
             }
         }
     }
@@ -219,13 +240,13 @@ impl Builder<'_> {
     }
 
     /// A given tube, or a rigid offset with its point mass and the harness along it.
-    fn link(&self, link: &Link) -> StationSlot {
+    fn link(&self, number: usize, link: &Link) -> StationSlot {
         let (at_m, rotation) = self.place;
         let piece = self.space.link_piece(link);
         let point = self.body(piece.point_mass_kg, &(at_m + rotation * link.vector_m / 2.0));
-        let Some(tube) = Tube::new(&piece, self.structure, self.space.links) else { return point };
+        let Some(tube) = Tube::new(&piece, self.structure, self.space.links, &[]) else { return point };
         if piece.beam.is_some() {
-            return self.tube(&link.vector_m, &link.bodies, 1);
+            return self.tube(number, (&link.vector_m, &link.bodies), 1);
         }
         let StationSlot::Body { inertia, weight } = point else { return point };
         // a harness on a rigid offset has mass and no compliance, so both together are one rigid body
@@ -236,13 +257,36 @@ impl Builder<'_> {
         StationSlot::Body { inertia: inertia + along.inertia, weight: weight + along.weight }
     }
 
-    /// A tube with room for its options.
-    fn tube(&self, vector_m: &Vector3<f64>, bodies: &[RigidBody], options: usize) -> StationSlot {
+    /// A tube with room for its options: its vector and its bodies.
+    fn tube(
+        &self,
+        piece: usize,
+        (vector_m, bodies): (&Vector3<f64>, &[RigidBody]),
+        options: usize,
+    ) -> StationSlot {
         let of = |bodies| bodies_at(bodies, self.space, self.place);
         let is_symmetric = bodies.chunks(1).all(|body| uncoupled(&of(body).0));
         let (inertia, weight) = of(bodies);
-        let carried = OnTube { inertia, weight, is_symmetric };
-        StationSlot::Link { options: Vec::with_capacity(options), place: self.place_of(vector_m), carried }
+        let place = self.place_of(vector_m);
+        let pulls: Vec<&EndLoad> = self.springs_on(Side::Moving(piece)).collect();
+        let on_axis = |load: &&EndLoad| pull_on(vector_m.norm(), &place.root_m, &place.frame, load);
+        let hung = bodies
+            .iter()
+            .map(|body| OnAxis { xi: along(vector_m, &body.cg_m), wrench: of(std::slice::from_ref(body)).1 });
+        let pulled = pulls.iter().map(|load| OnAxis { xi: on_axis(load).0, wrench: wrench_of(load) });
+        let carried = OnTube {
+            inertia,
+            weight: weight + pulls.iter().map(|load| wrench_of(load)).sum::<Wrench>(),
+            is_symmetric,
+            loads: hung.chain(pulled).collect(),
+            pulls: pulls.iter().map(on_axis).collect(),
+        };
+        StationSlot::Link { options: Vec::with_capacity(options), place, carried }
+    }
+
+    /// What springs do to a part of the arm.
+    fn springs_on(&self, side: Side) -> impl Iterator<Item = &EndLoad> {
+        self.springs.iter().filter(move |load| load.on == side)
     }
 
     fn place_of(&self, vector_m: &Vector3<f64>) -> Place {

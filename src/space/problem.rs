@@ -118,7 +118,7 @@ impl<'c> ArmProblem<'c> {
                 Layer::Tilt(tilt) => Slot::Given { law: tilt.law(), mass_kg: 0.0 },
                 Layer::Guide(spring) => Slot::Given { law: spring.law(), mass_kg: 0.0 },
                 // the station has its weight and inertia; the mass of a design is that of its links and drives alone
-                Layer::Mass(_) | Layer::Travelling(_) => Slot::Offset { mass_kg: 0.0 },
+                Layer::Mass(_) | Layer::Travelling(_) | Layer::Springs(_) => Slot::Offset { mass_kg: 0.0 },
             });
         }
         let level_slots: Vec<usize> = (0..slots.len()).filter(|&i| slots[i].is_level()).collect();
@@ -443,10 +443,16 @@ impl<'c> ArmProblem<'c> {
             let Some(stress) = &link.stress else { continue };
             // in a sizing case the arm accelerates; in the other cases it stands still
             let factor = if self.space.sizing_cases.contains(&case) { self.peak_factor } else { 1.0 };
-            // between the ends only the weight of the link and its bodies changes force and moment: the ends are checked
+            // between the ends only the weight of the link, its bodies and springs change force and moment: the ends are
+            // checked, and the places where springs pull
             let at_root = state.wrench + carried.weight;
             for (wrench, at_m) in [(&outboard, &place.end_m), (&at_root, &place.root_m)] {
                 to.stress_ratio = to.stress_ratio.max(stress.ratio(wrench, at_m, place) * factor);
+            }
+            for (at_m, loads) in carried.at_pulls(place, &outboard, &options[option as usize].weight) {
+                for wrench in &loads {
+                    to.stress_ratio = to.stress_ratio.max(stress.ratio(wrench, &at_m, place) * factor);
+                }
             }
         }
         self.space.constraints.stress_safety_factor_min.is_none_or(|least| to.stress_ratio * least <= 1.0)

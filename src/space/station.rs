@@ -12,6 +12,7 @@ use super::design_space::{Case, DesignSpace, SpacePiece};
 use super::effects::Layer;
 use crate::arm::body::RigidBody;
 use crate::arm::load::Water;
+use crate::arm::springs::{ElementFrame, EndLoad, end_loads};
 use crate::mechanics::lowest::BlockLink;
 use crate::mechanics::{Twist, Wrench, angular, body_inertia, force_wrench, linear, stack};
 use nalgebra::{Matrix3, Matrix3x6, Matrix6, Rotation3, SMatrix, SVector, Vector3, Vector6};
@@ -40,13 +41,47 @@ pub(crate) enum StationSlot {
     Link { options: Vec<StationLink>, place: Place, carried: OnTube },
 }
 
-/// The bodies on a tube in a pose, as they are if the tube does not yield. They have a slot of their own inboard of the
-/// tube; what they add to the bending of the tube is in its options.
+/// The bodies on a tube in a pose and what springs do to it, as they are if the tube does not yield. They have slots of their
+/// own inboard of the tube; what they add to the bending of the tube is in its options.
 pub(crate) struct OnTube {
     pub inertia: Matrix6<f64>,
     pub weight: Wrench,
     /// Whether every body is symmetric about the x-z plane.
     pub is_symmetric: bool,
+    /// The weight of each body and the pull of each spring.
+    pub loads: Vec<OnAxis>,
+    /// Where springs pull, and their force and moment about that place of the axis in the section frame.
+    pub pulls: Vec<(f64, Wrench)>,
+}
+
+/// What acts on a tube at a place of its axis.
+pub(crate) struct OnAxis {
+    /// The place, 0 at the root and 1 at the end.
+    pub xi: f64,
+    /// Force and moment about the world's origin.
+    pub wrench: Wrench,
+}
+
+impl OnTube {
+    /// Where springs pull on the tube, and the load of everything outboard of that place about the world's origin: without
+    /// and with what acts there. `outboard` is the load on the end of the tube, `own` its own weight.
+    pub(crate) fn at_pulls(
+        &self,
+        place: &Place,
+        outboard: &Wrench,
+        own: &Wrench,
+    ) -> impl Iterator<Item = (Vector3<f64>, [Wrench; 2])> {
+        let along_m = place.end_m - place.root_m;
+        self.pulls.iter().map(move |(xi, _)| {
+            let middle_m = place.root_m + along_m * ((1.0 + xi) / 2.0);
+            let beyond = outboard + force_wrench(&(linear(own) * (1.0 - xi)), &middle_m);
+            let sum = |acts: fn(f64, f64) -> bool| {
+                self.loads.iter().filter(|load| acts(load.xi, *xi)).map(|load| load.wrench).sum::<Wrench>()
+            };
+            let loads = [beyond + sum(|load, here| load > here), beyond + sum(|load, here| load >= here)];
+            (place.root_m + along_m * *xi, loads)
+        })
+    }
 }
 
 /// A joint in a pose.
@@ -189,12 +224,15 @@ pub(crate) struct Walk {
     pub(crate) places: Vec<(Vector3<f64>, Rotation3<f64>)>,
     pub(crate) tip_m: Vector3<f64>,
     pub(crate) tip_rotation: Rotation3<f64>,
+    /// Angle of every joint, base to tip \[rad\].
+    angles_rad: Vec<f64>,
 }
 
 impl Walk {
     /// Forward kinematics of a case, base to tip.
     pub(crate) fn new(space: &DesignSpace, case: &Case) -> Self {
-        let mut angles = space.angles_rad(case).into_iter();
+        let angles_rad = space.angles_rad(case);
+        let mut angles = angles_rad.iter().copied();
         let mut travels = space.travels_m(case).into_iter();
         let (mut at_m, mut rotation) = (Vector3::zeros(), Rotation3::identity());
         let mut places = Vec::with_capacity(space.pieces.len());
@@ -212,11 +250,36 @@ impl Walk {
             }
         }
         places.push((at_m, rotation));
-        Self { places, tip_m: at_m, tip_rotation: rotation }
+        Self { places, tip_m: at_m, tip_rotation: rotation, angles_rad }
     }
 }
 
 impl Walk {
+    /// What springs do to the arm in the pose.
+    pub(crate) fn spring_loads(&self, space: &DesignSpace) -> Vec<EndLoad> {
+        if space.springs.is_empty() {
+            return Vec::new();
+        }
+        let mut angles = self.angles_rad.iter();
+        let frame = |(index, piece): (usize, &SpacePiece)| {
+            let (at_m, rotation) = self.places[index];
+            match piece {
+                SpacePiece::Joint(joint) => {
+                    let angle_rad = angles.next().copied().unwrap_or_default();
+                    let axis = (rotation * joint.axis).into_inner();
+                    ElementFrame { at_m, rotation: self.places[index + 1].1, hinge: Some((axis, angle_rad)) }
+                }
+                // a spring on a prismatic joint pulls at what travels
+                SpacePiece::Prismatic(_) => {
+                    ElementFrame { at_m: self.places[index + 1].0, rotation, hinge: None }
+                }
+                _ => ElementFrame { at_m, rotation, hinge: None },
+            }
+        };
+        let frames: Vec<ElementFrame> = space.pieces.iter().enumerate().map(frame).collect();
+        end_loads(&space.springs, &frames)
+    }
+
     /// The place and attitude in which a layer of a piece stands.
     pub(crate) fn place(&self, piece: usize, layer: &Layer) -> &(Vector3<f64>, Rotation3<f64>) {
         &self.places[piece + usize::from(layer.is_at_end())]

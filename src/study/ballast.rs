@@ -53,8 +53,8 @@ const COLUMNS: [&str; 13] = [
 
 /// Flags the designs of a front that have a heavy part only for its weight.
 pub fn ballast_flags(problem: &ArmProblem, front: &Front) -> BallastFlags {
-    // the weight that a linkage carries past a joint is not known here
-    if problem.space().has_linkages() {
+    // what a linkage carries past a joint is not known here, and weight may relieve a joint against its spring
+    if problem.space().beyond_bounds().is_some() {
         return BallastFlags { flagged: Vec::new(), front: front.len() };
     }
     let flag = |judged: &Judged| flagged(problem, judged, &problem.ballast(judged.design.number)?);

@@ -29,13 +29,13 @@ impl MassBounds<'_> {
     /// whole space. `None` if it cannot be computed.
     pub(super) fn below(&self, known: u128, objectives: &Objectives) -> Option<MassBound> {
         match self {
-            // the relaxation does not know linkages
-            Self::Tabulated(problem, _) if problem.space().has_linkages() => None,
+            // the relaxation knows neither linkages nor springs
+            Self::Tabulated(problem, _) if problem.space().beyond_bounds().is_some() => None,
             Self::Tabulated(problem, relaxation) => bound(problem, relaxation, known, objectives),
             Self::InReach { space, catalogs, reach } => {
                 let options = reach.as_ref()?.options_as_good(objectives)?;
                 let space = space.of_options(&options)?;
-                if !Self::can_tabulate(&space) {
+                if !Self::can_tabulate(&space) || space.beyond_bounds().is_some() {
                     return None;
                 }
                 let problem = ArmProblem::new(&space, catalogs);

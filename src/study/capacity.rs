@@ -4,10 +4,14 @@
 //! of a link fails. The checks are those of sizing: in all poses together the largest static torque and the largest inertia
 //! count, which may come from different poses.
 
+use super::chosen::{chosen_design, why_not_held};
+use super::definition::Study;
+use super::refusal::Refusal;
 use crate::catalog::Catalogs;
 use crate::space::design_space::{DesignSpace, SpacePiece};
 use crate::space::problem::ArmProblem;
 use crate::space::station::Walk;
+use serde_json::{Value, json};
 
 /// Payload beyond which nothing is looked for \[kg\].
 const MOST_KG: f64 = 1e6;
@@ -16,7 +20,7 @@ const TOLERANCE: f64 = 1e-10;
 
 /// What ends the payload.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Limit {
+pub struct Limit {
     /// The largest payload that holds \[kg\]; infinite if nothing limits it.
     pub payload_kg: f64,
     /// The joint or link that fails beyond it; empty if nothing does.
@@ -27,7 +31,7 @@ pub(crate) struct Limit {
 
 /// The largest payload in one pose.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct AtPose {
+pub struct AtPose {
     /// Name of the pose.
     pub pose: String,
     /// Distance of the tip from the origin, in the plane across gravity \[m\].
@@ -38,13 +42,47 @@ pub(crate) struct AtPose {
 
 /// The largest payload of an arm.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Capacity {
+pub struct Capacity {
     /// The largest payload that holds in all poses together.
     pub limit: Limit,
     /// The pose that allows least by itself.
     pub pose: String,
     /// Each sizing pose by itself, the shortest reach first.
     pub table: Vec<AtPose>,
+}
+
+impl Limit {
+    /// The payload in JSON; null if nothing limits it.
+    fn payload_json(&self) -> Value {
+        if self.payload_kg.is_finite() { json!(self.payload_kg) } else { Value::Null }
+    }
+}
+
+impl Capacity {
+    /// The capacity as `armwright capacity --json` prints it.
+    pub fn to_json(&self) -> Value {
+        let rows: Vec<Value> = self
+            .table
+            .iter()
+            .map(|at| {
+                json!({"reach_m": at.reach_m, "payload_kg": at.limit.payload_json(), "pose": at.pose,
+                "joint": at.limit.piece, "check": at.limit.check})
+            })
+            .collect();
+        json!({"payload_kg": self.limit.payload_json(), "pose": self.pose, "joint": self.limit.piece,
+        "check": self.limit.check, "table": rows})
+    }
+}
+
+/// The capacity of a design of a study, by its `design_id`; without one, of links of median mass and the lightest drives.
+///
+/// # Errors
+/// The study has no such design, or its drives do not hold the study's own payload.
+pub fn capacity_of(study: &Study, id: Option<&str>, catalogs: &Catalogs) -> Result<Capacity, Refusal> {
+    let (space, chosen) = chosen_design(study, id, catalogs)?;
+    let problem = ArmProblem::new(&space, catalogs);
+    let arm = problem.walk(&chosen, |_, _| {}).map_err(|slot| why_not_held(&problem, &chosen, slot))?;
+    Ok(capacity(&space, catalogs, arm.slot_options()))
 }
 
 /// The capacity of the design with these options, one for each slot of the arm, tip first. `space` has its links.

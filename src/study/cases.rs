@@ -1,5 +1,6 @@
 //! Reads the cases of a study: its poses with their loads, each in every environment.
 
+use super::keys::{ENVIRONMENT, POSE};
 use crate::arm::load::{Payload, Water, vector};
 use crate::arm::pose::{DrivenJoint, read_pose};
 use crate::input::json::{Node, Object};
@@ -82,7 +83,7 @@ fn read_environments(node: &Node) -> Option<Vec<Environment>> {
     let read: Vec<_> = items
         .iter()
         .map(|n| {
-            let object = n.object(&["name", "water"])?;
+            let object = n.shaped(&ENVIRONMENT)?;
             let name = object.required("name").and_then(|n| n.string().map(String::from));
             let water = object.or("water", None, |n| Water::read(n).map(Some));
             Some(Environment { name: name?, water: water? })
@@ -99,16 +100,7 @@ struct Load {
 }
 
 fn read_case(node: &Node, joints: &[DrivenJoint], usual: &Load) -> Option<ReadCase> {
-    let object = node.object(&[
-        "name",
-        "pose_deg",
-        "pose",
-        "payload",
-        "tip_force_n",
-        "tip_moment_nm",
-        "sizing",
-        "judged",
-    ])?;
+    let object = node.shaped(&POSE)?;
     let name = object.or("name", node.path().to_string(), |n| n.string().map(String::from));
     let pose_deg = read_pose(&object, joints);
     let payload = object.or("payload", usual.payload, Payload::read);

@@ -1,10 +1,11 @@
 //! Materials that creep: said wherever a study has links of them.
 
-use crate::arm::LinkBody;
+use crate::arm::pieces::{factors_sentence, without_factors};
+use crate::arm::{Link, LinkBody};
 use crate::catalog::Catalogs;
 use crate::space::design_space::{DesignSpace, SpacePiece};
 
-/// A sentence for each material of a link, given or to choose, that creeps.
+/// A sentence for each material of a link, given or to choose, that creeps, and one for stated factors.
 pub(super) fn creep_remarks(space: &DesignSpace, catalogs: &Catalogs) -> Vec<String> {
     let mut links_of: Vec<(&str, Vec<&str>)> = Vec::new();
     let mut add = |material, link| match links_of.iter_mut().find(|(known, _)| *known == material) {
@@ -27,11 +28,19 @@ pub(super) fn creep_remarks(space: &DesignSpace, catalogs: &Catalogs) -> Vec<Str
     }
     let sentence =
         |(material, links): (&str, Vec<&str>)| creep_sentence(catalogs, material, &links.join(", "));
-    links_of.into_iter().filter_map(sentence).collect()
+    let given = space.pieces.iter().filter_map(|piece| match piece {
+        SpacePiece::Link(Link { name, body: LinkBody::Tube { material_name, .. }, .. }) => {
+            Some((material_name.as_str(), name.as_str()))
+        }
+        _ => None,
+    });
+    let factors = factors_sentence(given);
+    links_of.into_iter().filter_map(sentence).chain(factors).collect()
 }
 
 /// What is said of a material of links that creeps; `None` if it does not, or is not of the catalogs.
 pub(crate) fn creep_sentence(catalogs: &Catalogs, material: &str, links: &str) -> Option<String> {
+    let material = without_factors(material);
     let row = catalogs.materials.iter().find(|row| row.name == material)?;
     row.class.caution().map(|caution| {
         format!(

@@ -1,5 +1,6 @@
 //! Reads `"drives"`: the parts among which the joints of a study are sized.
 
+use super::keys::DRIVES;
 use super::motor_kinds::{read_motor_kinds, usual_motor_kinds};
 use crate::arm::bearing::BearingSource;
 use crate::arm::extras::ExtrasSource;
@@ -32,16 +33,7 @@ impl Default for Drives {
 const GEAR_KEYS: [&str; 4] = ["gear_series", "gears", "gear_kinds", "ratios"];
 
 pub(super) fn read_drives(node: &Node, catalogs: &Catalogs) -> Option<Drives> {
-    let object = node.object(&[
-        "gear_series",
-        "gears",
-        "gear_kinds",
-        "ratios",
-        "gear_mass",
-        "actuators",
-        "motors",
-        "motor_models",
-    ])?;
+    let object = node.shaped(&DRIVES)?;
     let gear_mass = object.or("gear_mass", GearMass::HousedUnit, read_gear_mass);
     let gears: Vec<&Gear> = catalogs.gears.iter().filter(|g| g.kind != GearKind::Actuator).collect();
     let motors = catalogs.motors.iter().filter(|m| m.kind != MotorKind::OfActuator);

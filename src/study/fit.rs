@@ -1,5 +1,6 @@
 //! What a study asks of the sizes of parts, and what it says of that beside its results.
 
+use super::keys::FIT;
 use crate::catalog::Catalogs;
 use crate::input::json::{Node, Object};
 use crate::report::number::significant;
@@ -17,7 +18,7 @@ pub(super) fn read_fit(object: &Object, usual: FitRequirement) -> Option<FitRequ
 }
 
 fn read_requirement(node: &Node, usual: FitRequirement) -> Option<FitRequirement> {
-    let object = node.object(&["gear_to_link_max", "motor", "cable_bore_min_mm", "drive_length_max_mm"])?;
+    let object = node.shaped(&FIT)?;
     let number =
         |key: &str, usual: Option<f64>, per_unit: f64| {
             object.or(key, usual, |n| {

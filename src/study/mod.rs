@@ -1,6 +1,7 @@
 //! Named questions: read, resolve, run.
 
 pub(crate) mod alternatives;
+mod balance;
 pub(crate) mod ballast;
 pub(crate) mod bearing_remarks;
 pub(crate) mod bodies;
@@ -9,6 +10,7 @@ pub(crate) mod budget;
 pub(crate) mod capacity;
 pub(crate) mod cases;
 pub(crate) mod check;
+pub(crate) mod chosen;
 mod connections;
 pub(crate) mod creep;
 pub(crate) mod definition;
@@ -18,8 +20,10 @@ pub(crate) mod effects;
 mod fit;
 mod harness;
 pub(crate) mod joint_obstacle;
+pub(crate) mod keys;
 mod limit;
 mod linkages;
+pub(crate) mod load;
 pub(crate) mod motion;
 mod motor_kinds;
 pub(crate) mod named;
@@ -32,9 +36,11 @@ pub(crate) mod pose_search;
 pub mod question;
 pub(crate) mod range;
 pub(crate) mod read;
+pub(crate) mod refusal;
 mod relaxed_limits;
 pub(crate) mod same_drives;
 pub(crate) mod search_cost;
+pub(crate) mod search_method;
 pub(crate) mod sections;
 pub(crate) mod shards;
 pub(crate) mod table;
@@ -44,20 +50,25 @@ pub(crate) mod worst_pose;
 
 pub use ballast::{BallastFlags, ballast_flags};
 pub use budget::budgets;
+pub use capacity::{AtPose, Capacity, Limit, capacity_of};
 pub use check::{Claim, Completeness, FrontCheck, check_front};
+pub use chosen::{arm_of_design, sizing_of};
 pub use definition::Study;
 pub use diagnose::{empty_pieces, why_infeasible};
 pub use effects::{CorrectedStudy, Correction, apply_corrections, left_out};
+pub use load::{load_study, refuse_empty};
 pub use named::{NAMED, list, named, names};
 pub use near::{NearFront, near_front};
 pub use outcome::{
-    ExactStudy, Extent, Front, Judged, OfMaterial, StudyOutcome, judge_swept, run_exact, run_study,
-    sweep_shard,
+    ExactStudy, Extent, Front, Judged, OfMaterial, StudyOutcome, judge_swept, resume_exact, run_exact,
+    run_study, sweep_shard,
 };
 pub use page::study_page;
 pub use pick_poses::{PicksInPoses, picks_in_poses};
 pub use read::read_study;
+pub use refusal::Refusal;
 pub use same_drives::{PicksOnSameDrives, picks_on_same_drives};
+pub use search_method::{SearchMethod, SearchWish};
 pub use shards::{Swept, candidates_csv, gaps, joined, read_candidates};
 pub use table::front_table;
 pub use ties::{Ties, ties};

@@ -1,6 +1,7 @@
 //! Reads the motion that a study asks for: speeds and ramps, the cycle that every joint repeats, and the duty that one
 //! joint has of its own.
 
+use super::keys::{MOTION, PHASE, STATED_PHASE};
 use crate::input::json::{Node, Object};
 use crate::sizing::duty::{DutyCycle, Phase, PhaseKind};
 use crate::sizing::requirement::MotionRequirement;
@@ -11,16 +12,7 @@ const SAME_TIME: f64 = 1e-9;
 
 /// What the tip must do; without a key the paper's numbers.
 pub(super) fn read_motion(node: &Node) -> Option<MotionRequirement> {
-    let object = node.object(&[
-        "tip_speed_m_s",
-        "ramp_time_s",
-        "emergency_deceleration_m_s2",
-        "min_lever_m",
-        "life_h",
-        "cycle",
-        "emergency_stops",
-        "check_motor_heat",
-    ])?;
+    let object = node.shaped(&MOTION)?;
     let default = MotionRequirement::default();
     let speed = object.or("tip_speed_m_s", default.tip_speed_m_s, Node::positive);
     let ramp = object.or("ramp_time_s", default.ramp_time_s, Node::positive);
@@ -62,7 +54,7 @@ fn read_cycle(node: &Node) -> Option<DutyCycle> {
 }
 
 fn read_phase(node: &Node) -> Option<Phase> {
-    let object = node.object(&["phase", "time_s", "of_static_torque", "of_speed"])?;
+    let object = node.shaped(&PHASE)?;
     let duration = object.required("time_s").and_then(|n| n.non_negative());
     let kind = object.required("phase").and_then(|n| read_kind(&n, &object));
     Some(Phase { duration_s: duration?, kind: kind? })
@@ -106,7 +98,7 @@ pub(super) fn read_duty(node: &Node) -> Option<StatedDuty> {
 }
 
 fn read_stated_phase(node: &Node) -> Option<StatedPhase> {
-    let object = node.object(&["torque_nm", "time_s", "speed_rpm"])?;
+    let object = node.shaped(&STATED_PHASE)?;
     let torque = object.required("torque_nm").and_then(|n| n.number());
     let time = object.required("time_s").and_then(|n| n.non_negative());
     let speed = object.required("speed_rpm").and_then(|n| n.non_negative());

@@ -3,7 +3,8 @@
 use crate::catalog::motor::MotorKind;
 use crate::input::json::Node;
 
-const MOTOR_WORDS: [(&str, &[MotorKind]); 7] = [
+/// The words, each with its kinds.
+pub(super) const MOTOR_WORDS: [(&str, &[MotorKind]); 7] = [
     (
         "electric",
         &[

@@ -4,6 +4,7 @@
 //! Lengths of sections and limits are in millimetres because that is how profiles are sold; everything
 //! else is SI. The resolved [`DesignSpace`] is SI throughout.
 
+use super::balance::{balance_remarks, read_balance};
 use super::bodies::impossible_bodies_remark;
 use super::cases::{Cases, read_cases};
 use super::connections::{connections_remark, with_connections};
@@ -13,6 +14,7 @@ use super::drives::{Drives, read_drives};
 use super::effects::check_effects;
 use super::fit::{fit_remarks, read_fit};
 use super::harness::{harness_effects, harness_remark};
+use super::keys::{CHOOSE, CONSTRAINTS, JOINT, LINK, MODELS, OF_SIZED_DRIVE, PRISMATIC, STUDY};
 use super::linkages::drivers_are_inboard;
 use super::motion::{read_duty, read_motion};
 use super::omissions::omissions;
@@ -23,12 +25,11 @@ use crate::arm::bearing::{BearingSource, Stated, read_bearing};
 use crate::arm::body::{read_joint_bodies, read_link_bodies};
 use crate::arm::element_keys::{read_axis, read_name};
 use crate::arm::extras::{ExtrasSource, read_extras_source};
-use crate::arm::file::{
-    NO_TYPE, read_coupling, read_curve, read_effects, read_gravity, read_joint_mass, read_link,
-};
+use crate::arm::file::{NO_TYPE, read_coupling, read_curve, read_effects, read_gravity, read_joint_mass};
 use crate::arm::load::{vector, word};
+use crate::arm::pieces::{elements_of, read_links};
 use crate::arm::pose::{DrivenJoint, Motion};
-use crate::arm::prismatic::{PRISMATIC_KEYS, Prismatic};
+use crate::arm::prismatic::Prismatic;
 use crate::arm::{JointModel, LinkModel};
 use crate::catalog::Catalogs;
 use crate::catalog::gear::GearMass;
@@ -41,30 +42,7 @@ use crate::space::constraint::{Constraints, Servo};
 use crate::space::design_space::{DesignSpace, DriveChoice, LinkChoice, SpaceJoint, SpacePiece};
 use crate::space::prismatic::SpacePrismatic;
 use serde_json::Value;
-
-const KEYS: [&str; 21] = [
-    "name",
-    "question",
-    "gravity_m_s2",
-    "chain",
-    "payload",
-    "tip_force_n",
-    "tip_moment_nm",
-    "poses",
-    "environments",
-    "motion",
-    "duty",
-    "drives",
-    "extras",
-    "fit",
-    "harness_kg_per_m",
-    "connection_share",
-    "constraints",
-    "models",
-    "effects",
-    "gap_percent",
-    "notes",
-];
+use std::sync::Arc;
 
 /// Reads a study. Materials, profiles and parts that it names are looked up in `catalogs`. The keys are in
 /// `docs/study-format.md`.
@@ -93,7 +71,7 @@ pub fn read_study(document: Document, catalogs: &Catalogs) -> Result<Study, Faul
 }
 
 fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
-    let root = node.object(&KEYS)?;
+    let root = node.shaped(&STUDY)?;
     let text = |key| root.or(key, String::new(), |n| n.string().map(String::from));
     let name = root.required("name").and_then(|n| match n.string()? {
         name if name.chars().any(|c| c.is_ascii_alphanumeric()) => Some(name.to_string()),
@@ -132,7 +110,8 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     if gravity_m_s2 > 0.0 {
         motion.gravity_m_s2 = gravity_m_s2;
     }
-    let (chain, mut effects, harness_kg_per_m) = (chain?, effects?, harness_kg_per_m?);
+    let (mut chain, mut effects, harness_kg_per_m) = (chain?, effects?, harness_kg_per_m?);
+    let springs = read_balance(&root, &mut chain);
     effects.extend(harness_effects(&chain, harness_kg_per_m, &effects));
     let space = DesignSpace {
         name: name.clone()?,
@@ -147,6 +126,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
         joints: joint_model,
         constraints: constraints?,
         effects,
+        springs: springs?,
     };
     check_effects(&space, &root)?;
     in_range?;
@@ -157,6 +137,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     remarks.extend(omissions(&space));
     remarks.extend(creep_remarks(&space, catalogs));
     remarks.extend(impossible_bodies_remark(&space));
+    remarks.extend(balance_remarks(&space));
     Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks })
 }
 
@@ -215,11 +196,8 @@ fn read_duty_of_only_joint(node: &Node, study: &Node) -> Option<StatedDuty> {
 /// Numbers the materials of all links through the study, in the order in which they first appear.
 fn number_materials(pieces: &mut [SpacePiece]) {
     let mut names: Vec<String> = Vec::new();
-    let options = pieces.iter_mut().filter_map(|p| match p {
-        SpacePiece::Choice(choice) => Some(&mut choice.options),
-        _ => None,
-    });
-    for option in options.flatten() {
+    let choices = pieces.iter_mut().filter_map(SpacePiece::as_choice_mut);
+    for option in choices.flat_map(|choice| Arc::make_mut(&mut choice.options)) {
         option.material_index = names.iter().position(|n| *n == option.material_name).unwrap_or_else(|| {
             names.push(option.material_name.clone());
             names.len() - 1
@@ -244,20 +222,29 @@ fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePi
     if items.is_empty() {
         return node.fault("is empty", "an arm has at least one joint or link");
     }
-    if items.len() > MOST_ELEMENTS {
-        let problem = format!("has {} joints and links, and the limit is {MOST_ELEMENTS}", items.len());
+    let elements: usize = items.iter().map(elements_of).sum();
+    if elements > MOST_ELEMENTS {
+        let problem = format!("has {elements} joints and links, and the limit is {MOST_ELEMENTS}");
         return node.fault(problem, "join links that lie in line, or study a part of the arm");
     }
-    let read: Vec<Option<SpacePiece>> = items
+    let read: Vec<Option<Vec<SpacePiece>>> = items
         .iter()
         .map(|n| match n.value().get("type").and_then(|v| v.as_str()) {
-            Some("joint") => read_space_joint(n, open).map(SpacePiece::Joint),
-            Some("prismatic") => read_space_prismatic(n).map(SpacePiece::Prismatic),
+            Some("joint") => read_space_joint(n, open).map(|joint| vec![SpacePiece::Joint(joint)]),
+            Some("prismatic") => read_space_prismatic(n).map(|slide| vec![SpacePiece::Prismatic(slide)]),
             Some("link") => read_space_link(n, open, aside),
             _ => n.fault(NO_TYPE.0, NO_TYPE.1),
         })
         .collect();
-    let mut pieces = read.into_iter().collect::<Option<Vec<_>>>()?;
+    let mut pieces: Vec<SpacePiece> =
+        read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect();
+    let items: Vec<Node> = items
+        .into_iter()
+        .flat_map(|n| {
+            let count = elements_of(&n);
+            std::iter::repeat_n(n, count)
+        })
+        .collect();
     number_materials(&mut pieces);
     unique_names(node, &pieces)?;
     drivers_are_inboard(&items, &pieces)?;
@@ -275,28 +262,7 @@ fn unique_names(node: &Node, pieces: &[SpacePiece]) -> Option<()> {
 }
 
 fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
-    let object = node.object(&[
-        "type",
-        "name",
-        "axis",
-        "drive",
-        "stiffness_nm_per_rad",
-        "windup",
-        "gear",
-        "motor",
-        "gear_mass",
-        "mass_kg",
-        "max_speed_rad_s",
-        "bearing",
-        "extras",
-        "range_deg",
-        "brake",
-        "duty",
-        "drives",
-        "fit",
-        "bodies",
-        "coupled",
-    ])?;
+    let object = node.shaped(&JOINT)?;
     let name = read_name(&object);
     let axis = object.required("axis").and_then(|n| read_axis(&n));
     let max_speed = object.or("max_speed_rad_s", None, |n| n.positive().map(Some));
@@ -374,14 +340,14 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
 
 /// Reads a prismatic joint, whose numbers a study gives.
 fn read_space_prismatic(node: &Node) -> Option<SpacePrismatic> {
-    const OF_DRIVES: [&str; 5] = ["drive", "drives", "gear", "motor", "max_speed_m_s"];
-    let object = node.object(&[&PRISMATIC_KEYS[..], &["range_mm"], &OF_DRIVES].concat())?;
-    stray(
-        &object,
-        &OF_DRIVES,
-        "stands at a prismatic joint, whose drive is not sized",
-        "give the joint in numbers: stiffness_n_per_m of screw or rack, guide, mass_kg and fixed_mass_kg",
-    );
+    if let Some(key) = OF_SIZED_DRIVE.iter().find(|key| node.value().get(*key).is_some()) {
+        return node.fault_below(
+            key,
+            "stands at a prismatic joint, whose drive is not sized",
+            "give the joint in numbers: stiffness_n_per_m of screw or rack, guide, mass_kg and fixed_mass_kg",
+        );
+    }
+    let object = node.shaped(&PRISMATIC)?;
     let range_mm = object.or("range_mm", None, |n| read_range(n).map(Some));
     let joint = Prismatic::read(&object);
     Some(SpacePrismatic::new(joint?, range_mm?))
@@ -440,15 +406,15 @@ fn read_given_drive(object: &Object, open: &Open) -> Option<DriveChoice> {
     Some(DriveChoice::Given { curve: curve?, mass_kg: mass_kg?, gear, motor })
 }
 
-fn read_space_link(node: &Node, open: &Open, aside: &mut Aside) -> Option<SpacePiece> {
-    let object =
-        node.object(&["type", "name", "vector_m", "material", "section", "mass_kg", "bodies", "choose"])?;
+fn read_space_link(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePiece>> {
+    let object = node.shaped(&LINK)?;
     let Some(choose) = object.optional("choose") else {
-        return read_link(&object, &[], open.catalogs).map(SpacePiece::Link);
+        let links = read_links(&object, &[], open.catalogs)?;
+        return Some(links.into_iter().map(SpacePiece::Link).collect());
     };
     stray(
         &object,
-        &["material", "section", "mass_kg"],
+        &["material", "section", "mass_kg", "pieces", "stiffness_factor", "mass_factor"],
         "stands beside \"choose\"",
         "a link is either chosen or given; keep one",
     );
@@ -456,7 +422,7 @@ fn read_space_link(node: &Node, open: &Open, aside: &mut Aside) -> Option<SpaceP
     let vector_m = object.required("vector_m").and_then(|n| vector(&n)).filter(|v| {
         v.norm() > 1e-6 || object.node().fault::<()>("has no length", "give a longer vector_m").is_some()
     });
-    let choices = choose.object(&["materials", "sections"])?;
+    let choices = choose.shaped(&CHOOSE)?;
     let materials = choices.required("materials").and_then(|n| read_materials(&n, open.catalogs));
     let sections = choices.required("sections").and_then(|n| read_sections(&n, open.catalogs));
     let (materials, sections) = (materials?, sections?);
@@ -467,26 +433,17 @@ fn read_space_link(node: &Node, open: &Open, aside: &mut Aside) -> Option<SpaceP
     }
     let options = super::sections::options(&materials, &sections, open.constraints, name.as_deref()?, aside);
     let bodies = read_link_bodies(&object);
-    Some(SpacePiece::Choice(LinkChoice {
+    Some(vec![SpacePiece::Choice(LinkChoice {
         name: name?,
         vector_m: vector_m?,
-        options,
+        options: options.into(),
         bodies: bodies?,
         excerpt: None,
-    }))
+    })])
 }
 
 fn read_constraints(node: &Node) -> Option<Constraints> {
-    let object = node.object(&[
-        "tip_deflection_max_mm",
-        "mass_max_kg",
-        "lowest_mode_min_hz",
-        "servo_bandwidth_hz",
-        "servo_ratio",
-        "stress_safety_factor_min",
-        "wall_slenderness_max",
-        "material_cost_max_eur",
-    ])?;
+    let object = node.shaped(&CONSTRAINTS)?;
     let limit = |key| object.or(key, None, |n| n.positive().map(Some));
     let (deflection_mm, mass) = (limit("tip_deflection_max_mm"), limit("mass_max_kg"));
     let (mode, bandwidth) = (limit("lowest_mode_min_hz"), limit("servo_bandwidth_hz"));
@@ -514,7 +471,7 @@ fn read_constraints(node: &Node) -> Option<Constraints> {
 }
 
 fn read_models(node: &Node) -> Option<(LinkModel, JointModel)> {
-    let object = node.object(&["links", "joints"])?;
+    let object = node.shaped(&MODELS)?;
     let links = object.or("links", LinkModel::default(), word);
     let joints = object.or("joints", JointModel::default(), word);
     Some((links?, joints?))

@@ -132,7 +132,7 @@ fn drop_half(space: &mut DesignSpace, catalogs: &Catalogs) -> bool {
     let largest = space.pieces.iter_mut().max_by_key(|piece| options(piece, catalogs));
     let Some(largest) = largest.filter(|piece| options(piece, catalogs) > 1) else { return false };
     match largest {
-        SpacePiece::Choice(choice) => choice.options = every_second(&choice.options),
+        SpacePiece::Choice(choice) => choice.options = every_second(&choice.options).into(),
         SpacePiece::Joint(joint) => {
             if let DriveChoice::AllFits(filter) = &mut joint.drive {
                 let [gears, motors] = allowed(filter, catalogs);

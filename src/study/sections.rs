@@ -1,5 +1,8 @@
 //! The options of an open link: materials times sections.
 
+use super::keys::{
+    GRID, PROFILE_FILTER, PROFILES, RECTANGULAR_BARS, RECTANGULAR_TUBES, ROUND_BARS, ROUND_TUBES,
+};
 use crate::arm::section::{LinkMaterial, Section};
 use crate::catalog::Catalogs;
 use crate::catalog::material::Material;
@@ -116,7 +119,7 @@ fn read_family(node: &Node, catalogs: &Catalogs) -> Option<Vec<Named>> {
 }
 
 fn read_rectangular(node: &Node) -> Option<Vec<Named>> {
-    let object = node.object(&["shape", "width_mm", "height_mm", "wall_mm"])?;
+    let object = node.shaped(&RECTANGULAR_TUBES)?;
     let outlines = read_outlines(&object);
     let walls = object.required("wall_mm").and_then(|n| read_grid(&n));
     let (outlines, walls) = (outlines?, walls?);
@@ -133,7 +136,7 @@ fn read_rectangular(node: &Node) -> Option<Vec<Named>> {
 }
 
 fn read_rectangular_bar(node: &Node) -> Option<Vec<Named>> {
-    let outlines = read_outlines(&node.object(&["shape", "width_mm", "height_mm"])?)?;
+    let outlines = read_outlines(&node.shaped(&RECTANGULAR_BARS)?)?;
     let bar = |(w, h)| (Section::RectangularBar { width_m: w / 1e3, height_m: h / 1e3 }, None);
     Some(outlines.into_iter().map(bar).collect())
 }
@@ -151,13 +154,13 @@ fn read_outlines(object: &Object) -> Option<Vec<(f64, f64)>> {
 }
 
 fn read_round_bar(node: &Node) -> Option<Vec<Named>> {
-    let object = node.object(&["shape", "diameter_mm"])?;
+    let object = node.shaped(&ROUND_BARS)?;
     let diameters = object.required("diameter_mm").and_then(|n| read_grid(&n))?;
     Some(diameters.into_iter().map(|d| (Section::RoundBar { diameter_m: d / 1e3 }, None)).collect())
 }
 
 fn read_round(node: &Node) -> Option<Vec<Named>> {
-    let object = node.object(&["shape", "diameter_mm", "wall_mm"])?;
+    let object = node.shaped(&ROUND_TUBES)?;
     let diameters = object.required("diameter_mm").and_then(|n| read_grid(&n));
     let walls = object.required("wall_mm").and_then(|n| read_grid(&n));
     let (diameters, walls) = (diameters?, walls?);
@@ -172,8 +175,8 @@ fn read_round(node: &Node) -> Option<Vec<Named>> {
 }
 
 fn read_profiles(node: &Node, catalogs: &Catalogs) -> Option<Vec<Named>> {
-    let object = node.object(&["profiles"])?.required("profiles")?;
-    let object = object.object(&["family", "shapes", "max_outer_mm"])?;
+    let object = node.shaped(&PROFILES)?.required("profiles")?;
+    let object = object.shaped(&PROFILE_FILTER)?;
     let families: BTreeSet<&str> = catalogs.profiles.iter().map(|p| p.material_family.as_str()).collect();
     let family = object.required("family").and_then(|n| match n.string()? {
         family if families.contains(family) => Some(family),
@@ -241,7 +244,7 @@ fn read_grid(node: &Node) -> Option<Vec<f64>> {
         let read: Vec<_> = node.array()?.iter().map(Node::positive).collect();
         return read.into_iter().collect();
     }
-    let object = node.object(&["from", "to", "step"])?;
+    let object = node.shaped(&GRID)?;
     let [from, to, step] = ["from", "to", "step"].map(|k| object.required(k).and_then(|n| n.positive()));
     let (from, to, step) = (from?, to?, step?);
     let points = ((to - from) / step + 1e-9).floor();

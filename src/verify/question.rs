@@ -363,6 +363,7 @@ impl Question {
             down: self.down,
             chain,
             effects: self.effects.clone(),
+            springs: Vec::new(),
         }
     }
 

@@ -139,7 +139,7 @@ pub fn random_study(seed: u64) -> Value {
 #[test]
 fn the_exact_front_is_the_front_of_every_design() {
     let studies: u64 =
-        std::env::var("ARMWRIGHT_EXACT_STUDIES").ok().and_then(|n| n.parse().ok()).unwrap_or(28);
+        std::env::var("ARMWRIGHT_EXACT_STUDIES").ok().and_then(|n| n.parse().ok()).unwrap_or(20);
     let (catalogs, stop) = (Catalogs::builtin(), AtomicBool::new(false));
     let (mut points, mut feasible, mut boxes) = (0, 0, [0; 2]);
     for seed in 0..studies {
@@ -505,7 +505,7 @@ fn study_with_play(seed: u64) -> Value {
 #[test]
 fn play_of_the_joints_is_bounded_too() {
     // seeds that do not take long
-    let seeds = [5, 7, 9, 10, 12, 24, 26, 30, 32, 39, 43, 47, 50];
+    let seeds = [5, 7, 9, 12, 24, 30, 39, 47, 50];
     let mut points: usize = seeds.map(|seed| agree(&study_with_play(seed))).into_iter().sum();
     // weight outboard closes play, and so stiffens a joint; or friction holds more back the more it carries
     let softer =

@@ -21,11 +21,9 @@ fn on_any_threads(study: &Study, catalogs: &Catalogs, of: impl Fn(Exact) -> Exac
         pool.install(|| of(Exact::new(&study.space, catalogs, &stop, None)).run(&[]))
     };
     let one = on(1);
-    for threads in [2, 5] {
-        let several = on(threads);
-        assert_eq!(several.boxes, one.boxes, "boxes of {} on {threads} threads", study.name);
-        assert!(several == one, "another front of {} on {threads} threads", study.name);
-    }
+    let several = on(3);
+    assert_eq!(several.boxes, one.boxes, "boxes of {} on three threads", study.name);
+    assert!(several == one, "another front of {} on three threads", study.name);
     one
 }
 
@@ -42,7 +40,7 @@ fn a_front_by_boxes_is_the_same_for_any_number_of_threads() {
 fn a_front_by_regions_is_the_same_for_any_number_of_threads() {
     let catalogs = Catalogs::builtin();
     let mut study = study("full-catalog", &catalogs);
-    study.space.constraints.mass_max_kg = Some(13.9);
+    study.space.constraints.mass_max_kg = Some(13.75);
     let whole = on_any_threads(&study, &catalogs, |search| search.with_ties_up_to(0));
     let with_gap = on_any_threads(&study, &catalogs, |search| search.with_ties_up_to(0).to_gap(0.003));
     assert!(with_gap.front != whole.front && with_gap.boxes < whole.boxes, "the gap makes no difference");

@@ -23,10 +23,12 @@ mod mechanics_reference;
 mod motor_heat;
 mod paper;
 mod paper_support;
+mod pieces;
 mod prismatic;
 mod reference_arms;
 mod relaxation;
 mod search_fast_vs_full;
+mod springs;
 mod study_rerun;
 #[path = "../witness/mod.rs"]
 mod witness;

@@ -449,7 +449,7 @@ fn finds_what_is_dropped(by: Settings, most_designs: u128, one_in: u64) {
         let added: Vec<_> = numbers_found.iter().filter(|n| !front.iter().any(|d| d.number == **n)).collect();
         assert!(added.is_empty(), "seed {seed}: {added:?} beside {} rows", front.len());
         (fronts, boxes) = (fronts + u64::from(!front.is_empty()), boxes + looked.boxes);
-        let step = front.len().div_ceil(6).max(1);
+        let step = front.len().div_ceil(4).max(1);
         for lost in front.iter().skip(step / 2).step_by(step) {
             let rest: Vec<&Evaluated> = all.iter().copied().filter(|d| d.number != lost.number).collect();
             if rest.iter().any(|row| nearly_covers(row, lost)) {

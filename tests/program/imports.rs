@@ -50,6 +50,17 @@ impl Crate {
         self.files.keys()
     }
 
+    /// What a module re-exports: the name it has there, and the module and name of its definition. A glob is `*`.
+    pub fn reexported(&self, module: &Module) -> Vec<(String, Module, String)> {
+        let imports = self.files[module].imports.iter().filter(|import| import.reexported);
+        let found = imports.filter_map(|import| {
+            let path = self.absolute(module, &import.path)?;
+            let (defining, name) = self.definition(&path, 0)?;
+            Some((import.name.clone(), defining, name))
+        });
+        found.collect()
+    }
+
     /// The modules that each module uses, with the names it takes from them.
     pub fn uses(&self) -> BTreeMap<Module, BTreeMap<Module, BTreeSet<String>>> {
         let mut out: BTreeMap<Module, BTreeMap<Module, BTreeSet<String>>> = BTreeMap::new();

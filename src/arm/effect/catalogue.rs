@@ -10,8 +10,10 @@ use super::{
     transmission_error, travel_compliance, wrong_unit,
 };
 
+const COUNT: usize = 31;
+
 /// Every effect, in the order of the documentation.
-pub static KINDS: [&Kind; 31] = [
+pub static KINDS: [&Kind; COUNT] = [
     &connection_compliance::KIND,
     &soft_windup::KIND,
     &lost_motion::KIND,
@@ -44,6 +46,17 @@ pub static KINDS: [&Kind; 31] = [
     &time_shift::KIND,
     &empirical::KIND,
 ];
+
+/// The names of all effects.
+pub(crate) static NAMES: [&str; COUNT] = {
+    let mut names = [""; COUNT];
+    let mut i = 0;
+    while i < COUNT {
+        names[i] = KINDS[i].name;
+        i += 1;
+    }
+    names
+};
 
 /// The kind of an effect by its name.
 pub fn kind(name: &str) -> Option<&'static Kind> {

@@ -91,6 +91,7 @@ pub fn library_deflection_m(material: &Material, section: Section, links: LinkMo
         down: -Vector3::z(),
         chain: vec![beam],
         effects: Vec::new(),
+        springs: Vec::new(),
     };
     let chain = Chain::new(&arm.structure(JointModel::K2), links);
     let posed = chain.pose_rad(&[], &Payload::default(), -Vector3::z() * FORCE_N);

@@ -289,6 +289,7 @@ fn dead_torques(posed: &Posed) -> (Vec<f64>, [f64; 2]) {
     for item in posed.items.iter().rev() {
         match item {
             Item::Body(body) => wrench += body.weight(),
+            Item::Load(load) => wrench += load,
             Item::Elastic(element) => {
                 if let crate::mechanics::chain::Yielding::Joint(_) = element.yielding {
                     let passive = carried.iter().filter(|c| c.driver == element.name);

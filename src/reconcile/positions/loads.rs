@@ -434,7 +434,8 @@ impl Ready {
                     weight_n += body.weight_n;
                     moment_nm += body.cg_m * body.weight_n;
                 }
-                Item::Body(_) => {}
+                // campaigns of positions refuse arms with springs
+                Item::Body(_) | Item::Load(_) => {}
                 Item::Elastic(element) => {
                     elements.push(swings.len());
                     swings.extend(element.twists.iter().map(|t| Swing {

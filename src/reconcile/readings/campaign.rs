@@ -3,6 +3,7 @@
 use super::cells::Purpose;
 use super::components::{Components, DISPLACEMENT, POSITION, leave_out_idle};
 use super::declared::{self, DeclaredSession};
+use super::keys::{CAMPAIGN, POSITIONS, TOLERANCE};
 use super::rows::{
     ModalRow, PositionRow, StaticRow, WindupRow, modal_rows, position_rows, static_rows, windup_rows,
 };
@@ -16,7 +17,7 @@ use crate::arm::{Arm, Element};
 use crate::catalog::Catalogs;
 use crate::input::json::{Document, Fault, Faults, InputError, Node};
 use crate::reconcile::records::reading::{Record, read_all};
-use crate::reconcile::records::spec::{RecordSpec, STATEMENT_KEYS, read_records};
+use crate::reconcile::records::spec::{RecordSpec, read_records};
 use std::path::{Path, PathBuf};
 
 /// The tolerance of parts: 95 % limits as fractions of the nominal value.
@@ -123,38 +124,12 @@ pub(crate) fn read_statement(path: &Path) -> Result<Statement, InputError> {
 }
 
 fn statement(node: &Node) -> Option<Statement> {
-    const KEYS: &[&str] = &[
-        "name",
-        "arm",
-        "other_arms",
-        "conventions",
-        "tolerance",
-        "static",
-        "modal",
-        "windup",
-        "positions",
-        "files",
-        "columns",
-        "links",
-        "effects",
-        "description",
-        "machine",
-        "date",
-        "provenance",
-        "note",
-    ];
-    let root = node.object(&[KEYS, &STATEMENT_KEYS].concat())?;
+    let root = node.shaped(&CAMPAIGN)?;
     let name = root.or("name", "campaign".to_string(), |n| n.string().map(String::from));
     let arm_file = root.or("arm", "arm.json".to_string(), |n| n.string().map(String::from));
     let other_arm_files = root.or("other_arms", Vec::new(), read_names);
     let tolerance = root.or("tolerance", DEFAULT_TOLERANCE, read_tolerance);
-    let payload_density_kg_m3 = root.or("conventions", DEFAULT_PAYLOAD_DENSITY_KG_M3, |n| {
-        match n.value().get("payload_density_kg_m3").and_then(|v| v.as_f64()) {
-            Some(density) if density > 0.0 => Some(density),
-            Some(density) => n.fault(format!("payload_density_kg_m3 = {density}"), "give a density in kg/m³"),
-            None => Some(DEFAULT_PAYLOAD_DENSITY_KG_M3),
-        }
-    });
+    let payload_density_kg_m3 = root.or("conventions", DEFAULT_PAYLOAD_DENSITY_KG_M3, read_payload_density);
     let rigid_links = root.or("links", false, |n| match n.string()? {
         "rigid" => Some(true),
         "full" => Some(false),
@@ -181,8 +156,14 @@ fn statement(node: &Node) -> Option<Statement> {
 const DEFAULT_TOLERANCE: Tolerance =
     Tolerance { joint_stiffness: 0.10, modulus: 0.03, joint_mass: 0.02, bearing_stiffness: 0.0 };
 
+/// Reads `conventions`, of which only the density of the payloads is no text for people.
+fn read_payload_density(node: &Node) -> Option<f64> {
+    let (_, density) = node.entries()?.into_iter().find(|(key, _)| *key == "payload_density_kg_m3").unzip();
+    density.map_or(Some(DEFAULT_PAYLOAD_DENSITY_KG_M3), |density| density.positive())
+}
+
 fn read_tolerance(node: &Node) -> Option<Tolerance> {
-    let object = node.object(&["joint_stiffness", "modulus", "joint_mass", "bearing_stiffness", "note"])?;
+    let object = node.shaped(&TOLERANCE)?;
     let part = |key, default| {
         object.or(key, default, |n| match n.non_negative()? {
             x if x < 1.0 => Some(x),
@@ -195,12 +176,9 @@ fn read_tolerance(node: &Node) -> Option<Tolerance> {
 }
 
 fn read_positions(node: &Node) -> Option<PositionsSpec> {
-    const KEYS: [&str; 5] =
-        ["base_placement", "tool_offset", "joint_offsets", "geometry", "gravity_direction"];
-    let object = node.object(
-        &[KEYS.as_slice(), &["mounts", "sessions", "file", "boundary", "reference", "note"]].concat(),
-    )?;
-    let flags = KEYS.map(|key| object.or(key, false, Node::boolean));
+    let object = node.shaped(&POSITIONS)?;
+    let flags = ["base_placement", "tool_offset", "joint_offsets", "geometry", "gravity_direction"]
+        .map(|key| object.or(key, false, Node::boolean));
     let mounts = object.or("mounts", Vec::new(), read_names);
     let sessions = object.or("sessions", Vec::new(), declared::read);
     Some(PositionsSpec {
@@ -288,6 +266,10 @@ impl Campaign {
                 campaign.read_channel(channel, &table);
                 faults.extend(table.into_faults());
             }
+        }
+        if !campaign.positions.is_empty() {
+            let arms = std::iter::once(&campaign.arm).chain(&campaign.other_arms);
+            faults.extend(arms.filter_map(|arm| arm.springs_fault(&arm.name)));
         }
         let specs = &campaign.statement.records;
         let turning = driven_joints(&campaign.arms()).into_iter().filter(|j| j.motion == Motion::Turns);

@@ -1,6 +1,7 @@
 //! Sessions that `campaign.json` declares: rows from which a point sits elsewhere on the tool, or the arm or the
 //! instrument stands elsewhere.
 
+use super::keys::SESSION;
 use super::rows::PositionRow;
 use crate::input::json::Node;
 
@@ -26,7 +27,7 @@ impl DeclaredSession {
 /// Reads the list `positions.sessions`.
 pub(super) fn read(node: &Node) -> Option<Vec<DeclaredSession>> {
     let session = |n: &Node| {
-        let object = n.object(&["from_row", "moved"])?;
+        let object = n.shaped(&SESSION)?;
         let row = object.required("from_row")?;
         let from_row = match row.number()? {
             x if x >= 2.0 && x.fract() == 0.0 => Some(x as usize),

@@ -4,6 +4,7 @@ pub(crate) mod campaign;
 pub(crate) mod cells;
 pub mod components;
 pub(crate) mod declared;
+pub(crate) mod keys;
 pub mod placement;
 pub(crate) mod rows;
 pub(crate) mod source;

@@ -1,5 +1,6 @@
 //! Where the readings of a channel are: the file, the sheet of a spreadsheet, and what its columns are called there.
 
+use super::keys::{COLUMNS as COLUMN_NAMES, FILES, SHEET};
 use crate::arm::effect::channel::Channel;
 use crate::arm::pose::DrivenJoint;
 use crate::input::json::{Node, Object, closest};
@@ -85,8 +86,8 @@ pub struct Source {
 
 /// Reads what `campaign.json` says of the files of the channels. `None` where it does not name a channel.
 pub(crate) fn read_sources(root: &Object) -> [Option<Source>; 4] {
-    let files = root.optional("files").and_then(|n| n.object(&[WORDS.as_slice(), &["note"]].concat()));
-    let columns = root.optional("columns").and_then(|n| n.object(&[WORDS.as_slice(), &["note"]].concat()));
+    let files = root.optional("files").and_then(|n| n.shaped(&FILES));
+    let columns = root.optional("columns").and_then(|n| n.shaped(&COLUMN_NAMES));
     Channel::ALL.map(|channel| {
         let word = channel.word();
         let block = root.optional(word);
@@ -94,8 +95,8 @@ pub(crate) fn read_sources(root: &Object) -> [Option<Source>; 4] {
         let mut out = match (&block, &file) {
             (_, Some(node)) => read_file(node).unwrap_or_default(),
             (Some(node), None) => {
-                let named = node.value().get("file").and_then(|v| v.as_str()).map(String::from);
-                Source { file: named.or(Some(DEFAULT_FILES[channel as usize].into())), ..Source::default() }
+                let file = read_block(node).unwrap_or(DEFAULT_FILES[channel as usize].into());
+                Source { file: Some(file), ..Source::default() }
             }
             (None, None) => Source::default(),
         };
@@ -105,14 +106,18 @@ pub(crate) fn read_sources(root: &Object) -> [Option<Source>; 4] {
     })
 }
 
-const WORDS: [&str; 4] = ["static", "modal", "windup", "positions"];
+/// The file that the block of a channel names; the rest of a block is for people.
+fn read_block(node: &Node) -> Option<String> {
+    let (_, file) = node.entries()?.into_iter().find(|(key, _)| *key == "file")?;
+    file.string().map(String::from)
+}
 
 /// `"m.xlsx"`, or `{"file": "m.xlsx", "sheet": "S1", "header_row": 3}`.
 fn read_file(node: &Node) -> Option<Source> {
     if node.value().is_string() {
         return Some(Source { file: Some(node.string()?.into()), ..Source::default() });
     }
-    let object = node.object(&["file", "sheet", "header_row", "note"])?;
+    let object = node.shaped(&SHEET)?;
     let file = object.required("file").and_then(|n| n.string().map(String::from));
     let sheet = object.or("sheet", None, |n| n.string().map(|s| Some(s.to_string())));
     let header_row = object.or("header_row", None, |n| match n.number()? {

@@ -1,13 +1,10 @@
 //! What `campaign.json` says about records: which file, which column is what, and the constants of each drive.
 
 use crate::input::json::{Node, Object};
+use crate::reconcile::readings::keys::RECORD;
 
 /// The file that is read where `campaign.json` names none.
 pub(crate) const DEFAULT_FILE: &str = "record.csv";
-
-/// Keys of one entry of `records`; the constants may also stand in `campaign.json` itself, for every record.
-const KEYS: [&str; 6] =
-    ["file", "columns", "ratio", "torque_constant_nm_per_a", "rotor_inertia_kgm2", "torque_at"];
 
 /// A constant of the drives: one number for all joints, or one for each.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -45,10 +42,6 @@ pub struct RecordSpec {
     pub torque_at_output: bool,
 }
 
-/// Keys of `campaign.json` that concern records.
-pub(crate) const STATEMENT_KEYS: [&str; 5] =
-    ["records", "ratio", "torque_constant_nm_per_a", "rotor_inertia_kgm2", "torque_at"];
-
 /// Reads `records` of `campaign.json`. An absent list means one record in [`DEFAULT_FILE`], if that file exists.
 pub(crate) fn read_records(root: &Object) -> Option<Vec<RecordSpec>> {
     let common = read_constants(root, &RecordSpec { file: DEFAULT_FILE.into(), ..RecordSpec::default() })?;
@@ -58,7 +51,7 @@ pub(crate) fn read_records(root: &Object) -> Option<Vec<RecordSpec>> {
 }
 
 fn read_record(node: &Node, common: &RecordSpec) -> Option<RecordSpec> {
-    let object = node.object(&KEYS)?;
+    let object = node.shaped(&RECORD)?;
     let file = object.or("file", common.file.clone(), |n| n.string().map(String::from));
     let columns = object.or("columns", Vec::new(), read_columns);
     let constants = read_constants(&object, common);

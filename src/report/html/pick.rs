@@ -2,6 +2,7 @@
 
 use super::gallery::{Gallery, table};
 use crate::arm::load::LoadCase;
+use crate::arm::springs::Drawn;
 use crate::arm::{Arm, Element, Link, LinkBody};
 use crate::mechanics::centre_line::Station;
 use crate::mechanics::chain::{Chain, Posed};
@@ -12,6 +13,7 @@ use crate::report::number::{cost_words, fixed, percent, shortest, significant};
 use crate::report::picks::Pick;
 use crate::report::pose::pose_signs;
 use crate::report::section::Figure;
+use crate::report::springs::springs_in;
 use crate::report::svg::arm::{ArmSketch, Pivot, Place, Tube};
 use crate::report::svg::bars::{Bar, Part, StackedBars};
 use crate::report::table::{Column, Table};
@@ -207,9 +209,20 @@ impl PickedArm {
             pivots: pivots.collect(),
             payload: (solved.case.payload.mass_kg > 0.0)
                 .then(|| (view.place(&solved.payload_m), view.place(&tip))),
+            springs: self.springs(&solved.case, view),
             upright: view.upright,
             ..ArmSketch::default()
         }
+    }
+
+    /// The ends of the springs between two points, in the plane of a view.
+    fn springs(&self, case: &LoadCase, view: &View) -> Vec<(Place, Place)> {
+        let chain = Chain::new(&self.arm.structure_in(case), case.links);
+        let ends = |(_, drawn): (String, Drawn)| match drawn {
+            Drawn::Line { ends_m: [a, b], .. } => Some((view.place(&a), view.place(&b))),
+            Drawn::Torsion { .. } => None,
+        };
+        springs_in(&chain, case).into_iter().filter_map(ends).collect()
     }
 
     /// Links with their sections and what follows from them (Eqs 5, 6).

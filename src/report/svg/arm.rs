@@ -45,6 +45,8 @@ pub(crate) struct ArmSketch {
     pub pivots: Vec<Pivot>,
     /// The payload's centre and its motion.
     pub payload: Option<(Place, Place)>,
+    /// The ends of each spring.
+    pub springs: Vec<(Place, Place)>,
     /// Factor on every motion.
     pub factor: f64,
     /// Words below the drawing.
@@ -102,6 +104,7 @@ impl ArmSketch {
                 "fill=\"#56B4E955\" stroke=\"#0072B2\" stroke-width=\"1.8\"",
             );
         }
+        self.springs.iter().for_each(|(from, to)| coil(&mut out, at(*from), at(*to)));
         self.pivots(&mut out, scale, &at);
         self.payload(&mut out, &at);
         self.foot(&mut out, scale, height);
@@ -111,7 +114,8 @@ impl ArmSketch {
 
     fn stations(&self) -> impl Iterator<Item = (Place, Place)> + '_ {
         let tubes = self.tubes.iter().flat_map(|t| t.line.iter().copied());
-        tubes.chain(self.pivots.iter().map(|p| p.at)).chain(self.payload)
+        let springs = self.springs.iter().flat_map(|(a, b)| [(*a, (0.0, 0.0)), (*b, (0.0, 0.0))]);
+        tubes.chain(self.pivots.iter().map(|p| p.at)).chain(self.payload).chain(springs)
     }
 
     /// Lower left and upper right corner of all that is drawn \[m\].
@@ -252,6 +256,25 @@ fn normal(points: &[(f64, f64)], i: usize) -> (f64, f64) {
     if long > 0.0 { (-dy / long, dx / long) } else { (0.0, 0.0) }
 }
 
+/// A spring as a zigzag between two points.
+fn coil(out: &mut String, from: (f64, f64), to: (f64, f64)) {
+    const TURNS: usize = 12;
+    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+    let long = libm::hypot(dx, dy).max(1e-9);
+    let mut path = format!("M{} {}", px(from.0), px(from.1));
+    for turn in 1..TURNS {
+        let (part, side) = (turn as f64 / TURNS as f64, if turn % 2 == 0 { 4.0 } else { -4.0 });
+        let (x, y) = (from.0 + part * dx - side * dy / long, from.1 + part * dy + side * dx / long);
+        let _ = write!(path, "L{} {}", px(x), px(y));
+    }
+    let _ = writeln!(
+        out,
+        "<path d=\"{path}L{} {}\" fill=\"none\" stroke=\"#009E73\" stroke-width=\"1.6\"><title>spring</title></path>",
+        px(to.0),
+        px(to.1)
+    );
+}
+
 fn displaced(((x, y), (dx, dy)): (Place, Place), factor: f64) -> Place {
     (x + factor * dx, y + factor * dy)
 }
@@ -277,6 +300,17 @@ mod tests {
     fn the_factor_is_round_and_makes_the_motion_visible() {
         assert_eq!(sketch().fitting_factor(), 50.0);
         assert_eq!(ArmSketch::default().fitting_factor(), 1.0);
+    }
+
+    #[test]
+    fn a_spring_goes_from_end_to_end_and_is_within_the_drawing() {
+        let sprung = ArmSketch { springs: vec![((-0.5, 0.8), (0.5, 0.0))], ..sketch() };
+        let ((left, _), (_, top)) = sprung.bounds();
+        assert!(left <= -0.5 && top >= 0.8);
+        let svg = sprung.to_svg();
+        let path = svg.lines().find(|line| line.contains("<title>spring</title>")).unwrap_or_default();
+        assert_eq!(path.matches('L').count(), 12, "{path}");
+        assert!(!sketch().to_svg().contains("<title>spring</title>"));
     }
 
     #[test]

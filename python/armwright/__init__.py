@@ -1,0 +1,73 @@
+"""Armwright sizes high-precision robot arms, finds their Pareto-optimal designs, and reconciles them with measurements.
+
+>>> import armwright
+>>> lever = {"chain": [
+...     {"type": "joint", "name": "j1", "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e4},
+...     {"type": "link", "name": "l1", "vector_m": [1, 0, 0], "mass_kg": 2}]}
+>>> round(armwright.analyze(lever)["joint_torque_nm"]["j1"], 6)
+9.81
+
+Quantities are SI with the unit in the name; angles of poses are in degrees. The formats of arms, studies and campaigns are those
+of the program's files.
+"""
+
+from ._armwright import Catalogs, __version__
+from ._mujoco import from_mujoco
+from ._questions import (
+    Interrupted,
+    Outcome,
+    analyze,
+    capacity,
+    design,
+    driven_joints,
+    paper,
+    predict,
+    reconcile,
+    run,
+    size,
+    studies,
+    study,
+)
+from .errors import (
+    ArmwrightError,
+    CatalogError,
+    EmptySpaceError,
+    Fault,
+    FileError,
+    InfeasibleError,
+    InputError,
+    OutOfTimeError,
+    UsageError,
+)
+from .table import Front, Prediction, Table
+
+__all__ = [
+    "ArmwrightError",
+    "CatalogError",
+    "Catalogs",
+    "EmptySpaceError",
+    "Fault",
+    "FileError",
+    "Front",
+    "InfeasibleError",
+    "InputError",
+    "Interrupted",
+    "OutOfTimeError",
+    "Outcome",
+    "Prediction",
+    "Table",
+    "UsageError",
+    "__version__",
+    "analyze",
+    "capacity",
+    "design",
+    "driven_joints",
+    "from_mujoco",
+    "paper",
+    "predict",
+    "reconcile",
+    "run",
+    "size",
+    "studies",
+    "study",
+]

@@ -1,0 +1,268 @@
+"""The questions of the program as functions. Numbers are those of its JSON output, to the last digit."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
+
+from . import _armwright
+from ._armwright import Catalogs
+from ._input import catalogs_or_builtin, source
+from .table import Front, Prediction, Table
+
+PathLike = Union[str, "os.PathLike[str]"]
+#: An arm or a study: a path, a dict with the keys of its file, or the JSON text. A study may be a built-in one's name.
+Described = Union[PathLike, Mapping]
+Vector = Sequence[float]
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C during :func:`run`. ``front`` has what was found until then, or is None."""
+
+    front: Optional[Front] = None
+
+
+def driven_joints(arm: Described, *, catalogs: Optional[Catalogs] = None) -> List[str]:
+    """Names of the driven joints of an arm, base to tip: the order of the angles of a pose."""
+    return _armwright.driven_joints(catalogs_or_builtin(catalogs), source(arm, "arm"))
+
+
+def analyze(
+    arm: Described,
+    pose: Union[None, Vector, Mapping] = None,
+    *,
+    cases: Union[None, PathLike, Sequence[Mapping]] = None,
+    payload_kg: float = 0.0,
+    payload_cg_m: Vector = (0.0, 0.0, 0.0),
+    payload_inertia_kgm2: Vector = (0.0, 0.0, 0.0),
+    force_n: Vector = (0.0, 0.0, 0.0),
+    moment_nm: Vector = (0.0, 0.0, 0.0),
+    links: str = "full",
+    joints: str = "three_segment",
+    modes: int = 6,
+    response_n: Optional[Vector] = None,
+    response_hz: Vector = (),
+    damping: float = 0.02,
+    catalogs: Optional[Catalogs] = None,
+) -> Any:
+    """Statics, modes and response of an arm, as ``armwright analyze --json`` prints them.
+
+    One pose and load, or ``cases``: a file or a list with the keys of a cases file. With ``cases`` the answer is a list.
+
+    :param arm: path, dict or JSON text of an arm file
+    :param pose: one angle a driven joint, base to tip [deg]; or a mapping with the keys that ``pose`` has in a cases file.
+        All zero if it is left out.
+    :param payload_kg: payload mass [kg]
+    :param payload_cg_m: its centre of gravity from the tip, in the last frame [m]
+    :param payload_inertia_kgm2: its moments of inertia about its centre [kg m²]
+    :param force_n: force at the tip, world axes [N]
+    :param moment_nm: moment at the tip, world axes [N m]
+    :param links: ``rigid``, ``bending`` (Eqs 1-6) or ``full``
+    :param joints: ``k2``, ``three_segment`` or ``three_segment_k1``
+    :param modes: how many modes
+    :param response_n: amplitude of a harmonic force at the tip, world axes [N]; asks for the response at ``response_hz``
+    :param response_hz: frequencies of the response [Hz]
+    :param damping: damping ratio of every mode, for the response
+    :returns: dict with ``joint_torque_nm`` [N m], ``tip_displacement_m`` [m], ``shares`` [m], ``modes`` [Hz] and others
+        (docs/arm-format.md)
+    :raises InputError: the arm or the cases are faulty
+    """
+    held = catalogs_or_builtin(catalogs)
+    arm_source = source(arm, "arm")
+    asked = cases
+    if cases is None:
+        case: Dict[str, Any] = {
+            "name": "case",
+            "payload": {"mass_kg": payload_kg, "cg_m": payload_cg_m, "inertia_about_cg_kgm2": payload_inertia_kgm2},
+            "tip_force_n": force_n,
+            "tip_moment_nm": moment_nm,
+            "links": links,
+            "joints": joints,
+        }
+        if isinstance(pose, Mapping):
+            case["pose"] = pose
+        else:
+            case["pose_deg"] = [0.0] * len(_armwright.driven_joints(held, arm_source)) if pose is None else pose
+        asked = [case]
+    elif pose is not None:
+        raise TypeError("give a pose or cases, not both")
+    harmonic = None
+    if response_n is not None:
+        harmonic = ([float(x) for x in response_n], float(damping), [float(f) for f in response_hz])
+    answers = json.loads(_armwright.analyze(held, arm_source, source(asked, "cases"), modes, harmonic))
+    return answers[0] if cases is None else answers
+
+
+def size(
+    study: Described, *, design: Optional[str] = None, catalogs: Optional[Catalogs] = None
+) -> List[Dict[str, Any]]:
+    """The sizing of every joint of a study's arm, tip first, as ``armwright size --json`` prints it.
+
+    :param study: name of a built-in study, path, dict or JSON text
+    :param design: a ``design_id``; without it, links of median mass
+    :returns: a dict a joint: demand [N m, rad/s], gear, motor, margin, the check that binds
+    :raises EmptySpaceError: there is nothing to choose from
+    :raises InfeasibleError: no drive holds at some joint
+    """
+    return json.loads(_armwright.size(catalogs_or_builtin(catalogs), source(study, "study"), design))
+
+
+def capacity(
+    study: Described, *, design: Optional[str] = None, catalogs: Optional[Catalogs] = None
+) -> Dict[str, Any]:
+    """The largest payload of a study's arm, as ``armwright capacity --json`` prints it.
+
+    :returns: dict with ``payload_kg`` [kg] (None if nothing limits it), ``pose``, ``joint``, ``check``, and in ``table`` the same
+        for every pose by itself, with its reach [m]
+    :raises InfeasibleError: the drives do not hold the study's own payload
+    """
+    return json.loads(_armwright.capacity(catalogs_or_builtin(catalogs), source(study, "study"), design))
+
+
+def design(
+    study: Described, design_id: str, *, catalogs: Optional[Catalogs] = None
+) -> Tuple[Dict[str, Any], List[Dict[str, Any]]]:
+    """A design of a study as an arm file with every part resolved to numbers, and the cases in which it is judged."""
+    arm, cases = _armwright.design(catalogs_or_builtin(catalogs), source(study, "study"), design_id)
+    return json.loads(arm), json.loads(cases)
+
+
+def run(
+    study: Described,
+    *,
+    progress: Optional[Callable[[Dict[str, Any]], Any]] = None,
+    search: Optional[str] = None,
+    gap_percent: Optional[float] = None,
+    time_limit_s: Optional[float] = None,
+    threads: int = 0,
+    catalogs: Optional[Catalogs] = None,
+) -> Front:
+    """The front of a study: the designs that no other dominates in tip deflection, mass and lowest mode.
+
+    The interpreter's lock is free while it works. Ctrl-C ends it within a second and raises :class:`Interrupted`, whose ``front``
+    has what was found. Nothing is written to disk.
+
+    :param study: name of a built-in study, path, dict or JSON text
+    :param progress: is called five times a second with a dict of ``elapsed_s``, ``designs``, ``designs_total``, ``gap`` (a
+        fraction), ``front_size`` and ``boxes_open``; None stands for what is not known. An exception that it raises ends the search.
+    :param search: ``exhaustive``, ``exact``, or None for the one that is estimated to cost less
+    :param gap_percent: the exact search may end when for every design some listed one is worse by at most this percentage in each
+        objective; 0 asks for the whole front. Default: the study's.
+    :param time_limit_s: ends an exact search [s]
+    :param threads: worker threads; 0 is one a core. Results do not depend on it.
+    :raises InfeasibleError: no design meets the study; the message says which limits are in the way
+    :raises EmptySpaceError: there is nothing to choose from
+    :raises OutOfTimeError: the time limit came before any design was found
+    """
+    held = catalogs_or_builtin(catalogs)
+    asked = source(study, "study")
+
+    def front(found: Any) -> Front:
+        (columns, rows), materials, facts = found
+        facts = json.loads(facts)
+        by_material = {name: Front(c, r, facts, asked_again, held) for name, (c, r) in materials}
+        return Front(columns, rows, facts, asked_again, held, by_material)
+
+    # a file may change: the designs of this front are those of the study as it was read
+    asked_again = _as_read(asked)
+    try:
+        return front(_armwright.run(held, asked, search, gap_percent, time_limit_s, threads, progress))
+    except KeyboardInterrupt as stopped:
+        interrupted = Interrupted(*stopped.args)
+        found = getattr(stopped, "_found", None)
+        if found is not None and found[0][1]:
+            interrupted.front = front(found)
+        raise interrupted from None
+
+
+def _as_read(asked: Tuple[str, Optional[str]]) -> Any:
+    name, text = asked
+    if text is not None:
+        return text
+    path = Path(name)
+    return path.read_text(encoding="utf-8") if path.is_file() and name not in studies() else name
+
+
+def studies() -> List[str]:
+    """Names of the built-in studies, those of the paper included."""
+    return _armwright.study_names()
+
+
+def study(name: str) -> Dict[str, Any]:
+    """The file of a built-in study, to be changed and given to :func:`run`."""
+    text = _armwright.study_text(name)
+    if text is None:
+        raise KeyError(f"{name!r} has no study file; known: {', '.join(studies())}")
+    return json.loads(text)
+
+
+def paper(name: str = "paper-table1", *, catalogs: Optional[Catalogs] = None) -> Dict[str, Union[str, Table]]:
+    """The files of a study of the paper: tables by the names of their CSV files, and pictures as SVG text."""
+    files = _armwright.paper(catalogs_or_builtin(catalogs), name)
+    return {name: Table.from_csv(text) if name.endswith(".csv") else text for name, text in files}
+
+
+class Outcome:
+    """What :func:`reconcile` found."""
+
+    verdict: str
+    """``no_gap``, ``explained``, ``unexplained`` or ``insufficient_data``."""
+    json: Dict[str, Any]
+    """The verdict with its evidence, by the keys of ``verdict.json`` (docs/reconcile.md)."""
+    text: str
+    """The verdict in words, as ``armwright reconcile`` prints it."""
+    corrected_arm: Dict[str, Any]
+    """The arm with what was calibrated and found, for :func:`analyze` and :func:`predict`."""
+    residuals: Table
+    """Every reading with the nominal and the corrected model's residual."""
+
+    def __init__(self, found: Tuple[str, str, str, str, List[Tuple[str, str]]]):
+        verdict, self.text, arm, residuals, self._files = found
+        self.json = json.loads(verdict)
+        self.verdict = self.json["verdict"]
+        self.corrected_arm = json.loads(arm)
+        self.residuals = Table.from_csv(residuals)
+
+    def write(self, folder: PathLike) -> List[Path]:
+        """Writes verdict.json, verdict.txt, arm.corrected.json and residuals.csv; returns their paths."""
+        Path(folder).mkdir(parents=True, exist_ok=True)
+        paths = [Path(folder) / name for name, _ in self._files]
+        for path, (_, text) in zip(paths, self._files):
+            path.write_bytes(text.encode("utf-8"))
+        return paths
+
+    def __repr__(self) -> str:
+        return f"<armwright.Outcome: {self.verdict}>"
+
+
+def reconcile(*campaigns: PathLike, catalogs: Optional[Catalogs] = None) -> Outcome:
+    """Where an arm and its measurements disagree, and which effect is missing.
+
+    The interpreter's lock is free while it works. After Ctrl-C the call ends at once; the fit that was begun runs to its end on its
+    own thread and is forgotten.
+
+    :param campaigns: folders with campaign.json, arm.json and readings; several of one arm are reconciled together
+    :raises InputError: every fault of the files
+    """
+    folders = [os.fspath(folder) for folder in campaigns]
+    return Outcome(_armwright.reconcile(catalogs_or_builtin(catalogs), folders))
+
+
+def predict(
+    arm: PathLike, readings: PathLike, campaign: PathLike, *, catalogs: Optional[Catalogs] = None
+) -> Prediction:
+    """Readings with the model's value added to each, as ``armwright predict`` writes them.
+
+    :param arm: path of an arm file, corrected or not
+    :param readings: path of a file of static, modal, windup or positions readings
+    :param campaign: path of the campaign.json that says how they were taken
+    :returns: the table of the readings with columns such as ``model_dz_mm`` [mm] or ``model_frequency_hz`` [Hz]
+    """
+    held = catalogs_or_builtin(catalogs)
+    text, remark = _armwright.predict(held, os.fspath(arm), os.fspath(readings), os.fspath(campaign))
+    out = Prediction.from_csv(text)
+    out.remark = remark
+    return out

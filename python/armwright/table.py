@@ -1,0 +1,162 @@
+"""Tables of results: columns by name, as NumPy arrays and for pandas."""
+
+from __future__ import annotations
+
+import csv
+import io
+from typing import TYPE_CHECKING, Any, Dict, Iterator, List, Optional, Sequence
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import pandas
+
+
+def _array(cells: Sequence[str]) -> np.ndarray:
+    """Numbers with NaN for blank cells; text where any cell is not a number."""
+    try:
+        return np.array([float(cell) if cell else np.nan for cell in cells], dtype=float)
+    except ValueError:
+        return np.array(cells, dtype=object)
+
+
+class Table:
+    """A table whose column names carry their units, such as ``mass_kg``.
+
+    ``table["mass_kg"]`` is the column as an array: floats, NaN where nothing is known, or an object array of ``str``.
+    """
+
+    columns: List[str]
+    """Names of the columns, in the order of the CSV file."""
+
+    #: Names, or last words of names after ``_``, of columns that are text whatever is in them.
+    _texts: Sequence[str] = ()
+
+    def __init__(self, columns: Sequence[str], rows: Sequence[Sequence[str]]):
+        self.columns = list(columns)
+        self._rows = [list(row) for row in rows]
+        self._arrays: Dict[str, np.ndarray] = {}
+
+    @classmethod
+    def from_csv(cls, text: str) -> Table:
+        """The table of a CSV text with a heading."""
+        rows = list(csv.reader(io.StringIO(text)))
+        return cls(rows[0], rows[1:]) if rows else cls([], [])
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def __iter__(self) -> Iterator[Dict[str, Any]]:
+        for index in range(len(self)):
+            yield self.row(index)
+
+    def __getitem__(self, column: str) -> np.ndarray:
+        if column not in self._arrays:
+            if column not in self.columns:
+                raise KeyError(f"{column!r}; the columns are {', '.join(self.columns)}")
+            at = self.columns.index(column)
+            cells = [row[at] for row in self._rows]
+            is_text = column in self._texts or column.rsplit("_", 1)[-1] in self._texts
+            array = np.array(cells, dtype=object) if is_text else _array(cells)
+            array.setflags(write=False)
+            self._arrays[column] = array
+        return self._arrays[column]
+
+    def row(self, index: int) -> Dict[str, Any]:
+        """One row by column name."""
+        return {column: self[column][index] for column in self.columns}
+
+    def to_dict(self) -> Dict[str, np.ndarray]:
+        """Every column by its name."""
+        return {column: self[column] for column in self.columns}
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """A DataFrame of all columns (needs pandas: ``pip install armwright[pandas]``)."""
+        import pandas
+
+        return pandas.DataFrame(self.to_dict(), columns=self.columns)
+
+    def to_csv(self) -> str:
+        """The table as CSV, every number to its last digit."""
+        out = io.StringIO()
+        writer = csv.writer(out, lineterminator="\n")
+        writer.writerow(self.columns)
+        writer.writerows(self._rows)
+        return out.getvalue()
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {len(self)} rows of {len(self.columns)} columns>"
+
+
+class Front(Table):
+    """The designs of a study that no other dominates, lightest first, with the columns of ``front.csv``.
+
+    ``front.objectives`` has tip deflection [mm], mass [kg] and lowest mode [Hz] of each design; ``front.arm(id)`` is a design
+    as an arm file.
+    """
+
+    facts: Dict[str, Any]
+    """What is known of the search, by the keys of ``run.json``: ``status``, ``designs_total``, ``gap``, ``elapsed_s`` and others."""
+    by_material: Dict[str, Front]
+    """The fronts of the designs whose chosen links are all of one material. An exact search has them only if it found the
+    whole front."""
+
+    _texts = ("design_id", "material", "shape", "profile", "gear", "motor", "binds")
+
+    def __init__(self, columns, rows, facts, study, catalogs, by_material=None):
+        super().__init__(columns, rows)
+        self.facts = facts
+        self.by_material = by_material or {}
+        self._study = study
+        self._catalogs = catalogs
+
+    @property
+    def status(self) -> str:
+        """How the search ended: ``complete``, ``certified``, ``partial`` or ``interrupted``."""
+        return self.facts["status"]
+
+    @property
+    def ids(self) -> List[str]:
+        """The ``design_id`` of every design."""
+        return list(self["design_id"])
+
+    @property
+    def objectives(self) -> np.ndarray:
+        """Tip deflection [mm], mass [kg] and lowest mode [Hz], one row a design."""
+        columns = ("tip_deflection_mm", "mass_kg", "lowest_mode_hz")
+        return np.column_stack([self[column] for column in columns])
+
+    def arm(self, design_id: str) -> Dict[str, Any]:
+        """A design as an arm file, with every part resolved to numbers."""
+        from ._questions import design
+
+        return design(self._study, design_id, catalogs=self._catalogs)[0]
+
+    def cases(self, design_id: str) -> List[Dict[str, Any]]:
+        """The cases in which a design is judged, for :func:`armwright.analyze`."""
+        from ._questions import design
+
+        return design(self._study, design_id, catalogs=self._catalogs)[1]
+
+    def size(self, design_id: str) -> List[Dict[str, Any]]:
+        """The sizing of the joints of a design, as :func:`armwright.size` gives it."""
+        from ._questions import size
+
+        return size(self._study, design=design_id, catalogs=self._catalogs)
+
+    def capacity(self, design_id: str) -> Dict[str, Any]:
+        """The largest payload of a design, as :func:`armwright.capacity` gives it."""
+        from ._questions import capacity
+
+        return capacity(self._study, design=design_id, catalogs=self._catalogs)
+
+    def lightest(self) -> Optional[str]:
+        """The ``design_id`` of the lightest design."""
+        return self.ids[0] if len(self) else None
+
+
+class Prediction(Table):
+    """Readings with the model's values in columns whose names begin with ``model_``."""
+
+    remark: Optional[str] = None
+    """What has to be said about the prediction, if anything."""

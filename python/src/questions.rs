@@ -1,0 +1,165 @@
+//! Questions that are answered at once, and reconciliation.
+
+use crate::catalogs::Catalogs;
+use crate::conduct::workers;
+use crate::errors;
+use crate::source::Source;
+use armwright::arm::read_load_cases;
+use armwright::reconcile::predict_files::{Files, predict_files};
+use armwright::reconcile::{Campaign, Outcome};
+use armwright::report::analysis::{Analysis, Harmonic};
+use armwright::study::{arm_of_design, capacity_of, named, names, sizing_of};
+use pyo3::prelude::*;
+use serde_json::Value;
+use std::path::PathBuf;
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::Duration;
+
+/// Force \[N\], damping ratio, frequencies \[Hz\].
+type HarmonicOf = ([f64; 3], f64, Vec<f64>);
+
+#[pyfunction]
+pub(crate) fn analyze(
+    py: Python<'_>,
+    catalogs: &Catalogs,
+    arm: Source,
+    cases: Source,
+    modes: usize,
+    harmonic: Option<HarmonicOf>,
+) -> PyResult<String> {
+    let arm = arm.arm(&catalogs.parts)?;
+    let cases = read_load_cases(cases.document()?, &arm.driven_joints()).map_err(errors::faults)?;
+    let harmonic = harmonic.map(|(force_n, damping, frequencies_hz)| Harmonic {
+        force_n: force_n.into(),
+        damping,
+        frequencies_hz,
+    });
+    Ok(py.detach(|| {
+        let solve = |case| Analysis::of(&arm, case, modes, harmonic.as_ref()).to_json(&arm);
+        Value::Array(cases.into_iter().map(solve).collect()).to_string()
+    }))
+}
+
+#[pyfunction]
+pub(crate) fn driven_joints(catalogs: &Catalogs, arm: Source) -> PyResult<Vec<String>> {
+    let arm = arm.arm(&catalogs.parts)?;
+    Ok(arm.driven_joint_names().into_iter().map(String::from).collect())
+}
+
+#[pyfunction]
+pub(crate) fn size(
+    py: Python<'_>,
+    catalogs: &Catalogs,
+    study: Source,
+    design: Option<&str>,
+) -> PyResult<String> {
+    let study = study.study(&catalogs.parts)?;
+    let rows = py.detach(|| sizing_of(&study, design, &catalogs.parts)).map_err(errors::refused)?;
+    serde_json::to_string(&rows).map_err(errors::usage)
+}
+
+#[pyfunction]
+pub(crate) fn capacity(
+    py: Python<'_>,
+    catalogs: &Catalogs,
+    study: Source,
+    design: Option<&str>,
+) -> PyResult<String> {
+    let study = study.study(&catalogs.parts)?;
+    let found = py.detach(|| capacity_of(&study, design, &catalogs.parts)).map_err(errors::refused)?;
+    Ok(found.to_json().to_string())
+}
+
+/// The arm of a design and the cases in which it is judged.
+#[pyfunction]
+pub(crate) fn design(catalogs: &Catalogs, study: Source, id: &str) -> PyResult<(String, String)> {
+    let study = study.study(&catalogs.parts)?;
+    let (arm, cases) = arm_of_design(&study, id, &catalogs.parts).map_err(errors::refused)?;
+    let cases: Vec<Value> = cases.iter().map(|case| case.to_json(&arm.driven_joints())).collect();
+    Ok((arm.to_json().to_string(), Value::Array(cases).to_string()))
+}
+
+/// The files of a study of the paper, by name.
+#[pyfunction]
+pub(crate) fn paper(py: Python<'_>, catalogs: &Catalogs, name: &str) -> PyResult<Vec<(String, String)>> {
+    let output = py.detach(|| armwright::paper::run(name, &catalogs.parts)).map_err(errors::usage)?;
+    let text = |(name, bytes): (String, Vec<u8>)| (name, String::from_utf8_lossy(&bytes).into_owned());
+    Ok(output.files.into_iter().map(text).collect())
+}
+
+#[pyfunction]
+pub(crate) fn study_names() -> Vec<&'static str> {
+    names()
+}
+
+#[pyfunction]
+pub(crate) fn study_text(name: &str) -> Option<&'static str> {
+    named(name)
+}
+
+/// The verdict in JSON and in words, the corrected arm, the residuals as CSV, and the files of the result.
+type Reconciled = (String, String, String, String, Vec<(String, String)>);
+
+#[pyfunction]
+pub(crate) fn reconcile(
+    py: Python<'_>,
+    catalogs: &Catalogs,
+    campaigns: Vec<PathBuf>,
+) -> PyResult<Reconciled> {
+    let mut read = Vec::new();
+    for folder in &campaigns {
+        read.push(Campaign::read(folder, &catalogs.parts).map_err(errors::input)?);
+    }
+    if read.is_empty() {
+        return Err(errors::usage("give the folder of a campaign"));
+    }
+    let first = read.remove(0);
+    let campaign = first.join(read).map_err(errors::usage)?;
+    let pool = workers(0)?;
+    let outcome = interruptible(py, move || pool.install(|| armwright::reconcile::reconcile(&campaign)))?;
+    Ok((
+        outcome.to_json().to_string(),
+        outcome.to_text(),
+        outcome.corrected_json().to_string(),
+        outcome.residuals_csv(),
+        outcome.files(),
+    ))
+}
+
+/// The outcome of the work, which has no flag that would stop it: after Ctrl-C it goes on alone, and nobody waits for it.
+fn interruptible(py: Python<'_>, work: impl FnOnce() -> Outcome + Send + 'static) -> PyResult<Outcome> {
+    let (done, ended) = channel();
+    let worker = std::thread::spawn(move || {
+        // nobody may listen any more
+        let _ = done.send(work());
+    });
+    let ended = std::sync::Mutex::new(ended);
+    loop {
+        let wait = || match ended.lock() {
+            Ok(ended) => ended.recv_timeout(Duration::from_millis(50)),
+            Err(_) => Err(RecvTimeoutError::Disconnected),
+        };
+        match py.detach(wait) {
+            Ok(outcome) => return Ok(outcome),
+            Err(RecvTimeoutError::Timeout) => py.check_signals()?,
+            Err(RecvTimeoutError::Disconnected) => {
+                let panic = worker.join().err().unwrap_or_else(|| Box::new("no outcome"));
+                std::panic::resume_unwind(panic)
+            }
+        }
+    }
+}
+
+/// The readings as CSV with the model's columns, and what has to be said about them.
+#[pyfunction]
+pub(crate) fn predict(
+    py: Python<'_>,
+    catalogs: &Catalogs,
+    arm: PathBuf,
+    readings: PathBuf,
+    campaign: PathBuf,
+) -> PyResult<(String, Option<String>)> {
+    let files = Files { arm: &arm, readings: &readings, campaign: &campaign };
+    let found = py.detach(|| predict_files(&files, &catalogs.parts)).map_err(errors::input)?;
+    Ok((found.csv, found.remark))
+}

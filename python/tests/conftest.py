@@ -1,0 +1,45 @@
+"""What the tests share: the program next to which the package is held, and inputs."""
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+# scripts/test-python runs a copy of the tests next to the installed wheel
+ROOT = Path(os.environ.get("ARMWRIGHT_ROOT", Path(__file__).resolve().parents[2]))
+
+LEVER = {
+    "name": "lever",
+    "chain": [
+        {"type": "joint", "name": "j1", "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e4},
+        {"type": "link", "name": "l1", "vector_m": [1, 0, 0], "mass_kg": 2},
+    ],
+}
+
+
+@pytest.fixture
+def lever():
+    return json.loads(json.dumps(LEVER))
+
+
+@pytest.fixture
+def bench_arm():
+    """A study of 1,152 designs and more, as a dict."""
+    return json.loads((ROOT / "examples" / "bench-arm.json").read_text())
+
+
+@pytest.fixture
+def program():
+    """Runs the program and returns its standard output."""
+    path = os.environ.get("ARMWRIGHT_PROGRAM")
+    if not path:
+        pytest.skip("set ARMWRIGHT_PROGRAM to the program of the same version (scripts/test-python does)")
+
+    def run(*args):
+        done = subprocess.run([path, *map(str, args)], capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    return run

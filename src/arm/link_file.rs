@@ -1,0 +1,158 @@
+//! Reads a link of an arm file or a study: its tube with section and material, or its rigid offset.
+
+use super::body::read_link_bodies;
+use super::keys::{RECTANGULAR_BAR, RECTANGULAR_TUBE, ROUND_BAR, ROUND_TUBE};
+use super::load::vector;
+use super::section::{LinkMaterial, Section};
+use super::section_file::{read_i_beam, read_stated_section};
+use super::{Link, LinkBody};
+use crate::catalog::Catalogs;
+use crate::input::json::{Node, Object};
+use nalgebra::Vector3;
+
+/// Poisson's ratio of a material that states none.
+pub(super) const DEFAULT_POISSON: f64 = 0.3;
+
+/// A material of the file with its name; `None` if it is faulty, in which case the fault is recorded.
+pub(crate) type NamedMaterial = (String, Option<LinkMaterial>);
+
+/// Reads the name of an element.
+pub(super) fn read_name(node: &Node) -> Option<String> {
+    match node.string()? {
+        "" => node.fault("is empty", "give every element a name"),
+        name => Some(name.to_string()),
+    }
+}
+
+/// Reads a link of one section, or a rigid offset.
+pub(super) fn read_link(object: &Object, materials: &[NamedMaterial], catalogs: &Catalogs) -> Option<Link> {
+    let name = object.required("name").and_then(|n| read_name(&n));
+    let vector_m = object.required("vector_m").and_then(|n| vector(&n));
+    let body = match object.optional("section") {
+        Some(section) => read_tube((object, object), &section, vector_m, materials, catalogs),
+        None => {
+            if let Some(material) = object.optional("material") {
+                material.fault::<()>(
+                    "stands without a section",
+                    "give the tube's section, or leave the material away for a rigid link",
+                );
+            }
+            object.or("mass_kg", 0.0, Node::non_negative).map(|mass_kg| LinkBody::Offset { mass_kg })
+        }
+    };
+    let bodies = read_link_bodies(object);
+    Some(Link { name: name?, vector_m: vector_m?, body: body?, bodies: bodies? })
+}
+
+/// Name of the material that stands for a section of stated stiffnesses.
+const STATED_MATERIAL: &str = "(stated stiffness)";
+
+/// Reads a tube with its section, and with its material from the object that has it.
+pub(super) fn read_tube(
+    (object, of_material): (&Object, &Object),
+    section: &Node,
+    vector_m: Option<Vector3<f64>>,
+    materials: &[NamedMaterial],
+    catalogs: &Catalogs,
+) -> Option<LinkBody> {
+    if let Some(mass) = object.optional("mass_kg") {
+        mass.fault::<()>(
+            "is given together with a section",
+            "a tube's mass follows from section and density; remove it",
+        );
+    }
+    if vector_m.is_some_and(|v| v.norm() < 1e-6) {
+        object.node().fault::<()>("is a tube without length", "give a longer vector_m, or no section");
+    }
+    let section = read_section(section);
+    if let Some(Section::Stated(stated)) = section {
+        if let Some(material) = object.optional("material") {
+            material.fault::<()>("stands beside a section of stated stiffness and mass", "remove it");
+        }
+        let (material_name, material) = (STATED_MATERIAL.to_string(), stated.material());
+        return Some(LinkBody::Tube { material_name, material, section: Section::Stated(stated) });
+    }
+    let material = of_material.required("material").and_then(|n| {
+        let name = n.string()?;
+        find_material(&n, name, materials, catalogs).map(|m| (name.to_string(), m))
+    });
+    let (material_name, material) = material?;
+    Some(LinkBody::Tube { material_name, material, section: section? })
+}
+
+fn find_material(
+    node: &Node,
+    name: &str,
+    materials: &[NamedMaterial],
+    catalogs: &Catalogs,
+) -> Option<LinkMaterial> {
+    if let Some((_, material)) = materials.iter().find(|(n, _)| n == name) {
+        return *material;
+    }
+    let known: Vec<&str> = materials.iter().map(|(n, _)| n.as_str()).collect();
+    let Some(row) = catalogs.materials.iter().find(|m| m.name == name) else {
+        return node.fault(
+            format!("material \"{name}\" is not known"),
+            &format!(
+                "the file's materials: {}; `armwright catalog show materials` lists the catalog's",
+                known.join(", ")
+            ),
+        );
+    };
+    let Some(shear_modulus_pa) = row.shear_modulus_pa else {
+        return node
+            .fault(format!("material \"{name}\" has no shear modulus"), "add the material to the file");
+    };
+    Some(LinkMaterial {
+        youngs_modulus_pa: row.youngs_modulus_pa,
+        shear_modulus_pa,
+        density_kg_m3: row.density_kg_m3,
+        poisson: row.poisson.unwrap_or(DEFAULT_POISSON),
+    })
+}
+
+/// Reads a section object.
+pub(crate) fn read_section(node: &Node) -> Option<Section> {
+    let shape = node.value().get("shape").and_then(|v| v.as_str());
+    let section = match shape {
+        Some("rectangular_tube") => {
+            let object = node.shaped(&RECTANGULAR_TUBE)?;
+            let [width, height, wall] =
+                ["width_m", "height_m", "wall_m"].map(|k| object.required(k).and_then(|n| n.positive()));
+            Section::RectangularTube { width_m: width?, height_m: height?, wall_m: wall? }
+        }
+        Some("round_tube") => {
+            let object = node.shaped(&ROUND_TUBE)?;
+            let [diameter, wall] =
+                ["diameter_m", "wall_m"].map(|k| object.required(k).and_then(|n| n.positive()));
+            Section::RoundTube { diameter_m: diameter?, wall_m: wall? }
+        }
+        Some("rectangular_bar") => {
+            let object = node.shaped(&RECTANGULAR_BAR)?;
+            let [width, height] =
+                ["width_m", "height_m"].map(|k| object.required(k).and_then(|n| n.positive()));
+            Section::RectangularBar { width_m: width?, height_m: height? }
+        }
+        Some("round_bar") => {
+            let object = node.shaped(&ROUND_BAR)?;
+            Section::RoundBar { diameter_m: object.required("diameter_m").and_then(|n| n.positive())? }
+        }
+        Some("i_beam") => read_i_beam(node)?,
+        Some("stated") => read_stated_section(node).map(Section::Stated)?,
+        _ => {
+            return node.fault(
+                "has no known \"shape\"",
+                "choose one of: rectangular_tube, round_tube, rectangular_bar, round_bar, i_beam, stated",
+            );
+        }
+    };
+    let (width, height) = section.outer_m();
+    let wall = section.wall_m();
+    if 2.0 * wall > width.min(height) {
+        return node.fault(
+            format!("wall_m = {wall} leaves no hollow in {width} x {height} m"),
+            "the wall is at most half of the smaller outer dimension, which is a solid bar",
+        );
+    }
+    Some(section.closed())
+}

@@ -1,0 +1,249 @@
+//! What files and folders are, and all of their faults.
+
+use super::exit::{Answer, Exit};
+use super::failure::Failure;
+use super::manifest::{MANIFESTS, hash, listed};
+use super::schema::FILES;
+use crate::arm::{Arm, DrivenJoint, Motion, read_arm, read_arm_document, read_load_cases};
+use crate::catalog::Catalogs;
+use crate::catalog::schema::CatalogFile;
+use crate::input::json::{Document, Fault, Faults, InputError};
+use crate::input::key::{Kind, SCHEMA_ADDRESS, Shape};
+use crate::reconcile::Campaign;
+use crate::reconcile::readings::source::DEFAULT_FILES;
+use crate::report::whole_file::folder_of;
+use crate::study::read_study;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+/// What was found of one file or folder.
+struct Found {
+    place: PathBuf,
+    /// What it is, in words.
+    what: &'static str,
+    outcome: Result<(), Problem>,
+}
+
+/// Why a file is not sound.
+enum Problem {
+    Faulty(Faults),
+    /// A result is not what was written.
+    Changed(String),
+    Unreadable(String),
+}
+
+/// What each file is, and all faults of all of them.
+pub(super) fn report(files: &[PathBuf], as_json: bool, catalogs: &Catalogs) -> Answer {
+    let mut found: Vec<Found> = Vec::new();
+    for file in files {
+        let place = unit_of(file);
+        if !found.iter().any(|other| other.place == place) {
+            found.push(look(place, catalogs));
+        }
+    }
+    let text = match as_json {
+        true => format!("{:#}\n", Value::Array(found.iter().map(Found::to_json).collect())),
+        false => found.iter().map(Found::to_text).collect(),
+    };
+    Answer { text, exit: exit_of(&found) }
+}
+
+/// The code of the worst of the findings.
+fn exit_of(found: &[Found]) -> Exit {
+    let has = |is: fn(&Problem) -> bool| found.iter().any(|f| f.outcome.as_ref().err().is_some_and(is));
+    if has(|p| matches!(p, Problem::Faulty(_))) {
+        Exit::Input
+    } else if has(|p| matches!(p, Problem::Changed(_))) {
+        Exit::CheckFailed
+    } else if has(|p| matches!(p, Problem::Unreadable(_))) {
+        Exit::File
+    } else {
+        Exit::Done
+    }
+}
+
+/// The file or folder that is read as one: a campaign with its readings, a catalog with its folder, a result with its files.
+fn unit_of(file: &Path) -> PathBuf {
+    let name = file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let folder = folder_of(file);
+    let is_catalog = CatalogFile::ALL.iter().any(|catalog| catalog.file_name() == name);
+    let is_reading = DEFAULT_FILES.contains(&name.as_str()) && folder.join("campaign.json").is_file();
+    let is_result = MANIFESTS.iter().any(|manifest| {
+        name == *manifest
+            || read_json(&folder.join(manifest))
+                .and_then(|m| listed(&m))
+                .is_some_and(|l| l.contains_key(&name))
+    });
+    let of_folder = is_catalog || is_reading || is_result || name == "campaign.json";
+    if of_folder && file.is_file() { folder } else { file.to_path_buf() }
+}
+
+fn read_json(path: &Path) -> Option<Value> {
+    serde_json::from_str(&std::fs::read_to_string(path).ok()?).ok()
+}
+
+fn look(place: PathBuf, catalogs: &Catalogs) -> Found {
+    let (what, outcome) =
+        if place.is_dir() { look_at_folder(&place, catalogs) } else { look_at_file(&place, catalogs) };
+    Found { place, what, outcome }
+}
+
+type Look = (&'static str, Result<(), Problem>);
+
+fn look_at_folder(folder: &Path, catalogs: &Catalogs) -> Look {
+    let has = |name: &str| folder.join(name).is_file();
+    if let Some(manifest) = MANIFESTS.into_iter().find(|name| has(name)) {
+        return (result_words(manifest), unchanged(folder, manifest));
+    }
+    if has("campaign.json") {
+        return ("campaign", Campaign::read(folder, catalogs).map(drop).map_err(Problem::from));
+    }
+    if CatalogFile::ALL.iter().any(|file| has(file.file_name())) {
+        return ("catalogs", Catalogs::load(Some(folder)).map(drop).map_err(Problem::from));
+    }
+    let hint =
+        "give a folder with campaign.json, run.json or verdict.json, or with catalog files; or single files";
+    ("unknown", Err(unknown(folder, "is a folder of nothing that is known", hint)))
+}
+
+fn look_at_file(path: &Path, catalogs: &Catalogs) -> Look {
+    let document = match Document::read(path) {
+        Ok(document) => document,
+        Err(InputError::Faulty(_)) if path.extension().is_some_and(|e| e != "json") => {
+            let hint = "tables are checked with the folder of their campaign, catalog or result";
+            return ("unknown", Err(unknown(path, "is no JSON file", hint)));
+        }
+        Err(error) => return ("unknown", Err(error.into())),
+    };
+    match kind_of(document.root().value()) {
+        Some("arm") => ("arm", read_arm_document(document, catalogs).map(drop).map_err(Problem::Faulty)),
+        Some("cases") => ("cases", check_cases(document, path, catalogs)),
+        Some("study") => ("study", read_study(document, catalogs).map(drop).map_err(Problem::Faulty)),
+        Some(_) => {
+            let hint = "call it campaign.json, in a folder with its arm and its readings";
+            ("campaign", Err(unknown(path, "is the statement of a campaign, outside of one", hint)))
+        }
+        None => {
+            let hint = "`armwright schema` lists the kinds of files and `armwright schema KIND` their keys";
+            ("unknown", Err(unknown(path, "has no key of a file that is known", hint)))
+        }
+    }
+}
+
+/// The kind of file that knows most of the keys of a document; of several, the first.
+fn kind_of(value: &Value) -> Option<&'static str> {
+    let Value::Object(map) = value else { return value.is_array().then_some("cases") };
+    let known = |shape: &Shape| map.keys().filter(|key| shape.keys.iter().any(|k| k.name == *key)).count();
+    let of_itself = map.contains_key(SCHEMA_ADDRESS.name) as usize;
+    let mut best = (of_itself, None);
+    for file in &FILES {
+        if let Kind::Object(shape) = file.root
+            && known(shape) > best.0
+        {
+            best = (known(shape), Some(file.name));
+        }
+    }
+    best.1
+}
+
+/// Checks cases with the `arm.json` beside them; without one, whether their poses are equally long.
+fn check_cases(document: Document, path: &Path, catalogs: &Catalogs) -> Result<(), Problem> {
+    let beside = folder_of(path).join("arm.json");
+    let arm: Option<Arm> = if beside.is_file() { Some(read_arm(&beside, catalogs)?) } else { None };
+    let joints: Vec<DrivenJoint> = match &arm {
+        Some(arm) => arm.driven_joints(),
+        None => joints_of_first_pose(&document),
+    };
+    read_load_cases(document, &joints).map(drop).map_err(Problem::Faulty)
+}
+
+/// The joints that the first pose has entries for, where no arm says which there are.
+fn joints_of_first_pose(document: &Document) -> Vec<DrivenJoint> {
+    let root = document.root();
+    let first = &root.value()[0];
+    if let Some(entries) = first["pose"].as_object() {
+        let joint = |key: &String| {
+            let slides = key.strip_suffix("_mm").map(|name| (name, Motion::Slides));
+            let (name, motion) = slides.or(key.strip_suffix("_deg").map(|name| (name, Motion::Turns)))?;
+            Some(DrivenJoint { name: name.into(), motion })
+        };
+        return entries.keys().filter_map(joint).collect();
+    }
+    let angles = first["pose_deg"].as_array().map_or(0, Vec::len);
+    (1..=angles).map(|i| DrivenJoint::turning(&format!("joint {i}"))).collect()
+}
+
+fn result_words(manifest: &str) -> &'static str {
+    match manifest {
+        super::manifest::RUN => "result of a study",
+        super::manifest::VERDICT => "result of a campaign",
+        _ => "shard of a search",
+    }
+}
+
+/// Checks that the files of a result are those that were written.
+fn unchanged(folder: &Path, manifest: &str) -> Result<(), Problem> {
+    let path = folder.join(manifest);
+    let text = std::fs::read_to_string(&path).map_err(|e| Problem::Unreadable(e.to_string()))?;
+    let value: Value =
+        serde_json::from_str(&text).map_err(|e| Problem::Changed(format!("{manifest} is not JSON: {e}")))?;
+    let Some(files) = listed(&value) else {
+        return Err(Problem::Changed(format!("{manifest} lists no files, as of a version before 0.2")));
+    };
+    let wrong: Vec<String> = files
+        .iter()
+        .filter_map(|(name, expected)| match std::fs::read(folder.join(name)) {
+            Ok(bytes) if hash(&bytes) == *expected => None,
+            Ok(_) => Some(format!("{name} is not what was written")),
+            Err(e) => Some(format!("{name}: {e}")),
+        })
+        .collect();
+    if wrong.is_empty() { Ok(()) } else { Err(Problem::Changed(wrong.join("\n  "))) }
+}
+
+fn unknown(path: &Path, problem: &str, hint: &str) -> Problem {
+    Problem::Faulty(Faults(vec![Fault {
+        file: path.display().to_string(),
+        line: None,
+        field: String::new(),
+        problem: problem.into(),
+        hint: hint.into(),
+    }]))
+}
+
+impl From<InputError> for Problem {
+    fn from(error: InputError) -> Self {
+        match Failure::from(error) {
+            Failure::Input(faults) => Problem::Faulty(faults),
+            unreadable => Problem::Unreadable(unreadable.to_string()),
+        }
+    }
+}
+
+impl Found {
+    fn to_text(&self) -> String {
+        let head = format!("{}: {}", self.place.display(), self.what);
+        match &self.outcome {
+            Ok(()) => format!("{head}, sound\n"),
+            Err(Problem::Faulty(Faults(faults))) => {
+                let count =
+                    if faults.len() == 1 { "1 fault".into() } else { format!("{} faults", faults.len()) };
+                let lines: String = faults.iter().map(|fault| format!("  {fault}\n")).collect();
+                format!("{head}, {count}\n{lines}")
+            }
+            Err(Problem::Changed(what)) => format!("{head}, changed\n  {what}\n"),
+            Err(Problem::Unreadable(why)) => format!("{head}, cannot be read\n  {why}\n"),
+        }
+    }
+
+    fn to_json(&self) -> Value {
+        let fault = |f: &Fault| json!({"file": f.file, "line": f.line, "field": f.field, "problem": f.problem, "hint": f.hint});
+        let (state, faults) = match &self.outcome {
+            Ok(()) => ("sound", Vec::new()),
+            Err(Problem::Faulty(Faults(faults))) => ("faulty", faults.iter().map(fault).collect()),
+            Err(Problem::Changed(what)) => ("changed", vec![json!({"problem": what})]),
+            Err(Problem::Unreadable(why)) => ("unreadable", vec![json!({"problem": why})]),
+        };
+        json!({"path": self.place.display().to_string(), "kind": self.what, "state": state, "faults": faults})
+    }
+}

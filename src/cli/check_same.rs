@@ -1,0 +1,100 @@
+//! Whether two folders of results are the same, outside the places that tell of time and machine.
+
+use super::failure::Failure;
+use super::manifest::SHARD;
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// Keys of run.json that differ from run to run, and the hashes of files that tell of them.
+const OF_A_RUN: [&str; 5] = ["elapsed_s", "designs_per_s", "threads", "platform", "files"];
+/// What stands around timings.
+const TIMING: [&str; 2] = ["<!-- timing -->", "<!-- /timing -->"];
+/// Commands that name the folder of results.
+const COMMANDS: [&str; 5] =
+    ["armwright design ", "armwright analyze ", "armwright compare ", "armwright front check ", " --cases "];
+
+/// Says that two folders are the same.
+///
+/// # Errors
+/// They are not, with the files that differ; or one cannot be read.
+pub(super) fn same(a: &Path, b: &Path) -> Result<String, Failure> {
+    let names = files_of(a)?;
+    let others = files_of(b)?;
+    let mut faults = Vec::new();
+    for name in names.union(&others) {
+        match (names.contains(name), others.contains(name)) {
+            (true, false) => faults.push(format!("{name} is only in {}", a.display())),
+            (false, true) => faults.push(format!("{name} is only in {}", b.display())),
+            _ if neutral(a, name)? != neutral(b, name)? => faults.push(format!("{name} differs")),
+            _ => {}
+        }
+    }
+    match faults.is_empty() {
+        true => Ok(format!("{} files are the same outside of the marked timings\n", names.len())),
+        false => Err(Failure::Check(format!(
+            "{} and {} are not the same\n  {}",
+            a.display(),
+            b.display(),
+            faults.join("\n  ")
+        ))),
+    }
+}
+
+/// Names of all files of a folder and the folders in it. Left out are those that begin with a dot, and folders of shards: they
+/// are results of their own.
+fn files_of(folder: &Path) -> Result<BTreeSet<String>, Failure> {
+    let mut names = BTreeSet::new();
+    let mut open = vec![PathBuf::new()];
+    while let Some(inside) = open.pop() {
+        let here = folder.join(&inside);
+        for entry in fs_err::read_dir(&here).map_err(|e| Failure::File(e.to_string()))? {
+            let entry = entry.map_err(|e| Failure::file(&here, "read", &e))?;
+            let name = inside.join(entry.file_name());
+            if entry.file_name().to_string_lossy().starts_with('.') {
+                continue;
+            }
+            match entry.path().is_dir() {
+                true if entry.path().join(SHARD).is_file() => {}
+                true => open.push(name),
+                false => drop(names.insert(name.to_string_lossy().into_owned())),
+            }
+        }
+    }
+    Ok(names)
+}
+
+/// The bytes of a file without what tells of time, machine and folder.
+fn neutral(folder: &Path, name: &str) -> Result<Vec<u8>, Failure> {
+    let bytes = fs_err::read(folder.join(name)).map_err(|e| Failure::File(e.to_string()))?;
+    Ok(match name {
+        "run.json" => without_keys(bytes),
+        "summary.md" | "report.html" => without_timing(bytes, typed_as(folder).as_deref()),
+        _ => bytes,
+    })
+}
+
+fn without_keys(bytes: Vec<u8>) -> Vec<u8> {
+    let Ok(Value::Object(mut run)) = serde_json::from_slice(&bytes) else { return bytes };
+    OF_A_RUN.iter().for_each(|key| drop(run.remove(*key)));
+    Value::Object(run).to_string().into_bytes()
+}
+
+fn without_timing(bytes: Vec<u8>, folder: Option<&str>) -> Vec<u8> {
+    let Ok(mut text) = String::from_utf8(bytes.clone()) else { return bytes };
+    while let Some(start) = text.find(TIMING[0])
+        && let Some(length) = text[start..].find(TIMING[1])
+    {
+        text.replace_range(start..start + length + TIMING[1].len(), "");
+    }
+    for command in COMMANDS.iter().filter(|_| folder.is_some()) {
+        text = text.replace(&format!("{command}{}", folder.unwrap_or_default()), command);
+    }
+    text.into_bytes()
+}
+
+/// The folder as it was typed when the results were written, from the commands of its summary.
+fn typed_as(folder: &Path) -> Option<String> {
+    let summary = std::fs::read_to_string(folder.join("summary.md")).ok()?;
+    summary.lines().find_map(|line| line.strip_prefix(COMMANDS[2])).map(String::from)
+}

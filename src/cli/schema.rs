@@ -1,0 +1,80 @@
+//! `armwright schema`: what a kind of file may hold, for editors and other programs.
+
+use super::failure::Failure;
+use crate::arm::file_keys::ARM_FILE;
+use crate::arm::keys::CASES_FILE;
+use crate::catalog::schema::CatalogFile;
+use crate::catalog::table_schema::table_schema;
+use crate::input::schema::FileKind;
+use crate::reconcile::readings::keys::CAMPAIGN_FILE;
+use crate::study::keys::STUDY_FILE;
+use clap::Args;
+use serde_json::Value;
+
+/// Prints the JSON Schema of a kind of file (draft 2020-12), or the Table Schema of a catalog file; without a kind, lists
+/// the kinds. An editor that knows the schema completes keys and marks faults while one types.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  armwright schema\n  armwright schema study > study.schema.json\n  \
+    armwright schema gears\n  armwright schema arm --markdown\n\n\
+    A file may name its schema: {\"$schema\": \"study.schema.json\", ...}")]
+pub(crate) struct SchemaArgs {
+    /// Kind of file
+    #[arg(value_name = "KIND")]
+    kind: Option<String>,
+    /// Print the keys as Markdown tables; without a kind, those of every JSON file
+    #[arg(long)]
+    markdown: bool,
+}
+
+/// The kinds of JSON files that people write.
+pub(super) const FILES: [FileKind; 4] = [ARM_FILE, CASES_FILE, STUDY_FILE, CAMPAIGN_FILE];
+
+/// Head of the page with all keys.
+const PAGE_HEAD: &str = "# Keys of all files\n\nEvery key that the readers know, printed by `armwright schema --markdown`. \
+    A key that is not here is a fault in a file. [arm-format.md](arm-format.md), [study-format.md](study-format.md) and \
+    [reconcile.md](reconcile.md) explain how the keys work together. `armwright schema KIND` prints the same as a JSON Schema.\n";
+
+/// Executes the verb.
+///
+/// # Errors
+/// There is no such kind.
+pub(super) fn run(args: &SchemaArgs) -> Result<String, Failure> {
+    let file = |name: &str| FILES.iter().find(|file| file.name == name);
+    match (args.kind.as_deref(), args.markdown) {
+        (None, false) => Ok(list()),
+        (None, true) => Ok(page()),
+        (Some(name), true) => file(name).map(FileKind::tables).ok_or_else(|| unknown(name)),
+        (Some(name), false) => {
+            let schema = file(name).map(FileKind::schema);
+            schema.or_else(|| catalog_schema(name)).map(|s| format!("{s:#}\n")).ok_or_else(|| unknown(name))
+        }
+    }
+}
+
+fn catalog_schema(name: &str) -> Option<Value> {
+    CatalogFile::ALL.into_iter().find(|file| stem(*file) == name).map(table_schema)
+}
+
+/// Name of a catalog file without its ending.
+fn stem(file: CatalogFile) -> &'static str {
+    file.file_name().trim_end_matches(".csv")
+}
+
+fn unknown(name: &str) -> Failure {
+    let json = FILES.iter().map(|file| file.name);
+    let names: Vec<&str> = json.chain(CatalogFile::ALL.into_iter().map(stem)).collect();
+    Failure::Usage(format!("there is no kind of file \"{name}\"; kinds: {}", names.join(", ")))
+}
+
+fn list() -> String {
+    let json = FILES.iter().map(|file| (file.name, file.about.to_string()));
+    let csv = CatalogFile::ALL
+        .into_iter()
+        .map(|file| (stem(file), format!("The catalog file {}, as a Table Schema.", file.file_name())));
+    json.chain(csv).map(|(name, about)| format!("{name:<18}{about}\n")).collect()
+}
+
+fn page() -> String {
+    let tables: Vec<String> = FILES.iter().map(FileKind::tables).collect();
+    format!("{PAGE_HEAD}\n{}", tables.join("\n"))
+}

@@ -1,0 +1,64 @@
+//! `armwright completions` and `armwright man`: what shells and `man` know of the command line, from its own description.
+
+use super::failure::Failure;
+use super::write::write_all;
+use clap::{Args, Command};
+use clap_complete::Shell;
+use clap_mangen::Man;
+use std::path::PathBuf;
+
+/// Name of the program.
+const NAME: &str = "armwright";
+
+/// Prints a script with which a shell completes verbs, flags and file names.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  armwright completions bash > ~/.local/share/bash-completion/completions/armwright\n  \
+    armwright completions zsh > ~/.zfunc/_armwright\n  \
+    armwright completions fish > ~/.config/fish/completions/armwright.fish"
+)]
+pub(crate) struct CompletionsArgs {
+    /// The shell
+    #[arg(value_enum)]
+    shell: Shell,
+}
+
+/// Writes a manual page for the program and for each verb.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: armwright man --out ~/.local/share/man/man1")]
+pub(crate) struct ManArgs {
+    /// Folder to write to, made with its parents
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+}
+
+/// The script for a shell.
+pub(super) fn completions(args: &CompletionsArgs, mut command: Command) -> String {
+    let mut script = Vec::new();
+    clap_complete::generate(args.shell, &mut command, NAME, &mut script);
+    String::from_utf8_lossy(&script).into_owned()
+}
+
+/// Writes the manual pages.
+///
+/// # Errors
+/// A file cannot be written.
+pub(super) fn man(args: &ManArgs, command: Command) -> Result<String, Failure> {
+    let mut command = command.disable_help_subcommand(true);
+    command.build();
+    let mut pages = Vec::new();
+    add_pages(&command, NAME, &mut pages)?;
+    write_all(&args.out, &pages, &[])?;
+    Ok(format!("{} pages written to {}\n", pages.len(), args.out.display()))
+}
+
+/// Adds the page of a command and those of its verbs.
+fn add_pages(command: &Command, name: &str, pages: &mut Vec<(String, Vec<u8>)>) -> Result<(), Failure> {
+    let mut page = Vec::new();
+    let man = Man::new(command.clone()).title(name);
+    man.render(&mut page).map_err(|e| Failure::Internal(e.to_string()))?;
+    pages.push((format!("{name}.1"), page));
+    command
+        .get_subcommands()
+        .try_for_each(|verb| add_pages(verb, &format!("{name}-{}", verb.get_name()), pages))
+}

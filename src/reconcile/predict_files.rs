@@ -1,0 +1,95 @@
+//! The model's values next to the readings of a file, from the files of an arm and a campaign.
+
+use super::predict::{predict, unplaced};
+use super::readings::campaign::{Statement, read_statement};
+use super::readings::placement::{Placed, Placement};
+use super::readings::source::Source;
+use super::readings::table::Table;
+use crate::arm::effect::channel::Channel;
+use crate::arm::file::read_arm;
+use crate::catalog::Catalogs;
+use crate::input::json::{Faults, InputError};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+/// The files of a prediction.
+#[derive(Debug, Clone, Copy)]
+pub struct Files<'a> {
+    /// Arm file, corrected or not.
+    pub arm: &'a Path,
+    /// Readings: a static, modal, windup or positions file.
+    pub readings: &'a Path,
+    /// The `campaign.json` that says how they were taken.
+    pub campaign: &'a Path,
+}
+
+/// Readings with the model's values.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prediction {
+    /// The readings as CSV with the columns of the model added.
+    pub csv: String,
+    /// What has to be said about it, if anything.
+    pub remark: Option<String>,
+    /// The other arms on the same trunk, whose files were read too.
+    pub other_arms: Vec<PathBuf>,
+}
+
+/// Adds the model's value to every reading of a file.
+///
+/// # Errors
+/// All faults of the files, or one that cannot be read.
+pub fn predict_files(files: &Files, catalogs: &Catalogs) -> Result<Prediction, InputError> {
+    let statement = read_statement(files.campaign)?;
+    let other_arms = other_arms(files, &statement);
+    let mut arms = vec![placed(files.arm, catalogs)?];
+    for file in &other_arms {
+        arms.push(placed(file, catalogs)?);
+    }
+    let csv = predict(&arms, &statement, table(files.readings, &statement)?)?;
+    let remark = unplaced(&arms, &table(files.readings, &statement)?);
+    Ok(Prediction { csv, remark, other_arms })
+}
+
+fn json_of(file: &Path) -> Value {
+    let text = std::fs::read_to_string(file).unwrap_or_default();
+    serde_json::from_str(&text).unwrap_or_default()
+}
+
+fn placed(file: &Path, catalogs: &Catalogs) -> Result<Placed, InputError> {
+    let arm = read_arm(file, catalogs)?;
+    if let Some(fault) = arm.tilt_fault(&file.display().to_string()) {
+        return Err(Faults(vec![fault]).into());
+    }
+    Ok(Placed { arm, placement: Placement::from_json(&json_of(file)) })
+}
+
+/// The other arms on the same trunk: those named in the corrected arm's provenance, or else in the campaign.
+fn other_arms(files: &Files, statement: &Statement) -> Vec<PathBuf> {
+    let folder = |file: &Path| file.parent().map(Path::to_path_buf).unwrap_or_default();
+    let corrected = json_of(files.arm);
+    match corrected["provenance"]["other_arms"].as_array() {
+        Some(names) => {
+            names.iter().filter_map(Value::as_str).map(|name| folder(files.arm).join(name)).collect()
+        }
+        None => statement.other_arm_files.iter().map(|name| folder(files.campaign).join(name)).collect(),
+    }
+}
+
+/// The readings, with the names of columns that `campaign.json` states for a file of this name, or else for a file
+/// with these columns.
+fn table(file: &Path, statement: &Statement) -> Result<Table, InputError> {
+    let sources = Channel::ALL.map(|channel| statement.source(channel));
+    let is_named = |source: &&Source| source.file.as_ref().is_some_and(|named| file.ends_with(named));
+    if let Some(source) = sources.iter().find(is_named) {
+        return Table::read_from(file, source);
+    }
+    let table = Table::read_from(file, &Source::default())?;
+    let has_all = |source: &&Source| source.columns.iter().all(|(_, shown)| table.columns.contains(shown));
+    match sources.iter().filter(|source| !source.columns.is_empty()).find(has_all) {
+        Some(Source { columns, .. }) => {
+            let source = Source { columns: columns.clone(), ..Source::default() };
+            Table::read_from(file, &source)
+        }
+        None => Ok(table),
+    }
+}

@@ -1,0 +1,345 @@
+//! An arm analysed in one load case: torques, tip displacement, modes and response, as JSON and as text.
+
+use super::number::percent;
+use super::pose::pose_words;
+use super::small_displacement::too_far;
+use super::springs::{spring_json, springs_in, springs_text};
+use crate::arm::effect::entry::Effect;
+use crate::arm::load::LoadCase;
+use crate::arm::pose::any_slides;
+use crate::arm::springs::Drawn;
+use crate::arm::{Arm, Bearing, Element, LinkModel};
+use crate::mechanics::chain::Chain;
+use crate::mechanics::modes::Mode;
+use crate::mechanics::prismatic::GuideLoad;
+use crate::mechanics::response::{Response, frequency_response};
+use crate::mechanics::statics::{JointLoad, Statics};
+use crate::space::bearing_loads::resolved;
+use nalgebra::Vector3;
+use serde_json::{Map, Value, json};
+use std::fmt::Write;
+
+/// A harmonic force at the tip, and where its response is asked for (Eq 16).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Harmonic {
+    /// Amplitude of the force, world axes \[N\].
+    pub force_n: Vector3<f64>,
+    /// Damping ratio of every mode.
+    pub damping: f64,
+    /// Frequencies \[Hz\].
+    pub frequencies_hz: Vec<f64>,
+}
+
+/// An arm in one load case, solved.
+///
+/// ```
+/// use armwright::arm::{read_arm_document, read_load_cases};
+/// use armwright::catalog::Catalogs;
+/// use armwright::input::Document;
+/// use armwright::report::analysis::Analysis;
+///
+/// let file = r#"{"name": "lever", "chain": [
+///     {"type": "joint", "name": "j1", "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e4},
+///     {"type": "link", "name": "l1", "vector_m": [1, 0, 0], "mass_kg": 2}]}"#;
+/// let arm = read_arm_document(Document::parse("arm.json", file)?, &Catalogs::builtin())?;
+/// let case = r#"[{"name": "level", "pose_deg": [0]}]"#;
+/// let cases = read_load_cases(Document::parse("cases.json", case)?, &arm.driven_joints())?;
+/// let solved = Analysis::of(&arm, cases[0].clone(), 1, None).to_json(&arm);
+/// // the weight of 2 kg at half a metre
+/// let torque_nm = solved["joint_torque_nm"]["j1"].as_f64().expect("a number");
+/// assert!((torque_nm - 2.0 * 9.81 * 0.5).abs() < 1e-12);
+/// # Ok::<(), armwright::input::Faults>(())
+/// ```
+pub struct Analysis {
+    /// The load case.
+    pub case: LoadCase,
+    /// Torques, displacement and shares.
+    pub statics: Statics,
+    /// The lowest modes, as many as were asked for.
+    pub modes: Vec<Mode>,
+    /// Response to a harmonic force, if it was asked for.
+    pub response: Option<Vec<Response>>,
+    /// Effects on the bending of links, if the case holds links rigid.
+    unbent: Vec<String>,
+    /// The springs in the pose of the case.
+    springs: Vec<(String, Drawn)>,
+}
+
+impl Analysis {
+    /// Solves the arm in this case, with so many modes.
+    pub fn of(arm: &Arm, case: LoadCase, modes: usize, harmonic: Option<&Harmonic>) -> Self {
+        let structure = arm.structure_in(&case);
+        let chain = Chain::new(&structure, case.links);
+        let posed = chain.pose(&case);
+        let statics = posed.statics();
+        let modes = posed.modes(&statics, modes);
+        let response =
+            harmonic.map(|h| frequency_response(&posed, &statics, &h.force_n, h.damping, &h.frequencies_hz));
+        let rigid = case.links == LinkModel::Rigid;
+        let unbent = arm.effects.iter().filter(|e| rigid && e.is_of_bending()).map(Effect::label).collect();
+        let springs = springs_in(&chain, &case);
+        Self { case, statics, modes, response, unbent, springs }
+    }
+
+    /// The analysis as `armwright analyze --json` prints it; `docs/arm-format.md` has its keys.
+    pub fn to_json(&self, arm: &Arm) -> Value {
+        let torques: Map<String, Value> =
+            self.statics.joint_torques_nm.iter().map(|(n, t)| (n.clone(), json!(t))).collect();
+        let moments: Map<String, Value> =
+            self.carried().map(|(joint, load)| (joint.to_string(), json!(load.moment_nm))).collect();
+        let shares: Vec<Value> = self
+            .statics
+            .shares_m
+            .iter()
+            .map(|(n, s)| json!({"element": n, "tip_displacement_m": s.as_slice()}))
+            .collect();
+        let mut out = json!({
+            "name": self.case.name,
+            "joint_torque_nm": torques,
+            "bearing_moment_nm": moments,
+            "bearings": self.bearings_json(arm),
+            "rigid_bearings": rigid_bearings(arm),
+            "tip_displacement_m": self.statics.tip_displacement_m.as_slice(),
+            "small_displacements": too_far(self.statics.tip_displacement_m.norm(), arm.reach_m()).is_none(),
+            "shares": shares,
+            "modes": self.modes.iter().map(mode_json).collect::<Vec<_>>(),
+        });
+        if !self.springs.is_empty() {
+            out["springs"] = self.springs.iter().map(spring_json).collect();
+            out["springs_stiffen_modes"] = json!(false);
+        }
+        self.guides_json(&mut out);
+        let impossible = arm.impossible_bodies();
+        if !impossible.is_empty() {
+            out["impossible_inertias"] = json!(impossible);
+        }
+        let of_tests = arm.ignored_effects().into_iter().map(Effect::label);
+        let ignored: Vec<String> = of_tests.chain(self.unbent.iter().cloned()).collect();
+        if !ignored.is_empty() {
+            out["ignored_effects"] = json!(ignored);
+        }
+        if let Some(response) = &self.response {
+            out["response"] = response
+                .iter()
+                .map(|r| {
+                    json!({
+                        "frequency_hz": r.frequency_hz,
+                        "tip_amplitude_m": r.amplitude_m().as_slice(),
+                        "tip_phase_rad": r.phase_rad().as_slice(),
+                    })
+                })
+                .collect();
+        }
+        out
+    }
+
+    /// Adds what drives and guides of prismatic joints hold, if there are any.
+    fn guides_json(&self, out: &mut Value) {
+        if self.statics.guide_loads.is_empty() {
+            return;
+        }
+        let each = |of: &dyn Fn(&GuideLoad) -> Value| -> Value {
+            Value::Object(self.statics.guide_loads.iter().map(|load| (load.name.clone(), of(load))).collect())
+        };
+        let forces = self.statics.joint_forces_n.iter().map(|(name, n)| (name.clone(), json!(n)));
+        out["joint_force_n"] = Value::Object(forces.collect());
+        out["guide_force_n"] = each(&|load| json!([load.force_n.y, load.force_n.z]));
+        out["guide_moment_nm"] = each(&|load| json!(load.moment_nm.as_slice()));
+    }
+
+    /// What the guides of prismatic joints carry across their travel.
+    fn guides_text(&self, out: &mut String) {
+        if self.statics.guide_loads.is_empty() {
+            return;
+        }
+        let _ = writeln!(out, "  guide          force across N (y, z)    moment Nm (roll, pitch, yaw)");
+        for GuideLoad { name, force_n, moment_nm } in &self.statics.guide_loads {
+            let _ = writeln!(
+                out,
+                "  {name:<14} {:10.3} {:10.3}    {:10.3} {:10.3} {:10.3}",
+                force_n.y, force_n.z, moment_nm.x, moment_nm.y, moment_nm.z
+            );
+        }
+    }
+
+    /// The joints with what their output bearings carry at rest.
+    fn carried(&self) -> impl Iterator<Item = (&str, &JointLoad)> {
+        let joints = self.statics.joint_torques_nm.iter().map(|(name, _)| name.as_str());
+        joints.zip(&self.statics.bearing_loads)
+    }
+
+    /// The joints that have an output bearing, with the bearing and what it carries.
+    fn on_bearings<'a>(&'a self, arm: &'a Arm) -> impl Iterator<Item = (&'a str, OnBearing<'a>)> {
+        let bearing = |name: &str| {
+            let at = arm.chain.iter().position(|element| element.name() == name)?;
+            let Element::Joint(joint) = &arm.chain[at] else { return None };
+            Some(resolved(joint.bearing?, &joint.axis, arm.chain.get(at + 1)))
+        };
+        self.carried()
+            .filter_map(move |(name, load)| Some((name, OnBearing { load, bearing: bearing(name)? })))
+    }
+
+    fn bearings_json(&self, arm: &Arm) -> Map<String, Value> {
+        let of_joint = |(name, on): (&str, OnBearing)| {
+            let value = json!({
+                "radial_force_n": on.load.radial_n,
+                "axial_force_n": on.load.axial_n,
+                "offset_m": on.bearing.offset_m,
+                "moment_with_offset_nm": on.moment_with_offset_nm(),
+                "permissible_moment_nm": on.bearing.permissible_moment_nm,
+            });
+            (name.to_string(), value)
+        };
+        self.on_bearings(arm).map(of_joint).collect()
+    }
+
+    /// The moments on the output bearings, next to what is permitted.
+    fn bearings_text(&self, arm: &Arm, out: &mut String) {
+        let mut on_bearings = self.on_bearings(arm).peekable();
+        if on_bearings.peek().is_none() {
+            return;
+        }
+        let _ =
+            writeln!(out, "  output bearing  moment Nm   at its centre   permitted   (load at rest alone)");
+        for (name, on) in on_bearings {
+            let permitted = on.bearing.permissible_moment_nm;
+            let _ = writeln!(
+                out,
+                "  {name:<14} {:>10.3} {:>15.3} {:>11}{}",
+                on.load.moment_nm,
+                on.moment_with_offset_nm(),
+                permitted.map_or("unknown".into(), |nm| format!("{nm:.1}")),
+                if permitted.is_some_and(|nm| on.moment_with_offset_nm() > nm) { "   too much" } else { "" }
+            );
+        }
+    }
+
+    /// The analysis as `armwright analyze` prints it.
+    pub fn to_text(&self, arm: &Arm) -> String {
+        let driven = arm.driven_joints();
+        let pose = match any_slides(&driven) {
+            true => pose_words(&driven, &self.case.pose_deg),
+            false => format!("{:?} deg", self.case.pose_deg),
+        };
+        let mut out = format!("{}, case \"{}\": pose {pose}\n", arm.name, self.case.name);
+        let _ = writeln!(out, "  arm mass            {:10.3} kg", arm.mass_kg());
+        let added_kg = arm.structure_in(&self.case).mass_kg() - arm.mass_kg();
+        if added_kg.abs() > 1e-9 {
+            let _ = writeln!(out, "  effects add         {added_kg:10.3} kg");
+        }
+        let tip = self.statics.tip_displacement_m * 1e3;
+        let _ = writeln!(
+            out,
+            "  tip displacement    {:10.4} mm   (x {:.4}, y {:.4}, z {:.4} mm)",
+            tip.norm(),
+            tip.x,
+            tip.y,
+            tip.z
+        );
+        if let Some(words) = too_far(self.statics.tip_displacement_m.norm(), arm.reach_m()) {
+            let _ = writeln!(
+                out,
+                "  The tip {words}.\n  Is every number of the file in its unit (Pa, kg/m3, m, kg, N m/rad)?"
+            );
+        }
+        if !self.unbent.is_empty() {
+            let _ = writeln!(out, "  ignored, because links are held rigid: {}", self.unbent.join(", "));
+        }
+        self.shares_text(&mut out);
+        self.guides_text(&mut out);
+        self.bearings_text(arm, &mut out);
+        let impossible = arm.impossible_bodies();
+        if !impossible.is_empty() {
+            let _ = writeln!(
+                out,
+                "  no solid has the inertia of a body of {}: one principal moment exceeds the sum of the others",
+                impossible.join(", ")
+            );
+        }
+        let rigid = rigid_bearings(arm);
+        if !rigid.is_empty() {
+            let _ = writeln!(out, "  rigid output bearing without mass: {}", rigid.join(", "));
+        }
+        springs_text(&self.springs, &mut out);
+        self.modes_text(&mut out);
+        self.response_text(&mut out);
+        out
+    }
+
+    fn shares_text(&self, out: &mut String) {
+        let total = self.statics.tip_displacement_m;
+        let _ = writeln!(out, "  element          torque Nm    moves the tip by mm (x, y, z)      share");
+        for (name, share) in &self.statics.shares_m {
+            let torque = self.statics.joint_torques_nm.iter().find(|(n, _)| n == name);
+            let force = self.statics.joint_forces_n.iter().find(|(n, _)| n == name);
+            let torque = match (torque, force) {
+                (Some((_, nm)), _) => format!("{nm:.3}"),
+                (_, Some((_, newton))) => format!("{newton:.3} N"),
+                _ => String::new(),
+            };
+            let part = 100.0 * share.dot(&total) / total.norm_squared().max(f64::MIN_POSITIVE);
+            let mm = share * 1e3;
+            let _ = writeln!(
+                out,
+                "  {name:<14} {torque:>11}  {:10.5} {:10.5} {:10.5}  {part:7.2} %",
+                mm.x, mm.y, mm.z
+            );
+        }
+    }
+
+    fn modes_text(&self, out: &mut String) {
+        let _ = writeln!(out, "  mode  frequency Hz  plane  where the strain energy sits");
+        for (k, mode) in self.modes.iter().enumerate() {
+            let mut parts: Vec<&(String, f64)> =
+                mode.strain_energy.iter().filter(|(_, e)| *e >= 0.01).collect();
+            parts.sort_by(|a, b| b.1.total_cmp(&a.1));
+            let parts: Vec<String> =
+                parts.iter().map(|(n, e)| format!("{n} {}", percent(100.0 * e, 0))).collect();
+            let plane = mode.plane.unwrap_or("-");
+            let _ = writeln!(
+                out,
+                "  {:>4}  {:>12.4}  {plane:<5}  {}",
+                k + 1,
+                mode.frequency_hz,
+                parts.join(", ")
+            );
+        }
+    }
+
+    fn response_text(&self, out: &mut String) {
+        let Some(response) = &self.response else { return };
+        let _ = writeln!(out, "  frequency Hz   tip amplitude mm (x, y, z)            phase deg (x, y, z)");
+        for r in response {
+            let (a, p) = (r.amplitude_m() * 1e3, r.phase_rad().map(f64::to_degrees));
+            let _ = writeln!(
+                out,
+                "  {:>12.3}   {:11.6} {:11.6} {:11.6}   {:8.1} {:8.1} {:8.1}",
+                r.frequency_hz, a.x, a.y, a.z, p.x, p.y, p.z
+            );
+        }
+    }
+}
+
+/// The joints with a gear whose output bearing the arm file leaves out.
+fn rigid_bearings(arm: &Arm) -> Vec<&str> {
+    let rigid = |element: &Element| matches!(element, Element::Joint(joint) if joint.gear.is_some() && joint.bearing.is_none());
+    arm.chain.iter().filter(|element| rigid(element)).map(Element::name).collect()
+}
+
+/// An output bearing and what it carries at rest.
+struct OnBearing<'a> {
+    load: &'a JointLoad,
+    bearing: Bearing,
+}
+
+impl OnBearing<'_> {
+    /// Moment at the centre of the bearing: its lever along the axis counts \[N m\].
+    fn moment_with_offset_nm(&self) -> f64 {
+        self.load.moment_nm + self.bearing.offset_m.unwrap_or_default().abs() * self.load.radial_n
+    }
+}
+
+fn mode_json(mode: &Mode) -> Value {
+    let energy: Map<String, Value> = mode.strain_energy.iter().map(|(n, e)| (n.clone(), json!(e))).collect();
+    json!({"frequency_hz": mode.frequency_hz, "plane": mode.plane, "strain_energy": energy})
+}

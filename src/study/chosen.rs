@@ -1,0 +1,157 @@
+//! One design of a study: the one that is named, or one of links of median mass, and why its drives do not hold.
+
+use super::definition::Study;
+use super::joint_obstacle::{first_fit_at, obstacle_at};
+use super::load::refuse_empty;
+use super::refusal::Refusal;
+use super::table::sizing_rows;
+use crate::arm::Arm;
+use crate::arm::load::LoadCase;
+use crate::catalog::Catalogs;
+use crate::sizing::checks::checks;
+use crate::sizing::demand::JointDemand;
+use crate::sizing::sheet::JointSizingRow;
+use crate::space::design::number_of;
+use crate::space::design_space::{DesignSpace, SpacePiece};
+use crate::space::problem::{ArmProblem, Partial};
+use crate::space::slot::SizedJoint;
+
+/// A design as an arm with every part resolved to numbers, and the cases in which it is judged; `None` if the study has no design
+/// of this number.
+pub(crate) fn arm_of_number(
+    study: &Study,
+    number: u128,
+    catalogs: &Catalogs,
+) -> Option<(Arm, Vec<LoadCase>)> {
+    let space = study.space.excerpt(catalogs, &[number])?;
+    let problem = ArmProblem::new(&space, catalogs);
+    let arm = problem.arm(&problem.options_of_whole(number)?)?;
+    Some((arm, problem.load_cases()))
+}
+
+/// A design, by its `design_id`, as an arm with every part resolved to numbers, and the cases in which it is judged.
+///
+/// # Errors
+/// The study has no such design.
+pub fn arm_of_design(study: &Study, id: &str, catalogs: &Catalogs) -> Result<(Arm, Vec<LoadCase>), Refusal> {
+    let found = number_of(id).and_then(|number| arm_of_number(study, number, catalogs));
+    let (arm, cases) = found.ok_or_else(|| no_design(id, study))?;
+    Ok((Arm { name: format!("{} {id}", study.name), ..arm }, cases))
+}
+
+/// The sizing of every joint of a design, tip first: the rows of `armwright size --json`. Without a `design_id` the links are
+/// those of median mass.
+///
+/// # Errors
+/// The study has nothing to choose from or no such design, or no drive holds at some joint.
+pub fn sizing_of(
+    study: &Study,
+    id: Option<&str>,
+    catalogs: &Catalogs,
+) -> Result<Vec<JointSizingRow>, Refusal> {
+    refuse_empty(study, catalogs)?;
+    let (space, chosen) = chosen_design(study, id, catalogs)?;
+    let problem = ArmProblem::new(&space, catalogs);
+    sizing_rows(&problem, catalogs, &chosen).map_err(|slot| why_not_held(&problem, &chosen, slot))
+}
+
+/// The most options of a link among which the one of median mass is looked for.
+const MOST_OPTIONS: u32 = 4096;
+
+/// The space of a design that is named, or of links among which that of median mass is taken, with its options.
+///
+/// # Errors
+/// The study has no such design.
+pub(crate) fn chosen_design(
+    study: &Study,
+    id: Option<&str>,
+    catalogs: &Catalogs,
+) -> Result<(DesignSpace, Vec<u32>), Refusal> {
+    let Some(id) = id else {
+        let space = study.space.middle(MOST_OPTIONS);
+        let chosen = middle(&ArmProblem::new(&space, catalogs));
+        return Ok((space, chosen));
+    };
+    let none = || no_design(id, study);
+    let number = number_of(id).ok_or_else(none)?;
+    let space = study.space.excerpt(catalogs, &[number]).ok_or_else(none)?;
+    let chosen = ArmProblem::new(&space, catalogs).options_of_whole(number).ok_or_else(none)?;
+    Ok((space, chosen))
+}
+
+fn no_design(id: &str, study: &Study) -> Refusal {
+    Refusal::Unknown(format!("the study \"{}\" has no design \"{id}\"", study.name))
+}
+
+/// Takes the option of median mass of every open link and the first drive that holds for every joint with `all_fits`.
+fn middle(problem: &ArmProblem) -> Vec<u32> {
+    let mut out = Vec::new();
+    for (piece, what) in problem.space().pieces.iter().enumerate().rev() {
+        match (what, problem.sized_joint(piece)) {
+            (SpacePiece::Choice(choice), _) => {
+                out.push(nearest_to_median(problem, &out, piece, &choice.by_mass()));
+            }
+            (_, Some(sized)) if sized.is_level() => out.push(first_fit_at(problem, &out, piece)),
+            _ => {}
+        }
+    }
+    out
+}
+
+/// The option nearest to the median that keeps the link's own limits; `by_mass` goes from the lightest to the heaviest.
+fn nearest_to_median(problem: &ArmProblem, outboard: &[u32], piece: usize, by_mass: &[u32]) -> u32 {
+    let median = by_mass.len() / 2;
+    let mut order: Vec<usize> = (0..by_mass.len()).collect();
+    order.sort_by_key(|&rank| rank.abs_diff(median));
+    let holds = |&option: &u32| match problem.walk(&[outboard, &[option]].concat(), |_, _| {}) {
+        Ok(_) => true,
+        Err(slot) => problem.piece_of_slot(slot) != piece,
+    };
+    order.into_iter().map(|rank| by_mass[rank]).find(holds).unwrap_or(by_mass[median])
+}
+
+/// Why the drive of a slot does not hold: `slot` is where [`ArmProblem::walk`] ended.
+pub(crate) fn why_not_held(problem: &ArmProblem, chosen: &[u32], slot: usize) -> Refusal {
+    let mut last = Partial::default();
+    let _ = problem.walk(chosen, |_, partial| last = partial.clone());
+    let piece = problem.piece_of_slot(slot);
+    match problem.sized_joint(piece) {
+        Some(sized) => {
+            let demand = problem.demand_at(&last, slot);
+            let too_weak = || too_weak(problem, chosen, piece, sized, &demand);
+            let internal = || format!("joint {}: its drive does not hold", sized.table.joint());
+            let why = obstacle_at(&sized.table, &demand).or_else(too_weak).unwrap_or_else(internal);
+            Refusal::Infeasible(format!("with these links, {why}"))
+        }
+        None => Refusal::Infeasible(
+            "a link breaks a limit on stress, wall slenderness, cost or mass: choose another with --design"
+                .into(),
+        ),
+    }
+}
+
+/// Why the drive of a design is too weak at a joint where another drive would hold.
+fn too_weak(
+    problem: &ArmProblem,
+    chosen: &[u32],
+    piece: usize,
+    sized: &SizedJoint,
+    demand: &JointDemand,
+) -> Option<String> {
+    let table = &sized.table;
+    table.first_fit(demand).filter(|_| sized.is_level())?;
+    let is_level = |p: usize| match &problem.space().pieces[p] {
+        SpacePiece::Choice(_) => true,
+        _ => problem.sized_joint(p).is_some_and(SizedJoint::is_level),
+    };
+    let outboard = (piece + 1..problem.space().pieces.len()).filter(|&p| is_level(p)).count();
+    let drive = table.drive(*chosen.get(outboard)? as usize);
+    let failing = checks(&drive, table.motion(), demand).into_iter().find(|check| !check.holds())?;
+    Some(format!(
+        "joint {joint}: {} with {}, the drive of this design, does not hold: {failing}; `--all-fits {joint}` lists \
+         those that do",
+        drive.gear.id,
+        drive.motor.id,
+        joint = table.joint(),
+    ))
+}

@@ -1,0 +1,56 @@
+//! A study by its name or from its file, refused if there is nothing to choose from.
+
+use super::definition::Study;
+use super::diagnose::{empty_pieces, too_large};
+use super::named::named;
+use super::read::read_study;
+use super::refusal::Refusal;
+use crate::catalog::Catalogs;
+use crate::input::json::Document;
+use std::path::Path;
+
+/// The text of a study and the name it goes by in messages.
+fn study_text(name: &str) -> Result<(String, String), Refusal> {
+    if let Some(text) = named(name) {
+        return Ok((format!("{name} (built in)"), text.to_string()));
+    }
+    let path = Path::new(name);
+    match fs_err::read_to_string(path) {
+        Ok(text) => Ok((name.to_string(), text)),
+        Err(_) if !name.contains(['/', '.']) => {
+            let known = crate::study::names();
+            let near = crate::input::json::closest(name, &known)
+                .map_or(String::new(), |n| format!("; did you mean {n}?"));
+            Err(Refusal::Unknown(format!("no study is called \"{name}\"{near}; known: {}", known.join(", "))))
+        }
+        Err(error) => Err(Refusal::Unreadable(error.to_string())),
+    }
+}
+
+/// Reads a study by name or file, with its text.
+///
+/// # Errors
+/// [`Refusal::Unknown`] if it is neither a built-in study nor a file, [`Refusal::Unreadable`], or [`Refusal::Faulty`].
+pub fn load_study(name: &str, catalogs: &Catalogs) -> Result<(Study, String), Refusal> {
+    let (file, text) = study_text(name)?;
+    Ok((read_study(Document::parse(&file, &text)?, catalogs)?, text))
+}
+
+/// Refuses a study with nothing to choose from at some link or joint, or with too much. Whoever builds designs
+/// asks here.
+///
+/// # Errors
+/// [`Refusal::EmptySpace`] with every such link and joint; [`Refusal::Unknown`] with the limit that is exceeded.
+pub fn refuse_empty(study: &Study, catalogs: &Catalogs) -> Result<(), Refusal> {
+    if let Some(why) = too_large(&study.space, catalogs) {
+        return Err(Refusal::Unknown(format!("the study \"{}\": {why}", study.name)));
+    }
+    match empty_pieces(&study.space, catalogs).as_slice() {
+        [] => Ok(()),
+        pieces => Err(Refusal::EmptySpace(format!(
+            "the study \"{}\" has nothing to choose from\n  {}",
+            study.name,
+            pieces.join("\n  ")
+        ))),
+    }
+}

@@ -1,0 +1,93 @@
+//! Which search finds the front of a study: the one that is asked for, or the one that is estimated to cost less.
+
+use super::definition::Study;
+use super::load::refuse_empty;
+use super::refusal::Refusal;
+use super::search_cost::SearchCost;
+use crate::catalog::Catalogs;
+
+/// The two methods of searching for a front.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+pub enum SearchMethod {
+    /// Every design is visited
+    Exhaustive,
+    /// Groups (boxes) of designs that cannot be on the front are discarded without evaluation; for spaces of
+    /// any size
+    Exact,
+}
+
+/// What is asked of a search.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct SearchWish {
+    /// The method, if one is asked for.
+    pub method: Option<SearchMethod>,
+    /// Whether a gap is asked for, at which the search may end.
+    pub has_gap: bool,
+    /// Whether the search ends at a time.
+    pub has_time_limit: bool,
+}
+
+/// Above this many designs an exhaustive search would take years.
+const MOST_CONCEIVABLE: u128 = 1_000_000_000_000_000;
+
+impl SearchWish {
+    /// The method that was asked for, or the one that is estimated to cost less, with the estimate in words.
+    ///
+    /// # Errors
+    /// It does not suit the study, or would take years.
+    pub fn method(
+        &self,
+        study: &Study,
+        catalogs: &Catalogs,
+    ) -> Result<(SearchMethod, Option<String>), Refusal> {
+        let designs = self.check(study, catalogs)?;
+        Ok(match (self.method, self.has_gap || self.has_time_limit) {
+            (Some(method), _) => (method, None),
+            (None, true) => (SearchMethod::Exact, None),
+            (None, false) if study.space.has_linkages() => (SearchMethod::Exhaustive, None),
+            (None, false) => cheaper(study, catalogs, designs as f64),
+        })
+    }
+
+    /// Checks that what was asked for suits the study, and counts its designs.
+    ///
+    /// # Errors
+    /// The study has nothing to choose from, what was asked for does not suit it, or it would take years.
+    pub fn check(&self, study: &Study, catalogs: &Catalogs) -> Result<u128, Refusal> {
+        refuse_empty(study, catalogs)?;
+        let refused = |why: String| Err(Refusal::Unknown(why));
+        let Some(designs) = study.space.designs(catalogs) else {
+            return refused(format!("the study \"{}\" has more than 1e38 designs; thin a grid", study.name));
+        };
+        let exhaustive = self.method == Some(SearchMethod::Exhaustive);
+        let by_bounds = self.method == Some(SearchMethod::Exact) || self.has_time_limit || self.has_gap;
+        if study.space.has_linkages() && by_bounds {
+            return refused(format!(
+                "the study \"{}\" has coupled joints, which the bounds of the exact search do not cover; leave --search \
+                 exact, --gap and --time-limit away, and every design is visited",
+                study.name
+            ));
+        }
+        if exhaustive && designs > MOST_CONCEIVABLE {
+            return refused(format!(
+                "visiting the {:.1e} designs of the study \"{}\" would take years; use --search exact",
+                designs as f64, study.name
+            ));
+        }
+        if exhaustive && self.has_time_limit {
+            return refused("--time-limit goes with --search exact".into());
+        }
+        if exhaustive && self.has_gap {
+            return refused("--gap goes with --search exact".into());
+        }
+        Ok(designs)
+    }
+}
+
+/// The search that is estimated to cost less, with both costs in words.
+fn cheaper(study: &Study, catalogs: &Catalogs, designs: f64) -> (SearchMethod, Option<String>) {
+    let cost = SearchCost::of(&study.space, catalogs, designs);
+    let method = if cost.speaks_for_exact() { SearchMethod::Exact } else { SearchMethod::Exhaustive };
+    (method, cost.words())
+}
