@@ -108,7 +108,7 @@ fn thinned(space: &DesignSpace, catalogs: &Catalogs, parts: usize, options: usiz
             SpacePiece::Choice(choice) => {
                 choice.options = choice.options.iter().step_by(options).cloned().collect();
             }
-            SpacePiece::Link(_) => {}
+            SpacePiece::Prismatic(_) | SpacePiece::Link(_) => {}
         }
     }
     space

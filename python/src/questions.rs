@@ -4,7 +4,7 @@ use crate::catalogs::Catalogs;
 use crate::conduct::workers;
 use crate::errors;
 use crate::source::Source;
-use armwright::arm::{LoadCase, read_load_cases};
+use armwright::arm::read_load_cases;
 use armwright::interchange::import_urdf;
 use armwright::reconcile::predict_files::{Files, predict_files};
 use armwright::reconcile::{Campaign, Outcome};
@@ -29,7 +29,7 @@ pub(crate) fn analyze(
     harmonic: Option<HarmonicOf>,
 ) -> PyResult<String> {
     let arm = arm.arm(&catalogs.parts)?;
-    let cases = read_load_cases(cases.document()?, &arm.driven_joint_names()).map_err(errors::faults)?;
+    let cases = read_load_cases(cases.document()?, &arm.driven_joints()).map_err(errors::faults)?;
     let harmonic = harmonic.map(|(force_n, damping, frequencies_hz)| Harmonic {
         force_n: force_n.into(),
         damping,
@@ -76,7 +76,7 @@ pub(crate) fn capacity(
 pub(crate) fn design(catalogs: &Catalogs, study: Source, id: &str) -> PyResult<(String, String)> {
     let study = study.study(&catalogs.parts)?;
     let (arm, cases) = arm_of_design(&study, id, &catalogs.parts).map_err(errors::refused)?;
-    let cases: Vec<Value> = cases.iter().map(LoadCase::to_json).collect();
+    let cases: Vec<Value> = cases.iter().map(|case| case.to_json(&arm.driven_joints())).collect();
     Ok((arm.to_json().to_string(), Value::Array(cases).to_string()))
 }
 

@@ -4,6 +4,7 @@
 //! carried frame, like the vector of a link. Bodies come on top of everything else that an element weighs.
 
 use super::keys::{JOINT_BODY, LINK_BODY};
+use super::prismatic_keys::PRISMATIC_BODY;
 use crate::input::json::{Node, Object};
 use crate::input::key::Shape;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
@@ -31,12 +32,12 @@ impl RigidBody {
         2.0 * moments.max() > moments.sum() + ROUNDING * moments.max()
     }
 
-    fn read(node: &Node, shape: &Shape) -> Option<(Self, bool)> {
+    fn read(node: &Node, shape: &Shape, moves: &str) -> Option<(Self, bool)> {
         let object = node.shaped(shape)?;
         let mass_kg = object.required("mass_kg").and_then(|n| n.non_negative());
         let cg_m = object.or("cg_m", Vector3::zeros(), |n| n.numbers::<3>().map(Vector3::from));
         let inertia_kgm2 = object.or("inertia_kgm2", Matrix3::zeros(), read_inertia);
-        let rotates = object.or("rotates", false, Node::boolean);
+        let rotates = object.or(moves, false, Node::boolean);
         Some((Self { mass_kg: mass_kg?, cg_m: cg_m?, inertia_kgm2: inertia_kgm2? }, rotates?))
     }
 
@@ -53,7 +54,7 @@ impl RigidBody {
 pub struct JointBodies {
     /// Bodies inboard of the springs of the joint, in the frame before its rotation.
     pub fixed: Vec<RigidBody>,
-    /// Bodies outboard of the springs, in the frame after the rotation.
+    /// Bodies outboard of the springs, in the frame after the rotation or the travel.
     pub rotating: Vec<RigidBody>,
 }
 
@@ -70,9 +71,14 @@ impl JointBodies {
 
     /// The bodies as files write them; `None` if there are none.
     pub(crate) fn to_json(&self) -> Option<Value> {
+        self.to_json_that("rotates")
+    }
+
+    /// The same, where this key is true of those outboard of the springs.
+    pub(crate) fn to_json_that(&self, moves: &str) -> Option<Value> {
         let rotating = self.rotating.iter().map(|body| {
             let mut value = body.to_json();
-            value["rotates"] = json!(true);
+            value[moves] = json!(true);
             value
         });
         let all: Vec<Value> = self.fixed.iter().map(|body| body.to_json()).chain(rotating).collect();
@@ -87,22 +93,32 @@ pub(crate) fn total_kg(bodies: &[RigidBody]) -> f64 {
 
 /// Reads the key `bodies` of a link; none without the key.
 pub(crate) fn read_link_bodies(object: &Object) -> Option<Vec<RigidBody>> {
-    let bodies = read(object, &LINK_BODY)?;
+    let bodies = read(object, &LINK_BODY, "")?;
     Some(bodies.into_iter().map(|(body, _)| body).collect())
 }
 
 /// Reads the key `bodies` of a joint; none without the key.
 pub(crate) fn read_joint_bodies(object: &Object) -> Option<JointBodies> {
+    read_bodies_that(object, &JOINT_BODY, "rotates")
+}
+
+/// Reads the key `bodies` of a prismatic joint; none without the key.
+pub(crate) fn read_prismatic_bodies(object: &Object) -> Option<JointBodies> {
+    read_bodies_that(object, &PRISMATIC_BODY, "travels")
+}
+
+/// Reads bodies, of which the key `moves` is true of those outboard of the springs.
+fn read_bodies_that(object: &Object, shape: &Shape, moves: &str) -> Option<JointBodies> {
     let mut out = JointBodies::default();
-    for (body, rotates) in read(object, &JOINT_BODY)? {
-        if rotates { &mut out.rotating } else { &mut out.fixed }.push(body);
+    for (body, is_outboard) in read(object, shape, moves)? {
+        if is_outboard { &mut out.rotating } else { &mut out.fixed }.push(body);
     }
     Some(out)
 }
 
-fn read(object: &Object, shape: &Shape) -> Option<Vec<(RigidBody, bool)>> {
+fn read(object: &Object, shape: &Shape, moves: &str) -> Option<Vec<(RigidBody, bool)>> {
     object.or("bodies", Vec::new(), |n| {
-        let read: Vec<_> = n.array()?.iter().map(|n| RigidBody::read(n, shape)).collect();
+        let read: Vec<_> = n.array()?.iter().map(|n| RigidBody::read(n, shape, moves)).collect();
         read.into_iter().collect()
     })
 }

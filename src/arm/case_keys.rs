@@ -2,7 +2,7 @@
 
 use super::keys::{PAYLOAD, VECTOR, WATER};
 use super::{JointModel, LinkModel, Words};
-use crate::input::key::{Kind, Shape, optional, required, words_of};
+use crate::input::key::{Kind, Rule, Shape, optional, words_of};
 use crate::input::schema::FileKind;
 
 /// A cases file.
@@ -24,7 +24,20 @@ pub(crate) static CASE: Shape = Shape::new(
     "A load case: a pose, a load and the models to use.",
     &[
         optional("name", Kind::Text, "-", "its place in the list", "Name."),
-        required("pose_deg", Kind::List(&Kind::Number), "deg", "One angle a driven joint, base to tip."),
+        optional(
+            "pose_deg",
+            Kind::List(&Kind::Number),
+            "deg",
+            "pose",
+            "One angle a driven joint, base to tip, of a chain without prismatic joints.",
+        ),
+        optional(
+            "pose",
+            Kind::Map(&Kind::Number),
+            "deg, mm",
+            "pose_deg",
+            "Angles and travels by joint, `{\"rail_mm\": 250, \"j2_deg\": 30}`; joints left away stay at 0.",
+        ),
         optional("payload", Kind::Object(&PAYLOAD), "-", "none", "What the arm holds."),
         optional("tip_force_n", VECTOR, "N", "[0, 0, 0]", "Force at the tip, in world axes."),
         optional("tip_moment_nm", VECTOR, "N m", "[0, 0, 0]", "Moment at the tip, in world axes."),
@@ -32,5 +45,9 @@ pub(crate) static CASE: Shape = Shape::new(
         optional("joints", JOINT_MODELS, "-", "\"three_segment\"", "Physics of the joints."),
         optional("water", Kind::Object(&WATER), "-", "dry", "Water around the arm."),
     ],
-    &[],
+    &POSE_RULES,
 );
+
+/// What holds for the keys of a pose.
+pub(crate) const POSE_RULES: [Rule; 2] =
+    [Rule::Any(&["pose_deg", "pose"]), Rule::Refuses("pose_deg", &["pose"])];

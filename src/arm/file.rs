@@ -6,6 +6,7 @@ use super::body::read_joint_bodies;
 use super::effect::channel::Channel;
 use super::effect::entry::Effect;
 use super::effect::servo_compliance;
+use super::element_keys::{read_axis, read_name};
 use super::extras::read_extras;
 use super::file_keys::{ARM, EFFECT, JOINT, LINK, MATERIAL};
 use super::joint_law::{Curve, Windup};
@@ -13,6 +14,9 @@ use super::keys::WINDUP;
 use super::link_file::{DEFAULT_POISSON, NamedMaterial};
 use super::load::vector;
 use super::pieces::{elements_of, read_links};
+use super::pose::Motion;
+use super::prismatic::Prismatic;
+use super::prismatic_keys::PRISMATIC;
 use super::section::LinkMaterial;
 use super::springs::Spring;
 use super::springs_file::{BodiesOf, Named, hang, read_counterweights, read_springs};
@@ -83,6 +87,7 @@ fn read_balance(root: &Object, chain: &mut [Element]) -> Option<Vec<Spring>> {
     let (springs, counterweights) = (read_springs(root, &named), read_counterweights(root, &named));
     let bodies = chain.iter_mut().map(|element| match element {
         Element::Joint(joint) => BodiesOf::Joint(&mut joint.bodies),
+        Element::Prismatic(joint) => BodiesOf::Joint(&mut joint.bodies),
         Element::Link(link) => BodiesOf::Link(&mut link.bodies),
     });
     hang(counterweights?, bodies.collect());
@@ -138,16 +143,25 @@ fn read_chain(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> 
     Some(read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect())
 }
 
+/// What is wrong with an element of no known type, and what to try.
+pub(crate) const NO_TYPE: (&str, &str) = (
+    "has no \"type\" of \"joint\", \"prismatic\" or \"link\"",
+    "add \"type\": \"joint\" (it turns), \"prismatic\" (it slides) or \"link\"",
+);
+
 /// Reads a joint, or a link with its pieces.
 fn read_element(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> Option<Vec<Element>> {
     let kind = node.value().get("type").and_then(|v| v.as_str());
     match kind {
         Some("joint") => read_joint(&node.shaped(&JOINT)?, catalogs).map(|joint| vec![Element::Joint(joint)]),
+        Some("prismatic") => {
+            Prismatic::read(&node.shaped(&PRISMATIC)?).map(|joint| vec![Element::Prismatic(joint)])
+        }
         Some("link") => {
             let links = read_links(&node.shaped(&LINK)?, materials, catalogs)?;
             Some(links.into_iter().map(Element::Link).collect())
         }
-        _ => node.fault("has no \"type\" of \"joint\" or \"link\"", "add \"type\": \"joint\" or \"link\""),
+        _ => node.fault(NO_TYPE.0, NO_TYPE.1),
     }
 }
 
@@ -185,24 +199,6 @@ pub(crate) fn read_joint_bearing(object: &Object, catalogs: &Catalogs) -> Option
     // a name beside explicit numbers need not be a catalog's
     let gear = object.optional("gear").and_then(|n| catalogs.gear(n.value().as_str()?).ok());
     Some(gear.and_then(|gear| Bearing::of_gear(gear, which)))
-}
-
-pub(crate) fn read_name(object: &Object) -> Option<String> {
-    object.required("name").and_then(|n| super::link_file::read_name(&n))
-}
-
-pub(crate) fn read_axis(node: &Node) -> Option<Unit<Vector3<f64>>> {
-    let axis = vector(node)?;
-    if (axis.norm_squared() - 1.0).abs() <= 4.0 * f64::EPSILON {
-        // a vector of unit length is kept to the last bit, so that a written arm reads back the same
-        return Some(Unit::new_unchecked(axis));
-    }
-    // scaled by its largest entry first, since very long and very short vectors have a direction too
-    let largest = axis.amax();
-    let direction = if largest > 0.0 { Unit::try_new(axis / largest, 0.5) } else { None };
-    direction.or_else(|| {
-        node.fault("has no direction", "give a vector such as [0, 1, 0]; its length does not matter")
-    })
 }
 
 /// The torsion curve of a joint: explicit numbers if there are any, else the curve of the gear in the catalog.
@@ -383,12 +379,17 @@ fn check_names(arm: &Arm, root: &Object) -> Option<()> {
             sound = false;
         }
     }
-    let driven = arm.driven_joint_names();
+    let driven: Vec<String> = arm
+        .driven_joints()
+        .into_iter()
+        .filter(|joint| joint.motion == Motion::Turns)
+        .map(|joint| joint.name)
+        .collect();
     for (element, node) in arm.chain.iter().zip(&chain) {
         let Element::Joint(Joint { coupled: Some(terms), .. }) = element else { continue };
-        for (name, _) in terms.iter().filter(|(name, _)| !driven.contains(&name.as_str())) {
+        for (name, _) in terms.iter().filter(|(name, _)| !driven.contains(name)) {
             node.fault::<()>(
-                format!("is coupled to \"{name}\", which is no driven joint"),
+                format!("is coupled to \"{name}\", which is no driven joint that turns"),
                 &format!("driven joints: {}", driven.join(", ")),
             );
             sound = false;

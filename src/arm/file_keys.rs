@@ -5,6 +5,7 @@ use super::keys::{
     BEARING_VALUE, COUNTERWEIGHTS, COUPLING, EXTRAS, GEAR_MASS, GRAVITY, JOINT_BODIES, LINK_BODIES,
     MASS_FACTOR, PIECES, POSITIVE_OR_NULL, SECTION, SPRINGS, STATED, STIFFNESS_FACTOR, VECTOR, WINDUP,
 };
+use super::prismatic_keys::PRISMATIC;
 use crate::input::key::{Kind, Rule, SCHEMA_ADDRESS, Shape, optional, required};
 use crate::input::schema::FileKind;
 
@@ -37,9 +38,13 @@ pub(crate) static ARM: Shape = Shape::new(
         ),
         required(
             "chain",
-            Kind::NonEmpty(&Kind::Either(&[Kind::Object(&JOINT), Kind::Object(&LINK)])),
+            Kind::NonEmpty(&Kind::Either(&[
+                Kind::Object(&JOINT),
+                Kind::Object(&PRISMATIC),
+                Kind::Object(&LINK),
+            ])),
             "-",
-            "Joints and links from base to tip.",
+            "Joints, prismatic joints and links from base to tip.",
         ),
         optional("effects", EFFECT_LIST, "-", "[]", "Physics beyond the nominal model."),
         optional("springs", SPRINGS, "-", "[]", "Springs that balance the arm."),

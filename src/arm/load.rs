@@ -2,6 +2,7 @@
 
 use super::case_keys::CASE;
 use super::keys::{PAYLOAD, WATER};
+use super::pose::{DrivenJoint, pose_json, read_pose};
 use super::{JointModel, LinkModel, Words};
 use crate::input::json::{Document, Faults, Node, Object};
 use nalgebra::Vector3;
@@ -21,7 +22,7 @@ pub struct Payload {
 /// A case in which an arm is analysed.
 ///
 /// ```
-/// use armwright::arm::{JointModel, LinkModel, LoadCase, Payload};
+/// use armwright::arm::{DrivenJoint, JointModel, LinkModel, LoadCase, Payload};
 /// use nalgebra::Vector3;
 ///
 /// let case = LoadCase {
@@ -34,13 +35,15 @@ pub struct Payload {
 ///     joints: JointModel::ThreeSegment,
 ///     water: None,
 /// };
-/// assert_eq!(case.to_json()["payload"]["mass_kg"], 5.0);
+/// let driven = ["j1", "j2", "j3"].map(DrivenJoint::turning);
+/// assert_eq!(case.to_json(&driven)["payload"]["mass_kg"], 5.0);
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadCase {
     /// Name.
     pub name: String,
-    /// One angle for each driven joint, base to tip \[deg\], as files have it.
+    /// One entry for each driven joint, base to tip, as files have it: an angle \[deg\], or the travel of a prismatic joint
+    /// \[mm\].
     pub pose_deg: Vec<f64>,
     /// The payload.
     pub payload: Payload,
@@ -57,11 +60,12 @@ pub struct LoadCase {
 }
 
 impl LoadCase {
-    /// The case as files write it.
-    pub fn to_json(&self) -> Value {
+    /// The case as files write it. `driven` are the driven joints of its arm.
+    pub fn to_json(&self, driven: &[DrivenJoint]) -> Value {
+        let (pose_key, pose) = pose_json(driven, &self.pose_deg);
         let mut case = json!({
             "name": self.name,
-            "pose_deg": self.pose_deg,
+            pose_key: pose,
             "payload": self.payload.to_json(),
             "tip_force_n": self.tip_force_n.as_slice(),
             "links": self.links.word(),
@@ -158,11 +162,11 @@ pub(crate) fn word<T: Words>(node: &Node) -> Option<T> {
 ///
 /// # Errors
 /// All faults of the document at once.
-pub fn read_load_cases(document: Document, driven_joints: &[&str]) -> Result<Vec<LoadCase>, Faults> {
+pub fn read_load_cases(document: Document, driven_joints: &[DrivenJoint]) -> Result<Vec<LoadCase>, Faults> {
     let root = document.root();
     let cases = root.array().and_then(|items| {
         if items.is_empty() {
-            return root.fault("has no case", "give at least one, with its \"pose_deg\"");
+            return root.fault("has no case", "give at least one, with its \"pose_deg\" or \"pose\"");
         }
         let read: Vec<_> = items.iter().map(|item| read_case(item, driven_joints)).collect();
         read.into_iter().collect::<Option<Vec<_>>>()
@@ -170,10 +174,10 @@ pub fn read_load_cases(document: Document, driven_joints: &[&str]) -> Result<Vec
     document.finish(cases)
 }
 
-fn read_case(node: &Node, driven_joints: &[&str]) -> Option<LoadCase> {
+fn read_case(node: &Node, driven_joints: &[DrivenJoint]) -> Option<LoadCase> {
     let object = node.shaped(&CASE)?;
     let name = object.or("name", node.path().to_string(), |n| n.string().map(String::from));
-    let pose_deg = object.required("pose_deg").and_then(|n| read_pose(&n, driven_joints));
+    let pose_deg = read_pose(&object, driven_joints);
     let payload = object.or("payload", Payload::default(), Payload::read);
     let water = object.or("water", None, |n| Water::read(n).map(Some));
     let tip_moment_nm = object.or("tip_moment_nm", Vector3::zeros(), vector);
@@ -196,17 +200,4 @@ fn read_force_and_models(object: &Object) -> (Option<Vector3<f64>>, Option<LinkM
         object.or("links", LinkModel::default(), word),
         object.or("joints", JointModel::default(), word),
     )
-}
-
-/// Reads a pose, which is one angle in degrees for each driven joint.
-pub(crate) fn read_pose(node: &Node, driven_joints: &[&str]) -> Option<Vec<f64>> {
-    let items = node.array()?;
-    if items.len() != driven_joints.len() {
-        return node.fault(
-            format!("has {} angles, the arm has {} driven joints", items.len(), driven_joints.len()),
-            &format!("give one angle in degrees for each of {}", driven_joints.join(", ")),
-        );
-    }
-    let angles: Vec<_> = items.iter().map(Node::number).collect();
-    angles.into_iter().collect()
 }

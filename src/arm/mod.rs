@@ -14,6 +14,7 @@ pub(crate) mod bearing;
 pub(crate) mod body;
 pub(crate) mod case_keys;
 pub mod effect;
+pub(crate) mod element_keys;
 pub(crate) mod extras;
 pub(crate) mod file;
 pub(crate) mod file_keys;
@@ -24,6 +25,9 @@ mod link_file;
 pub(crate) mod linkage;
 pub(crate) mod load;
 pub(crate) mod pieces;
+pub(crate) mod pose;
+pub(crate) mod prismatic;
+pub(crate) mod prismatic_keys;
 pub(crate) mod section;
 mod section_file;
 pub(crate) mod springs;
@@ -42,6 +46,8 @@ pub use file_keys::ARM_FILE;
 pub use joint_law::{Curve, FurtherTwist, JointLaw, LostMotion, Windup};
 pub use linkage::Linkage;
 pub use load::{LoadCase, Payload, Water, read_load_cases};
+pub use pose::{DrivenJoint, Motion, any_slides, pose_json, pose_si};
+pub use prismatic::{Guide, Moves, Prismatic, PrismaticPiece};
 pub use section::{LinkMaterial, Section, SectionProperties, StatedSection};
 pub use springs::{Drawn, Spring, SpringEnd, SpringKind, SpringLaw, SpringPlace};
 pub use structure::{Beam, FrameCompliance, JointAngle, JointPiece, LinkPiece, Piece, Structure};
@@ -172,6 +178,8 @@ pub struct Arm {
 pub enum Element {
     /// A rotary joint.
     Joint(Joint),
+    /// A prismatic joint.
+    Prismatic(Prismatic),
     /// A link or a rigid offset.
     Link(Link),
 }
@@ -238,6 +246,7 @@ impl Element {
     pub fn name(&self) -> &str {
         match self {
             Element::Joint(joint) => &joint.name,
+            Element::Prismatic(joint) => &joint.name,
             Element::Link(link) => &link.name,
         }
     }
@@ -247,11 +256,11 @@ impl Element {
 pub(crate) const MOST_ELEMENTS: usize = 2_000;
 
 impl Arm {
-    /// The joints from base to tip.
+    /// The rotary joints from base to tip.
     pub fn joints(&self) -> impl Iterator<Item = &Joint> {
         self.chain.iter().filter_map(|e| match e {
             Element::Joint(joint) => Some(joint),
-            Element::Link(_) => None,
+            _ => None,
         })
     }
 
@@ -259,13 +268,38 @@ impl Arm {
     pub fn links(&self) -> impl Iterator<Item = &Link> {
         self.chain.iter().filter_map(|e| match e {
             Element::Link(link) => Some(link),
-            Element::Joint(_) => None,
+            _ => None,
         })
     }
 
-    /// Names of the driven joints, base to tip. A pose has one angle for each of them; passive joints have none.
+    /// The prismatic joints from base to tip.
+    pub fn prismatics(&self) -> impl Iterator<Item = &Prismatic> {
+        self.chain.iter().filter_map(|e| match e {
+            Element::Prismatic(joint) => Some(joint),
+            _ => None,
+        })
+    }
+
+    /// Names of the driven joints, base to tip. A pose has one entry for each of them; passive joints have none.
     pub fn driven_joint_names(&self) -> Vec<&str> {
-        self.joints().filter(|j| j.coupled.is_none()).map(|j| j.name.as_str()).collect()
+        let is_driven = |e: &&Element| match e {
+            Element::Joint(joint) => joint.coupled.is_none(),
+            Element::Prismatic(_) => true,
+            Element::Link(_) => false,
+        };
+        self.chain.iter().filter(is_driven).map(Element::name).collect()
+    }
+
+    /// The driven joints, base to tip, and how each moves.
+    pub fn driven_joints(&self) -> Vec<DrivenJoint> {
+        let driven = |e: &Element| match e {
+            Element::Joint(joint) if joint.coupled.is_none() => Some(DrivenJoint::turning(&joint.name)),
+            Element::Prismatic(joint) => {
+                Some(DrivenJoint { name: joint.name.clone(), motion: Motion::Slides })
+            }
+            _ => None,
+        };
+        self.chain.iter().filter_map(driven).collect()
     }
 
     /// Mass of all links and drives \[kg\], without what effects add.
@@ -278,6 +312,7 @@ impl Arm {
     pub fn impossible_bodies(&self) -> Vec<&str> {
         let is_impossible = |element: &&Element| match element {
             Element::Joint(joint) => joint.bodies.iter().any(RigidBody::is_impossible),
+            Element::Prismatic(joint) => joint.bodies.iter().any(RigidBody::is_impossible),
             Element::Link(link) => link.bodies.iter().any(RigidBody::is_impossible),
         };
         self.chain.iter().filter(is_impossible).map(Element::name).collect()
@@ -311,14 +346,15 @@ impl Arm {
     }
 
     /// Reach \[m\]: the sum of the lengths of the links outboard of the first joint that is not vertical. What carries this
-    /// joint is a column. Of an arm whose joints are all vertical, it is the length outboard of the first joint.
+    /// joint is a column. Of an arm whose joints are all vertical or prismatic, it is the length outboard of the first joint.
+    /// Travels do not count.
     pub fn reach_m(&self) -> f64 {
-        let is_joint = |element: &Element| matches!(element, Element::Joint(_));
+        let is_joint = |element: &Element| !matches!(element, Element::Link(_));
         let leans = |element: &Element| matches!(element, Element::Joint(j) if j.axis.xy().norm() > 1e-9);
         let first = self.chain.iter().position(leans).or_else(|| self.chain.iter().position(is_joint));
         let length = |element: &Element| match element {
             Element::Link(link) => link.vector_m.norm(),
-            Element::Joint(_) => 0.0,
+            Element::Joint(_) | Element::Prismatic(_) => 0.0,
         };
         self.chain.iter().skip(first.unwrap_or(0)).map(length).sum()
     }
@@ -336,6 +372,7 @@ impl Element {
     pub fn mass_kg(&self) -> f64 {
         match self {
             Element::Joint(joint) => joint.total_mass_kg() + joint.bodies.mass_kg(),
+            Element::Prismatic(joint) => joint.total_mass_kg(),
             Element::Link(link) => {
                 body::total_kg(&link.bodies)
                     + match &link.body {

@@ -5,6 +5,8 @@ use super::body::{JointBodies, RigidBody, total_kg};
 use super::joint_law::JointLaw;
 use super::joint_torque::JointTorque;
 use super::load::{LoadCase, Water};
+use super::pose::{DrivenJoint, Motion};
+use super::prismatic::PrismaticPiece;
 use super::section::{LinkMaterial, Section};
 use super::springs::Spring;
 use super::{Arm, Element, Joint, JointModel, Link, LinkBody};
@@ -53,8 +55,21 @@ impl FrameCompliance {
 pub enum Piece {
     /// A rotary joint.
     Joint(JointPiece),
+    /// A prismatic joint.
+    Prismatic(PrismaticPiece),
     /// A link or a rigid offset.
     Link(LinkPiece),
+}
+
+impl Piece {
+    /// Name.
+    pub fn name(&self) -> &str {
+        match self {
+            Piece::Joint(joint) => &joint.name,
+            Piece::Prismatic(joint) => &joint.name,
+            Piece::Link(link) => &link.name,
+        }
+    }
 }
 
 /// A rotary joint.
@@ -169,11 +184,13 @@ impl Arm {
     /// The arm as the mechanics sees it, without any effect.
     pub fn nominal_structure(&self, joints: JointModel) -> Structure {
         let driven = self.driven_joint_names();
+        let entry = |name: &str| driven.iter().position(|d| *d == name).unwrap_or_default();
         let pieces = self
             .chain
             .iter()
             .map(|element| match element {
                 Element::Joint(joint) => Piece::Joint(joint_piece(joint, &driven, joints)),
+                Element::Prismatic(joint) => Piece::Prismatic(joint.piece(entry(&joint.name))),
                 Element::Link(link) => Piece::Link(link_piece(link)),
             })
             .collect();
@@ -190,9 +207,26 @@ impl Structure {
     pub fn mass_kg(&self) -> f64 {
         let mass_kg = |piece: &Piece| match piece {
             Piece::Joint(joint) => joint.mass_kg + joint.bodies.mass_kg(),
+            Piece::Prismatic(joint) => joint.total_mass_kg(),
             Piece::Link(link) => link.mass_kg(),
         };
         self.pieces.iter().map(mass_kg).sum()
+    }
+
+    /// The driven joints in the order of their entries in a pose, and how each moves.
+    pub fn driven_joints(&self) -> Vec<DrivenJoint> {
+        let driven = |piece: &Piece| match piece {
+            Piece::Joint(JointPiece { angle: JointAngle::Driven(entry), name, .. }) => {
+                Some((*entry, DrivenJoint::turning(name)))
+            }
+            Piece::Prismatic(joint) => {
+                Some((joint.entry, DrivenJoint { name: joint.name.clone(), motion: Motion::Slides }))
+            }
+            _ => None,
+        };
+        let mut joints: Vec<(usize, DrivenJoint)> = self.pieces.iter().filter_map(driven).collect();
+        joints.sort_by_key(|(entry, _)| *entry);
+        joints.into_iter().map(|(_, joint)| joint).collect()
     }
 
     /// A structure of pieces on a rigid base in air, upright.

@@ -58,6 +58,7 @@ impl Element {
     fn to_json(&self) -> Value {
         match self {
             Element::Joint(joint) => joint.to_json(),
+            Element::Prismatic(joint) => joint.to_json(),
             Element::Link(link) => link.to_json(),
         }
     }

@@ -1,11 +1,12 @@
 //! `armwright analyze`: statics, modes and response of an arm file.
 
 use super::failure::Failure;
-use super::values::{choice, number_list, numbers};
+use super::values::{choice, entries, number_list, numbers};
 use crate::arm::effect::entry::Effect;
 use crate::arm::file::read_arm;
 use crate::arm::load::{LoadCase, Payload, read_load_cases};
 use crate::arm::pieces::factors_sentence;
+use crate::arm::pose::{DrivenJoint, any_slides, pose_of_keys};
 use crate::arm::{Arm, Element, JointModel, Link, LinkBody, LinkModel};
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
@@ -22,6 +23,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: armwright analyze arm.json --pose-deg 0,-30,60 --payload-kg 5 --payload-cg-m 0.05,0,0\n\
+                        With a rail: armwright analyze gantry.json --pose rail_mm=250,j2_deg=30\n\
                         Response: armwright analyze arm.json --response-n 0,0,1 --response-hz 1,100,200 --damping 0.02"
 )]
 pub(crate) struct AnalyzeArgs {
@@ -30,6 +32,9 @@ pub(crate) struct AnalyzeArgs {
     /// One angle per joint, base to tip [deg]; default all zero
     #[arg(long, value_name = "Q1,Q2,...", allow_hyphen_values = true, value_parser = pose)]
     pose_deg: Option<Pose>,
+    /// Angles and travels by joint, each with its unit; default all zero. For arms with prismatic joints
+    #[arg(long, value_name = "RAIL_mm=250,J2_deg=30,...", conflicts_with = "pose_deg", value_parser = pose_entries)]
+    pose: Option<PoseEntries>,
     /// Payload mass [kg]
     #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_parser = non_negative)]
     payload_kg: f64,
@@ -56,7 +61,7 @@ pub(crate) struct AnalyzeArgs {
     #[arg(long, default_value_t = 6)]
     modes: usize,
     /// Take pose, payload and models from a cases file instead of these options
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["pose_deg", "payload_kg", "payload_cg_m", "payload_inertia_kgm2", "force_n", "moment_nm", "links", "joints"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["pose_deg", "pose", "payload_kg", "payload_cg_m", "payload_inertia_kgm2", "force_n", "moment_nm", "links", "joints"])]
     cases: Option<PathBuf>,
     /// Amplitude of a harmonic force at the tip, world axes [N]: prints the tip's response (Eq 16)
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = numbers::<3>)]
@@ -77,6 +82,13 @@ struct Pose(Vec<f64>);
 
 fn pose(text: &str) -> Result<Pose, String> {
     number_list(text).map(Pose)
+}
+
+#[derive(Debug, Clone)]
+struct PoseEntries(Vec<(String, f64)>);
+
+fn pose_entries(text: &str) -> Result<PoseEntries, String> {
+    entries(text).map(PoseEntries)
 }
 
 /// Three moments of inertia, none negative.
@@ -123,7 +135,7 @@ impl AnalyzeArgs {
 pub(super) fn run(args: &AnalyzeArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let arm = read_arm(&args.arm, catalogs)?;
     let cases = match &args.cases {
-        Some(path) => read_load_cases(Document::read(path)?, &arm.driven_joint_names())?,
+        Some(path) => read_load_cases(Document::read(path)?, &arm.driven_joints())?,
         None => vec![case_of_flags(args, &arm)?],
     };
     let ignored: Vec<String> = arm.ignored_effects().into_iter().map(Effect::label).collect();
@@ -171,19 +183,9 @@ fn pretty(value: &Value) -> String {
 }
 
 fn case_of_flags(args: &AnalyzeArgs, arm: &Arm) -> Result<LoadCase, Failure> {
-    let joints = arm.driven_joint_names();
-    let pose_deg = args.pose_deg.clone().map_or(vec![0.0; joints.len()], |p| p.0);
-    if pose_deg.len() != joints.len() {
-        return Err(Failure::Usage(format!(
-            "--pose-deg has {} angles, the arm has {} driven joints: {}",
-            pose_deg.len(),
-            joints.len(),
-            joints.join(", ")
-        )));
-    }
     Ok(LoadCase {
         name: "case".into(),
-        pose_deg,
+        pose_deg: pose_of_flags(args, &arm.driven_joints())?,
         payload: Payload {
             mass_kg: args.payload_kg,
             cg_m: args.payload_cg_m.into(),
@@ -195,4 +197,32 @@ fn case_of_flags(args: &AnalyzeArgs, arm: &Arm) -> Result<LoadCase, Failure> {
         joints: args.joints,
         water: None,
     })
+}
+
+/// The pose that the options give, every joint at 0 by default.
+fn pose_of_flags(args: &AnalyzeArgs, driven: &[DrivenJoint]) -> Result<Vec<f64>, Failure> {
+    if let Some(PoseEntries(given)) = &args.pose {
+        let given = given.iter().map(|(key, entry)| (key.as_str(), *entry));
+        return pose_of_keys(driven, given).map_err(|(key, hint)| {
+            Failure::Usage(format!("--pose: \"{key}\" is no entry of a pose: {hint}"))
+        });
+    }
+    let Some(Pose(angles_deg)) = &args.pose_deg else { return Ok(vec![0.0; driven.len()]) };
+    if any_slides(driven) {
+        let keys: Vec<String> = driven.iter().map(|joint| format!("{}=0", joint.key())).collect();
+        return Err(Failure::Usage(format!(
+            "--pose-deg has angles, and the arm has prismatic joints: write --pose {} with your numbers",
+            keys.join(",")
+        )));
+    }
+    if angles_deg.len() != driven.len() {
+        let names: Vec<&str> = driven.iter().map(|joint| joint.name.as_str()).collect();
+        return Err(Failure::Usage(format!(
+            "--pose-deg has {} angles, the arm has {} driven joints: {}",
+            angles_deg.len(),
+            driven.len(),
+            names.join(", ")
+        )));
+    }
+    Ok(angles_deg.clone())
 }

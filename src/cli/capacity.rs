@@ -78,10 +78,10 @@ fn of_arm(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let arm = read_arm(path, catalogs)?;
     let joints = arm.driven_joint_names();
     let cases = match &args.cases {
-        Some(file) => read_load_cases(Document::read(file)?, &joints)?,
+        Some(file) => read_load_cases(Document::read(file)?, &arm.driven_joints())?,
         None => {
-            let zero = json!([{"name": "all angles zero", "pose_deg": vec![0.0; joints.len()]}]).to_string();
-            read_load_cases(Document::parse("zero", &zero)?, &joints)?
+            let zero = json!([{"name": "every joint at zero", "pose": {}}]).to_string();
+            read_load_cases(Document::parse("zero", &zero)?, &arm.driven_joints())?
         }
     };
     let beside = folder_of(path).join("import.json");

@@ -5,7 +5,7 @@ use super::failure::Failure;
 use super::manifest::{MANIFESTS, hash, listed};
 use super::schema::FILES;
 use crate::arm::case_keys::CASE;
-use crate::arm::{Arm, read_arm, read_arm_document, read_load_cases};
+use crate::arm::{Arm, DrivenJoint, Motion, read_arm, read_arm_document, read_load_cases};
 use crate::catalog::Catalogs;
 use crate::catalog::schema::CatalogFile;
 use crate::input::json::{Document, Fault, Faults, InputError};
@@ -154,13 +154,27 @@ fn kind_of(value: &Value) -> Option<&'static str> {
 fn check_cases(document: Document, path: &Path, catalogs: &Catalogs) -> Result<(), Problem> {
     let beside = folder_of(path).join("arm.json");
     let arm: Option<Arm> = if beside.is_file() { Some(read_arm(&beside, catalogs)?) } else { None };
-    let first = document.root().value()[0]["pose_deg"].as_array().map_or(0, Vec::len);
-    let numbered: Vec<String> = (1..=first).map(|i| format!("joint {i}")).collect();
-    let joints: Vec<&str> = match &arm {
-        Some(arm) => arm.driven_joint_names(),
-        None => numbered.iter().map(String::as_str).collect(),
+    let joints: Vec<DrivenJoint> = match &arm {
+        Some(arm) => arm.driven_joints(),
+        None => joints_of_first_pose(&document),
     };
     read_load_cases(document, &joints).map(drop).map_err(Problem::Faulty)
+}
+
+/// The joints that the first pose has entries for, where no arm says which there are.
+fn joints_of_first_pose(document: &Document) -> Vec<DrivenJoint> {
+    let root = document.root();
+    let first = &root.value()[0];
+    if let Some(entries) = first["pose"].as_object() {
+        let joint = |key: &String| {
+            let slides = key.strip_suffix("_mm").map(|name| (name, Motion::Slides));
+            let (name, motion) = slides.or(key.strip_suffix("_deg").map(|name| (name, Motion::Turns)))?;
+            Some(DrivenJoint { name: name.into(), motion })
+        };
+        return entries.keys().filter_map(joint).collect();
+    }
+    let angles = first["pose_deg"].as_array().map_or(0, Vec::len);
+    (1..=angles).map(|i| DrivenJoint::turning(&format!("joint {i}"))).collect()
 }
 
 fn result_words(manifest: &str) -> &'static str {

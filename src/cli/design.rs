@@ -71,7 +71,7 @@ pub(super) fn run(args: &DesignArgs, catalogs: &Catalogs) -> Result<String, Fail
     let objectives = full_objectives(&arm, &cases);
     let dir =
         args.out.clone().unwrap_or_else(|| args.results.join(format!("design-{}", file_name(&args.id))));
-    let cases: Vec<Value> = cases.iter().map(LoadCase::to_json).collect();
+    let cases: Vec<Value> = cases.iter().map(|case| case.to_json(&arm.driven_joints())).collect();
     write_all(
         &dir,
         &[("arm.json".into(), pretty(&arm.to_json())), ("cases.json".into(), pretty(&json!(cases)))],

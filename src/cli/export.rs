@@ -74,6 +74,13 @@ pub(super) fn run(args: &ExportArgs, catalogs: &Catalogs) -> Result<String, Fail
         return Err(Failure::Usage("--flexible and --backlash are for --to mjcf".into()));
     }
     let (arm, cases, inputs) = source(args, catalogs)?;
+    if let (Some(joint), Format::Calculix | Format::Mjcf | Format::Urdf) = (arm.prismatics().next(), args.to)
+    {
+        return Err(Failure::Usage(format!(
+            "{} is a prismatic joint, which is not written to such files yet; --to json, csv and bom have it",
+            joint.name
+        )));
+    }
     let case = chosen_case(args, &arm, &cases)?;
     let asked = Asked {
         arm: &arm,
@@ -135,7 +142,7 @@ fn source(args: &ExportArgs, catalogs: &Catalogs) -> Result<(Arm, Vec<LoadCase>,
     let cases = match &args.cases {
         Some(file) => {
             inputs.push(file.clone());
-            read_load_cases(Document::read(file)?, &arm.driven_joint_names())?
+            read_load_cases(Document::read(file)?, &arm.driven_joints())?
         }
         None => vec![case_of_flags(args, &arm)?],
     };

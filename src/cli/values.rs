@@ -19,6 +19,15 @@ pub(super) fn number_list(text: &str) -> Result<Vec<f64>, String> {
         .collect()
 }
 
+/// Comma-separated `key=number`.
+pub(super) fn entries(text: &str) -> Result<Vec<(String, f64)>, String> {
+    let entry = |cell: &str| match cell.rsplit_once('=') {
+        Some((key, value)) => Ok((key.trim().to_string(), number_list(value)?[0])),
+        None => Err(format!("\"{}\" is no entry such as j2_deg=30 or rail_mm=250", cell.trim())),
+    };
+    text.split(',').map(entry).collect()
+}
+
 /// One of the words of a choice.
 pub(super) fn choice<T: Words>(text: &str) -> Result<T, String> {
     T::from_word(text).ok_or_else(|| format!("choose one of: {}", T::words()))

@@ -126,13 +126,17 @@ impl<'c> Problem<'c> {
                 Layer::Piece(SpacePiece::Joint(_)) => {
                     problem.joint(joints.slots[place].take()?, joints.needs[place].tilts, ties)?
                 }
+                Layer::Piece(SpacePiece::Prismatic(slide)) => {
+                    Part::Given { mass_kg: 0.0, curve: CurveBox::of(&space.slide_law(slide)) }
+                }
                 Layer::Piece(piece) => {
                     let leaves = |option| (joints.lever_m(place, option), joints.room(place, option));
                     problem.link(piece, takes, leaves)?
                 }
                 Layer::Tilt(tilt) => Part::Given { mass_kg: 0.0, curve: CurveBox::of(&tilt.law()) },
+                Layer::Guide(spring) => Part::Given { mass_kg: 0.0, curve: CurveBox::of(&spring.law()) },
                 // A given mass beyond the parts loads the arm, but a design's mass does not count it.
-                Layer::Mass(_) | Layer::Springs(_) => Part::Offset { mass_kg: 0.0 },
+                Layer::Mass(_) | Layer::Travelling(_) | Layer::Springs(_) => Part::Offset { mass_kg: 0.0 },
                 Layer::Extra(mass_kg) => Part::Offset { mass_kg },
                 Layer::Bodies(carried) => Part::Offset { mass_kg: carried.mass_kg() },
                 // The tilts of a gear's bearing are coordinates of its joint.
@@ -205,7 +209,7 @@ impl<'c> Problem<'c> {
             space.constraints.wall_slenderness_max.is_some_and(|max| option.wall_slenderness() > max)
         };
         match piece {
-            SpacePiece::Joint(_) => None,
+            SpacePiece::Joint(_) | SpacePiece::Prismatic(_) => None,
             SpacePiece::Choice(choice) => {
                 let options = self.level(choice.options.len());
                 let tube = |(i, option): (u32, &LinkOption)| {

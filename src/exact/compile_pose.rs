@@ -18,7 +18,9 @@ use crate::arm::springs::{EndLoad, Side};
 use crate::arm::structure::LinkPiece;
 use crate::mechanics::beam::{PreparedBeam, pull_on, section_frame};
 use crate::mechanics::chain::{across, wrench_of};
-use crate::mechanics::{Twist, Wrench, angular, body_inertia, displacement_at, linear, rotation_twist};
+use crate::mechanics::{
+    Twist, Wrench, angular, body_inertia, displacement_at, linear, rotation_twist, stack,
+};
 use crate::space::design_space::{DesignSpace, SpacePiece};
 use crate::space::effects::{Carried, Carrier, Layer};
 use crate::space::station::{Walk, bodies_at, payload_in, weight_wrench};
@@ -195,7 +197,10 @@ fn posed(
     };
     Some(match layer {
         Layer::Tilt(tilt) => hinge(&tilt.axis(rotation), None),
-        Layer::Mass(mass_kg) | Layer::Extra(mass_kg) => body(mass_kg, at_m, Matrix3::zeros()),
+        Layer::Guide(spring) => hinge(&spring.axis(rotation), None),
+        Layer::Mass(mass_kg) | Layer::Travelling(mass_kg) | Layer::Extra(mass_kg) => {
+            body(mass_kg, at_m, Matrix3::zeros())
+        }
         Layer::Bearing(_) => return None,
         Layer::Springs(_) | Layer::Bodies(Carried { by: Carrier::Tube, .. }) => {
             PosedPiece::Body(Matrix6::zeros())
@@ -207,6 +212,11 @@ fn posed(
             let axis = rotation * joint.axis;
             hinge(&axis, tilts.then(|| across(&axis)))
         }
+        Layer::Piece(SpacePiece::Prismatic(slide)) => PosedPiece::Joint {
+            twist: stack(&(rotation * slide.joint.axis.into_inner()), &Vector3::zeros()),
+            at_m: *at_m,
+            across: None,
+        },
         Layer::Piece(SpacePiece::Choice(choice)) => {
             let link = space.link_piece(&choice.first_link());
             posed_tube(space, water, (&link, pulls), (at_m, rotation.matrix()), true)
@@ -243,7 +253,7 @@ fn posed_tube(
     let ends = ENDS.map(|coordinate| {
         let local = beam.end_fields.column(coordinate);
         let rotation = frame * local.fixed_rows::<3>(3);
-        crate::mechanics::stack(&(frame * local.fixed_rows::<3>(0) + end_m.cross(&rotation)), &rotation)
+        stack(&(frame * local.fixed_rows::<3>(0) + end_m.cross(&rotation)), &rotation)
     });
     PosedPiece::Tube(Box::new(PosedTube {
         length_m: beam.length_m,
@@ -462,7 +472,7 @@ impl Row {
 /// Mass of the harness along a tube \[kg\]. `None` without a harness.
 pub(super) fn harness_kg(space: &DesignSpace, piece: &SpacePiece) -> Option<f64> {
     let link = match piece {
-        SpacePiece::Joint(_) => return None,
+        SpacePiece::Joint(_) | SpacePiece::Prismatic(_) => return None,
         SpacePiece::Link(link) => space.link_piece(link),
         SpacePiece::Choice(choice) => space.link_piece(&choice.first_link()),
     };

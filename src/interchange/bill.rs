@@ -4,7 +4,7 @@
 
 use super::csv_text::csv_text;
 use crate::arm::section::Section;
-use crate::arm::{Arm, Element, Extras, Joint, Link, LinkBody};
+use crate::arm::{Arm, Element, Extras, Joint, Link, LinkBody, Prismatic};
 use crate::catalog::gear::{Gear, GearKind, GearMass};
 use crate::catalog::{Catalogs, Provenance};
 
@@ -40,6 +40,7 @@ pub(crate) fn bill(arm: &Arm, catalogs: &Catalogs) -> Vec<Row> {
     for element in &arm.chain {
         let parts = match element {
             Element::Joint(joint) => joint_parts(joint, catalogs),
+            Element::Prismatic(joint) => prismatic_parts(joint),
             Element::Link(link) => link_parts(link, catalogs),
         };
         for part in parts {
@@ -133,6 +134,17 @@ fn joint_parts(joint: &Joint, catalogs: &Catalogs) -> Vec<Row> {
     ];
     let extras = extras.into_iter().filter(|(_, mass_kg)| *mass_kg > 0.0);
     out.extend(extras.map(|(kind, mass_kg)| stated(at, format!("{kind} of {at}"), kind, mass_kg)));
+    let bodies = joint.bodies.iter().enumerate();
+    out.extend(bodies.map(|(i, body)| stated(at, format!("body {} of {at}", i + 1), "body", body.mass_kg)));
+    out
+}
+
+fn prismatic_parts(joint: &Prismatic) -> Vec<Row> {
+    let at = joint.name.as_str();
+    let masses = [("what travels", joint.mass_kg), ("what stays", joint.fixed_mass_kg)];
+    let masses = masses.into_iter().filter(|(_, mass_kg)| *mass_kg > 0.0);
+    let mut out: Vec<Row> =
+        masses.map(|(what, mass_kg)| stated(at, format!("{what} of {at}"), "prismatic", mass_kg)).collect();
     let bodies = joint.bodies.iter().enumerate();
     out.extend(bodies.map(|(i, body)| stated(at, format!("body {} of {at}", i + 1), "body", body.mass_kg)));
     out

@@ -3,9 +3,9 @@
 use super::bill::section_words;
 use super::csv_text::csv_text;
 use crate::arm::joint_law::Curve;
-use crate::arm::{Arm, Element, Joint, Link, LinkBody};
+use crate::arm::{Arm, Element, Joint, Link, LinkBody, Prismatic};
 
-const HEADER: [&str; 21] = [
+const HEADER: [&str; 22] = [
     "element",
     "type",
     "axis_x",
@@ -27,12 +27,14 @@ const HEADER: [&str; 21] = [
     "t2_nm",
     "tilt_stiffness_nm_per_rad",
     "coupled",
+    "stiffness_n_per_m",
 ];
 
 /// The elements of an arm as `design.csv` has them.
 pub(crate) fn design_csv(arm: &Arm) -> Vec<u8> {
     let rows = arm.chain.iter().map(|element| match element {
         Element::Joint(joint) => joint_row(joint, element.mass_kg()),
+        Element::Prismatic(joint) => prismatic_row(joint, element.mass_kg()),
         Element::Link(link) => link_row(link, element.mass_kg()),
     });
     csv_text(&HEADER, rows)
@@ -75,6 +77,19 @@ fn joint_row(joint: &Joint, mass_kg: f64) -> Vec<String> {
     let coupled: Vec<String> = terms.map(|(driver, factor)| format!("{factor} {driver}")).collect();
     cells.push(("coupled", coupled.join(" + ")));
     row(cells)
+}
+
+fn prismatic_row(joint: &Prismatic, mass_kg: f64) -> Vec<String> {
+    let text = |x: f64| format!("{x}");
+    row(vec![
+        ("element", joint.name.clone()),
+        ("type", "prismatic".into()),
+        ("axis_x", text(joint.axis.x)),
+        ("axis_y", text(joint.axis.y)),
+        ("axis_z", text(joint.axis.z)),
+        ("mass_kg", text(mass_kg)),
+        ("stiffness_n_per_m", joint.stiffness_n_per_m.map(text).unwrap_or_default()),
+    ])
 }
 
 fn link_row(link: &Link, mass_kg: f64) -> Vec<String> {

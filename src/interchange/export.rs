@@ -110,7 +110,7 @@ impl Export {
             "to": Format::WORDS.iter().find(|(_, format)| *format == asked.format).map(|(word, _)| word),
             "arm": asked.arm.name,
             "mass_kg": asked.arm.mass_kg(),
-            "case": asked.case.to_json(),
+            "case": asked.case.to_json(&asked.arm.driven_joints()),
             "files": names,
             "left_out": self.left_out.iter().map(LeftOut::to_json).collect::<Vec<_>>(),
             "notes": self.notes,
@@ -317,7 +317,8 @@ fn to_urdf(asked: &Asked) -> Export {
 }
 
 fn to_json(asked: &Asked) -> Export {
-    let cases: Vec<Value> = asked.cases.iter().map(LoadCase::to_json).collect();
+    let joints = asked.arm.driven_joints();
+    let cases: Vec<Value> = asked.cases.iter().map(|case| case.to_json(&joints)).collect();
     Export {
         files: vec![
             ("arm.json".into(), pretty(&asked.arm.to_json())),

@@ -6,6 +6,7 @@
 
 use super::chain::{ElasticElement, Posed, Prepared};
 use super::{Twist, displacement_at};
+use crate::arm::prismatic::Moves;
 use nalgebra::{DVector, Rotation3, Vector3};
 
 /// A point of the centre line.
@@ -26,7 +27,7 @@ const POINTS: usize = 9;
 
 impl Posed<'_> {
     /// The points of the centre line with their motion under the coordinates of every element, base to tip. A joint has
-    /// one point, a link has several. `pose_rad` is the pose in which the arm is.
+    /// one point, a link and the way of a prismatic joint have several. `pose_rad` is the pose in which the arm is.
     pub fn centre_line(&self, pose_rad: &[f64], coordinates: &[Vec<f64>]) -> Vec<Station> {
         let mut elements = self.elements().zip(coordinates).peekable();
         let mut walk = Walk::default();
@@ -48,6 +49,20 @@ impl Posed<'_> {
                     }
                     walk.yields(elements.next());
                     walk.rotation *= Rotation3::from_axis_angle(&joint.axis, joint.angle.of(pose_rad));
+                }
+                Prepared::Prismatic(joint) => {
+                    // what travels is drawn rigid: the springs stand at either end of the way
+                    let travel = walk.rotation * joint.axis.into_inner() * pose_rad[joint.entry];
+                    out.push(walk.station(&joint.name, walk.at_m, None));
+                    if joint.moves == Moves::Carriage {
+                        out.push(walk.station(&joint.name, walk.at_m + travel, None));
+                    }
+                    if !joint.guide_is_rigid() {
+                        walk.yields(elements.next());
+                    }
+                    walk.yields(elements.next());
+                    walk.at_m += travel;
+                    out.push(walk.station(&joint.name, walk.at_m, None));
                 }
                 Prepared::Link(link, beam) => {
                     if elements.peek().is_some_and(|(e, _)| is_frame(e)) {

@@ -12,6 +12,8 @@ use crate::arm::joint_law::JointLaw;
 use crate::arm::linkage::{Linkage, linkages};
 use crate::arm::load::Water;
 use crate::arm::load::{LoadCase, Payload};
+use crate::arm::pose::{DrivenJoint, pose_si};
+use crate::arm::prismatic::PrismaticPiece;
 use crate::arm::springs::{Drawn, ElementFrame, EndLoad, Side, Spring, end_loads};
 use crate::arm::structure::{FrameCompliance, JointPiece, LinkPiece, Piece, Structure};
 use nalgebra::{DMatrix, Matrix3, Matrix6, Matrix6xX, Rotation3, Vector3};
@@ -54,6 +56,7 @@ pub struct Chain {
     water: Option<Water>,
     pub(super) pieces: Vec<Prepared>,
     linkages: Vec<Linkage>,
+    driven: Vec<DrivenJoint>,
     springs: Vec<Spring>,
 }
 
@@ -61,6 +64,7 @@ pub struct Chain {
 #[derive(Debug, Clone)]
 pub(super) enum Prepared {
     Joint(JointPiece),
+    Prismatic(PrismaticPiece),
     Link(LinkPiece, Option<PreparedBeam>),
 }
 
@@ -71,6 +75,8 @@ pub enum Yielding {
     Linear(Vec<f64>),
     /// By the law of a joint, which has one coordinate.
     Joint(JointLaw),
+    /// Along the travel of a prismatic joint, in proportion to the force. The frame of its guide has the travel as its x.
+    Slide { m_per_n: f64, frame: Matrix3<f64> },
     /// As feet that lift off, about each of two axes.
     Lift(BaseLift),
 }
@@ -78,7 +84,7 @@ pub enum Yielding {
 /// One elastic element of an arm in a pose.
 #[derive(Debug, Clone)]
 pub struct ElasticElement {
-    /// Name: that of the joint or link, `NAME.bearing`, `NAME.frame_compliance`, or `base`.
+    /// Name: that of the joint or link, `NAME.bearing`, `NAME.guide`, `NAME.frame_compliance`, or `base`.
     pub name: String,
     /// Place in the world \[m\]: of the joint, the bearing or the frame, or the root of the link.
     pub at_m: Vector3<f64>,
@@ -165,6 +171,7 @@ impl Chain {
             .iter()
             .map(|piece| match piece {
                 Piece::Joint(joint) => Prepared::Joint(joint.clone()),
+                Piece::Prismatic(joint) => Prepared::Prismatic(joint.clone()),
                 Piece::Link(link) => Prepared::Link(link.clone(), PreparedBeam::new(link, structure, links)),
             })
             .collect();
@@ -177,18 +184,25 @@ impl Chain {
             water: structure.water,
             pieces,
             linkages: linkages(structure),
+            driven: structure.driven_joints(),
             springs: structure.springs.clone(),
         }
     }
 
-    /// Puts the arm into the pose and load of a case. The pose has one angle \[deg\] for each driven joint, base to tip.
+    /// A pose of files (deg, and mm of travel) in rad and m.
+    pub fn pose_si(&self, pose_deg: &[f64]) -> Vec<f64> {
+        pose_si(&self.driven, pose_deg)
+    }
+
+    /// Puts the arm into the pose and load of a case. The pose has one entry for each driven joint, base to tip: an angle
+    /// \[deg\], or the travel of a prismatic joint \[mm\].
     pub fn pose(&self, case: &LoadCase) -> Posed<'_> {
-        let pose_rad: Vec<f64> = case.pose_deg.iter().map(|a| a.to_radians()).collect();
+        let pose_rad = self.pose_si(&case.pose_deg);
         let posed = self.pose_rad(&pose_rad, &case.payload, case.tip_force_n);
         Posed { tip_moment_nm: case.tip_moment_nm, ..posed }
     }
 
-    /// Puts the arm into a pose given in radians, with a payload and a force at the tip \[N\].
+    /// Puts the arm into a pose given in radians (metres where a joint slides), with a payload and a force at the tip \[N\].
     pub fn pose_rad(&self, pose_rad: &[f64], payload: &Payload, tip_force_n: Vector3<f64>) -> Posed<'_> {
         let mut walk = self.walk(pose_rad, self.spring_loads(pose_rad));
         // the payload is the last body, so every element moves it
@@ -222,6 +236,7 @@ impl Chain {
         for (index, piece) in self.pieces.iter().enumerate() {
             match piece {
                 Prepared::Joint(joint) => walk.joint(index, joint, joint.angle.of(pose_rad)),
+                Prepared::Prismatic(joint) => walk.prismatic(index, joint, pose_rad[joint.entry]),
                 Prepared::Link(link, beam) => walk.link(index, link, beam.as_ref()),
             }
         }
@@ -252,7 +267,7 @@ impl Chain {
     pub(crate) fn beam(&self, piece: usize) -> Option<&PreparedBeam> {
         match &self.pieces[piece] {
             Prepared::Link(_, beam) => beam.as_ref(),
-            Prepared::Joint(_) => None,
+            _ => None,
         }
     }
 
@@ -273,16 +288,16 @@ impl Chain {
 }
 
 /// The walk from base to tip, which collects the items on its way.
-struct Walk {
-    items: Vec<Item>,
-    at_m: Vector3<f64>,
-    rotation: Rotation3<f64>,
+pub(super) struct Walk {
+    pub(super) items: Vec<Item>,
+    pub(super) at_m: Vector3<f64>,
+    pub(super) rotation: Rotation3<f64>,
     /// Acceleration of gravity \[m/s²\] and its direction.
     gravity: (f64, Vector3<f64>),
     /// What the springs do to the arm.
     springs: Vec<EndLoad>,
     /// Where each piece is.
-    frames: Vec<ElementFrame>,
+    pub(super) frames: Vec<ElementFrame>,
 }
 
 impl Walk {
@@ -370,7 +385,7 @@ impl Walk {
     }
 
     /// Adds what the springs do to a part of the arm, if they load it.
-    fn load(&mut self, on: Side) {
+    pub(super) fn load(&mut self, on: Side) {
         let loads = self.springs.iter().filter(|load| load.on == on);
         self.items.extend(loads.map(|load| Item::Load(wrench_of(load))).collect::<Vec<_>>());
     }
@@ -418,7 +433,7 @@ impl Walk {
     }
 
     /// Adds rigid bodies of the element that starts at the present place.
-    fn bodies(&mut self, bodies: &[RigidBody]) {
+    pub(super) fn bodies(&mut self, bodies: &[RigidBody]) {
         for body in bodies {
             let turn = self.rotation.matrix();
             self.items.push(Item::Body(Body {
@@ -432,7 +447,7 @@ impl Walk {
     }
 
     /// Adds a point mass, if it is not zero.
-    fn point_mass(&mut self, mass_kg: f64, cg_m: Vector3<f64>) {
+    pub(super) fn point_mass(&mut self, mass_kg: f64, cg_m: Vector3<f64>) {
         if mass_kg != 0.0 {
             self.items.push(Item::Body(Body {
                 mass_kg,

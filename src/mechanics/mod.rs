@@ -1,7 +1,7 @@
 //! Mechanics: how an arm behaves. One formulation serves statics, modes and response.
 //!
 //! Every elastic element has a few *strain coordinates*, each of them a scalar spring. A joint has one (its twist), a
-//! bearing that tilts has two, and a link has some polynomials of curvature, shear, twist and stretch (`beam`). One unit
+//! bearing that tilts has two, the drive of a prismatic joint one and its guide up to three, and a link has some polynomials of curvature, shear, twist and stretch (`beam`). One unit
 //! of a coordinate moves everything outboard of it as a rigid body; this motion is the *twist* of the coordinate.
 //!
 //! - Statics (`statics`; Eqs 1-4, 7, 13-15): the generalized force on a coordinate is the work of the outboard wrench on
@@ -25,6 +25,7 @@ pub(crate) mod linkage;
 pub(crate) mod lowest;
 pub(crate) mod lowest_lanes;
 pub(crate) mod modes;
+pub(crate) mod prismatic;
 pub(crate) mod product;
 pub(crate) mod response;
 pub(crate) mod statics;
@@ -32,6 +33,7 @@ pub(crate) mod statics;
 pub use centre_line::Station;
 pub use chain::{Chain, Posed};
 pub use modes::{Mode, Modes};
+pub use prismatic::GuideLoad;
 pub use response::{Response, frequency_response};
 pub use statics::{JointLoad, LinkRoot, Statics};
 

@@ -5,6 +5,7 @@
 
 use super::chain::{ElasticElement, Item, Posed, Yielding};
 use super::linkage::Transferred;
+use super::prismatic::GuideLoad;
 use super::{Twist, Wrench, angular, displacement_at, force_wrench, linear, stack};
 use nalgebra::Vector3;
 
@@ -14,6 +15,12 @@ pub struct Statics {
     /// Torque on each joint about its axis \[N m\], with the name of the joint: that of gravity and load (Eq 7), and one that
     /// acts on the joint beside them.
     pub joint_torques_nm: Vec<(String, f64)>,
+    /// Force on each prismatic joint along its travel \[N\], with the name of the joint: that of gravity and load. The joint
+    /// moves by force over stiffness.
+    pub joint_forces_n: Vec<(String, f64)>,
+    /// What the guide of each prismatic joint carries, in the order of these forces. It is the same whether the guide yields
+    /// or not.
+    pub guide_loads: Vec<GuideLoad>,
     /// What the output bearing of each joint carries, in the order of the torques. It is the same whether the bearing
     /// yields or not.
     pub bearing_loads: Vec<JointLoad>,
@@ -73,6 +80,8 @@ impl Posed<'_> {
         let transferred = self.transferred();
         let mut out = Statics {
             joint_torques_nm: Vec::new(),
+            joint_forces_n: Vec::new(),
+            guide_loads: Vec::new(),
             bearing_loads: Vec::new(),
             tip_displacement_m: Vector3::zeros(),
             shares_m: Vec::new(),
@@ -89,6 +98,8 @@ impl Posed<'_> {
             }
         }
         out.joint_torques_nm.reverse();
+        out.joint_forces_n.reverse();
+        out.guide_loads.reverse();
         out.bearing_loads.reverse();
         out.shares_m.reverse();
         out.deformations.reverse();
@@ -129,6 +140,12 @@ impl Posed<'_> {
                 let axis = angular(&element.twists[0]);
                 out.bearing_loads.push(JointLoad::of(wrench, &axis, &element.at_m));
                 (vec![angle_rad], vec![law.tangent_compliance_rad_per_nm(torque_nm)])
+            }
+            Yielding::Slide { m_per_n, frame } => {
+                let force_n = element.twists[0].dot(wrench);
+                out.joint_forces_n.push((element.name.clone(), force_n));
+                out.guide_loads.push(GuideLoad::of(&element.name, wrench, frame, &element.at_m));
+                (vec![m_per_n * force_n], vec![*m_per_n])
             }
             Yielding::Lift(lift) => {
                 let moments_nm: Vec<f64> = element.twists.iter().map(|twist| twist.dot(wrench)).collect();

@@ -3,7 +3,7 @@
 use super::forward::prepared::make_links_rigid;
 use super::model::exact::Exact;
 use super::positions;
-use super::readings::campaign::{Campaign, Statement, driven_joint_names};
+use super::readings::campaign::{Campaign, Statement, driven_joints};
 use super::readings::cells::Purpose;
 use super::readings::components::{DISPLACEMENT, POSITION};
 use super::readings::rows::{modal_rows, position_rows, static_rows, windup_rows};
@@ -90,7 +90,7 @@ fn positions_mm(
 ) -> Result<Vec<[f64; 3]>, Faults> {
     let all: Vec<&Arm> = arms.iter().map(|a| &a.arm).collect();
     let names: Vec<&str> = all.iter().map(|a| a.name.as_str()).collect();
-    let rows = position_rows(table, &names, &driven_joint_names(&all), Purpose::Predict);
+    let rows = position_rows(table, &names, &driven_joints(&all), Purpose::Predict);
     match arms {
         [one] => Ok(exact.positions_mm(&rows, &one.placement)),
         several => {
@@ -109,7 +109,7 @@ pub(crate) fn unplaced(arms: &[Placed], table: &Table) -> Option<String> {
     }
     let all: Vec<&Arm> = arms.iter().map(|a| &a.arm).collect();
     let names: Vec<&str> = all.iter().map(|a| a.name.as_str()).collect();
-    let rows = position_rows(table, &names, &driven_joint_names(&all), Purpose::Predict);
+    let rows = position_rows(table, &names, &driven_joints(&all), Purpose::Predict);
     let count = |(i, placed): (usize, &Placed)| {
         let strangers = placed.placement.strangers(&rows);
         strangers.into_iter().filter(|row| rows[*row].arm == i).count()

@@ -7,6 +7,7 @@ use super::select::few_rows::FEWEST_ROWS;
 use super::verdict::too_little::FEWEST_POSES;
 use crate::arm::Arm;
 use crate::arm::effect::channel::Channel;
+use crate::arm::pose::DrivenJoint;
 use serde_json::{Value, json};
 
 /// Name of the page that says what to do.
@@ -14,7 +15,7 @@ pub(crate) const PAGE: &str = "STARTER.md";
 
 /// The files of a new campaign, by name. The arm file is not among them.
 pub(crate) fn files(arm: &Arm, name: &str) -> Vec<(String, String)> {
-    let joints = arm.driven_joint_names();
+    let joints = arm.driven_joints();
     let table = |channel: Channel| {
         (
             DEFAULT_FILES[channel as usize].to_string(),
@@ -119,7 +120,7 @@ fn kinds(joints: usize) -> [Kind; 4] {
     ]
 }
 
-fn page(arm: &Arm, name: &str, joints: &[&str]) -> String {
+fn page(arm: &Arm, name: &str, joints: &[DrivenJoint]) -> String {
     let mut out = format!(
         "# Campaign {name}: readings of {}\n\nFill the tables, then run:\n\n```sh\narmwright reconcile .\n```\n\nAny one of the \
          four kinds of readings suffices; several together say more. Delete the block in `campaign.json` and the file of each \
@@ -176,6 +177,9 @@ fn meaning(channel: Channel, column: &str) -> (&'static str, &'static str) {
         "point" => ("-", "name of the point on the tool; `tip` if there is one only"),
         "x_mm" => ("mm", "its place along the instrument's x; blank if it was not measured"),
         "y_mm" | "z_mm" => ("mm", "the same along y, z"),
+        travel if travel.starts_with("q_") && travel.ends_with("_mm") => {
+            ("mm", "travel of the prismatic joint along its axis in `arm.json`")
+        }
         angle if angle.starts_with("q_") => {
             ("deg", "angle of the joint, right-handed about its axis in `arm.json`")
         }

@@ -1,14 +1,17 @@
 //! An arm analysed in one load case: torques, tip displacement, modes and response, as JSON and as text.
 
 use super::number::percent;
+use super::pose::pose_words;
 use super::small_displacement::too_far;
 use super::springs::{spring_json, springs_in, springs_text};
 use crate::arm::effect::entry::Effect;
 use crate::arm::load::LoadCase;
+use crate::arm::pose::any_slides;
 use crate::arm::springs::Drawn;
 use crate::arm::{Arm, Bearing, Element, LinkModel};
 use crate::mechanics::chain::Chain;
 use crate::mechanics::modes::Mode;
+use crate::mechanics::prismatic::GuideLoad;
 use crate::mechanics::response::{Response, frequency_response};
 use crate::mechanics::statics::{JointLoad, Statics};
 use crate::space::bearing_loads::resolved;
@@ -40,7 +43,7 @@ pub struct Harmonic {
 ///     {"type": "link", "name": "l1", "vector_m": [1, 0, 0], "mass_kg": 2}]}"#;
 /// let arm = read_arm_document(Document::parse("arm.json", file)?, &Catalogs::builtin())?;
 /// let case = r#"[{"name": "level", "pose_deg": [0]}]"#;
-/// let cases = read_load_cases(Document::parse("cases.json", case)?, &arm.driven_joint_names())?;
+/// let cases = read_load_cases(Document::parse("cases.json", case)?, &arm.driven_joints())?;
 /// let solved = Analysis::of(&arm, cases[0].clone(), 1, None).to_json(&arm);
 /// // the weight of 2 kg at half a metre
 /// let torque_nm = solved["joint_torque_nm"]["j1"].as_f64().expect("a number");
@@ -105,6 +108,7 @@ impl Analysis {
             out["springs"] = self.springs.iter().map(spring_json).collect();
             out["springs_stiffen_modes"] = json!(false);
         }
+        self.guides_json(&mut out);
         let impossible = arm.impossible_bodies();
         if !impossible.is_empty() {
             out["impossible_inertias"] = json!(impossible);
@@ -127,6 +131,35 @@ impl Analysis {
                 .collect();
         }
         out
+    }
+
+    /// Adds what drives and guides of prismatic joints hold, if there are any.
+    fn guides_json(&self, out: &mut Value) {
+        if self.statics.guide_loads.is_empty() {
+            return;
+        }
+        let each = |of: &dyn Fn(&GuideLoad) -> Value| -> Value {
+            Value::Object(self.statics.guide_loads.iter().map(|load| (load.name.clone(), of(load))).collect())
+        };
+        let forces = self.statics.joint_forces_n.iter().map(|(name, n)| (name.clone(), json!(n)));
+        out["joint_force_n"] = Value::Object(forces.collect());
+        out["guide_force_n"] = each(&|load| json!([load.force_n.y, load.force_n.z]));
+        out["guide_moment_nm"] = each(&|load| json!(load.moment_nm.as_slice()));
+    }
+
+    /// What the guides of prismatic joints carry across their travel.
+    fn guides_text(&self, out: &mut String) {
+        if self.statics.guide_loads.is_empty() {
+            return;
+        }
+        let _ = writeln!(out, "  guide          force across N (y, z)    moment Nm (roll, pitch, yaw)");
+        for GuideLoad { name, force_n, moment_nm } in &self.statics.guide_loads {
+            let _ = writeln!(
+                out,
+                "  {name:<14} {:10.3} {:10.3}    {:10.3} {:10.3} {:10.3}",
+                force_n.y, force_n.z, moment_nm.x, moment_nm.y, moment_nm.z
+            );
+        }
     }
 
     /// The joints with what their output bearings carry at rest.
@@ -183,8 +216,12 @@ impl Analysis {
 
     /// The analysis as `armwright analyze` prints it.
     pub fn to_text(&self, arm: &Arm) -> String {
-        let mut out =
-            format!("{}, case \"{}\": pose {:?} deg\n", arm.name, self.case.name, self.case.pose_deg);
+        let driven = arm.driven_joints();
+        let pose = match any_slides(&driven) {
+            true => pose_words(&driven, &self.case.pose_deg),
+            false => format!("{:?} deg", self.case.pose_deg),
+        };
+        let mut out = format!("{}, case \"{}\": pose {pose}\n", arm.name, self.case.name);
         let _ = writeln!(out, "  arm mass            {:10.3} kg", arm.mass_kg());
         let added_kg = arm.structure_in(&self.case).mass_kg() - arm.mass_kg();
         if added_kg.abs() > 1e-9 {
@@ -209,6 +246,7 @@ impl Analysis {
             let _ = writeln!(out, "  ignored, because links are held rigid: {}", self.unbent.join(", "));
         }
         self.shares_text(&mut out);
+        self.guides_text(&mut out);
         self.bearings_text(arm, &mut out);
         let impossible = arm.impossible_bodies();
         if !impossible.is_empty() {
@@ -233,7 +271,12 @@ impl Analysis {
         let _ = writeln!(out, "  element          torque Nm    moves the tip by mm (x, y, z)      share");
         for (name, share) in &self.statics.shares_m {
             let torque = self.statics.joint_torques_nm.iter().find(|(n, _)| n == name);
-            let torque = torque.map_or(String::new(), |(_, t)| format!("{t:.3}"));
+            let force = self.statics.joint_forces_n.iter().find(|(n, _)| n == name);
+            let torque = match (torque, force) {
+                (Some((_, nm)), _) => format!("{nm:.3}"),
+                (_, Some((_, newton))) => format!("{newton:.3} N"),
+                _ => String::new(),
+            };
             let part = 100.0 * share.dot(&total) / total.norm_squared().max(f64::MIN_POSITIVE);
             let mm = share * 1e3;
             let _ = writeln!(

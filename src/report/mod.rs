@@ -13,6 +13,7 @@ pub mod front_table;
 pub mod html;
 pub mod number;
 pub mod picks;
+pub(crate) mod pose;
 pub(crate) mod resonance;
 pub(crate) mod section;
 pub(crate) mod small_displacement;

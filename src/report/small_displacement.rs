@@ -10,9 +10,10 @@ use super::number::{fixed, percent, significant};
 /// A tip that moves by more than this fraction of the arm's reach moves too far.
 pub(crate) const SMALL_PART: f64 = 0.05;
 
-/// The warning for a tip displacement, in words that continue "the tip"; `None` if the displacement is small.
+/// The warning for a tip displacement, in words that continue "the tip"; `None` if the displacement is small, or if the arm has
+/// no reach: what slides alone moves without turning.
 pub(crate) fn too_far(tip_m: f64, reach_m: f64) -> Option<String> {
-    (tip_m > SMALL_PART * reach_m).then(|| {
+    (reach_m > 0.0 && tip_m > SMALL_PART * reach_m).then(|| {
         format!(
             "moves by {} mm, more than {} of the arm's reach of {} m; the model is valid for small displacements only",
             significant(1e3 * tip_m, 4),

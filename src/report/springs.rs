@@ -8,7 +8,7 @@ use std::fmt::Write;
 
 /// The springs of an arm in the pose of a case, each with its name.
 pub(crate) fn springs_in(chain: &Chain, case: &LoadCase) -> Vec<(String, Drawn)> {
-    let pose_rad: Vec<f64> = case.pose_deg.iter().map(|angle| angle.to_radians()).collect();
+    let pose_rad = chain.pose_si(&case.pose_deg);
     chain.springs_in(&pose_rad).into_iter().map(|(name, drawn)| (name.to_string(), drawn)).collect()
 }
 

@@ -95,7 +95,7 @@ impl<'c> ArmProblem<'c> {
                 SpacePiece::Joint(_) => self
                     .sized_joint(piece)
                     .map_or(Part::Given, |s| Part::Drive(s.table.drive(option as usize))),
-                SpacePiece::Link(_) => Part::Given,
+                SpacePiece::Prismatic(_) | SpacePiece::Link(_) => Part::Given,
             })
             .collect()
     }
@@ -115,6 +115,7 @@ impl<'c> ArmProblem<'c> {
             .map(|(piece, part)| match (piece, part) {
                 (SpacePiece::Choice(choice), Part::Link(option)) => Some(Element::Link(choice.link(option))),
                 (SpacePiece::Link(link), _) => Some(Element::Link(link.clone())),
+                (SpacePiece::Prismatic(slide), _) => Some(Element::Prismatic(slide.joint.clone())),
                 (SpacePiece::Joint(joint), Part::Drive(drive)) => {
                     joint_with(joint, &drive).map(Element::Joint)
                 }

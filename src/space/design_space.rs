@@ -1,6 +1,7 @@
 //! What there is to choose: an arm with open links and drives, and the task it must do.
 
 use super::constraint::Constraints;
+use super::prismatic::SpacePrismatic;
 use crate::arm::bearing::{Bearing, BearingSource};
 use crate::arm::body::{JointBodies, RigidBody};
 use crate::arm::effect::entry::Effect;
@@ -9,6 +10,7 @@ use crate::arm::file::windup_of;
 use crate::arm::joint_law::Curve;
 use crate::arm::load::Payload;
 use crate::arm::load::Water;
+use crate::arm::pose::{DrivenJoint, Motion};
 use crate::arm::section::{LinkMaterial, Section};
 use crate::arm::springs::{Side, Spring};
 use crate::arm::structure::Beam;
@@ -143,7 +145,7 @@ pub struct DesignSpace {
 pub struct Case {
     /// Name.
     pub name: String,
-    /// One angle per joint, base to tip \[deg\].
+    /// One entry per driven joint, base to tip: an angle \[deg\], or the travel of a prismatic joint \[mm\].
     pub pose_deg: Vec<f64>,
     /// What the arm holds.
     pub payload: Payload,
@@ -160,6 +162,8 @@ pub struct Case {
 pub enum SpacePiece {
     /// A joint.
     Joint(SpaceJoint),
+    /// A prismatic joint, which the study gives.
+    Prismatic(SpacePrismatic),
     /// A link or offset without a choice.
     Link(Link),
     /// A link whose material and section are chosen.
@@ -171,6 +175,7 @@ impl SpacePiece {
     pub fn name(&self) -> &str {
         match self {
             Self::Joint(joint) => &joint.name,
+            Self::Prismatic(slide) => &slide.joint.name,
             Self::Link(link) => &link.name,
             Self::Choice(choice) => &choice.name,
         }
@@ -420,7 +425,7 @@ impl DesignSpace {
         match &self.pieces[piece] {
             SpacePiece::Choice(_) => true,
             SpacePiece::Link(link) => matches!(link.body, LinkBody::Tube { .. }),
-            SpacePiece::Joint(_) => false,
+            SpacePiece::Joint(_) | SpacePiece::Prismatic(_) => false,
         }
     }
 
@@ -452,12 +457,30 @@ impl DesignSpace {
         self.joints().flat_map(of).collect()
     }
 
+    /// Every driven joint with its entry in the pose of a case \[rad, m\].
+    fn entries_si(&self, case: &Case) -> Vec<(DrivenJoint, f64)> {
+        let driven = self.pieces.iter().filter_map(|piece| match piece {
+            SpacePiece::Joint(joint) if joint.coupled.is_none() => Some(DrivenJoint::turning(&joint.name)),
+            SpacePiece::Prismatic(slide) => {
+                Some(DrivenJoint { name: slide.joint.name.clone(), motion: Motion::Slides })
+            }
+            _ => None,
+        });
+        let entries = driven.zip(&case.pose_deg);
+        entries.map(|(joint, entry)| (joint.clone(), joint.motion.si(*entry))).collect()
+    }
+
+    /// Travel of every prismatic joint in a case, base to tip \[m\].
+    pub(crate) fn travels_m(&self, case: &Case) -> Vec<f64> {
+        let entries = self.entries_si(case).into_iter();
+        entries.filter(|(joint, _)| joint.motion == Motion::Slides).map(|(_, travel_m)| travel_m).collect()
+    }
+
     /// Angle of every joint in a case, base to tip, those of passive joints too \[rad\].
     pub(crate) fn angles_rad(&self, case: &Case) -> Vec<f64> {
-        let driven = self.joints().filter(|(_, joint)| joint.coupled.is_none()).map(|(_, joint)| &joint.name);
-        let angles: Vec<(&String, f64)> = driven.zip(case.pose_deg.iter().map(|a| a.to_radians())).collect();
+        let entries = self.entries_si(case);
         let of = |name: &String| {
-            angles.iter().find(|(driver, _)| *driver == name).map_or(0.0, |(_, angle)| *angle)
+            entries.iter().find(|(driver, _)| driver.name == *name).map_or(0.0, |(_, angle)| *angle)
         };
         let angle = |(_, joint): (usize, &SpaceJoint)| match &joint.coupled {
             None => of(&joint.name),

@@ -5,14 +5,17 @@
 //! `reconcile` compute the same thing. Stations, rows and lanes know pieces only; they know nothing of effects.
 
 use super::design_space::{DesignSpace, SpaceJoint, SpacePiece};
+use super::prismatic::SpacePrismatic;
 use crate::arm::bearing::Bearing;
 use crate::arm::body::{JointBodies, RigidBody, total_kg};
 use crate::arm::effect::subject::Subject;
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::arm::joint_torque::JointTorque;
+use crate::arm::prismatic::{Moves, PrismaticPiece};
 use crate::arm::springs::{Side, SpringKind, SpringPlace};
 use crate::arm::structure::{JointAngle, JointPiece, LinkPiece, Piece, Structure, link_piece};
 use crate::arm::{Link, LinkBody};
+use crate::mechanics::beam::section_frame;
 use crate::mechanics::chain::across;
 use nalgebra::{Rotation3, Vector3};
 
@@ -23,11 +26,15 @@ pub(crate) enum Layer<'s> {
     Piece(&'s SpacePiece),
     /// A spring about an axis across the axis of a joint.
     Tilt(Tilt<'s>),
+    /// A spring of the guide of a prismatic joint.
+    Guide(GuideSpring<'s>),
     /// A spring of the output bearing of the gear that is chosen for a joint.
     Bearing(BearingSpring<'s>),
     /// A point mass at a joint that an effect adds: it weighs, but is none of the links and drives whose mass counts
     /// \[kg\].
     Mass(f64),
+    /// The same at the moved point of a prismatic joint \[kg\].
+    Travelling(f64),
     /// A point mass at a joint that counts in the mass of the design, such as a bearing of its own \[kg\].
     Extra(f64),
     /// Rigid bodies, which count in the mass of the design.
@@ -48,7 +55,7 @@ pub(crate) struct Carried<'s> {
 pub(crate) enum Carrier {
     /// The frame in which the piece begins.
     Frame,
-    /// The frame after the rotation of the joint.
+    /// The frame after the rotation or the travel of the joint.
     RotatedFrame,
     /// The axis of a tube, which the bodies bend; otherwise they move with its root.
     Tube,
@@ -92,7 +99,44 @@ pub(crate) struct BearingSpring<'s> {
     which: usize,
 }
 
+/// A spring of the guide of a prismatic joint.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct GuideSpring<'s> {
+    slide: &'s SpacePrismatic,
+    which: usize,
+    /// Tilt per moment \[rad/(N m)\].
+    rad_per_nm: f64,
+}
+
+impl GuideSpring<'_> {
+    /// Axis of the spring in the world. `rotation` is the attitude of the frame that the joint stands in.
+    pub(crate) fn axis(&self, rotation: &Rotation3<f64>) -> Vector3<f64> {
+        rotation * section_frame(&self.slide.joint.axis).column(self.which)
+    }
+
+    /// Twist of the spring under a moment.
+    pub(crate) fn law(&self) -> JointLaw {
+        linear_law(self.rad_per_nm)
+    }
+}
+
+/// The law of a spring that yields in proportion.
+fn linear_law(compliance: f64) -> JointLaw {
+    JointLaw { connection_rad_per_nm: compliance, ..JointLaw::from(Curve::Rigid) }
+}
+
 impl<'s> Layer<'s> {
+    /// Whether the layer stands where its piece ends rather than where it begins.
+    pub(crate) fn is_at_end(&self) -> bool {
+        let is_carriage = |slide: &SpacePrismatic| slide.joint.moves == Moves::Carriage;
+        match self {
+            Layer::Bodies(Carried { by: Carrier::RotatedFrame, .. }) | Layer::Travelling(_) => true,
+            Layer::Guide(spring) => is_carriage(spring.slide),
+            Layer::Piece(SpacePiece::Prismatic(slide)) => is_carriage(slide),
+            _ => false,
+        }
+    }
+
     /// The joint about whose axes across this spring tilts; `None` for what is no spring of a bearing that is known.
     pub(crate) fn bearing_of(&self) -> Option<&'s SpaceJoint> {
         match self {
@@ -141,6 +185,10 @@ impl DesignSpace {
         for (index, piece) in self.pieces.iter().enumerate().rev() {
             let joint = match piece {
                 SpacePiece::Joint(joint) => joint,
+                SpacePiece::Prismatic(slide) => {
+                    self.add_prismatic(index, piece, slide, &mut out);
+                    continue;
+                }
                 SpacePiece::Link(link) => {
                     out.push((index, Layer::Piece(piece)));
                     let is_tube = matches!(link.body, LinkBody::Tube { .. });
@@ -192,12 +240,49 @@ impl DesignSpace {
         out
     }
 
+    /// Adds the layers of a prismatic joint: what travels, drive and guide, what stays.
+    fn add_prismatic<'s>(
+        &'s self,
+        index: usize,
+        piece: &'s SpacePiece,
+        slide: &'s SpacePrismatic,
+        out: &mut Vec<(usize, Layer<'s>)>,
+    ) {
+        let affected = self.prismatic_piece(slide);
+        out.extend(carried(&slide.travelling, Carrier::RotatedFrame).map(|bodies| (index, bodies)));
+        let added_kg = affected.mass_kg - slide.joint.mass_kg;
+        if added_kg != 0.0 {
+            out.push((index, Layer::Travelling(added_kg)));
+        }
+        out.extend(self.pulled(index, Side::Moving(index)));
+        out.push((index, Layer::Piece(piece)));
+        let springs = affected.guide_rad_per_nm.iter().enumerate().filter(|(_, c)| **c > 0.0);
+        out.extend(
+            springs.map(|(which, c)| (index, Layer::Guide(GuideSpring { slide, which, rad_per_nm: *c }))),
+        );
+        out.extend(carried(&slide.staying, Carrier::Frame).map(|bodies| (index, bodies)));
+    }
+
+    /// A prismatic joint with the effects at it.
+    fn prismatic_piece(&self, slide: &SpacePrismatic) -> PrismaticPiece {
+        let nominal = slide.joint.piece(0);
+        match self.affected(Piece::Prismatic(nominal.clone())) {
+            Some(Piece::Prismatic(affected)) => affected,
+            _ => nominal,
+        }
+    }
+
+    /// Way of a prismatic joint along its travel under a force, as a law of a coordinate \[m/N\].
+    pub(crate) fn slide_law(&self, slide: &SpacePrismatic) -> JointLaw {
+        linear_law(self.prismatic_piece(slide).m_per_n)
+    }
+
     /// Where along a piece springs pull (0 to 1), in the order in which they load it; none if it is no tube.
     pub(crate) fn pulled_at(&self, piece: usize) -> Vec<f64> {
         let vector_m = match &self.pieces[piece] {
             SpacePiece::Link(link) => link.vector_m,
             SpacePiece::Choice(choice) => choice.vector_m,
-            SpacePiece::Joint(_) => return Vec::new(),
+            SpacePiece::Joint(_) | SpacePiece::Prismatic(_) => return Vec::new(),
         };
         let ends = self.springs.iter().flat_map(|spring| match &spring.kind {
             SpringKind::Line { ends, .. } => ends.to_vec(),
@@ -265,6 +350,7 @@ impl DesignSpace {
             .filter_map(|piece| self.affected(piece))
             .map(|piece| match piece {
                 Piece::Joint(joint) => joint.mass_kg,
+                Piece::Prismatic(joint) => joint.mass_kg,
                 Piece::Link(link) => link.harness_kg_per_m * link.vector_m.norm(),
             })
             .sum()
@@ -275,6 +361,12 @@ impl DesignSpace {
     pub fn nominal_structure(&self) -> Structure {
         let piece = |piece: &SpacePiece| match piece {
             SpacePiece::Joint(joint) => Piece::Joint(nominal_joint(joint, Curve::Rigid)),
+            SpacePiece::Prismatic(slide) => Piece::Prismatic(PrismaticPiece {
+                mass_kg: 0.0,
+                fixed_mass_kg: 0.0,
+                bodies: JointBodies::default(),
+                ..slide.joint.piece(0)
+            }),
             SpacePiece::Link(link) => Piece::Link(link_piece(link)),
             SpacePiece::Choice(choice) => Piece::Link(link_piece(&choice.first_link())),
         };

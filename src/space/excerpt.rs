@@ -27,7 +27,7 @@ impl DesignSpace {
                     slot.is_level().then(|| slot.options())
                 }
                 SpacePiece::Choice(choice) => Some(choice.options.len() as u32),
-                SpacePiece::Link(_) => None,
+                SpacePiece::Prismatic(_) | SpacePiece::Link(_) => None,
             })
             .collect();
         sizes.reverse();

@@ -59,11 +59,12 @@ impl RoomAtJoint {
 /// Place of the link that the joint in a place of the chain carries; `None` if there is none before the next joint.
 pub(crate) fn carried_link(pieces: &[SpacePiece], place: usize) -> Option<usize> {
     let outboard = pieces.iter().enumerate().skip(place + 1);
-    let mut before_next_joint = outboard.take_while(|(_, piece)| !matches!(piece, SpacePiece::Joint(_)));
+    let mut before_next_joint =
+        outboard.take_while(|(_, piece)| !matches!(piece, SpacePiece::Joint(_) | SpacePiece::Prismatic(_)));
     let is_tube = |piece: &SpacePiece| match piece {
         SpacePiece::Choice(_) => true,
         SpacePiece::Link(link) => matches!(link.body, LinkBody::Tube { .. }),
-        SpacePiece::Joint(_) => false,
+        SpacePiece::Joint(_) | SpacePiece::Prismatic(_) => false,
     };
     before_next_joint.find(|(_, piece)| is_tube(piece)).map(|(link, _)| link)
 }

@@ -22,6 +22,7 @@ pub(crate) mod fixed;
 pub(crate) mod full_model;
 pub(crate) mod levels;
 pub(crate) mod posed;
+pub mod prismatic;
 pub(crate) mod problem;
 pub(crate) mod slot;
 pub(crate) mod state;

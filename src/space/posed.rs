@@ -18,7 +18,7 @@ use crate::mechanics::beam::{PreparedBeam, pull_on, section_frame};
 use crate::mechanics::chain::wrench_of;
 use crate::mechanics::condensed::{CondensedLink, PlacedLink};
 use crate::mechanics::lowest::BlockLink;
-use crate::mechanics::{Wrench, body_inertia, displacement_at, rotation_twist};
+use crate::mechanics::{Twist, Wrench, body_inertia, displacement_at, rotation_twist, stack};
 use nalgebra::{Matrix3, Matrix3x6, Matrix6, SMatrix, SVector, Vector3};
 use rayon::prelude::*;
 
@@ -193,12 +193,19 @@ impl Builder<'_> {
         match layer {
             Layer::Tilt(tilt) => self.hinge(&tilt.axis(rotation)),
             Layer::Bearing(spring) => self.hinge(&spring.axis(rotation)),
-            Layer::Mass(mass_kg) | Layer::Extra(mass_kg) => self.body(*mass_kg, at_m),
+            Layer::Guide(spring) => self.hinge(&spring.axis(rotation)),
+            Layer::Mass(mass_kg) | Layer::Travelling(mass_kg) | Layer::Extra(mass_kg) => {
+                self.body(*mass_kg, at_m)
+            }
             Layer::Bodies(Carried { bodies, .. }) => {
                 let (inertia, weight) = bodies_at(bodies, self.space, self.place);
                 StationSlot::Body { inertia, weight }
             }
             Layer::Piece(SpacePiece::Joint(joint)) => self.joint(joint),
+            Layer::Piece(SpacePiece::Prismatic(slide)) => {
+                let along = rotation * slide.joint.axis.into_inner();
+                self.spring(stack(&along, &Vector3::zeros()))
+            }
             Layer::Springs(side) => {
                 let weight = self.springs_on(*side).map(wrench_of).sum();
                 StationSlot::Body { inertia: Matrix6::zeros(), weight }
@@ -223,8 +230,12 @@ impl Builder<'_> {
 
     /// A joint or a spring that turns about an axis of the world through this place.
     fn hinge(&self, axis: &Vector3<f64>) -> StationSlot {
+        self.spring(rotation_twist(axis, &self.place.0))
+    }
+
+    /// A joint or a spring at this place that moves everything outboard by a twist.
+    fn spring(&self, twist: Twist) -> StationSlot {
         let (at_m, _) = self.place;
-        let twist = rotation_twist(axis, at_m);
         StationSlot::Joint(StationJoint {
             twist,
             at_m: *at_m,

@@ -107,14 +107,18 @@ impl<'c> ArmProblem<'c> {
                 Layer::Piece(SpacePiece::Joint(joint)) => {
                     joint_slot(space, joint, reaches_from_tip.next().copied().unwrap_or_default(), catalogs)
                 }
+                Layer::Piece(SpacePiece::Prismatic(slide)) => {
+                    Slot::Given { law: space.slide_law(slide), mass_kg: 0.0 }
+                }
                 Layer::Piece(SpacePiece::Link(link)) => link_slot(space, link),
                 Layer::Piece(SpacePiece::Choice(choice)) => choice_slot(space, choice),
                 Layer::Bearing(_) => Slot::bearing(piece_slots[piece], &slots),
                 Layer::Extra(mass_kg) => Slot::Offset { mass_kg },
                 Layer::Bodies(carried) => Slot::Offset { mass_kg: carried.mass_kg() },
                 Layer::Tilt(tilt) => Slot::Given { law: tilt.law(), mass_kg: 0.0 },
+                Layer::Guide(spring) => Slot::Given { law: spring.law(), mass_kg: 0.0 },
                 // the station has its weight and inertia; the mass of a design is that of its links and drives alone
-                Layer::Mass(_) | Layer::Springs(_) => Slot::Offset { mass_kg: 0.0 },
+                Layer::Mass(_) | Layer::Travelling(_) | Layer::Springs(_) => Slot::Offset { mass_kg: 0.0 },
             });
         }
         let level_slots: Vec<usize> = (0..slots.len()).filter(|&i| slots[i].is_level()).collect();

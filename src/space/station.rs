@@ -9,7 +9,7 @@
 //! then found in two blocks of three motions instead of one block of six, which is less work.
 
 use super::design_space::{Case, DesignSpace, SpacePiece};
-use super::effects::{Carried, Carrier, Layer};
+use super::effects::Layer;
 use crate::arm::body::RigidBody;
 use crate::arm::load::Water;
 use crate::arm::springs::{ElementFrame, EndLoad, end_loads};
@@ -238,6 +238,7 @@ impl Walk {
     /// Forward kinematics of a case, base to tip.
     pub(crate) fn new(space: &DesignSpace, case: &Case) -> Self {
         let mut angles = space.angles_rad(case).into_iter();
+        let mut travels = space.travels_m(case).into_iter();
         let (mut at_m, mut rotation) = (Vector3::zeros(), Rotation3::identity());
         let mut places = Vec::with_capacity(space.pieces.len());
         let mut angles_rad = vec![0.0; space.pieces.len()];
@@ -247,6 +248,9 @@ impl Walk {
                 SpacePiece::Joint(joint) => {
                     *angle_rad = angles.next().unwrap_or_default();
                     rotation *= Rotation3::from_axis_angle(&joint.axis, *angle_rad);
+                }
+                SpacePiece::Prismatic(slide) => {
+                    at_m += rotation * slide.joint.axis.into_inner() * travels.next().unwrap_or_default();
                 }
                 SpacePiece::Link(link) => at_m += rotation * link.vector_m,
                 SpacePiece::Choice(choice) => at_m += rotation * choice.vector_m,
@@ -270,6 +274,10 @@ impl Walk {
                     let hinge = ((rotation * joint.axis).into_inner(), self.angles_rad[index]);
                     ElementFrame { at_m, rotation: self.places[index + 1].1, hinge: Some(hinge) }
                 }
+                // a spring on a prismatic joint pulls at what travels
+                SpacePiece::Prismatic(_) => {
+                    ElementFrame { at_m: self.places[index + 1].0, rotation, hinge: None }
+                }
                 _ => ElementFrame { at_m, rotation, hinge: None },
             }
         };
@@ -279,10 +287,7 @@ impl Walk {
 
     /// The place and attitude in which a layer of a piece stands.
     pub(crate) fn place(&self, piece: usize, layer: &Layer) -> &(Vector3<f64>, Rotation3<f64>) {
-        match layer {
-            Layer::Bodies(Carried { by: Carrier::RotatedFrame, .. }) => &self.places[piece + 1],
-            _ => &self.places[piece],
-        }
+        &self.places[piece + usize::from(layer.is_at_end())]
     }
 }
 

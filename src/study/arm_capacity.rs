@@ -145,7 +145,8 @@ mod tests {
         let arm = read_arm_document(Document::parse("a", text).expect("JSON"), &Catalogs::default())
             .expect("an arm");
         let cases = r#"[{"name": "out", "pose_deg": [0]}, {"name": "half", "pose_deg": [-60]}]"#;
-        let cases = read_load_cases(Document::parse("c", cases).expect("JSON"), &["j"]).expect("cases");
+        let cases = Document::parse("c", cases).expect("JSON");
+        let cases = read_load_cases(cases, &arm.driven_joints()).expect("cases");
         let limits = r#"{"robot": "r", "joints": [{"name": "j", "max_torque_nm": 50}, {"name": "k", "max_torque_nm": null}]}"#;
         let limits = read_limits(Document::parse("l", limits).expect("JSON")).expect("limits");
         let found = arm_capacity(&arm, &cases, &limits);

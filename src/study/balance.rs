@@ -11,10 +11,16 @@ pub(super) fn read_balance(root: &Object, pieces: &mut [SpacePiece]) -> Option<V
     let (springs, counterweights) = (read_springs(root, &named), read_counterweights(root, &named));
     let bodies = pieces.iter_mut().map(|piece| match piece {
         SpacePiece::Joint(joint) => BodiesOf::Joint(&mut joint.bodies),
+        SpacePiece::Prismatic(slide) => BodiesOf::Joint(&mut slide.joint.bodies),
         SpacePiece::Link(link) => BodiesOf::Link(&mut link.bodies),
         SpacePiece::Choice(choice) => BodiesOf::Link(&mut choice.bodies),
     });
     hang(counterweights?, bodies.collect());
+    pieces.iter_mut().for_each(|piece| {
+        if let SpacePiece::Prismatic(slide) = piece {
+            slide.collect_bodies();
+        }
+    });
     springs
 }
 

@@ -8,6 +8,7 @@ use crate::space::design_space::{DesignSpace, SpacePiece};
 pub(super) fn impossible_bodies_remark(space: &DesignSpace) -> Option<String> {
     let is_impossible = |piece: &&SpacePiece| match piece {
         SpacePiece::Joint(joint) => joint.bodies.iter().any(RigidBody::is_impossible),
+        SpacePiece::Prismatic(slide) => slide.joint.bodies.iter().any(RigidBody::is_impossible),
         SpacePiece::Link(link) => link.bodies.iter().any(RigidBody::is_impossible),
         SpacePiece::Choice(choice) => choice.bodies.iter().any(RigidBody::is_impossible),
     };

@@ -15,6 +15,7 @@ use crate::arm::{Arm, Element, Joint};
 use crate::catalog::Catalogs;
 use crate::exact::domain_reduction::DomainReduction;
 use crate::mechanics::chain::Chain;
+use crate::mechanics::prismatic::guide_name;
 use crate::pareto::objectives::Objectives;
 use crate::relax::relaxation::Relaxation;
 use crate::report::budget::{BudgetRow, Gain, NextPart, PickBound, PickBudget, PieceKind};
@@ -110,7 +111,7 @@ fn budget(
             .min_by(|a, b| a.gain.mm_per_kg.total_cmp(&b.gain.mm_per_kg));
         BudgetRow {
             piece: element.name().to_string(),
-            kind: if matches!(element, Element::Joint(_)) { PieceKind::Joint } else { PieceKind::Link },
+            kind: if matches!(element, Element::Link(_)) { PieceKind::Link } else { PieceKind::Joint },
             mass_kg,
             share: shares.of_element(element.name()).unwrap_or(0.0),
             in_place: Some(in_place(&arm, piece, &cases)),
@@ -154,10 +155,13 @@ impl Shares {
         self.0.iter().find(|(n, _)| n == name).map(|(_, share)| *share)
     }
 
-    /// The row of the bearing of a joint, if it yields.
+    /// The row of the bearing or the guide of a joint, if it yields.
     fn bearing_row(&self, element: &Element) -> Option<BudgetRow> {
-        let Element::Joint(joint) = element else { return None };
-        let piece = format!("{}.bearing", joint.name);
+        let piece = match element {
+            Element::Joint(joint) => format!("{}.bearing", joint.name),
+            Element::Prismatic(joint) => guide_name(&joint.name),
+            Element::Link(_) => return None,
+        };
         let share = self.of_element(&piece)?;
         Some(BudgetRow {
             piece,
@@ -191,6 +195,12 @@ fn grow(piece: &mut Piece, element: &Element, step: f64) {
             if let Element::Joint(Joint { bearing: Some(bearing), .. }) = element {
                 joint.tilt_rad_per_nm += bearing.tilt_rad_per_nm() * (1.0 / factor - 1.0);
             }
+        }
+        Piece::Prismatic(joint) => {
+            joint.mass_kg += step * joint.mass_kg;
+            joint.fixed_mass_kg += step * joint.fixed_mass_kg;
+            joint.m_per_n /= factor;
+            joint.guide_rad_per_nm /= factor;
         }
         Piece::Link(link) => match &mut link.beam {
             Some(beam) => {

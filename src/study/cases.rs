@@ -1,7 +1,8 @@
 //! Reads the cases of a study: its poses with their loads, each in every environment.
 
 use super::keys::{ENVIRONMENT, POSE};
-use crate::arm::load::{Payload, Water, read_pose, vector};
+use crate::arm::load::{Payload, Water, vector};
+use crate::arm::pose::{DrivenJoint, read_pose};
 use crate::input::json::{Node, Object};
 use crate::space::design_space::Case;
 use nalgebra::Vector3;
@@ -21,21 +22,20 @@ struct ReadCase {
     sizing: bool,
 }
 
-/// Reads the poses of a study, each in every environment. `joints` are the names of its joints.
-pub(super) fn read_cases(root: &Object, joints: &[String]) -> Option<Cases> {
+/// Reads the poses of a study, each in every environment. `joints` are its driven joints.
+pub(super) fn read_cases(root: &Object, joints: &[DrivenJoint]) -> Option<Cases> {
     let payload = root.or("payload", Payload::default(), Payload::read);
     let force = root.or("tip_force_n", Vector3::zeros(), vector);
     let moment = root.or("tip_moment_nm", Vector3::zeros(), vector);
     let environments = root.or("environments", vec![Environment::default()], read_environments);
     let poses = root.required("poses").and_then(|n| n.array());
-    let joints: Vec<&str> = joints.iter().map(String::as_str).collect();
     // faulty defaults must not hide faults of the poses
     let usual = Load {
         payload: payload.unwrap_or_default(),
         tip_force_n: force.unwrap_or_default(),
         tip_moment_nm: moment.unwrap_or_default(),
     };
-    let poses: Vec<_> = poses?.iter().map(|n| read_case(n, &joints, &usual)).collect();
+    let poses: Vec<_> = poses?.iter().map(|n| read_case(n, joints, &usual)).collect();
     let poses = poses.into_iter().collect::<Option<Vec<_>>>()?;
     let (environments, _, _, _) = (environments?, payload?, force?, moment?);
     if poses.is_empty() {
@@ -99,10 +99,10 @@ struct Load {
     tip_moment_nm: Vector3<f64>,
 }
 
-fn read_case(node: &Node, joints: &[&str], usual: &Load) -> Option<ReadCase> {
+fn read_case(node: &Node, joints: &[DrivenJoint], usual: &Load) -> Option<ReadCase> {
     let object = node.shaped(&POSE)?;
     let name = object.or("name", node.path().to_string(), |n| n.string().map(String::from));
-    let pose_deg = object.required("pose_deg").and_then(|n| read_pose(&n, joints));
+    let pose_deg = read_pose(&object, joints);
     let payload = object.or("payload", usual.payload, Payload::read);
     let tip_force_n = object.or("tip_force_n", usual.tip_force_n, vector);
     let tip_moment_nm = object.or("tip_moment_nm", usual.tip_moment_nm, vector);

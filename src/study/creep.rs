@@ -15,7 +15,7 @@ pub(super) fn creep_remarks(space: &DesignSpace, catalogs: &Catalogs) -> Vec<Str
     };
     for piece in &space.pieces {
         match piece {
-            SpacePiece::Joint(_) => {}
+            SpacePiece::Joint(_) | SpacePiece::Prismatic(_) => {}
             SpacePiece::Link(link) => {
                 if let LinkBody::Tube { material_name, .. } = &link.body {
                     add(material_name.as_str(), link.name.as_str());

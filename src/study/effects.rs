@@ -141,7 +141,7 @@ impl CorrectedStudy {
     fn calibration(&mut self, space: &DesignSpace, name: &str, factor: f64) {
         let what = format!("{name} x {factor:.4}");
         let (part, quantity) = name.rsplit_once('.').unwrap_or((name, ""));
-        if !matches!(quantity, "stiffness" | "mass" | "bearing_stiffness") {
+        if !matches!(quantity, "stiffness" | "mass" | "bearing_stiffness" | "guide_stiffness") {
             let words =
                 "it belongs to the measured arm; the study keeps its geometry and the catalog's materials";
             return self.say(what, false, words);
@@ -150,6 +150,10 @@ impl CorrectedStudy {
             SpacePiece::Joint(joint) if joint.name == part => Some((index, joint)),
             _ => None,
         });
+        let slides = |piece: &SpacePiece| matches!(piece, SpacePiece::Prismatic(s) if s.joint.name == part);
+        if let Some(index) = space.pieces.iter().position(slides) {
+            return self.calibrate_prismatic(&space.pieces[index], index, quantity, factor, what);
+        }
         match found {
             None => self.say(what, false, format!("the study has no joint {part}")),
             Some((_, SpaceJoint { drive: DriveChoice::FirstFit(_) | DriveChoice::AllFits(_), .. })) => {
@@ -166,6 +170,31 @@ impl CorrectedStudy {
                 self.say(what, true, "the study gives this joint's drive: its value is calibrated");
             }
         }
+    }
+}
+
+impl CorrectedStudy {
+    /// Writes a calibrated value of a prismatic joint, whose numbers the study gives.
+    fn calibrate_prismatic(
+        &mut self,
+        piece: &SpacePiece,
+        index: usize,
+        quantity: &str,
+        factor: f64,
+        what: String,
+    ) {
+        let SpacePiece::Prismatic(slide) = piece else { return };
+        let mut joint = slide.joint.clone();
+        match quantity {
+            "stiffness" => joint.stiffness_n_per_m = joint.stiffness_n_per_m.map(|k| k * factor),
+            "mass" => joint.mass_kg *= factor,
+            _ => joint.guide = joint.guide.stiffened(factor),
+        }
+        let written = joint.to_json();
+        for key in ["stiffness_n_per_m", "mass_kg", "guide"] {
+            self.file["chain"][index][key] = written[key].clone();
+        }
+        self.say(what, true, "the study gives this joint: its value is calibrated");
     }
 }
 

@@ -13,7 +13,7 @@ const EFFECT: &str = harness_mass::KIND.name;
 pub(super) fn harness_effects(pieces: &[SpacePiece], kg_per_m: f64, own: &[Effect]) -> Vec<Effect> {
     let has_own = |link: &str| own.iter().any(|effect| effect.effect == EFFECT && effect.at == link);
     let links = pieces.iter().filter_map(|piece| match piece {
-        SpacePiece::Joint(_) => None,
+        SpacePiece::Joint(_) | SpacePiece::Prismatic(_) => None,
         SpacePiece::Link(link) => Some((&link.name, link.vector_m.norm())),
         SpacePiece::Choice(choice) => Some((&choice.name, choice.vector_m.norm())),
     });

@@ -2,15 +2,16 @@
 
 use super::choose_keys::CHOOSE;
 use super::motor_kinds::MOTOR_WORDS;
-use crate::arm::case_keys::{JOINT_MODELS, LINK_MODELS};
+use crate::arm::case_keys::{JOINT_MODELS, LINK_MODELS, POSE_RULES};
 use crate::arm::file_keys::{EFFECT_LIST, GIVEN_LINK_RULES};
 use crate::arm::keys::{
     BEARING_VALUE, COUNTERWEIGHTS, COUPLING, EXTRAS, GEAR_MASS, GRAVITY, JOINT_BODIES, LINK_BODIES,
     MASS_FACTOR, PAYLOAD, PIECES, POSITIVE_OR_NULL, SECTION, SPRINGS, STIFFNESS_FACTOR, VECTOR, WATER,
     WINDUP,
 };
+use crate::arm::prismatic_keys;
 use crate::catalog::gear::GearKind;
-use crate::input::key::{Kind, Rule, SCHEMA_ADDRESS, Shape, optional, required, words_of};
+use crate::input::key::{Key, Kind, Rule, SCHEMA_ADDRESS, Shape, optional, required, words_of};
 use crate::input::schema::FileKind;
 
 /// A study file.
@@ -43,9 +44,13 @@ pub(super) static STUDY: Shape = Shape::new(
         ),
         required(
             "chain",
-            Kind::NonEmpty(&Kind::Either(&[Kind::Object(&JOINT), Kind::Object(&LINK)])),
+            Kind::NonEmpty(&Kind::Either(&[
+                Kind::Object(&JOINT),
+                Kind::Object(&PRISMATIC),
+                Kind::Object(&LINK),
+            ])),
             "-",
-            "Joints and links from base to tip.",
+            "Joints, prismatic joints and links from base to tip.",
         ),
         optional(
             "payload",
@@ -121,6 +126,35 @@ pub(super) static STUDY: Shape = Shape::new(
     ],
     &[],
 );
+
+/// A prismatic joint of a study.
+pub(super) static PRISMATIC: Shape = Shape::new(
+    "prismatic joint",
+    "A joint that slides everything after it along its axis; its numbers are given.",
+    &PRISMATIC_KEYS,
+    &[],
+);
+
+const PRISMATIC_KEYS: [Key; 10] = {
+    let mut keys = [RANGE_MM; 10];
+    let mut i = 0;
+    while i < prismatic_keys::KEYS.len() {
+        keys[i] = prismatic_keys::KEYS[i];
+        i += 1;
+    }
+    keys
+};
+
+const RANGE_MM: Key = optional(
+    "range_mm",
+    Kind::Array(2, &Kind::Number),
+    "mm",
+    "the travels of the poses",
+    "Smallest and largest travel of the joint.",
+);
+
+/// Keys of a joint whose drive is sized, which a prismatic joint has none of.
+pub(super) const OF_SIZED_DRIVE: [&str; 4] = ["drive", "drives", "gear", "motor"];
 
 const OF_GIVEN_DRIVE: [&str; 6] = ["stiffness_nm_per_rad", "windup", "gear", "motor", "gear_mass", "mass_kg"];
 
@@ -275,7 +309,20 @@ pub(super) static POSE: Shape = Shape::new(
     "A pose in which the arm is judged and sized.",
     &[
         optional("name", Kind::Text, "-", "its place in the list", "Name."),
-        required("pose_deg", Kind::List(&Kind::Number), "deg", "One angle a driven joint, base to tip."),
+        optional(
+            "pose_deg",
+            Kind::List(&Kind::Number),
+            "deg",
+            "pose",
+            "One angle a driven joint, base to tip, of a chain without prismatic joints.",
+        ),
+        optional(
+            "pose",
+            Kind::Map(&Kind::Number),
+            "deg, mm",
+            "pose_deg",
+            "Angles and travels by joint, `{\"rail_mm\": 250, \"j2_deg\": 30}`; joints left away stay at 0.",
+        ),
         optional("payload", Kind::Object(&PAYLOAD), "-", "the study's", "What the arm holds in this pose."),
         optional("tip_force_n", VECTOR, "N", "the study's", "Force at the tip in this pose, in world axes."),
         optional(
@@ -300,7 +347,7 @@ pub(super) static POSE: Shape = Shape::new(
             "Whether the pose counts for deflection and lowest mode.",
         ),
     ],
-    &[],
+    &POSE_RULES,
 );
 
 /// What the arm is in.

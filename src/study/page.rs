@@ -78,6 +78,7 @@ fn parts(catalogs: &Catalogs, picks: &[PickedArm]) -> Vec<CatalogRow> {
                         add("motor", &motor.id, &motor.provenance);
                     }
                 }
+                Element::Prismatic(_) => {}
                 Element::Link(link) => {
                     if let LinkBody::Tube { material_name, .. } = &link.body
                         && let Ok(material) = catalogs.material(material_name)

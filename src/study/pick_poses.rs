@@ -1,17 +1,18 @@
 //! What a result says of its picks in other poses than the judged ones, and of picks that deflect too far.
 
-use super::range::{range_words, ranges_deg};
+use super::range::{range_words, ranges, stated_ranges};
 use super::worst_pose::{WorstPose, WorstPoses, loads, worst_poses};
+use crate::arm::pose::{DrivenJoint, pose_json};
 use crate::report::front_table::FrontTable;
-use crate::report::number::{percent, shortest, significant};
+use crate::report::number::{percent, significant};
 use crate::report::picks::{Objective, Pick, designs, picks};
+use crate::report::pose::pose_words;
 use crate::report::section::PageSection;
 use crate::report::small_displacement::too_far;
 use crate::report::supplement::Supplement;
 use crate::report::table::{Column, Table};
 use crate::report::words::{TERMINAL, wrap};
 use crate::space::design::number_of;
-use crate::space::design_space::SpacePiece;
 use crate::space::problem::ArmProblem;
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
@@ -36,8 +37,8 @@ struct PickPoses {
 #[derive(Debug, Clone, PartialEq)]
 pub struct PicksInPoses {
     picks: Vec<PickPoses>,
-    /// Name, range \[deg\] and whether the range is stated, of each joint.
-    ranges: Vec<(String, [f64; 2], bool)>,
+    /// Each driven joint, its range \[deg, mm\] and whether the range is stated.
+    ranges: Vec<(DrivenJoint, [f64; 2], bool)>,
     range_words: Vec<String>,
     /// Whether the judged cases have several loads.
     has_loads: bool,
@@ -46,21 +47,19 @@ pub struct PicksInPoses {
 /// Looks for the worst poses of the picks of a front, which is given as its table.
 pub fn picks_in_poses(problem: &ArmProblem, front: &FrontTable) -> PicksInPoses {
     let space = problem.space();
-    let (cases, ranges_deg) = (problem.load_cases(), ranges_deg(space));
+    let (cases, ranges) = (problem.load_cases(), ranges(space));
     let of_pick = |pick: Pick| {
         let arm = problem.arm(&problem.options_of_whole(number_of(&pick.design.design_id)?)?)?;
-        let worst = worst_poses(&arm, &cases, &ranges_deg)?;
+        let worst = worst_poses(&arm, &cases, &ranges)?;
         Some(PickPoses { pick, reach_m: arm.reach_m(), worst })
     };
-    let joints = space.pieces.iter().filter_map(|piece| match piece {
-        SpacePiece::Joint(joint) if joint.coupled.is_none() => {
-            Some((joint.name.clone(), joint.range_deg.is_some()))
-        }
-        _ => None,
-    });
     PicksInPoses {
         picks: picks(&designs(front)).into_par_iter().filter_map(of_pick).collect(),
-        ranges: joints.zip(ranges_deg).map(|((name, is_stated), range)| (name, range, is_stated)).collect(),
+        ranges: stated_ranges(space)
+            .into_iter()
+            .zip(ranges)
+            .map(|((joint, is_stated), range)| (joint, range, is_stated))
+            .collect(),
         range_words: range_words(space),
         has_loads: loads(&cases).len() > 1,
     }
@@ -73,18 +72,14 @@ impl WorstPose {
         if by.is_finite() { by } else { 0.0 }
     }
 
-    fn pose_words(&self) -> String {
-        let angles: Vec<String> = self.pose_deg.iter().map(|&angle| shortest(angle)).collect();
-        format!("({})", angles.join(", "))
-    }
-
     /// Its facts for `run.json`, under the name of the quantity with its unit.
-    fn to_json(&self, unit: &str, of_unit: f64) -> Value {
+    fn to_json(&self, driven: &[DrivenJoint], unit: &str, of_unit: f64) -> Value {
         let mut out = Map::new();
         out.insert(format!("judged_{unit}"), json!(of_unit * self.judged));
         out.insert(format!("worst_{unit}"), json!(of_unit * self.value));
         out.insert("worse_percent".into(), json!(100.0 * self.worse()));
-        out.insert("pose_deg".into(), json!(self.pose_deg));
+        let (key, pose) = pose_json(driven, &self.pose_deg);
+        out.insert(key.into(), pose);
         out.insert("load_of_case".into(), json!(self.load_of));
         Value::Object(out)
     }
@@ -111,7 +106,12 @@ impl PickPoses {
         self.both().into_iter().filter(|(_, _, pose)| pose.worse() > WORSE)
     }
 
-    fn sentence(&self, (objective, of_unit, pose): (Objective, f64, &WorstPose), has_loads: bool) -> String {
+    fn sentence(
+        &self,
+        (objective, of_unit, pose): (Objective, f64, &WorstPose),
+        driven: &[DrivenJoint],
+        has_loads: bool,
+    ) -> String {
         let what = name_of(objective);
         let side = if objective == Objective::Mode { "lower" } else { "more" };
         let load = if has_loads { format!(" with the load of \"{}\"", pose.load_of) } else { String::new() };
@@ -120,24 +120,24 @@ impl PickPoses {
             _ => None,
         };
         format!(
-            "{}: {what} {} in pose {} deg{load}, {} {side} than the {} of the judged cases.{}",
+            "{}: {what} {} in pose {}{load}, {} {side} than the {} of the judged cases.{}",
             self.title(),
             objective.amount(of_unit * pose.value),
-            pose.pose_words(),
+            pose_words(driven, &pose.pose_deg),
             percent(100.0 * pose.worse(), 1),
             objective.amount(of_unit * pose.judged),
             far.map_or(String::new(), |words| format!(" There the tip {words}."))
         )
     }
 
-    fn to_json(&self) -> Value {
+    fn to_json(&self, driven: &[DrivenJoint]) -> Value {
         json!({
             "names": self.pick.names,
             "design_id": self.pick.design.design_id,
             "reach_m": self.reach_m,
             "small_displacements": too_far(self.worst.deflection.judged, self.reach_m).is_none(),
-            "tip_deflection": self.worst.deflection.to_json("mm", 1e3),
-            "lowest_mode": self.worst.mode.to_json("hz", 1.0),
+            "tip_deflection": self.worst.deflection.to_json(driven, "mm", 1e3),
+            "lowest_mode": self.worst.mode.to_json(driven, "hz", 1.0),
         })
     }
 }
@@ -152,10 +152,17 @@ impl PicksInPoses {
         self.picks.iter().filter_map(warning).collect()
     }
 
+    /// The driven joints.
+    fn driven(&self) -> Vec<DrivenJoint> {
+        self.ranges.iter().map(|(joint, _, _)| joint.clone()).collect()
+    }
+
     /// A sentence for each pick and objective that is worse than in the judged cases.
     fn worse(&self) -> Vec<String> {
-        let of_pick =
-            |of| PickPoses::worse(of).map(|worse| of.sentence(worse, self.has_loads)).collect::<Vec<_>>();
+        let driven = self.driven();
+        let of_pick = |of: &PickPoses| {
+            of.worse().map(|worse| of.sentence(worse, &driven, self.has_loads)).collect::<Vec<_>>()
+        };
         self.picks.iter().flat_map(of_pick).collect()
     }
 
@@ -199,10 +206,14 @@ impl PicksInPoses {
 
     /// What `run.json` says of them.
     fn to_json(&self) -> Value {
-        let range = |(name, [low, high], is_stated): &(String, [f64; 2], bool)| json!({"joint": name, "low_deg": low, "high_deg": high, "stated": is_stated});
+        let range = |(joint, [low, high], is_stated): &(DrivenJoint, [f64; 2], bool)| {
+            let unit = joint.motion.unit();
+            json!({"joint": joint.name, format!("low_{unit}"): low, format!("high_{unit}"): high, "stated": is_stated})
+        };
+        let driven = self.driven();
         json!({
             "ranges": self.ranges.iter().map(range).collect::<Vec<Value>>(),
-            "picks": self.picks.iter().map(PickPoses::to_json).collect::<Vec<Value>>(),
+            "picks": self.picks.iter().map(|pick| pick.to_json(&driven)).collect::<Vec<Value>>(),
             "left_out": [LEFT_OUT],
         })
     }
@@ -242,9 +253,10 @@ impl PicksInPoses {
             Column::right("judged"),
             Column::right("worst"),
             Column::right("worse by [%]"),
-            Column::left("pose [deg]"),
+            Column::left("pose"),
             Column::left("load of"),
         ]);
+        let driven = self.driven();
         for of in &self.picks {
             for (objective, of_unit, pose) in of.both() {
                 table.row([
@@ -254,7 +266,7 @@ impl PicksInPoses {
                     significant(of_unit * pose.judged, 4),
                     significant(of_unit * pose.value, 4),
                     significant(100.0 * pose.worse(), 3),
-                    pose.pose_words(),
+                    pose_words(&driven, &pose.pose_deg),
                     pose.load_of.clone(),
                 ]);
             }

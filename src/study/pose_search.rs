@@ -5,6 +5,7 @@
 //! it turns one joint at a time, or two at once where no single joint helps, by steps that become smaller. Nothing is
 //! random and nothing depends on the number of threads. The result is a pose that was found, not one that is proved.
 
+use crate::arm::pose::{DrivenJoint, Motion};
 use rayon::prelude::*;
 
 /// Most corners that are looked at; of more, so many are drawn by Halton's sequence.
@@ -35,16 +36,24 @@ struct Turn {
     high_deg: f64,
     /// Whether the ends are the same angle.
     is_full: bool,
+    /// What a step of one degree is here: of a travel \[mm\], a 360th of its range.
+    degree: f64,
 }
 
 impl Turn {
     /// The angles of a range. Of a range of more than a full turn, that full turn is taken which is nearest to -180 to 180.
     fn new([low_deg, high_deg]: [f64; 2]) -> Self {
         if high_deg - low_deg < 360.0 {
-            return Self { low_deg, high_deg, is_full: false };
+            return Self { low_deg, high_deg, is_full: false, degree: 1.0 };
         }
         let low_deg = (-180.0f64).clamp(low_deg, high_deg - 360.0);
-        Self { low_deg, high_deg: low_deg + 360.0, is_full: true }
+        Self { low_deg, high_deg: low_deg + 360.0, is_full: true, degree: 1.0 }
+    }
+
+    /// The travels of a range \[mm\].
+    fn travel([low_mm, high_mm]: [f64; 2]) -> Self {
+        let degree = (high_mm - low_mm) / 360.0;
+        Self { low_deg: low_mm, high_deg: high_mm, is_full: false, degree }
     }
 
     /// The angle of the range that is nearest to another, in tenths of a degree or at an end.
@@ -59,8 +68,11 @@ impl Turn {
         ((turned * 10.0).round() / 10.0).clamp(self.low_deg, self.high_deg)
     }
 
-    /// Multiples of 90 degrees, those near zero first, and the ends.
+    /// Multiples of 90 degrees, those near zero first, and the ends; of a travel its middle and the ends.
     fn corners_deg(self) -> Vec<f64> {
+        if self.degree != 1.0 {
+            return vec![self.low_deg, self.within(0.5 * (self.low_deg + self.high_deg)), self.high_deg];
+        }
         let first = (self.low_deg / 90.0).ceil() as i64;
         let last = (self.high_deg / 90.0).floor() as i64;
         let mut out: Vec<f64> = (first..=last).map(|i| 90.0 * i as f64).collect();
@@ -91,9 +103,13 @@ pub(super) struct PoseRanges {
 }
 
 impl PoseRanges {
-    /// The ranges of all joints \[deg\].
-    pub(super) fn new(ranges_deg: &[[f64; 2]]) -> Self {
-        let turns: Vec<Turn> = ranges_deg.iter().map(|range| Turn::new(*range)).collect();
+    /// The ranges of all joints \[deg, mm\].
+    pub(super) fn new(ranges: &[[f64; 2]], joints: &[DrivenJoint]) -> Self {
+        let turn = |(range, joint): (&[f64; 2], &DrivenJoint)| match joint.motion {
+            Motion::Turns => Turn::new(*range),
+            Motion::Slides => Turn::travel(*range),
+        };
+        let turns: Vec<Turn> = ranges.iter().zip(joints).map(turn).collect();
         Self { free: (0..turns.len()).collect(), turns }
     }
 
@@ -109,7 +125,7 @@ impl PoseRanges {
                 let here = values(&pose_deg);
                 TURNED_DEG.iter().any(|by| {
                     let mut turned = pose_deg.clone();
-                    turned[joint] += by;
+                    turned[joint] += by * self.turns[joint].degree;
                     differs(&here, &values(&turned))
                 })
             })
@@ -177,7 +193,8 @@ impl PoseRanges {
     fn apart_deg(&self, one: &Scored, other: &Scored) -> f64 {
         let apart = |&joint: &usize| {
             let by = (one.pose_deg[joint] - other.pose_deg[joint]).abs();
-            if self.turns[joint].is_full { by.min(360.0 - by) } else { by }
+            let turn = self.turns[joint];
+            if turn.is_full { by.min(360.0 - by) } else { by / turn.degree }
         };
         self.free.iter().map(apart).fold(0.0, f64::max)
     }
@@ -237,7 +254,7 @@ impl PoseRanges {
     ) -> Option<Scored> {
         let mut pose_deg = from.pose_deg.clone();
         for &(joint, by) in by_deg {
-            pose_deg[joint] = self.turns[joint].within(pose_deg[joint] + by);
+            pose_deg[joint] = self.turns[joint].within(pose_deg[joint] + by * self.turns[joint].degree);
         }
         if pose_deg == from.pose_deg {
             return None;

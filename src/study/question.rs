@@ -52,6 +52,7 @@ pub fn question(space: &DesignSpace) -> Question {
 fn piece(piece: &SpacePiece) -> AskedPiece {
     match piece {
         SpacePiece::Joint(joint) => AskedPiece::Joint(asked_joint(joint)),
+        SpacePiece::Prismatic(slide) => AskedPiece::Prismatic(slide.joint.clone()),
         SpacePiece::Link(link) => AskedPiece::Link(link.clone()),
         SpacePiece::Choice(choice) => AskedPiece::Choice(asked_link(choice)),
     }
@@ -229,7 +230,7 @@ pub fn words(space: &DesignSpace, catalogs: &Catalogs, picks: &[Pick]) -> String
 fn is_level(piece: &SpacePiece) -> bool {
     match piece {
         SpacePiece::Joint(joint) => joint.drive.is_open(),
-        SpacePiece::Link(_) => false,
+        SpacePiece::Prismatic(_) | SpacePiece::Link(_) => false,
         SpacePiece::Choice(_) => true,
     }
 }

@@ -1,42 +1,56 @@
 //! How far the joints of a study turn: reading the ranges, holding the poses to them, and saying them.
 
+use crate::arm::pose::{DrivenJoint, Motion};
 use crate::input::json::{Node, Object};
 use crate::report::number::shortest;
 use crate::report::words::and;
-use crate::space::design_space::{Case, DesignSpace, SpaceJoint, SpacePiece};
+use crate::space::design_space::{Case, DesignSpace, SpacePiece};
 
 /// The range of a joint whose range is not stated \[deg\]: a full turn.
 pub(crate) const NOT_STATED_DEG: [f64; 2] = [-180.0, 180.0];
 
-/// Reads a range, which is the smallest and the largest angle of a joint \[deg\].
+/// Reads a range: the smallest and the largest angle of a joint \[deg\], or travel \[mm\].
 pub(super) fn read_range(node: &Node) -> Option<[f64; 2]> {
     match node.numbers::<2>()? {
         [low, high] if low < high => Some([low, high]),
         [low, high] => node.fault(
             format!("= [{}, {}] is no range", shortest(low), shortest(high)),
-            "give the smaller angle first, in degrees, such as [-90, 120]",
+            "give the smaller end first, such as \"range_deg\": [-90, 120] or \"range_mm\": [0, 800]",
         ),
     }
 }
 
-/// Reports every angle of a pose beyond the range of its joint as a fault. Nothing is checked if the chain or the
+/// A driven joint of a study with its range.
+struct Ranged<'s> {
+    name: &'s str,
+    motion: Motion,
+    /// Smallest and largest entry in a pose \[deg, mm\]; `None`: not stated.
+    range: Option<[f64; 2]>,
+}
+
+/// Reports every angle or travel of a pose beyond the range of its joint as a fault. Nothing is checked if the chain or the
 /// cases could not be read.
 pub(super) fn check_poses(root: &Object, chain: Option<&[SpacePiece]>, cases: Option<&[Case]>) -> Option<()> {
     let (Some(chain), Some(cases)) = (chain, cases) else { return Some(()) };
-    let joints: Vec<&SpaceJoint> = joints(chain).collect();
+    let joints: Vec<Ranged> = joints(chain).collect();
     // the first environment has the poses in the order of the file
     let poses = root.required("poses")?.array()?;
     let mut sound = Some(());
     for (pose, case) in poses.iter().zip(cases) {
-        for (joint, &angle_deg) in joints.iter().zip(&case.pose_deg) {
-            let Some([low, high]) = joint.range_deg else { continue };
-            if !(low..=high).contains(&angle_deg) {
+        let field = if pose.value().get("pose").is_some() { "pose" } else { "pose_deg" };
+        for (joint, &entry) in joints.iter().zip(&case.pose_deg) {
+            let Some([low, high]) = joint.range else { continue };
+            if !(low..=high).contains(&entry) {
+                let moves = match joint.motion {
+                    Motion::Turns => "turns",
+                    Motion::Slides => "moves",
+                };
+                let (name, unit) = (joint.name, joint.motion.unit());
                 sound = pose.fault_below(
-                    "pose_deg",
+                    field,
                     format!(
-                        "turns {} to {} deg in pose \"{}\", beyond its range_deg of {}",
-                        joint.name,
-                        shortest(angle_deg),
+                        "{moves} {name} to {} {unit} in pose \"{}\", beyond its range_{unit} of {}",
+                        shortest(entry),
                         case.name,
                         from_to([low, high])
                     ),
@@ -50,29 +64,54 @@ pub(super) fn check_poses(root: &Object, chain: Option<&[SpacePiece]>, cases: Op
 
 /// The ranges of a study's joints in words, joints of the same range together.
 pub(crate) fn range_words(space: &DesignSpace) -> Vec<String> {
-    let mut groups: Vec<(Option<[f64; 2]>, Vec<&str>)> = Vec::new();
+    type Group<'s> = ((Motion, Option<[f64; 2]>), Vec<&'s str>);
+    let mut groups: Vec<Group> = Vec::new();
     for joint in joints(&space.pieces) {
-        match groups.iter_mut().find(|(range, _)| *range == joint.range_deg) {
-            Some((_, names)) => names.push(&joint.name),
-            None => groups.push((joint.range_deg, vec![&joint.name])),
+        let key = (joint.motion, joint.range);
+        match groups.iter_mut().find(|(known, _)| *known == key) {
+            Some((_, names)) => names.push(joint.name),
+            None => groups.push((key, vec![joint.name])),
         }
     }
-    let words = |(range, names): (Option<[f64; 2]>, Vec<&str>)| match range {
-        Some(range) => format!("{}: {} deg", and(&names), from_to(range)),
-        None => format!("{}: range not stated: +-180 deg", and(&names)),
+    let words = |((motion, range), names): Group| match (motion, range) {
+        (_, Some(range)) => format!("{}: {} {}", and(&names), from_to(range), motion.unit()),
+        (Motion::Turns, None) => format!("{}: range not stated: +-180 deg", and(&names)),
+        (Motion::Slides, None) => format!("{}: range not stated: the travels of the poses", and(&names)),
     };
     groups.into_iter().map(words).collect()
 }
 
-/// The range of each joint, base to tip \[deg\], that of a full turn where none is stated.
-pub(crate) fn ranges_deg(space: &DesignSpace) -> Vec<[f64; 2]> {
-    joints(&space.pieces).map(|joint| joint.range_deg.unwrap_or(NOT_STATED_DEG)).collect()
+/// The range of each driven joint, base to tip \[deg, mm\]. Where none is stated it is a full turn, or the travels of the
+/// study's poses.
+pub(crate) fn ranges(space: &DesignSpace) -> Vec<[f64; 2]> {
+    let travels = |entry: usize| {
+        let of = space.cases.iter().filter_map(|case| case.pose_deg.get(entry));
+        of.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], mm| [low.min(*mm), high.max(*mm)])
+    };
+    let range = |(entry, joint): (usize, Ranged)| match (joint.range, joint.motion) {
+        (Some(range), _) => range,
+        (None, Motion::Turns) => NOT_STATED_DEG,
+        (None, Motion::Slides) => travels(entry),
+    };
+    joints(&space.pieces).enumerate().map(range).collect()
 }
 
-/// The driven joints, each of which has an angle in every pose.
-fn joints(pieces: &[SpacePiece]) -> impl Iterator<Item = &SpaceJoint> {
+/// The driven joints, each of which has an entry in every pose, with the unit of their ranges and whether these are stated.
+pub(crate) fn stated_ranges(space: &DesignSpace) -> Vec<(DrivenJoint, bool)> {
+    let stated = |joint: Ranged| {
+        (DrivenJoint { name: joint.name.into(), motion: joint.motion }, joint.range.is_some())
+    };
+    joints(&space.pieces).map(stated).collect()
+}
+
+fn joints(pieces: &[SpacePiece]) -> impl Iterator<Item = Ranged<'_>> {
     pieces.iter().filter_map(|piece| match piece {
-        SpacePiece::Joint(joint) if joint.coupled.is_none() => Some(joint),
+        SpacePiece::Joint(joint) if joint.coupled.is_none() => {
+            Some(Ranged { name: &joint.name, motion: Motion::Turns, range: joint.range_deg })
+        }
+        SpacePiece::Prismatic(slide) => {
+            Some(Ranged { name: &slide.joint.name, motion: Motion::Slides, range: slide.range_mm })
+        }
         _ => None,
     })
 }

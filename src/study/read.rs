@@ -15,7 +15,7 @@ use super::drives::{Drives, read_drives};
 use super::effects::check_effects;
 use super::fit::{fit_remarks, read_fit};
 use super::harness::{harness_effects, harness_remark};
-use super::keys::{CONSTRAINTS, JOINT, LINK, MODELS, STUDY};
+use super::keys::{CONSTRAINTS, JOINT, LINK, MODELS, OF_SIZED_DRIVE, PRISMATIC, STUDY};
 use super::linkages::drivers_are_inboard;
 use super::motion::{read_duty, read_motion};
 use super::omissions::omissions;
@@ -24,10 +24,13 @@ use super::sections::{Aside, MOST_OPTIONS, read_materials, read_sections};
 use crate::arm::MOST_ELEMENTS;
 use crate::arm::bearing::{BearingSource, Stated, read_bearing};
 use crate::arm::body::{read_joint_bodies, read_link_bodies};
+use crate::arm::element_keys::{read_axis, read_name};
 use crate::arm::extras::{ExtrasSource, read_extras_source};
-use crate::arm::file::{read_coupling, read_curve, read_effects, read_gravity, read_joint_mass, read_name};
+use crate::arm::file::{NO_TYPE, read_coupling, read_curve, read_effects, read_gravity, read_joint_mass};
 use crate::arm::load::{vector, word};
 use crate::arm::pieces::{elements_of, read_links};
+use crate::arm::pose::{DrivenJoint, Motion};
+use crate::arm::prismatic::Prismatic;
 use crate::arm::{JointModel, LinkModel};
 use crate::catalog::Catalogs;
 use crate::catalog::gear::GearMass;
@@ -38,6 +41,7 @@ use crate::sizing::requirement::MotionRequirement;
 use crate::sizing::stated::StatedDuty;
 use crate::space::constraint::{Constraints, Servo};
 use crate::space::design_space::{DesignSpace, DriveChoice, LinkChoice, SpaceJoint, SpacePiece};
+use crate::space::prismatic::SpacePrismatic;
 use serde_json::Value;
 use std::sync::Arc;
 
@@ -92,7 +96,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
         let open = Open { catalogs, drives, constraints, extras, fit, connection_share, duty };
         read_chain(&n, &open, &mut aside)
     });
-    let joints = joint_names(node);
+    let joints = driven_joints(node);
     let cases = read_cases(&root, &joints);
     let in_range = check_poses(&root, chain.as_deref(), cases.as_ref().map(|read| &read.cases[..]));
     let motion = root.or("motion", MotionRequirement::default(), read_motion);
@@ -165,18 +169,25 @@ fn read_gap(node: &Node) -> Option<f64> {
     }
 }
 
-/// Names of the driven joints as written, so that poses are checked even when the chain is faulty.
-fn joint_names(study: &Node) -> Vec<String> {
+/// The driven joints as written, so that poses are checked even when the chain is faulty.
+fn driven_joints(study: &Node) -> Vec<DrivenJoint> {
     let chain = study.value().get("chain").and_then(|c| c.as_array());
-    let is_driven = |e: &&Value| e.get("type").is_some_and(|t| t == "joint") && e.get("coupled").is_none();
-    let joints = chain.into_iter().flatten().filter(is_driven);
-    joints.map(|j| j.get("name").and_then(|n| n.as_str()).unwrap_or("(unnamed)").to_string()).collect()
+    let joint = |e: &Value| {
+        let motion = match e.get("type")?.as_str()? {
+            "joint" if e.get("coupled").is_none() => Motion::Turns,
+            "prismatic" => Motion::Slides,
+            _ => return None,
+        };
+        let name = e.get("name").and_then(|n| n.as_str()).unwrap_or("(unnamed)").to_string();
+        Some(DrivenJoint { name, motion })
+    };
+    chain.into_iter().flatten().filter_map(joint).collect()
 }
 
 /// A duty beside the chain. It is meant for a study of a single joint, such as the worked examples of vendors.
 fn read_duty_of_only_joint(node: &Node, study: &Node) -> Option<StatedDuty> {
     let duty = read_duty(node);
-    match joint_names(study).len() {
+    match driven_joints(study).len() {
         0 | 1 => duty,
         joints => node
             .fault(format!("stands beside {joints} joints"), "write \"duty\" into the joint it belongs to"),
@@ -222,8 +233,9 @@ fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePi
         .iter()
         .map(|n| match n.value().get("type").and_then(|v| v.as_str()) {
             Some("joint") => read_space_joint(n, open).map(|joint| vec![SpacePiece::Joint(joint)]),
+            Some("prismatic") => read_space_prismatic(n).map(|slide| vec![SpacePiece::Prismatic(slide)]),
             Some("link") => read_space_link(n, open, aside),
-            _ => n.fault("has no \"type\" of \"joint\" or \"link\"", "add \"type\": \"joint\" or \"link\""),
+            _ => n.fault(NO_TYPE.0, NO_TYPE.1),
         })
         .collect();
     let mut pieces: Vec<SpacePiece> =
@@ -249,7 +261,7 @@ fn unique_names(node: &Node, pieces: &[SpacePiece]) -> Option<()> {
 fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
     let object = node.shaped(&JOINT)?;
     let name = read_name(&object);
-    let axis = object.required("axis").and_then(|n| crate::arm::file::read_axis(&n));
+    let axis = object.required("axis").and_then(|n| read_axis(&n));
     let max_speed = object.or("max_speed_rad_s", None, |n| n.positive().map(Some));
     let brake = object.or("brake", false, Node::boolean);
     let duty = object.or("duty", open.duty.cloned(), |n| read_duty(n).map(Some));
@@ -321,6 +333,21 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
         connection_share,
         coupled: coupled?,
     })
+}
+
+/// Reads a prismatic joint, whose numbers a study gives.
+fn read_space_prismatic(node: &Node) -> Option<SpacePrismatic> {
+    if let Some(key) = OF_SIZED_DRIVE.iter().find(|key| node.value().get(*key).is_some()) {
+        return node.fault_below(
+            key,
+            "stands at a prismatic joint, whose drive is not sized",
+            "give the joint in numbers: stiffness_n_per_m of screw or rack, guide, mass_kg and fixed_mass_kg",
+        );
+    }
+    let object = node.shaped(&PRISMATIC)?;
+    let range_mm = object.or("range_mm", None, |n| read_range(n).map(Some));
+    let joint = Prismatic::read(&object);
+    Some(SpacePrismatic::new(joint?, range_mm?))
 }
 
 /// Where the bearing of a joint comes from. A component set has none of its own, so a joint that is sized with component

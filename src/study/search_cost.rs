@@ -142,7 +142,7 @@ fn drop_half(space: &mut DesignSpace, catalogs: &Catalogs) -> bool {
                 }
             }
         }
-        SpacePiece::Link(_) => {}
+        SpacePiece::Prismatic(_) | SpacePiece::Link(_) => {}
     }
     true
 }
@@ -155,7 +155,7 @@ fn options(piece: &SpacePiece, catalogs: &Catalogs) -> usize {
             DriveChoice::AllFits(filter) => allowed(filter, catalogs).iter().map(Vec::len).product(),
             _ => 0,
         },
-        SpacePiece::Link(_) => 0,
+        SpacePiece::Prismatic(_) | SpacePiece::Link(_) => 0,
     }
 }
 

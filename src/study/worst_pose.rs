@@ -13,7 +13,7 @@ use rayon::prelude::*;
 /// The worst value of one objective over poses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WorstPose {
-    /// The pose: one angle per driven joint, base to tip \[deg\].
+    /// The pose: one entry per driven joint, base to tip: an angle \[deg\], or the travel of a prismatic joint \[mm\].
     pub pose_deg: Vec<f64>,
     /// Name of the judged case whose load the arm has in it.
     pub load_of: String,
@@ -32,12 +32,12 @@ pub struct WorstPoses {
     pub mode: WorstPose,
 }
 
-/// Looks for the worst poses of an arm within ranges \[deg\], one for each driven joint; passive joints follow. Every
+/// Looks for the worst poses of an arm within ranges \[deg, mm\], one for each driven joint; passive joints follow. Every
 /// load of the cases is tried in every pose. `None` without a case.
-pub fn worst_poses(arm: &Arm, cases: &[LoadCase], ranges_deg: &[[f64; 2]]) -> Option<WorstPoses> {
+pub fn worst_poses(arm: &Arm, cases: &[LoadCase], ranges: &[[f64; 2]]) -> Option<WorstPoses> {
     let judged = full_objectives(arm, cases);
     let found: Vec<[WorstPose; 2]> =
-        loads(cases).into_iter().filter_map(|load| worst_under(arm, load, cases, ranges_deg)).collect();
+        loads(cases).into_iter().filter_map(|load| worst_under(arm, load, cases, ranges)).collect();
     let [deflections, modes]: [Vec<WorstPose>; 2] =
         [0, 1].map(|which| found.iter().map(|of_load| of_load[which].clone()).collect());
     let deflection = deflections.into_iter().reduce(|a, b| if b.value > a.value { b } else { a })?;
@@ -71,12 +71,12 @@ fn worst_under(
     arm: &Arm,
     load: &LoadCase,
     cases: &[LoadCase],
-    ranges_deg: &[[f64; 2]],
+    ranges: &[[f64; 2]],
 ) -> Option<[WorstPose; 2]> {
     let structure = arm.structure_in(load);
     let chain = Chain::new(&structure, load.links);
     let posed = |pose_deg: &[f64]| {
-        let pose_rad: Vec<f64> = pose_deg.iter().map(|angle| angle.to_radians()).collect();
+        let pose_rad = chain.pose_si(pose_deg);
         let posed = chain.pose_rad(&pose_rad, &load.payload, load.tip_force_n);
         Posed { tip_moment_nm: load.tip_moment_nm, ..posed }
     };
@@ -86,7 +86,7 @@ fn worst_under(
         let statics = posed.statics();
         [statics.tip_displacement_m.norm(), -posed.lowest_frequency_hz(&statics)]
     };
-    let ranges = PoseRanges::new(ranges_deg).that_matter(both);
+    let ranges = PoseRanges::new(ranges, &arm.driven_joints()).that_matter(both);
     let mut poses = ranges.first_poses();
     poses.extend(cases.iter().map(|case| ranges.nearest(&case.pose_deg)));
     let values: Vec<[f64; 2]> = poses.par_iter().map(|pose_deg| both(pose_deg)).collect();

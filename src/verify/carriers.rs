@@ -19,6 +19,7 @@ pub(super) fn carriers<'q>(question: &'q Question) -> impl Iterator<Item = (Carr
         let here = carrier;
         carrier = match piece {
             AskedPiece::Joint(joint) => Carrier { next: Some(joint), of_first_tube: Some(joint) },
+            AskedPiece::Prismatic(_) => Carrier::default(),
             _ if is_tube(piece) => Carrier::default(),
             _ => Carrier { next: None, ..here },
         };
@@ -29,7 +30,7 @@ pub(super) fn carriers<'q>(question: &'q Question) -> impl Iterator<Item = (Carr
 /// Whether a piece has a section, chosen or given.
 pub(super) fn is_tube(piece: &AskedPiece) -> bool {
     match piece {
-        AskedPiece::Joint(_) => false,
+        AskedPiece::Joint(_) | AskedPiece::Prismatic(_) => false,
         AskedPiece::Choice(_) => true,
         AskedPiece::Link(link) => matches!(link.body, LinkBody::Tube { .. }),
     }

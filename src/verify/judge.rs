@@ -109,7 +109,7 @@ impl<'q> Judge<'q> {
         let mut tubes = Vec::new();
         for ((carrier, piece), pick) in carriers(question).zip(picks) {
             match piece {
-                AskedPiece::Joint(_) => {}
+                AskedPiece::Joint(_) | AskedPiece::Prismatic(_) => {}
                 AskedPiece::Link(link) => {
                     if let Some(options) = TubeOptions::of_link(question, carrier, link, waters) {
                         tubes.push(TubeRange::one(&options.tubes.first()?.1));
@@ -177,6 +177,7 @@ impl<'q> Judge<'q> {
         let mut joints = self.offers.iter();
         let element = |(piece, pick): (&AskedPiece, &Pick)| match piece {
             AskedPiece::Joint(joint) => self.joint(joint, joints.next()?, pick),
+            AskedPiece::Prismatic(joint) => Some(Element::Prismatic(joint.clone())),
             AskedPiece::Link(link) => Some(Element::Link(link.clone())),
             AskedPiece::Choice(choice) => Some(Element::Link(choice.with_tube(tube_of(choice, pick)?))),
         };

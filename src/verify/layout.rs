@@ -7,19 +7,23 @@
 use crate::arm::LinkModel;
 use crate::arm::body::RigidBody;
 use crate::arm::load::LoadCase;
+use crate::arm::prismatic::{Moves, PrismaticPiece};
 use crate::arm::structure::{LinkPiece, Piece, Structure};
 use crate::mechanics::beam::section_frame;
 use crate::mechanics::chain::across;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
-/// Rank of a piece's springs in the order from base to tip.
+/// Rank of the springs of the base.
+const BASE_RANK: usize = 0;
+
+/// Rank of a piece's springs, and of what stays inboard of them, in the order from base to tip.
 fn spring_rank(piece: usize) -> usize {
-    2 * piece
+    3 * piece + 1
 }
 
 /// Rank of a piece in that order. Its springs come before it.
 fn piece_rank(piece: usize) -> usize {
-    2 * piece + 1
+    3 * piece + 2
 }
 
 /// A joint in a pose.
@@ -71,12 +75,25 @@ impl PlacedMass {
     }
 }
 
-/// A spring of an effect: it tilts everything outboard about an axis.
+/// A spring that no choice changes: of an effect, or of a prismatic joint. It tilts everything outboard about an axis, or
+/// `slides` it along the axis.
 pub(super) struct PlacedSpring {
     pub rank: usize,
     pub at_m: Vector3<f64>,
     pub axis: Vector3<f64>,
-    pub rad_per_nm: f64,
+    pub slides: bool,
+    /// Tilt per moment \[rad/(N m)\], or way per force \[m/N\].
+    pub compliance: f64,
+}
+
+impl PlacedSpring {
+    /// Displacement and rotation of a point outboard per unit of the spring.
+    pub(super) fn way(&self, at_m: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
+        match self.slides {
+            true => (self.axis, Vector3::zeros()),
+            false => (self.axis.cross(&(at_m - self.at_m)), self.axis),
+        }
+    }
 }
 
 /// An arm in a pose, base to tip.
@@ -92,7 +109,7 @@ pub(super) struct Layout {
 impl Layout {
     /// Puts an arm into the pose of a case.
     pub(super) fn new(structure: &Structure, case: &LoadCase) -> Self {
-        let mut angles = case.pose_deg.iter();
+        let mut entries = case.pose_deg.iter();
         let mut rotation = Rotation3::identity();
         let mut layout = Self {
             joints: Vec::new(),
@@ -106,14 +123,18 @@ impl Layout {
             match piece {
                 Piece::Joint(joint) => {
                     let axis = rotation * joint.axis.into_inner();
-                    layout.add_mass(place, layout.tip_m, joint.mass_kg);
+                    layout.add_mass(piece_rank(place), layout.tip_m, joint.mass_kg);
                     layout.add_bodies(piece_rank(place), &joint.bodies.fixed, &rotation);
                     let (rank, at_m) = (piece_rank(place), layout.tip_m);
                     layout.joints.push(PlacedJoint { rank, at_m, axis, across: across(&axis) });
-                    let angle = angles.next().copied().unwrap_or_default().to_radians();
+                    let angle = entries.next().copied().unwrap_or_default().to_radians();
                     rotation *= Rotation3::from_axis_angle(&joint.axis, angle);
                     // outboard of the joint, and inboard of whatever comes next
                     layout.add_bodies(piece_rank(place) + 1, &joint.bodies.rotating, &rotation);
+                }
+                Piece::Prismatic(joint) => {
+                    let travel_m = entries.next().copied().unwrap_or_default() / 1e3;
+                    layout.add_prismatic(place, joint, travel_m, &rotation);
                 }
                 Piece::Link(link) => layout.add_link(place, link, &rotation),
             }
@@ -133,24 +154,50 @@ impl Layout {
         for (axis, rad_per_nm) in fixed.into_iter().chain(level) {
             if rad_per_nm > 0.0 {
                 let at_m = Vector3::zeros();
-                self.springs.push(PlacedSpring { rank: spring_rank(0), at_m, axis, rad_per_nm });
+                let (rank, compliance) = (BASE_RANK, rad_per_nm);
+                self.springs.push(PlacedSpring { rank, at_m, axis, slides: false, compliance });
             }
         }
+    }
+
+    /// Adds a prismatic joint: what stays and its springs, then what travels.
+    fn add_prismatic(
+        &mut self,
+        place: usize,
+        joint: &PrismaticPiece,
+        travel_m: f64,
+        rotation: &Rotation3<f64>,
+    ) {
+        let still = spring_rank(place);
+        self.add_mass(still, self.tip_m, joint.fixed_mass_kg);
+        self.add_bodies(still, &joint.bodies.fixed, rotation);
+        let frame = rotation.matrix() * section_frame(&joint.axis);
+        let moved_m = self.tip_m + frame.column(0) * travel_m;
+        let at_m = if joint.moves == Moves::Carriage { moved_m } else { self.tip_m };
+        let guide = frame.column_iter().zip(joint.guide_rad_per_nm.iter().copied());
+        let springs = guide.map(|(axis, c)| (axis.into_owned(), false, c));
+        let drive = (frame.column(0).into_owned(), true, joint.m_per_n);
+        for (axis, slides, compliance) in springs.chain([drive]).filter(|(_, _, c)| *c > 0.0) {
+            self.springs.push(PlacedSpring { rank: still, at_m, axis, slides, compliance });
+        }
+        self.tip_m = moved_m;
+        self.add_mass(piece_rank(place), moved_m, joint.mass_kg);
+        self.add_bodies(piece_rank(place), &joint.bodies.rotating, rotation);
     }
 
     /// Adds springs at the end of the chain so far, about axes in the world frame. Springs that do not yield are left
     /// out.
     fn add_springs(&mut self, place: usize, springs: &[(Vector3<f64>, f64)]) {
         for &(axis, rad_per_nm) in springs.iter().filter(|(_, rad_per_nm)| *rad_per_nm > 0.0) {
-            let (rank, at_m) = (spring_rank(place), self.tip_m);
-            self.springs.push(PlacedSpring { rank, at_m, axis, rad_per_nm });
+            let (rank, at_m, compliance) = (spring_rank(place), self.tip_m, rad_per_nm);
+            self.springs.push(PlacedSpring { rank, at_m, axis, slides: false, compliance });
         }
     }
 
-    fn add_mass(&mut self, place: usize, at_m: Vector3<f64>, mass_kg: f64) {
+    fn add_mass(&mut self, rank: usize, at_m: Vector3<f64>, mass_kg: f64) {
         if mass_kg != 0.0 {
             self.masses.push(PlacedMass {
-                carrier: Point { at_m, rank: piece_rank(place), inside_m: None },
+                carrier: Point { at_m, rank, inside_m: None },
                 arm_m: Vector3::zeros(),
                 mass_kg,
                 inertia_kgm2: Matrix3::zeros(),
@@ -183,7 +230,7 @@ impl Layout {
         let turned: Vec<_> = springs.into_iter().map(|(axis, c)| (rotation * axis, c)).collect();
         self.add_springs(place, &turned);
         let vector_m = rotation * link.vector_m;
-        self.add_mass(place, self.tip_m + vector_m / 2.0, link.point_mass_kg);
+        self.add_mass(piece_rank(place), self.tip_m + vector_m / 2.0, link.point_mass_kg);
         match link.beam {
             Some(_) => self.add_bodies_on_tube(piece_rank(place), link, rotation),
             None => self.add_bodies(piece_rank(place), &link.bodies, rotation),
@@ -290,7 +337,7 @@ pub(super) enum Coordinate {
     Shift(usize, usize),
     /// A shape of a tube.
     Tube(usize, Shape),
-    /// Tilt of an effect's spring.
+    /// Tilt or way of a spring that no choice changes.
     Spring(usize),
 }
 
@@ -332,7 +379,7 @@ impl Layout {
             }
             Coordinate::Spring(spring) => {
                 let spring = &self.springs[spring];
-                if spring.rank < point.rank { turned(&spring.axis, spring.at_m) } else { still }
+                if spring.rank < point.rank { spring.way(&point.at_m) } else { still }
             }
             Coordinate::Tube(tube, shape) => self.tubes[tube].motion(shape, point).unwrap_or(still),
         }

@@ -112,7 +112,7 @@ impl Judge<'_> {
         let (mut levels, mut joints) = (options.iter().rev(), self.offers.iter());
         let mut next = || levels.next().map_or(0, |&option| option as usize);
         let pick = |piece: &AskedPiece| match piece {
-            AskedPiece::Link(_) => Pick::Given,
+            AskedPiece::Prismatic(_) | AskedPiece::Link(_) => Pick::Given,
             AskedPiece::Choice(_) => Pick::Tube(next()),
             AskedPiece::Joint(_) => match joints.next().and_then(JointOffers::of_catalog) {
                 Some(offers) if offers.is_choice => {

@@ -219,15 +219,16 @@ impl Builder<'_> {
         LinearVector { fixed: moved(&carried.fixed), per_load: carried.per_load.iter().map(moved).collect() }
     }
 
-    /// Displacement of the tip by a spring: the spring's tilt under the moment about its axis, times the displacement
-    /// of the tip per tilt.
+    /// Displacement of the tip by a spring: how far the spring yields to the moment about its axis, or to the force along it,
+    /// times the displacement of the tip per unit of that.
     fn by_spring(&self, spring: usize) -> LinearVector {
         let spring = &self.layout.springs[spring];
         let carried = self.carried(&Point { at_m: spring.at_m, rank: spring.rank, inside_m: None });
-        let along_m = spring.axis.cross(&(self.layout.tip_m - spring.at_m)) * spring.rad_per_nm;
+        let along_m = spring.way(&self.layout.tip_m).0 * spring.compliance;
+        let load = carried.along(spring.slides, &spring.axis);
         LinearVector {
-            fixed: along_m * spring.axis.dot(&carried.fixed.moment),
-            per_load: carried.per_load.iter().map(|w| along_m * spring.axis.dot(&w.moment)).collect(),
+            fixed: along_m * load.fixed,
+            per_load: load.per_load.iter().map(|load| along_m * *load).collect(),
         }
     }
 

@@ -10,6 +10,7 @@ use crate::arm::effect::Effect;
 use crate::arm::extras::{Extras, ExtrasSource};
 use crate::arm::joint_law::Curve;
 use crate::arm::load::LoadCase;
+use crate::arm::prismatic::Prismatic;
 use crate::arm::section::{LinkMaterial, Section};
 use crate::arm::structure::{JointPiece, LinkPiece, Piece, Structure};
 use crate::arm::{Arm, Element, Joint, JointModel, Link, LinkBody, LinkModel};
@@ -49,6 +50,8 @@ pub struct Question {
 pub enum AskedPiece {
     /// A joint.
     Joint(AskedJoint),
+    /// A prismatic joint, which the study gives.
+    Prismatic(Prismatic),
     /// A link or offset without a choice.
     Link(Link),
     /// A link whose tube is chosen.
@@ -312,7 +315,7 @@ impl AskedPiece {
     pub fn is_choice(&self) -> bool {
         match self {
             AskedPiece::Joint(joint) => joint.drive.is_choice(),
-            AskedPiece::Link(_) => false,
+            AskedPiece::Prismatic(_) | AskedPiece::Link(_) => false,
             AskedPiece::Choice(_) => true,
         }
     }
@@ -395,6 +398,7 @@ impl Question {
             AskedPiece::Joint(joint) => {
                 joint.with_drive(Curve::Rigid, 0.0, joint.bearing.stated(), Extras::default())
             }
+            AskedPiece::Prismatic(joint) => Element::Prismatic(joint.clone()),
             AskedPiece::Link(link) => Element::Link(link.clone()),
             AskedPiece::Choice(choice) => Element::Link(match choice.tubes.first() {
                 Some(tube) => choice.with_tube(tube),

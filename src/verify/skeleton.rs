@@ -32,7 +32,7 @@ pub(super) struct Skeleton {
     /// The different media around the arm in the cases: air, or water.
     pub waters: Vec<Option<Water>>,
     pub coordinates: Vec<Coordinate>,
-    /// Stiffnesses of the effects' springs \[N m/rad\].
+    /// Stiffnesses of the springs that no choice changes \[N m/rad\]; \[N/m\] along a travel.
     pub spring_stiffnesses: Vec<f64>,
     pub limits: Limits,
     /// The piece that each level chooses, tip first.
@@ -81,7 +81,7 @@ impl Skeleton {
             let layout = Layout::new(&structure, case);
             let tilting: Vec<bool> = offers.iter().map(JointOffers::tilts).collect();
             skeleton.coordinates = coordinates(&layout, question.links, &tilting);
-            skeleton.spring_stiffnesses = layout.springs.iter().map(|s| 1.0 / s.rad_per_nm).collect();
+            skeleton.spring_stiffnesses = layout.springs.iter().map(|s| 1.0 / s.compliance).collect();
         }
         skeleton.pose_all(question, &structure, offers);
         skeleton
@@ -112,7 +112,7 @@ impl Skeleton {
         let mut tubes = Vec::new();
         for (carrier, piece) in carriers(question) {
             match piece {
-                AskedPiece::Joint(_) => {}
+                AskedPiece::Joint(_) | AskedPiece::Prismatic(_) => {}
                 AskedPiece::Choice(choice) => {
                     let level = level(Place::Tube(tubes.len())).unwrap_or_default();
                     tubes.push(TubeOptions::of_choice(question, carrier, choice, level, &self.waters));
@@ -136,6 +136,7 @@ fn first_tubes(question: &Question) -> Vec<Option<usize>> {
                 first.push(None);
                 false
             }
+            AskedPiece::Prismatic(_) => false,
             AskedPiece::Choice(_) => true,
             AskedPiece::Link(link) => super::layout::has_line(&question.link_piece(link.clone())),
         };
@@ -158,6 +159,7 @@ fn levers(question: &Question) -> Vec<Lever> {
                 levers.push(Lever::Stated(offset_m.unwrap_or(0.0).abs()));
                 false
             }
+            AskedPiece::Prismatic(_) => false,
             AskedPiece::Choice(_) => true,
             AskedPiece::Link(link) => super::layout::has_line(&question.link_piece(link.clone())),
         };
@@ -217,6 +219,7 @@ fn offsets_kg(question: &Question) -> f64 {
         AskedPiece::Joint(joint) => {
             joint.bearing.stated().map_or(0.0, |bearing| bearing.mass_kg) + joint.bodies.mass_kg()
         }
+        AskedPiece::Prismatic(joint) => joint.total_mass_kg(),
         AskedPiece::Choice(choice) => total_kg(&choice.bodies),
     });
     masses.sum()
@@ -231,6 +234,7 @@ fn levels(question: &Question, structure: &Structure) -> Vec<Place> {
                 joints += 1;
                 Place::Joint(joints - 1)
             }
+            Piece::Prismatic(_) => continue,
             Piece::Link(link) => {
                 // an open link without any tube has no line either; it stands for itself
                 let is_tube = matches!(asked, AskedPiece::Choice(_)) || super::layout::has_line(link);

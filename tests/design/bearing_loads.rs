@@ -127,7 +127,7 @@ fn the_moment_of_the_shoulder_decides_the_gear_of_the_waist() {
             Element::Joint(joint) => {
                 catalogs.gear(joint.gear.as_deref().expect("sized")).expect("known").clone()
             }
-            Element::Link(link) => panic!("{}", link.name),
+            other => panic!("{}", other.name()),
         }
     };
     let ([waist, _], _) = demands(&study(json!({"drive": "first_fit"}), &catalogs), &catalogs);

@@ -101,6 +101,7 @@ fn by_the_full_model(problem: &ArmProblem, chosen: &[u32], factors: &Factors) ->
                 joint.mass_kg =
                     gear_kg * factor(Rating::GearMass(gear)) + motor_kg * factor(Rating::MotorMass(motor));
             }
+            Element::Prismatic(_) => {}
             Element::Link(link) => {
                 if let LinkBody::Tube { material_name, material, .. } = &mut link.body {
                     *material = material.stiffened(factor(Rating::Modulus(material_name.clone())));

@@ -9,6 +9,7 @@
 use crate::bodies::add_bodies;
 use crate::dice::Dice;
 use crate::exact_support::{agree, agrees, judged, read};
+use crate::prismatic::add_prismatic;
 use armwright::catalog::Catalogs;
 use armwright::exact::{DomainReduction, Exact};
 use armwright::input::Document;
@@ -142,7 +143,10 @@ fn the_exact_front_is_the_front_of_every_design() {
     let (catalogs, stop) = (Catalogs::builtin(), AtomicBool::new(false));
     let (mut points, mut feasible, mut boxes) = (0, 0, [0; 2]);
     for seed in 0..studies {
-        let text = random_study(seed);
+        let mut text = random_study(seed);
+        if seed % 8 == 5 {
+            add_prismatic(&mut text, seed);
+        }
         let study = read(&text, &catalogs);
         let problem = ArmProblem::new(&study.space, &catalogs);
         let sweep = Sweep::new(&problem, study.space.constraints, &stop).run();

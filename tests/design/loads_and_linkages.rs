@@ -3,6 +3,7 @@
 use crate::dice::Dice;
 use crate::exact_front::random_study;
 use crate::exact_support::{both_searches, read};
+use crate::prismatic::add_prismatic;
 use armwright::arm::{JointModel, LinkModel, Payload, read_arm_document};
 use armwright::catalog::Catalogs;
 use armwright::input::Document;
@@ -95,6 +96,9 @@ fn searches_agree_in_any_gravity() {
         (13, json!([0, -9.81, 0])),
     ] {
         let mut text = random_study(seed);
+        if seed % 8 == 5 {
+            add_prismatic(&mut text, seed);
+        }
         text["gravity_m_s2"] = gravity;
         text["tip_moment_nm"] = json!([2, 8, -3]);
         text["constraints"] = json!({"stress_safety_factor_min": 1.2});

@@ -24,6 +24,7 @@ mod motor_heat;
 mod paper;
 mod paper_support;
 mod pieces;
+mod prismatic;
 mod reference_arms;
 mod relaxation;
 mod search_fast_vs_full;

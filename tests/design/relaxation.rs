@@ -3,6 +3,7 @@
 
 use crate::bodies::add_bodies;
 use crate::dice::Dice;
+use crate::prismatic::add_prismatic;
 use armwright::catalog::Catalogs;
 use armwright::input::Document;
 use armwright::pareto::Objectives;
@@ -135,6 +136,9 @@ fn no_design_that_meets_a_target_is_lighter_than_the_bound() {
         let mut drawn = study(&mut dice);
         if round % 4 == 3 {
             add_bodies(&mut drawn, round as u64);
+        }
+        if round % 8 == 5 {
+            add_prismatic(&mut drawn, round as u64);
         }
         let text = drawn.to_string();
         let study = read_study(Document::parse("random", &text).expect("JSON"), &catalogs)

@@ -8,6 +8,7 @@
 
 use crate::bodies::add_bodies;
 use crate::dice::Dice;
+use crate::prismatic::add_prismatic;
 use armwright::catalog::Catalogs;
 use armwright::input::Document;
 use armwright::search::FinishRows;
@@ -90,6 +91,9 @@ fn study(seed: u64, catalogs: &Catalogs) -> Study {
     let mut text = random_study(&mut Dice(seed));
     if seed % 4 == 3 {
         add_bodies(&mut text, seed);
+    }
+    if seed % 4 == 1 {
+        add_prismatic(&mut text, seed);
     }
     read(seed, &text, catalogs)
 }

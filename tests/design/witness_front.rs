@@ -8,6 +8,7 @@
 
 use crate::bodies::add_bodies;
 use crate::dice::Dice;
+use crate::prismatic::add_prismatic;
 use armwright::catalog::Catalogs;
 use armwright::input::Document;
 use armwright::pareto::Objectives;
@@ -160,6 +161,9 @@ fn random_study(seed: u64) -> Value {
     }
     if seed % 4 == 3 {
         add_bodies(&mut study, seed);
+    }
+    if seed % 8 == 5 {
+        add_prismatic(&mut study, seed);
     }
     study
 }

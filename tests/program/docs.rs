@@ -6,7 +6,7 @@
 //! `<!-- file: NAME -->` before a block makes it a file of that name.
 
 use armwright::arm::read_arm_document;
-use armwright::arm::read_load_cases;
+use armwright::arm::{DrivenJoint, read_load_cases};
 use armwright::catalog::Catalogs;
 use armwright::input::{Document, Faults};
 use armwright::study::NAMED;
@@ -162,7 +162,7 @@ fn the_json_examples_of_the_pages_are_read() {
             let fault = match block.comment.as_str() {
                 "study" => read_study(document, &catalogs).err(),
                 "arm" => read_arm_document(document, &catalogs).err(),
-                "cases: 2 joints" => read_load_cases(document, &["a", "b"]).err(),
+                "cases: 2 joints" => read_load_cases(document, &["a", "b"].map(DrivenJoint::turning)).err(),
                 other => panic!("{page}: a json block is marked \"{other}\""),
             };
             assert!(fault.is_none(), "{page}: {}", fault.expect("a fault"));
@@ -273,7 +273,10 @@ fn every_key_of_an_arm_file_is_described() {
     let cases = with_unknown_keys(
         &json!([{"pose_deg": [0], "payload": {"mass_kg": 1}, "water": {"density_kg_m3": 1}}]),
     );
-    let read = read_load_cases(Document::parse("cases", &cases.to_string()).expect("JSON"), &["j"]);
+    let read = read_load_cases(
+        Document::parse("cases", &cases.to_string()).expect("JSON"),
+        &[DrivenJoint::turning("j")],
+    );
     keys.extend(known_keys(&read.expect_err("unknown keys")));
     assert_described("docs/arm-format.md", &keys, 40);
 }

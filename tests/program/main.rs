@@ -28,6 +28,7 @@ mod mutations;
 mod operations;
 mod other_poses;
 mod pages;
+mod prismatic;
 mod progress;
 mod public_api;
 mod resume;

@@ -3,7 +3,7 @@
 
 use crate::links::armwright;
 use crate::words::files as files_below;
-use armwright::arm::{Arm, LoadCase, read_arm_document, read_load_cases};
+use armwright::arm::{Arm, DrivenJoint, LoadCase, read_arm_document, read_load_cases};
 use armwright::catalog::{CatalogFile, Catalogs};
 use armwright::input::{Document, Fault, Faults, InputError};
 use armwright::reconcile::Campaign;
@@ -329,8 +329,11 @@ fn arm_and_cases_readers_and_their_schemas_judge_every_change_of_a_file_equally(
         {"type": "link", "name": "b", "vector_m": [1, 0, 0], "bodies": [{"mass_kg": 1}]}]});
     hold_defaults(&schema, &read, &plain, &mut tried);
     assert!(tried.len() >= 12, "{tried:?}");
-    let cases: Reader =
-        Box::new(|v| read_load_cases(document(v), &["a", "b"]).map(Read::Cases).map_err(faults_of));
+    let cases: Reader = Box::new(|v| {
+        read_load_cases(document(v), &["a", "b"].map(DrivenJoint::turning))
+            .map(Read::Cases)
+            .map_err(faults_of)
+    });
     let schema = Schema::of("cases");
     count += hold_together(&schema, &cases, &whole_cases());
     hold_defaults(&schema, &cases, &whole_cases(), &mut tried);

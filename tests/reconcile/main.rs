@@ -18,6 +18,7 @@ mod other_simulator;
 mod positions;
 mod positions_maker;
 mod positions_other_simulator;
+mod prismatic;
 mod record_simulator;
 mod records;
 mod scoring;

@@ -4,13 +4,13 @@
 use super::kind::Kind;
 use super::{
     base_compliance, base_lift, bearing_tilt, connection_compliance, drift, empirical, extra_mass,
-    frame_compliance, harness_mass, hysteresis, immersion, joint_compliance, joint_torque, link_flexibility,
-    lost_motion, modulus_error, outlier, payload_cg_error, payload_mass_error, sensor_bias, sensor_gain,
-    servo_compliance, soft_windup, stiffness_waves, test_mass, thermal_modulus, time_shift,
-    transmission_error, wrong_unit,
+    frame_compliance, guide_tilt, harness_mass, hysteresis, immersion, joint_compliance, joint_torque,
+    link_flexibility, lost_motion, modulus_error, outlier, payload_cg_error, payload_mass_error, sensor_bias,
+    sensor_gain, servo_compliance, soft_windup, stiffness_waves, test_mass, thermal_modulus, time_shift,
+    transmission_error, travel_compliance, wrong_unit,
 };
 
-const COUNT: usize = 29;
+const COUNT: usize = 31;
 
 /// Every effect, in the order of the documentation.
 pub static KINDS: [&Kind; COUNT] = [
@@ -22,6 +22,8 @@ pub static KINDS: [&Kind; COUNT] = [
     &base_compliance::KIND,
     &base_lift::KIND,
     &frame_compliance::KIND,
+    &travel_compliance::KIND,
+    &guide_tilt::KIND,
     &payload_mass_error::KIND,
     &payload_cg_error::KIND,
     &extra_mass::KIND,

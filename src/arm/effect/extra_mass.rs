@@ -1,4 +1,4 @@
-//! `extra_mass`: a point mass at a joint that its mass tolerance does not cover.
+//! `extra_mass`: a point mass at a joint that its mass tolerance does not cover. At a prismatic joint it travels.
 
 use super::kind::{Kind, Measure, Parameter, Place, Removes, Scale, Scope, Traits};
 use super::subject::Subject;
@@ -12,7 +12,7 @@ pub(crate) const KIND: Kind = Kind {
     name: "extra_mass",
     summary: "a point mass at a joint beyond tolerance",
     scope: Scope::Product,
-    places: &[Place::Joint],
+    places: &[Place::Joint, Place::Prismatic],
     parameters: |_| PARAMETERS,
     apply,
     traits: Traits {
@@ -24,6 +24,9 @@ pub(crate) const KIND: Kind = Kind {
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
     if let Some(joint) = subject.structure.joint_mut(at) {
+        joint.mass_kg += numbers[0];
+    }
+    if let Some(joint) = subject.structure.prismatic_mut(at) {
         joint.mass_kg += numbers[0];
     }
 }

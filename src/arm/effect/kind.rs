@@ -7,8 +7,10 @@ use super::subject::Subject;
 /// What kind of place an effect sits at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
-    /// A joint, by name.
+    /// A joint that turns, by name.
     Joint,
+    /// A prismatic joint, by name.
+    Prismatic,
     /// A link, by name.
     Link,
     /// A link that is a tube, by name.

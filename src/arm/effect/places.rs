@@ -1,6 +1,7 @@
 //! Finds the pieces of an arm by name, and the places where an effect can sit.
 
 use super::kind::Place;
+use crate::arm::prismatic::PrismaticPiece;
 use crate::arm::structure::{JointPiece, LinkPiece, Piece, Structure};
 
 impl Structure {
@@ -8,6 +9,7 @@ impl Structure {
     pub fn place(&self, at: &str, allowed: &[Place]) -> Option<Place> {
         allowed.iter().copied().find(|place| match place {
             Place::Joint => self.joints().any(|j| j.name == at),
+            Place::Prismatic => self.prismatics().any(|j| j.name == at),
             Place::Link => self.links().any(|l| l.name == at),
             Place::Tube => self.links().any(|l| l.name == at && l.beam.is_some()),
             Place::Base => at == "base",
@@ -21,6 +23,7 @@ impl Structure {
     pub fn places(&self, place: Place) -> Vec<String> {
         match place {
             Place::Joint => self.joints().map(|j| j.name.clone()).collect(),
+            Place::Prismatic => self.prismatics().map(|j| j.name.clone()).collect(),
             Place::Link => self.links().map(|l| l.name.clone()).collect(),
             Place::Tube => self.links().filter(|l| l.beam.is_some()).map(|l| l.name.clone()).collect(),
             Place::Base => vec!["base".into()],
@@ -30,11 +33,11 @@ impl Structure {
         }
     }
 
-    /// The joints, base to tip.
+    /// The rotary joints, base to tip.
     pub fn joints(&self) -> impl Iterator<Item = &JointPiece> {
         self.pieces.iter().filter_map(|p| match p {
             Piece::Joint(joint) => Some(joint),
-            Piece::Link(_) => None,
+            _ => None,
         })
     }
 
@@ -42,7 +45,7 @@ impl Structure {
     pub fn links(&self) -> impl Iterator<Item = &LinkPiece> {
         self.pieces.iter().filter_map(|p| match p {
             Piece::Link(link) => Some(link),
-            Piece::Joint(_) => None,
+            _ => None,
         })
     }
 
@@ -50,6 +53,22 @@ impl Structure {
     pub fn joint_mut(&mut self, name: &str) -> Option<&mut JointPiece> {
         self.pieces.iter_mut().find_map(|p| match p {
             Piece::Joint(joint) if joint.name == name => Some(joint),
+            _ => None,
+        })
+    }
+
+    /// The prismatic joints, base to tip.
+    pub fn prismatics(&self) -> impl Iterator<Item = &PrismaticPiece> {
+        self.pieces.iter().filter_map(|p| match p {
+            Piece::Prismatic(joint) => Some(joint),
+            _ => None,
+        })
+    }
+
+    /// The prismatic joint of a name.
+    pub fn prismatic_mut(&mut self, name: &str) -> Option<&mut PrismaticPiece> {
+        self.pieces.iter_mut().find_map(|p| match p {
+            Piece::Prismatic(joint) if joint.name == name => Some(joint),
             _ => None,
         })
     }

@@ -45,6 +45,8 @@ pub struct Layout {
     pub joints: Vec<JointSlot>,
     /// Links, base to tip.
     pub links: Vec<LinkSlot>,
+    /// First of the four coordinates of each prismatic joint, base to tip: three of its guide, then its travel.
+    slides: Vec<usize>,
     /// Coordinates of yielding frames with their compliance. No fit changes them.
     frames: Vec<(usize, f64)>,
     /// Compliance of coordinates that a nominal arm may lack: of links as they are drawn. It is 0 for all
@@ -157,7 +159,7 @@ impl Layout {
         let full = with_everything(structure);
         let mut n = 2;
         let (mut joints, mut links) = (Vec::new(), Vec::new());
-        let (mut frames, mut drawn) = (Vec::new(), Vec::new());
+        let (mut frames, mut drawn, mut slides) = (Vec::new(), Vec::new(), Vec::new());
         let mut add_frame = |frame: &FrameCompliance, n: &mut usize| {
             for (_, compliance) in frame.springs() {
                 frames.push((*n, compliance));
@@ -170,6 +172,10 @@ impl Layout {
                 Piece::Joint(joint) => {
                     joints.push(JointSlot { name: joint.name.clone(), twist: n + 2 });
                     n += 3;
+                }
+                Piece::Prismatic(_) => {
+                    slides.push(n);
+                    n += 4;
                 }
                 Piece::Link(link) => {
                     add_frame(&link.root_frame, &mut n);
@@ -189,6 +195,7 @@ impl Layout {
             n,
             joints,
             links,
+            slides,
             frames,
             lacking,
             template: Chain::new(&full, LinkModel::Full),
@@ -208,6 +215,7 @@ fn with_everything(structure: &Structure) -> Structure {
     for piece in &mut full.pieces {
         match piece {
             Piece::Joint(joint) => joint.tilt_rad_per_nm = 1.0,
+            Piece::Prismatic(joint) => joint.guide_rad_per_nm = Vector3::from_element(1.0),
             Piece::Link(link) => {
                 if let Some(beam) = &mut link.beam {
                     beam.flexibility = 1.0;
@@ -218,7 +226,7 @@ fn with_everything(structure: &Structure) -> Structure {
     full
 }
 
-/// The structure with one unit of each mass added, one at a time: joints, harnesses, water.
+/// The structure with one unit of each mass added, one at a time: joints, harnesses, what travels, water.
 fn unit_masses(full: &Structure) -> Vec<Structure> {
     let joints = full.joints().map(|joint| {
         let mut with = full.clone();
@@ -234,10 +242,17 @@ fn unit_masses(full: &Structure) -> Vec<Structure> {
         }
         with
     });
+    let slides = full.prismatics().map(|joint| {
+        let mut with = full.clone();
+        if let Some(j) = with.prismatic_mut(&joint.name) {
+            j.mass_kg += 1.0;
+        }
+        with
+    });
     let water =
         Water { density_kg_m3: 1.0, added_mass_coefficient: 1.0, payload_density_kg_m3: f64::INFINITY };
     let wet = Structure { water: Some(water), ..full.clone() };
-    joints.chain(links).chain([wet]).collect()
+    joints.chain(links).chain(slides).chain([wet]).collect()
 }
 
 impl Coefficients {
@@ -263,6 +278,13 @@ impl Coefficients {
         {
             linear[slot.first..slot.first + slot.strains.len()].copy_from_slice(&link_compliances(link));
             masses.push(link.harness_kg_per_m - before.harness_kg_per_m);
+        }
+        for ((first, joint), before) in
+            layout.slides.iter().zip(structure.prismatics()).zip(nominal.structure.prismatics())
+        {
+            linear[*first..first + 3].copy_from_slice(joint.guide_rad_per_nm.as_slice());
+            linear[first + 3] = joint.m_per_n;
+            masses.push(joint.mass_kg - before.mass_kg);
         }
         let mut weights = masses.clone();
         let (added, density, payload_weight) = structure.water.map_or((0.0, 0.0, 1.0), |w| {

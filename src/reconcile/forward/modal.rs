@@ -106,7 +106,7 @@ pub(crate) fn prepare(
 
 impl ModalTest {
     fn new(layout: &Layout, nominal: &Subject, row: &ModalRow) -> Self {
-        let pose_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
+        let pose_rad = layout.template.pose_si(&row.pose_deg);
         let empty = Payload::default();
         let posed = layout.template.pose_rad(&pose_rad, &empty, Vector3::zeros());
         let mass = posed.mass_matrix();

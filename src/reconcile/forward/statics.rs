@@ -151,7 +151,7 @@ pub(crate) fn prepare(
 impl PoseGeometry {
     /// Computes the geometry of a pose by mechanics.
     pub fn new(layout: &Layout, nominal: &Subject, pose_deg: &[f64]) -> Self {
-        let pose_rad: Vec<f64> = pose_deg.iter().map(|a| a.to_radians()).collect();
+        let pose_rad = layout.template.pose_si(pose_deg);
         let empty = Payload::default();
         let posed = layout.template.pose_rad(&pose_rad, &empty, Vector3::zeros());
         let twists = posed.tip_twists();

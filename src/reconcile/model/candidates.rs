@@ -9,7 +9,7 @@ use crate::arm::effect::immersion::PAYLOAD_DENSITY;
 use crate::arm::effect::kind::{Freed, Kind, Parameter, Place, Removes, Scale, Setting, Yields};
 use crate::arm::effect::validate::fits_nominal;
 use crate::arm::effect::wrong_unit;
-use crate::arm::effect::{connection_compliance, servo_compliance, thermal_modulus};
+use crate::arm::effect::{connection_compliance, servo_compliance, thermal_modulus, travel_compliance};
 use crate::arm::joint_law::Curve;
 use crate::arm::structure::Piece;
 use crate::reconcile::forward::prepared::Forward;
@@ -139,7 +139,10 @@ fn stated(forward: &Forward, parameter: &Parameter, channel: Option<Channel>) ->
 fn candidate(forward: &Forward, sizes: &Sizes, asked: Asked) -> Candidate {
     let Asked { kind, place, freed, channel, .. } = asked;
     let at = asked.at.to_string();
-    let joint_stiffness = reference_stiffness(forward, &at);
+    let joint_stiffness = match place {
+        Place::Prismatic => reference_of_prismatic(forward, kind, &at),
+        _ => reference_stiffness(forward, &at),
+    };
     let bearing = nominal_bearing_nm_per_rad(forward, kind, &at);
     let reference = match kind.traits.is_gear_curve {
         true => middle_stiffness(forward, &at),
@@ -206,7 +209,11 @@ fn within_rows(free: FreeParameter, rows: f64) -> FreeParameter {
 /// \[kg\].
 fn lightest_kg(forward: &Forward, kind: &Kind, at: &str) -> Option<f64> {
     match kind.traits.removes? {
-        Removes::JointMass => forward.nominal.structure.joints().find(|j| j.name == at).map(|j| j.mass_kg),
+        Removes::JointMass => {
+            let structure = &forward.nominal.structure;
+            let turning = structure.joints().find(|j| j.name == at).map(|j| j.mass_kg);
+            turning.or_else(|| structure.prismatics().find(|j| j.name == at).map(|j| j.mass_kg))
+        }
         Removes::PayloadMass => Some(forward.lightest_payload_kg),
     }
 }
@@ -239,6 +246,22 @@ fn reference_stiffness(forward: &Forward, at: &str) -> f64 {
         .or(first.copied().as_ref())
         .map_or(1e5, |j| 1.0 / j.law.tangent_compliance_rad_per_nm(0.0))
 }
+
+/// The stiffness in which compliances at a prismatic joint are expressed: that of its drive \[N/m\], or that of its guide about
+/// the axis about which it yields most \[N m/rad\].
+fn reference_of_prismatic(forward: &Forward, kind: &Kind, at: &str) -> f64 {
+    let joint = forward.nominal.structure.prismatics().find(|joint| joint.name == at);
+    let [along, about] = joint.map_or([0.0; 2], |joint| [joint.m_per_n, joint.guide_rad_per_nm.max()]);
+    match kind.name == travel_compliance::KIND.name {
+        true if along > 0.0 => 1.0 / along,
+        true => USUAL_DRIVE_N_PER_M,
+        false if about > 0.0 => 1.0 / about,
+        false => reference_stiffness(forward, at),
+    }
+}
+
+/// Stiffness of a drive along its travel where the model holds it rigid \[N/m\].
+const USUAL_DRIVE_N_PER_M: f64 = 2e7;
 
 /// The middle slope of a joint's curve, by which a gear is usually rated \[N m/rad\].
 fn middle_stiffness(forward: &Forward, at: &str) -> f64 {

@@ -147,8 +147,7 @@ impl<'a> Exact<'a> {
         stated: &Payload,
         force_n: Vector3<f64>,
     ) -> Posed<'c> {
-        let pose_rad: Vec<f64> = pose_deg.iter().map(|a| a.to_radians()).collect();
-        chain.pose_rad(&pose_rad, &self.subject.payload(stated), force_n)
+        chain.pose_rad(&chain.pose_si(pose_deg), &self.subject.payload(stated), force_n)
     }
 }
 
@@ -181,7 +180,7 @@ fn joints(posed: &Posed) -> Vec<(JointLaw, Twist, f64)> {
         let own: Vec<Twist> = twists.by_ref().take(element.twists.len()).collect();
         match element.yielding {
             Yielding::Joint(law) => Some((law, own[0])),
-            Yielding::Linear(_) | Yielding::Lift(_) => None,
+            Yielding::Linear(_) | Yielding::Slide { .. } | Yielding::Lift(_) => None,
         }
     });
     laws.zip(torques).map(|((law, twist), (_, torque))| (law, twist, torque)).collect()

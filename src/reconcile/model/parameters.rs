@@ -6,11 +6,13 @@ use crate::arm::effect::entry::{Effect, word_of};
 use crate::arm::effect::kind::{Absent, Kind, Parameter, Place, Scale};
 use crate::arm::effect::subject::Subject;
 use crate::arm::joint_law::Curve;
+use crate::arm::prismatic::Prismatic;
 use crate::arm::structure::Piece;
 use crate::arm::{Arm, Element, LinkBody};
 use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::readings::campaign::Tolerance;
+use nalgebra::Vector3;
 
 /// One fitted parameter of an effect. A fit moves `u`, which is of the order of 1.
 #[derive(Debug, Clone, PartialEq)]
@@ -303,6 +305,20 @@ pub enum Calibration {
         /// Tilt per moment of the nominal bearing \[rad/(N m)\].
         tilt_rad_per_nm: f64,
     },
+    /// Factor on the stiffness of a prismatic joint along its travel.
+    Drive {
+        /// Name of the joint.
+        joint: String,
+        /// Way per force of the nominal drive \[m/N\].
+        m_per_n: f64,
+    },
+    /// Factor on the stiffnesses of a prismatic joint's nominal guide.
+    Guide {
+        /// Name of the joint.
+        joint: String,
+        /// Tilt per moment of the nominal guide \[rad/(N m)\].
+        rad_per_nm: Vector3<f64>,
+    },
 }
 
 impl Calibration {
@@ -313,6 +329,8 @@ impl Calibration {
             Calibration::Mass(joint) => format!("{joint}.mass"),
             Calibration::Modulus(material, _) => format!("{material}.modulus"),
             Calibration::Bearing { joint, .. } => format!("{joint}.bearing_stiffness"),
+            Calibration::Drive { joint, .. } => format!("{joint}.stiffness"),
+            Calibration::Guide { joint, .. } => format!("{joint}.guide_stiffness"),
         }
     }
 }
@@ -349,6 +367,7 @@ impl Nuisance {
             );
         }
         numbers.extend(bearings(arm, tolerance.bearing_stiffness));
+        numbers.extend(prismatics(arm, tolerance));
         Self { numbers }
     }
 
@@ -371,11 +390,24 @@ impl Nuisance {
                     if let Some(joint) = structure.joint_mut(name) {
                         joint.mass_kg *= factor;
                     }
+                    if let Some(joint) = structure.prismatic_mut(name) {
+                        joint.mass_kg *= factor;
+                    }
                 }
                 Calibration::Bearing { joint, tilt_rad_per_nm } => {
                     if let Some(joint) = structure.joint_mut(joint) {
                         // effects of the arm file stay as they are
                         joint.tilt_rad_per_nm += tilt_rad_per_nm * (1.0 / factor - 1.0);
+                    }
+                }
+                Calibration::Drive { joint, m_per_n } => {
+                    if let Some(joint) = structure.prismatic_mut(joint) {
+                        joint.m_per_n += m_per_n * (1.0 / factor - 1.0);
+                    }
+                }
+                Calibration::Guide { joint, rad_per_nm } => {
+                    if let Some(joint) = structure.prismatic_mut(joint) {
+                        joint.guide_rad_per_nm += rad_per_nm * (1.0 / factor - 1.0);
                     }
                 }
                 Calibration::Modulus(_, links) => {
@@ -402,6 +434,23 @@ fn bearings(arm: &Arm, tolerance: f64) -> impl Iterator<Item = (Calibration, f64
         let calibration = Calibration::Bearing { joint: joint.name.clone(), tilt_rad_per_nm };
         (tilt_rad_per_nm > 0.0).then_some((calibration, tolerance / 2.0))
     })
+}
+
+/// What is calibrated of prismatic joints: the stiffness of the drive and the mass that travels within the tolerances of joints,
+/// the guide within that of bearings.
+fn prismatics<'a>(arm: &'a Arm, tolerance: &'a Tolerance) -> impl Iterator<Item = (Calibration, f64)> + 'a {
+    let of_joint = |joint: &Prismatic| {
+        let (name, m_per_n, rad_per_nm) = (&joint.name, joint.piece(0).m_per_n, joint.guide.rad_per_nm());
+        let drive = Calibration::Drive { joint: name.clone(), m_per_n };
+        let guide = Calibration::Guide { joint: name.clone(), rad_per_nm };
+        [
+            (m_per_n > 0.0).then_some((drive, tolerance.joint_stiffness)),
+            (rad_per_nm != Vector3::zeros()).then_some((guide, tolerance.bearing_stiffness)),
+            (joint.mass_kg > 0.0).then_some((Calibration::Mass(name.clone()), tolerance.joint_mass)),
+        ]
+    };
+    let open = arm.prismatics().flat_map(of_joint).flatten();
+    open.filter(|(_, limit)| *limit > 0.0).map(|(calibration, limit)| (calibration, limit / 2.0))
 }
 
 fn materials(arm: &Arm) -> Vec<(String, Vec<String>)> {

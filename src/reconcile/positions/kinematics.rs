@@ -132,7 +132,7 @@ fn geometry_numbers(tree: &Tree, spec: &PositionsSpec) -> Vec<Number> {
             Piece::Link(_) if between(i) && !is_mount(piece, spec) => {
                 out.extend((0..3).map(|c| Number::Vector(i, c)));
             }
-            Piece::Link(_) => {}
+            Piece::Link(_) | Piece::Prismatic(_) => {}
         }
     }
     out
@@ -205,15 +205,15 @@ impl Geometry {
     pub(crate) fn nominal(tree: &Tree, points: usize) -> Self {
         let axis = |p: &Piece| match p {
             Piece::Joint(j) => j.axis,
-            Piece::Link(_) => Vector3::z_axis(),
+            _ => Vector3::z_axis(),
         };
         let vector = |p: &Piece| match p {
-            Piece::Joint(_) => Vector3::zeros(),
             Piece::Link(l) => l.vector_m,
+            _ => Vector3::zeros(),
         };
         let angle = |p: &Piece| match p {
             Piece::Joint(j) => Some(j.angle.clone()),
-            Piece::Link(_) => None,
+            _ => None,
         };
         Self {
             base: Rotation3::identity(),
@@ -302,6 +302,7 @@ impl Geometry {
                         terms.iter_mut().zip(own).for_each(|(term, (_, factor))| term.1 = *factor);
                     }
                 }
+                Element::Prismatic(_) => {}
                 Element::Link(link) => {
                     link.vector_m = turned * self.vectors_m[i];
                     turned *= self.mounts[i];

@@ -353,6 +353,8 @@ fn yielding_everywhere(structure: &Structure, known: &Chain, joints: usize) -> S
                 joint.law = JointLaw::from(Curve::Linear(1.0));
                 joint.tilt_rad_per_nm = 1.0;
             }
+            // campaigns of positions refuse arms with prismatic joints
+            Piece::Prismatic(_) => {}
             Piece::Link(link) => {
                 link.root_frame = FrameCompliance(Matrix3::identity());
                 link.beam = None;
@@ -379,10 +381,7 @@ fn trunk_items(campaign: &Campaign, tree: &Tree, ready: &[Vec<Ready>]) -> [usize
     let names: Vec<&str> = campaign.arm.chain[..tree.trunk].iter().map(|e| e.name()).collect();
     let of = |structure: &Structure| {
         let mut trunk = structure.clone();
-        trunk.pieces.retain(|p| match p {
-            Piece::Joint(j) => names.contains(&j.name.as_str()),
-            Piece::Link(l) => names.contains(&l.name.as_str()),
-        });
+        trunk.pieces.retain(|piece| names.contains(&piece.name()));
         // the payload is the last item
         Chain::new(&trunk, LinkModel::Full).pose_rad(&rest, &Payload::default(), Vector3::zeros()).items.len()
             - 1

@@ -69,6 +69,8 @@ impl Positions {
             kind: "positions".into(),
             description: format!("position of {}", row.point),
             pose_deg: Some(row.pose_deg.clone()),
+            // campaigns of positions have no joint that slides
+            joints: Vec::new(),
             payload_kg: row.payload.mass_kg,
             force_n: [0.0; 3],
             joint: None,

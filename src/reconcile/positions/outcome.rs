@@ -12,7 +12,6 @@ use crate::arm::Arm;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::entry::Effect;
 use crate::arm::effect::kind::Yields;
-use crate::arm::structure::Piece;
 use crate::reconcile::fit::held_out::{HeldOut, rms};
 use crate::reconcile::fit::noise::Noise;
 use crate::reconcile::model::estimate::{Estimate, Finding};
@@ -286,10 +285,7 @@ impl Positions {
     }
 
     fn name(&self, number: &Number) -> String {
-        let piece = |i: usize| match &self.tree.pieces[i] {
-            Piece::Joint(joint) => joint.name.clone(),
-            Piece::Link(link) => link.name.clone(),
-        };
+        let piece = |i: usize| self.tree.pieces[i].name().to_string();
         match number {
             Number::Zero(j) => format!("{}.zero_rad", self.tree.driven[*j]),
             Number::Transmission(j, k) => format!("{}.transmission_rad[{k}]", self.tree.driven[*j]),

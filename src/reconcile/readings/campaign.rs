@@ -12,6 +12,7 @@ use super::table::Table;
 use crate::arm::effect::catalogue::KINDS;
 use crate::arm::effect::channel::Channel;
 use crate::arm::file::read_arm;
+use crate::arm::pose::{DrivenJoint, Motion};
 use crate::arm::{Arm, Element};
 use crate::catalog::Catalogs;
 use crate::input::json::{Document, Fault, Faults, InputError, Node};
@@ -270,7 +271,9 @@ impl Campaign {
             let arms = std::iter::once(&campaign.arm).chain(&campaign.other_arms);
             faults.extend(arms.filter_map(|arm| arm.springs_fault(&arm.name)));
         }
-        let (names, specs) = (campaign.driven_joint_names(), &campaign.statement.records);
+        let specs = &campaign.statement.records;
+        let turning = driven_joints(&campaign.arms()).into_iter().filter(|j| j.motion == Motion::Turns);
+        let names: Vec<String> = turning.map(|joint| joint.name).collect();
         campaign.records = read_all(folder, specs, &names, &mut faults)?;
         let declared = declared::problems(&campaign.statement.positions.sessions, &campaign.positions);
         faults.extend(
@@ -292,7 +295,7 @@ impl Campaign {
             Channel::Windup => self.windup = windup_rows(table, &self.arm, Purpose::Fit),
             Channel::Positions => {
                 let names: Vec<&str> = self.arms().iter().map(|a| a.name.as_str()).collect();
-                self.positions = position_rows(table, &names, &self.driven_joint_names(), Purpose::Fit);
+                self.positions = position_rows(table, &names, &driven_joints(&self.arms()), Purpose::Fit);
                 let mut read: Vec<&mut Components> =
                     self.positions.iter_mut().map(|r| &mut r.measured).collect();
                 self.remarks.extend(leave_out_idle(&table.short_name(), &POSITION, &mut read));
@@ -307,7 +310,7 @@ impl Campaign {
 
     /// Joints that have an entry in a pose: those of the first arm, then those that only other arms have.
     pub fn driven_joint_names(&self) -> Vec<String> {
-        driven_joint_names(&self.arms())
+        driven_joints(&self.arms()).into_iter().map(|joint| joint.name).collect()
     }
 
     /// Arms with absolute positions of points on them, as if they were a campaign.
@@ -462,11 +465,11 @@ impl Campaign {
 
 /// Joints of several arms that have an entry in a pose: those of the first arm, then those that only others
 /// have.
-pub(crate) fn driven_joint_names(arms: &[&Arm]) -> Vec<String> {
-    let mut out: Vec<String> = Vec::new();
-    for name in arms.iter().flat_map(|arm| arm.driven_joint_names()) {
-        if !out.iter().any(|known| known == name) {
-            out.push(name.to_string());
+pub(crate) fn driven_joints(arms: &[&Arm]) -> Vec<DrivenJoint> {
+    let mut out: Vec<DrivenJoint> = Vec::new();
+    for joint in arms.iter().flat_map(|arm| arm.driven_joints()) {
+        if out.iter().all(|known| known.name != joint.name) {
+            out.push(joint);
         }
     }
     out

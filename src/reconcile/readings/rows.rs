@@ -6,6 +6,7 @@ use super::table::Table;
 use crate::arm::Arm;
 use crate::arm::effect::warming::Moment;
 use crate::arm::load::Payload;
+use crate::arm::pose::{DrivenJoint, Motion, any_slides};
 use nalgebra::Vector3;
 use std::collections::{HashMap, HashSet};
 
@@ -122,20 +123,21 @@ impl PositionRow {
 /// The columns that state pose and payload.
 struct StateColumns {
     pose: Vec<usize>,
+    motions: Vec<Motion>,
     mass: Option<usize>,
     cg: [Option<usize>; 3],
     temperature: Option<usize>,
 }
 
 impl StateColumns {
-    fn find(table: &Table, joints: &[&str], payload_needed: bool) -> Option<Self> {
-        let expected: Vec<String> = joints.iter().map(|j| format!("q_{j}_deg")).collect();
+    fn find(table: &Table, joints: &[DrivenJoint], payload_needed: bool) -> Option<Self> {
+        let expected: Vec<String> = joints.iter().map(|joint| format!("q_{}", joint.key())).collect();
         for column in table.columns.iter().filter(|c| c.starts_with("q_") && !expected.contains(c)) {
             table.fault(
                 Some(1),
                 column,
-                "is the angle of no driven joint".into(),
-                &format!("the arm's joints: {}", joints.join(", ")),
+                "is the angle or travel of no driven joint".into(),
+                &format!("the columns of the arm's joints: {}", expected.join(", ")),
             );
         }
         let pose: Vec<Option<usize>> = expected.iter().map(|name| table.required(name)).collect();
@@ -148,14 +150,23 @@ impl StateColumns {
             false => table.optional(MASS),
         };
         let temperature = table.optional("temperature_c");
-        Some(Self { pose: pose.into_iter().collect::<Option<_>>()?, mass, cg, temperature })
+        let motions = joints.iter().map(|joint| joint.motion).collect();
+        Some(Self { motions, pose: pose.into_iter().collect::<Option<_>>()?, mass, cg, temperature })
     }
 
     fn pose(&self, table: &Table, row: usize) -> Option<Vec<f64>> {
         let angles: Vec<_> = self
             .pose
             .iter()
-            .map(|&c| table.number_that(row, c, |a| a.abs() <= 720.0, "an angle in degrees is below 720"))
+            .zip(&self.motions)
+            .map(|(&c, motion)| match motion {
+                Motion::Turns => {
+                    table.number_that(row, c, |a| a.abs() <= 720.0, "an angle in degrees is below 720")
+                }
+                Motion::Slides => {
+                    table.number_that(row, c, |mm| mm.abs() <= 1e5, "a travel in mm is below 100000")
+                }
+            })
             .collect();
         angles.into_iter().collect()
     }
@@ -194,7 +205,7 @@ pub(crate) fn static_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Sta
     let force = FORCE.map(|name| table.optional(name));
     // an arm that is only pulled at has no payload
     let loads_needed = force.iter().all(Option::is_none);
-    let state = StateColumns::find(table, &arm.driven_joint_names(), loads_needed);
+    let state = StateColumns::find(table, &arm.driven_joints(), loads_needed);
     let components = VectorColumns::find(table, &DISPLACEMENT, purpose);
     let branch = table.optional("branch");
     let (Some(state), Some(components)) = (state, components) else { return Vec::new() };
@@ -215,13 +226,13 @@ pub(crate) fn static_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Sta
     });
     let coarse = rows.iter().filter(|r| r.measured.contains(&None)).map(|r| r.row);
     check_duplicates(table, &coarse.collect());
-    check_angles(table, rows.iter().map(|r| r.pose_deg.as_slice()));
+    check_angles(table, &state.motions, rows.iter().map(|r| r.pose_deg.as_slice()));
     rows
 }
 
 /// Reads modal rows.
 pub(crate) fn modal_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<ModalRow> {
-    let state = StateColumns::find(table, &arm.driven_joint_names(), false);
+    let state = StateColumns::find(table, &arm.driven_joints(), false);
     let mode = table.required("mode");
     let readings = ["frequency_hz", "sigma_hz"].map(|name| reading_column(table, name, purpose));
     let (Some(state), Some(mode), [Some(frequency), Some(sigma_hz)]) = (state, mode, readings) else {
@@ -252,7 +263,7 @@ pub(crate) fn modal_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Moda
         })
     });
     check_duplicates(table, &HashSet::new());
-    check_angles(table, rows.iter().map(|r| r.pose_deg.as_slice()));
+    check_angles(table, &state.motions, rows.iter().map(|r| r.pose_deg.as_slice()));
     rows
 }
 
@@ -291,11 +302,19 @@ pub(crate) fn windup_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Win
 pub(crate) fn position_rows(
     table: &Table,
     arms: &[&str],
-    driven: &[String],
+    driven: &[DrivenJoint],
     purpose: Purpose,
 ) -> Vec<PositionRow> {
-    let joints: Vec<&str> = driven.iter().map(String::as_str).collect();
-    let state = StateColumns::find(table, &joints, false);
+    if any_slides(driven) {
+        table.fault(
+            None,
+            "",
+            "has positions of an arm with prismatic joints, which are not computed".into(),
+            "leave the file away: static.csv and modal.csv take such arms",
+        );
+        return Vec::new();
+    }
+    let state = StateColumns::find(table, driven, false);
     let components = VectorColumns::find(table, &POSITION, purpose);
     let point = table.optional("point");
     let test = table.optional("test");
@@ -322,7 +341,7 @@ pub(crate) fn position_rows(
     });
     let coarse = rows.iter().filter(|r| r.measured.contains(&None)).map(|r| r.row);
     check_duplicates(table, &coarse.collect());
-    check_angles(table, rows.iter().map(|r| r.pose_deg.as_slice()));
+    check_angles(table, &state.motions, rows.iter().map(|r| r.pose_deg.as_slice()));
     rows
 }
 
@@ -369,14 +388,15 @@ fn check_duplicates(table: &Table, coarse: &HashSet<usize>) {
 }
 
 /// Reports angles that are probably radians: those that lie within half a turn in radians in several poses.
-fn check_angles<'a>(table: &Table, poses: impl Iterator<Item = &'a [f64]>) {
+fn check_angles<'a>(table: &Table, motions: &[Motion], poses: impl Iterator<Item = &'a [f64]>) {
     let mut distinct: Vec<&[f64]> = Vec::new();
     for pose in poses {
         if !distinct.contains(&pose) {
             distinct.push(pose);
         }
     }
-    let largest = distinct.iter().flat_map(|p| p.iter()).fold(0.0f64, |m, a| m.max(a.abs()));
+    let angles = distinct.iter().flat_map(|p| p.iter().zip(motions)).filter(|(_, m)| **m == Motion::Turns);
+    let largest = angles.fold(0.0f64, |most, (angle, _)| most.max(angle.abs()));
     if distinct.len() >= 5 && largest > 0.3 && largest < 3.2 {
         table.fault(
             Some(1),

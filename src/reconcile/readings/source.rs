@@ -2,6 +2,7 @@
 
 use super::keys::{COLUMNS as COLUMN_NAMES, FILES, SHEET};
 use crate::arm::effect::channel::Channel;
+use crate::arm::pose::DrivenJoint;
 use crate::input::json::{Node, Object, closest};
 
 /// The usual files of the channels, in the order of [`Channel::ALL`].
@@ -57,9 +58,9 @@ const COLUMNS: [&[&str]; 4] = [
 ];
 
 /// The columns of a channel's table for an arm with these joints, in the order in which people write them.
-pub(crate) fn columns_for(channel: Channel, joints: &[&str]) -> Vec<String> {
+pub(crate) fn columns_for(channel: Channel, joints: &[DrivenJoint]) -> Vec<String> {
     let (label, others) = COLUMNS[channel as usize].split_at(1);
-    let angles = joints.iter().map(|joint| format!("q_{joint}_deg"));
+    let angles = joints.iter().map(|joint| format!("q_{}", joint.key()));
     let angles: Vec<String> = angles.filter(|_| channel != Channel::Windup).collect();
     let own = |name: &&&str| !OWN_SIGMAS.contains(*name) && **name != "arm";
     let others = others.iter().filter(own).map(|name| name.to_string());

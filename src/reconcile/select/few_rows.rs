@@ -234,6 +234,9 @@ fn is_as_stiff(subject: &Subject, nominal: &Subject) -> bool {
     let pieces = subject.structure.pieces.iter().zip(&nominal.structure.pieces);
     let same = |(a, b): (&Piece, &Piece)| match (a, b) {
         (Piece::Joint(a), Piece::Joint(b)) => a.law == b.law && a.tilt_rad_per_nm == b.tilt_rad_per_nm,
+        (Piece::Prismatic(a), Piece::Prismatic(b)) => {
+            a.m_per_n == b.m_per_n && a.guide_rad_per_nm == b.guide_rad_per_nm
+        }
         (Piece::Link(a), Piece::Link(b)) => a.beam == b.beam,
         _ => false,
     };
@@ -244,10 +247,11 @@ fn is_as_stiff(subject: &Subject, nominal: &Subject) -> bool {
 /// Mass of everything from a joint outward, without the payload \[kg\].
 fn outboard_kg(subject: &Subject, joint: &str) -> f64 {
     let pieces = subject.structure.pieces.iter();
-    let outboard = pieces.skip_while(|p| !matches!(p, Piece::Joint(j) if j.name == joint));
+    let outboard = pieces.skip_while(|piece| piece.name() != joint);
     outboard
         .map(|piece| match piece {
             Piece::Joint(joint) => joint.mass_kg,
+            Piece::Prismatic(joint) => joint.total_mass_kg(),
             Piece::Link(link) => link.mass_kg(),
         })
         .sum()

@@ -10,6 +10,7 @@ use super::structure::Structure;
 use super::unnamed;
 use super::waves::{order_functions, waves};
 use crate::arm::effect::channel::Channel;
+use crate::arm::pose::{DrivenJoint, Motion};
 use crate::mechanics::product::transposed_product;
 use crate::reconcile::fit::descent::{Fit, Weights};
 use crate::reconcile::fit::stats::ln_chi_squared_tail;
@@ -280,9 +281,10 @@ fn static_questions(campaign: &Campaign, forward: &Forward, fit: &Fit, ask: Ask)
     };
     let order: Vec<Vec<f64>> = (0..6).flat_map(|k| vary(&|r| order_functions(r as f64 / count)[k])).collect();
     ask("the order of the tests".to_string(), order);
-    for (j, name) in campaign.arm.driven_joint_names().iter().enumerate() {
-        let angle: Vec<Vec<f64>> = (0..4).flat_map(|k| vary(&|r| waves(rows[r].pose_deg[j])[k])).collect();
-        ask(format!("the angle of {name}"), angle);
+    for (j, joint) in campaign.arm.driven_joints().iter().enumerate() {
+        let along = positions_of(joint, rows.iter().map(|row| row.pose_deg[j]));
+        let entry: Vec<Vec<f64>> = (0..4).flat_map(|k| vary(&|r| along[r][k])).collect();
+        ask(format!("the {} of {}", entry_word(joint), joint.name), entry);
     }
     let load: Vec<Vec<f64>> = [
         vary(&|r| rows[r].payload.mass_kg / 10.0),
@@ -295,6 +297,30 @@ fn static_questions(campaign: &Campaign, forward: &Forward, fit: &Fit, ask: Ask)
     ask("loading or unloading".to_string(), branch);
 }
 
+/// Functions of where a joint stands in each row: waves of its angle, or smooth functions of its travel.
+fn positions_of(joint: &DrivenJoint, entries: impl Iterator<Item = f64>) -> Vec<[f64; 4]> {
+    let entries: Vec<f64> = entries.collect();
+    let (low, high) =
+        entries.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), e| (l.min(*e), h.max(*e)));
+    let of = |entry: &f64| match joint.motion {
+        Motion::Turns => waves(*entry),
+        Motion::Slides if high > low => {
+            let [linear, square, sine, cosine, ..] = order_functions((entry - low) / (high - low));
+            [linear, square, sine, cosine]
+        }
+        Motion::Slides => [0.0; 4],
+    };
+    entries.iter().map(of).collect()
+}
+
+/// What the entry of a joint in a pose is called.
+fn entry_word(joint: &DrivenJoint) -> &'static str {
+    match joint.motion {
+        Motion::Turns => "angle",
+        Motion::Slides => "travel",
+    }
+}
+
 fn modal_questions(campaign: &Campaign, forward: &Forward, ask: Ask) {
     let rows = &campaign.modal;
     let first = forward.starts[1];
@@ -302,12 +328,11 @@ fn modal_questions(campaign: &Campaign, forward: &Forward, ask: Ask) {
     let function = |f: &dyn Fn(usize) -> f64| spread(forward, Channel::Modal, |i, _| f(i - first));
     let order = (0..6).map(|k| function(&|r| order_functions(r as f64 / count)[k])).collect();
     ask("the order of the tests".to_string(), order);
-    for (j, name) in campaign.arm.driven_joint_names().iter().enumerate() {
-        let low = |r: usize, k: usize| if rows[r].mode <= 2 { waves(rows[r].pose_deg[j])[k] } else { 0.0 };
-        let angle = (0..4)
-            .flat_map(|k| [function(&|r| waves(rows[r].pose_deg[j])[k]), function(&|r| low(r, k))])
-            .collect();
-        ask(format!("the angle of {name}"), angle);
+    for (j, joint) in campaign.arm.driven_joints().iter().enumerate() {
+        let along = positions_of(joint, rows.iter().map(|row| row.pose_deg[j]));
+        let low = |r: usize, k: usize| if rows[r].mode <= 2 { along[r][k] } else { 0.0 };
+        let entry = (0..4).flat_map(|k| [function(&|r| along[r][k]), function(&|r| low(r, k))]).collect();
+        ask(format!("the {} of {}", entry_word(joint), joint.name), entry);
     }
     let load = vec![function(&|r| rows[r].payload.mass_kg / 10.0), function(&|_| 1.0)];
     ask("the payload".to_string(), load);

@@ -46,10 +46,7 @@ pub(crate) fn opposed(forward: &Forward, fit: &Fit) -> Option<String> {
 fn distance(forward: &Forward, a: &Candidate, b: &Candidate) -> Option<usize> {
     let structure = &forward.nominal.structure;
     let at = |candidate: &Candidate| {
-        let named = |piece: &Piece| match piece {
-            Piece::Joint(joint) => joint.name == candidate.at,
-            Piece::Link(link) => link.name == candidate.at,
-        };
+        let named = |piece: &Piece| piece.name() == candidate.at;
         match structure.place(&candidate.at, candidate.kind.places) {
             Some(Place::Payload) => Some(structure.pieces.len()),
             _ => structure.pieces.iter().position(named),

@@ -80,6 +80,15 @@ fn calibrate(arm: &mut Arm, calibration: &Calibration, factor: f64) {
             (Calibration::Bearing { joint: name, .. }, Element::Joint(joint)) if joint.name == *name => {
                 joint.bearing = joint.bearing.map(|bearing| bearing.stiffened(factor));
             }
+            (Calibration::Mass(name), Element::Prismatic(joint)) if joint.name == *name => {
+                joint.mass_kg *= factor;
+            }
+            (Calibration::Drive { joint: name, .. }, Element::Prismatic(joint)) if joint.name == *name => {
+                joint.stiffness_n_per_m = joint.stiffness_n_per_m.map(|k| k * factor);
+            }
+            (Calibration::Guide { joint: name, .. }, Element::Prismatic(joint)) if joint.name == *name => {
+                joint.guide = joint.guide.stiffened(factor);
+            }
             (Calibration::Modulus(name, _), Element::Link(link)) => {
                 if let LinkBody::Tube { material_name, material, .. } = &mut link.body
                     && material_name == name

@@ -8,6 +8,7 @@
 use super::outcome::{NextTest, Verdict};
 use crate::arm::effect::subject::Subject;
 use crate::arm::load::Payload;
+use crate::arm::pose::Motion;
 use crate::reconcile::model::exact::Exact;
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::components::{Component, Components};
@@ -117,6 +118,7 @@ fn repeat(campaign: &Campaign, pose: &[f64]) -> NextTest {
         description:
             "repeat this pose, which the best model misses most, loading and unloading, on another day".into(),
         pose_deg: Some(pose.to_vec()),
+        joints: campaign.arm.driven_joints(),
         payload_kg: largest_payload(campaign).mass_kg,
         force_n: [0.0; 3],
         joint: None,
@@ -136,21 +138,29 @@ fn largest_payload(campaign: &Campaign) -> Payload {
         .unwrap_or(Payload { mass_kg: 5.0, cg_m: Vector3::new(0.05, 0.0, 0.0), ..Payload::default() })
 }
 
-/// Smallest and largest angle of each joint in the campaign \[deg\].
+/// Smallest and largest entry of each joint in the poses of the campaign \[deg, mm\].
 fn ranges(campaign: &Campaign) -> Vec<(f64, f64)> {
-    let joints = campaign.arm.driven_joint_names().len();
+    let joints = campaign.arm.driven_joints();
     let poses =
         || campaign.statics.iter().map(|r| &r.pose_deg).chain(campaign.modal.iter().map(|r| &r.pose_deg));
-    (0..joints)
-        .map(|j| {
+    joints
+        .iter()
+        .enumerate()
+        .map(|(j, joint)| {
             let low = poses().map(|p| p[j]).fold(f64::INFINITY, f64::min);
             let high = poses().map(|p| p[j]).fold(f64::NEG_INFINITY, f64::max);
-            if low < high { (low, high) } else { (-90.0, 90.0) }
+            match joint.motion {
+                _ if low < high => (low, high),
+                Motion::Turns => (-90.0, 90.0),
+                // how far a travel goes is not known
+                Motion::Slides if low.is_finite() => (low, low),
+                Motion::Slides => (0.0, 0.0),
+            }
         })
         .collect()
 }
 
-/// A pose of Halton's sequence within ranges of angles, in whole degrees.
+/// A pose of Halton's sequence within ranges of angles and travels, in whole degrees and millimetres.
 pub(crate) fn spread_pose(ranges: &[(f64, f64)], index: usize) -> Vec<f64> {
     ranges
         .iter()
@@ -320,6 +330,7 @@ fn describe(question: &Question, test: &Test, sigmas: f64, open: &[usize]) -> Ne
         kind: kind.into(),
         description: description.into(),
         pose_deg,
+        joints: question.campaign.arm.driven_joints(),
         payload_kg,
         force_n: force_n.into(),
         joint,

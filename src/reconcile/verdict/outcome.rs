@@ -5,6 +5,7 @@ use super::files::{CORRECTED_FILE, corrected_files};
 use super::stage::Stage;
 use crate::arm::Arm;
 use crate::arm::effect::channel::Channel;
+use crate::arm::pose::{DrivenJoint, pose_json};
 use crate::reconcile::fit::held_out::HeldOut;
 use crate::reconcile::fit::noise::Noise;
 use crate::reconcile::model::estimate::{Estimate, Finding};
@@ -69,8 +70,10 @@ pub struct NextTest {
     pub kind: String,
     /// What to do, in words.
     pub description: String,
-    /// Pose, if the test has one \[deg\].
+    /// Pose, if the test has one: angles \[deg\] and travels \[mm\].
     pub pose_deg: Option<Vec<f64>>,
+    /// The driven joints, whose entries the pose has.
+    pub joints: Vec<DrivenJoint>,
     /// Payload \[kg\].
     pub payload_kg: f64,
     /// Tip force \[N\].
@@ -189,6 +192,7 @@ impl NextTest {
             kind: "another kind".into(),
             description,
             pose_deg: None,
+            joints: Vec::new(),
             payload_kg: 0.0,
             force_n: [0.0; 3],
             joint: None,
@@ -199,8 +203,12 @@ impl NextTest {
     }
 
     fn json(&self) -> Value {
+        let (key, pose) = match &self.pose_deg {
+            Some(pose) => pose_json(&self.joints, pose),
+            None => ("pose_deg", Value::Null),
+        };
         json!({
-            "kind": self.kind, "description": self.description, "pose_deg": self.pose_deg,
+            "kind": self.kind, "description": self.description, key: pose,
             "payload_kg": self.payload_kg, "force_n": self.force_n, "joint": self.joint,
             "separates": self.separates, "expected_sigmas": self.expected_sigmas,
             "readings_needed": self.readings_needed,

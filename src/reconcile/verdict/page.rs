@@ -5,12 +5,12 @@ use super::stage::Stage;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::entry::word_of;
 use crate::reconcile::model::estimate::{Estimate, Finding};
-use crate::reconcile::readings::campaign::Campaign;
+use crate::reconcile::readings::campaign::{Campaign, driven_joints};
 use crate::reconcile::records;
 use crate::report::html::campaign::{CampaignPage, Compared, Found, Ranged, Reading, Test, Weighed};
-use crate::report::html::pick::degrees;
 use crate::report::html::positions::{Position, Step};
 use crate::report::number::{fixed, shortest};
+use crate::report::pose::pose_signs;
 use crate::report::section::PageSection;
 use crate::report::table::{Column, Table};
 
@@ -22,7 +22,7 @@ pub fn campaign_page(campaign: &Campaign, outcome: &Outcome) -> CampaignPage {
         sentence: sentence(outcome),
         reasons: outcome.reasons.clone(),
         explained: outcome.verdict == Verdict::Explained,
-        joints: campaign.driven_joint_names(),
+        joints: driven_joints(&campaign.arms()),
         parts: outcome
             .located
             .iter()
@@ -191,7 +191,7 @@ fn test(test: &NextTest) -> Test {
     }
     if let Some(pose) = &test.pose_deg {
         let rounded: Vec<f64> = pose.iter().map(|a| (10.0 * a).round() / 10.0).collect();
-        words.push_str(&format!(" at pose {}", degrees(&rounded)));
+        words.push_str(&format!(" at pose {}", pose_signs(&test.joints, &rounded)));
     }
     if test.payload_kg > 0.0 {
         words.push_str(&format!(", payload {} kg", shortest(test.payload_kg)));

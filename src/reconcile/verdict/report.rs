@@ -3,8 +3,10 @@
 use super::files::{CORRECTED_FILE, corrected_files};
 use super::outcome::{Outcome, Verdict};
 use crate::arm::effect::entry::word_of;
+use crate::arm::pose::any_slides;
 use crate::reconcile::model::estimate::{Estimate, Finding};
 use crate::reconcile::records;
+use crate::report::pose::pose_words;
 use crate::report::whole_file::{create_folder, write_whole};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -36,7 +38,11 @@ impl Outcome {
         self.quality(&mut out);
         if let Some(test) = self.next_tests.first() {
             let angles = |p: &Vec<f64>| p.iter().map(|a| format!("{a:.1}")).collect::<Vec<_>>().join(", ");
-            let pose = test.pose_deg.as_ref().map_or(String::new(), |p| format!(" at [{}] deg", angles(p)));
+            let words = |p: &Vec<f64>| match any_slides(&test.joints) {
+                true => pose_words(&test.joints, p),
+                false => format!("[{}] deg", angles(p)),
+            };
+            let pose = test.pose_deg.as_ref().map_or(String::new(), |p| format!(" at {}", words(p)));
             let joint = test.joint.as_ref().map_or(String::new(), |j| format!(" of {j}"));
             let expect = match test.expected_sigmas {
                 0.0 => String::new(),

@@ -4,8 +4,10 @@
 
 use super::gallery::{Gallery, Page};
 use super::positions::{Position, Step, angles_figure, axes_figure, sizes_figure, steps_figure};
+use crate::arm::pose::{DrivenJoint, Motion};
 use crate::report::braille::bar;
 use crate::report::number::{fixed, significant};
+use crate::report::pose::pose_signs;
 use crate::report::section::{Figure, PageSection};
 use crate::report::svg::draw::MUTED;
 use crate::report::svg::plot::{Axis, Guide, Plot, Series, Stroke};
@@ -115,8 +117,8 @@ pub struct CampaignPage {
     pub reasons: Vec<String>,
     /// Whether the effects explain the gap; else they are suspects.
     pub explained: bool,
-    /// Names of the driven joints.
-    pub joints: Vec<String>,
+    /// The driven joints.
+    pub joints: Vec<DrivenJoint>,
     /// The gap by part of the readings: channel, branch, load, mode, joint.
     pub parts: Vec<Compared>,
     /// Every number that was measured.
@@ -154,7 +156,8 @@ impl CampaignPage {
         let show = |gallery: &mut Gallery, figure: Option<Figure>| figure.map(|f| gallery.show(&f));
         let channels = show(&mut gallery, self.channels_figure());
         let located = self.located_figures();
-        let angles = angles_figure(&self.joints, &self.positions);
+        let names: Vec<String> = self.joints.iter().map(|joint| joint.name.clone()).collect();
+        let angles = angles_figure(&names, &self.positions);
         let located: Vec<Value> = located.into_iter().chain(angles).map(|f| gallery.show(&f)).collect();
         let residuals = self.residual_figures().into_iter().chain(axes_figure(&self.positions));
         let residuals: Vec<Value> = residuals.map(|f| gallery.show(&f)).collect();
@@ -250,7 +253,7 @@ impl CampaignPage {
 
     /// The gap at each pose, the worst first.
     fn by_pose(&self) -> Vec<Compared> {
-        let name = |r: &Reading| r.pose_deg.as_ref().map(|p| super::pick::degrees(p));
+        let name = |r: &Reading| r.pose_deg.as_ref().map(|p| pose_signs(&self.joints, p));
         let mut rows = self.split(|r| name(r).into_iter().collect());
         rows.sort_by(|a, b| b.before.total_cmp(&a.before));
         rows.truncate(MOST_ROWS);
@@ -267,7 +270,11 @@ impl CampaignPage {
         let part = |j: usize, third: usize| {
             let (low, high) = ranges[j];
             let end = |i: usize| fixed(low + (high - low) * i as f64 / THIRDS as f64, 0);
-            format!("{} at {}° to {}°", self.joints[j], end(third), end(third + 1))
+            let DrivenJoint { name, motion } = &self.joints[j];
+            match motion {
+                Motion::Turns => format!("{name} at {}° to {}°", end(third), end(third + 1)),
+                Motion::Slides => format!("{name} at {} to {} mm", end(third), end(third + 1)),
+            }
         };
         let names = |r: &Reading| -> Vec<String> {
             let Some(pose) = &r.pose_deg else { return Vec::new() };
@@ -556,7 +563,7 @@ mod tests {
         CampaignPage {
             name: "c".into(),
             sentence: "The gap is explained by lost motion at j2.".into(),
-            joints: vec!["j1".into(), "j2".into()],
+            joints: ["j1", "j2"].map(DrivenJoint::turning).to_vec(),
             readings: vec![reading(0.0, 3.0), reading(90.0, 4.0), reading(90.0, 4.0)],
             ..CampaignPage::default()
         }

@@ -11,6 +11,7 @@ use crate::mechanics::statics::Statics;
 use crate::report::file_names::file_name;
 use crate::report::number::{cost_words, fixed, percent, shortest, significant};
 use crate::report::picks::Pick;
+use crate::report::pose::pose_signs;
 use crate::report::section::Figure;
 use crate::report::springs::springs_in;
 use crate::report::svg::arm::{ArmSketch, Pivot, Place, Tube};
@@ -136,13 +137,13 @@ impl PickedArm {
         sketch.description = format!(
             "{} Pose {}. Grey: without weight. Blue: bent by gravity and load, {factor} times exaggerated.",
             view.words,
-            degrees(&solved.case.pose_deg)
+            pose_signs(&self.arm.driven_joints(), &solved.case.pose_deg)
         );
         sketch.width_px = 620.0;
         let caption = format!(
             "{} Pose {}, payload {} kg (square).",
             view.words,
-            degrees(&solved.case.pose_deg),
+            pose_signs(&self.arm.driven_joints(), &solved.case.pose_deg),
             shortest(solved.case.payload.mass_kg)
         );
         Figure {
@@ -188,6 +189,11 @@ impl PickedArm {
                 LinkBody::Offset { .. } => 0.0,
             },
         });
+        let ways = self.arm.prismatics().map(|joint| Tube {
+            name: joint.name.clone(),
+            line: own(&joint.name),
+            size_m: 0.0,
+        });
         let pivots = line.iter().filter_map(|s| {
             let axis = s.axis?;
             let across = axis.dot(&view.across()).abs() > 0.7;
@@ -199,7 +205,7 @@ impl PickedArm {
         });
         let tip = line.last().map_or(Vector3::zeros(), |s| s.moved_m);
         ArmSketch {
-            tubes: tubes.collect(),
+            tubes: ways.chain(tubes).collect(),
             pivots: pivots.collect(),
             payload: (solved.case.payload.mass_kg > 0.0)
                 .then(|| (view.place(&solved.payload_m), view.place(&tip))),
@@ -240,7 +246,7 @@ impl PickedArm {
                 }
                 LinkBody::Offset { .. } => None,
             },
-            Element::Joint(_) => None,
+            Element::Joint(_) | Element::Prismatic(_) => None,
         };
         self.arm.chain.iter().filter_map(element).collect()
     }
@@ -283,7 +289,7 @@ fn solve<'a>(arm: &Arm, case: &'a LoadCase) -> Solved<'a> {
     let chain = Chain::new(&structure, case.links);
     let posed = chain.pose(case);
     let statics = posed.statics();
-    let pose_rad: Vec<f64> = case.pose_deg.iter().map(|a| a.to_radians()).collect();
+    let pose_rad = chain.pose_si(&case.pose_deg);
     let modes = posed.modes(&statics, MODES);
     Solved {
         case,
@@ -293,11 +299,6 @@ fn solve<'a>(arm: &Arm, case: &'a LoadCase) -> Solved<'a> {
         modes: modes.into_iter().map(|m| (m.clone(), posed.centre_line(&pose_rad, &m.coordinates))).collect(),
         payload_m: payload_place(&posed, case),
     }
-}
-
-/// A pose in words: `0°, -45°, 90°`.
-pub(crate) fn degrees(pose_deg: &[f64]) -> String {
-    pose_deg.iter().map(|a| format!("{}°", shortest(*a))).collect::<Vec<_>>().join(", ")
 }
 
 fn payload_place(posed: &Posed, case: &LoadCase) -> Vector3<f64> {

@@ -1,0 +1,29 @@
+//! Keys that several kinds of elements of a chain have: a name, an axis.
+
+use super::load::vector;
+use crate::input::json::{Node, Object};
+use nalgebra::{Unit, Vector3};
+
+/// Reads the name of an element.
+pub(crate) fn read_name(object: &Object) -> Option<String> {
+    let node = object.required("name")?;
+    match node.string()? {
+        "" => node.fault("is empty", "give every element a name"),
+        name => Some(name.to_string()),
+    }
+}
+
+/// Reads a direction; its length does not matter.
+pub(crate) fn read_axis(node: &Node) -> Option<Unit<Vector3<f64>>> {
+    let axis = vector(node)?;
+    if (axis.norm_squared() - 1.0).abs() <= 4.0 * f64::EPSILON {
+        // a vector of unit length is kept to the last bit, so that a written arm reads back the same
+        return Some(Unit::new_unchecked(axis));
+    }
+    // scaled by its largest entry first, since very long and very short vectors have a direction too
+    let largest = axis.amax();
+    let direction = if largest > 0.0 { Unit::try_new(axis / largest, 0.5) } else { None };
+    direction.or_else(|| {
+        node.fault("has no direction", "give a vector such as [0, 1, 0]; its length does not matter")
+    })
+}

@@ -1,0 +1,273 @@
+//! Prismatic joints: a carriage on a rail, a column, a ram, a screw.
+//!
+//! The joint slides along its axis. Its *drive* (a screw or a rack and what holds it) is a spring along the travel. Its
+//! *guide* is three rotational springs: roll about the travel, pitch about the y and yaw about the z of a section frame whose
+//! x is the travel. Forces across the travel do not move the guide: what a pair of runner blocks gives under them is small
+//! beside what their tilt gives at the end of an overhang.
+//!
+//! Where the springs stand depends on what moves. The blocks of a `carriage` travel with it, so that the overhang outboard of
+//! them is the same at every travel. The blocks of a `ram` stay where the joint begins, and the ram reaches further out of
+//! them the further it travels.
+
+use super::body::{JointBodies, read_prismatic_bodies};
+use super::element_keys::{read_axis, read_name};
+use super::prismatic_keys::GUIDE;
+use crate::input::json::{Node, Object};
+use nalgebra::{Unit, Vector3};
+use serde_json::{Map, Value, json};
+
+/// A prismatic joint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prismatic {
+    /// Name, unique in the arm.
+    pub name: String,
+    /// Direction of the travel in the carried frame.
+    pub axis: Unit<Vector3<f64>>,
+    /// Stiffness along the travel \[N/m\]; `None` is rigid.
+    pub stiffness_n_per_m: Option<f64>,
+    /// What the guide yields to.
+    pub guide: Guide,
+    /// What travels.
+    pub moves: Moves,
+    /// Mass that travels \[kg\], a point at the moved point and outboard of all springs.
+    pub mass_kg: f64,
+    /// Mass that stays where the joint begins \[kg\], a point inboard of all springs.
+    pub fixed_mass_kg: f64,
+    /// Rigid bodies: those that stay are measured from where the joint begins, those that travel from the moved point.
+    pub bodies: JointBodies,
+}
+
+/// What travels in a prismatic joint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Moves {
+    /// A carriage on a rail: the springs of the guide travel.
+    #[default]
+    Carriage,
+    /// A ram in fixed guides: the springs of the guide stay.
+    Ram,
+}
+
+impl Moves {
+    /// The word for this in files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Moves::Carriage => "carriage",
+            Moves::Ram => "ram",
+        }
+    }
+}
+
+/// Moment per tilt of a guide \[N m/rad\]; `None` is rigid.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Guide {
+    /// About the travel.
+    pub roll_nm_per_rad: Option<f64>,
+    /// About the y of the section frame whose x is the travel.
+    pub pitch_nm_per_rad: Option<f64>,
+    /// About the z of this frame.
+    pub yaw_nm_per_rad: Option<f64>,
+}
+
+const GUIDE_KEYS: [&str; 3] = ["roll_nm_per_rad", "pitch_nm_per_rad", "yaw_nm_per_rad"];
+
+impl Guide {
+    /// The stiffnesses: roll, pitch, yaw.
+    pub fn stiffnesses(&self) -> [Option<f64>; 3] {
+        [self.roll_nm_per_rad, self.pitch_nm_per_rad, self.yaw_nm_per_rad]
+    }
+
+    /// Tilt per moment: roll, pitch, yaw \[rad/(N m)\]; 0 where the guide is rigid.
+    pub fn rad_per_nm(&self) -> Vector3<f64> {
+        Vector3::from(self.stiffnesses().map(|k| k.map_or(0.0, |k| 1.0 / k)))
+    }
+
+    /// The same guide with its stiffnesses times a factor.
+    #[must_use]
+    pub fn stiffened(self, factor: f64) -> Self {
+        let [roll_nm_per_rad, pitch_nm_per_rad, yaw_nm_per_rad] =
+            self.stiffnesses().map(|k| k.map(|k| k * factor));
+        Self { roll_nm_per_rad, pitch_nm_per_rad, yaw_nm_per_rad }
+    }
+
+    fn read(node: &Node) -> Option<Self> {
+        let object = node.shaped(&GUIDE)?;
+        let [roll, pitch, yaw] = GUIDE_KEYS.map(|key| object.or(key, None, positive_or_rigid));
+        Some(Self { roll_nm_per_rad: roll?, pitch_nm_per_rad: pitch?, yaw_nm_per_rad: yaw? })
+    }
+
+    fn to_json(self) -> Value {
+        let entries: Map<String, Value> =
+            GUIDE_KEYS.iter().zip(self.stiffnesses()).map(|(key, k)| (key.to_string(), json!(k))).collect();
+        Value::Object(entries)
+    }
+}
+
+/// A stiffness; `null` is rigid.
+fn positive_or_rigid(node: &Node) -> Option<Option<f64>> {
+    if node.is_null() { Some(None) } else { node.positive().map(Some) }
+}
+
+impl Prismatic {
+    /// All that the joint weighs \[kg\].
+    pub fn total_mass_kg(&self) -> f64 {
+        self.mass_kg + self.fixed_mass_kg + self.bodies.mass_kg()
+    }
+
+    /// Reads a prismatic joint; the caller has checked the keys.
+    pub(crate) fn read(object: &Object) -> Option<Self> {
+        let name = read_name(object);
+        let axis = object.required("axis").and_then(|n| read_axis(&n));
+        let stiffness = match object.optional("stiffness_n_per_m") {
+            Some(node) => positive_or_rigid(&node),
+            None => object.node().fault(
+                "says nothing of its stiffness",
+                "add \"stiffness_n_per_m\", the force per way along the travel (null = rigid)",
+            ),
+        };
+        let guide = object.or("guide", Guide::default(), Guide::read);
+        let moves = object.or("moves", Moves::default(), read_moves);
+        let mass_kg = object.or("mass_kg", 0.0, Node::non_negative);
+        let fixed_mass_kg = object.or("fixed_mass_kg", 0.0, Node::non_negative);
+        let bodies = read_prismatic_bodies(object);
+        Some(Self {
+            name: name?,
+            axis: axis?,
+            stiffness_n_per_m: stiffness?,
+            guide: guide?,
+            moves: moves?,
+            mass_kg: mass_kg?,
+            fixed_mass_kg: fixed_mass_kg?,
+            bodies: bodies?,
+        })
+    }
+
+    /// The joint as files write it.
+    pub(crate) fn to_json(&self) -> Value {
+        let mut value = json!({
+            "type": "prismatic",
+            "name": self.name,
+            "axis": self.axis.as_slice(),
+            "stiffness_n_per_m": self.stiffness_n_per_m,
+            "guide": self.guide.to_json(),
+            "moves": self.moves.word(),
+            "mass_kg": self.mass_kg,
+            "fixed_mass_kg": self.fixed_mass_kg,
+        });
+        if let Some(bodies) = self.bodies.to_json_that("travels") {
+            value["bodies"] = bodies;
+        }
+        value
+    }
+
+    /// The joint as the mechanics sees it, without any effect. `entry` is the number of its entry in a pose.
+    pub(crate) fn piece(&self, entry: usize) -> PrismaticPiece {
+        PrismaticPiece {
+            name: self.name.clone(),
+            axis: self.axis,
+            m_per_n: self.stiffness_n_per_m.map_or(0.0, |k| 1.0 / k),
+            guide_rad_per_nm: self.guide.rad_per_nm(),
+            moves: self.moves,
+            mass_kg: self.mass_kg,
+            fixed_mass_kg: self.fixed_mass_kg,
+            bodies: self.bodies.clone(),
+            entry,
+        }
+    }
+}
+
+fn read_moves(node: &Node) -> Option<Moves> {
+    match node.string()? {
+        "carriage" => Some(Moves::Carriage),
+        "ram" => Some(Moves::Ram),
+        other => node.fault(
+            format!("\"{other}\" is not known"),
+            "choose carriage (the guide travels) or ram (the guide stays, and the ram reaches out of it)",
+        ),
+    }
+}
+
+/// A prismatic joint as the mechanics sees it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PrismaticPiece {
+    /// Name.
+    pub name: String,
+    /// Direction of the travel in the carried frame.
+    pub axis: Unit<Vector3<f64>>,
+    /// Way along the travel per force \[m/N\]; 0 is rigid.
+    pub m_per_n: f64,
+    /// Tilt of the guide per moment: roll, pitch, yaw \[rad/(N m)\]; 0 is rigid.
+    pub guide_rad_per_nm: Vector3<f64>,
+    /// What travels, which says where the springs of the guide stand.
+    pub moves: Moves,
+    /// Mass that travels \[kg\].
+    pub mass_kg: f64,
+    /// Mass that stays \[kg\].
+    pub fixed_mass_kg: f64,
+    /// Rigid bodies, those that stay and those that travel.
+    pub bodies: JointBodies,
+    /// Number of its entry in a pose.
+    pub entry: usize,
+}
+
+impl PrismaticPiece {
+    /// All that the joint weighs \[kg\].
+    pub fn total_mass_kg(&self) -> f64 {
+        self.mass_kg + self.fixed_mass_kg + self.bodies.mass_kg()
+    }
+
+    /// Whether the guide tilts about none of its axes.
+    pub fn guide_is_rigid(&self) -> bool {
+        self.guide_rad_per_nm == Vector3::zeros()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::arm::file::read_arm_document;
+    use crate::arm::{Arm, Element};
+    use crate::catalog::Catalogs;
+    use crate::input::json::{Document, Faults};
+
+    const GANTRY: &str = r#"{"chain": [
+        {"type": "prismatic", "name": "rail", "axis": [2, 0, 0], "stiffness_n_per_m": 5e7, "mass_kg": 12,
+         "fixed_mass_kg": 3, "guide": {"roll_nm_per_rad": 1e5, "pitch_nm_per_rad": null},
+         "bodies": [{"mass_kg": 1, "travels": true}, {"mass_kg": 2}]},
+        {"type": "prismatic", "name": "z", "axis": [0, 0, 1], "stiffness_n_per_m": null, "moves": "ram"},
+        {"type": "joint", "name": "j", "axis": [0, 0, 1], "stiffness_nm_per_rad": 1e4, "coupled": COUPLED}]}"#;
+
+    fn read(text: &str) -> Result<Arm, Faults> {
+        let text = text.replace(", \"coupled\": COUPLED", "");
+        read_arm_document(Document::parse("arm.json", &text)?, &Catalogs::default())
+    }
+
+    #[test]
+    fn a_prismatic_joint_reads_back_as_it_was_written() {
+        let arm = read(GANTRY).expect("sound");
+        let again = arm.to_json().to_string();
+        let written =
+            read_arm_document(Document::parse("b.json", &again).expect("JSON"), &Catalogs::default());
+        assert_eq!(written.expect("sound"), arm);
+        assert_eq!(arm.mass_kg(), 18.0);
+        let Element::Prismatic(rail) = &arm.chain[0] else { panic!("a prismatic joint") };
+        assert_eq!((rail.guide.roll_nm_per_rad, rail.guide.pitch_nm_per_rad), (Some(1e5), None));
+        let driven: Vec<String> = arm.driven_joints().iter().map(|joint| joint.key()).collect();
+        assert_eq!(driven, ["rail_mm", "z_mm", "j_deg"]);
+    }
+
+    #[test]
+    fn every_fault_of_a_prismatic_joint_says_what_to_write() {
+        let text = GANTRY
+            .replace("\"moves\": \"ram\"", "\"moves\": \"piston\"")
+            .replace("5e7", "-1")
+            .replace("\"stiffness_n_per_m\": null, ", "");
+        let faults = read(&text).expect_err("three faults").to_string();
+        for says in ["-1", "choose carriage", "add \"stiffness_n_per_m\""] {
+            assert!(faults.contains(says), "{says}: {faults}");
+        }
+        let coupled = GANTRY.replace("COUPLED", "{\"rail\": 1}");
+        let faults =
+            read_arm_document(Document::parse("a.json", &coupled).expect("JSON"), &Catalogs::default());
+        let faults = faults.expect_err("coupled to a slide").to_string();
+        assert!(faults.contains("\"rail\", which is no driven joint that turns"), "{faults}");
+    }
+}

@@ -1,0 +1,86 @@
+//! Prismatic joints in a pose.
+//!
+//! One unit of the way `s` along the travel `a` moves everything outboard by `a`: the twist of the drive is `(a, 0)`, and the
+//! generalized force on it is the force of gravity and load along the travel, `F = a · Σ f`. The drive yields by `F/k`. The
+//! guide turns everything outboard about three axes through one point, by moment over stiffness. That point is where the
+//! runner blocks are: at the moved point if a carriage moves, where the joint begins if a ram does.
+
+use super::beam::section_frame;
+use super::chain::{ElasticElement, Item, Walk, Yielding};
+use super::{Wrench, angular, linear, rotation_twist, stack};
+use crate::arm::prismatic::{Moves, PrismaticPiece};
+use crate::arm::springs::{ElementFrame, Side};
+use nalgebra::{Matrix3, Vector3};
+
+/// What the guide of a prismatic joint carries, at the point of its springs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GuideLoad {
+    /// Name of the joint.
+    pub name: String,
+    /// Force along the travel, which the drive holds, and across it along the y and z of the guide \[N\].
+    pub force_n: Vector3<f64>,
+    /// Moment about the travel (roll) and about the y (pitch) and z (yaw) of the guide \[N m\].
+    pub moment_nm: Vector3<f64>,
+}
+
+impl GuideLoad {
+    /// What a wrench about the world's origin puts on a guide with this frame at this place.
+    pub(super) fn of(name: &str, wrench: &Wrench, frame: &Matrix3<f64>, at_m: &Vector3<f64>) -> Self {
+        let force_n = linear(wrench);
+        let moment_nm = angular(wrench) - at_m.cross(&force_n);
+        Self { name: name.to_string(), force_n: frame.tr_mul(&force_n), moment_nm: frame.tr_mul(&moment_nm) }
+    }
+}
+
+/// Name of the guide of a prismatic joint among the elastic elements.
+pub(crate) fn guide_name(joint: &str) -> String {
+    format!("{joint}.guide")
+}
+
+impl Walk {
+    /// Adds a prismatic joint at a travel \[m\]: what stays, the springs of guide and drive, what travels.
+    pub(super) fn prismatic(&mut self, index: usize, joint: &PrismaticPiece, travel_m: f64) {
+        self.point_mass(joint.fixed_mass_kg, self.at_m);
+        self.bodies(&joint.bodies.fixed);
+        let frame = self.rotation.matrix() * section_frame(&joint.axis);
+        let moved_m = self.at_m + frame.column(0) * travel_m;
+        let springs_m = match joint.moves {
+            Moves::Carriage => moved_m,
+            Moves::Ram => self.at_m,
+        };
+        if !joint.guide_is_rigid() {
+            self.items.push(Item::Elastic(guide(joint, &frame, &springs_m)));
+        }
+        self.items.push(Item::Elastic(ElasticElement {
+            name: joint.name.clone(),
+            at_m: springs_m,
+            twists: vec![stack(&frame.column(0).into(), &Vector3::zeros())],
+            yielding: Yielding::Slide { m_per_n: joint.m_per_n, frame },
+            torque_nm: 0.0,
+            own: None,
+        }));
+        self.at_m = moved_m;
+        self.point_mass(joint.mass_kg, moved_m);
+        self.bodies(&joint.bodies.rotating);
+        // a spring on the joint pulls at what travels
+        self.frames.push(ElementFrame { at_m: moved_m, rotation: self.rotation, hinge: None });
+        self.load(Side::Moving(index));
+    }
+}
+
+/// The springs of a guide, of those axes about which it tilts.
+fn guide(joint: &PrismaticPiece, frame: &Matrix3<f64>, springs_m: &Vector3<f64>) -> ElasticElement {
+    let axes = frame.column_iter().zip(joint.guide_rad_per_nm.iter());
+    let (twists, compliances) = axes
+        .filter(|(_, compliance)| **compliance > 0.0)
+        .map(|(axis, compliance)| (rotation_twist(&axis.into_owned(), springs_m), *compliance))
+        .unzip();
+    ElasticElement {
+        name: guide_name(&joint.name),
+        at_m: *springs_m,
+        twists,
+        yielding: Yielding::Linear(compliances),
+        torque_nm: 0.0,
+        own: None,
+    }
+}

@@ -1,0 +1,138 @@
+//! Arms and studies with prismatic joints on the command line.
+
+use serde_json::{Value, json};
+use std::fs;
+use std::process::{Command, Output};
+
+fn run(folder: &std::path::Path, words: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_armwright")).current_dir(folder).args(words).output().expect("it starts")
+}
+
+fn errors(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// A rail along y, and a boom of a metre with 10 kg at its end.
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let arm = json!({"name": "boom", "chain": [
+        {"type": "prismatic", "name": "rail", "axis": [0, 1, 0], "stiffness_n_per_m": 1e7, "mass_kg": 20,
+         "guide": {"roll_nm_per_rad": 1e5}},
+        {"type": "joint", "name": "j2", "axis": [0, 1, 0], "stiffness_nm_per_rad": 2e5},
+        {"type": "link", "name": "boom", "vector_m": [1, 0, 0]}]});
+    fs::write(folder.path().join("arm.json"), arm.to_string()).expect("written");
+    folder
+}
+
+#[test]
+fn analyze_prints_what_drive_and_guide_hold() {
+    let folder = folder();
+    let words = [
+        "analyze",
+        "arm.json",
+        "--pose",
+        "rail_mm=250,j2_deg=-30",
+        "--payload-kg",
+        "10",
+        "--force-n",
+        "0,50,0",
+    ];
+    let output = run(folder.path(), &[&words[..], &["--json"]].concat());
+    assert!(output.status.success(), "{}", errors(&output));
+    let out: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(out["joint_force_n"], json!({"rail": 50.0}));
+    assert_eq!(out["joint_torque_nm"].as_object().expect("torques").len(), 1);
+    let close = |value: &Value, expected: f64| (value.as_f64().expect("a number") - expected).abs() < 1e-9;
+    // the rail travels along y: the weight at 0.866 m turns it about y, which is its roll
+    let lever_m = 30f64.to_radians().cos();
+    assert!(close(&out["guide_moment_nm"]["rail"][0], 98.1 * lever_m), "{out}");
+    assert!(close(&out["guide_force_n"]["rail"][1], -98.1), "{out}");
+    let names: Vec<&str> =
+        out["shares"].as_array().expect("shares").iter().filter_map(|s| s["element"].as_str()).collect();
+    assert_eq!(names, ["rail.guide", "rail", "j2"]);
+    let text = run(folder.path(), &words);
+    let text = String::from_utf8_lossy(&text.stdout).into_owned();
+    for line in ["pose rail 250 mm, j2 -30 deg", "50.000 N", "guide          force across N"] {
+        assert!(text.contains(line), "{line}: {text}");
+    }
+}
+
+#[test]
+fn a_pose_that_does_not_fit_says_what_to_write() {
+    let folder = folder();
+    for (flags, says) in [
+        (["--pose-deg", "250,30"], "write --pose rail_mm=0,j2_deg=0 with your numbers"),
+        (["--pose", "rail_deg=250"], "rail slides: write rail_mm"),
+        (["--pose", "rail"], "no entry such as j2_deg=30 or rail_mm=250"),
+    ] {
+        let output = run(folder.path(), &["analyze", "arm.json", flags[0], flags[1]]);
+        assert_eq!(output.status.code(), Some(2), "{flags:?}");
+        assert!(errors(&output).contains(says), "{flags:?}: {}", errors(&output));
+    }
+}
+
+/// The front of a study with a rail, designed and analysed once more, has the figures of the front.
+#[test]
+fn a_study_with_a_rail_runs_designs_and_analyses() {
+    let folder = folder();
+    let study = json!({"name": "rail", "chain": [
+        {"type": "prismatic", "name": "rail", "axis": [0, 1, 0], "stiffness_n_per_m": 1e7, "mass_kg": 20, "fixed_mass_kg": 4,
+         "guide": {"roll_nm_per_rad": 1e5, "pitch_nm_per_rad": 2e5}, "range_mm": [0, 800]},
+        {"type": "joint", "name": "j2", "axis": [0, 1, 0], "stiffness_nm_per_rad": 2e5, "mass_kg": 5},
+        {"type": "link", "name": "boom", "vector_m": [0.8, 0, 0], "choose": {"materials": ["Aluminium 6061-T6"],
+         "sections": [{"shape": "round_tube", "diameter_mm": [60, 80, 100], "wall_mm": [2, 4]}]}}],
+        "payload": {"mass_kg": 5}, "poses": [{"pose": {"rail_mm": 250}}, {"pose": {"rail_mm": 700, "j2_deg": -40}}]});
+    fs::write(folder.path().join("study.json"), study.to_string()).expect("written");
+    for search in ["exhaustive", "exact"] {
+        let output = run(folder.path(), &["run", "study.json", "--search", search, "--out", search]);
+        assert!(output.status.success(), "{}", errors(&output));
+    }
+    let front =
+        |search: &str| fs::read_to_string(folder.path().join(search).join("front.csv")).expect("a front");
+    assert_eq!(front("exhaustive"), front("exact"));
+    let check = run(folder.path(), &["front", "check", "exact"]);
+    assert!(check.status.success(), "{}", errors(&check));
+    let table = front("exact");
+    let mut rows = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let header = rows.next().expect("a header");
+    let row = rows.next().expect("a design");
+    let cell = |name: &str| row[header.iter().position(|h| *h == name).expect(name)];
+    let output = run(folder.path(), &["design", "exact", cell("design_id"), "--out", "d"]);
+    assert!(output.status.success(), "{}", errors(&output));
+    let output = run(folder.path(), &["analyze", "d/arm.json", "--cases", "d/cases.json", "--json"]);
+    assert!(output.status.success(), "{}", errors(&output));
+    let cases: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let norm = |case: &Value| {
+        let parts = case["tip_displacement_m"].as_array().expect("a vector");
+        parts.iter().map(|x| x.as_f64().expect("a number").powi(2)).sum::<f64>().sqrt()
+    };
+    let worst_mm = cases.as_array().expect("cases").iter().map(norm).fold(0.0, f64::max) * 1e3;
+    let listed: f64 = cell("tip_deflection_mm").parse().expect("a number");
+    assert!((worst_mm / listed - 1.0).abs() < 1e-12, "{worst_mm} {listed}");
+    let run_json: Value =
+        serde_json::from_str(&fs::read_to_string(folder.path().join("exact/run.json")).expect("a run"))
+            .expect("JSON");
+    assert_eq!(
+        run_json["worst_poses"]["ranges"][0],
+        json!({"joint": "rail", "low_mm": 0.0, "high_mm": 800.0, "stated": true})
+    );
+    assert!(run_json["worst_poses"]["picks"][0]["tip_deflection"]["pose"]["rail_mm"].is_number());
+    assert!(
+        fs::read_to_string(folder.path().join("exact/report.html")).expect("a page").contains("rail 250 mm")
+    );
+}
+
+#[test]
+fn a_study_says_that_a_rail_is_not_sized() {
+    let folder = folder();
+    let study = json!({"name": "rail", "chain": [
+        {"type": "prismatic", "name": "rail", "axis": [0, 1, 0], "stiffness_n_per_m": 1e7, "drive": "all_fits", "range_mm": [0, 100]},
+        {"type": "link", "name": "boom", "vector_m": [0.8, 0, 0]}],
+        "payload": {"mass_kg": 5}, "poses": [{"pose": {"rail_mm": 250}}, {"pose_deg": [250]}]});
+    fs::write(folder.path().join("study.json"), study.to_string()).expect("written");
+    let output = run(folder.path(), &["size", "study.json"]);
+    assert_eq!(output.status.code(), Some(3));
+    for says in ["whose drive is not sized", "write \"pose\": {\"rail_mm\": 0} instead"] {
+        assert!(errors(&output).contains(says), "{says}: {}", errors(&output));
+    }
+}
