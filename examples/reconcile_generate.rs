@@ -1,8 +1,8 @@
 //! Makes campaigns with hidden effects from the independent witness.
 //!
-//! `cargo run --release --example reconcile_generate -- OUT SEED COUNT plain|hard|varied|geared one|two|none|later|unknown [SIGMA]`
+//! `cargo run --release --example reconcile_generate -- OUT SEED COUNT plain|hard|static|modal|windup|varied|geared one|two|none|later|unknown [SIGMA]`
 //!
-//! `plain` and `hard` are six-axis arms, `varied` is arms of four to seven joints of any size, on floor, wall or ceiling;
+//! `plain` and `hard` are six-axis arms, `static`, `modal` and `windup` the same with one kind of readings, `varied` is arms of four to seven joints of any size, on floor, wall or ceiling;
 //! all joints of those of `geared` have torsion curves.
 //! With `SIGMA` an effect that departs by less from what calibration within tolerance can imitate is made
 //! larger until it does not: one that nobody could see is no question. Or one campaign in the folder OUT of
@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         return Ok(());
     }
     let [out, seed, count, set, class, sigma @ ..] = arguments.as_slice() else {
-        return Err("give OUT SEED COUNT plain|hard|varied|geared one|two|none|later|unknown [SIGMA]".into());
+        return Err("give OUT SEED COUNT plain|hard|static|modal|windup|varied|geared one|two|none|later|unknown [SIGMA]".into());
     };
     let out = Path::new(out);
     let (seed, count) = (seed.parse::<u64>()?, count.parse::<usize>()?);

@@ -12,6 +12,7 @@
 //! - [`mechanics`]: how an arm behaves: link (Eqs 1-6), statics (7, 13-15), modes (16-18).
 //! - [`sizing`]: which drive each joint needs (Eqs 7-12).
 //! - [`space`]: what may be chosen, and single designs by the full model.
+//! - [`interchange`]: robots of URDF files as arms, and arms as files of other programs.
 //! - [`search`]: the sweep over every design of a space.
 //! - [`exact`]: the same front without visiting every design.
 //! - [`verify`]: an independent check of a finished front.
@@ -41,6 +42,7 @@ pub mod catalog;
 pub(crate) mod cli;
 pub mod exact;
 pub mod input;
+pub mod interchange;
 pub mod mechanics;
 pub mod paper;
 pub mod pareto;

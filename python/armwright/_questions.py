@@ -11,6 +11,7 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
 from . import _armwright
 from ._armwright import Catalogs
 from ._input import catalogs_or_builtin, source
+from .errors import FileError
 from .table import Front, Prediction, Table
 
 PathLike = Union[str, "os.PathLike[str]"]
@@ -130,6 +131,38 @@ def design(
     return json.loads(arm), json.loads(cases)
 
 
+def from_urdf(
+    file: PathLike,
+    tip: str,
+    *,
+    stiffness: Union[None, PathLike, Mapping] = None,
+    catalogs: Optional[Catalogs] = None,
+) -> Dict[str, Any]:
+    """An arm file, as a dict, of the joints and links of a URDF file from its root to a link, as ``armwright import`` writes it.
+
+    :param file: path of the URDF file, or its text
+    :param tip: link where the arm ends
+    :param stiffness: stiffness of each joint by its name [N m/rad], or a mapping of its keys in arm files; or the path of a
+        stiffness file (docs/interchange.md). A joint without one is rigid.
+    :returns: dict for :func:`analyze`; ``provenance`` has what ``import.json`` says of what was lumped and left rigid
+    :raises InputError: every fault of the URDF, or of the stiffness
+    """
+    given = None
+    if isinstance(stiffness, Mapping):
+        keys = lambda value: value if isinstance(value, Mapping) else {"stiffness_nm_per_rad": value}
+        given = source({"joints": {joint: keys(value) for joint, value in stiffness.items()}}, "stiffness")
+    elif stiffness is not None:
+        given = source(stiffness, "stiffness")
+    is_text = isinstance(file, str) and file.lstrip().startswith("<")
+    try:
+        text = str(file) if is_text else Path(file).read_text(encoding="utf-8")
+    except OSError as reason:
+        raise FileError(f"cannot read {os.fspath(file)}: {reason.strerror}") from None
+    name = "urdf" if is_text else os.fspath(file)
+    arm, report = _armwright.from_urdf(catalogs_or_builtin(catalogs), name, text, tip, given)
+    return {**json.loads(arm), "provenance": json.loads(report)}
+
+
 def run(
     study: Described,
     *,
@@ -142,8 +175,8 @@ def run(
 ) -> Front:
     """The front of a study: the designs that no other dominates in tip deflection, mass and lowest mode.
 
-    The interpreter's lock is free while it works. Ctrl-C ends it within a second and raises :class:`Interrupted`, whose ``front``
-    has what was found. Nothing is written to disk.
+    The interpreter's lock is free while it works. Ctrl-C ends it and raises :class:`Interrupted`, whose ``front`` has what was
+    found. Nothing is written to disk.
 
     :param study: name of a built-in study, path, dict or JSON text
     :param progress: is called five times a second with a dict of ``elapsed_s``, ``designs``, ``designs_total``, ``gap`` (a

@@ -24,7 +24,7 @@ pub(crate) fn workers(threads: usize) -> PyResult<ThreadPool> {
 /// An exception of either sets the flag that the work gets, and is returned with what the work then had.
 pub(crate) fn conduct<T: Send>(
     py: Python<'_>,
-    tell: impl Fn(Python<'_>, Duration) -> PyResult<()> + Send,
+    tell: impl Fn(Python<'_>, Duration) -> PyResult<()> + Send + Sync,
     work: impl FnOnce(&AtomicBool) -> T + Send,
 ) -> (T, Option<PyErr>) {
     let stop = AtomicBool::new(false);

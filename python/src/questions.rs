@@ -5,6 +5,7 @@ use crate::conduct::workers;
 use crate::errors;
 use crate::source::Source;
 use armwright::arm::{LoadCase, read_load_cases};
+use armwright::interchange::import_urdf;
 use armwright::reconcile::predict_files::{Files, predict_files};
 use armwright::reconcile::{Campaign, Outcome};
 use armwright::report::analysis::{Analysis, Harmonic};
@@ -77,6 +78,21 @@ pub(crate) fn design(catalogs: &Catalogs, study: Source, id: &str) -> PyResult<(
     let (arm, cases) = arm_of_design(&study, id, &catalogs.parts).map_err(errors::refused)?;
     let cases: Vec<Value> = cases.iter().map(LoadCase::to_json).collect();
     Ok((arm.to_json().to_string(), Value::Array(cases).to_string()))
+}
+
+/// The arm of a robot in a URDF file, from its root to a link, and what became of the rest of it.
+#[pyfunction]
+pub(crate) fn from_urdf(
+    catalogs: &Catalogs,
+    file: &str,
+    text: &str,
+    tip: &str,
+    stiffness: Option<Source>,
+) -> PyResult<(String, String)> {
+    let stiffness = stiffness.map(|source| source.document()).transpose()?;
+    let made = import_urdf(file, text, tip, stiffness, &catalogs.parts);
+    let (arm, report) = made.map_err(errors::faults)?;
+    Ok((arm.to_json().to_string(), report.to_string()))
 }
 
 /// The files of a study of the paper, by name.

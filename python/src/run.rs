@@ -52,6 +52,7 @@ enum NoFront {
 }
 
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "they are those of the Python function")]
 #[pyo3(signature = (catalogs, study, method, gap_percent, time_limit_s, threads, progress))]
 pub(crate) fn run(
     py: Python<'_>,
@@ -192,9 +193,9 @@ fn facts(study: &Study, outcome: &StudyOutcome, started: Instant, search: &str) 
         "question": study.question,
         "status": sweep.status.word(),
         "search": search,
-        "designs_total": sweep.designs_total as f64,
+        "designs_total": count(sweep.designs_total),
         "designs_evaluated": sweep.designs_evaluated,
-        "designs_excluded": sweep.designs_excluded as f64,
+        "designs_excluded": count(sweep.designs_excluded),
         "front_size": outcome.front.len(),
         "hypervolume": front_hypervolume(outcome.front.iter().map(|judged| judged.design.objectives)),
         "elapsed_s": started.elapsed().as_secs_f64(),
@@ -207,6 +208,11 @@ fn facts(study: &Study, outcome: &StudyOutcome, started: Instant, search: &str) 
         "remarks": study.remarks,
         "tool_version": env!("CARGO_PKG_VERSION"),
     })
+}
+
+/// A count as a JSON number; above 2^64 it is rounded.
+fn count(n: u128) -> Value {
+    u64::try_from(n).map_or_else(|_| json!(n as f64), |n| json!(n))
 }
 
 fn tables(study: &Study, catalogs: &catalog::Catalogs, outcome: &StudyOutcome, facts: &Value) -> Found {

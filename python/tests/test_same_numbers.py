@@ -40,8 +40,9 @@ def test_size_and_capacity_equal_the_programs_json(program):
 
 
 @pytest.mark.parametrize("search", ["exhaustive", "exact"])
-def test_a_front_equals_the_programs_front(program, tmp_path, search):
-    study = ROOT / "examples" / "bench-arm.json"
+def test_a_front_equals_the_programs_front(program, tmp_path, search, bench_arm):
+    study = tmp_path / "bench-arm.json"
+    study.write_text(json.dumps(bench_arm))
     flags = ["--gap", "0%"] if search == "exact" else []
     program("run", study, "--search", search, *flags, "--out", tmp_path / "out", "--quiet")
     front = armwright.run(study, search=search, gap_percent=0 if flags else None)
@@ -55,8 +56,9 @@ def test_a_front_equals_the_programs_front(program, tmp_path, search):
         assert theirs is None or front.by_material[material["name"]].to_csv() == theirs
 
 
-def test_a_design_equals_the_programs_design(program, tmp_path):
-    study = ROOT / "examples" / "bench-arm.json"
+def test_a_design_equals_the_programs_design(program, tmp_path, bench_arm):
+    study = tmp_path / "bench-arm.json"
+    study.write_text(json.dumps(bench_arm))
     program("run", study, "--search", "exhaustive", "--out", tmp_path / "out", "--quiet")
     front = armwright.run(study, search="exhaustive")
     chosen = front.lightest()
@@ -70,15 +72,18 @@ def test_a_design_equals_the_programs_design(program, tmp_path):
 
 
 def test_a_verdict_equals_the_programs_verdict(program, tmp_path):
-    campaign = ROOT / "tests" / "data" / "campaigns" / "plain-0251e"
+    campaign = ROOT / "examples" / "paper-frequencies"
     program("reconcile", campaign, "--out", tmp_path / "out")
     found = armwright.reconcile(campaign)
     found.write(tmp_path / "ours")
     for name in ["verdict.json", "verdict.txt", "arm.corrected.json", "residuals.csv"]:
         assert (tmp_path / "ours" / name).read_bytes() == (tmp_path / "out" / name).read_bytes(), name
-    arm = tmp_path / "out" / "arm.corrected.json"
-    text = program("predict", arm, campaign / "static.csv", "--campaign", campaign / "campaign.json")
-    ours = armwright.predict(arm, campaign / "static.csv", campaign / "campaign.json")
+
+
+def test_a_prediction_equals_the_programs_prediction(program):
+    arm, readings, campaign = MEASURED / "arm.json", MEASURED / "static.csv", MEASURED / "campaign.json"
+    text = program("predict", arm, readings, "--campaign", campaign)
+    ours = armwright.predict(arm, readings, campaign)
     theirs = list(csv.reader(text.splitlines()))
     assert ours.columns == theirs[0]
     assert np.array_equal(ours["model_dz_mm"], [float(row[theirs[0].index("model_dz_mm")]) for row in theirs[1:]])

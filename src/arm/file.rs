@@ -274,10 +274,10 @@ fn gear_windup(gear: &Gear, node: &Node) -> Option<Windup> {
 
 /// The mass of a joint: the number if it is given, else gear plus motor from the catalog, else zero.
 pub(crate) fn read_joint_mass(object: &Object, catalogs: &Catalogs) -> Option<f64> {
+    let which = read_gear_mass(object)?;
     if let Some(mass) = object.optional("mass_kg") {
         return mass.non_negative();
     }
-    let which = read_gear_mass(object)?;
     let gear = match object.optional("gear") {
         Some(node) => part_mass(&node, find_gear(&node, catalogs)?.mass_kg(which))?,
         None => 0.0,
@@ -335,8 +335,8 @@ fn read_parameters(node: &Node) -> Option<Vec<(String, Vec<f64>)>> {
         .iter()
         .map(|(name, n)| {
             let numbers = match n.value() {
-                Value::Array(_) => n.array()?.iter().map(Node::number).collect::<Option<Vec<_>>>()?,
                 _ if *name == servo_compliance::CHANNEL => vec![read_channel(n)?],
+                Value::Array(_) => n.array()?.iter().map(Node::number).collect::<Option<Vec<_>>>()?,
                 _ => vec![n.number()?],
             };
             Some((name.to_string(), numbers))

@@ -2,14 +2,14 @@
 
 use super::effect::catalogue::NAMES as EFFECTS;
 use super::keys::{
-    BEARING_VALUE, COUNTERWEIGHTS, COUPLING, EXTRAS, GEAR_MASS, GRAVITY, JOINT_BODIES, LINK_BODIES, MASS_FACTOR, PIECES,
-    POSITIVE_OR_NULL, SECTION, SPRINGS, STATED, STIFFNESS_FACTOR, VECTOR, WINDUP,
+    BEARING_VALUE, COUNTERWEIGHTS, COUPLING, EXTRAS, GEAR_MASS, GRAVITY, JOINT_BODIES, LINK_BODIES,
+    MASS_FACTOR, PIECES, POSITIVE_OR_NULL, SECTION, SPRINGS, STATED, STIFFNESS_FACTOR, VECTOR, WINDUP,
 };
 use crate::input::key::{Kind, Rule, SCHEMA_ADDRESS, Shape, optional, required};
 use crate::input::schema::FileKind;
 
 /// An arm file.
-pub(crate) const ARM_FILE: FileKind =
+pub const ARM_FILE: FileKind =
     FileKind { name: "arm", about: "An arm from base to tip.", root: Kind::Object(&ARM) };
 
 /// A list of effects.
@@ -75,17 +75,58 @@ pub(crate) static JOINT: Shape = Shape::new(
     &[
         required("type", Kind::Word(&["joint"]), "-", "Says that this is a joint."),
         required("name", Kind::Name, "-", "Name, unique in the arm."),
-        required("axis", VECTOR, "-", "Direction in the frame moved by the joints before it; its length does not matter."),
-        optional("stiffness_nm_per_rad", POSITIVE_OR_NULL, "N m/rad", "the gear's", "One stiffness; null is rigid."),
+        required(
+            "axis",
+            VECTOR,
+            "-",
+            "Direction in the frame moved by the joints before it; its length does not matter.",
+        ),
+        optional(
+            "stiffness_nm_per_rad",
+            POSITIVE_OR_NULL,
+            "N m/rad",
+            "the gear's",
+            "One stiffness; null is rigid.",
+        ),
         optional("windup", Kind::Object(&WINDUP), "-", "the gear's", "The three-segment torsion curve."),
-        optional("gear", Kind::Text, "-", "none", "A gear of the catalog; gives curve and mass where they are not written."),
+        optional(
+            "gear",
+            Kind::Text,
+            "-",
+            "none",
+            "A gear of the catalog; gives curve and mass where they are not written.",
+        ),
         optional("motor", Kind::Text, "-", "none", "A motor of the catalog; gives its mass."),
         optional("gear_mass", GEAR_MASS, "-", "\"housed_unit\"", "Which mass of the gear counts."),
-        optional("mass_kg", Kind::NonNegative, "kg", "gear and motor, else 0", "A point on the axis, inboard of the joint."),
-        optional("bearing", BEARING_VALUE, "-", "the gear's, if it is a housed unit", "The output bearing: its numbers, the name of a housed gear, or null for a rigid one."),
-        optional("extras", Kind::Object(&EXTRAS), "kg", "none", "What the joint weighs beyond drive and bearing."),
+        optional(
+            "mass_kg",
+            Kind::NonNegative,
+            "kg",
+            "gear and motor, else 0",
+            "A point on the axis, inboard of the joint.",
+        ),
+        optional(
+            "bearing",
+            BEARING_VALUE,
+            "-",
+            "the gear's, if it is a housed unit",
+            "The output bearing: its numbers, the name of a housed gear, or null for a rigid one.",
+        ),
+        optional(
+            "extras",
+            Kind::Object(&EXTRAS),
+            "kg",
+            "none",
+            "What the joint weighs beyond drive and bearing.",
+        ),
         optional("bodies", JOINT_BODIES, "-", "[]", "Rigid parts with centre and inertia."),
-        optional("coupled", COUPLING, "-", "none", "A passive joint of a linkage: the factors of the driven joints that turn it."),
+        optional(
+            "coupled",
+            COUPLING,
+            "-",
+            "none",
+            "A passive joint of a linkage: the factors of the driven joints that turn it.",
+        ),
     ],
     &[
         Rule::Any(&["stiffness_nm_per_rad", "windup", "gear"]),
@@ -101,8 +142,20 @@ pub(crate) static LINK: Shape = Shape::new(
         required("type", Kind::Word(&["link"]), "-", "Says that this is a link."),
         required("name", Kind::Name, "-", "Name, unique in the arm."),
         required("vector_m", VECTOR, "m", "From root to end, in the frame moved by the joints before it."),
-        optional("material", Kind::Text, "-", "none", "Name of the tube's material, in the file or the catalog."),
-        optional("section", SECTION, "-", "none", "The cross-section; without it the link is a rigid offset."),
+        optional(
+            "material",
+            Kind::Text,
+            "-",
+            "none",
+            "Name of the tube's material, in the file or the catalog.",
+        ),
+        optional(
+            "section",
+            SECTION,
+            "-",
+            "none",
+            "The cross-section; without it the link is a rigid offset.",
+        ),
         optional("mass_kg", Kind::NonNegative, "kg", "0", "Point mass at mid-length of a rigid offset."),
         optional("bodies", LINK_BODIES, "-", "[]", "Rigid parts with centre and inertia."),
         optional("pieces", PIECES, "-", "none", "Steps and tapers, instead of a section."),
@@ -134,7 +187,12 @@ pub(crate) static EFFECT: Shape = Shape::new(
     &[
         required("effect", Kind::Word(&EFFECTS), "-", "Name of the effect."),
         required("at", Kind::Text, "-", "Where it sits: a joint, a link, base, payload, arm or a channel."),
-        required("parameters", Kind::Object(&PARAMETERS), "-", "Its numbers by name, with the unit in the name."),
+        required(
+            "parameters",
+            Kind::Object(&PARAMETERS),
+            "-",
+            "Its numbers by name, with the unit in the name.",
+        ),
         optional("source", Kind::Anything, "-", "none", "Where they come from; kept as written."),
     ],
     &[],
@@ -153,4 +211,3 @@ static PARAMETERS: Shape = Shape {
     rules: &[],
     others: Some(&Kind::Either(&[Kind::Number, Kind::List(&Kind::Number)])),
 };
-

@@ -200,6 +200,11 @@ const STIFFEST: f64 = 0.02;
 /// Torque below which a joint counts as unloaded \[N m\]: smaller torques are rounding errors.
 const REST_NM: f64 = 1e-9;
 
+/// Sign of a torque; 0 at rest, where the sign would be that of a rounding error.
+fn sense(torque_nm: f64) -> f64 {
+    if torque_nm.abs() < REST_NM { 0.0 } else { torque_nm.signum() }
+}
+
 /// Lost motion: play that closes smoothly as the torque grows, `theta += h tanh(T/Tc)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LostMotion {
@@ -245,8 +250,7 @@ impl FurtherTwist {
     pub fn tangent_compliance_rad_per_nm(&self, torque_nm: f64) -> f64 {
         let p = torque_nm / self.torque_nm;
         let ([a, b], [c, d]) = (self.odd_rad, self.even_rad);
-        let sense = if torque_nm == 0.0 { 0.0 } else { torque_nm.signum() };
-        (2.0 * a * p.abs() + 3.0 * b * p * p + c * sense + 2.0 * d * p) / self.torque_nm
+        (2.0 * a * p.abs() + 3.0 * b * p * p + c * sense(torque_nm) + 2.0 * d * p) / self.torque_nm
     }
 }
 
@@ -387,9 +391,8 @@ impl JointLaw {
 
     /// State of the friction play \[N m\] after the torque has risen from rest to `torque_nm`.
     pub fn play_at_rest_nm(&self, torque_nm: f64) -> f64 {
-        // the sign of a rounding error would put the play on either side
-        let sign = if torque_nm.abs() < REST_NM { 0.0 } else { torque_nm.signum() };
-        torque_nm - sign * self.play_stiffness_nm_per_rad().unwrap_or_default() * self.hysteresis_rad
+        torque_nm
+            - sense(torque_nm) * self.play_stiffness_nm_per_rad().unwrap_or_default() * self.hysteresis_rad
     }
 
     /// Whether the joint does not twist under any torque.

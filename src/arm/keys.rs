@@ -1,16 +1,6 @@
-//! The keys of the parts of an arm, and of cases files: what the readers know, and what `armwright schema` prints.
+//! The keys of the parts of an arm, and of payload and water: what the readers know, and what `armwright schema` prints.
 
-use super::{JointModel, LinkModel, Words};
-use crate::input::key::{Key, Kind, Rule, Shape, optional, required, words_of};
-use crate::input::schema::FileKind;
-
-/// A cases file.
-pub(crate) const CASES_FILE: FileKind = FileKind {
-    name: "cases",
-    about: "Load cases of an arm, for `armwright analyze --cases`.",
-    root: Kind::NonEmpty(&Kind::Object(&CASE)),
-};
-
+use crate::input::key::{Key, Kind, Rule, Shape, optional, required};
 
 /// Three numbers.
 pub(crate) const VECTOR: Kind = Kind::Array(3, &Kind::Number);
@@ -36,12 +26,6 @@ pub(crate) const JOINT_BODIES: Kind = Kind::List(&Kind::Object(&JOINT_BODY));
 /// Driven joints with their factors.
 pub(crate) const COUPLING: Kind = Kind::Map(&Kind::Number);
 
-/// Words of the models of links.
-pub(crate) const LINK_MODELS: Kind = Kind::Word(&words_of::<LinkModel, 3>(LinkModel::WORDS));
-
-/// Words of the models of joints.
-pub(crate) const JOINT_MODELS: Kind = Kind::Word(&words_of::<JointModel, 3>(JointModel::WORDS));
-
 /// The section of a given link.
 pub(crate) const SECTION: Kind = Kind::Either(&[
     Kind::Object(&RECTANGULAR_TUBE),
@@ -51,7 +35,6 @@ pub(crate) const SECTION: Kind = Kind::Either(&[
     Kind::Object(&I_BEAM),
     Kind::Object(&STATED),
 ]);
-
 
 /// A torsion curve.
 pub(crate) static WINDUP: Shape = Shape::new(
@@ -67,16 +50,33 @@ pub(crate) static WINDUP: Shape = Shape::new(
     &[],
 );
 
-
 /// An output bearing.
 pub(crate) static BEARING: Shape = Shape::new(
     "bearing",
     "An output bearing: it tilts about the two axes across the joint's.",
     &[
-        optional("tilt_stiffness_nm_per_rad", POSITIVE_OR_NULL, "N m/rad", "null", "Moment per tilt; null is rigid."),
-        optional("permissible_moment_nm", POSITIVE_OR_NULL, "N m", "null", "Largest moment across the axis while the joint turns; null is not checked."),
+        optional(
+            "tilt_stiffness_nm_per_rad",
+            POSITIVE_OR_NULL,
+            "N m/rad",
+            "null",
+            "Moment per tilt; null is rigid.",
+        ),
+        optional(
+            "permissible_moment_nm",
+            POSITIVE_OR_NULL,
+            "N m",
+            "null",
+            "Largest moment across the axis while the joint turns; null is not checked.",
+        ),
         optional("mass_kg", Kind::NonNegative, "kg", "0", "Mass of a bearing that is a part of its own."),
-        optional("offset_m", Kind::Either(&[Kind::Number, Kind::Null]), "m", "null", "Lever along the axis from the bearing's centre to where the link attaches; null is the flange's offset and half the link's width."),
+        optional(
+            "offset_m",
+            Kind::Either(&[Kind::Number, Kind::Null]),
+            "m",
+            "null",
+            "Lever along the axis from the bearing's centre to where the link attaches; null is the flange's offset and half the link's width.",
+        ),
         optional("pitch_diameter_m", POSITIVE_OR_NULL, "m", "null", "Pitch diameter of the rollers."),
         optional("static_load_rating_n", POSITIVE_OR_NULL, "N", "null", "Static load rating C0."),
         optional("dynamic_load_rating_n", POSITIVE_OR_NULL, "N", "null", "Dynamic load rating C."),
@@ -84,9 +84,7 @@ pub(crate) static BEARING: Shape = Shape::new(
     &[],
 );
 
-
 const TENSOR: Kind = Kind::Array(3, &VECTOR);
-
 
 /// A body of a link.
 pub(crate) static LINK_BODY: Shape = Shape::new(
@@ -94,12 +92,23 @@ pub(crate) static LINK_BODY: Shape = Shape::new(
     "A rigid part of a link.",
     &[
         required("mass_kg", Kind::NonNegative, "kg", "Mass."),
-        optional("cg_m", VECTOR, "m", "[0, 0, 0]", "Centre of gravity from the start of the link, in the frame of vector_m."),
-        optional("inertia_kgm2", TENSOR, "kg m²", "[[0, 0, 0], [0, 0, 0], [0, 0, 0]]", "Inertia about the centre of gravity, in the same frame."),
+        optional(
+            "cg_m",
+            VECTOR,
+            "m",
+            "[0, 0, 0]",
+            "Centre of gravity from the start of the link, in the frame of vector_m.",
+        ),
+        optional(
+            "inertia_kgm2",
+            TENSOR,
+            "kg m²",
+            "[[0, 0, 0], [0, 0, 0], [0, 0, 0]]",
+            "Inertia about the centre of gravity, in the same frame.",
+        ),
     ],
     &[],
 );
-
 
 /// A body of a joint.
 pub(crate) static JOINT_BODY: Shape = Shape::new(
@@ -108,12 +117,23 @@ pub(crate) static JOINT_BODY: Shape = Shape::new(
     &[
         required("mass_kg", Kind::NonNegative, "kg", "Mass."),
         optional("cg_m", VECTOR, "m", "[0, 0, 0]", "Centre of gravity from the joint's point."),
-        optional("inertia_kgm2", TENSOR, "kg m²", "[[0, 0, 0], [0, 0, 0], [0, 0, 0]]", "Inertia about the centre of gravity, in the same frame."),
-        optional("rotates", Kind::Flag, "-", "false", "Whether the body is outboard of the joint's springs, in the frame after the rotation."),
+        optional(
+            "inertia_kgm2",
+            TENSOR,
+            "kg m²",
+            "[[0, 0, 0], [0, 0, 0], [0, 0, 0]]",
+            "Inertia about the centre of gravity, in the same frame.",
+        ),
+        optional(
+            "rotates",
+            Kind::Flag,
+            "-",
+            "false",
+            "Whether the body is outboard of the joint's springs, in the frame after the rotation.",
+        ),
     ],
     &[],
 );
-
 
 const WIDTH: Key = required("width_m", Kind::Positive, "m", "Outer width, along the section's y.");
 
@@ -123,11 +143,9 @@ const WALL: Key = required("wall_m", Kind::Positive, "m", "Thickness of the wall
 
 const DIAMETER: Key = required("diameter_m", Kind::Positive, "m", "Outer diameter.");
 
-
 const fn shape_key(word: &'static [&'static str]) -> Key {
     required("shape", Kind::Word(word), "-", "The shape.")
 }
-
 
 /// A rectangular tube.
 pub(crate) static RECTANGULAR_TUBE: Shape = Shape::new(
@@ -137,11 +155,9 @@ pub(crate) static RECTANGULAR_TUBE: Shape = Shape::new(
     &[],
 );
 
-
 /// A round tube.
 pub(crate) static ROUND_TUBE: Shape =
     Shape::new("round tube", "A round tube.", &[shape_key(&["round_tube"]), DIAMETER, WALL], &[]);
-
 
 /// A rectangular bar.
 pub(crate) static RECTANGULAR_BAR: Shape = Shape::new(
@@ -151,11 +167,9 @@ pub(crate) static RECTANGULAR_BAR: Shape = Shape::new(
     &[],
 );
 
-
 /// A round bar.
 pub(crate) static ROUND_BAR: Shape =
     Shape::new("round bar", "A solid round bar.", &[shape_key(&["round_bar"]), DIAMETER], &[]);
-
 
 /// An I section.
 pub(crate) static I_BEAM: Shape = Shape::new(
@@ -171,7 +185,6 @@ pub(crate) static I_BEAM: Shape = Shape::new(
     &[],
 );
 
-
 /// A section of stated stiffness.
 pub(crate) static STATED: Shape = Shape::new(
     "stated section",
@@ -180,8 +193,18 @@ pub(crate) static STATED: Shape = Shape::new(
         shape_key(&["stated"]),
         WIDTH,
         HEIGHT,
-        required("ei_y_nm2", Kind::Positive, "N m²", "Bending stiffness that resists motion along the section's z."),
-        required("ei_z_nm2", Kind::Positive, "N m²", "Bending stiffness that resists motion along the section's y."),
+        required(
+            "ei_y_nm2",
+            Kind::Positive,
+            "N m²",
+            "Bending stiffness that resists motion along the section's z.",
+        ),
+        required(
+            "ei_z_nm2",
+            Kind::Positive,
+            "N m²",
+            "Bending stiffness that resists motion along the section's y.",
+        ),
         required("gj_nm2", Kind::Positive, "N m²", "Torsional stiffness."),
         required("kg_per_m", Kind::Positive, "kg/m", "Mass per length."),
         optional("ea_n", Kind::Positive, "N", "does not stretch", "Axial stiffness."),
@@ -189,14 +212,15 @@ pub(crate) static STATED: Shape = Shape::new(
     &[],
 );
 
-
 /// Springs of an arm or a study.
-pub(crate) const SPRINGS: Kind = Kind::List(&Kind::Either(&[Kind::Object(&SPRING), Kind::Object(&TORSION_SPRING)]));
+pub(crate) const SPRINGS: Kind =
+    Kind::List(&Kind::Either(&[Kind::Object(&SPRING), Kind::Object(&TORSION_SPRING)]));
 
 /// Counterweights of an arm or a study.
 pub(crate) const COUNTERWEIGHTS: Kind = Kind::List(&Kind::Object(&COUNTERWEIGHT));
 
-const SPRING_NAME: Key = optional("name", Kind::Name, "-", "spring 1, ...", "Name, unique among the springs.");
+const SPRING_NAME: Key =
+    optional("name", Kind::Name, "-", "spring 1, ...", "Name, unique among the springs.");
 
 /// A spring between two points.
 pub(crate) static SPRING: Shape = Shape::new(
@@ -207,8 +231,20 @@ pub(crate) static SPRING: Shape = Shape::new(
         required("from", Kind::Object(&SPRING_END), "-", "One end."),
         required("to", Kind::Object(&SPRING_END), "-", "The other end, on another part of the arm."),
         optional("stiffness_n_per_m", Kind::NonNegative, "N/m", "0", "Stiffness."),
-        optional("free_length_m", Kind::NonNegative, "m", "0", "Length at which the stiffness has no part in the force."),
-        optional("force_n", Kind::Number, "N", "0", "Constant part of the force; negative pushes the ends apart."),
+        optional(
+            "free_length_m",
+            Kind::NonNegative,
+            "m",
+            "0",
+            "Length at which the stiffness has no part in the force.",
+        ),
+        optional(
+            "force_n",
+            Kind::Number,
+            "N",
+            "0",
+            "Constant part of the force; negative pushes the ends apart.",
+        ),
     ],
     &[
         Rule::Any(&["force_n", "stiffness_n_per_m"]),
@@ -223,7 +259,13 @@ pub(crate) static SPRING_END: Shape = Shape::new(
     "An end of a spring.",
     &[
         required("at", Kind::Text, "-", "A joint or a link, base, or world."),
-        optional("point_m", VECTOR, "m", "[0, 0, 0]", "The point, from the start of the element in the frame that it carries."),
+        optional(
+            "point_m",
+            VECTOR,
+            "m",
+            "[0, 0, 0]",
+            "The point, from the start of the element in the frame that it carries.",
+        ),
     ],
     &[],
 );
@@ -248,7 +290,12 @@ pub(crate) static COUNTERWEIGHT: Shape = Shape::new(
     &[
         optional("name", Kind::Text, "-", "none", "Name, for people."),
         required("at", Kind::Text, "-", "The joint or link that carries it; of a joint the side that turns."),
-        required("point_m", VECTOR, "m", "Where it is, from the start of the element in the frame that it carries."),
+        required(
+            "point_m",
+            VECTOR,
+            "m",
+            "Where it is, from the start of the element in the frame that it carries.",
+        ),
         required("mass_kg", Kind::NonNegative, "kg", "Mass."),
     ],
     &[],
@@ -258,10 +305,17 @@ pub(crate) static COUNTERWEIGHT: Shape = Shape::new(
 pub(crate) const PIECES: Kind = Kind::NonEmpty(&Kind::Object(&PIECE));
 
 /// What holes and inserts leave of a modulus.
-pub(crate) const STIFFNESS_FACTOR: Key = optional("stiffness_factor", Kind::Positive, "-", "1", "Factor on the moduli of a tube, for holes and inserts.");
+pub(crate) const STIFFNESS_FACTOR: Key = optional(
+    "stiffness_factor",
+    Kind::Positive,
+    "-",
+    "1",
+    "Factor on the moduli of a tube, for holes and inserts.",
+);
 
 /// What holes and inserts leave of a mass.
-pub(crate) const MASS_FACTOR: Key = optional("mass_factor", Kind::Positive, "-", "1", "Factor on the mass of a tube, for holes and inserts.");
+pub(crate) const MASS_FACTOR: Key =
+    optional("mass_factor", Kind::Positive, "-", "1", "Factor on the mass of a tube, for holes and inserts.");
 
 /// A piece of a link.
 pub(crate) static PIECE: Shape = Shape::new(
@@ -271,7 +325,13 @@ pub(crate) static PIECE: Shape = Shape::new(
         required("length_m", Kind::Positive, "m", "Length; the pieces fill the link."),
         optional("material", Kind::Text, "-", "the link's", "Name of its material."),
         required("section", SECTION, "-", "The cross-section, of a taper at its start."),
-        optional("end_section", SECTION, "-", "none", "The cross-section at the end of a taper, of the same shape."),
+        optional(
+            "end_section",
+            SECTION,
+            "-",
+            "none",
+            "The cross-section at the end of a taper, of the same shape.",
+        ),
         STIFFNESS_FACTOR,
         MASS_FACTOR,
     ],
@@ -285,11 +345,16 @@ pub(crate) static PAYLOAD: Shape = Shape::new(
     &[
         required("mass_kg", Kind::NonNegative, "kg", "Mass."),
         optional("cg_m", VECTOR, "m", "[0, 0, 0]", "Centre of gravity from the tip, in the last frame."),
-        optional("inertia_about_cg_kgm2", Kind::Array(3, &Kind::NonNegative), "kg m²", "[0, 0, 0]", "Moments of inertia about the centre of gravity: ixx, iyy, izz."),
+        optional(
+            "inertia_about_cg_kgm2",
+            Kind::Array(3, &Kind::NonNegative),
+            "kg m²",
+            "[0, 0, 0]",
+            "Moments of inertia about the centre of gravity: ixx, iyy, izz.",
+        ),
     ],
     &[],
 );
-
 
 /// Water around the arm.
 pub(crate) static WATER: Shape = Shape::new(
@@ -297,30 +362,23 @@ pub(crate) static WATER: Shape = Shape::new(
     "Water around the arm; links are sealed tubes.",
     &[
         required("density_kg_m3", Kind::Positive, "kg/m³", "Density of the water."),
-        optional("added_mass_coefficient", Kind::NonNegative, "-", "1.0", "Added mass across a link over the mass of the water that it displaces."),
-        optional("payload_density_kg_m3", Kind::Positive, "kg/m³", "7850", "Density of the payload, for its buoyancy."),
+        optional(
+            "added_mass_coefficient",
+            Kind::NonNegative,
+            "-",
+            "1.0",
+            "Added mass across a link over the mass of the water that it displaces.",
+        ),
+        optional(
+            "payload_density_kg_m3",
+            Kind::Positive,
+            "kg/m³",
+            "7850",
+            "Density of the payload, for its buoyancy.",
+        ),
     ],
     &[],
 );
-
-
-/// A load case.
-pub(crate) static CASE: Shape = Shape::new(
-    "case",
-    "A load case: a pose, a load and the models to use.",
-    &[
-        optional("name", Kind::Text, "-", "its place in the list", "Name."),
-        required("pose_deg", Kind::List(&Kind::Number), "deg", "One angle a driven joint, base to tip."),
-        optional("payload", Kind::Object(&PAYLOAD), "-", "none", "What the arm holds."),
-        optional("tip_force_n", VECTOR, "N", "[0, 0, 0]", "Force at the tip, in world axes."),
-        optional("tip_moment_nm", VECTOR, "N m", "[0, 0, 0]", "Moment at the tip, in world axes."),
-        optional("links", LINK_MODELS, "-", "\"full\"", "Physics of the links."),
-        optional("joints", JOINT_MODELS, "-", "\"three_segment\"", "Physics of the joints."),
-        optional("water", Kind::Object(&WATER), "-", "dry", "Water around the arm."),
-    ],
-    &[],
-);
-
 
 /// The keys of extras.
 pub(crate) static EXTRAS: Shape = Shape::new(

@@ -1,6 +1,7 @@
 //! Load cases: a pose, a payload, a force at the tip, and the models to use.
 
-use super::keys::{CASE, PAYLOAD, WATER};
+use super::case_keys::CASE;
+use super::keys::{PAYLOAD, WATER};
 use super::{JointModel, LinkModel, Words};
 use crate::input::json::{Document, Faults, Node, Object};
 use nalgebra::Vector3;

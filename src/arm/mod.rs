@@ -12,6 +12,7 @@
 pub(crate) mod base_lift;
 pub(crate) mod bearing;
 pub(crate) mod body;
+pub(crate) mod case_keys;
 pub mod effect;
 pub(crate) mod extras;
 pub(crate) mod file;
@@ -33,9 +34,11 @@ pub(crate) mod write;
 
 pub use bearing::{Bearing, BearingSource};
 pub use body::{JointBodies, RigidBody};
+pub use case_keys::CASES_FILE;
 pub use effect::entry::Effect;
 pub use extras::{Extras, ExtrasSource};
 pub use file::{read_arm, read_arm_document};
+pub use file_keys::ARM_FILE;
 pub use joint_law::{Curve, FurtherTwist, JointLaw, LostMotion, Windup};
 pub use linkage::Linkage;
 pub use load::{LoadCase, Payload, Water, read_load_cases};

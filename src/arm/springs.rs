@@ -199,9 +199,8 @@ impl Spring {
     pub(crate) fn to_json(&self, names: &[&str]) -> Value {
         match &self.kind {
             SpringKind::Line { ends, law } => {
-                let [from, to] = ends.map(|end| {
-                    json!({"at": end.on.word(names), "point_m": end.point_m.as_slice()})
-                });
+                let [from, to] =
+                    ends.map(|end| json!({"at": end.on.word(names), "point_m": end.point_m.as_slice()}));
                 json!({
                     "name": self.name, "from": from, "to": to, "force_n": law.force_n,
                     "stiffness_n_per_m": law.stiffness_n_per_m, "free_length_m": law.free_length_m,

@@ -134,10 +134,7 @@ fn read_counterweight(node: &Node, elements: &[Named]) -> Option<(usize, RigidBo
     let at = object.required("at").and_then(|n| {
         element(&n, elements)?.or_else(|| {
             let name = n.string()?;
-            n.fault(
-                format!("the chain has no \"{name}\""),
-                &format!("choose one of: {}", names(elements)),
-            )
+            n.fault(format!("the chain has no \"{name}\""), &format!("choose one of: {}", names(elements)))
         })
     });
     let cg_m = object.required("point_m").and_then(|n| vector(&n));

@@ -15,7 +15,7 @@ pub(crate) mod needs;
 pub(crate) mod profile;
 pub(crate) mod read;
 pub(crate) mod schema;
-pub(crate) mod table_schema;
+mod table_schema;
 
 pub use efficiency::{EfficiencyKind, EfficiencyPoint};
 pub use envelope::Envelope;

@@ -4,15 +4,17 @@
 use super::schema::{CatalogFile, Cell, Column};
 use serde_json::{Value, json};
 
-/// The Table Schema of a catalog file.
-pub(crate) fn table_schema(file: CatalogFile) -> Value {
-    json!({
-        "$schema": "https://datapackage.org/profiles/2.0/tableschema.json",
-        "title": format!("Armwright: {}", file.file_name()),
-        "fields": file.columns().iter().map(field).collect::<Vec<_>>(),
-        "primaryKey": file.key(),
-        "missingValues": [""],
-    })
+impl CatalogFile {
+    /// The Table Schema of the file.
+    pub fn table_schema(self) -> Value {
+        json!({
+            "$schema": "https://datapackage.org/profiles/2.0/tableschema.json",
+            "title": format!("Armwright: {}", self.file_name()),
+            "fields": self.columns().iter().map(field).collect::<Vec<_>>(),
+            "primaryKey": self.key(),
+            "missingValues": [""],
+        })
+    }
 }
 
 fn field(column: &Column) -> Value {
@@ -51,7 +53,7 @@ mod tests {
 
     #[test]
     fn a_table_schema_has_every_column_with_what_its_cells_may_hold() {
-        let schema = table_schema(CatalogFile::Profiles);
+        let schema = CatalogFile::Profiles.table_schema();
         assert_eq!(schema["fields"].as_array().map(Vec::len), Some(CatalogFile::Profiles.columns().len()));
         assert_eq!(schema["primaryKey"], json!(["material_family", "designation"]));
         let wall = &schema["fields"][5];

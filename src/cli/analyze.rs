@@ -160,7 +160,10 @@ fn creep_text(arm: &Arm, catalogs: &Catalogs) -> String {
     });
     let tubes: Vec<(&str, &str)> = tubes.map(|(material, link)| (material.as_str(), link.as_str())).collect();
     let creep = tubes.iter().filter_map(|(material, link)| creep_sentence(catalogs, material, link));
-    creep.chain(factors_sentence(tubes.iter().copied())).map(|sentence| wrap(&sentence, TERMINAL, "")).collect()
+    creep
+        .chain(factors_sentence(tubes.iter().copied()))
+        .map(|sentence| wrap(&sentence, TERMINAL, ""))
+        .collect()
 }
 
 fn pretty(value: &Value) -> String {

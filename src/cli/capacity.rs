@@ -1,27 +1,42 @@
 //! `armwright capacity`: the largest payload of a study's arm.
 
 use super::failure::Failure;
+use crate::arm::file::read_arm;
+use crate::arm::load::read_load_cases;
 use crate::catalog::Catalogs;
+use crate::input::json::Document;
 use crate::report::number::fixed;
+use crate::report::whole_file::folder_of;
+use crate::study::arm_capacity::{arm_capacity, limits_of_parts, read_limits};
 use crate::study::capacity::{Capacity, Limit, capacity_of};
 use crate::study::load::load_study;
 use clap::Args;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::fmt::Write;
+use std::path::{Path, PathBuf};
 
 /// Finds the largest payload that an arm holds with the drives it has, in every sizing pose and in all of them together, and
 /// says which joint and which check ends it.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Example: armwright capacity light-arm\n         armwright capacity my-study.json --design 2f --json\n\n\
-                        The drives are those of the design at the study's own payload; the payload keeps its centre and moments."
+    after_help = "Example: armwright capacity light-arm\n         armwright capacity my-study.json --design 2f --json\n         \
+                        armwright capacity ur5e/arm.json --cases poses.json\n\n\
+                        The drives are those of the design at the study's own payload; the payload keeps its centre and moments. Of an arm \
+                        file, which says nothing of motion, the static torques are judged: by the limits of --limits, or of import.json beside \
+                        it, or by the catalog's gears and motors that it names."
 )]
 pub(crate) struct CapacityArgs {
-    /// A built-in study or a study file
+    /// A built-in study, a study file or an arm file
     study: String,
     /// Take the links and drives of this design_id; without it, links of median mass and the lightest drives
     #[arg(long, value_name = "ID")]
     design: Option<String>,
+    /// Poses of an arm file, as analyze reads them; without it all angles are zero
+    #[arg(long, value_name = "FILE", conflicts_with = "design")]
+    cases: Option<PathBuf>,
+    /// Largest torques of the joints of an arm file (JSON): {"joints": [{"name": "j1", "max_torque_nm": 87}]}
+    #[arg(long, value_name = "FILE", conflicts_with = "design")]
+    limits: Option<PathBuf>,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -29,26 +44,61 @@ pub(crate) struct CapacityArgs {
 
 /// Executes the verb.
 pub(super) fn run(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Failure> {
-    let loaded = load_study(&args.study, catalogs).map_err(Failure::from);
-    let (study, _) = loaded.map_err(|failure| of_arm_file(args, failure))?;
-    let found = capacity_of(&study, args.design.as_deref(), catalogs)?;
-    Ok(match args.json {
-        true => serde_json::to_string_pretty(&found.to_json()).expect("numbers and strings serialize"),
-        false => to_text(&study.name, &found),
-    })
+    if is_arm_file(&args.study) {
+        return of_arm(args, catalogs);
+    }
+    if args.cases.is_some() || args.limits.is_some() {
+        let words = "--cases and --limits are for arm files; a study has its own poses and drives";
+        return Err(Failure::Usage(words.into()));
+    }
+    let (study, _) = load_study(&args.study, catalogs)?;
+    Ok(said(args, &study.name, &capacity_of(&study, args.design.as_deref(), catalogs)?))
 }
 
-/// What is said if the file is an arm and no study: it has neither a motion nor poses.
-fn of_arm_file(args: &CapacityArgs, failure: Failure) -> Failure {
-    let text = fs_err::read_to_string(&args.study).unwrap_or_default();
-    let file: Value = serde_json::from_str(&text).unwrap_or_default();
-    match file["chain"].is_array() && file["poses"].is_null() {
-        true => Failure::Usage(format!(
-            "{} is an arm file, which says nothing of motion, duty and poses; give the study that it comes from, with --design ID",
-            args.study
-        )),
-        false => failure,
+fn said(args: &CapacityArgs, name: &str, found: &Capacity) -> String {
+    match args.json {
+        true => serde_json::to_string_pretty(&found.to_json()).expect("numbers and strings serialize"),
+        false => to_text(name, found),
     }
+}
+
+/// Whether the file is an arm and no study, which has poses.
+fn is_arm_file(path: &str) -> bool {
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let file: Value = serde_json::from_str(&text).unwrap_or_default();
+    file["chain"].is_array() && file["poses"].is_null()
+}
+
+/// The capacity of an arm file at rest.
+fn of_arm(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Failure> {
+    if args.design.is_some() {
+        return Err(Failure::Usage(format!("{} is an arm file; --design is for studies", args.study)));
+    }
+    let path = Path::new(&args.study);
+    let arm = read_arm(path, catalogs)?;
+    let joints = arm.driven_joint_names();
+    let cases = match &args.cases {
+        Some(file) => read_load_cases(Document::read(file)?, &joints)?,
+        None => {
+            let zero = json!([{"name": "all angles zero", "pose_deg": vec![0.0; joints.len()]}]).to_string();
+            read_load_cases(Document::parse("zero", &zero)?, &joints)?
+        }
+    };
+    let beside = folder_of(path).join("import.json");
+    let limits = match &args.limits {
+        Some(file) => read_limits(Document::read(file)?)?,
+        None if beside.is_file() => read_limits(Document::read(&beside)?)?,
+        None => limits_of_parts(&arm, catalogs),
+    };
+    if limits.is_empty() {
+        return Err(Failure::Usage(format!(
+            "nothing is known of the torques that the joints of {} may bear: give --limits FILE with {{\"joints\": [{{\"name\": \"{}\", \
+             \"max_torque_nm\": 87}}]}}, or name gears and motors of the catalogs in the arm file",
+            args.study,
+            joints.first().copied().unwrap_or("j1")
+        )));
+    }
+    Ok(said(args, &arm.name, &arm_capacity(&arm, &cases, &limits)))
 }
 
 fn kilograms(limit: &Limit) -> String {
@@ -64,7 +114,7 @@ fn to_text(name: &str, found: &Capacity) -> String {
             found.limit.check,
             found.pose
         ),
-        false => format!("{name}: no drive of the study limits the payload\n"),
+        false => format!("{name}: nothing limits the payload\n"),
     };
     let _ =
         writeln!(out, "\n{:>8}  {:>10}  {:<14}  {:<22}  pose", "reach m", "payload kg", "ends at", "check");

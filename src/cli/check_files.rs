@@ -4,6 +4,7 @@ use super::exit::{Answer, Exit};
 use super::failure::Failure;
 use super::manifest::{MANIFESTS, hash, listed};
 use super::schema::FILES;
+use crate::arm::case_keys::CASE;
 use crate::arm::{Arm, read_arm, read_arm_document, read_load_cases};
 use crate::catalog::Catalogs;
 use crate::catalog::schema::CatalogFile;
@@ -70,7 +71,9 @@ fn unit_of(file: &Path) -> PathBuf {
     let is_reading = DEFAULT_FILES.contains(&name.as_str()) && folder.join("campaign.json").is_file();
     let is_result = MANIFESTS.iter().any(|manifest| {
         name == *manifest
-            || read_json(&folder.join(manifest)).and_then(|m| listed(&m)).is_some_and(|l| l.contains_key(&name))
+            || read_json(&folder.join(manifest))
+                .and_then(|m| listed(&m))
+                .is_some_and(|l| l.contains_key(&name))
     });
     let of_folder = is_catalog || is_reading || is_result || name == "campaign.json";
     if of_folder && file.is_file() { folder } else { file.to_path_buf() }
@@ -81,7 +84,8 @@ fn read_json(path: &Path) -> Option<Value> {
 }
 
 fn look(place: PathBuf, catalogs: &Catalogs) -> Found {
-    let (what, outcome) = if place.is_dir() { look_at_folder(&place, catalogs) } else { look_at_file(&place, catalogs) };
+    let (what, outcome) =
+        if place.is_dir() { look_at_folder(&place, catalogs) } else { look_at_file(&place, catalogs) };
     Found { place, what, outcome }
 }
 
@@ -98,7 +102,8 @@ fn look_at_folder(folder: &Path, catalogs: &Catalogs) -> Look {
     if CatalogFile::ALL.iter().any(|file| has(file.file_name())) {
         return ("catalogs", Catalogs::load(Some(folder)).map(drop).map_err(Problem::from));
     }
-    let hint = "give a folder with campaign.json, run.json or verdict.json, or with catalog files; or single files";
+    let hint =
+        "give a folder with campaign.json, run.json or verdict.json, or with catalog files; or single files";
     ("unknown", Err(unknown(folder, "is a folder of nothing that is known", hint)))
 }
 
@@ -126,10 +131,13 @@ fn look_at_file(path: &Path, catalogs: &Catalogs) -> Look {
     }
 }
 
-/// The kind of file that knows most of the keys of a document; of several, the first.
+/// The kind of file that knows most of the keys of a document, or of the objects in its list; of several, the first.
 fn kind_of(value: &Value) -> Option<&'static str> {
-    let Value::Object(map) = value else { return value.is_array().then_some("cases") };
-    let known = |shape: &Shape| map.keys().filter(|key| shape.keys.iter().any(|k| k.name == *key)).count();
+    let Value::Object(map) = value else {
+        let is_case = |item: &Value| item.as_object().is_some_and(|map| map.keys().any(|key| CASE.has(key)));
+        return value.as_array()?.iter().any(is_case).then_some("cases");
+    };
+    let known = |shape: &Shape| map.keys().filter(|key| shape.has(key)).count();
     let of_itself = map.contains_key(SCHEMA_ADDRESS.name) as usize;
     let mut best = (of_itself, None);
     for file in &FILES {
@@ -167,8 +175,8 @@ fn result_words(manifest: &str) -> &'static str {
 fn unchanged(folder: &Path, manifest: &str) -> Result<(), Problem> {
     let path = folder.join(manifest);
     let text = std::fs::read_to_string(&path).map_err(|e| Problem::Unreadable(e.to_string()))?;
-    let value: Value = serde_json::from_str(&text)
-        .map_err(|e| Problem::Changed(format!("{manifest} is not JSON: {e}")))?;
+    let value: Value =
+        serde_json::from_str(&text).map_err(|e| Problem::Changed(format!("{manifest} is not JSON: {e}")))?;
     let Some(files) = listed(&value) else {
         return Err(Problem::Changed(format!("{manifest} lists no files, as of a version before 0.2")));
     };
@@ -208,7 +216,8 @@ impl Found {
         match &self.outcome {
             Ok(()) => format!("{head}, sound\n"),
             Err(Problem::Faulty(Faults(faults))) => {
-                let count = if faults.len() == 1 { "1 fault".into() } else { format!("{} faults", faults.len()) };
+                let count =
+                    if faults.len() == 1 { "1 fault".into() } else { format!("{} faults", faults.len()) };
                 let lines: String = faults.iter().map(|fault| format!("  {fault}\n")).collect();
                 format!("{head}, {count}\n{lines}")
             }
@@ -218,9 +227,7 @@ impl Found {
     }
 
     fn to_json(&self) -> Value {
-        let fault = |f: &Fault| {
-            json!({"file": f.file, "line": f.line, "field": f.field, "problem": f.problem, "hint": f.hint})
-        };
+        let fault = |f: &Fault| json!({"file": f.file, "line": f.line, "field": f.field, "problem": f.problem, "hint": f.hint});
         let (state, faults) = match &self.outcome {
             Ok(()) => ("sound", Vec::new()),
             Err(Problem::Faulty(Faults(faults))) => ("faulty", faults.iter().map(fault).collect()),

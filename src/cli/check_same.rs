@@ -1,6 +1,7 @@
 //! Whether two folders of results are the same, outside the places that tell of time and machine.
 
 use super::failure::Failure;
+use super::manifest::SHARD;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -40,7 +41,8 @@ pub(super) fn same(a: &Path, b: &Path) -> Result<String, Failure> {
     }
 }
 
-/// Names of all files of a folder and the folders in it; those that begin with a dot are left out.
+/// Names of all files of a folder and the folders in it. Left out are those that begin with a dot, and folders of shards: they
+/// are results of their own.
 fn files_of(folder: &Path) -> Result<BTreeSet<String>, Failure> {
     let mut names = BTreeSet::new();
     let mut open = vec![PathBuf::new()];
@@ -53,6 +55,7 @@ fn files_of(folder: &Path) -> Result<BTreeSet<String>, Failure> {
                 continue;
             }
             match entry.path().is_dir() {
+                true if entry.path().join(SHARD).is_file() => {}
                 true => open.push(name),
                 false => drop(names.insert(name.to_string_lossy().into_owned())),
             }

@@ -4,6 +4,8 @@ use super::failure::Failure;
 use super::finished::{catalogs_hash, pretty};
 use super::results::Results;
 use super::write::write_all;
+use crate::arm::Arm;
+use crate::arm::load::LoadCase;
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::report::file_names::file_name;
@@ -29,36 +31,57 @@ pub(crate) struct DesignArgs {
     out: Option<PathBuf>,
 }
 
-/// Executes the verb.
-pub(super) fn run(args: &DesignArgs, catalogs: &Catalogs) -> Result<String, Failure> {
-    let results = open_results(&args.results, catalogs)?;
+/// A design of a result with every part resolved.
+pub(super) struct ResolvedDesign {
+    /// Name of its study.
+    pub study: String,
+    /// The arm.
+    pub arm: Arm,
+    /// The cases in which it was judged.
+    pub cases: Vec<LoadCase>,
+}
+
+/// The design of an id, from a folder of results.
+///
+/// # Errors
+/// The folder is no whole result of these catalogs, or has no such design.
+pub(super) fn resolve_design(
+    folder: &Path,
+    id: &str,
+    catalogs: &Catalogs,
+) -> Result<ResolvedDesign, Failure> {
+    let results = open_results(folder, catalogs)?;
     let (file, text) = results.text("study.json")?;
     let study = read_study(Document::parse(&file, &text)?, catalogs)?;
     let unknown = || {
         Failure::Usage(format!(
-            "{} has no design \"{}\": take a design_id from its front.csv",
-            args.results.display(),
-            args.id
+            "{} has no design \"{id}\": take a design_id from its front.csv",
+            folder.display()
         ))
     };
-    let number = results.number_of(&args.id).ok_or_else(unknown)?;
+    let number = results.number_of(id).ok_or_else(unknown)?;
     let (mut arm, cases) = arm_of_number(&study, number, catalogs).ok_or_else(unknown)?;
-    arm.name = format!("{} {}", study.name, args.id);
+    arm.name = format!("{} {id}", study.name);
+    Ok(ResolvedDesign { study: study.name, arm, cases })
+}
+
+/// Executes the verb.
+pub(super) fn run(args: &DesignArgs, catalogs: &Catalogs) -> Result<String, Failure> {
+    let ResolvedDesign { study, arm, cases } = resolve_design(&args.results, &args.id, catalogs)?;
     let objectives = full_objectives(&arm, &cases);
     let dir =
         args.out.clone().unwrap_or_else(|| args.results.join(format!("design-{}", file_name(&args.id))));
-    let cases: Vec<Value> = cases.iter().map(crate::arm::load::LoadCase::to_json).collect();
+    let cases: Vec<Value> = cases.iter().map(LoadCase::to_json).collect();
     write_all(
         &dir,
         &[("arm.json".into(), pretty(&arm.to_json())), ("cases.json".into(), pretty(&json!(cases)))],
         &[],
     )?;
     Ok(format!(
-        "design {} of {}: tip deflection {:.4} mm, mass {:.3} kg, lowest mode {:.3} Hz\n\
+        "design {} of {study}: tip deflection {:.4} mm, mass {:.3} kg, lowest mode {:.3} Hz\n\
          written to {}: arm.json, cases.json\n\
          try: armwright analyze {} --cases {}\n",
         args.id,
-        study.name,
         objectives.tip_deflection_m * 1e3,
         objectives.mass_kg,
         objectives.lowest_mode_hz,

@@ -42,7 +42,7 @@ use crate::study::table::front_table;
 use crate::study::ties::ties;
 use serde_json::{Value, json};
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Keeps files as a result, which replaces what was kept before; returns the names of those that could not be kept because
 /// other files stand there.
@@ -145,8 +145,8 @@ impl<'a> Finished<'a> {
 }
 
 impl Finished<'_> {
-    /// Keeps the front and says how it was found; then works out what goes with it, and keeps that too. A part that fails
-    /// is left out, with a warning: the front stands.
+    /// Keeps the front and says how it was found; then works out what goes with it, unless `stop` is set, and keeps that
+    /// too. A part that fails is left out, with a warning: the front stands.
     ///
     /// # Errors
     /// The front cannot be written, or the user stops what follows it.
@@ -161,22 +161,23 @@ impl Finished<'_> {
         let mut first = tables.clone();
         first.push((RUN.into(), pretty(&self.run_json(&summary, &[], &[NOTHING_ELSE.to_string()]))));
         let mut left_out = keep(&first)?;
-        let mut beside = Beside::default();
-        let (problem, catalogs) = (self.problem, self.catalogs);
-        let budgets = beside.make("budget.csv", || budgets(problem, self.whole, catalogs, &summary.overall));
-        summary.budgets = budgets.unwrap_or_default();
-        let supplements = self.supplements(asked, stop, &summary, &mut beside)?;
-        let run = self.fill(&summary, &supplements, &mut beside);
-        let terminal = beside.make("the summary on the terminal", || terminal_summary(&summary));
-        let mut files = [tables, beside.files].concat();
-        files.push((RUN.into(), pretty(&run)));
-        match keep(&files) {
-            Ok(names) => left_out = names,
-            Err(e) => {
-                beside.missing.push(format!("what goes with the front: {e}"));
-                files = first;
+        let (mut files, mut supplements, mut beside) = (first, Vec::new(), Beside::default());
+        // who wants to stop gets the front at once and nothing that takes longer
+        if !stop.load(Ordering::Relaxed) {
+            let (problem, catalogs) = (self.problem, self.catalogs);
+            let budgets =
+                beside.make("budget.csv", || budgets(problem, self.whole, catalogs, &summary.overall));
+            summary.budgets = budgets.unwrap_or_default();
+            supplements = self.supplements(asked, stop, &summary, &mut beside)?;
+            let run = self.fill(&summary, &supplements, &mut beside);
+            let mut all = [tables, std::mem::take(&mut beside.files)].concat();
+            all.push((RUN.into(), pretty(&run)));
+            match keep(&all) {
+                Ok(names) => (left_out, files) = (names, all),
+                Err(e) => beside.missing.push(format!("what goes with the front: {e}")),
             }
         }
+        let terminal = beside.make("the summary on the terminal", || terminal_summary(&summary));
         beside.missing.extend(left_out.iter().map(|name| another_stands(name)));
         say_missing(&beside.missing);
         files.retain(|(name, _)| !left_out.contains(name));

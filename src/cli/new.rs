@@ -70,7 +70,12 @@ pub(crate) fn run(args: &NewArgs, catalogs: &Catalogs) -> Result<String, Failure
 }
 
 /// Writes the files of a starter.
-fn start(texts: &'static [(&'static str, &'static str)], out: &Path, verb: &str, file: &str) -> Result<String, Failure> {
+fn start(
+    texts: &'static [(&'static str, &'static str)],
+    out: &Path,
+    verb: &str,
+    file: &str,
+) -> Result<String, Failure> {
     write_new(out, &filled(texts, &name_of(out), &out.display().to_string()), &[])?;
     let (shown, what) = (out.display(), if file.is_empty() { out.to_path_buf() } else { out.join(file) });
     Ok(format!(

@@ -160,7 +160,8 @@ fn in_lines(say: impl Fn(Duration)) -> impl FnMut(Duration) {
     let mut next = LINE_EVERY;
     move |elapsed| {
         if elapsed >= next {
-            next += LINE_EVERY;
+            // not one after the other where a search goes on that an earlier process began
+            next = elapsed + LINE_EVERY;
             say(elapsed);
         }
     }

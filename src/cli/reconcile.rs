@@ -3,8 +3,9 @@
 use super::beside::{Beside, another_stands, say_missing};
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
+use super::finished::catalogs_hash;
 use super::log::Log;
-use super::manifest::{Files, VERDICT};
+use super::manifest::{Files, VERDICT, hash, listed};
 use super::rerun::{CHANGES, Rerun, rerun};
 use super::result_folder::ResultFolder;
 use super::search::SearchArgs;
@@ -20,6 +21,7 @@ use crate::report::words::{TERMINAL, wrap};
 use crate::study::load::load_study;
 use clap::Args;
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `reconcile`.
@@ -50,7 +52,8 @@ pub(crate) struct ReconcileArgs {
     pub out: Option<PathBuf>,
 }
 
-/// Reads, reconciles and writes; returns the outcome and the text to print.
+/// Reads, reconciles and writes. A verdict of the same readings, arm, catalogs and version is kept as it is, so that a
+/// script over many campaigns can be run again after it was stopped.
 ///
 /// # Errors
 /// All faults of the input files, or a file that cannot be written.
@@ -59,7 +62,7 @@ pub(crate) fn run(
     catalogs: &Catalogs,
     overlay: Option<&Path>,
     log: Log,
-) -> Result<(Outcome, Answer), Failure> {
+) -> Result<Answer, Failure> {
     match &args.study {
         // a study that does not read, or a search that does not suit it, fails now and not after the fits
         Some(study) => drop(args.how.check(&load_study(study, catalogs)?.0, catalogs)?),
@@ -81,26 +84,59 @@ pub(crate) fn run(
     let planned = planned(args, &campaign, catalogs)?;
     refuse_inputs(&planned.iter().map(|name| out.join(name)).collect::<Vec<_>>(), &inputs)?;
     let folder = ResultFolder::open(&out, VERDICT, &planned)?;
+    let hash_of_catalogs = catalogs_hash(catalogs);
+    if args.study.is_none()
+        && !args.how.is_fresh()
+        && let Some(text) = kept_before(&out, &campaign, &hash_of_catalogs)
+    {
+        return Ok(text.into());
+    }
     let outcome = reconcile(&campaign);
-    let (mut files, terminal) = keep(&campaign, &outcome, &folder)?;
+    let (mut files, terminal) = keep(&campaign, (&outcome, &hash_of_catalogs), &folder)?;
     let mut text = format!("{}{terminal}", narrow(&outcome.to_text()));
     let mut exit = Exit::Done;
     if let Some(study) = &args.study {
         let keep = |more: &[(String, Vec<u8>)]| folder.publish(&[&files, more].concat());
         let rerun = rerun(&outcome, (study, &args.how), catalogs, overlay, (&out, &keep), log)?;
+        folder.settle(Ok(rerun.exit))?;
         text.push_str(&rerun.text);
         exit = rerun.exit;
-        add(&mut files, &outcome, rerun);
+        add(&mut files, rerun);
         let left_out = folder.publish(&files)?;
         say_missing(&left_out.iter().map(|name| another_stands(name)).collect::<Vec<_>>());
     }
     text.push_str(&format!("written to {}\n", out.display()));
-    Ok((outcome, Answer { text, exit }))
+    Ok(Answer { text, exit })
 }
+
+/// The text of a verdict in the folder, if it is of this campaign with these catalogs, and every file of it is there.
+fn kept_before(out: &Path, campaign: &Campaign, hash_of_catalogs: &str) -> Option<String> {
+    let verdict: Value = serde_json::from_slice(&std::fs::read(out.join(VERDICT)).ok()?).ok()?;
+    let same = verdict["campaign_blake3"] == campaign.hash.as_str()
+        && verdict["catalogs_hash"] == hash_of_catalogs
+        && verdict["tool_version"] == env!("CARGO_PKG_VERSION")
+        && verdict.get("study").is_none();
+    let is_there = |(name, listed): (&String, &String)| {
+        std::fs::read(out.join(name)).is_ok_and(|bytes| hash(&bytes) == *listed)
+    };
+    // the page is written last
+    let is_whole = |files: &BTreeMap<String, String>| files.contains_key(PAGE) && files.iter().all(is_there);
+    let files = listed(&verdict).filter(|files| same && is_whole(files))?;
+    let text = files.contains_key(TEXT).then(|| std::fs::read_to_string(out.join(TEXT)).ok())??;
+    let out = out.display();
+    Some(format!(
+        "{}{out} has this verdict already, of the same files; --fresh works it out anew\n",
+        narrow(&text)
+    ))
+}
+
+/// The files of the verdict in words, and for a browser.
+const TEXT: &str = "verdict.txt";
+const PAGE: &str = "report.html";
 
 /// The files that will be written, as far as they are known before the fits.
 fn planned(args: &ReconcileArgs, campaign: &Campaign, catalogs: &Catalogs) -> Result<Vec<String>, Failure> {
-    let always = [VERDICT, "verdict.txt", CORRECTED_FILE, "residuals.csv", "report.html"];
+    let always = [VERDICT, TEXT, CORRECTED_FILE, "residuals.csv", PAGE];
     let mut out: Vec<String> = always.into_iter().map(String::from).collect();
     out.extend(corrected_files(&campaign.other_arms));
     if let Some(study) = &args.study {
@@ -114,9 +150,14 @@ fn planned(args: &ReconcileArgs, campaign: &Campaign, catalogs: &Catalogs) -> Re
 
 /// Keeps the verdict, then the page. Returns the files and the page's words for the terminal. A page that fails is left out,
 /// with a warning: the verdict stands.
-fn keep(campaign: &Campaign, outcome: &Outcome, folder: &ResultFolder) -> Result<(Files, String), Failure> {
+fn keep(
+    campaign: &Campaign,
+    (outcome, hash_of_catalogs): (&Outcome, &str),
+    folder: &ResultFolder,
+) -> Result<(Files, String), Failure> {
     let texts = outcome.files().into_iter().map(|(name, text)| (name, text.into_bytes()));
     let mut files: Files = texts.collect();
+    change_verdict(&mut files, "catalogs_hash", hash_of_catalogs.into());
     let mut left_out = folder.publish(&files)?;
     let mut beside = Beside::default();
     let page = beside.make("report.html and plots", || {
@@ -137,19 +178,20 @@ fn keep(campaign: &Campaign, outcome: &Outcome, folder: &ResultFolder) -> Result
 }
 
 /// Adds the result of the second run of the study to the verdict, and its files.
-fn add(files: &mut Vec<(String, Vec<u8>)>, outcome: &Outcome, rerun: Rerun) {
-    for (name, bytes) in files.iter_mut() {
-        match name.as_str() {
-            "verdict.json" => {
-                let mut verdict: Value = outcome.to_json();
-                verdict["study"] = rerun.json.clone();
-                *bytes = format!("{verdict:#}\n").into_bytes();
-            }
-            "verdict.txt" => bytes.extend(rerun.text.as_bytes()),
-            _ => {}
-        }
-    }
+fn add(files: &mut Files, rerun: Rerun) {
+    change_verdict(files, "study", rerun.json);
+    let texts = files.iter_mut().filter(|(name, _)| name == TEXT);
+    texts.for_each(|(_, bytes)| bytes.extend(rerun.text.as_bytes()));
     files.extend(rerun.files);
+}
+
+/// Sets a key of the verdict.
+fn change_verdict(files: &mut Files, key: &str, value: Value) {
+    for (_, bytes) in files.iter_mut().filter(|(name, _)| name == VERDICT) {
+        let mut verdict: Value = serde_json::from_slice(bytes).expect("it was written as JSON");
+        verdict[key] = value.clone();
+        *bytes = format!("{verdict:#}\n").into_bytes();
+    }
 }
 
 /// Breaks lines at 80 columns; continued lines keep the indent. Tables are not touched.

@@ -7,7 +7,8 @@ use super::failure::Failure;
 use super::finished::{Keep, Written};
 use super::log::Log;
 use super::manifest::{Files, RUN, sealed};
-use super::search::{SearchArgs, With, search};
+use super::result_folder::unfinished_in;
+use super::search::{SearchArgs, With, search, stopped_by_signal};
 use super::supplements::SupplementArgs;
 use crate::catalog::Catalogs;
 use crate::reconcile::verdict::outcome::{Outcome, Verdict};
@@ -23,6 +24,7 @@ use crate::space::problem::ArmProblem;
 use crate::study::load::load_study;
 use serde_json::{Value, json};
 use std::path::Path;
+use std::sync::atomic::Ordering;
 
 /// The file of all designs of either front under both models.
 pub(super) const CHANGES: &str = "study_changes.csv";
@@ -88,9 +90,14 @@ pub(super) fn rerun(
         let results = dir.join("study").join(folder);
         let supplements = &SupplementArgs::default();
         let keep = &|files: &[(String, Vec<u8>)]| keep(&[kept.clone(), placed(files, folder)?].concat());
-        let with = With { catalogs, overlay, dir: &results, keep, how, supplements, record: None, log };
+        let (record, unfinished) = (None, &unfinished_in(dir, folder));
+        let with = With { catalogs, overlay, dir: &results, keep, unfinished, how, supplements, record, log };
         match search(asked, &with) {
             Ok(written) => {
+                if written.exit == Exit::Interrupted {
+                    // this run was stopped; the other one has a signal of its own
+                    stopped_by_signal().store(false, Ordering::Relaxed);
+                }
                 kept.extend(placed(&written.files, folder)?);
                 found.push(written);
             }

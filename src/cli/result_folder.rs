@@ -5,17 +5,20 @@
 //! last. A process that dies before the decision leaves the old result, and one that dies after it leaves the rest of the
 //! work to whoever next reads or writes the folder ([`complete`]).
 
+use super::exit::Exit;
 use super::failure::Failure;
 use super::lock::Lock;
 use super::manifest::{Earlier, Files, MANIFESTS, sealed};
+use super::unfinished::{ENDING, remove};
 use crate::report::whole_file::{create_folder, folder_of, remove_file, rename, sync_folder, write_staged};
 use std::collections::BTreeSet;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Folder of what is in work, in a folder of results.
+/// Folder of what is in work, in a folder of results, and the lock in it.
 const STATE: &str = ".armwright";
+const LOCK: &str = "lock";
 /// How often, and after which time each, a reader looks whether a writer is done.
 const READER_WAITS: (u32, Duration) = (20, Duration::from_millis(100));
 
@@ -42,7 +45,7 @@ impl ResultFolder {
         create_folder(&state).map_err(|e| Failure::file(folder, "create", &e))?;
         // made first: whatever fails from here on, empty folders are removed again
         let mut out = Self { folder: folder.to_path_buf(), manifest, lock: None };
-        out.lock = Some(Lock::take(&state.join("lock"), folder)?);
+        out.lock = Some(Lock::take(&state.join(LOCK), folder)?);
         roll_forward(folder).map_err(|e| Failure::file(folder, "complete", &e))?;
         sweep(&state.join("next")).map_err(|e| Failure::file(folder, "write in", &e))?;
         let earlier = Earlier::read(folder, manifest)?;
@@ -87,6 +90,21 @@ impl ResultFolder {
         Ok(foreign.into_iter().map(|(name, _)| name).collect())
     }
 
+    /// Removes the states of unfinished searches, unless the user stopped them or what they found could not be kept.
+    ///
+    /// # Errors
+    /// A state cannot be removed.
+    pub(super) fn settle(&self, end: Result<Exit, &Failure>) -> Result<(), Failure> {
+        let is_over = match end {
+            Ok(exit) => exit != Exit::Interrupted,
+            Err(failure) => matches!(failure, Failure::Infeasible(_) | Failure::Partial(_)),
+        };
+        let entries = std::fs::read_dir(self.folder.join(STATE)).into_iter().flatten().flatten();
+        let states =
+            entries.map(|entry| entry.path()).filter(|path| path.to_string_lossy().ends_with(ENDING));
+        states.filter(|_| is_over).try_for_each(|path| remove(&path))
+    }
+
     /// Whether a file of this name and content is there already.
     fn has(&self, name: &str, bytes: &[u8]) -> bool {
         let path = self.folder.join(name);
@@ -122,6 +140,11 @@ impl Drop for ResultFolder {
     }
 }
 
+/// The file of the state of an unfinished search in a folder of results.
+pub(super) fn unfinished_in(folder: &Path, name: &str) -> PathBuf {
+    folder.join(STATE).join(format!("{name}{ENDING}"))
+}
+
 /// Completes a result whose writer died after the new files were decided on. A reader calls this first.
 ///
 /// # Errors
@@ -130,7 +153,7 @@ pub(super) fn complete(folder: &Path) -> Result<(), Failure> {
     let state = folder.join(STATE);
     let (mut waits, wait) = READER_WAITS;
     while state.join("ready").exists() {
-        match Lock::take(&state.join("lock"), folder) {
+        match Lock::take(&state.join(LOCK), folder) {
             Ok(_lock) => {
                 return roll_forward(folder).map_err(|e| {
                     Failure::File(format!(

@@ -9,7 +9,7 @@ use super::finished::{catalogs_hash, facts_of, front_of_material, is_front_of_ma
 use super::log::Log;
 use super::manifest::{RUN, SHARD};
 use super::progress::Record;
-use super::result_folder::ResultFolder;
+use super::result_folder::{ResultFolder, unfinished_in};
 use super::search::{SearchArgs, With, search};
 use super::shard::{CANDIDATES, STUDY, folder_of, run_shard, shard_of};
 use super::supplements::{FILES, SupplementArgs};
@@ -167,8 +167,11 @@ pub(super) fn run(
     let folder = ResultFolder::open(&dir, RUN, &planned)?;
     let (how, supplements, record) = (&args.search, &args.supplements, record.as_ref());
     let keep = |files: &[(String, Vec<u8>)]| folder.publish(files);
-    let with = With { catalogs, overlay, dir: &dir, keep: &keep, how, supplements, record, log };
-    let written = search(&asked, &with)?;
+    let unfinished = &unfinished_in(&dir, "search");
+    let with = With { catalogs, overlay, dir: &dir, keep: &keep, unfinished, how, supplements, record, log };
+    let written = search(&asked, &with);
+    folder.settle(written.as_ref().map(|written| written.exit))?;
+    let written = written?;
     let applied = corrections::to_text(&asked.corrections);
     let text = format!("{}{applied}\n{}{}", written.terminal, told(&dir, &written.files), written.timing);
     Ok(Answer { text, exit: written.exit })
@@ -200,8 +203,11 @@ fn run_part(
     let (how, supplements, record) = (&args.search, &args.supplements, record.as_ref());
     let folder = ResultFolder::open(&dir, SHARD, &[SHARD, CANDIDATES, STUDY])?;
     let keep = |files: &[(String, Vec<u8>)]| folder.publish(files);
-    let with = With { catalogs, overlay, dir: &dir, keep: &keep, how, supplements, record, log };
-    run_shard(asked, shard, words, &with)
+    let unfinished = &unfinished_in(&dir, "search");
+    let with = With { catalogs, overlay, dir: &dir, keep: &keep, unfinished, how, supplements, record, log };
+    let answer = run_shard(asked, shard, words, &with);
+    folder.settle(answer.as_ref().map(|answer| answer.exit))?;
+    answer
 }
 
 /// Runs one of the paper's studies, which are computed without a search.

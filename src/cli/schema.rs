@@ -1,22 +1,21 @@
 //! `armwright schema`: what a kind of file may hold, for editors and other programs.
 
 use super::failure::Failure;
-use crate::arm::file_keys::ARM_FILE;
-use crate::arm::keys::CASES_FILE;
+use crate::arm::{ARM_FILE, CASES_FILE};
 use crate::catalog::schema::CatalogFile;
-use crate::catalog::table_schema::table_schema;
 use crate::input::schema::FileKind;
-use crate::reconcile::readings::keys::CAMPAIGN_FILE;
-use crate::study::keys::STUDY_FILE;
+use crate::reconcile::CAMPAIGN_FILE;
+use crate::study::STUDY_FILE;
 use clap::Args;
 use serde_json::Value;
 
-/// Prints the JSON Schema of a kind of file (draft 2020-12), or the Table Schema of a catalog file; without a kind, lists
-/// the kinds. An editor that knows the schema completes keys and marks faults while one types.
+/// Arguments of `schema`.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  armwright schema\n  armwright schema study > study.schema.json\n  \
     armwright schema gears\n  armwright schema arm --markdown\n\n\
-    A file may name its schema: {\"$schema\": \"study.schema.json\", ...}")]
+    Prints the JSON Schema of a kind of file (draft 2020-12), or the Table Schema of a catalog file; without a kind, lists the \
+    kinds. An editor that knows the schema completes keys and marks faults while one types. A file may name its schema: \
+    {\"$schema\": \"study.schema.json\", ...}")]
 pub(crate) struct SchemaArgs {
     /// Kind of file
     #[arg(value_name = "KIND")]
@@ -52,7 +51,7 @@ pub(super) fn run(args: &SchemaArgs) -> Result<String, Failure> {
 }
 
 fn catalog_schema(name: &str) -> Option<Value> {
-    CatalogFile::ALL.into_iter().find(|file| stem(*file) == name).map(table_schema)
+    CatalogFile::ALL.into_iter().find(|file| stem(*file) == name).map(CatalogFile::table_schema)
 }
 
 /// Name of a catalog file without its ending.

@@ -3,22 +3,26 @@
 use super::asked::Asked;
 use super::exit::Exit;
 use super::failure::Failure;
-use super::finished::{Finished, FoundExactly, Keep, Written};
+use super::finished::{Finished, FoundExactly, Keep, Written, catalogs_hash};
 use super::log::Log;
+use super::manifest::hash;
 use super::progress::{Record, Watch};
 use super::supplements::SupplementArgs;
 use super::time_limit::time_limit;
+use super::unfinished::Unfinished;
 use crate::catalog::Catalogs;
+use crate::exact::Known;
 use crate::report::certificate::certificate_words;
 use crate::report::words::{TERMINAL, wrap};
-use crate::search::sweep::Status;
+use crate::search::sweep::{Shard, Status};
 use crate::space::problem::ArmProblem;
 use crate::study::definition::Study;
 use crate::study::diagnose::why_infeasible;
-use crate::study::outcome::{ExactStudy, Extent, StudyOutcome, run_exact, run_study};
+use crate::study::outcome::{ExactStudy, Extent, StudyOutcome, judge_swept, resume_exact, sweep_shard};
 use crate::study::search_method::{SearchMethod, SearchWish};
 use crate::study::tolerance::part;
 use clap::Args;
+use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -41,6 +45,10 @@ pub(crate) struct SearchArgs {
     /// gap_percent
     #[arg(long, value_name = "PERCENT", value_parser = part_or_none)]
     gap: Option<f64>,
+    /// Discard what an earlier run left in the folder of results, and begin anew. Without it the same command goes on where
+    /// a search was when it was stopped, killed, or lost its machine
+    #[arg(long)]
+    fresh: bool,
 }
 
 impl SearchArgs {
@@ -83,6 +91,11 @@ impl SearchArgs {
         Self { search: Some(SearchMethod::Exhaustive), ..*self }.check(study, catalogs)
     }
 
+    /// Whether what an earlier process left is not to be used.
+    pub(super) fn is_fresh(&self) -> bool {
+        self.fresh
+    }
+
     /// Whether anything is asked for.
     pub(crate) fn is_default(&self) -> bool {
         self.search.is_none() && self.time_limit.is_none() && self.gap.is_none()
@@ -106,6 +119,8 @@ pub(super) struct With<'a> {
     pub dir: &'a Path,
     /// How they are kept.
     pub keep: &'a Keep<'a>,
+    /// Where the state of the search is kept until it is done.
+    pub unfinished: &'a Path,
     pub how: &'a SearchArgs,
     /// What is asked for in addition to the front.
     pub supplements: &'a SupplementArgs,
@@ -136,26 +151,51 @@ pub(super) fn search(asked: &Asked, with: &With) -> Result<Written, Failure> {
     Ok(written)
 }
 
+impl With<'_> {
+    /// The state in which an earlier process left a search of this kind, and the keeping of the next ones.
+    ///
+    /// # Errors
+    /// The state is of another search, or cannot be read.
+    pub(super) fn go_on(&self, asked: &Asked, flags: Value) -> Result<Unfinished, Failure> {
+        let search = json!({
+            "schema_version": 1,
+            "study": asked.study.name,
+            "study_hash": hash(asked.text.as_bytes()),
+            "catalogs_hash": catalogs_hash(self.catalogs),
+            "tool_version": env!("CARGO_PKG_VERSION"),
+            "flags": flags,
+        });
+        Unfinished::open(self.unfinished, search, self.how.fresh, self.log)
+    }
+}
+
 /// Visits every design of a study.
 fn visit_all(asked: &Asked, with: &With) -> Result<Written, Failure> {
     let study = &asked.study;
     let With { catalogs, overlay, dir, keep, supplements, record, log, .. } = *with;
     let problem = ArmProblem::new(&study.space, catalogs);
     let stop = stopped_by_signal();
-    let started = Instant::now();
-    let outcome = run_study(study, catalogs, stop, |total, visited, finished| {
+    let unfinished = with.go_on(asked, json!({"search": "exhaustive"}))?;
+    let started = unfinished.started();
+    let watch = |total: u128, visited: &(dyn Fn() -> u64 + Sync), finished: &AtomicBool| {
         Watch::new(started, record, log).designs(total, visited, finished);
-    });
+    };
+    let (swept, _) = sweep_shard(study, catalogs, Shard::WHOLE, stop, unfinished.resume(), watch)
+        .map_err(|_| unfinished.damaged())?;
+    let outcome = judge_swept(study, &problem, swept);
     let elapsed_s = started.elapsed().as_secs_f64();
     let exit = match outcome.sweep.status {
         Status::Interrupted if outcome.front.is_empty() => {
             return Err(Failure::Interrupted(format!(
-                "{}, and none of them meets the study; nothing was written, run again to start over",
+                "{}, and none of them meets the study; nothing was written, the same command goes on from there",
                 stopped_words(&outcome)
             )));
         }
         Status::Interrupted => {
-            log.note(&format!("{}; the front of these is written", stopped_words(&outcome)));
+            log.note(&format!(
+                "{}; the front of these is written without summary, page and plots, and the same command goes on from there",
+                stopped_words(&outcome)
+            ));
             Exit::Interrupted
         }
         Status::Infeasible => {
@@ -164,10 +204,10 @@ fn visit_all(asked: &Asked, with: &With) -> Result<Written, Failure> {
         _ => Exit::Done,
     };
     let finished = Finished::visit(asked, (&problem, &outcome), elapsed_s, (catalogs, overlay), dir);
-    // further searches are not for who wants to stop
-    let none = SupplementArgs::default();
-    let supplements = if exit == Exit::Interrupted { &none } else { supplements };
-    Ok(Written { exit, ..finished.keep(supplements, stop, keep)? })
+    let written = finished.keep(supplements, stop, keep)?;
+    // a signal that came after the search costs what goes with the front
+    let exit = if stop.load(Ordering::Relaxed) { Exit::Interrupted } else { exit };
+    Ok(Written { exit, ..written })
 }
 
 /// How far a visit came that was stopped.
@@ -194,29 +234,32 @@ pub(super) fn stopped_by_signal() -> &'static AtomicBool {
 }
 
 /// Finds the front of a study without visiting every design.
-fn search_exactly(Asked { study, text, corrections }: &Asked, with: &With) -> Result<Written, Failure> {
-    let With { catalogs, overlay, dir, keep, how, supplements, record, log } = *with;
+fn search_exactly(asked: &Asked, with: &With) -> Result<Written, Failure> {
+    let Asked { study, text, corrections } = asked;
+    let With { catalogs, overlay, dir, keep, how, supplements, record, log, .. } = *with;
     let stop = stopped_by_signal();
-    let started = Instant::now();
-    let extent = Extent {
-        deadline: how.time_limit.map(|limit| started + limit),
-        gap: how.gap.unwrap_or(study.gap),
-        near: supplements.slack(),
+    let gap = how.gap.unwrap_or(study.gap);
+    let unfinished = with.go_on(asked, json!({"search": "exact", "gap": gap}))?;
+    let started = unfinished.started();
+    let extent =
+        Extent { deadline: how.time_limit.map(|limit| started + limit), gap, near: supplements.slack() };
+    let watch = |known: &(dyn Fn() -> Known + Sync), finished: &AtomicBool| {
+        Watch::new(started, record, log).search(known, finished);
     };
     let ExactStudy { study: part, outcome, boxes, gap, near, ties_listed } =
-        run_exact(study, catalogs, stop, extent, |known, finished| {
-            Watch::new(started, record, log).search(known, finished);
-        });
-    // what was found is written; a further signal stops that too
-    let is_interrupted = stop.swap(false, Ordering::Relaxed);
+        resume_exact(study, catalogs, stop, extent, unfinished.resume(), watch)
+            .map_err(|_| unfinished.damaged())?;
+    // what was found is written; a further signal ends that at once
+    let is_interrupted = stop.load(Ordering::Relaxed);
     match outcome.sweep.status {
         Status::Infeasible => {
             Err(Failure::Infeasible(why_infeasible(study, catalogs, stop, extent.deadline)))
         }
         Status::Partial if outcome.front.is_empty() => {
             let why = format!(
-                "no design was found before the search was stopped ({} boxes); nothing was written, allow more time",
-                boxes[0]
+                "no design was found before the search was stopped ({} boxes); nothing was written, {}",
+                boxes[0],
+                if is_interrupted { "the same command goes on" } else { "allow more time" }
             );
             Err(if is_interrupted { Failure::Interrupted(why) } else { Failure::Partial(why) })
         }
@@ -236,9 +279,19 @@ fn search_exactly(Asked { study, text, corrections }: &Asked, with: &With) -> Re
                 catalogs,
                 dir,
             };
+            let finishing = Instant::now();
             let mut written = finished.keep(supplements, stop, keep)?;
+            if how.time_limit.is_some() {
+                let more_s = finishing.elapsed().as_secs_f64();
+                written
+                    .terminal
+                    .push_str(&format!("Working out and writing the files took {more_s:.1} s more.\n"));
+            }
+            if is_interrupted {
+                log.note("stopped; the front so far is written without summary, page and plots, and the same command goes on");
+            }
             written.exit = match outcome.sweep.status {
-                _ if is_interrupted => Exit::Interrupted,
+                _ if stop.load(Ordering::Relaxed) => Exit::Interrupted,
                 Status::Partial => Exit::Partial,
                 _ => Exit::Done,
             };

@@ -13,7 +13,7 @@ use crate::study::outcome::sweep_shard;
 use crate::study::shards::candidates_csv;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::sync::atomic::AtomicBool;
 
 /// Names of the other files of a shard.
 pub(super) const CANDIDATES: &str = "candidates.csv";
@@ -68,13 +68,17 @@ pub(super) fn run_shard(
     if let Some(words) = already_done(with.dir, &manifest) {
         return Ok(words.into());
     }
-    let (stop, started) = (stopped_by_signal(), Instant::now());
-    let (swept, range) = sweep_shard(study, with.catalogs, shard, stop, |total, visited, finished| {
+    let flags = json!({"search": "exhaustive", "shard": [shard.number, shard.of]});
+    let (stop, unfinished) = (stopped_by_signal(), with.go_on(asked, flags)?);
+    let started = unfinished.started();
+    let watch = |total: u128, visited: &(dyn Fn() -> u64 + Sync), finished: &AtomicBool| {
         Watch::new(started, with.record, with.log).designs(total, visited, finished);
-    });
+    };
+    let (swept, range) = sweep_shard(study, with.catalogs, shard, stop, unfinished.resume(), watch)
+        .map_err(|_| unfinished.damaged())?;
     if swept.status == Status::Interrupted {
         return Err(Failure::Interrupted(format!(
-            "shard {}/{} was stopped; nothing was written, the same command starts it again",
+            "shard {}/{} was stopped; nothing was written, the same command goes on from there",
             shard.number, shard.of
         )));
     }

@@ -12,9 +12,11 @@ const NAME: &str = "armwright";
 
 /// Prints a script with which a shell completes verbs, flags and file names.
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  armwright completions bash > ~/.local/share/bash-completion/completions/armwright\n  \
+#[command(
+    after_help = "Examples:\n  armwright completions bash > ~/.local/share/bash-completion/completions/armwright\n  \
     armwright completions zsh > ~/.zfunc/_armwright\n  \
-    armwright completions fish > ~/.config/fish/completions/armwright.fish")]
+    armwright completions fish > ~/.config/fish/completions/armwright.fish"
+)]
 pub(crate) struct CompletionsArgs {
     /// The shell
     #[arg(value_enum)]
@@ -56,5 +58,7 @@ fn add_pages(command: &Command, name: &str, pages: &mut Vec<(String, Vec<u8>)>) 
     let man = Man::new(command.clone()).title(name);
     man.render(&mut page).map_err(|e| Failure::Internal(e.to_string()))?;
     pages.push((format!("{name}.1"), page));
-    command.get_subcommands().try_for_each(|verb| add_pages(verb, &format!("{name}-{}", verb.get_name()), pages))
+    command
+        .get_subcommands()
+        .try_for_each(|verb| add_pages(verb, &format!("{name}-{}", verb.get_name()), pages))
 }

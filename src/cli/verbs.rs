@@ -4,7 +4,8 @@ use super::exit::{Answer, Exit};
 use super::failure::Failure;
 use super::log::{Log, LogForm};
 use super::{
-    analyze, capacity, catalog, check, compare, design, front, merge, new, predict, reconcile, schema, shell, size, slurm,
+    analyze, capacity, catalog, check, compare, design, export, front, import, merge, new, predict,
+    reconcile, schema, shell, size, slurm,
 };
 use crate::catalog::Catalogs;
 use crate::exact::run::WORKER_STACK_BYTES;
@@ -51,6 +52,10 @@ enum Verb {
     Analyze(analyze::AnalyzeArgs),
     /// Write a design of a result as an arm file
     Design(design::DesignArgs),
+    /// Write an arm or a design for another program: CalculiX, MuJoCo, URDF, JSON, CSV, bill of materials
+    Export(export::ExportArgs),
+    /// Make an arm file of a robot in a URDF file
+    Import(import::ImportArgs),
     /// Check a finished front
     Front(front::FrontArgs),
     /// Compare fronts: the materials of one study, or several studies
@@ -61,7 +66,7 @@ enum Verb {
     Status(merge::StatusArgs),
     /// Print a script that runs a study as shards on a Slurm cluster
     Slurm(slurm::SlurmArgs),
-    /// Say what files are, with all their faults; or whether two folders of results are the same
+    /// Say what files are, and all their faults; or compare two results
     Check(check::CheckArgs),
     /// Print the schema of a kind of file
     Schema(schema::SchemaArgs),
@@ -110,9 +115,7 @@ pub fn run(cli: Cli) -> Result<Answer, Failure> {
         Verb::Completions(args) => Ok(shell::completions(&args, Cli::command())),
         Verb::Man(args) => shell::man(&args, Cli::command()),
         Verb::Schema(args) => schema::run(&args),
-        Verb::Reconcile(args) => {
-            return reconcile::run(&args, &catalogs?, overlay, log).map(|(_, answer)| answer);
-        }
+        Verb::Reconcile(args) => return reconcile::run(&args, &catalogs?, overlay, log),
         Verb::Catalog(args) => catalog::run(&args, overlay),
         Verb::Studies => Ok(crate::study::list()),
         Verb::Size(args) => size::run(&args, &catalogs?),
@@ -123,6 +126,8 @@ pub fn run(cli: Cli) -> Result<Answer, Failure> {
         Verb::Compare(args) => compare::run(&args),
         Verb::Analyze(args) => analyze::run(&args, &catalogs?),
         Verb::Design(args) => design::run(&args, &catalogs?),
+        Verb::Import(args) => import::run(&args, &catalogs?),
+        Verb::Export(args) => export::run(&args, &catalogs?),
         Verb::New(args) => new::run(&args, &catalogs?),
         Verb::Predict(args) => predict::run(&args, &catalogs?),
     };

@@ -15,6 +15,7 @@ use super::shape::{Ideal, Shape};
 use super::work::Work;
 use crate::pareto::objectives::Objectives;
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Refinement of the trial shapes stops when the bound improves by less than this (relative).
@@ -28,7 +29,7 @@ const MOST_STEPS: usize = 30;
 pub(super) type DesignBox = Vec<u32>;
 
 /// The ideal point of a box: the best objectives that a member could have. No member is better in any of them.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) struct BoxBound {
     pub mass_kg: f64,
     pub tip_m: f64,

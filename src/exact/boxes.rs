@@ -23,6 +23,12 @@ pub(super) struct OpenBox {
 }
 
 impl OpenBox {
+    /// The box of all designs. `None` if no design meets the constraints.
+    fn root(problem: &Problem) -> Option<Self> {
+        let shapes = Arc::new(problem.first_shapes(&mut Work::default())?);
+        Some(Self { design_box: problem.root(), shapes, box_bound: BoxBound::OPEN })
+    }
+
     /// The two halves of a box along a level. The half to bound first stands last, because the stack is emptied from
     /// its end.
     pub(super) fn halves(&self, problem: &Problem, level: usize, box_bound: BoxBound) -> Vec<Self> {
@@ -46,12 +52,23 @@ pub(super) fn open_all_boxes<K: Sync, F: Send + Default>(
     learn: impl Fn(&mut K, F),
     see: impl Fn(&K, &[OpenBox]),
 ) -> Vec<OpenBox> {
-    let Some(shapes) = problem.first_shapes(&mut Work::default()) else { return Vec::new() };
-    let root = OpenBox { design_box: problem.root(), shapes: Arc::new(shapes), box_bound: BoxBound::OPEN };
+    let Some(root) = OpenBox::root(problem) else { return Vec::new() };
+    go_through_boxes(budget, state, vec![root], open, learn, see)
+}
+
+/// Bounds boxes that are open and all boxes into which they are divided, as [`open_all_boxes`] does.
+fn go_through_boxes<K: Sync, F: Send + Default>(
+    budget: &Budget,
+    state: &mut K,
+    first: Vec<OpenBox>,
+    open: impl Fn(&K, OpenBox, &mut Work, &mut F) -> Vec<OpenBox> + Sync,
+    learn: impl Fn(&mut K, F),
+    see: impl Fn(&K, &[OpenBox]),
+) -> Vec<OpenBox> {
     let task = |state: &K, root: OpenBox| {
         open_boxes(budget, root, |next, work, findings| open(state, next, work, findings))
     };
-    in_rounds(state, vec![root], || budget.stopped(), task, learn, see)
+    in_rounds(state, first, || budget.stopped(), task, learn, see)
 }
 
 /// Bounds a box and then some of the boxes into which it is divided, depth first. Returns the open boxes and the
@@ -72,24 +89,28 @@ pub(super) fn open_boxes<F: Default>(
     Done { tasks: stack, findings }
 }
 
-/// One pass over all boxes. Returns the bounds of the boxes that are still open when the search is stopped.
+/// One pass over all boxes, or over those that an earlier process left open. `keep` is shown the state and the open boxes
+/// after each round. Returns the bounds of the boxes that are still open when the search is stopped.
 pub(super) fn pass_by_boxes(
     budget: &Budget,
     problem: &Problem,
     state: &mut SearchState,
-    slack: f64,
+    (slack, left): (f64, Option<Vec<OpenBox>>),
     live: Option<&Live>,
+    keep: impl Fn(&SearchState, &[OpenBox]),
 ) -> Vec<BoxBound> {
     let bounds = |open: &[OpenBox]| open.iter().map(|opened| opened.box_bound).collect::<Vec<_>>();
-    let left = open_all_boxes(
+    let first = left.unwrap_or_else(|| OpenBox::root(problem).into_iter().collect());
+    let left = go_through_boxes(
         budget,
-        problem,
         state,
+        first,
         |state, next, work, findings| {
             Search { budget, problem, state, slack, below: None }.open(next, work, findings)
         },
         SearchState::learn,
         |state, open| {
+            keep(state, open);
             live.into_iter().for_each(|live| {
                 live.update(|| {
                     let front = state.front();

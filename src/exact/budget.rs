@@ -22,6 +22,11 @@ impl<'p> Budget<'p> {
         Self { boxes: AtomicU64::new(0), ..*self }
     }
 
+    /// Counts the boxes that an earlier process has bounded.
+    pub(super) fn set_boxes(&self, boxes: u64) {
+        self.boxes.store(boxes, Ordering::Relaxed);
+    }
+
     /// The time that is left \[s\]; `None` without a time limit.
     pub(super) fn left_s(&self) -> Option<f64> {
         let left = |deadline: Instant| deadline.saturating_duration_since(Instant::now()).as_secs_f64();

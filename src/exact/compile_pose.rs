@@ -291,11 +291,7 @@ impl PosedBodies {
 
 impl Pulls {
     /// What springs do to a tube whose root and section frame are known.
-    fn new(
-        beam: &PreparedBeam,
-        (root_m, frame): (&Vector3<f64>, &Matrix3<f64>),
-        loads: &[&EndLoad],
-    ) -> Self {
+    fn new(beam: &PreparedBeam, (root_m, frame): (&Vector3<f64>, &Matrix3<f64>), loads: &[&EndLoad]) -> Self {
         let mut out = Self::default();
         for load in loads {
             out.wrench += wrench_of(load);

@@ -8,6 +8,8 @@
 //! same as long as passes are short beside the time left, and if the gap that was asked for can be proved in time.
 //! Otherwise the plan is to make its last pass with the least slack for which there should be time.
 
+use serde::{Deserialize, Serialize};
+
 /// The slacks of the list.
 const SLACKS: [f64; 25] = [
     1.0, 0.7, 0.5, 0.42, 0.35, 0.3, 0.25, 0.2, 0.16, 0.12, 0.09, 0.075, 0.06, 0.05, 0.04, 0.035, 0.03, 0.025,
@@ -34,7 +36,7 @@ const LONGEST_STEP: f64 = 3.0;
 const SHORTEST_STEP: f64 = 0.95;
 
 /// A completed pass.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) struct Pass {
     pub slack: f64,
     pub took_s: f64,

@@ -131,6 +131,16 @@ impl<'c> Problem<'c> {
         Some(narrower)
     }
 
+    /// Whether nodes are those of a box of this problem, one for each level.
+    pub(super) fn has_box(&self, design_box: &[u32]) -> bool {
+        let has = |(&piece, &node): (&usize, &u32)| match &self.parts[piece] {
+            Part::Drives { tree, .. } => tree.has(node),
+            Part::Links { tree, .. } => tree.has(node),
+            _ => true,
+        };
+        design_box.len() == self.level_pieces.len() && self.level_pieces.iter().zip(design_box).all(has)
+    }
+
     /// Number of designs in a box, if all drives of a kind are counted as one.
     pub(super) fn members(&self, design_box: &[u32]) -> f64 {
         let of = |(&piece, &node): (&usize, &u32)| match &self.parts[piece] {

@@ -52,15 +52,15 @@ enum Task<'p> {
     Boxes { problem: Arc<Problem<'p>>, upper: LocalUpperBound, first: OpenBox },
 }
 
-/// One pass over the whole search region. Returns one bound for each task that is left when the search is
-/// stopped.
+/// One pass over the whole search region. `seen` is called after each round. Returns one bound for each task that is left
+/// when the search is stopped.
 pub(super) fn pass_by_regions<'p>(
     budget: &Budget<'p>,
     problem: &Problem<'p>,
     state: &mut SearchState,
     slack: f64,
     regions_to: f64,
-    live: Option<&Live>,
+    (live, seen): (Option<&Live>, impl Fn()),
 ) -> Vec<BoxBound> {
     let mut found: Vec<Objectives> =
         state.incumbents.all().iter().map(|o| improved_by_slack(o, slack)).collect();
@@ -85,6 +85,7 @@ pub(super) fn pass_by_regions<'p>(
         }
     };
     let see = |state: &SearchState, open: &[Task<'p>]| {
+        seen();
         live.into_iter().for_each(|live| {
             live.update(|| state.known(&state.front(), open.len(), None));
         });

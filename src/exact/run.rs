@@ -1,13 +1,15 @@
 //! The exact search: probes, passes with less and less slack, and the listing of the front.
 
 use super::bound::BoxBound;
-use super::boxes::pass_by_boxes;
+use super::boxes::{OpenBox, pass_by_boxes};
 use super::budget::Budget;
 use super::early::Early;
 use super::evolve::evolve;
 use super::gap::gap;
+use super::journal::{Begun, Journal};
 use super::kinds::Ties;
 use super::live::{Known, Live, least};
+use super::outcome::ExactOutcome;
 use super::plan::{Pass, Plan};
 use super::probe::probe;
 use super::problem::Problem;
@@ -15,7 +17,7 @@ use super::regions::pass_by_regions;
 use super::search_state::SearchState;
 use crate::catalog::Catalogs;
 use crate::pareto::objectives::{Objective, Objectives};
-use crate::search::sweep::Candidate;
+use crate::search::resume::Resume;
 use crate::space::design_space::{DesignSpace, LinkOption};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -77,35 +79,13 @@ pub struct Exact<'p> {
     /// Greatest number of designs that are listed with all their ties.
     most_with_ties: usize,
     live: Live,
+    journal: Journal<'p>,
 }
 
 /// How the passes of a search ended: the gap that was proved, and the bounds of what is open.
 struct Ended {
     gap: Option<f64>,
     open: Vec<BoxBound>,
-}
-
-/// The result of the search.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ExactOutcome {
-    /// Number of designs in the space.
-    pub designs_total: u128,
-    /// Number of designs whose three objectives were computed.
-    pub designs_evaluated: u64,
-    /// Number of boxes bounded.
-    pub boxes: u64,
-    /// Number of boxes or regions that were still open when the search was stopped. It is 0 if the front is
-    /// certified.
-    pub boxes_open: u64,
-    /// The greatest factor, less one, by which an undiscovered design may be better than the whole front in every
-    /// objective at once. After a complete search this is the gap that was asked for, 0 for the whole front. `None`
-    /// if nothing is known.
-    pub gap: Option<f64>,
-    /// The designs found that no other dominates.
-    pub front: Vec<Candidate>,
-    /// Whether the front lists every design that differs only in drives of equal mass and curve. If there are too
-    /// many, one of each set of ties is listed.
-    pub ties_listed: bool,
 }
 
 impl<'p> Exact<'p> {
@@ -126,6 +106,7 @@ impl<'p> Exact<'p> {
             regions_to: FEW,
             most_with_ties: MOST_WITH_TIES,
             live: Live::default(),
+            journal: Journal::default(),
         }
     }
 
@@ -157,6 +138,16 @@ impl<'p> Exact<'p> {
         Self { only: Some(objective), regions_from: f64::INFINITY, ..self }
     }
 
+    /// Goes on where an earlier process ended, and keeps states for the next one. They are of the same calls of
+    /// [`run`](Self::run) and [`run_of_material`](Self::run_of_material), in the same order.
+    ///
+    /// # Errors
+    /// The bytes are no state of an exact search, in words.
+    pub fn resumed(self, resume: Resume<'p>) -> Result<Self, String> {
+        let journal = Journal::resumed(resume, &self.budget)?;
+        Ok(Self { journal, ..self })
+    }
+
     /// What is known of the front of all designs now. The gap never rises.
     pub fn known(&self) -> Known {
         Known { boxes: self.budget.boxes(), ..self.live.known() }
@@ -181,6 +172,9 @@ impl<'p> Exact<'p> {
     }
 
     fn run_of(&self, whole: Option<Problem<'p>>, given: &[Objectives], live: Option<&Live>) -> ExactOutcome {
+        if let Some(outcome) = self.journal.next_finished() {
+            return outcome;
+        }
         let mut state = SearchState::toward(self.only);
         given.iter().for_each(|objectives| state.enter(objectives));
         let mut ended = Ended { gap: Some(0.0), open: Vec::new() };
@@ -196,7 +190,7 @@ impl<'p> Exact<'p> {
         front.sort_unstable_by_key(|c| c.number);
         // Tied kinds may stand for the same design.
         front.dedup_by_key(|c| c.number);
-        ExactOutcome {
+        let outcome = ExactOutcome {
             // Also of a space of which nothing was compiled because no option of a level can hold.
             designs_total: self.space.designs(self.catalogs).unwrap_or(u128::MAX),
             designs_evaluated,
@@ -205,7 +199,11 @@ impl<'p> Exact<'p> {
             gap: ended.gap,
             front,
             ties_listed,
+        };
+        if outcome.boxes_open == 0 {
+            self.journal.finish(&outcome);
         }
+        outcome
     }
 
     /// Searches a compiled space in passes. `is_new` tells whether no designs are known at the start.
@@ -221,16 +219,33 @@ impl<'p> Exact<'p> {
         // Small spaces need no passes with slack. With given designs there is something to prune with from the start.
         let in_passes = is_new && (by_regions || designs > LARGE);
         let early = live.filter(|_| in_passes).map(|live| Early::new(&self.budget, whole, live));
-        if is_new {
-            self.first_incumbents(whole, by_regions, state, early.as_ref());
+        let mut begun = self.journal.begun();
+        match &mut begun {
+            Some(begun) => *state = SearchState::from_kept(begun.state(), self.only),
+            None if is_new => self.first_incumbents(whole, by_regions, state, early.as_ref()),
+            None => {}
         }
+        let (mut done, told, mut left) = match begun {
+            Some(mut begun) => (std::mem::take(&mut begun.passes), begun.told, begun.open_pass(whole)),
+            None => (Vec::<Pass>::new(), None, None),
+        };
+        live.into_iter().for_each(|live| live.prove(told));
         let plan = if in_passes { Plan::new(self.gap, by_regions) } else { Plan::single(self.gap) };
-        let (mut done, mut open) = (Vec::<Pass>::new(), Vec::new());
-        while let Some(slack) = plan.next(&done, self.budget.left_s()) {
-            let started = Instant::now();
-            open = match by_regions {
-                true => pass_by_regions(&self.budget, whole, state, slack, self.regions_to, live),
-                false => pass_by_boxes(&self.budget, whole, state, slack, live),
+        let mut open = Vec::new();
+        let begun = |left: &Option<(f64, Vec<OpenBox>)>| left.as_ref().map(|(slack, _)| *slack);
+        while let Some(slack) = begun(&left).or_else(|| plan.next(&done, self.budget.left_s())) {
+            let (started, from) = (Instant::now(), left.take().map(|(_, boxes)| boxes));
+            let told = || live.and_then(|live| live.known().gap);
+            let between = |state: &SearchState| Begun::between(state, &done, told());
+            open = if by_regions {
+                self.journal.begin_pass(&self.budget, || between(state));
+                let seen = (live, || self.journal.keep_start());
+                pass_by_regions(&self.budget, whole, state, slack, self.regions_to, seen)
+            } else {
+                let keep = |state: &SearchState, open: &[OpenBox]| {
+                    self.journal.keep_round(&self.budget, || between(state), (slack, open));
+                };
+                pass_by_boxes(&self.budget, whole, state, (slack, from), live, keep)
             };
             if !open.is_empty() {
                 // What was told once stays true of the designs found since.

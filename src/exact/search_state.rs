@@ -6,6 +6,7 @@ use super::live::Known;
 use crate::pareto::front::{exact_front, not_clearly_beaten};
 use crate::pareto::objectives::{Objective, Objectives};
 use crate::search::sweep::{Candidate, SLACK};
+use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 
 /// Above this number, dominated candidates are removed whenever the number of candidates reaches a power of two.
@@ -21,6 +22,16 @@ pub(super) struct SearchState {
     /// Designs for which rounding leaves open whether a part carries its demand. The full model judges them.
     undecided: Vec<Candidate>,
     pub evaluated: u64,
+}
+
+/// The state between two rounds, as it is kept for another process.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub(super) struct KeptState {
+    incumbents: Vec<Objectives>,
+    tried: Vec<u128>,
+    kept: Vec<Candidate>,
+    undecided: Vec<Candidate>,
+    evaluated: u64,
 }
 
 /// The findings of a task, before they are made known to other tasks.
@@ -52,6 +63,27 @@ impl SearchState {
     /// The state of a search that begins. If one objective is given, it alone counts.
     pub(super) fn toward(only: Option<Objective>) -> Self {
         Self { incumbents: Incumbents::toward(only), ..Self::default() }
+    }
+
+    /// What another process needs to go on.
+    pub(super) fn to_kept(&self) -> KeptState {
+        let mut tried: Vec<u128> = self.tried.iter().copied().collect();
+        tried.sort_unstable();
+        KeptState {
+            incumbents: self.incumbents.all().to_vec(),
+            tried,
+            kept: self.kept.clone(),
+            undecided: self.undecided.clone(),
+            evaluated: self.evaluated,
+        }
+    }
+
+    /// The state that an earlier process kept. Its designs are entered in the same order, so that the state is the same.
+    pub(super) fn from_kept(of: KeptState, only: Option<Objective>) -> Self {
+        let KeptState { incumbents, tried, kept, undecided, evaluated } = of;
+        let mut state = Self::toward(only);
+        incumbents.iter().for_each(|objectives| state.enter(objectives));
+        Self { tried: tried.into_iter().collect(), kept, undecided, evaluated, ..state }
     }
 
     /// Adds the objectives of a known design, from whatever source.

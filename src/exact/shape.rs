@@ -15,9 +15,10 @@ use super::pose::{
 };
 use crate::mechanics::{Twist, Wrench, angular, linear, stack};
 use nalgebra::{DVector, SMatrix, SVector, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// A motion of the arm, with the strain and kinetic energy of each piece. Pieces are counted from the tip.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct Shape {
     /// Strain coordinates: [`COORDINATES`] places for each piece, of which a joint uses the first three.
     x: Vec<f64>,

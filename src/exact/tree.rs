@@ -178,6 +178,11 @@ impl<B: Bounds> Tree<B> {
         &self.whole.as_deref().unwrap_or(self).nodes[index as usize]
     }
 
+    /// Whether there is a node of this number, in a base tree.
+    pub(super) fn has(&self, index: u32) -> bool {
+        (index as usize) < self.nodes.len()
+    }
+
     /// A node. The root is node 0.
     #[inline]
     pub(super) fn node(&self, index: u32) -> &Node<B> {

@@ -105,6 +105,11 @@ impl Shape {
         Self { name, about, keys, rules, others: None }
     }
 
+    /// Whether it has a key of this name.
+    pub fn has(&self, name: &str) -> bool {
+        self.keys.iter().any(|key| key.name == name)
+    }
+
     /// The names of its keys.
     pub fn names(&self) -> Vec<&'static str> {
         self.keys.iter().map(|key| key.name).collect()
@@ -128,8 +133,13 @@ pub(crate) const fn optional(
 }
 
 /// The address of the schema, which editors look for in a file; programs ignore it.
-pub(crate) const SCHEMA_ADDRESS: Key =
-    optional("$schema", Kind::Text, "-", "none", "Where an editor finds the schema of this file; ignored.");
+pub(crate) const SCHEMA_ADDRESS: Key = optional(
+    "$schema",
+    Kind::Anything,
+    "-",
+    "none",
+    "Where an editor finds the schema of this file; ignored.",
+);
 
 /// The words of a table of words and values.
 pub(crate) const fn words_of<T, const N: usize>(pairs: &[(&'static str, T)]) -> [&'static str; N] {

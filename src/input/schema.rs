@@ -244,7 +244,8 @@ mod tests {
     use super::*;
     use crate::input::key::{optional, required};
 
-    static INNER: Shape = Shape::new("inner", "Inside.", &[required("x_m", Kind::Positive, "m", "Length.")], &[]);
+    static INNER: Shape =
+        Shape::new("inner", "Inside.", &[required("x_m", Kind::Positive, "m", "Length.")], &[]);
     static OUTER: Shape = Shape::new(
         "outer",
         "Outside.",

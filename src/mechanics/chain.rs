@@ -12,7 +12,7 @@ use crate::arm::joint_law::JointLaw;
 use crate::arm::linkage::{Linkage, linkages};
 use crate::arm::load::Water;
 use crate::arm::load::{LoadCase, Payload};
-use crate::arm::springs::{Drawn, EndLoad, ElementFrame, Side, Spring, end_loads};
+use crate::arm::springs::{Drawn, ElementFrame, EndLoad, Side, Spring, end_loads};
 use crate::arm::structure::{FrameCompliance, JointPiece, LinkPiece, Piece, Structure};
 use nalgebra::{DMatrix, Matrix3, Matrix6, Matrix6xX, Rotation3, Vector3};
 

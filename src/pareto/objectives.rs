@@ -1,7 +1,9 @@
 //! The three objectives of a design.
 
+use serde::{Deserialize, Serialize};
+
 /// The three objectives by which a design is judged.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Objectives {
     /// Tip deflection: the largest displacement of the tip over the judged cases \[m\].
     pub tip_deflection_m: f64,

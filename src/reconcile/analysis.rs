@@ -25,6 +25,7 @@ use super::select::settle::Settled;
 use super::select::unnamed;
 use super::select::unnamed::Better;
 use super::verdict::corrected_model::Choice;
+use super::verdict::judgement::{does_not_predict, too_many_alternatives};
 use super::verdict::next_test;
 use super::verdict::outcome::{Calibrated, Evidence, Law, Located, Outcome, ReadingResidual, Verdict};
 use super::verdict::too_little::{rows, too_little};
@@ -34,8 +35,6 @@ use crate::arm::effect::empirical::KIND;
 use serde_json::Value;
 use std::cell::OnceCell;
 
-/// Largest number of alternatives with which an effect is still named.
-const MOST_ALTERNATIVES: usize = 3;
 /// With a rise of ln of the evidence below this an effect is only a suspect, because that is not yet strong (Kass and Raftery 1995, table of Bayes factors).
 const WEAK: f64 = 3.0;
 /// What is said where no effect is needed.
@@ -197,10 +196,7 @@ impl Analysis<'_> {
             Verdict::Unexplained => Vec::new(),
             _ => self.findings(),
         };
-        let (effects, suspects) = match verdict {
-            Verdict::Explained => (findings, Vec::new()),
-            _ => (Vec::new(), findings),
-        };
+        let (effects, suspects) = verdict.named_and_suspected(findings, Vec::new());
         let Corrections { calibrated, empirical, models, corrected, provenance } =
             self.corrections(verdict, &effects);
         if matches!(verdict, Verdict::Explained | Verdict::NoGap) {
@@ -279,18 +275,13 @@ impl Analysis<'_> {
             return self.weak(without);
         }
         for (effect, competitors) in self.best.model.effects.iter().zip(&self.alternatives) {
-            if competitors.len() > MOST_ALTERNATIVES {
-                let text = format!("{} other effects fit as well as {}", competitors.len(), effect.label());
+            if let Some(text) = too_many_alternatives(&effect.label(), competitors.len()) {
                 return (Verdict::InsufficientData, vec![text]);
             }
         }
         if let Some(k) = held_out.filter(|k| k.rms_after > k.rms_before + 0.02) {
-            let text = format!(
-                "{} does not predict poses it was not fitted to ({:.2} sigma after, {:.2} before)",
-                self.best.model.label(),
-                k.rms_after,
-                k.rms_before
-            );
+            let [after, before] = [k.rms_after, k.rms_before].map(|rms| format!("{rms:.2} sigma"));
+            let text = does_not_predict(&self.best.model.label(), &after, &before);
             return (Verdict::InsufficientData, vec![text]);
         }
         if let Some(&i) = caution::may_be_absent(&self.best, self.ends()).first() {

@@ -27,5 +27,6 @@ pub(crate) mod together;
 pub mod verdict;
 
 pub use readings::campaign::Campaign;
+pub use readings::keys::CAMPAIGN_FILE;
 pub use together::reconcile;
 pub use verdict::outcome::{Outcome, Verdict};

@@ -20,7 +20,7 @@ use super::verdict::outcome::{Outcome, Verdict};
 use super::verdict::stage::Stage;
 use super::verdict::too_little::rows;
 use crate::arm::{Arm, Element};
-use serde_json::json;
+use serde_json::{Value, json};
 
 /// Reconciles a campaign with its arm. A campaign with absolute positions and other readings is reconciled in two parts,
 /// whose verdicts are then joined.
@@ -84,25 +84,45 @@ fn of_both(campaign: &Campaign, mut loaded: Campaign, placed: Campaign) -> Outco
     let calibrated = positions::analysis::calibrated(&placed);
     loaded.arm = calibrated.arms[0].clone();
     let first = analysis::reconcile(&loaded);
-    if settled(first.verdict) {
+    if first.verdict.is_settled() {
         let second = positions::outcome::reconcile(&with_what_yields(&placed, &first));
         let corrected = second.corrected.clone();
-        return Both { campaign, calibrated, loaded: first, placed: second, told: true, corrected }.outcome();
+        let told = Both {
+            campaign,
+            calibrated,
+            with_laws: None,
+            loaded: first,
+            placed: second,
+            told: true,
+            corrected,
+        };
+        return told.outcome();
     }
     let second = positions::outcome::reconcile(&placed);
     loaded.arm = second.corrected.clone();
     let again = if second.effects.is_empty() { first } else { analysis::reconcile(&loaded) };
     let corrected = again.corrected.clone();
-    Both { campaign, calibrated, loaded: again, placed: second, told: false, corrected }.outcome()
+    // laws without a name yield under gravity too, so the geometry is calibrated once more with them
+    let with_laws = (!again.empirical.is_empty())
+        .then(|| positions::analysis::calibrated(&with_what_yields(&placed, &again)));
+    Both { campaign, calibrated, with_laws, loaded: again, placed: second, told: false, corrected }.outcome()
+}
+
+/// Where neither kind of readings explains the gap, a model whose error at held-out positions is larger than that of
+/// calibration alone by more than this factor is not written, however well it predicts the other readings.
+const MOST_HARM: f64 = 1.1;
+
+/// The arms that are written where something remains unexplained, where they stand, and whether they have laws without a
+/// name.
+struct Unexplained {
+    arms: Vec<Arm>,
+    placements: Value,
+    has_laws: bool,
 }
 
 /// Effects as words.
 fn labels(findings: &[Finding]) -> String {
     findings.iter().map(Finding::label).collect::<Vec<_>>().join(" and ")
-}
-
-fn settled(verdict: Verdict) -> bool {
-    matches!(verdict, Verdict::Explained | Verdict::NoGap)
 }
 
 /// The positions campaign with the stiffnesses, masses and effects that the loaded arm showed. The geometry
@@ -143,6 +163,8 @@ fn with_what_yields(placed: &Campaign, found: &Outcome) -> Campaign {
 struct Both<'a> {
     campaign: &'a Campaign,
     calibrated: Calibrated,
+    /// The geometry calibrated with the laws without a name that the loaded arm has; `None` if it has none.
+    with_laws: Option<Calibrated>,
     loaded: Outcome,
     placed: Outcome,
     /// Whether the positions were given the findings of the loaded arm, or analysed first.
@@ -155,6 +177,7 @@ impl Both<'_> {
     fn outcome(self) -> Outcome {
         let verdict = self.verdict();
         let (stages, held_out, reasons) = (self.stages(), self.held_out(), self.reasons(verdict));
+        let unexplained = (!verdict.is_settled()).then(|| self.unexplained());
         let Self { campaign, calibrated, loaded, mut placed, corrected, .. } = self;
         let mut next_tests = [loaded.next_tests, placed.next_tests].concat();
         next_tests.sort_by(|a, b| b.expected_sigmas.total_cmp(&a.expected_sigmas));
@@ -163,18 +186,19 @@ impl Both<'_> {
         }
         let effects = [loaded.effects, placed.effects].concat();
         let suspects = [loaded.suspects, placed.suspects].concat();
-        let (effects, suspects) = match verdict {
-            Verdict::Explained => (effects, Vec::new()),
-            Verdict::InsufficientData => (Vec::new(), [effects, suspects].concat()),
-            Verdict::NoGap => (Vec::new(), suspects),
-            Verdict::Unexplained => (Vec::new(), Vec::new()),
-        };
-        let (corrected, other_corrected) = match settled(verdict) {
-            true => (corrected, placed.other_corrected),
-            false => (calibrated.arms[0].clone(), calibrated.arms[1..].to_vec()),
-        };
+        let (effects, suspects) = verdict.named_and_suspected(effects, suspects);
         let mut provenance = placed.provenance;
         provenance["verdict"] = json!(verdict.word());
+        let has_laws = unexplained.as_ref().is_some_and(|written| written.has_laws);
+        let (corrected, other_corrected) = match unexplained {
+            None => (corrected, placed.other_corrected),
+            Some(Unexplained { mut arms, placements, .. }) => {
+                let places = placements.as_object().into_iter().flatten();
+                places.for_each(|(key, value)| provenance[key.as_str()] = value.clone());
+                let first = arms.remove(0);
+                (first, arms)
+            }
+        };
         if let (Some(all), Some(own)) =
             (provenance["calibrated"].as_array_mut(), loaded.provenance["calibrated"].as_array())
         {
@@ -207,17 +231,36 @@ impl Both<'_> {
             calibrated: loaded.calibrated,
             evidence: loaded.evidence,
             records: Vec::new(),
-            // the corrected arm of both is the calibrated one where either is unexplained
-            empirical: Vec::new(),
-            models: Vec::new(),
+            empirical: if has_laws { loaded.empirical } else { Vec::new() },
+            models: if has_laws { loaded.models } else { Vec::new() },
         }
+    }
+
+    /// The arms to write where something remains unexplained: those with the laws of the loaded arm or with what explains
+    /// that arm, unless the positions are predicted worse with them; else the calibrated ones.
+    fn unexplained(&self) -> Unexplained {
+        let error_mm = |stage: Option<&Stage>| stage.map_or(f64::INFINITY, |s| s.median_mm);
+        let most_mm = MOST_HARM * error_mm(self.calibrated.stages.last());
+        let of = |calibrated: &Calibrated, has_laws: bool| Unexplained {
+            arms: calibrated.arms.clone(),
+            placements: calibrated.placements.clone(),
+            has_laws,
+        };
+        if let Some(with_laws) = self.with_laws.as_ref().filter(|c| error_mm(c.stages.last()) <= most_mm) {
+            return of(with_laws, true);
+        }
+        let told = self.last_calibration().map(|i| &self.placed.stages[i]);
+        if self.told && error_mm(told) <= most_mm {
+            let others = self.placed.other_corrected.iter().cloned();
+            let arms = std::iter::once(self.corrected.clone()).chain(others).collect();
+            return Unexplained { arms, placements: json!({}), has_laws: false };
+        }
+        of(&self.calibrated, false)
     }
 
     /// The verdict on the arm as a whole: what one kind of readings leaves open or unexplained, remains so.
     fn verdict(&self) -> Verdict {
-        let order = [Verdict::Unexplained, Verdict::InsufficientData, Verdict::Explained];
-        let said = [self.loaded.verdict, self.placed.verdict];
-        order.into_iter().find(|v| said.contains(v)).unwrap_or(Verdict::NoGap)
+        Verdict::on_all(&[self.loaded.verdict, self.placed.verdict])
     }
 
     fn reasons(&self, verdict: Verdict) -> Vec<String> {

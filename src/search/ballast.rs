@@ -16,6 +16,7 @@ use crate::space::design_space::SpacePiece;
 use crate::space::levels::OutwardIn;
 use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::Slot;
+use crate::space::state::StationState;
 use crate::space::station::{Station, StationSlot};
 
 /// Relative difference below which two objectives count as equal.
@@ -67,14 +68,14 @@ impl ArmProblem<'_> {
 impl<'p, 'c> Weighed<'p, 'c> {
     fn new(problem: &'p ArmProblem<'c>, options: Vec<u32>) -> Option<Self> {
         let mut torques_nm = vec![vec![0.0; problem.stations().len()]; problem.slots().len()];
-        let torque = |station: &Station, slot: usize, wrench: &Wrench| match &station.slots[slot] {
-            StationSlot::Joint(joint) => joint.twist.dot(wrench),
+        let torque = |station: &Station, slot: usize, state: &StationState| match &station.slots[slot] {
+            StationSlot::Joint(joint) => state.torque_nm(joint),
             _ => 0.0,
         };
         let arm = problem
             .walk(&options, |slot, outboard| {
                 for (case, state) in outboard.stations.iter().enumerate() {
-                    torques_nm[slot][case] = torque(&problem.stations()[case], slot, &state.wrench);
+                    torques_nm[slot][case] = torque(&problem.stations()[case], slot, state);
                 }
             })
             .ok()?;

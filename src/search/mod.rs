@@ -3,6 +3,7 @@
 //! - [`sweep`] visits every design and keeps those that no other dominates. A *row* is the set of designs that differ in
 //!   one level alone; it is finished eight designs at a time (`finish`).
 //! - [`near`] finds the designs that are nearly on a front.
+//! - [`resume`] lets a sweep go on where an earlier process ended.
 //! - [`scatter`] computes designs whose parts differ a little from the catalog.
 //! - `ballast` finds designs that are on a front only because extra weight loads a gear into a stiffer part of its curve.
 //! - `same_drives` finds the lightest arm on the drives that first fit gave a design.
@@ -11,6 +12,7 @@ pub(crate) mod arms;
 pub(crate) mod ballast;
 pub(crate) mod finish;
 pub mod near;
+pub mod resume;
 pub(crate) mod row;
 pub(crate) mod row_bearing;
 pub(crate) mod row_begun;
@@ -24,4 +26,5 @@ pub mod sweep;
 pub(crate) mod visit;
 
 pub use finish::FinishRows;
-pub use sweep::{Status, Sweep, SweepOutcome};
+pub use resume::{KeepState, Resume};
+pub use sweep::{Status, Sweep, SweepOutcome, SweepState};

@@ -172,10 +172,10 @@ pub(crate) struct RowChunk<'a, 'c> {
 
 impl Row {
     /// Compiles the row level. Returns `None` if there is no level, or if a given tube inboard of it is too slender,
-    /// so that no design holds, if there are linkages, which lanes do not know, or if springs pull on tubes, which
+    /// so that no design holds, if there are linkages or laws, which lanes do not know, or if springs pull on tubes, which
     /// lanes do not check for stress there.
     pub(crate) fn new(problem: &ArmProblem) -> Option<Self> {
-        if problem.space().has_linkages() || problem.space().pulls_on_tubes() {
+        if problem.space().beyond_exact().is_some() || problem.space().pulls_on_tubes() {
             return None;
         }
         let first = problem.row_slot()?;

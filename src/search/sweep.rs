@@ -6,16 +6,18 @@
 //! the order of visits or on the number of threads.
 
 use super::finish::FinishRows;
-use super::visit::{Visit, blocks};
+use super::resume::Done;
+use super::visit::{Tasks, Visit, Walked, blocks};
 use crate::pareto::archive::Archive;
 use crate::pareto::front::not_clearly_beaten;
 use crate::pareto::objectives::Objectives;
 use crate::space::constraint::Constraints;
 use crate::space::levels::{Finished, Keep};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::ops::Range;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Relative difference in an objective up to which the sweep does not decide between two designs. It keeps both, and the
 /// full model decides.
@@ -52,7 +54,7 @@ impl Status {
 }
 
 /// A design that no other clearly dominates.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Candidate {
     /// Number of the design in its space.
     pub number: u128,
@@ -76,6 +78,36 @@ pub struct SweepOutcome {
     pub front: Vec<Candidate>,
     /// Candidates of the front of each group (material).
     pub groups: Vec<Vec<Candidate>>,
+}
+
+/// The state of a sweep.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct SweepState {
+    /// Number of tasks of the sweep.
+    tasks: u64,
+    /// Which of them are done.
+    done: Done,
+    /// Designs of these tasks that were evaluated, and those that cannot hold.
+    evaluated: u64,
+    excluded: u128,
+    /// Candidates of the front of all designs, and of the front of each group.
+    front: Vec<Candidate>,
+    groups: Vec<Vec<Candidate>>,
+}
+
+impl SweepState {
+    /// The state as bytes.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        postcard::to_stdvec(self).expect("numbers can be written to memory")
+    }
+
+    /// Reads [`to_bytes`](Self::to_bytes).
+    ///
+    /// # Errors
+    /// The bytes are no state, in words.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, String> {
+        postcard::from_bytes(bytes).map_err(|e| e.to_string())
+    }
 }
 
 /// A shard: part `number` of `of` parts of a space, counted from 1. Each is swept by itself.
@@ -129,6 +161,10 @@ pub struct Sweep<'p, P: FinishRows> {
     visited: AtomicU64,
     stop: &'p AtomicBool,
     shard: Shard,
+    overall: Pool,
+    groups: Vec<Pool>,
+    /// The tasks that are done, and what they counted.
+    done: Mutex<(Done, Tally)>,
 }
 
 /// Candidates of one front, shared by the tasks.
@@ -159,7 +195,7 @@ impl Pool {
     fn empty(&self, buffer: &mut Vec<Candidate>) {
         // a task filters its own candidates first, so that the lock is held for few of them
         clear_dominated(buffer);
-        let mut pool = self.candidates.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut pool = lock(&self.candidates);
         let (all, settled) = &mut *pool;
         all.append(buffer);
         if all.len() > *settled + BUFFER {
@@ -168,13 +204,26 @@ impl Pool {
         }
     }
 
-    fn finish(self) -> Vec<Candidate> {
-        let mut all = self.candidates.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner).0;
+    /// The candidates of an earlier process.
+    fn refill(&self, candidates: Vec<Candidate>) {
+        candidates.iter().for_each(|candidate| self.archive.enter(&candidate.objectives));
+        *lock(&self.candidates) = (candidates, 0);
+    }
+
+    /// The candidates that no other found so far clearly dominates.
+    fn candidates(&self) -> Vec<Candidate> {
+        let mut all = lock(&self.candidates).0.clone();
         clear_dominated(&mut all);
         // tasks end in any order; the result must not depend on it
         all.sort_unstable_by_key(|c| c.number);
+        // a task that an earlier process left unfinished finds the same designs again
+        all.dedup_by_key(|c| c.number);
         all
     }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// `all * shards / of` without an overflow.
@@ -190,25 +239,33 @@ pub(crate) fn clear_dominated(candidates: &mut Vec<Candidate>) {
     *candidates = kept.into_iter().map(|i| candidates[i]).collect();
 }
 
-/// The counts of one task.
-#[derive(Default)]
+/// The counts of tasks.
+#[derive(Debug, Clone, Copy, Default)]
 struct Tally {
     evaluated: u64,
     excluded: u128,
 }
 
 impl Tally {
-    fn merge(mut self, other: Tally) -> Tally {
+    fn add(&mut self, other: Tally) {
         self.evaluated += other.evaluated;
         self.excluded += other.excluded;
-        self
     }
 }
 
 impl<'p, P: FinishRows> Sweep<'p, P> {
     /// A sweep of all designs of a problem. It ends early when `stop` is set.
     pub fn new(problem: &'p P, constraints: Constraints, stop: &'p AtomicBool) -> Self {
-        Self { problem, constraints, visited: AtomicU64::new(0), stop, shard: Shard::WHOLE }
+        Self {
+            problem,
+            constraints,
+            visited: AtomicU64::new(0),
+            stop,
+            shard: Shard::WHOLE,
+            overall: Pool::new(6),
+            groups: (0..problem.groups()).map(|_| Pool::new(5)).collect(),
+            done: Mutex::default(),
+        }
     }
 
     /// Visits the designs of a shard alone.
@@ -241,35 +298,60 @@ impl<'p, P: FinishRows> Sweep<'p, P> {
         self.problem.level_sizes().iter().map(|&s| u128::from(s)).product()
     }
 
+    fn tasks(&self) -> Tasks {
+        Tasks::of(self.problem, self.blocks())
+    }
+
+    /// Goes on from a state of the same sweep: its tasks are not done again.
+    ///
+    /// # Errors
+    /// It is a state of another sweep, in words.
+    pub fn go_on_from(self, state: SweepState) -> Result<Self, String> {
+        let SweepState { tasks, done, evaluated, excluded, front, groups } = state;
+        let here = self.tasks().number;
+        if tasks != here || !done.is_within(here) || groups.len() != self.groups.len() {
+            return Err(format!("a state of {tasks} tasks and {} groups", groups.len()));
+        }
+        let visited = u128::from(evaluated) + excluded;
+        self.visited.store(u64::try_from(visited).unwrap_or(u64::MAX), Ordering::Relaxed);
+        *lock(&self.done) = (done, Tally { evaluated, excluded });
+        self.overall.refill(front);
+        self.groups.iter().zip(groups).for_each(|(pool, candidates)| pool.refill(candidates));
+        Ok(self)
+    }
+
+    /// The state now, from which another process can go on.
+    pub fn state(&self) -> SweepState {
+        // the tasks first: whatever they found is in the pools by now
+        let (done, Tally { evaluated, excluded }) = lock(&self.done).clone();
+        SweepState {
+            tasks: self.tasks().number,
+            done,
+            evaluated,
+            excluded,
+            front: self.overall.candidates(),
+            groups: self.groups.iter().map(Pool::candidates).collect(),
+        }
+    }
+
     /// Visits every design and returns the candidates of the fronts. The full model must still evaluate them
     /// ([`evaluate`](crate::space::evaluate)) and decide between those closer than [`SLACK`].
     pub fn run(&self) -> SweepOutcome {
         let sizes = self.problem.level_sizes();
-        let overall = Pool::new(6);
-        let groups: Vec<Pool> = (0..self.problem.groups()).map(|_| Pool::new(5)).collect();
+        let before = lock(&self.done).clone();
+        // what was visited in tasks that are not whole counts too, if the sweep is stopped
         let tally = match self.problem.root() {
             None => {
                 let range = self.range();
                 Tally { excluded: range.end - range.start, ..Tally::default() }
             }
-            Some(root) => Visit {
-                problem: self.problem,
-                compiled: self.problem.compile(),
-                visited: &self.visited,
-                stop: self.stop,
+            Some(root) => {
+                let mut tally = before.1;
+                tally.add(self.visit(&root, &before.0));
+                tally
             }
-            .designs_of(self.blocks(), &root, || Worker {
-                constraints: &self.constraints,
-                overall: &overall,
-                groups: &groups,
-                tally: Tally::default(),
-                buffer: Vec::new(),
-                group_buffers: vec![Vec::new(); groups.len()],
-            })
-            .map(Worker::finish)
-            .reduce(Tally::default, Tally::merge),
         };
-        let front = overall.finish();
+        let front = self.overall.candidates();
         let status = match (self.stop.load(Ordering::Relaxed), front.is_empty() || sizes.contains(&0)) {
             (true, _) => Status::Interrupted,
             (false, true) => Status::Infeasible,
@@ -281,8 +363,36 @@ impl<'p, P: FinishRows> Sweep<'p, P> {
             designs_evaluated: tally.evaluated,
             designs_excluded: tally.excluded,
             front,
-            groups: groups.into_iter().map(Pool::finish).collect(),
+            groups: self.groups.iter().map(Pool::candidates).collect(),
         }
+    }
+
+    /// Does the tasks that were not done `before`, and returns what they counted.
+    fn visit(&self, root: &P::Partial, before: &Done) -> Tally {
+        let Self { problem, visited, stop, constraints, overall, groups, .. } = self;
+        let visit = Visit { problem: *problem, compiled: problem.compile(), visited, stop };
+        let worker = || Worker {
+            constraints,
+            overall,
+            groups,
+            tally: Tally::default(),
+            buffer: Vec::new(),
+            group_buffers: vec![Vec::new(); groups.len()],
+        };
+        let end = |walked: Walked<Worker>| {
+            let counted = walked.keeper.finish();
+            if walked.is_whole {
+                let mut done = lock(&self.done);
+                done.0.insert(walked.task);
+                done.1.add(counted);
+            }
+            counted
+        };
+        let sum = |mut a: Tally, b: Tally| {
+            a.add(b);
+            a
+        };
+        visit.tasks(self.tasks(), root, |task| !before.has(task), worker).map(end).reduce(Tally::default, sum)
     }
 }
 
@@ -334,5 +444,19 @@ impl Worker<'_> {
             pool.empty(buffer);
         }
         self.tally
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn any_bytes_are_a_state_or_an_error() {
+        let state = SweepState { tasks: 7, evaluated: 3, groups: vec![vec![], vec![]], ..Default::default() };
+        let bytes = state.to_bytes();
+        assert_eq!(SweepState::from_bytes(&bytes), Ok(state));
+        assert!(SweepState::from_bytes(&bytes[..bytes.len() - 1]).is_err());
+        assert!(SweepState::from_bytes(&[0xff; 40]).is_err());
     }
 }

@@ -21,6 +21,9 @@ const LEAST_TASKS: u128 = 64;
 const BATCH: usize = 16;
 const BATCH_DESIGNS: usize = 1 << 18;
 
+/// Largest number of designs of a task, so that little is lost when a task is not finished: some seconds of work.
+const TASK_DESIGNS: u128 = 1 << 24;
+
 /// A walk that other threads can watch and stop.
 pub(crate) struct Visit<'p, P: FinishRows> {
     pub problem: &'p P,
@@ -38,27 +41,57 @@ impl<P: FinishRows> Visit<'_, P> {
         root: &'v P::Partial,
         keeper: impl Fn() -> K + Send + Sync + 'v,
     ) -> impl ParallelIterator<Item = K> + 'v {
-        self.designs_of(0..blocks(self.problem).0, root, keeper)
+        let tasks = Tasks::of(self.problem, 0..blocks(self.problem).0);
+        self.tasks(tasks, root, |_| true, keeper).map(|walked| walked.keeper)
     }
 
-    /// Visits the designs of some [blocks].
-    pub(crate) fn designs_of<'v, K: Keep + Send + 'v>(
+    /// Does the tasks that are wanted, unless the walk is stopped before.
+    pub(crate) fn tasks<'v, K: Keep + Send + 'v>(
         &'v self,
-        of: Range<u128>,
+        Tasks { start, rows, each, number }: Tasks,
         root: &'v P::Partial,
+        is_wanted: impl Fn(u64) -> bool + Send + Sync + 'v,
         keeper: impl Fn() -> K + Send + Sync + 'v,
-    ) -> impl ParallelIterator<Item = K> + 'v {
-        let choices = product(Levels::of(self.problem).inner);
-        let (start, rows) = (of.start * choices, (of.end - of.start) * choices);
-        let each = (rows / TASKS).max((BATCH as u128).min(rows / LEAST_TASKS)).max(1);
-        let tasks = rows.div_ceil(each) as usize;
-        (0..tasks).into_par_iter().map(move |task| {
-            let first = task as u128 * each;
+    ) -> impl ParallelIterator<Item = Walked<K>> + 'v {
+        let is_wanted = move |task: &u64| is_wanted(*task) && !self.stop.load(Ordering::Relaxed);
+        (0..number).into_par_iter().filter(is_wanted).map(move |task| {
+            let first = u128::from(task) * each;
             let mut walker = Walker::new(self, root, keeper());
-            walker.walk(start + first..start + (first + each).min(rows));
-            walker.keeper
+            let is_whole = walker.walk(start + first..start + (first + each).min(rows));
+            Walked { task, is_whole, keeper: walker.keeper }
         })
     }
+}
+
+/// The tasks of a walk: ranges of rows that follow each other. They depend on the problem alone.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Tasks {
+    /// First row, number of rows, and number of rows of each task but the last.
+    start: u128,
+    rows: u128,
+    each: u128,
+    /// Number of tasks.
+    pub number: u64,
+}
+
+impl Tasks {
+    /// The tasks of some [blocks].
+    pub(crate) fn of(problem: &impl FinishRows, blocks: Range<u128>) -> Self {
+        let Levels { row, inner, .. } = Levels::of(problem);
+        let choices = product(inner);
+        let (start, rows) = (blocks.start * choices, (blocks.end - blocks.start) * choices);
+        let balanced = (rows / TASKS).max((BATCH as u128).min(rows / LEAST_TASKS));
+        let each = balanced.min(TASK_DESIGNS / u128::from(row.max(1))).max(1);
+        Self { start, rows, each, number: u64::try_from(rows.div_ceil(each)).unwrap_or(u64::MAX) }
+    }
+}
+
+/// A task that is over.
+pub(crate) struct Walked<K> {
+    pub task: u64,
+    /// Whether all its rows were visited; otherwise the walk was stopped.
+    pub is_whole: bool,
+    pub keeper: K,
 }
 
 /// The blocks of a tree: the designs of one arm outboard of the row level, which have neighbouring numbers. Their number, and
@@ -114,15 +147,16 @@ impl<'v, 'p, P: FinishRows, K: Keep> Walker<'v, 'p, P, K> {
         }
     }
 
-    /// Visits every design of some rows. A space without levels has one design.
-    fn walk(&mut self, rows: Range<u128>) {
+    /// Visits every design of some rows, and returns whether it was not stopped before. A space without levels has one
+    /// design.
+    fn walk(&mut self, rows: Range<u128>) -> bool {
         let problem = self.visit.problem;
         if problem.level_sizes().is_empty() {
             if let Some(objectives) = problem.objectives(&self.begun[0]) {
                 let group = problem.group(&self.begun[0]);
                 self.keeper.complete(0, Finished { objectives, group });
             }
-            return;
+            return true;
         }
         let Levels { outer, row: length, inner } = Levels::of(problem);
         let batch = (BATCH_DESIGNS / length.max(1) as usize).clamp(1, BATCH);
@@ -158,6 +192,7 @@ impl<'v, 'p, P: FinishRows, K: Keep> Walker<'v, 'p, P, K> {
             }
         }
         self.finish(length);
+        row >= rows.end
     }
 
     /// Builds the arm outboard of a row.

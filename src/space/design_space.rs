@@ -389,22 +389,30 @@ pub(crate) struct SpaceLinkage {
     pub factor: f64,
 }
 
+/// A list in words; `None` if it is empty.
+fn in_words(list: [Option<String>; 2]) -> Option<String> {
+    let words: Vec<String> = list.into_iter().flatten().collect();
+    (!words.is_empty()).then(|| words.join(" and "))
+}
+
 impl DesignSpace {
-    /// Whether linkages turn passive joints. The bounds of the exact search, of the verifier and of the relaxation do not
-    /// cover them.
+    /// Whether linkages turn passive joints.
     pub fn has_linkages(&self) -> bool {
         self.joints().any(|(_, joint)| joint.coupled.is_some())
     }
 
+    /// What the bounds of the exact search do not cover in this space, in words for people; `None` if they cover all of it.
+    pub(crate) fn beyond_exact(&self) -> Option<String> {
+        let is_known =
+            |effect: &&Effect| effect.is_of_test() || effect.kind().is_none_or(|kind| kind.traits.in_bounds);
+        let law = self.effects.iter().find(|effect| !is_known(effect)).map(Effect::label);
+        in_words([self.has_linkages().then(|| "coupled joints".into()), law])
+    }
+
     /// What the bounds of the verifier and of the relaxation do not cover in this space, in words for people; `None` if they
     /// cover all of it.
-    pub fn beyond_bounds(&self) -> Option<&'static str> {
-        match (self.has_linkages(), !self.springs.is_empty()) {
-            (true, true) => Some("coupled joints and springs"),
-            (true, false) => Some("coupled joints"),
-            (false, true) => Some("springs"),
-            (false, false) => None,
-        }
+    pub fn beyond_bounds(&self) -> Option<String> {
+        in_words([self.beyond_exact(), (!self.springs.is_empty()).then(|| "springs".into())])
     }
 
     /// Whether a piece is a tube, or may be one.

@@ -81,8 +81,8 @@ enum About<'s> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Tilt<'s> {
     about: About<'s>,
-    /// Tilt per moment \[rad/(N m)\].
-    pub rad_per_nm: f64,
+    /// Twist under a moment.
+    law: JointLaw,
 }
 
 /// One of the two springs of the bearing of a joint whose gear is chosen.
@@ -119,9 +119,14 @@ impl Tilt<'_> {
         }
     }
 
+    /// A spring that yields in proportion to the moment.
+    fn linear(about: About<'_>, rad_per_nm: f64) -> Tilt<'_> {
+        Tilt { about, law: JointLaw { connection_rad_per_nm: rad_per_nm, ..JointLaw::from(Curve::Rigid) } }
+    }
+
     /// Twist of the spring under a moment.
     pub(crate) fn law(&self) -> JointLaw {
-        JointLaw { connection_rad_per_nm: self.rad_per_nm, ..JointLaw::from(Curve::Rigid) }
+        self.law
     }
 }
 
@@ -177,10 +182,12 @@ impl DesignSpace {
         out.extend(self.pulled(0, Side::Base));
         let base = self.surroundings();
         let fixed = base.base_frame.springs().into_iter();
-        out.extend(
-            fixed.map(|(axis, c)| (0, Layer::Tilt(Tilt { about: About::World(axis), rad_per_nm: c }))),
-        );
+        out.extend(fixed.map(|(axis, c)| (0, Layer::Tilt(Tilt::linear(About::World(axis), c)))));
         let level = [About::World(Vector3::x()), About::World(Vector3::y())];
+        out.extend(base.base_lift.iter().flat_map(|lift| {
+            let law = JointLaw::from(Curve::Windup(lift.as_windup()));
+            level.map(|about| (0, Layer::Tilt(Tilt { about, law })))
+        }));
         out.extend(tilts(level, base.base_tilt_rad_per_nm).map(|tilt| (0, tilt)));
         out
     }
@@ -209,7 +216,7 @@ impl DesignSpace {
     /// The springs of the frame at the root of a link.
     fn root_springs(&self, link: &Link) -> impl Iterator<Item = Layer<'_>> + use<'_> {
         let springs = self.link_piece(link).root_frame.springs().into_iter();
-        springs.map(|(axis, c)| Layer::Tilt(Tilt { about: About::Fixed(axis), rad_per_nm: c }))
+        springs.map(|(axis, c)| Layer::Tilt(Tilt::linear(About::Fixed(axis), c)))
     }
 
     /// A joint with this torsion curve and bearing, under the joint model of the study and with the effects at the joint. The mass of
@@ -243,6 +250,11 @@ impl DesignSpace {
     /// The surroundings of the arm: gravity, the base and water, as a structure without pieces.
     pub(crate) fn surroundings(&self) -> Structure {
         self.with_effects(Vec::new())
+    }
+
+    /// The torque that acts on a joint beside weight and load.
+    pub(crate) fn joint_torque(&self, joint: &SpaceJoint) -> JointTorque {
+        self.joint_piece(joint, Curve::Rigid, None).torque
     }
 
     /// Mass that the effects add to the links and drives of the arm \[kg\]. It is the same for every design.
@@ -301,7 +313,7 @@ fn nominal_joint(joint: &SpaceJoint, curve: Curve) -> JointPiece {
 /// The two springs of a bearing or base that tilts; none if it is rigid.
 fn tilts(axes: [About<'_>; 2], rad_per_nm: f64) -> impl Iterator<Item = Layer<'_>> {
     let present = axes.into_iter().filter(move |_| rad_per_nm > 0.0);
-    present.map(move |about| Layer::Tilt(Tilt { about, rad_per_nm }))
+    present.map(move |about| Layer::Tilt(Tilt::linear(about, rad_per_nm)))
 }
 
 /// Where along a link a point of its frame is nearest (0 to 1).

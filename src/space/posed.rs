@@ -4,11 +4,11 @@
 //! few at a time, put into every case with the same surroundings, and forgotten. What remains is the stations: their
 //! memory grows as options times cases.
 
-use super::design_space::{Case, DesignSpace, SpacePiece};
+use super::design_space::{Case, DesignSpace, SpaceJoint, SpacePiece};
 use super::effects::{Carried, Layer, along};
 use super::station::{
-    Block, BlockSlot, Modal, OnAxis, OnTube, Place, Station, StationJoint, StationLink, StationSlot, Turned, Walk,
-    bodies_at, payload_in, weight_wrench,
+    Block, BlockSlot, Modal, OnAxis, OnTube, Place, Station, StationJoint, StationLink, StationSlot, Turned,
+    Walk, bodies_at, payload_in, weight_wrench,
 };
 use crate::arm::body::RigidBody;
 use crate::arm::springs::{EndLoad, Side};
@@ -119,8 +119,14 @@ impl Posed {
         let mut slots: Vec<StationSlot> = layers
             .iter()
             .map(|(piece, layer)| {
-                let place = walk.place(*piece, layer);
-                let at = Builder { space, structure: &structure, place, tip_m: &walk.tip_m, springs: &springs };
+                let at = Builder {
+                    space,
+                    structure: &structure,
+                    place: walk.place(*piece, layer),
+                    angle_rad: walk.angles_rad[*piece],
+                    tip_m: &walk.tip_m,
+                    springs: &springs,
+                };
                 at.build(*piece, layer)
             })
             .collect();
@@ -174,6 +180,8 @@ struct Builder<'a> {
     space: &'a DesignSpace,
     structure: &'a Structure,
     place: &'a (Vector3<f64>, nalgebra::Rotation3<f64>),
+    /// Angle of the joint that stands here \[rad\].
+    angle_rad: f64,
     tip_m: &'a Vector3<f64>,
     /// What springs do to the arm in the pose.
     springs: &'a [EndLoad],
@@ -190,7 +198,7 @@ impl Builder<'_> {
                 let (inertia, weight) = bodies_at(bodies, self.space, self.place);
                 StationSlot::Body { inertia, weight }
             }
-            Layer::Piece(SpacePiece::Joint(joint)) => self.hinge(&(rotation * joint.axis)),
+            Layer::Piece(SpacePiece::Joint(joint)) => self.joint(joint),
             Layer::Springs(side) => {
                 let weight = self.springs_on(*side).map(wrench_of).sum();
                 StationSlot::Body { inertia: Matrix6::zeros(), weight }
@@ -202,6 +210,17 @@ impl Builder<'_> {
         }
     }
 
+    /// A joint at its angle, with the torque that acts on it beside weight and load.
+    fn joint(&self, joint: &SpaceJoint) -> StationSlot {
+        let (_, rotation) = self.place;
+        let mut slot = self.hinge(&(rotation * joint.axis));
+        if let StationSlot::Joint(station) = &mut slot {
+            station.angle_rad = self.angle_rad;
+            station.own_nm = self.space.joint_torque(joint).at(self.angle_rad);
+        }
+        slot
+    }
+
     /// A joint or a spring that turns about an axis of the world through this place.
     fn hinge(&self, axis: &Vector3<f64>) -> StationSlot {
         let (at_m, _) = self.place;
@@ -210,6 +229,8 @@ impl Builder<'_> {
             twist,
             at_m: *at_m,
             tip_m_per_rad: displacement_at(&twist, self.tip_m),
+            angle_rad: 0.0,
+            own_nm: 0.0,
             inertia_per_kg: body_inertia(1.0, at_m, &Matrix3::zeros()),
             weight_per_kg: weight_wrench(self.structure.gravity_m_s2, &self.structure.down, at_m),
             // rounding leaves traces of the other plane in an axis that was turned
@@ -258,10 +279,9 @@ impl Builder<'_> {
         let place = self.place_of(vector_m);
         let pulls: Vec<&EndLoad> = self.springs_on(Side::Moving(piece)).collect();
         let on_axis = |load: &&EndLoad| pull_on(vector_m.norm(), &place.root_m, &place.frame, load);
-        let hung = bodies.iter().map(|body| OnAxis {
-            xi: along(vector_m, &body.cg_m),
-            wrench: of(std::slice::from_ref(body)).1,
-        });
+        let hung = bodies
+            .iter()
+            .map(|body| OnAxis { xi: along(vector_m, &body.cg_m), wrench: of(std::slice::from_ref(body)).1 });
         let pulled = pulls.iter().map(|load| OnAxis { xi: on_axis(load).0, wrench: wrench_of(load) });
         let carried = OnTube {
             inertia,
@@ -322,9 +342,14 @@ fn link_up(space: &DesignSpace, layers: &[(usize, Layer)], slots: &mut [StationS
         };
         let StationSlot::Joint(passive) = &mut slots[slot] else { continue };
         passive.is_passive = true;
-        let (twist, tip_m_per_rad) = (passive.twist * linkage.factor, passive.tip_m_per_rad * linkage.factor);
+        let turned = Turned {
+            slot,
+            twist: passive.twist * linkage.factor,
+            tip_m_per_rad: passive.tip_m_per_rad * linkage.factor,
+            own_nm: passive.own_nm * linkage.factor,
+        };
         if let StationSlot::Joint(joint) = &mut slots[driver] {
-            joint.turns.push(Turned { slot, twist, tip_m_per_rad });
+            joint.turns.push(turned);
         }
     }
 }

@@ -24,7 +24,7 @@ use crate::mechanics::lowest::{Step, frequency_hz, lowest_eigenvalue};
 use crate::pareto::objectives::Objectives;
 use crate::sizing::check::Check;
 use crate::sizing::checks::{binding, checks};
-use crate::sizing::demand::{JointDemand, JointMotion};
+use crate::sizing::demand::{JointDemand, JointMotion, linear_torque_nm};
 use crate::sizing::fit::LinkRoom;
 use nalgebra::Vector3;
 
@@ -362,9 +362,10 @@ impl<'c> ArmProblem<'c> {
         self.add_joint(slot, &sized.laws[index], sized.table.mass_kg(index), to)
     }
 
-    /// Demand on a joint: the largest static torque (Eq 7) and the largest outboard inertia over the sizing cases, which
-    /// the motion turns into torques (Eqs 8-12). The two may come from different cases; their combination is on the safe
-    /// side.
+    /// Demand on a joint: the largest static torque (Eq 7, and what acts on the joint beside weight and load) and the
+    /// largest outboard inertia over the sizing cases, which the motion turns into torques (Eqs 8-12). The two may come from
+    /// different cases; their combination is on the safe side. The paper's reading of Eq 8 takes the torque of weight and
+    /// load alone: a counterbalance takes nothing off what must be accelerated.
     pub(crate) fn demand(
         &self,
         outboard: &Partial,
@@ -382,17 +383,17 @@ impl<'c> ArmProblem<'c> {
         slot: usize,
         motion: Option<&JointMotion>,
     ) -> JointDemand {
-        let (mut static_nm, mut inertia_kgm2) = (0.0f64, 0.0f64);
+        let (mut static_nm, mut load_nm, mut inertia_kgm2) = (0.0f64, 0.0f64, 0.0f64);
         for &case in cases {
             let StationSlot::Joint(joint) = &self.stations[case].slots[slot] else { continue };
             let state = &outboard.stations[case];
             static_nm = static_nm.max(state.torque_nm(joint).abs());
+            load_nm = load_nm.max(state.load_torque_nm(joint).abs());
             inertia_kgm2 = inertia_kgm2.max(state.inertia_about(slot, joint));
         }
-        let torques = motion.map_or_else(
-            || self.space.motion.joint_motion(0.0, None).demand(static_nm, inertia_kgm2),
-            |motion| motion.demand(static_nm, inertia_kgm2),
-        );
+        let still = self.space.motion.joint_motion(0.0, None);
+        let motion = motion.unwrap_or(&still);
+        let torques = motion.demand_of_torques(static_nm, linear_torque_nm(motion, load_nm, inertia_kgm2));
         let room = self.rooms[slot].as_ref().map_or(LinkRoom::ANY, |room| room.of(&outboard.options));
         let bearing = self.bearing_demand(cases, &outboard.stations, &outboard.options, slot);
         torques.with_bearing(bearing).with_room(room)

@@ -32,6 +32,7 @@ impl StationState {
     /// taken before it is added.
     pub(crate) fn add_joint(&mut self, slot: usize, joint: &StationJoint, law: &JointLaw, mass_kg: f64) {
         let torque_nm = self.torque_nm(joint);
+        let law = law.at_angle(joint.angle_rad);
         let compliance = law.tangent_compliance_rad_per_nm(torque_nm);
         let turned: Vector3<f64> = joint.turns.iter().map(|turned| turned.tip_m_per_rad).sum();
         self.tip_m += (joint.tip_m_per_rad + turned) * law.rising_angle_rad(torque_nm);
@@ -44,9 +45,15 @@ impl StationState {
         self.wrench += joint.weight_per_kg * mass_kg;
     }
 
-    /// Torque on a joint that is next to be added \[N m\]. A linkage makes a driver hold the torque of its passive joints too,
-    /// by virtual work: a radian of the driver turns each of them by its factor.
+    /// Torque on a joint that is next to be added \[N m\]: that of weight and load, and what acts beside them.
     pub(crate) fn torque_nm(&self, joint: &StationJoint) -> f64 {
+        let of_passive: f64 = joint.turns.iter().map(|turned| turned.own_nm).sum();
+        self.load_torque_nm(joint) + joint.own_nm + of_passive
+    }
+
+    /// Torque of weight and load on a joint that is next to be added \[N m\]. A linkage makes a driver hold the torque of its
+    /// passive joints too, by virtual work: a radian of the driver turns each of them by its factor.
+    pub(crate) fn load_torque_nm(&self, joint: &StationJoint) -> f64 {
         let of_passive =
             |turned: &Turned| self.outboard_of(turned.slot).map_or(0.0, |(w, _)| turned.twist.dot(w));
         joint.twist.dot(&self.wrench) + joint.turns.iter().map(of_passive).sum::<f64>()

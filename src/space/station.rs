@@ -92,6 +92,10 @@ pub(crate) struct StationJoint {
     pub at_m: Vector3<f64>,
     /// Displacement of the tip per radian.
     pub tip_m_per_rad: Vector3<f64>,
+    /// Angle of the joint \[rad\].
+    pub angle_rad: f64,
+    /// Torque that acts on the joint beside weight and load \[N m\].
+    pub own_nm: f64,
     /// Inertia and weight of one kilogram at the joint.
     pub inertia_per_kg: Matrix6<f64>,
     pub weight_per_kg: Wrench,
@@ -110,6 +114,8 @@ pub(crate) struct Turned {
     pub twist: Twist,
     /// Displacement of the tip by the passive joint per radian of the driver.
     pub tip_m_per_rad: Vector3<f64>,
+    /// What the passive joint's own torque is on the driver \[N m\].
+    pub own_nm: f64,
 }
 
 /// Where a link is in a pose.
@@ -222,31 +228,32 @@ pub(crate) struct Walk {
     /// Start and attitude of each piece, base to tip, then those of the tip. A joint has the attitude before its own
     /// rotation.
     pub(crate) places: Vec<(Vector3<f64>, Rotation3<f64>)>,
+    /// Angle of each piece, base to tip \[rad\]; 0 for links.
+    pub(crate) angles_rad: Vec<f64>,
     pub(crate) tip_m: Vector3<f64>,
     pub(crate) tip_rotation: Rotation3<f64>,
-    /// Angle of every joint, base to tip \[rad\].
-    angles_rad: Vec<f64>,
 }
 
 impl Walk {
     /// Forward kinematics of a case, base to tip.
     pub(crate) fn new(space: &DesignSpace, case: &Case) -> Self {
-        let angles_rad = space.angles_rad(case);
-        let mut angles = angles_rad.iter().copied();
+        let mut angles = space.angles_rad(case).into_iter();
         let (mut at_m, mut rotation) = (Vector3::zeros(), Rotation3::identity());
         let mut places = Vec::with_capacity(space.pieces.len());
-        for piece in &space.pieces {
+        let mut angles_rad = vec![0.0; space.pieces.len()];
+        for (piece, angle_rad) in space.pieces.iter().zip(&mut angles_rad) {
             places.push((at_m, rotation));
             match piece {
                 SpacePiece::Joint(joint) => {
-                    rotation *= Rotation3::from_axis_angle(&joint.axis, angles.next().unwrap_or_default());
+                    *angle_rad = angles.next().unwrap_or_default();
+                    rotation *= Rotation3::from_axis_angle(&joint.axis, *angle_rad);
                 }
                 SpacePiece::Link(link) => at_m += rotation * link.vector_m,
                 SpacePiece::Choice(choice) => at_m += rotation * choice.vector_m,
             }
         }
         places.push((at_m, rotation));
-        Self { places, tip_m: at_m, tip_rotation: rotation, angles_rad }
+        Self { places, angles_rad, tip_m: at_m, tip_rotation: rotation }
     }
 }
 
@@ -256,14 +263,12 @@ impl Walk {
         if space.springs.is_empty() {
             return Vec::new();
         }
-        let mut angles = self.angles_rad.iter();
         let frame = |(index, piece): (usize, &SpacePiece)| {
             let (at_m, rotation) = self.places[index];
             match piece {
                 SpacePiece::Joint(joint) => {
-                    let angle_rad = angles.next().copied().unwrap_or_default();
-                    let axis = (rotation * joint.axis).into_inner();
-                    ElementFrame { at_m, rotation: self.places[index + 1].1, hinge: Some((axis, angle_rad)) }
+                    let hinge = ((rotation * joint.axis).into_inner(), self.angles_rad[index]);
+                    ElementFrame { at_m, rotation: self.places[index + 1].1, hinge: Some(hinge) }
                 }
                 _ => ElementFrame { at_m, rotation, hinge: None },
             }

@@ -29,7 +29,7 @@ impl MassBounds<'_> {
     /// whole space. `None` if it cannot be computed.
     pub(super) fn below(&self, known: u128, objectives: &Objectives) -> Option<MassBound> {
         match self {
-            // the relaxation knows neither linkages nor springs
+            // the relaxation knows neither linkages, springs nor laws
             Self::Tabulated(problem, _) if problem.space().beyond_bounds().is_some() => None,
             Self::Tabulated(problem, relaxation) => bound(problem, relaxation, known, objectives),
             Self::InReach { space, catalogs, reach } => {

@@ -44,7 +44,11 @@ pub fn budgets(
     let tabulated = (is_excerpt && MassBounds::can_tabulate(whole)).then(|| ArmProblem::new(whole, catalogs));
     let bounds = match tabulated.as_ref().or((!is_excerpt).then_some(problem)) {
         Some(all) => MassBounds::Tabulated(all, Relaxation::new(all)),
-        None => MassBounds::InReach { space: whole, catalogs, reach: DomainReduction::new(whole, catalogs) },
+        None => {
+            let is_covered = whole.beyond_bounds().is_none();
+            let reach = is_covered.then(|| DomainReduction::new(whole, catalogs)).flatten();
+            MassBounds::InReach { space: whole, catalogs, reach }
+        }
     };
     let picks = picks(&designs(table)).into_par_iter();
     picks.filter_map(|pick| pick_budget(problem, whole, &bounds, pick)).collect()

@@ -100,8 +100,7 @@ struct Load {
 }
 
 fn read_case(node: &Node, joints: &[&str], usual: &Load) -> Option<ReadCase> {
-    let object =
-        node.shaped(&POSE)?;
+    let object = node.shaped(&POSE)?;
     let name = object.or("name", node.path().to_string(), |n| n.string().map(String::from));
     let pose_deg = object.required("pose_deg").and_then(|n| read_pose(&n, joints));
     let payload = object.or("payload", usual.payload, Payload::read);

@@ -1,7 +1,7 @@
 //! Materials that creep: said wherever a study has links of them.
 
-use crate::arm::{Link, LinkBody};
 use crate::arm::pieces::{factors_sentence, without_factors};
+use crate::arm::{Link, LinkBody};
 use crate::catalog::Catalogs;
 use crate::space::design_space::{DesignSpace, SpacePiece};
 

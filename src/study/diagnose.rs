@@ -27,14 +27,9 @@ pub fn why_infeasible(
     let deadline = deadline.map_or(latest, |deadline| deadline.min(latest));
     let limited = Limited { space: &study.space, catalogs, stop, deadline };
     let without_limits = DesignSpace { constraints: Constraints::default(), ..study.space.clone() };
-    let reasons = match limited.holds_without_limits() {
-        Some(true) => limits_in_the_way(&limited),
-        Some(false) => joint_obstacles(&without_limits, catalogs),
-        None => {
-            let mut reasons = joint_obstacles(&without_limits, catalogs);
-            reasons.push(OUT_OF_TIME.into());
-            reasons
-        }
+    let reasons = match study.space.beyond_exact() {
+        Some(unknown) => obstacles_alone(&without_limits, catalogs, &unknown),
+        None => reasons(&limited, &without_limits),
     };
     let head = match study.space.designs(catalogs) {
         Some(0) => format!("no design meets the study \"{}\"", study.name),
@@ -42,6 +37,29 @@ pub fn why_infeasible(
         None => format!("no design of more than 1e38 meets the study \"{}\"", study.name),
     };
     format!("{head}\n  {}", reasons.join("\n  "))
+}
+
+/// What can be said of a space that the exact search does not cover: what its joints lack.
+fn obstacles_alone(without_limits: &DesignSpace, catalogs: &Catalogs, unknown: &str) -> Vec<String> {
+    let mut reasons = joint_obstacles(without_limits, catalogs);
+    reasons.push(format!(
+        "which limits stand in the way is not looked for in a study with {unknown}: leave limits away one by one"
+    ));
+    reasons
+}
+
+/// The limits that stand in the way, or the joints that no drive can move.
+fn reasons(limited: &Limited, without_limits: &DesignSpace) -> Vec<String> {
+    let catalogs = limited.catalogs;
+    match limited.holds_without_limits() {
+        Some(true) => limits_in_the_way(limited),
+        Some(false) => joint_obstacles(without_limits, catalogs),
+        None => {
+            let mut reasons = joint_obstacles(without_limits, catalogs);
+            reasons.push(OUT_OF_TIME.into());
+            reasons
+        }
+    }
 }
 
 const OUT_OF_TIME: &str = "the search for the smallest relaxation was stopped before it was done; a smaller one, or \

@@ -79,11 +79,6 @@ fn unfit(space: &DesignSpace, effect: &Effect) -> Option<(String, String, String
                 "give the joint its mass_kg, or a smaller loss".into(),
             ))
         }
-        _ if !traits.in_studies => Some((
-            "effect".into(),
-            format!("studies do not compute {}: `analyze`, `predict` and `reconcile` do", effect.effect),
-            "remove the effect from the study; analyze the picked design with it".into(),
-        )),
         _ if effect.is_of_bending() && space.links == LinkModel::Rigid => Some((
             "effect".into(),
             format!("{} changes how a link bends, and the study holds its links rigid", effect.effect),

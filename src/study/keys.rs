@@ -1,18 +1,20 @@
 //! The keys of study files: what the readers of this room know, and what `armwright schema study` prints.
 
+use super::choose_keys::CHOOSE;
 use super::motor_kinds::MOTOR_WORDS;
+use crate::arm::case_keys::{JOINT_MODELS, LINK_MODELS};
 use crate::arm::file_keys::{EFFECT_LIST, GIVEN_LINK_RULES};
 use crate::arm::keys::{
-    BEARING_VALUE, COUNTERWEIGHTS, COUPLING, EXTRAS, GEAR_MASS, GRAVITY, JOINT_BODIES, JOINT_MODELS, LINK_BODIES,
-    LINK_MODELS, MASS_FACTOR, PAYLOAD, PIECES, POSITIVE_OR_NULL, SECTION, SPRINGS, STIFFNESS_FACTOR, VECTOR, WATER, WINDUP,
+    BEARING_VALUE, COUNTERWEIGHTS, COUPLING, EXTRAS, GEAR_MASS, GRAVITY, JOINT_BODIES, LINK_BODIES,
+    MASS_FACTOR, PAYLOAD, PIECES, POSITIVE_OR_NULL, SECTION, SPRINGS, STIFFNESS_FACTOR, VECTOR, WATER,
+    WINDUP,
 };
 use crate::catalog::gear::GearKind;
-use crate::catalog::profile::ProfileShape;
-use crate::input::key::{Key, Kind, Rule, SCHEMA_ADDRESS, Shape, optional, required, words_of};
+use crate::input::key::{Kind, Rule, SCHEMA_ADDRESS, Shape, optional, required, words_of};
 use crate::input::schema::FileKind;
 
 /// A study file.
-pub(crate) const STUDY_FILE: FileKind = FileKind {
+pub const STUDY_FILE: FileKind = FileKind {
     name: "study",
     about: "A named question about an arm: what is fixed, what may be chosen, and what the arm must do.",
     root: Kind::Object(&STUDY),
@@ -32,26 +34,90 @@ pub(super) static STUDY: Shape = Shape::new(
         required("name", Kind::Name, "-", "Name; results go to `results/<name>`."),
         optional("question", Kind::Text, "-", "\"\"", "The question in a sentence."),
         optional("notes", Kind::Text, "-", "\"\"", "A text for people; read and otherwise ignored."),
-        optional("gravity_m_s2", GRAVITY, "m/s²", "9.81", "A number along world -z, 0 for none, or a vector in the world."),
-        required("chain", Kind::NonEmpty(&Kind::Either(&[Kind::Object(&JOINT), Kind::Object(&LINK)])), "-", "Joints and links from base to tip."),
-        optional("payload", Kind::Object(&PAYLOAD), "-", "none", "What the arm holds in every pose that states none."),
+        optional(
+            "gravity_m_s2",
+            GRAVITY,
+            "m/s²",
+            "9.81",
+            "A number along world -z, 0 for none, or a vector in the world.",
+        ),
+        required(
+            "chain",
+            Kind::NonEmpty(&Kind::Either(&[Kind::Object(&JOINT), Kind::Object(&LINK)])),
+            "-",
+            "Joints and links from base to tip.",
+        ),
+        optional(
+            "payload",
+            Kind::Object(&PAYLOAD),
+            "-",
+            "none",
+            "What the arm holds in every pose that states none.",
+        ),
         optional("tip_force_n", VECTOR, "N", "[0, 0, 0]", "Force at the tip, in world axes."),
         optional("tip_moment_nm", VECTOR, "N m", "[0, 0, 0]", "Moment at the tip, in world axes."),
-        required("poses", Kind::NonEmpty(&Kind::Object(&POSE)), "-", "The poses in which the arm is judged and sized."),
-        optional("environments", Kind::NonEmpty(&Kind::Object(&ENVIRONMENT)), "-", "one, dry", "What the arm is in; every pose is taken in each."),
+        required(
+            "poses",
+            Kind::NonEmpty(&Kind::Object(&POSE)),
+            "-",
+            "The poses in which the arm is judged and sized.",
+        ),
+        optional(
+            "environments",
+            Kind::NonEmpty(&Kind::Object(&ENVIRONMENT)),
+            "-",
+            "one, dry",
+            "What the arm is in; every pose is taken in each.",
+        ),
         optional("motion", Kind::Object(&MOTION), "-", "the paper's", "What the tip must do."),
         optional("duty", DUTY, "-", "none", "The duty of the only joint."),
-        optional("drives", Kind::Object(&DRIVES), "-", "strain-wave gears, servo and hydraulic motors", "Which catalog parts may be chosen."),
-        optional("extras", EXTRAS_VALUE, "-", "\"usual\"", "What every sized joint weighs beyond gear, motor and bearing."),
+        optional(
+            "drives",
+            Kind::Object(&DRIVES),
+            "-",
+            "strain-wave gears, servo and hydraulic motors",
+            "Which catalog parts may be chosen.",
+        ),
+        optional(
+            "extras",
+            EXTRAS_VALUE,
+            "-",
+            "\"usual\"",
+            "What every sized joint weighs beyond gear, motor and bearing.",
+        ),
         optional("fit", FIT_VALUE, "-", "null", "What is asked of the sizes of every sized joint's parts."),
         optional("harness_kg_per_m", Kind::NonNegative, "kg/m", "0", "Cables and hoses along every link."),
-        optional("connection_share", Kind::NonNegative, "-", "0", "Compliance of the connections at every joint, as a share of that of its gear and bearing."),
-        optional("constraints", Kind::Object(&CONSTRAINTS), "-", "none", "Limits that every design must keep."),
+        optional(
+            "connection_share",
+            Kind::NonNegative,
+            "-",
+            "0",
+            "Compliance of the connections at every joint, as a share of that of its gear and bearing.",
+        ),
+        optional(
+            "constraints",
+            Kind::Object(&CONSTRAINTS),
+            "-",
+            "none",
+            "Limits that every design must keep.",
+        ),
         optional("models", Kind::Object(&MODELS), "-", "{}", "Physics of links and joints."),
-        optional("effects", EFFECT_LIST, "-", "[]", "Physics beyond the nominal model that every design has."),
+        optional(
+            "effects",
+            EFFECT_LIST,
+            "-",
+            "[]",
+            "Physics beyond the nominal model that every design has.",
+        ),
         optional("springs", SPRINGS, "-", "[]", "Springs that balance every design."),
         optional("counterweights", COUNTERWEIGHTS, "-", "[]", "Point masses that balance every design."),
-        optional("gap_percent", Kind::Below(100.0), "%", "0", "An exact search ends when no design is better than a listed one by more than this; 0 finds the whole front."),
+        optional(
+            "gap_percent",
+            Kind::Below(100.0),
+            "%",
+            "0",
+            "An exact search ends when no design is better than a listed one by more than this; 0 finds the whole front.",
+        ),
     ],
     &[],
 );
@@ -65,24 +131,83 @@ pub(super) static JOINT: Shape = Shape::new(
     &[
         required("type", Kind::Word(&["joint"]), "-", "Says that this is a joint."),
         required("name", Kind::Name, "-", "Name, unique in the chain."),
-        required("axis", VECTOR, "-", "Direction in the frame moved by the joints before it; its length does not matter."),
-        optional("drive", Kind::Word(&["first_fit", "all_fits"]), "-", "none", "Search for it: the lightest drive that passes all checks, or every drive that passes them as a choice."),
-        optional("drives", Kind::Object(&DRIVES), "-", "the study's", "Which parts this joint's drive may have."),
-        optional("stiffness_nm_per_rad", POSITIVE_OR_NULL, "N m/rad", "the gear's", "A given stiffness; null is rigid."),
+        required(
+            "axis",
+            VECTOR,
+            "-",
+            "Direction in the frame moved by the joints before it; its length does not matter.",
+        ),
+        optional(
+            "drive",
+            Kind::Word(&["first_fit", "all_fits"]),
+            "-",
+            "none",
+            "Search for it: the lightest drive that passes all checks, or every drive that passes them as a choice.",
+        ),
+        optional(
+            "drives",
+            Kind::Object(&DRIVES),
+            "-",
+            "the study's",
+            "Which parts this joint's drive may have.",
+        ),
+        optional(
+            "stiffness_nm_per_rad",
+            POSITIVE_OR_NULL,
+            "N m/rad",
+            "the gear's",
+            "A given stiffness; null is rigid.",
+        ),
         optional("windup", Kind::Object(&WINDUP), "-", "the gear's", "A given torsion curve."),
         optional("gear", Kind::Text, "-", "none", "A given gear of the catalog."),
         optional("motor", Kind::Text, "-", "none", "A given motor of the catalog."),
         optional("gear_mass", GEAR_MASS, "-", "\"housed_unit\"", "Which mass of a given gear counts."),
         optional("mass_kg", Kind::NonNegative, "kg", "from the parts, else 0", "Mass of a given drive."),
-        optional("max_speed_rad_s", Kind::Positive, "rad/s", "tip speed over reach", "The speed that the joint must reach."),
-        optional("bearing", BEARING_VALUE, "-", "the gear's, if it is a housed unit", "The output bearing: its numbers, the name of a housed gear, or null for a rigid one."),
-        optional("extras", EXTRAS_VALUE, "-", "the study's; none for a given drive", "What the joint weighs beyond gear, motor and bearing."),
-        optional("range_deg", Kind::Array(2, &Kind::Number), "deg", "[-180, 180]", "Smallest and largest angle of the joint."),
-        optional("brake", Kind::Flag, "-", "false", "Whether a brake holds the joint at rest; then its motor need not."),
+        optional(
+            "max_speed_rad_s",
+            Kind::Positive,
+            "rad/s",
+            "tip speed over reach",
+            "The speed that the joint must reach.",
+        ),
+        optional(
+            "bearing",
+            BEARING_VALUE,
+            "-",
+            "the gear's, if it is a housed unit",
+            "The output bearing: its numbers, the name of a housed gear, or null for a rigid one.",
+        ),
+        optional(
+            "extras",
+            EXTRAS_VALUE,
+            "-",
+            "the study's; none for a given drive",
+            "What the joint weighs beyond gear, motor and bearing.",
+        ),
+        optional(
+            "range_deg",
+            Kind::Array(2, &Kind::Number),
+            "deg",
+            "-180 to 180",
+            "Smallest and largest angle of the joint.",
+        ),
+        optional(
+            "brake",
+            Kind::Flag,
+            "-",
+            "false",
+            "Whether a brake holds the joint at rest; then its motor need not.",
+        ),
         optional("duty", DUTY, "-", "the cycle", "What the joint does in numbers."),
         optional("fit", FIT_VALUE, "-", "the study's", "What is asked of the sizes of the joint's parts."),
         optional("bodies", JOINT_BODIES, "-", "[]", "Rigid parts with centre and inertia, in every design."),
-        optional("coupled", COUPLING, "-", "none", "A passive joint of a linkage: the factors of the driven joints that turn it."),
+        optional(
+            "coupled",
+            COUPLING,
+            "-",
+            "none",
+            "A passive joint of a linkage: the factors of the driven joints that turn it.",
+        ),
     ],
     &[
         Rule::Any(&["drive", "stiffness_nm_per_rad", "windup", "gear"]),
@@ -104,11 +229,29 @@ pub(super) static LINK: Shape = Shape::new(
         required("type", Kind::Word(&["link"]), "-", "Says that this is a link."),
         required("name", Kind::Name, "-", "Name, unique in the chain."),
         required("vector_m", VECTOR, "m", "From root to end, in the frame moved by the joints before it."),
-        optional("choose", Kind::Object(&CHOOSE), "-", "none", "An open link: materials and sections to choose from."),
+        optional(
+            "choose",
+            Kind::Object(&CHOOSE),
+            "-",
+            "none",
+            "An open link: materials and sections to choose from.",
+        ),
         optional("material", Kind::Text, "-", "none", "Material of a given tube, by its catalog name."),
-        optional("section", SECTION, "-", "none", "The cross-section of a given tube; without it the link is a rigid offset."),
+        optional(
+            "section",
+            SECTION,
+            "-",
+            "none",
+            "The cross-section of a given tube; without it the link is a rigid offset.",
+        ),
         optional("mass_kg", Kind::NonNegative, "kg", "0", "Point mass at mid-length of a rigid offset."),
-        optional("bodies", LINK_BODIES, "-", "[]", "Rigid parts with centre and inertia, whichever tube the link has."),
+        optional(
+            "bodies",
+            LINK_BODIES,
+            "-",
+            "[]",
+            "Rigid parts with centre and inertia, whichever tube the link has.",
+        ),
         optional("pieces", PIECES, "-", "none", "Steps and tapers of a given link, instead of a section."),
         STIFFNESS_FACTOR,
         MASS_FACTOR,
@@ -126,112 +269,6 @@ const LINK_RULES: [Rule; 7] = [
     Rule::Refuses("choose", &["material", "section", "mass_kg", "pieces", "stiffness_factor", "mass_factor"]),
 ];
 
-/// The options of an open link.
-pub(super) static CHOOSE: Shape = Shape::new(
-    "choose",
-    "The options of an open link: every pair of a material and a section.",
-    &[
-        required("materials", Kind::NonEmpty(&Kind::Text), "-", "Names of materials of the catalog."),
-        required(
-            "sections",
-            Kind::List(&Kind::Either(&[
-                Kind::Object(&RECTANGULAR_TUBES),
-                Kind::Object(&ROUND_TUBES),
-                Kind::Object(&RECTANGULAR_BARS),
-                Kind::Object(&ROUND_BARS),
-                Kind::Object(&PROFILES),
-            ])),
-            "-",
-            "Families of sections.",
-        ),
-    ],
-    &[],
-);
-
-const SIZES: Kind =
-    Kind::Either(&[Kind::Positive, Kind::List(&Kind::Positive), Kind::Object(&GRID)]);
-
-/// A grid of sizes.
-pub(super) static GRID: Shape = Shape::new(
-    "grid",
-    "Sizes from one to another by a step, ends included.",
-    &[
-        required("from", Kind::Positive, "mm", "The smallest."),
-        required("to", Kind::Positive, "mm", "The largest."),
-        required("step", Kind::Positive, "mm", "The step."),
-    ],
-    &[],
-);
-
-const HEIGHT_SIZES: Kind = Kind::Either(&[SIZES, Kind::Word(&["=width"])]);
-
-const WIDTHS: Key = required("width_mm", SIZES, "mm", "Outer width, along the section's y.");
-const HEIGHTS: Key = optional(
-    "height_mm",
-    HEIGHT_SIZES,
-    "mm",
-    "\"=width\"",
-    "Outer height, along the section's z.",
-);
-const WALLS: Key = required("wall_mm", SIZES, "mm", "Thickness of the wall; one that leaves no hollow is skipped.");
-const DIAMETERS: Key = required("diameter_mm", SIZES, "mm", "Outer diameter.");
-
-const fn shape_key(word: &'static [&'static str]) -> Key {
-    required("shape", Kind::Word(word), "-", "The shape.")
-}
-
-/// Rectangular tubes.
-pub(super) static RECTANGULAR_TUBES: Shape = Shape::new(
-    "rectangular tubes",
-    "Rectangular tubes of all these sizes.",
-    &[shape_key(&["rectangular_tube"]), WIDTHS, HEIGHTS, WALLS],
-    &[],
-);
-
-/// Round tubes.
-pub(super) static ROUND_TUBES: Shape = Shape::new(
-    "round tubes",
-    "Round tubes of all these sizes.",
-    &[shape_key(&["round_tube"]), DIAMETERS, WALLS],
-    &[],
-);
-
-/// Rectangular bars.
-pub(super) static RECTANGULAR_BARS: Shape = Shape::new(
-    "rectangular bars",
-    "Solid rectangular bars of all these sizes.",
-    &[shape_key(&["rectangular_bar"]), WIDTHS, HEIGHTS],
-    &[],
-);
-
-/// Round bars.
-pub(super) static ROUND_BARS: Shape = Shape::new(
-    "round bars",
-    "Solid round bars of all these sizes.",
-    &[shape_key(&["round_bar"]), DIAMETERS],
-    &[],
-);
-
-/// Profiles of the catalog, as a family of sections.
-pub(super) static PROFILES: Shape = Shape::new(
-    "profiles",
-    "Tubes that one can buy.",
-    &[required("profiles", Kind::Object(&PROFILE_FILTER), "-", "Which profiles of the catalog.")],
-    &[],
-);
-
-/// Which profiles of the catalog.
-pub(super) static PROFILE_FILTER: Shape = Shape::new(
-    "profile filter",
-    "Which profiles of the catalog.",
-    &[
-        required("family", Kind::Text, "-", "Family of materials: `steel`, `stainless`, `aluminium`, or one of your own catalog."),
-        optional("shapes", Kind::List(&Kind::Word(&ProfileShape::WORDS)), "-", "all", "Shapes."),
-        optional("max_outer_mm", Kind::Positive, "mm", "no limit", "Largest outer size."),
-    ],
-    &[],
-);
-
 /// A pose of a study.
 pub(super) static POSE: Shape = Shape::new(
     "pose",
@@ -241,9 +278,27 @@ pub(super) static POSE: Shape = Shape::new(
         required("pose_deg", Kind::List(&Kind::Number), "deg", "One angle a driven joint, base to tip."),
         optional("payload", Kind::Object(&PAYLOAD), "-", "the study's", "What the arm holds in this pose."),
         optional("tip_force_n", VECTOR, "N", "the study's", "Force at the tip in this pose, in world axes."),
-        optional("tip_moment_nm", VECTOR, "N m", "the study's", "Moment at the tip in this pose, in world axes."),
-        optional("sizing", Kind::Flag, "-", "true", "Whether the pose counts for the sizing of drives and the stress check."),
-        optional("judged", Kind::Flag, "-", "true", "Whether the pose counts for deflection and lowest mode."),
+        optional(
+            "tip_moment_nm",
+            VECTOR,
+            "N m",
+            "the study's",
+            "Moment at the tip in this pose, in world axes.",
+        ),
+        optional(
+            "sizing",
+            Kind::Flag,
+            "-",
+            "true",
+            "Whether the pose counts for the sizing of drives and the stress check.",
+        ),
+        optional(
+            "judged",
+            Kind::Flag,
+            "-",
+            "true",
+            "Whether the pose counts for deflection and lowest mode.",
+        ),
     ],
     &[],
 );
@@ -266,12 +321,42 @@ pub(super) static MOTION: Shape = Shape::new(
     &[
         optional("tip_speed_m_s", Kind::Positive, "m/s", "1.0", "Speed of the tip."),
         optional("ramp_time_s", Kind::Positive, "s", "0.2", "Time in which it is reached."),
-        optional("emergency_deceleration_m_s2", Kind::Positive, "m/s²", "twice speed over ramp time", "Deceleration of the tip in an emergency stop."),
-        optional("min_lever_m", Kind::Positive, "m", "0.3", "Smallest lever that turns tip speed into joint speed."),
+        optional(
+            "emergency_deceleration_m_s2",
+            Kind::Positive,
+            "m/s²",
+            "twice speed over ramp time",
+            "Deceleration of the tip in an emergency stop.",
+        ),
+        optional(
+            "min_lever_m",
+            Kind::Positive,
+            "m",
+            "0.3",
+            "Smallest lever that turns tip speed into joint speed.",
+        ),
         optional("life_h", Kind::Positive, "h", "10000", "L10 life that every gear must reach."),
-        optional("cycle", Kind::NonEmpty(&Kind::Object(&PHASE)), "-", "ramp up, three ramp times at speed, ramp down, five at rest", "What every joint repeats."),
-        optional("emergency_stops", Kind::Positive, "-", "not asked", "Emergency stops that every gear must bear in its life."),
-        optional("check_motor_heat", Kind::Flag, "-", "true", "Whether the root mean square of a motor's torque must be within its continuous torque."),
+        optional(
+            "cycle",
+            Kind::NonEmpty(&Kind::Object(&PHASE)),
+            "-",
+            "ramp up, three ramp times at speed, ramp down, five at rest",
+            "What every joint repeats.",
+        ),
+        optional(
+            "emergency_stops",
+            Kind::Positive,
+            "-",
+            "not asked",
+            "Emergency stops that every gear must bear in its life.",
+        ),
+        optional(
+            "check_motor_heat",
+            Kind::Flag,
+            "-",
+            "true",
+            "Whether the root mean square of a motor's torque must be within its continuous torque.",
+        ),
     ],
     &[],
 );
@@ -281,7 +366,12 @@ pub(super) static PHASE: Shape = Shape::new(
     "phase",
     "A phase of the cycle.",
     &[
-        required("phase", Kind::Word(&["accelerate", "constant", "decelerate", "rest", "fraction"]), "-", "What the joint does."),
+        required(
+            "phase",
+            Kind::Word(&["accelerate", "constant", "decelerate", "rest", "fraction"]),
+            "-",
+            "What the joint does.",
+        ),
         required("time_s", Kind::NonNegative, "s", "How long."),
         optional("of_static_torque", Kind::NonNegative, "-", "none", "Part of the joint's static torque."),
         optional("of_speed", Kind::NonNegative, "-", "none", "Part of the joint's speed."),
@@ -313,11 +403,29 @@ pub(super) static DRIVES: Shape = Shape::new(
     &[
         optional("gear_series", TEXTS, "-", "all", "Series of gears."),
         optional("gears", TEXTS, "-", "all", "Single gears by name."),
-        optional("gear_kinds", Kind::List(&Kind::Word(&GearKind::WORDS)), "-", "strain_wave; all if gears or series are named", "Kinds of gears."),
+        optional(
+            "gear_kinds",
+            Kind::List(&Kind::Word(&GearKind::WORDS)),
+            "-",
+            "strain_wave; all if gears or series are named",
+            "Kinds of gears.",
+        ),
         optional("ratios", Kind::List(&Kind::Positive), "-", "all", "Ratios of gears."),
         optional("gear_mass", GEAR_MASS, "-", "\"housed_unit\"", "Which mass of a gear counts."),
-        optional("actuators", Kind::Either(&[Kind::Word(&["all"]), TEXTS]), "-", "none", "Models of actuators, or all of them."),
-        optional("motors", Kind::List(&Kind::Word(&words_of::<_, 7>(&MOTOR_WORDS))), "-", "all but steppers", "Kinds of motors."),
+        optional(
+            "actuators",
+            Kind::Either(&[Kind::Word(&["all"]), TEXTS]),
+            "-",
+            "none",
+            "Models of actuators, or all of them.",
+        ),
+        optional(
+            "motors",
+            Kind::List(&Kind::Word(&words_of::<_, 7>(&MOTOR_WORDS))),
+            "-",
+            "all but steppers",
+            "Kinds of motors.",
+        ),
         optional("motor_models", TEXTS, "-", "all", "Single motors by name."),
     ],
     &[],
@@ -328,10 +436,28 @@ pub(super) static FIT: Shape = Shape::new(
     "fit",
     "Whether the parts of a joint go where they must; null asks nothing.",
     &[
-        optional("gear_to_link_max", POSITIVE_OR_NULL, "-", "not asked", "Largest outer diameter of the gear over the width of the link that the joint carries."),
+        optional(
+            "gear_to_link_max",
+            POSITIVE_OR_NULL,
+            "-",
+            "not asked",
+            "Largest outer diameter of the gear over the width of the link that the joint carries.",
+        ),
         optional("motor", Kind::Word(&["behind", "in_link", "beside"]), "-", "behind", "Where the motor is."),
-        optional("cable_bore_min_mm", POSITIVE_OR_NULL, "mm", "not asked", "Smallest bore of the gear, and of a motor behind it."),
-        optional("drive_length_max_mm", POSITIVE_OR_NULL, "mm", "not asked", "Largest length of the gear, with that of a motor behind it."),
+        optional(
+            "cable_bore_min_mm",
+            POSITIVE_OR_NULL,
+            "mm",
+            "not asked",
+            "Smallest bore of the gear, and of a motor behind it.",
+        ),
+        optional(
+            "drive_length_max_mm",
+            POSITIVE_OR_NULL,
+            "mm",
+            "not asked",
+            "Largest length of the gear, with that of a motor behind it.",
+        ),
     ],
     &[],
 );
@@ -341,14 +467,56 @@ pub(super) static CONSTRAINTS: Shape = Shape::new(
     "constraints",
     "Limits that every design must keep.",
     &[
-        optional("tip_deflection_max_mm", Kind::Positive, "mm", "no limit", "Largest tip deflection in the worst judged pose."),
+        optional(
+            "tip_deflection_max_mm",
+            Kind::Positive,
+            "mm",
+            "no limit",
+            "Largest tip deflection in the worst judged pose.",
+        ),
         optional("mass_max_kg", Kind::Positive, "kg", "no limit", "Largest mass of links and drives."),
-        optional("lowest_mode_min_hz", Kind::Positive, "Hz", "no limit", "Smallest lowest mode in the worst judged pose."),
-        optional("servo_bandwidth_hz", Kind::Positive, "Hz", "no limit", "Bandwidth of the servo; the lowest mode is at least servo_ratio times this."),
-        optional("servo_ratio", Kind::Positive, "-", "3", "Smallest ratio of lowest mode to servo bandwidth."),
-        optional("stress_safety_factor_min", Kind::Positive, "-", "no limit", "Smallest strength over stress at both ends of every open link."),
-        optional("wall_slenderness_max", Kind::Positive, "-", "no limit", "Largest flat width, or diameter, over wall."),
-        optional("material_cost_max_eur", Kind::Positive, "EUR", "no limit", "Largest cost of the links' raw material."),
+        optional(
+            "lowest_mode_min_hz",
+            Kind::Positive,
+            "Hz",
+            "no limit",
+            "Smallest lowest mode in the worst judged pose.",
+        ),
+        optional(
+            "servo_bandwidth_hz",
+            Kind::Positive,
+            "Hz",
+            "no limit",
+            "Bandwidth of the servo; the lowest mode is at least servo_ratio times this.",
+        ),
+        optional(
+            "servo_ratio",
+            Kind::Positive,
+            "-",
+            "3",
+            "Smallest ratio of lowest mode to servo bandwidth.",
+        ),
+        optional(
+            "stress_safety_factor_min",
+            Kind::Positive,
+            "-",
+            "no limit",
+            "Smallest strength over stress at both ends of every open link.",
+        ),
+        optional(
+            "wall_slenderness_max",
+            Kind::Positive,
+            "-",
+            "no limit",
+            "Largest flat width, or diameter, over wall.",
+        ),
+        optional(
+            "material_cost_max_eur",
+            Kind::Positive,
+            "EUR",
+            "no limit",
+            "Largest cost of the links' raw material.",
+        ),
     ],
     &[Rule::Needs("servo_ratio", &["servo_bandwidth_hz"])],
 );

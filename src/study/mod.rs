@@ -1,6 +1,7 @@
 //! Named questions: read, resolve, run.
 
 pub(crate) mod alternatives;
+pub(crate) mod arm_capacity;
 mod balance;
 pub(crate) mod ballast;
 pub(crate) mod bearing_remarks;
@@ -10,6 +11,7 @@ pub(crate) mod budget;
 pub(crate) mod capacity;
 pub(crate) mod cases;
 pub(crate) mod check;
+mod choose_keys;
 pub(crate) mod chosen;
 mod connections;
 pub(crate) mod creep;
@@ -56,12 +58,13 @@ pub use chosen::{arm_of_design, sizing_of};
 pub use definition::Study;
 pub use diagnose::{empty_pieces, why_infeasible};
 pub use effects::{CorrectedStudy, Correction, apply_corrections, left_out};
+pub use keys::STUDY_FILE;
 pub use load::{load_study, refuse_empty};
 pub use named::{NAMED, list, named, names};
 pub use near::{NearFront, near_front};
 pub use outcome::{
-    ExactStudy, Extent, Front, Judged, OfMaterial, StudyOutcome, judge_swept, run_exact, run_study,
-    sweep_shard,
+    ExactStudy, Extent, Front, Judged, OfMaterial, StudyOutcome, judge_swept, resume_exact, run_exact,
+    run_study, sweep_shard,
 };
 pub use page::study_page;
 pub use pick_poses::{PicksInPoses, picks_in_poses};

@@ -3,10 +3,12 @@
 use super::definition::Study;
 use crate::catalog::Catalogs;
 use crate::exact::Known;
-use crate::exact::run::{Exact, ExactOutcome};
+use crate::exact::outcome::ExactOutcome;
+use crate::exact::run::Exact;
 use crate::pareto::front::nondominated;
 use crate::search::near::{NearDesign, NearDesigns, Slack};
-use crate::search::sweep::{Candidate, Shard, Status, Sweep, SweepOutcome};
+use crate::search::resume::Resume;
+use crate::search::sweep::{Candidate, Shard, Status, Sweep, SweepOutcome, SweepState};
 use crate::space::design::number;
 use crate::space::design::{Evaluated, evaluate};
 use crate::space::design_space::DesignSpace;
@@ -16,7 +18,7 @@ use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// A design of a front, evaluated by the full model.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,26 +65,51 @@ pub fn run_study(
     stop: &AtomicBool,
     watch: impl FnOnce(u128, &(dyn Fn() -> u64 + Sync), &AtomicBool) + Send,
 ) -> StudyOutcome {
-    let (swept, _) = sweep_shard(study, catalogs, Shard::WHOLE, stop, watch);
-    judge_swept(study, &ArmProblem::new(&study.space, catalogs), swept)
+    let problem = ArmProblem::new(&study.space, catalogs);
+    let sweep = Sweep::new(&problem, study.space.constraints, stop);
+    let swept = watched(|finished| watch(sweep.total(), &|| sweep.visited(), finished), || sweep.run());
+    judge_swept(study, &problem, swept)
 }
 
-/// Visits the designs of a shard, and returns its candidates and the numbers of its designs. `watch` is as in
-/// [`run_study`].
+/// Visits the designs of a shard, and returns its candidates and the numbers of its designs. It goes on from the state that
+/// is given, and its own states are kept. `watch` is as in [`run_study`].
+///
+/// # Errors
+/// The state is of another search, in words.
 pub fn sweep_shard(
     study: &Study,
     catalogs: &Catalogs,
     shard: Shard,
     stop: &AtomicBool,
+    Resume { from, keeper }: Resume,
     watch: impl FnOnce(u128, &(dyn Fn() -> u64 + Sync), &AtomicBool) + Send,
-) -> (SweepOutcome, Range<u128>) {
+) -> Result<(SweepOutcome, Range<u128>), String> {
     let problem = ArmProblem::new(&study.space, catalogs);
-    let sweep = Sweep::new(&problem, study.space.constraints, stop).of_shard(shard);
+    let mut sweep = Sweep::new(&problem, study.space.constraints, stop).of_shard(shard);
+    if let Some(bytes) = from {
+        sweep = sweep.go_on_from(SweepState::from_bytes(bytes)?)?;
+    }
     let range = sweep.range();
     let designs = range.end - range.start;
-    let outcome = watched(|finished| watch(designs, &|| sweep.visited(), finished), || sweep.run());
-    (outcome, range)
+    let keep = |finished: &AtomicBool| {
+        while !finished.load(Ordering::Relaxed) {
+            std::thread::sleep(LOOK_EVERY);
+            if keeper.is_due() {
+                keeper.keep(&sweep.state().to_bytes());
+            }
+        }
+    };
+    let outcome =
+        watched(keep, || watched(|finished| watch(designs, &|| sweep.visited(), finished), || sweep.run()));
+    // what was visited is not visited again, whatever becomes of the result
+    if keeper.is_due() || stop.load(Ordering::Relaxed) {
+        keeper.keep(&sweep.state().to_bytes());
+    }
+    Ok((outcome, range))
 }
+
+/// Time between two looks at whether the state of a search is to be kept \[s\].
+const LOOK_EVERY: Duration = Duration::from_millis(10);
 
 /// Judges the candidates of a sweep by the full model.
 pub fn judge_swept(study: &Study, problem: &ArmProblem, outcome: SweepOutcome) -> StudyOutcome {
@@ -252,15 +279,39 @@ pub fn run_exact(
     study: &Study,
     catalogs: &Catalogs,
     stop: &AtomicBool,
-    Extent { deadline, gap, near }: Extent,
+    extent: Extent,
     watch: impl FnOnce(&(dyn Fn() -> Known + Sync), &AtomicBool) + Send,
 ) -> ExactStudy {
-    let search = Exact::new(&study.space, catalogs, stop, deadline).to_gap(gap);
+    let search = Exact::new(&study.space, catalogs, stop, extent.deadline).to_gap(extent.gap);
+    searched_by(&search, study, catalogs, extent, watch)
+}
+
+/// As [`run_exact`], from the state that `resume` has; the states of this search are kept.
+///
+/// # Errors
+/// The state is of another search, in words.
+pub fn resume_exact(
+    study: &Study,
+    catalogs: &Catalogs,
+    stop: &AtomicBool,
+    extent: Extent,
+    resume: Resume,
+    watch: impl FnOnce(&(dyn Fn() -> Known + Sync), &AtomicBool) + Send,
+) -> Result<ExactStudy, String> {
+    let search = Exact::new(&study.space, catalogs, stop, extent.deadline).to_gap(extent.gap);
+    Ok(searched_by(&search.resumed(resume)?, study, catalogs, extent, watch))
+}
+
+fn searched_by(
+    search: &Exact,
+    study: &Study,
+    catalogs: &Catalogs,
+    Extent { near, .. }: Extent,
+    watch: impl FnOnce(&(dyn Fn() -> Known + Sync), &AtomicBool) + Send,
+) -> ExactStudy {
     let most = near.map(|slack| slack.most);
-    let searched = watched(
-        |finished| watch(&|| search.known(), finished),
-        || Searched::new(&search, &study.space, near),
-    );
+    let searched =
+        watched(|finished| watch(&|| search.known(), finished), || Searched::new(search, &study.space, near));
     let space = study.space.excerpt(catalogs, &searched.numbers()).unwrap_or_else(|| study.space.clone());
     let study = Study { space, ..study.clone() };
     let whole = &searched.whole;

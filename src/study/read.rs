@@ -7,6 +7,7 @@
 use super::balance::{balance_remarks, read_balance};
 use super::bodies::impossible_bodies_remark;
 use super::cases::{Cases, read_cases};
+use super::choose_keys::CHOOSE;
 use super::connections::{connections_remark, with_connections};
 use super::creep::creep_remarks;
 use super::definition::Study;
@@ -14,7 +15,7 @@ use super::drives::{Drives, read_drives};
 use super::effects::check_effects;
 use super::fit::{fit_remarks, read_fit};
 use super::harness::{harness_effects, harness_remark};
-use super::keys::{CHOOSE, CONSTRAINTS, JOINT, LINK, MODELS, STUDY};
+use super::keys::{CONSTRAINTS, JOINT, LINK, MODELS, STUDY};
 use super::linkages::drivers_are_inboard;
 use super::motion::{read_duty, read_motion};
 use super::omissions::omissions;
@@ -24,9 +25,7 @@ use crate::arm::MOST_ELEMENTS;
 use crate::arm::bearing::{BearingSource, Stated, read_bearing};
 use crate::arm::body::{read_joint_bodies, read_link_bodies};
 use crate::arm::extras::{ExtrasSource, read_extras_source};
-use crate::arm::file::{
-    read_coupling, read_curve, read_effects, read_gravity, read_joint_mass, read_name,
-};
+use crate::arm::file::{read_coupling, read_curve, read_effects, read_gravity, read_joint_mass, read_name};
 use crate::arm::load::{vector, word};
 use crate::arm::pieces::{elements_of, read_links};
 use crate::arm::{JointModel, LinkModel};

@@ -45,7 +45,7 @@ impl SearchWish {
         Ok(match (self.method, self.has_gap || self.has_time_limit) {
             (Some(method), _) => (method, None),
             (None, true) => (SearchMethod::Exact, None),
-            (None, false) if study.space.has_linkages() => (SearchMethod::Exhaustive, None),
+            (None, false) if study.space.beyond_exact().is_some() => (SearchMethod::Exhaustive, None),
             (None, false) => cheaper(study, catalogs, designs as f64),
         })
     }
@@ -62,9 +62,9 @@ impl SearchWish {
         };
         let exhaustive = self.method == Some(SearchMethod::Exhaustive);
         let by_bounds = self.method == Some(SearchMethod::Exact) || self.has_time_limit || self.has_gap;
-        if study.space.has_linkages() && by_bounds {
+        if let Some(unknown) = study.space.beyond_exact().filter(|_| by_bounds) {
             return refused(format!(
-                "the study \"{}\" has coupled joints, which the bounds of the exact search do not cover; leave --search \
+                "the study \"{}\" has {unknown}, which the bounds of the exact search do not cover; leave --search \
                  exact, --gap and --time-limit away, and every design is visited",
                 study.name
             ));

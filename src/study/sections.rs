@@ -1,6 +1,6 @@
 //! The options of an open link: materials times sections.
 
-use super::keys::{
+use super::choose_keys::{
     GRID, PROFILE_FILTER, PROFILES, RECTANGULAR_BARS, RECTANGULAR_TUBES, ROUND_BARS, ROUND_TUBES,
 };
 use crate::arm::section::{LinkMaterial, Section};

@@ -7,6 +7,7 @@ use armwright::arm::{JointModel, LinkModel, Payload, read_arm_document};
 use armwright::catalog::Catalogs;
 use armwright::input::Document;
 use armwright::mechanics::Chain;
+use armwright::sizing::LinearReading;
 use armwright::space::{ArmProblem, evaluate};
 use nalgebra::{Rotation3, Unit, Vector3};
 use serde_json::{Value, json};
@@ -102,6 +103,42 @@ fn searches_agree_in_any_gravity() {
     assert!(listed > 20, "{listed}");
 }
 
+/// One given joint j at 30 degrees, 2 kg at 0.5 m, and a torque 5 - 8 sin q + 7 cos q beside the weight.
+#[test]
+fn a_drive_holds_the_torque_that_acts_beside_the_weight() {
+    let catalogs = Catalogs::builtin();
+    let demand = |effects: Value, reading: LinearReading| {
+        let text = json!({"name": "own", "effects": effects,
+            "chain": [{"type": "joint", "name": "j", "axis": [0, 1, 0], "drive": "first_fit"},
+                {"type": "link", "name": "l", "vector_m": [0.5, 0, 0]}],
+            "payload": {"mass_kg": 2}, "poses": [{"pose_deg": [30]}],});
+        let mut study = read(&text, &catalogs);
+        study.space.motion.linear_reading = reading;
+        let problem = ArmProblem::new(&study.space, &catalogs);
+        let mut seen = None;
+        problem
+            .walk(&[], |slot, outboard| {
+                if problem.piece_of_slot(slot) == 0 {
+                    seen = Some(problem.demand_at(outboard, slot));
+                }
+            })
+            .expect("a drive holds");
+        seen.expect("the joint")
+    };
+    let torque = json!([{"effect": "joint_torque", "at": "j",
+        "parameters": {"offset_nm": 5, "sin_nm": -8, "cos_nm": 7}}]);
+    let (sin, cos) = 30f64.to_radians().sin_cos();
+    let weight_nm = 2.0 * 9.81 * 0.5 * cos;
+    for reading in [LinearReading::Exact, LinearReading::Paper] {
+        let (alone, with) = (demand(json!([]), reading), demand(torque.clone(), reading));
+        assert!((alone.static_torque_nm - weight_nm).abs() < 1e-12);
+        assert!((with.static_torque_nm - (weight_nm + 5.0 - 8.0 * sin + 7.0 * cos)).abs() < 1e-12);
+        // nothing more has to be accelerated
+        assert_eq!(with.linear_torque_nm, alone.linear_torque_nm, "{reading:?}");
+        assert!(with.peak_torque_nm() > alone.peak_torque_nm() + 1.0);
+    }
+}
+
 /// A chain with coupled joints: positions of its point masses, and the mass of each, at driven angles.
 fn masses(chain: &Value, driven: &[f64]) -> Vec<(f64, Vector3<f64>)> {
     let pieces = chain.as_array().expect("a chain");
@@ -138,18 +175,23 @@ fn a_driver_is_sized_for_what_its_linkages_hand_back() {
     let dice = &mut Dice(4);
     for round in 0..30 {
         let unit = |dice: &mut Dice| [0; 3].map(|_| dice.within(-1.0, 1.0));
-        let mut chain = Vec::new();
+        let (mut chain, mut handed_back_nm) = (Vec::new(), [0.0; 3]);
         for i in 0..5 {
             let mut joint = json!({"type": "joint", "name": format!("j{i}"), "axis": unit(dice),
                 "stiffness_nm_per_rad": 5e4, "mass_kg": dice.within(0.0, 4.0)});
             if i == 2 || i == 4 {
                 joint["coupled"] = json!({"j0": dice.within(-1.5, 1.5), "j1": dice.within(-1.0, 1.0)});
+                if i == 4 {
+                    handed_back_nm[0] = joint["coupled"]["j0"].as_f64().expect("a factor") * 7.0;
+                    handed_back_nm[1] = joint["coupled"]["j1"].as_f64().expect("a factor") * 7.0;
+                }
             }
             chain.push(joint);
             chain.push(json!({"type": "link", "name": format!("l{i}"), "vector_m": unit(dice), "mass_kg": dice.within(0.0, 3.0)}));
         }
         let pose_deg: Vec<f64> = (0..3).map(|_| dice.within(-90.0, 90.0)).collect();
         let text = json!({"name": "linked", "chain": chain, "payload": {"mass_kg": 2.5},
+            "effects": [{"effect": "joint_torque", "at": "j4", "parameters": {"offset_nm": 7}}],
             "poses": [{"pose_deg": pose_deg}], "motion": {"min_lever_m": 0.5}});
         let study = read(&text, &catalogs);
         let problem = ArmProblem::new(&study.space, &catalogs);
@@ -173,6 +215,7 @@ fn a_driver_is_sized_for_what_its_linkages_hand_back() {
                     torque_nm += kg * 9.81 * way.z;
                     inertia_kgm2 += kg * way.norm_squared();
                 }
+                torque_nm -= handed_back_nm[number];
                 // 5 m/s2 at the smallest lever of 0.5 m, or at the reach
                 let acceleration = demand.linear_torque_nm / inertia_kgm2;
                 assert!(

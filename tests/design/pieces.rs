@@ -39,8 +39,9 @@ fn a_tapered_cantilever_bends_as_its_closed_form_says() {
         let link = json!({"type": "link", "name": "arm", "vector_m": [length_m, 0, 0], "material": "steel", "pieces": [taper]});
         let read = read(&arm(json!([link]))).expect("sound");
         let slope = (root_m - tip_m) / length_m;
-        let integral = ((root_m / tip_m).ln() + 2.0 * tip_m / root_m - tip_m.powi(2) / (2.0 * root_m.powi(2)) - 1.5)
-            / slope.powi(3);
+        let integral =
+            ((root_m / tip_m).ln() + 2.0 * tip_m / root_m - tip_m.powi(2) / (2.0 * root_m.powi(2)) - 1.5)
+                / slope.powi(3);
         let expected = 12.0 * 100.0 * integral / (2.1e11 * 0.03);
         let found = deflection_m(&read, LinkModel::Bending, 100.0);
         println!("{root_m} to {tip_m}: {:.3e}", found / expected - 1.0);
@@ -56,8 +57,10 @@ fn steps_are_links_one_behind_the_other() {
     let tube = |wall_m: f64| json!({"shape": "round_tube", "diameter_m": 0.05, "wall_m": wall_m});
     let body = |x: f64| json!([{"mass_kg": 2, "cg_m": [x, 0, 0.05]}]);
     let pieces = json!([{"length_m": 0.2, "section": tube(0.004)}, {"length_m": 0.3, "section": tube(0.002), "material": "Aluminium 6061-T6"}]);
-    let whole = arm(json!([{"type": "link", "name": "arm", "vector_m": [0.5, 0, 0], "material": "steel", "pieces": pieces,
-        "bodies": body(0.3)}]));
+    let whole = arm(
+        json!([{"type": "link", "name": "arm", "vector_m": [0.5, 0, 0], "material": "steel", "pieces": pieces,
+        "bodies": body(0.3)}]),
+    );
     let divided = arm(json!([
         {"type": "link", "name": "arm.1", "vector_m": [0.2, 0, 0], "material": "steel", "section": tube(0.004)},
         {"type": "link", "name": "arm.2", "vector_m": [0.3, 0, 0], "material": "Aluminium 6061-T6", "section": tube(0.002), "bodies": body(0.3 - 0.2)}]));

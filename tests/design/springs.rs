@@ -137,8 +137,7 @@ fn springs_turn_joints_as_their_energy_falls() {
         let arm = random_arm(dice);
         let mut without = arm.clone();
         without.as_object_mut().expect("an arm").remove("springs");
-        let names: Vec<String> =
-            read(&arm).driven_joint_names().into_iter().map(String::from).collect();
+        let names: Vec<String> = read(&arm).driven_joint_names().into_iter().map(String::from).collect();
         let pose: Vec<f64> = names.iter().map(|_| dice.within(-2.0, 2.0)).collect();
         let [with, alone] = [&arm, &without].map(|arm| statics(arm, &pose, 3.0));
         let torque = |of: &Statics, name: &str| {
@@ -159,7 +158,10 @@ fn springs_turn_joints_as_their_energy_falls() {
             .collect();
         let largest = all.iter().map(|(nm, _)| nm.abs()).fold(1.0, f64::max);
         for (i, (found, slope)) in all.iter().enumerate() {
-            assert!((found - slope).abs() < 1e-6 * largest, "round {round}, joint {i}: {found} {slope}\n{arm}");
+            assert!(
+                (found - slope).abs() < 1e-6 * largest,
+                "round {round}, joint {i}: {found} {slope}\n{arm}"
+            );
         }
         // what is written reads back as the same arm
         let written = read(&arm).to_json();
@@ -263,7 +265,8 @@ fn add_springs(study: &mut Value, seed: u64) {
 /// same designs, and the fast objectives are the full ones.
 #[test]
 fn searches_agree_with_springs() {
-    let studies: u64 = std::env::var("ARMWRIGHT_SPRING_STUDIES").ok().and_then(|n| n.parse().ok()).unwrap_or(6);
+    let studies: u64 =
+        std::env::var("ARMWRIGHT_SPRING_STUDIES").ok().and_then(|n| n.parse().ok()).unwrap_or(6);
     let (catalogs, mut listed, mut moved) = (Catalogs::builtin(), 0, 0);
     for seed in 0..studies {
         let mut text = random_study(seed);
@@ -279,9 +282,10 @@ fn searches_agree_with_springs() {
             assert!(close(full.tip_deflection_m, design.objectives.tip_deflection_m), "seed {seed}");
             assert!(close(full.mass_kg, design.objectives.mass_kg), "seed {seed}");
             assert!(close(full.lowest_mode_hz, design.objectives.lowest_mode_hz), "seed {seed}");
-            moved += usize::from(evaluate(&without, design.number).is_none_or(|other| {
-                !close(other.objectives.tip_deflection_m, full.tip_deflection_m)
-            }));
+            moved += usize::from(
+                evaluate(&without, design.number)
+                    .is_none_or(|other| !close(other.objectives.tip_deflection_m, full.tip_deflection_m)),
+            );
         }
         listed += found;
     }
@@ -352,7 +356,10 @@ fn a_drive_is_sized_for_what_the_spring_leaves() {
     assert!(tube_nm > 0.0);
     let half_n = 10.0 * 9.81 + tube_nm;
     assert!((static_nm(hoist(half_n)) - 10.0 * 9.81).abs() < 1e-6);
-    assert!((static_nm(hoist(20.0 * 9.81 + tube_nm)) - 20.0 * 9.81).abs() < 1e-6, "the empty arm is the worst");
+    assert!(
+        (static_nm(hoist(20.0 * 9.81 + tube_nm)) - 20.0 * 9.81).abs() < 1e-6,
+        "the empty arm is the worst"
+    );
 }
 
 /// A counterweight behind the joint is the body that it stands for.
@@ -386,7 +393,14 @@ fn faults_of_springs_are_told_all_at_once() {
       "counterweights": [{"at": "nowhere", "point_m": [0, 0, 0], "mass_kg": 1}]});
     let document = Document::parse("arm.json", &arm.to_string()).expect("JSON");
     let faults = read_arm_document(document, &Catalogs::builtin()).expect_err("six faults").to_string();
-    for part in ["no \"laver\"", "on one part", "without the other", "nothing of its force", "no joint", "no \"nowhere\""] {
+    for part in [
+        "no \"laver\"",
+        "on one part",
+        "without the other",
+        "nothing of its force",
+        "no joint",
+        "no \"nowhere\"",
+    ] {
         assert!(faults.contains(part), "{part}: {faults}");
     }
 }

@@ -11,7 +11,7 @@ const STOREYS: &[&[&str]] = &[
     &["arm"],
     &["mechanics"],
     &["sizing"],
-    &["space"],
+    &["space", "interchange"],
     &["search"],
     &["exact", "verify", "relax"],
     &["report"],

@@ -1,18 +1,11 @@
 //! Input that is too large is refused with the limit that it exceeds, before it takes the machine's memory.
 
+use crate::running::armwright;
 use serde_json::json;
 use std::fmt::Write;
 use std::path::Path;
-use std::process::Command;
 
 /// Exit code and everything that was said.
-fn armwright(folder: &Path, words: &[&str]) -> (i32, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_armwright"));
-    let output = command.current_dir(folder).args(words).output().expect("it runs");
-    let text = [output.stdout, output.stderr].concat();
-    (output.status.code().unwrap_or(-1), String::from_utf8_lossy(&text).into_owned())
-}
-
 #[test]
 fn a_chain_of_thousands_of_joints_is_refused_with_the_limit() {
     let here = tempfile::tempdir().expect("a folder");

@@ -1,18 +1,11 @@
 //! Names are not paths, not commands and not tricks: names that would write outside, share a file, run in a spreadsheet or
 //! show something else.
 
+use crate::running::armwright;
 use crate::whole_results::study;
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
-use std::process::Command;
-
-fn armwright(folder: &Path, words: &[&str]) -> (i32, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_armwright"));
-    let output = command.current_dir(folder).args(words).output().expect("it runs");
-    let text = [output.stdout, output.stderr].concat();
-    (output.status.code().unwrap_or(-1), String::from_utf8_lossy(&text).into_owned())
-}
 
 fn write(folder: &Path, name: &str, text: &str) {
     let file = folder.join(name);

@@ -1,18 +1,10 @@
 //! A study that no design meets: the program names what stands in the way, by how much, and what is enough, whichever search
 //! was asked for. What it says is enough is tried, and so is a little less.
 
+use crate::running::armwright;
 use serde_json::{Value, json};
-use std::path::Path;
-use std::process::Command;
 
 /// Exit code and everything that was said.
-fn armwright(folder: &Path, words: &[&str]) -> (i32, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_armwright"));
-    let output = command.current_dir(folder).args(words).output().expect("it runs");
-    let text = [output.stdout, output.stderr].concat();
-    (output.status.code().unwrap_or(-1), String::from_utf8_lossy(&text).into_owned())
-}
-
 /// Two links of two tubes each on two joints that are sized: few designs, all kinds of limits.
 fn study() -> Value {
     let link = |name: &str| {

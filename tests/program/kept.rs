@@ -1,22 +1,11 @@
 //! Nothing that is finished is lost: a terminal that is gone, a page that cannot be made, an input that an output would
 //! replace.
 
+use crate::running::{command, said};
 use crate::whole_results::study;
 use std::fs::{self, File};
 use std::path::Path;
 use std::process::{Command, Stdio};
-
-fn armwright(folder: &Path, words: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_armwright"));
-    command.current_dir(folder).args(words);
-    command
-}
-
-fn said(command: &mut Command) -> (i32, String) {
-    let output = command.output().expect("it runs");
-    let text = [output.stdout, output.stderr].concat();
-    (output.status.code().unwrap_or(-1), String::from_utf8_lossy(&text).into_owned())
-}
 
 fn folder_with_study() -> tempfile::TempDir {
     let here = tempfile::tempdir().expect("a folder");
@@ -38,7 +27,7 @@ fn a_run_whose_standard_error_is_full_or_closed_keeps_its_result() {
     let here = folder_with_study();
     let Some(full) = full() else { return };
     let words = ["run", "study.json", "--search", "exact", "--out", "out"];
-    let status = armwright(here.path(), &words).stderr(full).status().expect("it runs");
+    let status = command(here.path(), &words).stderr(full).status().expect("it runs");
     assert_eq!(status.code(), Some(0));
     assert!(here.path().join("out/front.csv").exists());
     let program = env!("CARGO_BIN_EXE_armwright");
@@ -62,7 +51,7 @@ fn standard_output_that_cannot_be_written_is_an_error_of_every_verb() {
     ];
     for words in verbs {
         let Some(full) = full() else { return };
-        let output = armwright(here.path(), words).stdout(full).output().expect("it runs");
+        let output = command(here.path(), words).stdout(full).output().expect("it runs");
         let text = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(7), "{words:?}: {text}");
     }
@@ -85,14 +74,14 @@ fn a_piece_that_cannot_be_made_costs_no_other_and_is_named() {
         ("what was asked for in addition to the front", "none.csv"),
     ];
     for (piece, file) in pieces {
-        let mut run = armwright(here.path(), &["run", "study.json", "--out", "out"]);
+        let mut run = command(here.path(), &["run", "study.json", "--out", "out"]);
         let (code, text) = said(run.env("ARMWRIGHT_FAULT", format!("panic:{piece}")));
         assert_eq!(code, 0, "{text}");
         assert!(text.contains(&format!("warning: not written: {piece}: internal error")), "{piece}: {text}");
         assert!(!here.path().join("out").join(file).exists(), "{piece}");
         let run = fs::read_to_string(here.path().join("out/run.json")).expect("a run");
         assert!(run.contains(&format!("\"{piece}: internal error")), "{piece}: {run}");
-        let (code, text) = said(&mut armwright(here.path(), &["front", "check", "out"]));
+        let (code, text) = said(&mut command(here.path(), &["front", "check", "out"]));
         assert_eq!(code, 0, "{piece}: {text}");
     }
 }
@@ -109,27 +98,26 @@ fn an_input_is_never_overwritten() {
     // the same file by another path
     let words =
         ["predict", "arm.json", "static.csv", "--campaign", "campaign.json", "--out", "sub/../static.csv"];
-    let (code, text) = said(&mut armwright(here.path(), &words));
+    let (code, text) = said(&mut command(here.path(), &words));
     assert_eq!(code, 2, "{text}");
     assert!(text.contains("is an input of this command"), "{text}");
     assert_eq!(fs::read(here.path().join("static.csv")).expect("readings"), before);
-    let (code, text) = said(&mut armwright(here.path(), &[&words[..6], &["out.csv"]].concat()));
+    let (code, text) = said(&mut command(here.path(), &[&words[..6], &["out.csv"]].concat()));
     assert_eq!(code, 0, "{text}");
     // a study in a folder of results, asked for with another limit
     fs::write(here.path().join("study.json"), study("new", 3.0)).expect("written");
-    assert_eq!(said(&mut armwright(here.path(), &["run", "study.json", "--out", "out"])).0, 0);
+    assert_eq!(said(&mut command(here.path(), &["run", "study.json", "--out", "out"])).0, 0);
     let again = ["run", "out/study.json", "--out", "out"];
-    assert_eq!(said(&mut armwright(here.path(), &again)).0, 0, "the same study");
-    let (code, text) = said(&mut armwright(here.path(), &[&again[..], &["--mass-max-kg", "100"]].concat()));
+    assert_eq!(said(&mut command(here.path(), &again)).0, 0, "the same study");
+    let (code, text) = said(&mut command(here.path(), &[&again[..], &["--mass-max-kg", "100"]].concat()));
     assert_eq!(code, 2, "{text}");
-    let (code, text) =
-        said(&mut armwright(here.path(), &[&again[..], &["--progress", "study.json"]].concat()));
+    let (code, text) = said(&mut command(here.path(), &[&again[..], &["--progress", "study.json"]].concat()));
     assert_eq!(code, 0, "study.json is no input of that: {text}");
     let (code, text) =
-        said(&mut armwright(here.path(), &[&again[..], &["--progress", "out/study.json"]].concat()));
+        said(&mut command(here.path(), &[&again[..], &["--progress", "out/study.json"]].concat()));
     assert_eq!(code, 2, "{text}");
     // a file of a result is no place for another verb's output
-    let (code, text) = said(&mut armwright(here.path(), &["compare", "out", "--out", "out"]));
+    let (code, text) = said(&mut command(here.path(), &["compare", "out", "--out", "out"]));
     assert_eq!(code, 2, "{text}");
     assert!(text.contains("report.html is a file of the result"), "{text}");
 }

@@ -1,18 +1,11 @@
 //! What a run says of a search while it runs (`--progress`), and what it proves of a part of the front (`--mass-max-kg`).
 
 use crate::front_check::STUDY;
+use crate::running::armwright;
 use serde_json::{Value, json};
 use std::path::Path;
-use std::process::Command;
 
 /// Exit code and everything that was said.
-fn armwright(folder: &Path, words: &[&str]) -> (i32, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_armwright"));
-    let output = command.current_dir(folder).args(words).output().expect("it runs");
-    let text = [output.stdout, output.stderr].concat();
-    (output.status.code().unwrap_or(-1), String::from_utf8_lossy(&text).into_owned())
-}
-
 fn json_of(path: &Path) -> Value {
     serde_json::from_str(&std::fs::read_to_string(path).expect("a file")).expect("JSON")
 }

@@ -2,18 +2,12 @@
 //! belong together or is missing is refused.
 
 use crate::front_check::STUDY;
+use crate::running::armwright;
 use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
 
 /// Exit code and everything that was said.
-fn armwright(folder: &Path, words: &[&str]) -> (i32, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_armwright"));
-    let output = command.current_dir(folder).args(words).output().expect("it runs");
-    let text = [output.stdout, output.stderr].concat();
-    (output.status.code().unwrap_or(-1), String::from_utf8_lossy(&text).into_owned())
-}
-
 fn with_study() -> tempfile::TempDir {
     let here = tempfile::tempdir().expect("a folder");
     std::fs::write(here.path().join("study.json"), STUDY).expect("written");

@@ -12,8 +12,12 @@ fn project() -> PathBuf {
 
 /// Exit code and standard output, whatever the code.
 fn checked(here: &Path, words: &[&str]) -> (i32, String) {
-    let output =
-        Command::new(env!("CARGO_BIN_EXE_armwright")).current_dir(here).arg("check").args(words).output().expect("it runs");
+    let output = Command::new(env!("CARGO_BIN_EXE_armwright"))
+        .current_dir(here)
+        .arg("check")
+        .args(words)
+        .output()
+        .expect("it runs");
     (output.status.code().expect("a code"), String::from_utf8(output.stdout).expect("text"))
 }
 
@@ -26,14 +30,18 @@ fn started(what: &str) -> tempfile::TempDir {
     here
 }
 
-/// Every command of the starter's page that is about its own files.
+/// Every command of the starter's page that is about its own files. The runs of a study are the tutorial's.
 fn run_page(here: &Path) -> usize {
     let page = fs::read_to_string(here.join("mine/STARTER.md")).expect("the page");
     let commands = page.lines().filter_map(|line| line.strip_prefix("armwright "));
     let mut count = 0;
-    for command in commands.filter(|command| !command.contains("study.json --catalogs")) {
+    for command in commands.filter(|command| !command.starts_with("run ")) {
         let words: Vec<&str> = command.split('#').next().unwrap_or_default().split_whitespace().collect();
-        let folder = if words.iter().any(|word| word.starts_with("mine")) { here.to_path_buf() } else { here.join("mine") };
+        let folder = if words.iter().any(|word| word.starts_with("mine")) {
+            here.to_path_buf()
+        } else {
+            here.join("mine")
+        };
         let (code, said) = armwright(&folder, &words);
         assert_eq!(code, 0, "{command}: {said}");
         count += 1;
@@ -42,16 +50,24 @@ fn run_page(here: &Path) -> usize {
 }
 
 #[test]
-fn a_new_study_passes_its_check_is_sized_and_runs() {
+fn a_new_study_passes_its_check_and_is_sized() {
     let here = started("study");
-    assert_eq!(run_page(here.path()), 3);
-    assert!(here.path().join("mine/results/mine/front.csv").is_file());
-    let (code, said) = checked(here.path(), &["mine/results/mine"]);
-    assert_eq!((code, said.as_str()), (0, "mine/results/mine: result of a study, sound\n"));
-    // a result that somebody edited
-    fs::write(here.path().join("mine/results/mine/summary.md"), "edited").expect("written");
-    let (code, said) = checked(here.path(), &["mine/results/mine/front.csv"]);
-    assert!(code == 9 && said.contains("summary.md is not what was written"), "{said}");
+    assert_eq!(run_page(here.path()), 2);
+}
+
+#[test]
+fn check_compares_the_files_of_a_result_with_its_hashes() {
+    let here = tempfile::tempdir().expect("a folder");
+    let write = |name: &str, text: &str| fs::write(here.path().join(name), text).expect("written");
+    let hash = blake3::hash(b"a table").to_hex().to_string();
+    write("run.json", &json!({"study": "s", "files": {"front.csv": hash}}).to_string());
+    write("front.csv", "a table");
+    assert_eq!(checked(here.path(), &["."]), (0, ".: result of a study, sound\n".to_string()));
+    write("front.csv", "an edited table");
+    let (code, said) = checked(here.path(), &["front.csv"]);
+    assert!(code == 9 && said.contains("front.csv is not what was written"), "{said}");
+    fs::remove_file(here.path().join("front.csv")).expect("removed");
+    assert_eq!(checked(here.path(), &["."]).0, 9);
 }
 
 #[test]
@@ -71,8 +87,8 @@ fn new_parts_pass_their_check_and_are_offered_to_a_study() {
     study["chain"][1]["choose"]["materials"] = json!(["Example aluminium"]);
     study["constraints"] = json!({});
     fs::write(here.path().join("study.json"), study.to_string()).expect("written");
-    let (code, said) = armwright(here.path(), &["run", "study.json", "--catalogs", "mine", "--out", "out"]);
-    assert_eq!(code, 0, "{said}");
+    let (code, said) = armwright(here.path(), &["size", "study.json", "--catalogs", "mine"]);
+    assert!(code == 0 && said.contains("EXAMPLE-25-100 EXAMPLE-60"), "{said}");
 }
 
 #[test]
@@ -86,21 +102,32 @@ fn check_says_what_each_file_is_and_reports_every_fault_of_every_file() {
     write("cases.json", r#"[{"pose_deg": [0], "payload": {"mass": 1}}]"#);
     write("broken.json", "{\n \"name\": 1,}");
     write("other.json", r#"{"zzzz": 1}"#);
+    write("list.json", r#"[{"effect": "outlier"}]"#);
     write("motors.csv", "type,model,source,confidence\nac-servo,M,s,sure\n");
-    let names =
-        ["sound.json", "study.json", "arm.json", "broken.json", "other.json", "motors.csv", "absent.json", "sound.json"];
+    let names = [
+        "sound.json",
+        "study.json",
+        "arm.json",
+        "broken.json",
+        "other.json",
+        "list.json",
+        "motors.csv",
+        "absent.json",
+        "sound.json",
+    ];
     let (code, said) = checked(here.path(), &names);
     assert_eq!(code, 3, "{said}");
     for words in [
         "sound.json: study, sound\n",
         "study.json: study, 3 faults\n",
-        "study.json:17: payload.mass_kg: = -3 must not be negative",
+        "study.json:15: payload.mass_kg: = -3 must not be negative",
         "pose: unknown key; did you mean \"poses\"?",
         "arm.json: arm, 2 faults\n",
         "arm.json:1: chian: unknown key; did you mean \"chain\"?",
         "broken.json: unknown, 1 fault\n",
         "broken.json:2: column",
         "other.json: has no key of a file that is known; `armwright schema`",
+        "list.json: has no key of a file that is known",
         ": catalogs, 1 fault\n",
         "confidence",
         "absent.json: unknown, cannot be read\n",
@@ -127,7 +154,8 @@ fn check_reads_readings_with_their_campaign_and_cases_with_their_arm() {
     let (code, said) = checked(here.path(), &["cases.json"]);
     assert!(code == 3 && said.contains("has 1 angles, the arm has"), "{said}");
     let text = fs::read_to_string(here.path().join("modal.csv")).expect("readings");
-    fs::write(here.path().join("modal.csv"), text.replacen("frequency_hz", "frequenzy_hz", 1)).expect("written");
+    fs::write(here.path().join("modal.csv"), text.replacen("frequency_hz", "frequenzy_hz", 1))
+        .expect("written");
     let (code, said) = checked(here.path(), &["modal.csv"]);
     assert!(code == 3 && said.contains("campaign, ") && said.contains("frequency_hz"), "{said}");
 }
@@ -137,7 +165,9 @@ fn verbs(here: &Path, words: &[&str]) -> Vec<String> {
     let (code, help) = armwright(here, &[words, &["--help"]].concat());
     assert_eq!(code, 0, "{help}");
     let list = help.split("Commands:\n").nth(1).unwrap_or_default().split("\n\n").next().unwrap_or_default();
-    let names = list.lines().filter_map(|line| line.strip_prefix("  ")?.split_whitespace().next());
+    let names = list.lines().filter_map(|line| {
+        line.strip_prefix("  ").filter(|line| !line.starts_with(' '))?.split_whitespace().next()
+    });
     names.filter(|name| *name != "help").map(String::from).collect()
 }
 

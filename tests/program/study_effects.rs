@@ -34,6 +34,17 @@ fn study() -> Value {
     study
 }
 
+/// The same arm with few sections and drives: laws of joints are searched one design at a time.
+fn small_study() -> Value {
+    let mut study = study();
+    study["chain"][1]["choose"]["sections"] =
+        json!([{"shape": "rectangular_tube", "width_mm": [80], "height_mm": "=width", "wall_mm": [2, 5]}]);
+    study["chain"][3]["choose"]["sections"] =
+        json!([{"shape": "round_tube", "diameter_mm": [60], "wall_mm": [2]}]);
+    study["drives"]["ratios"] = json!([100]);
+    study
+}
+
 fn spring(effect: &str, at: &str) -> Value {
     json!({"effect": effect, "at": at, "parameters": {"stiffness_nm_per_rad": 2e4}})
 }
@@ -83,6 +94,66 @@ fn a_design_of_a_study_with_effects_analyzes_to_the_numbers_of_its_front() {
     assert_eq!(cases.iter().map(lowest).fold(f64::INFINITY, f64::min), column(&front, "lowest_mode_hz")[1]);
     let run = read_json(here.path().join("out/run.json"));
     assert_eq!(run["effects_mass_kg"].as_f64().expect("kg"), 2.0 * 0.4);
+}
+
+/// Laws that follow the angle of a joint or lift the base: a counterbalance, waves of a stiffness, feet, and a law without a name.
+fn laws() -> Value {
+    json!([
+        {"effect": "joint_torque", "at": "shoulder", "parameters": {"offset_nm": 3.0, "sin_nm": 2.0, "cos_nm": -20.0}},
+        {"effect": "stiffness_waves", "at": "elbow", "parameters": {"once": 0.2, "twice": 0.1, "phases_rad": [0.5, -1.0]}},
+        {"effect": "base_lift", "at": "base", "parameters": {"stiffness_nm_per_rad": 5e4, "preload_nm": 8.0}},
+        {"effect": "empirical", "at": "elbow", "parameters": {"odd_twist_rad": [2e-5, 0], "torque_nm": 10}}
+    ])
+}
+
+#[test]
+fn designs_of_a_study_with_laws_of_joints_and_base_analyzes_to_the_numbers_of_its_front() {
+    let here = folder();
+    let mut with = small_study();
+    with["effects"] = laws();
+    write(here.path(), "study.json", &with);
+    assert_eq!(armwright(here.path(), &["run", "study.json", "--out", "out"]).0, 0);
+    let front = read(here.path().join("out/front.csv"));
+    let tips_mm = column(&front, "tip_deflection_mm");
+    assert!(tips_mm.len() > 3, "{front}");
+    let lines: Vec<&str> = front.lines().skip(1).collect();
+    for row in [0, tips_mm.len() / 2, tips_mm.len() - 1] {
+        let id = lines[row].split(',').next().expect("an id");
+        assert_eq!(armwright(here.path(), &["design", "out", id, "--out", id]).0, 0);
+        let words = ["analyze", &format!("{id}/arm.json"), "--cases", &format!("{id}/cases.json"), "--json"];
+        let cases: Value = serde_json::from_str(&armwright(here.path(), &words).1).expect("JSON");
+        let tip_mm = |case: &Value| {
+            let tip = [0, 1, 2].map(|i| case["tip_displacement_m"][i].as_f64().expect("a number"));
+            nalgebra::Vector3::from(tip).norm() * 1e3
+        };
+        let cases = cases.as_array().expect("cases");
+        assert!(cases[0]["shares"].to_string().contains("base_lift"), "the arm file has the laws");
+        assert_eq!(cases.iter().map(tip_mm).fold(0.0, f64::max), tips_mm[row], "{id}");
+        let lowest = |case: &Value| case["modes"][0]["frequency_hz"].as_f64().expect("a mode");
+        let lowest_hz = cases.iter().map(lowest).fold(f64::INFINITY, f64::min);
+        assert_eq!(lowest_hz, column(&front, "lowest_mode_hz")[row], "{id}");
+    }
+}
+
+#[test]
+fn bounds_that_lack_a_law_are_refused_and_say_what_to_do() {
+    let here = folder();
+    let mut with = small_study();
+    for law in laws().as_array().expect("a list") {
+        with["effects"] = json!([law]);
+        write(here.path(), "study.json", &with);
+        let effect = law["effect"].as_str().expect("a name");
+        let (code, said) = armwright(here.path(), &["run", "study.json", "--search", "exact", "--out", "no"]);
+        assert!(code == 2 && said.contains(effect) && said.contains("every design is visited"), "{said}");
+    }
+    assert_eq!(armwright(here.path(), &["run", "study.json", "--out", "out"]).0, 0);
+    let (code, said) = armwright(here.path(), &["front", "check", "out"]);
+    assert!(code == 2 && said.contains("empirical at elbow"), "{code}: {said}");
+    // no limit is looked for by bounds that lack the law
+    with["constraints"] = json!({"mass_max_kg": 0.1});
+    write(here.path(), "study.json", &with);
+    let (code, said) = armwright(here.path(), &["run", "study.json", "--out", "none"]);
+    assert!(code == 6 && said.contains("not looked for in a study with empirical"), "{code}: {said}");
 }
 
 #[test]

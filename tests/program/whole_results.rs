@@ -1,6 +1,7 @@
 //! A result is one thing: whatever stops the program while it replaces a result, a reader finds the old one or the new one,
 //! whole. Files of others are neither replaced nor removed.
 
+use crate::running::{command, said};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::fs;
@@ -19,21 +20,8 @@ pub(crate) fn study(name: &str, payload_kg: f64) -> String {
     .to_string()
 }
 
-fn armwright(folder: &Path, words: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_armwright"));
-    command.current_dir(folder).args(words);
-    command
-}
-
-/// Exit code, -1 after a signal, and everything that was said.
-fn said(command: &mut Command) -> (i32, String) {
-    let output = command.output().expect("it runs");
-    let text = [output.stdout, output.stderr].concat();
-    (output.status.code().unwrap_or(-1), String::from_utf8_lossy(&text).into_owned())
-}
-
 fn succeeds(folder: &Path, words: &[&str]) -> String {
-    let (code, text) = said(&mut armwright(folder, words));
+    let (code, text) = said(&mut command(folder, words));
     assert_eq!(code, 0, "{words:?}: {text}");
     text
 }
@@ -95,11 +83,11 @@ fn with_faults(
     for step in steps {
         let _ = fs::remove_dir_all(here.join("out"));
         copy(&here.join("old"), &here.join("out"));
-        let mut run = armwright(here, &["run", new, "--out", "out"]);
+        let mut run = command(here, &["run", new, "--out", "out"]);
         let (code, text) = said(run.env("ARMWRIGHT_FAULT", format!("{fault}:{step}")));
         assert!([-1, 0, 7].contains(&code), "step {step}: {text}");
         // a reader completes what was decided; what it says of these studies does not matter here
-        let (_, text) = said(&mut armwright(here, &["compare", "out"]));
+        let (_, text) = said(&mut command(here, &["compare", "out"]));
         assert!(!text.contains("not one result"), "step {step}: {text}");
         // what was not decided is swept by the next writer
         let _ = fs::remove_dir_all(here.join("out/.armwright"));
@@ -162,7 +150,7 @@ fn a_disk_that_is_full_loses_no_front_once_it_is_written() {
     let mut codes = BTreeSet::new();
     for step in [1, 2, 3, 5, 6, 7, 9, 20] {
         let _ = fs::remove_dir_all(here.path().join("out"));
-        let mut run = armwright(here.path(), &["run", "study.json", "--out", "out"]);
+        let mut run = command(here.path(), &["run", "study.json", "--out", "out"]);
         let (code, text) = said(run.env("ARMWRIGHT_FAULT", format!("full:{step}")));
         codes.insert(code);
         match code {
@@ -193,7 +181,7 @@ fn a_process_that_is_killed_at_any_moment_leaves_one_whole_result() {
     let whole_run = start.elapsed();
     let (names, mut killed) = (["heavy.json", "light.json"], 0);
     for (nth, moment) in moments().take(20).enumerate() {
-        let mut child = armwright(here.path(), &["run", names[nth % 2], "--out", "out"])
+        let mut child = command(here.path(), &["run", names[nth % 2], "--out", "out"])
             .stdout(std::process::Stdio::null())
             .stderr(std::process::Stdio::null())
             .spawn()
@@ -226,7 +214,7 @@ fn a_mixture_of_two_results_is_refused_by_every_reader() {
         &["compare", "light/front.csv"],
     ];
     for words in readers {
-        let (code, text) = said(&mut armwright(here.path(), words));
+        let (code, text) = said(&mut command(here.path(), words));
         assert_eq!(code, 9, "{words:?}: {text}");
         assert!(text.contains("light is not one result: front.csv"), "{words:?}: {text}");
     }
@@ -243,7 +231,7 @@ fn a_second_writer_is_refused_until_the_first_one_ends() {
     let lock = fs::File::create(here.path().join("out/.armwright/lock")).expect("a lock");
     fs::write(here.path().join("out/.armwright/lock"), "process 4711\n").expect("written");
     lock.lock().expect("locked");
-    let (code, text) = said(&mut armwright(here.path(), &["run", "study.json", "--out", "out"]));
+    let (code, text) = said(&mut command(here.path(), &["run", "study.json", "--out", "out"]));
     assert_eq!(code, 12, "{text}");
     assert!(text.contains("out is being written by process 4711") && text.contains("--out"), "{text}");
     // the file stays, as that of a process that died; it counts for nothing
@@ -267,7 +255,7 @@ fn only_files_that_the_last_result_lists_are_replaced_or_removed() {
     let gone = ["front.csv", "study.json", "front.aluminium-6061-t6.csv", "plots/pick-lightest-arm.svg"];
     assert!(gone.iter().all(|name| old.contains(*name) && !new.contains(*name)), "{old:?} {new:?}");
     // near.csv is no file of a result: a run that would write one says so
-    let (code, text) = said(&mut armwright(here.path(), &["run", "study.json", "--out", "out"]));
+    let (code, text) = said(&mut command(here.path(), &["run", "study.json", "--out", "out"]));
     assert_eq!(code, 2, "{text}");
     assert!(text.contains("no part of an earlier result") && text.contains("near.csv"), "{text}");
     assert_eq!(files(&at("out")), new);
@@ -287,7 +275,7 @@ fn symbolic_links_are_not_followed() {
     fs::remove_file(at("out/summary.md")).expect("removed");
     std::os::unix::fs::symlink(at("notes.md"), at("out/summary.md")).expect("linked");
     let elsewhere = files(&at("elsewhere"));
-    let (code, text) = said(&mut armwright(here.path(), &["run", "fig2-metals", "--out", "out"]));
+    let (code, text) = said(&mut command(here.path(), &["run", "fig2-metals", "--out", "out"]));
     assert_eq!(code, 0, "{text}");
     assert!(text.contains("warning: not written: plots/"), "{text}");
     assert_eq!(files(&at("elsewhere")), elsewhere);
@@ -314,7 +302,7 @@ fn a_small_disk_that_is_full_is_an_error_and_keeps_the_old_result() {
         // fills what is left
         let filler = fs::write(disk.join("filler"), vec![0u8; 700 << 10]);
         assert!(filler.is_err(), "the disk is not full");
-        let (code, text) = said(&mut armwright(here.path(), &["run", "heavy.json", "--out", "disk/out"]));
+        let (code, text) = said(&mut command(here.path(), &["run", "heavy.json", "--out", "disk/out"]));
         assert_eq!(code, 7, "{text}");
         assert!(text.contains("No space left"), "{text}");
         succeeds(here.path(), &["front", "check", "disk/out"]);

@@ -4,6 +4,7 @@ mod bad_data;
 mod bearings;
 mod campaigns;
 mod conventions;
+mod coverage;
 #[path = "scoring/detectability.rs"]
 mod detectability;
 mod few_rows;
@@ -25,3 +26,4 @@ mod unusual;
 mod without_a_name;
 #[path = "../witness/mod.rs"]
 mod witness;
+mod yielding_arm;

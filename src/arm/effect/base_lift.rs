@@ -24,7 +24,7 @@ pub(crate) const KIND: Kind = Kind {
         is_nonlinear: true,
         screens_at_starts: true,
         moves_working_points: true,
-        in_studies: false,
+        in_bounds: false,
         ..Traits::USUAL
     },
 };

@@ -50,7 +50,7 @@ pub(crate) const KIND: Kind = Kind {
     ],
     parameters: |place| if place == Place::Joint { OF_JOINT } else { OF_CHANNEL },
     apply,
-    traits: Traits { is_sought: false, in_studies: false, ..Traits::USUAL },
+    traits: Traits { is_sought: false, in_bounds: false, ..Traits::USUAL },
 };
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {

@@ -27,7 +27,7 @@ pub(crate) const KIND: Kind = Kind {
             &[("offset_nm", None), ("sin_nm", None), ("cos_nm", None)],
         ],
         odds: RARE,
-        in_studies: false,
+        in_bounds: false,
         starts,
         is_nonlinear: true,
         moves_working_points: true,

@@ -260,8 +260,8 @@ pub struct Traits {
     pub moves_working_points: bool,
     /// Whether it changes how a link bends.
     pub changes_bending: bool,
-    /// Whether studies can have it.
-    pub in_studies: bool,
+    /// Whether the bounds of the exact search, of the verifier and of the relaxation know its law.
+    pub in_bounds: bool,
     /// The mass that it can take away.
     pub removes: Option<Removes>,
     /// What yields under gravity, if absolute positions are searched for it.
@@ -286,7 +286,7 @@ impl Traits {
         is_gear_curve: false,
         moves_working_points: false,
         changes_bending: false,
-        in_studies: true,
+        in_bounds: true,
         removes: None,
         yields: None,
         same_at_vertical_first_joint: None,

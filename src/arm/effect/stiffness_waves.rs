@@ -37,7 +37,7 @@ pub(crate) const KIND: Kind = Kind {
             &[("once", None), ("twice", None), ("phases_rad", None)],
         ],
         odds: RARE,
-        in_studies: false,
+        in_bounds: false,
         starts,
         is_nonlinear: true,
         contradiction,

@@ -20,7 +20,7 @@ use crate::reconcile::readings::rows::pose_key;
 use crate::reconcile::verdict::stage::Stage;
 use nalgebra::{Rotation3, Vector3};
 use rayon::prelude::*;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -72,15 +72,18 @@ pub(crate) struct Calibrated {
     pub stages: Vec<Stage>,
     /// Predicted positions \[mm\], by row.
     pub predicted_mm: Vec<[f64; 3]>,
+    /// Where the arms stand, as in `provenance` of a corrected arm.
+    pub placements: Value,
 }
 
 /// Calibrates the geometry without a search for effects.
 pub(crate) fn calibrated(campaign: &Campaign) -> Calibrated {
     let found = Positions::on_its_geometry(campaign);
-    let mut provenance = Value::Null;
-    let arm = |i| found.corrected(campaign, i, &found.rigid, &[], &mut provenance);
+    let mut placements = json!({});
+    let arm = |i| found.corrected(campaign, i, &found.rigid, &[], &mut placements);
     Calibrated {
         arms: (0..campaign.arms().len()).map(arm).collect(),
+        placements,
         predicted_mm: found.samples.iter().map(|s| (1e3 * found.rigid.predicted_m(s)).into()).collect(),
         stages: found.stages,
     }
@@ -117,6 +120,7 @@ pub(crate) fn analyze(campaign: &Campaign) -> Positions {
     let errors = found.samples.iter().map(|s| found.fitted.error(s).norm()).enumerate();
     let gross = errors.filter(|(_, e)| *e > GROSS * found.fitted.scale_m).map(|(i, e)| (i, 1e3 * e));
     found.gross = gross.collect();
+    found.widen();
     found
 }
 

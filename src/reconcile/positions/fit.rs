@@ -99,12 +99,9 @@ pub(crate) fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], st
     }
     let misses = misses(samples, &here);
     let free = numbers.len() + here.compliances.iter().map(Vec::len).sum::<usize>();
-    let sandwich_factor = sandwich_factor(&misses, here.scale_m, free);
-    here.deviations
-        .iter_mut()
-        .flatten()
-        .chain(&mut here.number_deviations)
-        .for_each(|d| *d *= sandwich_factor);
+    let factor = sandwich_factor(&misses, here.scale_m, free);
+    here.deviations.iter_mut().flatten().chain(&mut here.number_deviations).for_each(|d| *d *= factor);
+    here.robust_factor = factor;
     here
 }
 

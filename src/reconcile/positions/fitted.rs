@@ -83,6 +83,8 @@ pub(crate) struct Fitted {
     pub compliances: Vec<Vec<f64>>,
     /// Standard deviations of the compliances \[rad/(N m)\].
     pub deviations: Vec<Vec<f64>>,
+    /// What the standard deviations are by robust weights over what the curvature alone gives.
+    pub robust_factor: f64,
     /// Scale of the errors \[m\].
     pub scale_m: f64,
     /// ln of the likelihood.
@@ -99,6 +101,7 @@ impl Fitted {
             effects: Vec::new(),
             compliances: Vec::new(),
             deviations: Vec::new(),
+            robust_factor: 1.0,
             scale_m,
             ln_likelihood: 0.0,
         }

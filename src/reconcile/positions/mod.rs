@@ -36,3 +36,4 @@ pub(crate) mod standing;
 pub(crate) mod structure;
 pub(crate) mod transmission;
 pub(crate) mod tree;
+pub(crate) mod unnamed_springs;

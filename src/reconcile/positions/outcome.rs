@@ -22,6 +22,7 @@ use crate::reconcile::readings::rows::PositionRow;
 use crate::reconcile::select::lack_of_fit::LackOfFit;
 use crate::reconcile::verdict::correct;
 use crate::reconcile::verdict::files::CORRECTED_FILE;
+use crate::reconcile::verdict::judgement::{does_not_predict, too_many_alternatives};
 use crate::reconcile::verdict::outcome::{Evidence, Located, Outcome, ReadingResidual, Verdict};
 use crate::reconcile::verdict::stage::Stage;
 use serde_json::{Value, json};
@@ -34,8 +35,6 @@ pub(crate) const FEWEST: usize = 20;
 const HOPELESS_VARIANCE: f64 = 25.0;
 /// Largest ratio of the errors of held-out poses to those in the fit.
 const UNSTABLE: f64 = 8.0;
-/// An effect is named only if at most this many alternatives would fit as well.
-const MOST_ALTERNATIVES: usize = 3;
 /// Effects are written into the corrected arm, even if they do not explain everything, if they lower the error of
 /// held-out poses to this part or less.
 const HELPFUL: f64 = 0.8;
@@ -75,11 +74,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let corrected: Vec<Arm> = (0..campaign.arms().len())
         .map(|i| found.corrected(campaign, i, shown, in_arm, &mut provenance))
         .collect();
-    let (effects, suspects) = match verdict {
-        Verdict::Explained => (findings, Vec::new()),
-        Verdict::InsufficientData => (Vec::new(), findings),
-        Verdict::NoGap | Verdict::Unexplained => (Vec::new(), Vec::new()),
-    };
+    let (effects, suspects) = verdict.named_and_suspected(findings, Vec::new());
     let scale_mm = 1e3 * found.fitted.scale_m;
     let residuals = found.residuals(campaign);
     Outcome {
@@ -134,14 +129,16 @@ impl Positions {
             let text = "noise and the calibration of everything that is free explain every position";
             return (Verdict::NoGap, vec![text.into()]);
         }
-        if let Some(f) = findings.iter().find(|f| f.indistinguishable_from.len() > MOST_ALTERNATIVES) {
-            let text =
-                format!("{} other effects fit as well as {}", f.indistinguishable_from.len(), f.label());
+        let crowded = |f: &Finding| too_many_alternatives(&f.label(), f.indistinguishable_from.len());
+        if let Some(text) = findings.iter().find_map(crowded) {
             return (Verdict::InsufficientData, vec![text]);
         }
         let [before, after] = self.before_and_after();
         if after.median_mm > before.median_mm {
-            let text = "the effects do not predict poses that they were not fitted to".to_string();
+            let labels: Vec<String> = findings.iter().map(Finding::label).collect();
+            let [after, before] =
+                [after, before].map(|stage| format!("a median error of {:.3} mm", stage.median_mm));
+            let text = does_not_predict(&labels.join(" + "), &after, &before);
             return (Verdict::InsufficientData, vec![text]);
         }
         let jumps = self.large_jumps();

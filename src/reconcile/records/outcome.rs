@@ -56,10 +56,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let (verdict, mut reasons) = verdict(&joints, &findings, &stiffnesses);
     reasons.extend(stiffnesses.iter().filter_map(|s| s.remark.clone()));
     reasons.extend(joints.iter().flat_map(|j| j.remarks.iter().map(|r| format!("{}: {r}", j.joint))));
-    let (effects, suspects) = match verdict {
-        Verdict::Explained => (findings.clone(), Vec::new()),
-        _ => (Vec::new(), Vec::new()),
-    };
+    let (effects, suspects) = verdict.named_and_suspected(findings.clone(), Vec::new());
     let calibrated: Vec<Calibrated> = stiffnesses.iter().filter_map(|s| s.calibrated.clone()).collect();
     let sources = calibrated.iter().map(|c| {
         json!({"value": c.name, "factor": c.factor.value, "low": c.factor.low, "high": c.factor.high, "source": "record against time"})
@@ -328,9 +325,7 @@ fn next_tests(joints: &[JointRecord]) -> Vec<NextTest> {
 
 /// Joins what the records say to the outcome of the other readings. Each is judged by itself.
 pub(crate) fn joined(mut other: Outcome, records: Outcome) -> Outcome {
-    let order = [Verdict::Unexplained, Verdict::InsufficientData, Verdict::Explained];
-    let said = [other.verdict, records.verdict];
-    let verdict = order.into_iter().find(|v| said.contains(v)).unwrap_or(Verdict::NoGap);
+    let verdict = Verdict::on_all(&[other.verdict, records.verdict]);
     let words = |what: &str, outcome: &Outcome| -> Vec<String> {
         outcome.reasons.iter().map(|r| format!("{what}: {r}")).collect()
     };
@@ -347,11 +342,7 @@ pub(crate) fn joined(mut other: Outcome, records: Outcome) -> Outcome {
         reasons.push(format!("the records show {at}; the value of the other readings stands"));
     }
     let all = [other.effects, new.clone()].concat();
-    (other.effects, other.suspects) = match verdict {
-        Verdict::Explained => (all, Vec::new()),
-        Verdict::InsufficientData => (Vec::new(), [all, other.suspects].concat()),
-        Verdict::NoGap | Verdict::Unexplained => (Vec::new(), Vec::new()),
-    };
+    (other.effects, other.suspects) = verdict.named_and_suspected(all, other.suspects);
     if verdict == Verdict::Explained {
         let added = records
             .corrected

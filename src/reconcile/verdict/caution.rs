@@ -13,6 +13,8 @@ use crate::reconcile::model::parameters::{Candidate, FreeParameter};
 const NEAR: usize = 2;
 /// The tolerance of a calibrated factor in standard deviations of its logarithm.
 const TOLERANCE: f64 = 2.0;
+/// A factor that only one honest part in more than this many has is doubted.
+const RARE: f64 = 200.0;
 
 /// Says that two effects of one kind, or two masses, have opposite signs at neighbouring places, if two do. Each takes back
 /// what the other adds, so that together they describe one thing that is elsewhere, or that is there in one kind of test
@@ -78,12 +80,40 @@ pub(crate) fn beyond_tolerance(fit: &Fit, calibrated: &[Calibrated]) -> Option<S
     let numbers = fit.model.nuisance.numbers.iter().zip(calibrated);
     let beyond = numbers.filter_map(|((_, sd), calibrated)| {
         let (part, tolerance) = (calibrated.factor.value - 1.0, TOLERANCE * sd);
-        (part.abs() > tolerance).then(|| {
-            format!("{} by {:+.1} % (tolerance {:.1} %)", calibrated.name, 100.0 * part, 100.0 * tolerance)
-        })
+        let one_in = honest_parts_for_one(libm::log(calibrated.factor.value) / sd);
+        let words = format!(
+            "{} by {:+.1} % (tolerance {:.1} %; one honest part in {:.0})",
+            calibrated.name,
+            100.0 * part,
+            100.0 * tolerance,
+            one_in
+        );
+        (part.abs() > tolerance).then_some((one_in, words))
     });
-    let beyond: Vec<String> = beyond.collect();
-    (!beyond.is_empty()).then(|| {
-        format!("calibration leaves the tolerance, as one honest part in twenty does: {}", beyond.join(", "))
-    })
+    let (rarity, beyond): (Vec<f64>, Vec<String>) = beyond.unzip();
+    let doubt = match rarity.iter().any(|one_in| *one_in > RARE) {
+        true => {
+            ". So far off is seldom a matter of tolerance: the part may be another than the arm file says, or something \
+             yields or weighs beside it that these readings do not tell from it"
+        }
+        false => "",
+    };
+    (!beyond.is_empty()).then(|| format!("calibration leaves the tolerance: {}{doubt}", beyond.join(", ")))
+}
+
+/// The number of honest parts of which one is at least so many standard deviations off.
+fn honest_parts_for_one(deviations: f64) -> f64 {
+    1.0 / libm::erfc(deviations.abs() / std::f64::consts::SQRT_2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_honest_part_in_twenty_leaves_its_tolerance_and_one_in_370_leaves_it_by_half() {
+        // the normal distribution: 4.55 % beyond two standard deviations, 0.27 % beyond three
+        assert!((honest_parts_for_one(-2.0) - 1.0 / 0.0455).abs() < 0.05);
+        assert!((honest_parts_for_one(3.0) - 370.4).abs() < 0.1);
+    }
 }

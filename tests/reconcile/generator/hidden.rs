@@ -35,6 +35,18 @@ pub fn everything() -> Vec<(&'static str, &'static str)> {
     out
 }
 
+/// Those that the readings of a set show.
+pub fn seen_in(set: &str) -> Vec<(&'static str, &'static str)> {
+    let on_bench = ["connection_compliance", "soft_windup", "lost_motion", "hysteresis"];
+    let is_seen = |(name, at): &(&str, &str)| match set {
+        "windup" => on_bench.contains(name),
+        "modal" => *at != "static" && *name != "hysteresis",
+        "static" => *at != "modal",
+        _ => true,
+    };
+    everything().into_iter().filter(is_seen).collect()
+}
+
 /// An effect by its number, at a random place of any arm.
 pub fn anywhere(dice: &mut Dice, specimen: &Specimen, number: usize) -> (&'static str, String) {
     const AT_JOINTS: [&str; 6] =

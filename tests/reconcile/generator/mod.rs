@@ -76,6 +76,16 @@ impl Plan {
         }
     }
 
+    /// Much clean data of one kind of readings.
+    fn of_channel(channel: &str) -> Self {
+        let (static_poses, modal_poses) = match channel {
+            "static" => (24, 0),
+            "modal" => (0, 16),
+            _ => (0, 0),
+        };
+        Self { static_poses, modal_poses, bench: channel == "windup", ..Self::plain() }
+    }
+
     /// As much as comes.
     pub fn varied(dice: &mut Dice) -> Self {
         Self {
@@ -90,8 +100,8 @@ impl Plan {
     }
 }
 
-/// Makes one campaign below `out`: `set` is `plain` or `hard`, of six-axis arms, `varied`, of all kinds, or `geared`,
-/// of all kinds with torsion curves; `class` is `one`, `two`, `none`,
+/// Makes one campaign below `out`: `set` is `plain` or `hard`, of six-axis arms, `static`, `modal` or `windup`, the same with
+/// one kind of readings, `varied`, of all kinds, or `geared`, of all kinds with torsion curves; `class` is `one`, `two`, `none`,
 /// `unknown`, or `later` for one of the effects that came later; numbers go through all effects in turn. `eased` makes an effect that nobody could see
 /// larger, by 40 % a step, and from the third step on leaves no file out. Returns the campaign's name
 /// and what is hidden in it.
@@ -113,13 +123,14 @@ pub fn make(
     let mut plan = match set {
         "hard" => Plan::hard(&mut dice),
         "varied" | "geared" => Plan::varied(&mut dice),
-        _ => Plan::plain(),
+        "plain" => Plan::plain(),
+        channel => Plan::of_channel(channel),
     };
     plan.size *= 1.4f64.powi(eased);
     if eased >= 3 {
         (plan.modal_poses, plan.bench) = (plan.modal_poses.max(6), true);
     }
-    let (known, strange) = (hidden::everything(), unknown::everything());
+    let (known, strange) = (hidden::seen_in(set), unknown::everything());
     let mut draw = |k: usize| {
         let number = number + k * (7 + number % 11);
         let (name, at) = match set {

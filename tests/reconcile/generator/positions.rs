@@ -1,6 +1,6 @@
 //! Absolute positions of the tip of an arm that stands askew and whose lengths are off.
 
-use super::{Built, Dice, LoadCase, Payload, Plan, list, three, witness};
+use super::{Built, Dice, LoadCase, Payload, Plan, list, three, torque, witness};
 use nalgebra::{Rotation3, Vector3};
 use serde_json::{Value, json};
 
@@ -30,8 +30,13 @@ impl Built {
             let pose = self.pose(dice);
             let kg = [0.0, 5.0][test % 2];
             let case = LoadCase::unloaded(&pose).with_payload(Payload::point(kg, [0.05, 0.0, 0.0]));
-            let sag = witness::analyze(&self.arm, &case, &self.options(0)).tip_displacement_m;
-            let at = askew * (self.levers(&pose).0 + sag) + Vector3::new(2.0, -1.0, 0.4);
+            let answer = witness::analyze(&self.arm, &case, &self.options(0));
+            let (tip_m, levers) = self.levers(&pose);
+            let further = self.joints().into_iter().zip(&levers).map(|((name, _, k), lever)| {
+                lever * self.beyond.unknown.further_twist(&name, torque(&answer, &name), k).0
+            });
+            let sag_m = answer.tip_displacement_m + further.sum::<Vector3<f64>>();
+            let at = askew * (tip_m + sag_m) + Vector3::new(2.0, -1.0, 0.4);
             let read =
                 [0, 1, 2].map(|c| format!("{:.4}", 1e3 * at[c] + sigma_mm * plan.noise * dice.normal()));
             out.push_str(&format!("{test},{},{kg},0.05,0,0,{},{sigma_mm}\n", list(&pose), read.join(",")));

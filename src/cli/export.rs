@@ -1,0 +1,187 @@
+//! `armwright export`: an arm or a design as files of other programs.
+
+use super::design::resolve_design;
+use super::failure::Failure;
+use super::finished::pretty;
+use super::values::{choice, number_list, numbers};
+use super::write::write_all;
+use crate::arm::file::read_arm;
+use crate::arm::load::{LoadCase, Payload, read_load_cases};
+use crate::arm::{Arm, JointModel, LinkModel};
+use crate::catalog::Catalogs;
+use crate::input::json::Document;
+use crate::interchange::export::{Asked, Export, Format, export};
+use crate::mechanics::chain::Chain;
+use crate::report::number::percent;
+use clap::Args;
+use nalgebra::Vector3;
+use std::path::{Path, PathBuf};
+
+/// Writes an arm, or a design of a result, for another program: CalculiX (finite elements), MuJoCo (MJCF), URDF, or as JSON, CSV
+/// or a bill of materials.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example: armwright export results/light-arm#x3k9 --to calculix --out fe && cd fe && ccx static && ccx modes\n         \
+                        armwright export arm.json --pose-deg 0,-30,60 --payload-kg 5 --to mjcf --out sim\n         \
+                        armwright export results/light-arm#x3k9 --to bom --out purchase\n\n\
+                        export.json says what the files leave out, with its share of the tip's deflection, and what the other program must \
+                        find. Torsion curves become numbers at the loads of one case: of a design the case that deflects most, unless \
+                        --case names another."
+)]
+pub(crate) struct ExportArgs {
+    /// Arm file, or a result folder and a design_id from its front.csv with # between them
+    #[arg(value_name = "ARM|RESULTS#ID")]
+    source: String,
+    /// Form: calculix, mjcf, urdf, json, csv or bom
+    #[arg(long, value_name = "FORM", value_parser = choice::<Format>)]
+    to: Format,
+    /// Folder for the files
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Cases of an arm file (JSON), as analyze reads them
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["pose_deg", "payload_kg", "payload_cg_m"])]
+    cases: Option<PathBuf>,
+    /// Name of the case
+    #[arg(long, value_name = "NAME")]
+    case: Option<String>,
+    /// Pose of an arm file: one angle per joint, base to tip [deg]; default all zero
+    #[arg(long, value_name = "Q1,Q2,...", allow_hyphen_values = true, value_parser = pose)]
+    pose_deg: Option<Pose>,
+    /// Payload of an arm file [kg]
+    #[arg(long, default_value_t = 0.0)]
+    payload_kg: f64,
+    /// Payload centre of gravity from the tip, last frame [m]
+    #[arg(long, value_name = "X,Y,Z", default_value = "0,0,0", allow_hyphen_values = true, value_parser = numbers::<3>)]
+    payload_cg_m: [f64; 3],
+    /// Cut every flexible link into N parts with springs between them (mjcf); without it links are rigid
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=200))]
+    flexible: Option<u16>,
+    /// Give joints the backlash of their gears as a deadband (mjcf)
+    #[arg(long)]
+    backlash: bool,
+}
+
+#[derive(Debug, Clone)]
+struct Pose(Vec<f64>);
+
+fn pose(text: &str) -> Result<Pose, String> {
+    number_list(text).map(Pose)
+}
+
+/// Executes the verb.
+pub(super) fn run(args: &ExportArgs, catalogs: &Catalogs) -> Result<String, Failure> {
+    if args.to != Format::Mjcf && (args.flexible.is_some() || args.backlash) {
+        return Err(Failure::Usage("--flexible and --backlash are for --to mjcf".into()));
+    }
+    let (arm, cases, inputs) = source(args, catalogs)?;
+    let case = chosen_case(args, &arm, &cases)?;
+    let asked = Asked {
+        arm: &arm,
+        case,
+        cases: &cases,
+        format: args.to,
+        pieces: args.flexible.map_or(0, usize::from),
+        backlash: args.backlash,
+    };
+    let exported = export(&asked, catalogs);
+    let mut files = exported.files.clone();
+    files.push(("export.json".into(), pretty(&exported.to_json(&asked))));
+    let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
+    write_all(&args.out, &files, &inputs)?;
+    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+    Ok(format!(
+        "{}, case \"{}\"\n{}written to {}: {}\n",
+        arm.name,
+        case.name,
+        said(&exported),
+        args.out.display(),
+        names.join(", ")
+    ))
+}
+
+/// What is said of an export: what is left out, and the notes.
+fn said(exported: &Export) -> String {
+    let left_out = exported.left_out.iter().map(|left| {
+        format!(
+            "  left out: {} at {} ({} of the deflection): {}\n",
+            left.what,
+            left.at,
+            percent(100.0 * left.tip_share, 2),
+            left.why
+        )
+    });
+    let notes = exported.notes.iter().map(|note| format!("  {note}\n"));
+    left_out.chain(notes).collect()
+}
+
+/// The arm, its cases, and the files that they come from.
+fn source(args: &ExportArgs, catalogs: &Catalogs) -> Result<(Arm, Vec<LoadCase>, Vec<PathBuf>), Failure> {
+    let path = PathBuf::from(&args.source);
+    if let (false, Some((folder, id))) = (path.is_file(), args.source.rsplit_once('#')) {
+        if args.cases.is_some() || args.pose_deg.is_some() || args.payload_kg != 0.0 {
+            return Err(Failure::Usage(
+                "a design has the cases of its study: choose one with --case NAME".into(),
+            ));
+        }
+        let design = resolve_design(Path::new(folder), id, catalogs)?;
+        return Ok((design.arm, design.cases, Vec::new()));
+    }
+    if path.is_dir() {
+        let hint = "add # and a design_id from its front.csv";
+        return Err(Failure::Usage(format!("{} is a folder: {hint}", args.source)));
+    }
+    let arm = read_arm(&path, catalogs)?;
+    let mut inputs = vec![path];
+    let cases = match &args.cases {
+        Some(file) => {
+            inputs.push(file.clone());
+            read_load_cases(Document::read(file)?, &arm.driven_joint_names())?
+        }
+        None => vec![case_of_flags(args, &arm)?],
+    };
+    Ok((arm, cases, inputs))
+}
+
+fn case_of_flags(args: &ExportArgs, arm: &Arm) -> Result<LoadCase, Failure> {
+    let joints = arm.driven_joint_names();
+    let pose_deg = args.pose_deg.clone().map_or(vec![0.0; joints.len()], |pose| pose.0);
+    if pose_deg.len() != joints.len() {
+        let (given, needed) = (pose_deg.len(), joints.len());
+        let names = joints.join(", ");
+        return Err(Failure::Usage(format!(
+            "--pose-deg has {given} angles, the arm has {needed} driven joints: {names}"
+        )));
+    }
+    if !(args.payload_kg >= 0.0 && args.payload_kg.is_finite()) {
+        return Err(Failure::Usage(format!(
+            "--payload-kg {}: give a mass that is not negative",
+            args.payload_kg
+        )));
+    }
+    Ok(LoadCase {
+        name: "case".into(),
+        pose_deg,
+        payload: Payload { mass_kg: args.payload_kg, cg_m: args.payload_cg_m.into(), ..Payload::default() },
+        tip_force_n: Vector3::zeros(),
+        tip_moment_nm: Vector3::zeros(),
+        links: LinkModel::default(),
+        joints: JointModel::default(),
+        water: None,
+    })
+}
+
+/// The case that is named, or the case that deflects most.
+fn chosen_case<'c>(args: &ExportArgs, arm: &Arm, cases: &'c [LoadCase]) -> Result<&'c LoadCase, Failure> {
+    if let Some(name) = &args.case {
+        let names: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
+        let unknown =
+            || Failure::Usage(format!("no case is called \"{name}\"; the cases are: {}", names.join(", ")));
+        return cases.iter().find(|case| case.name == *name).ok_or_else(unknown);
+    }
+    let deflection_m = |case: &LoadCase| {
+        Chain::new(&arm.structure_in(case), case.links).pose(case).statics().tip_displacement_m.norm()
+    };
+    // of equals the first
+    let worst = cases.iter().rev().max_by(|a, b| deflection_m(a).total_cmp(&deflection_m(b)));
+    worst.ok_or_else(|| Failure::Usage("there is no case".into()))
+}

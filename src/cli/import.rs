@@ -1,0 +1,70 @@
+//! `armwright import`: a robot of a URDF file as an arm file.
+
+use super::failure::Failure;
+use super::finished::pretty;
+use super::write::write_all;
+use crate::catalog::Catalogs;
+use crate::input::json::Document;
+use crate::interchange::given::{blank, read_given};
+use crate::interchange::import::Robot;
+use clap::Args;
+use std::path::PathBuf;
+
+/// Makes an arm file of a robot in a URDF file: of the joints and links from its root to a tip.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: armwright import ur5e.urdf --tip tool0 --out ur5e\n         \
+                        armwright analyze ur5e/arm.json --pose-deg 0,-90,90,0,0,0 --payload-kg 5\n\n\
+                        Writes arm.json and import.json (what was lumped, guessed and left rigid; ranges and limits). A URDF says nothing of \
+                        stiffness: without --stiffness every joint is rigid, and stiffness.json with all joints is written to be filled \
+                        in. Expand xacro files first.")]
+pub(crate) struct ImportArgs {
+    /// URDF file
+    file: PathBuf,
+    /// Link where the arm ends, such as the flange or the tool
+    #[arg(long, value_name = "LINK")]
+    tip: String,
+    /// Stiffness of the joints (JSON): {"joints": {"NAME": {"stiffness_nm_per_rad": 2e4}}}; the keys are those of joints in
+    /// arm files: stiffness_nm_per_rad, windup or gear; motor; bearing
+    #[arg(long, value_name = "FILE")]
+    stiffness: Option<PathBuf>,
+    /// Folder for arm.json and import.json
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+}
+
+/// Executes the verb.
+pub(super) fn run(args: &ImportArgs, catalogs: &Catalogs) -> Result<String, Failure> {
+    let file = args.file.display().to_string();
+    let text = fs_err::read_to_string(&args.file).map_err(|e| Failure::File(e.to_string()))?;
+    let robot = Robot::read(&file, &text, &args.tip)?;
+    let given = match &args.stiffness {
+        Some(path) => read_given(Document::read(path)?, &robot.joints(), catalogs)?,
+        None => Vec::new(),
+    };
+    let (arm, report) = robot.arm(&given);
+    let mut files = vec![
+        ("arm.json".to_string(), pretty(&arm.to_json())),
+        ("import.json".to_string(), pretty(&report.to_json())),
+    ];
+    if args.stiffness.is_none() {
+        files.push(("stiffness.json".into(), pretty(&blank(&robot.joints()))));
+    }
+    let inputs: Vec<_> =
+        [Some(args.file.as_path()), args.stiffness.as_deref()].into_iter().flatten().collect();
+    write_all(&args.out, &files, &inputs)?;
+    let out = args.out.display();
+    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+    let next = match &args.stiffness {
+        None => format!(
+            "fill in {} and import again with --stiffness to have deflections and modes\n",
+            args.out.join("stiffness.json").display()
+        ),
+        Some(_) => String::new(),
+    };
+    Ok(format!(
+        "{}written to {out}: {}\n{next}try: armwright analyze {}\n",
+        report.to_text(),
+        names.join(", "),
+        args.out.join("arm.json").display()
+    ))
+}

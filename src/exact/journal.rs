@@ -1,0 +1,187 @@
+//! What an exact search keeps on the way, so that another process can go on.
+//!
+//! A study is searched in *parts*: the front of all designs, then the front of each material. The state has the results of
+//! the parts that are finished and where the present one is. A pass over boxes is kept between two rounds, with the boxes
+//! that are open. A pass over regions is kept at its start alone, because each open region is a problem of its own. Rounds
+//! do not depend on the number of threads, so a search that goes on takes the same steps as one that was never stopped.
+
+use super::bound::{BoxBound, DesignBox};
+use super::boxes::OpenBox;
+use super::budget::Budget;
+use super::outcome::ExactOutcome;
+use super::plan::Pass;
+use super::problem::Problem;
+use super::search_state::{KeptState, SearchState};
+use super::shape::Shape;
+use crate::search::resume::{KeepState, Resume};
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// The journal of a search; without a keeper nothing is kept.
+#[derive(Default)]
+pub(super) struct Journal<'s> {
+    keeper: Option<&'s dyn KeepState>,
+    state: Mutex<State>,
+    /// The start of the present pass over regions, until it is kept.
+    start: Mutex<Option<Vec<u8>>>,
+}
+
+#[derive(Default, Serialize, Deserialize)]
+struct State {
+    /// The results of the parts that are finished.
+    finished: Vec<ExactOutcome>,
+    /// How many of them were used in this process.
+    #[serde(skip)]
+    used: usize,
+    /// Number of boxes bounded in all parts.
+    boxes: u64,
+    /// The part that is not finished.
+    begun: Option<Begun>,
+}
+
+/// Where a part of a search is: between two passes, or within one.
+#[derive(Clone, Serialize, Deserialize)]
+pub(super) struct Begun {
+    state: KeptState,
+    pub passes: Vec<Pass>,
+    /// The gap that was told.
+    pub told: Option<f64>,
+    open: Option<OpenPass>,
+}
+
+/// The open boxes of a pass, with shapes that several of them share.
+#[derive(Clone, Serialize, Deserialize)]
+struct OpenPass {
+    slack: f64,
+    shapes: Vec<Vec<Shape>>,
+    boxes: Vec<(DesignBox, u32, BoxBound)>,
+}
+
+impl<'s> Journal<'s> {
+    /// Goes on from a state, and keeps the next ones.
+    ///
+    /// # Errors
+    /// The bytes are no state, in words.
+    pub(super) fn resumed(Resume { from, keeper }: Resume<'s>, budget: &Budget) -> Result<Self, String> {
+        let state: State = match from {
+            Some(bytes) => postcard::from_bytes(bytes).map_err(|e| e.to_string())?,
+            None => State::default(),
+        };
+        budget.set_boxes(state.boxes);
+        Ok(Self { keeper: Some(keeper), state: Mutex::new(state), start: Mutex::default() })
+    }
+
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The result of the next part, if an earlier process finished it.
+    pub(super) fn next_finished(&self) -> Option<ExactOutcome> {
+        let mut state = self.lock();
+        let outcome = state.finished.get(state.used).cloned()?;
+        state.used += 1;
+        Some(outcome)
+    }
+
+    /// Where an earlier process left the next part.
+    pub(super) fn begun(&self) -> Option<Begun> {
+        self.lock().begun.take()
+    }
+
+    /// Takes down the result of a part.
+    pub(super) fn finish(&self, outcome: &ExactOutcome) {
+        if let Some(keeper) = self.keeper {
+            let mut state = self.lock();
+            state.finished.push(outcome.clone());
+            state.used += 1;
+            state.boxes = outcome.boxes;
+            state.begun = None;
+            if keeper.is_due() {
+                keeper.keep(&bytes(&state));
+            }
+        }
+    }
+
+    /// Keeps a pass over boxes between two rounds, if that is due.
+    pub(super) fn keep_round(
+        &self,
+        budget: &Budget,
+        begun: impl FnOnce() -> Begun,
+        (slack, open): (f64, &[OpenBox]),
+    ) {
+        // a round that was stopped is not one that goes on the same way
+        let due = self.keeper.filter(|keeper| keeper.is_due() && !budget.stopped());
+        if let Some(keeper) = due {
+            keeper.keep(&self.with(budget, Begun { open: Some(OpenPass::of(slack, open)), ..begun() }));
+        }
+    }
+
+    /// Takes down the start of a pass over regions.
+    pub(super) fn begin_pass(&self, budget: &Budget, begun: impl FnOnce() -> Begun) {
+        if self.keeper.is_some() && !budget.stopped() {
+            let bytes = self.with(budget, begun());
+            *self.start.lock().unwrap_or_else(PoisonError::into_inner) = Some(bytes);
+        }
+    }
+
+    /// Keeps the start of the present pass over regions, if that is due and not done yet.
+    pub(super) fn keep_start(&self) {
+        if let Some(keeper) = self.keeper.filter(|keeper| keeper.is_due()) {
+            let start = self.start.lock().unwrap_or_else(PoisonError::into_inner).take();
+            start.into_iter().for_each(|bytes| keeper.keep(&bytes));
+        }
+    }
+
+    /// The state with a part that was begun.
+    fn with(&self, budget: &Budget, begun: Begun) -> Vec<u8> {
+        let mut state = self.lock();
+        (state.boxes, state.begun) = (budget.boxes(), Some(begun));
+        let bytes = bytes(&state);
+        state.begun = None;
+        bytes
+    }
+}
+
+fn bytes(state: &State) -> Vec<u8> {
+    postcard::to_stdvec(state).expect("numbers can be written to memory")
+}
+
+impl Begun {
+    /// Between two passes.
+    pub(super) fn between(state: &SearchState, passes: &[Pass], told: Option<f64>) -> Self {
+        Self { state: state.to_kept(), passes: passes.to_vec(), told, open: None }
+    }
+
+    /// What was found.
+    pub(super) fn state(&mut self) -> KeptState {
+        std::mem::take(&mut self.state)
+    }
+
+    /// The slack of the pass that was begun, and the boxes that were open in it; `None` between two passes.
+    pub(super) fn open_pass(&mut self, problem: &Problem) -> Option<(f64, Vec<OpenBox>)> {
+        let OpenPass { slack, shapes, boxes } = self.open.take()?;
+        let shapes: Vec<Arc<Vec<Shape>>> = shapes.into_iter().map(Arc::new).collect();
+        let open = |(design_box, at, box_bound): (DesignBox, u32, BoxBound)| {
+            let shapes = Arc::clone(shapes.get(at as usize)?);
+            problem.has_box(&design_box).then_some(OpenBox { design_box, shapes, box_bound })
+        };
+        let boxes: Option<Vec<OpenBox>> = boxes.into_iter().map(open).collect();
+        Some((slack, boxes?))
+    }
+}
+
+impl OpenPass {
+    fn of(slack: f64, open: &[OpenBox]) -> Self {
+        let (mut shapes, mut places) = (Vec::new(), HashMap::new());
+        let boxes = open.iter().map(|opened| {
+            let place = *places.entry(Arc::as_ptr(&opened.shapes)).or_insert_with(|| {
+                shapes.push(Vec::clone(&opened.shapes));
+                shapes.len() as u32 - 1
+            });
+            (opened.design_box.clone(), place, opened.box_bound)
+        });
+        let boxes = boxes.collect();
+        Self { slack, shapes, boxes }
+    }
+}

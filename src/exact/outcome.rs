@@ -1,0 +1,27 @@
+//! The result of an exact search.
+
+use crate::search::sweep::Candidate;
+use serde::{Deserialize, Serialize};
+
+/// The result of the search.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ExactOutcome {
+    /// Number of designs in the space.
+    pub designs_total: u128,
+    /// Number of designs whose three objectives were computed.
+    pub designs_evaluated: u64,
+    /// Number of boxes bounded.
+    pub boxes: u64,
+    /// Number of boxes or regions that were still open when the search was stopped. It is 0 if the front is
+    /// certified.
+    pub boxes_open: u64,
+    /// The greatest factor, less one, by which an undiscovered design may be better than the whole front in every
+    /// objective at once. After a complete search this is the gap that was asked for, 0 for the whole front. `None`
+    /// if nothing is known.
+    pub gap: Option<f64>,
+    /// The designs found that no other dominates.
+    pub front: Vec<Candidate>,
+    /// Whether the front lists every design that differs only in drives of equal mass and curve. If there are too
+    /// many, one of each set of ties is listed.
+    pub ties_listed: bool,
+}

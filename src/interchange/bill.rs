@@ -1,0 +1,245 @@
+//! A bill of materials: every part of an arm with its mass. The masses add up to the mass of the arm.
+//!
+//! An arm file has one mass for a drive. Where the catalogs know gear and motor and their masses make it, the bill has two rows.
+
+use super::csv_text::csv_text;
+use crate::arm::section::Section;
+use crate::arm::{Arm, Element, Extras, Joint, Link, LinkBody};
+use crate::catalog::gear::{Gear, GearKind, GearMass};
+use crate::catalog::{Catalogs, Provenance};
+
+/// Difference of masses that counts as rounding, relative.
+const ROUNDING: f64 = 1e-9;
+
+/// One row of a bill.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Row {
+    /// How many equal parts.
+    pub count: usize,
+    /// Name of the part.
+    pub part: String,
+    /// Kind of part.
+    pub kind: &'static str,
+    /// Mass of all of them \[kg\].
+    pub mass_kg: f64,
+    /// Length of each \[m\].
+    pub length_m: Option<f64>,
+    /// Where its figures come from.
+    pub source: String,
+    /// How far they can be trusted.
+    pub confidence: String,
+    /// Cost of all of them \[EUR\].
+    pub cost_eur: Option<f64>,
+    /// Joints and links that have one.
+    pub used_at: Vec<String>,
+}
+
+/// The bill of an arm. Equal parts are one row.
+pub(crate) fn bill(arm: &Arm, catalogs: &Catalogs) -> Vec<Row> {
+    let mut rows: Vec<Row> = Vec::new();
+    for element in &arm.chain {
+        let parts = match element {
+            Element::Joint(joint) => joint_parts(joint, catalogs),
+            Element::Link(link) => link_parts(link, catalogs),
+        };
+        for part in parts {
+            let same = |row: &&mut Row| {
+                let each_kg = row.mass_kg / row.count as f64;
+                row.part == part.part
+                    && row.kind == part.kind
+                    && row.length_m == part.length_m
+                    && (each_kg - part.mass_kg).abs() <= ROUNDING * each_kg
+            };
+            match rows.iter_mut().find(same) {
+                Some(row) => {
+                    row.count += 1;
+                    row.mass_kg += part.mass_kg;
+                    row.cost_eur = row.cost_eur.zip(part.cost_eur).map(|(a, b)| a + b);
+                    row.used_at.extend(part.used_at);
+                }
+                None => rows.push(part),
+            }
+        }
+    }
+    rows
+}
+
+/// The bill as `bom.csv` has it.
+pub(crate) fn bill_csv(rows: &[Row]) -> Vec<u8> {
+    let header = [
+        "item",
+        "count",
+        "part",
+        "kind",
+        "mass_kg",
+        "length_m",
+        "source",
+        "confidence",
+        "cost_eur",
+        "used_at",
+    ];
+    let number = |x: Option<f64>| x.map_or(String::new(), |x| format!("{x}"));
+    let cells = rows.iter().enumerate().map(|(i, row)| {
+        vec![
+            (i + 1).to_string(),
+            row.count.to_string(),
+            row.part.clone(),
+            row.kind.to_string(),
+            format!("{}", row.mass_kg),
+            number(row.length_m),
+            row.source.clone(),
+            row.confidence.clone(),
+            number(row.cost_eur),
+            row.used_at.join(" "),
+        ]
+    });
+    csv_text(&header, cells)
+}
+
+/// A part that no catalog has.
+fn stated(at: &str, part: String, kind: &'static str, mass_kg: f64) -> Row {
+    Row {
+        count: 1,
+        part,
+        kind,
+        mass_kg,
+        length_m: None,
+        source: "arm file".into(),
+        confidence: "stated".into(),
+        cost_eur: None,
+        used_at: vec![at.into()],
+    }
+}
+
+/// A part of a catalog.
+fn bought(at: &str, part: &str, kind: &'static str, mass_kg: f64, from: &Provenance) -> Row {
+    let (source, confidence) = (from.source.clone(), from.confidence.to_string());
+    Row { source, confidence, ..stated(at, part.into(), kind, mass_kg) }
+}
+
+fn joint_parts(joint: &Joint, catalogs: &Catalogs) -> Vec<Row> {
+    let at = joint.name.as_str();
+    let mut out = drive_parts(joint, catalogs);
+    if let Some(bearing) = joint.bearing.filter(|bearing| bearing.mass_kg > 0.0) {
+        out.push(stated(at, format!("output bearing of {at}"), "bearing", bearing.mass_kg));
+    }
+    let Extras { housing_kg, brake_kg, encoder_kg, flange_kg, cable_kg } = joint.extras;
+    let extras = [
+        ("housing", housing_kg),
+        ("brake", brake_kg),
+        ("encoder", encoder_kg),
+        ("flange", flange_kg),
+        ("cable", cable_kg),
+    ];
+    let extras = extras.into_iter().filter(|(_, mass_kg)| *mass_kg > 0.0);
+    out.extend(extras.map(|(kind, mass_kg)| stated(at, format!("{kind} of {at}"), kind, mass_kg)));
+    let bodies = joint.bodies.iter().enumerate();
+    out.extend(bodies.map(|(i, body)| stated(at, format!("body {} of {at}", i + 1), "body", body.mass_kg)));
+    out
+}
+
+/// Gear and motor of a joint, apart where the catalogs know both masses and they make the mass of the drive.
+fn drive_parts(joint: &Joint, catalogs: &Catalogs) -> Vec<Row> {
+    let at = joint.name.as_str();
+    let gear = joint.gear.as_ref().and_then(|name| catalogs.gear(name).ok());
+    let motor = joint.motor.as_ref().and_then(|name| catalogs.motor(name).ok());
+    match (gear, motor) {
+        (Some(gear), Some(motor)) if gear.kind == GearKind::Actuator => {
+            return vec![bought(at, &motor.id, "actuator", joint.mass_kg, &gear.provenance)];
+        }
+        (Some(gear), Some(motor)) => {
+            let rest_kg = motor.mass_kg.map(|kg| joint.mass_kg - kg);
+            if let (Some(motor_kg), Some(which)) =
+                (motor.mass_kg, rest_kg.and_then(|kg| which_mass(gear, kg)))
+            {
+                let part = format!("{} ({which})", gear.id);
+                return vec![
+                    bought(at, &part, "gear", joint.mass_kg - motor_kg, &gear.provenance),
+                    bought(at, &motor.id, "motor", motor_kg, &motor.provenance),
+                ];
+            }
+        }
+        (Some(gear), None) if joint.motor.is_none() => {
+            if let Some(which) = which_mass(gear, joint.mass_kg) {
+                return vec![bought(
+                    at,
+                    &format!("{} ({which})", gear.id),
+                    "gear",
+                    joint.mass_kg,
+                    &gear.provenance,
+                )];
+            }
+        }
+        _ => {}
+    }
+    let names: Vec<&str> = [&joint.gear, &joint.motor].into_iter().flatten().map(String::as_str).collect();
+    match (names.is_empty(), joint.mass_kg > 0.0) {
+        (true, false) => Vec::new(),
+        (true, true) => vec![stated(at, format!("drive of {at}"), "drive", joint.mass_kg)],
+        (false, _) => vec![stated(at, names.join(" + "), "drive", joint.mass_kg)],
+    }
+}
+
+/// Which of its printed masses a gear of this mass has.
+fn which_mass(gear: &Gear, mass_kg: f64) -> Option<&'static str> {
+    let is =
+        |which| gear.mass_kg(which).is_some_and(|kg: f64| (kg - mass_kg).abs() <= ROUNDING * kg.max(1.0));
+    match (is(GearMass::HousedUnit), is(GearMass::ComponentSet)) {
+        (true, _) => Some("housed unit"),
+        (_, true) => Some("component set"),
+        _ => None,
+    }
+}
+
+fn link_parts(link: &Link, catalogs: &Catalogs) -> Vec<Row> {
+    let at = link.name.as_str();
+    let mut out = Vec::new();
+    match &link.body {
+        LinkBody::Tube { material_name, material, section } => {
+            let length_m = link.vector_m.norm();
+            let kg = material.density_kg_m3 * section.properties(material.poisson).area_m2 * length_m;
+            let row = catalogs.materials.iter().find(|row| row.name == *material_name);
+            let part = format!("{} {}", section_words(section), material_name);
+            let mut part = match row {
+                Some(row) => bought(at, &part, "link", kg, &row.provenance),
+                None => stated(at, part, "link", kg),
+            };
+            part.length_m = Some(length_m);
+            part.cost_eur = row.and_then(|row| row.cost_eur_per_kg).map(|eur| eur * kg);
+            out.push(part);
+        }
+        LinkBody::Offset { mass_kg } if *mass_kg > 0.0 => {
+            let length_m = Some(link.vector_m.norm());
+            out.push(Row { length_m, ..stated(at, format!("offset {at}"), "offset", *mass_kg) });
+        }
+        LinkBody::Offset { .. } => {}
+    }
+    let bodies = link.bodies.iter().enumerate();
+    out.extend(bodies.map(|(i, body)| stated(at, format!("body {} of {at}", i + 1), "body", body.mass_kg)));
+    out
+}
+
+/// A section in words, in millimetres.
+pub(crate) fn section_words(section: &Section) -> String {
+    let mm = |m: f64| format!("{}", (m * 1e6).round() / 1e3);
+    match *section {
+        Section::RectangularTube { width_m, height_m, wall_m } => {
+            format!("tube {} x {} x {} mm", mm(width_m), mm(height_m), mm(wall_m))
+        }
+        Section::RoundTube { diameter_m, wall_m } => {
+            format!("round tube {} x {} mm", mm(diameter_m), mm(wall_m))
+        }
+        Section::RectangularBar { width_m, height_m } => format!("bar {} x {} mm", mm(width_m), mm(height_m)),
+        Section::RoundBar { diameter_m } => format!("round bar {} mm", mm(diameter_m)),
+        Section::IBeam { width_m, height_m, web_m, flange_m } => {
+            format!(
+                "I {} x {} mm, web {} mm, flange {} mm",
+                mm(width_m),
+                mm(height_m),
+                mm(web_m),
+                mm(flange_m)
+            )
+        }
+        Section::Stated(stated) => format!("section of stated stiffness, {} kg/m", stated.kg_per_m),
+    }
+}

@@ -1,0 +1,366 @@
+//! An arm in a case as a finite-element model: bricks, rigid regions, hinges, point masses and loads.
+//!
+//! What moves as one rigid body is a *region*. A link's faces are rigid: its root face is in the region before it, its end face
+//! begins a new one, whose motion is that of a reference node and a rotation node. A hinge has a node of its own, whose displacement 1
+//! is its angle. The motion of any point of a region is thus linear in a few degrees of freedom, which is what an `*EQUATION` says:
+//! `u(p) = u_ref + θ × (p - p_ref) + Σ q_k t_k(p)`, where `t_k` is the twist of hinge `k`. Rigid bodies of the program and chains of
+//! constraints are not needed, and bearings, frames and linkages are more hinges.
+
+use super::mesh::{Mesh, has_shape, mesh};
+use crate::arm::RigidBody;
+use crate::arm::structure::Beam;
+use crate::interchange::snapshot::{Snapshot, Working};
+use crate::interchange::tree::mass_properties;
+use crate::mechanics::beam::section_frame;
+use crate::mechanics::chain::{Body, ElasticElement, Item, OwnMass, Yielding};
+use crate::mechanics::{Twist, angular, displacement_at};
+use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+
+/// Coefficients below this do not count, relative to the largest of an equation.
+const ROUNDING: f64 = 1e-12;
+
+/// A term of an equation: node, direction from 0, coefficient.
+pub(crate) type Term = (usize, usize, f64);
+
+/// A link as bricks, with what they are made of.
+pub(crate) struct Solid {
+    /// Name of the link.
+    pub name: String,
+    /// Tube and material.
+    pub beam: Beam,
+    /// Section frame in the world.
+    pub frame: Matrix3<f64>,
+    /// Density with which the bricks weigh as much as tube and cables \[kg/m³\].
+    pub density_kg_m3: f64,
+    /// Numbers of the nodes of each brick in the model.
+    pub bricks: Vec<[usize; 20]>,
+}
+
+/// A hinge: its node, and the spring on displacement 1 of the node.
+pub(crate) struct HingeNode {
+    /// Name.
+    pub name: String,
+    /// Node.
+    pub node: usize,
+    /// Spring.
+    pub working: Working,
+}
+
+/// A finite-element model.
+#[derive(Default)]
+pub(crate) struct Model {
+    /// Places of all nodes \[m\].
+    pub nodes_m: Vec<Vector3<f64>>,
+    /// Links of bricks.
+    pub solids: Vec<Solid>,
+    /// Hinges.
+    pub hinges: Vec<HingeNode>,
+    /// Equations; the first term is the one that follows from the others.
+    pub equations: Vec<Vec<Term>>,
+    /// Degrees of freedom that do not move: node and direction.
+    pub held: Vec<(usize, usize)>,
+    /// Point masses.
+    pub masses: Vec<(usize, f64)>,
+    /// Forces: node, direction, newtons; on a hinge newton metres.
+    pub loads: Vec<Term>,
+    /// Node at the tip.
+    pub tip: usize,
+    /// Names of elements whose inertia no six masses have.
+    pub impossible: Vec<String>,
+}
+
+/// A link of bricks while bodies are put on it.
+struct Meshed<'m> {
+    mesh: &'m Mesh,
+    /// Number of its first node in the model.
+    first: usize,
+    own: &'m OwnMass,
+    length_m: f64,
+    /// What its root face is in.
+    root: Region,
+}
+
+/// What moves as one body.
+#[derive(Clone)]
+struct Region {
+    /// Reference node, rotation node and their place; the ground has none.
+    frame: Option<(usize, usize, Vector3<f64>)>,
+    /// Hinges from this frame on: node and twist.
+    hinges: Vec<(usize, Twist)>,
+}
+
+/// The model of an arm in a case. Links that no mesh can be made of, and links without compliance, are rigid.
+pub(crate) fn model(snapshot: &Snapshot) -> Model {
+    let posed = snapshot.posed();
+    let mut builder = Builder {
+        snapshot,
+        model: Model::default(),
+        region: Region { frame: None, hinges: Vec::new() },
+        down: snapshot.structure.down,
+    };
+    let mut workings = snapshot.working_points().into_iter();
+    for item in &posed.items {
+        match item {
+            Item::Body(body) => builder.body(body),
+            // springs are taken away before (see `Remainder`)
+            Item::Load(_) => {}
+            Item::Elastic(element) => {
+                let workings = workings.next().unwrap_or_default();
+                match &element.own {
+                    Some(own) => builder.link(element, own),
+                    None => builder.springs(element, &workings),
+                }
+            }
+        }
+    }
+    let tip = builder.tied(posed.tip_m);
+    builder.model.tip = tip;
+    builder.tip_load(tip, &posed.tip_force_n, &posed.tip_moment_nm);
+    builder.model
+}
+
+struct Builder<'s> {
+    snapshot: &'s Snapshot,
+    model: Model,
+    region: Region,
+    down: Vector3<f64>,
+}
+
+impl Builder<'_> {
+    fn node(&mut self, at_m: Vector3<f64>) -> usize {
+        self.model.nodes_m.push(at_m);
+        self.model.nodes_m.len() - 1
+    }
+
+    /// Adds a hinge for each coordinate that yields, and the passive joints that follow a hinge of a driver.
+    fn springs(&mut self, element: &ElasticElement, workings: &[Working]) {
+        for (i, (twist, working)) in element.twists.iter().zip(workings).enumerate() {
+            if working.is_rigid() {
+                continue;
+            }
+            let node = self.node(element.at_m);
+            self.model.held.extend([(node, 1), (node, 2)]);
+            if element.torque_nm != 0.0 {
+                self.model.loads.push((node, 0, element.torque_nm));
+            }
+            let name = if element.twists.len() == 1 {
+                element.name.clone()
+            } else {
+                format!("{}_{}", element.name, i + 1)
+            };
+            self.model.hinges.push(HingeNode { name, node, working: *working });
+            self.region.hinges.push((node, *twist));
+        }
+        if matches!(element.yielding, Yielding::Joint(_)) {
+            self.follow(element);
+        }
+    }
+
+    /// Lets a passive joint turn with the hinges of its drivers.
+    fn follow(&mut self, passive: &ElasticElement) {
+        let posed = self.snapshot.posed();
+        let linkages = posed.chain.linkages().iter().filter(|linkage| linkage.passive == passive.name);
+        for linkage in linkages {
+            if let Some(driver) = self.model.hinges.iter().find(|hinge| hinge.name == linkage.driver) {
+                self.region.hinges.push((driver.node, passive.twists[0] * linkage.factor));
+            }
+        }
+    }
+
+    /// Adds a body as point masses of the region.
+    fn body(&mut self, body: &Body) {
+        self.rigid(body.mass_kg, &body.cg_m, &body.inertia_kgm2, "body");
+    }
+
+    /// Adds a rigid body as point masses of the region.
+    fn rigid(&mut self, mass_kg: f64, cg_m: &Vector3<f64>, inertia_kgm2: &Matrix3<f64>, name: &str) {
+        for (at_m, kg) in self.points(mass_kg, cg_m, inertia_kgm2, name) {
+            let node = self.tied(at_m);
+            self.point_mass(node, kg);
+        }
+    }
+
+    fn point_mass(&mut self, node: usize, mass_kg: f64) {
+        self.model.masses.push((node, mass_kg));
+        let weight_n = self.down * (mass_kg * self.snapshot.structure.gravity_m_s2);
+        let loads = (0..3).filter(|d| weight_n[*d] != 0.0).map(|d| (node, d, weight_n[d]));
+        self.model.loads.extend(loads);
+    }
+
+    /// Point masses with the mass, centre and inertia of a body: one, or two on each principal axis.
+    fn points(
+        &mut self,
+        mass_kg: f64,
+        cg_m: &Vector3<f64>,
+        inertia_kgm2: &Matrix3<f64>,
+        name: &str,
+    ) -> Vec<(Vector3<f64>, f64)> {
+        if mass_kg == 0.0 {
+            return Vec::new();
+        }
+        if inertia_kgm2.amax() == 0.0 {
+            return vec![(*cg_m, mass_kg)];
+        }
+        let eigen = SymmetricEigen::new(*inertia_kgm2);
+        let sum: f64 = eigen.eigenvalues.sum();
+        if (0..3).any(|i| sum - 2.0 * eigen.eigenvalues[i] < -ROUNDING.sqrt() * sum) {
+            self.model.impossible.push(name.into());
+        }
+        let mut out = Vec::new();
+        for i in 0..3 {
+            // ∫x² dm along a principal axis is half of the other two moments minus its own
+            let second = (sum / 2.0 - eigen.eigenvalues[i]).max(0.0);
+            let arm_m = eigen.eigenvectors.column(i) * (3.0 * second / mass_kg).sqrt();
+            out.extend([(cg_m + arm_m, mass_kg / 6.0), (cg_m - arm_m, mass_kg / 6.0)]);
+        }
+        out
+    }
+
+    /// Adds a link: bricks, or a rigid body.
+    fn link(&mut self, element: &ElasticElement, own: &OwnMass) {
+        let link = self.snapshot.link(own.piece).cloned();
+        let flexible = link.as_ref().and_then(|link| {
+            let beam = link.beam.filter(|beam| beam.flexibility > 0.0 && has_shape(&beam.section))?;
+            let mesh = mesh(&beam.section, &own.root_m, &own.frame, link.vector_m.norm())?;
+            (!element.twists.is_empty()).then_some((beam, mesh))
+        });
+        let (Some(link), Some((beam, mesh))) = (link, flexible) else {
+            let (mass_kg, cg_m, inertia) = mass_properties(&own.rigid);
+            return self.rigid(mass_kg, &cg_m, &inertia, &element.name);
+        };
+        let first = self.model.nodes_m.len();
+        self.model.nodes_m.extend(&mesh.nodes_m);
+        let numbered = |nodes: &[usize]| nodes.iter().map(|n| first + n).collect::<Vec<_>>();
+        for node in numbered(&mesh.stations[0]) {
+            self.tie(node);
+        }
+        let root = std::mem::replace(&mut self.region, Region { frame: None, hinges: Vec::new() });
+        let end_m = own.root_m + own.frame.column(0) * link.vector_m.norm();
+        let (reference, rotation) = (self.node(end_m), self.node(end_m));
+        self.region.frame = Some((reference, rotation, end_m));
+        if let Some(face) = mesh.stations.last() {
+            numbered(face).into_iter().for_each(|node| self.tie(node));
+        }
+        let tube_kg_per_m = link.tube_kg_per_m();
+        self.model.solids.push(Solid {
+            name: link.name.clone(),
+            beam,
+            frame: own.frame,
+            density_kg_m3: beam.material.density_kg_m3 * (1.0 + link.harness_kg_per_m / tube_kg_per_m),
+            bricks: mesh.bricks.iter().map(|brick| brick.map(|n| first + n)).collect(),
+        });
+        let meshed = Meshed { mesh: &mesh, first, own, length_m: link.vector_m.norm(), root };
+        // the carried frame at the link's root, from the section frame
+        let turn = own.frame * section_frame(&link.vector_m).transpose();
+        for body in &link.bodies {
+            let in_world = RigidBody {
+                mass_kg: body.mass_kg,
+                cg_m: own.root_m + turn * body.cg_m,
+                inertia_kgm2: turn * body.inertia_kgm2 * turn.transpose(),
+            };
+            self.body_on_link(&meshed, &in_world, &link.name);
+        }
+    }
+
+    /// Adds a body, in world axes, that moves with the cross-section nearest to its centre.
+    fn body_on_link(&mut self, link: &Meshed, body: &RigidBody, name: &str) {
+        let last = link.mesh.stations.len() - 1;
+        let xi = link.own.frame.column(0).dot(&(body.cg_m - link.own.root_m)) / link.length_m;
+        let station = (xi.clamp(0.0, 1.0) * last as f64).round() as usize;
+        for (point_m, kg) in self.points(body.mass_kg, &body.cg_m, &body.inertia_kgm2, name) {
+            let node = self.node(point_m);
+            match station {
+                0 => {
+                    let end = std::mem::replace(&mut self.region, link.root.clone());
+                    self.tie(node);
+                    self.region = end;
+                }
+                s if s == last => self.tie(node),
+                s => self.average(node, link.first, &link.mesh.stations[s]),
+            }
+            self.point_mass(node, kg);
+        }
+    }
+
+    /// Lets a node move as the mean of a cross-section does: mean displacement, and the rotation that fits best.
+    fn average(&mut self, node: usize, first: usize, station: &[usize]) {
+        let places: Vec<(usize, Vector3<f64>)> =
+            station.iter().map(|n| (first + n, self.model.nodes_m[first + n])).collect();
+        let count = places.len() as f64;
+        let centre_m: Vector3<f64> = places.iter().map(|(_, p)| p).sum::<Vector3<f64>>() / count;
+        let spread: Matrix3<f64> = places
+            .iter()
+            .map(|(_, p)| {
+                let r = p - centre_m;
+                Matrix3::identity() * r.norm_squared() - r * r.transpose()
+            })
+            .sum();
+        let Some(inverse) = spread.try_inverse() else { return self.tie(node) };
+        let arm_m = self.model.nodes_m[node] - centre_m;
+        for d in 0..3 {
+            let mut terms = vec![(node, d, -1.0)];
+            for (n, p) in &places {
+                // θ = S⁻¹ Σ r × u, and θ × a at the node
+                let moved = Matrix3::identity() / count
+                    - arm_m.cross_matrix() * inverse * (p - centre_m).cross_matrix();
+                terms.extend((0..3).map(|e| (*n, e, moved[(d, e)])));
+            }
+            self.equation(terms);
+        }
+    }
+
+    /// A new node of the region.
+    fn tied(&mut self, at_m: Vector3<f64>) -> usize {
+        let node = self.node(at_m);
+        self.tie(node);
+        node
+    }
+
+    /// Makes a node move with the region.
+    fn tie(&mut self, node: usize) {
+        let at_m = self.model.nodes_m[node];
+        for d in 0..3 {
+            let mut terms = vec![(node, d, -1.0)];
+            if let Some((reference, rotation, frame_m)) = self.region.frame {
+                terms.push((reference, d, 1.0));
+                let turned = (at_m - frame_m).cross_matrix().transpose();
+                terms.extend((0..3).map(|e| (rotation, e, turned[(d, e)])));
+            }
+            let hinges = self.region.hinges.iter();
+            terms.extend(hinges.map(|(hinge, twist)| (*hinge, 0, displacement_at(twist, &at_m)[d])));
+            self.equation(terms);
+        }
+    }
+
+    /// Adds an equation. Terms of one degree of freedom are joined; without others the first does not move.
+    fn equation(&mut self, terms: Vec<Term>) {
+        let mut joined: Vec<Term> = Vec::new();
+        for (node, d, coefficient) in terms {
+            match joined.iter_mut().find(|(n, e, _)| (*n, *e) == (node, d)) {
+                Some((_, _, sum)) => *sum += coefficient,
+                None => joined.push((node, d, coefficient)),
+            }
+        }
+        joined.retain(|(_, _, coefficient)| coefficient.abs() > ROUNDING);
+        match joined.as_slice() {
+            [(node, d, _)] => self.model.held.push((*node, *d)),
+            _ => self.model.equations.push(joined),
+        }
+    }
+
+    /// Adds force and moment at the tip.
+    fn tip_load(&mut self, tip: usize, force_n: &Vector3<f64>, moment_nm: &Vector3<f64>) {
+        let forces = (0..3).filter(|d| force_n[*d] != 0.0).map(|d| (tip, d, force_n[d]));
+        self.model.loads.extend(forces);
+        if *moment_nm == Vector3::zeros() {
+            return;
+        }
+        if let Some((_, rotation, _)) = self.region.frame {
+            self.model.loads.extend((0..3).map(|d| (rotation, d, moment_nm[d])));
+        }
+        let work = |twist: &Twist| angular(twist).dot(moment_nm);
+        let on_hinges: Vec<Term> =
+            self.region.hinges.iter().map(|(node, twist)| (*node, 0, work(twist))).collect();
+        self.model.loads.extend(on_hinges);
+    }
+}

@@ -1,0 +1,332 @@
+//! An arm in a case as files of other programs, with what they cannot carry and what they must find.
+
+use super::bill::{bill, bill_csv};
+use super::calculix::deck::{Step, deck, modes};
+use super::calculix::mesh::has_shape;
+use super::calculix::model::model;
+use super::design_table::design_csv;
+use super::left_out::{LeftOut, Remainder};
+use super::mjcf::{Motor, STAND_IN_KGM2, mjcf};
+use super::snapshot::Snapshot;
+use super::tree::TreeOptions;
+use super::urdf_out::{stiffness_file, urdf, with_several_drivers};
+use crate::arm::effect::entry::Effect;
+use crate::arm::load::{LoadCase, Payload};
+use crate::arm::section::Section;
+use crate::arm::structure::Piece;
+use crate::arm::{Arm, LinkBody, LinkModel, Words};
+use crate::catalog::Catalogs;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+/// The program or form to write for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Format {
+    /// Decks of CalculiX.
+    Calculix,
+    /// MuJoCo.
+    Mjcf,
+    /// URDF.
+    Urdf,
+    /// Arm file and cases.
+    Json,
+    /// A table of the elements.
+    Csv,
+    /// A bill of materials.
+    Bom,
+}
+
+impl Words for Format {
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("calculix", Self::Calculix),
+        ("mjcf", Self::Mjcf),
+        ("urdf", Self::Urdf),
+        ("json", Self::Json),
+        ("csv", Self::Csv),
+        ("bom", Self::Bom),
+    ];
+}
+
+/// What is asked for.
+pub(crate) struct Asked<'a> {
+    /// The arm.
+    pub arm: &'a Arm,
+    /// The case at whose loads curves become numbers.
+    pub case: &'a LoadCase,
+    /// All cases, for an arm file with its cases.
+    pub cases: &'a [LoadCase],
+    /// The form.
+    pub format: Format,
+    /// Pieces of flexible links in MJCF; 0 for rigid links.
+    pub pieces: usize,
+    /// Whether joints have the backlash of their gears in MJCF.
+    pub backlash: bool,
+}
+
+/// The files of an export, and what is to be said of them.
+#[derive(Default)]
+pub(crate) struct Export {
+    /// Name and bytes.
+    pub files: Vec<(String, Vec<u8>)>,
+    /// What the files do not have.
+    pub left_out: Vec<LeftOut>,
+    /// What a reader of the files must know.
+    pub notes: Vec<String>,
+    /// What a program must find that is given the files; null if they are no model.
+    pub expected: Value,
+}
+
+/// Writes an arm in a form.
+pub(crate) fn export(asked: &Asked, catalogs: &Catalogs) -> Export {
+    let mut out = match asked.format {
+        Format::Calculix => to_calculix(asked),
+        Format::Mjcf => to_mjcf(asked, catalogs),
+        Format::Urdf => to_urdf(asked),
+        Format::Json => to_json(asked),
+        Format::Csv => {
+            Export { files: vec![("design.csv".into(), design_csv(asked.arm))], ..Export::default() }
+        }
+        Format::Bom => Export {
+            files: vec![("bom.csv".into(), bill_csv(&bill(asked.arm, catalogs)))],
+            ..Export::default()
+        },
+    };
+    let ignored: Vec<String> = asked.arm.ignored_effects().into_iter().map(Effect::label).collect();
+    if !ignored.is_empty() {
+        out.notes.push(format!(
+            "effects that describe a test and not the arm are not in the files: {}",
+            ignored.join(", ")
+        ));
+    }
+    out
+}
+
+impl Export {
+    /// The record of the export, as `export.json` has it.
+    pub(crate) fn to_json(&self, asked: &Asked) -> Value {
+        let names: Vec<&str> = self.files.iter().map(|(name, _)| name.as_str()).collect();
+        json!({
+            "to": Format::WORDS.iter().find(|(_, format)| *format == asked.format).map(|(word, _)| word),
+            "arm": asked.arm.name,
+            "mass_kg": asked.arm.mass_kg(),
+            "case": asked.case.to_json(),
+            "files": names,
+            "left_out": self.left_out.iter().map(LeftOut::to_json).collect::<Vec<_>>(),
+            "notes": self.notes,
+            "expected": self.expected,
+            "tool_version": env!("CARGO_PKG_VERSION"),
+        })
+    }
+}
+
+/// Arm and case in words, for the first lines of files.
+fn heading(asked: &Asked) -> String {
+    let case = asked.case;
+    format!(
+        "{}, case {}: pose {:?} deg, payload {} kg at {:?} m from the tip",
+        asked.arm.name,
+        case.name,
+        case.pose_deg,
+        case.payload.mass_kg,
+        case.payload.cg_m.as_slice()
+    )
+}
+
+fn to_calculix(asked: &Asked) -> Export {
+    let mut rest = Remainder::new(asked.arm.structure_in(asked.case), asked.case);
+    rest.without_water();
+    rest.without_balance_springs();
+    let links = rest.structure.pieces.iter().filter_map(|piece| match piece {
+        Piece::Link(link) => link.beam.filter(|beam| !has_shape(&beam.section)).map(|_| link.name.clone()),
+        _ => None,
+    });
+    if asked.case.links != LinkModel::Rigid {
+        let why = "its section is stated by stiffnesses and has no shape: the link is rigid";
+        links.collect::<Vec<_>>().iter().for_each(|name| rest.without_flexible_link(name, why));
+    }
+    let links = match asked.case.links {
+        LinkModel::Rigid => LinkModel::Rigid,
+        LinkModel::Bending | LinkModel::Full => LinkModel::Full,
+    };
+    let snapshot = Snapshot::new(rest.structure, asked.case, links);
+    let model = model(&snapshot);
+    let gravity = snapshot.structure.down * snapshot.structure.gravity_m_s2;
+    let file =
+        |step, what: &str| deck(&model, step, &format!("{}. {what}", heading(asked)), &gravity).into_bytes();
+    let mut out = Export {
+        files: vec![(
+            "static.inp".into(),
+            file(Step::Static, "Stiffnesses of joints are secants at this load"),
+        )],
+        left_out: rest.left_out,
+        expected: snapshot.expected(),
+        notes: vec!["run: ccx static, then ccx modes; static.dat has the displacement of the tip".into()],
+    };
+    if modes(&model) > 0 {
+        out.files.push((
+            "modes.inp".into(),
+            file(Step::Frequency, "Stiffnesses of joints are tangents at this load"),
+        ));
+    }
+    let open = asked
+        .arm
+        .links()
+        .filter(|link| matches!(&link.body, LinkBody::Tube { section: Section::IBeam { .. }, .. }));
+    let open: Vec<&str> = open.map(|link| link.name.as_str()).collect();
+    if !open.is_empty() && links == LinkModel::Full {
+        out.notes.push(format!(
+            "rigid end faces hold the warping of open sections, so that they twist less than expected: {}",
+            open.join(", ")
+        ));
+    }
+    if asked.case.links == LinkModel::Bending {
+        out.notes.push(
+            "solids shear, twist and stretch: expected is the full model of links, not bending alone".into(),
+        );
+    }
+    if !model.impossible.is_empty() {
+        let names = model.impossible.join(", ");
+        out.notes.push(format!(
+            "no solid has the inertia of a body, which is exported as near as point masses can: {names}"
+        ));
+    }
+    out
+}
+
+fn to_mjcf(asked: &Asked, catalogs: &Catalogs) -> Export {
+    let mut rest = Remainder::new(asked.arm.structure_in(asked.case), asked.case);
+    rest.without_water();
+    rest.without_balance_springs();
+    let case = rest.without_tip_load("an MJCF file has no load: apply it at the site \"tip\" (xfrc_applied)");
+    if asked.pieces == 0 {
+        rest.without_flexible_links("links are rigid: ask for pieces with --flexible N");
+    }
+    let links = if asked.pieces == 0 { LinkModel::Rigid } else { case.links };
+    let mut notes = Vec::new();
+    let snapshot = Snapshot::new(rest.structure, &case, links);
+    let options = TreeOptions {
+        springs: true,
+        pieces: if links == LinkModel::Rigid { 0 } else { asked.pieces },
+        links,
+        plays: plays(asked, catalogs, &mut notes),
+    };
+    let motors = motors(asked.arm, catalogs, &mut notes);
+    let file = mjcf(&asked.arm.name, &snapshot, &options, &motors);
+    notes.push(match options.pieces {
+        0 => "links are rigid".into(),
+        n => format!(
+            "links are cut into {n} parts; the error of their compliance falls with 1/{n}². Their springs are stiff: a \
+             simulation needs small time steps"
+        ),
+    });
+    notes.push("the keyframe \"pose\" is the pose with straight springs, in which torques and frequencies are compared; \"deflected\" has \
+                every spring where it rests under the load"
+        .into());
+    if file.balanced {
+        notes.push("no solid has the inertia of a body: MuJoCo makes its moments equal (balanceinertia), so frequencies differ".into());
+    }
+    Export {
+        files: vec![("arm.xml".into(), file.text.into_bytes())],
+        left_out: rest.left_out,
+        notes,
+        expected: snapshot.expected(),
+    }
+}
+
+/// Half widths of the backlash of gears, if it is asked for \[rad\].
+fn plays(asked: &Asked, catalogs: &Catalogs, notes: &mut Vec<String>) -> BTreeMap<String, f64> {
+    if !asked.backlash {
+        return BTreeMap::new();
+    }
+    let arcmin_to_rad = PI / (180.0 * 60.0);
+    let of_gear =
+        |name: &Option<String>| catalogs.gear(name.as_ref()?).ok()?.backlash_arcmin.filter(|x| *x > 0.0);
+    let joints = asked.arm.joints().filter(|joint| joint.coupled.is_none());
+    let plays: BTreeMap<String, f64> = joints
+        .filter_map(|joint| Some((joint.name.clone(), of_gear(&joint.gear)? / 2.0 * arcmin_to_rad)))
+        .collect();
+    notes.push(match plays.is_empty() {
+        true => "no gear of the arm has a backlash in the catalogs: there is no deadband".into(),
+        false => format!(
+            "backlash is a free hinge with a range, at: {}",
+            plays.keys().cloned().collect::<Vec<_>>().join(", ")
+        ),
+    });
+    plays
+}
+
+/// What the motors of an arm add, as far as the catalogs know them.
+fn motors(arm: &Arm, catalogs: &Catalogs, notes: &mut Vec<String>) -> BTreeMap<String, Motor> {
+    let mut out = BTreeMap::new();
+    let mut unknown = Vec::new();
+    for joint in arm.joints().filter(|joint| joint.coupled.is_none()) {
+        let gear = joint.gear.as_ref().and_then(|name| catalogs.gear(name).ok());
+        let motor = joint.motor.as_ref().and_then(|name| catalogs.motor(name).ok());
+        let rotor_kgm2 = motor.and_then(|motor| motor.rotor_inertia_kgm2);
+        let (Some(gear), Some(motor), Some(rotor_kgm2)) = (gear, motor, rotor_kgm2) else {
+            unknown.push(joint.name.as_str());
+            out.insert(joint.name.clone(), Motor { armature_kgm2: STAND_IN_KGM2, peak_nm: None });
+            continue;
+        };
+        let input_kgm2 = rotor_kgm2 + gear.inertia_input_kgm2.unwrap_or_default();
+        let armature_kgm2 = gear.ratio * gear.ratio * input_kgm2;
+        let peak_nm = motor.peak_torque_nm.map(|nm| nm * gear.ratio);
+        out.insert(joint.name.clone(), Motor { armature_kgm2, peak_nm });
+    }
+    if !unknown.is_empty() {
+        notes.push(format!(
+            "an armature of {STAND_IN_KGM2} kg m2 stands in where the catalogs do not know the rotor's inertia: {}",
+            unknown.join(", ")
+        ));
+    }
+    out
+}
+
+fn to_urdf(asked: &Asked) -> Export {
+    let case = LoadCase { payload: Payload::default(), ..asked.case.clone() };
+    let mut rest = Remainder::new(asked.arm.structure_in(asked.case), &case);
+    rest.without_water();
+    rest.without_balance_springs();
+    let case = rest.without_tip_load("a URDF has no load");
+    rest.without_flexible_links("a URDF has rigid links");
+    rest.without_springs(
+        "a URDF has rigid joints; stiffness.json has the springs of joints and bearings, without effects",
+    );
+    let snapshot = Snapshot::new(rest.structure, &case, LinkModel::Rigid);
+    let mut notes =
+        vec!["the payload is not part of the file; joints have no ranges and are continuous".to_string()];
+    let several = with_several_drivers(asked.arm);
+    if !several.is_empty() {
+        let names: Vec<&str> = several.iter().map(|joint| joint.name.as_str()).collect();
+        notes.push(format!(
+            "passive joints with several drivers are free in the file, for <mimic> has one: {}",
+            names.join(", ")
+        ));
+    }
+    Export {
+        files: vec![
+            ("arm.urdf".into(), urdf(asked.arm, &snapshot).into_bytes()),
+            ("stiffness.json".into(), pretty(&stiffness_file(asked.arm))),
+        ],
+        left_out: rest.left_out,
+        notes,
+        // a rigid arm has torques and nothing else
+        expected: json!({"joint_torque_nm": snapshot.expected()["joint_torque_nm"]}),
+    }
+}
+
+fn to_json(asked: &Asked) -> Export {
+    let cases: Vec<Value> = asked.cases.iter().map(LoadCase::to_json).collect();
+    Export {
+        files: vec![
+            ("arm.json".into(), pretty(&asked.arm.to_json())),
+            ("cases.json".into(), pretty(&json!(cases))),
+        ],
+        ..Export::default()
+    }
+}
+
+fn pretty(value: &Value) -> Vec<u8> {
+    serde_json::to_vec_pretty(value).expect("a value of numbers and strings serializes")
+}

@@ -1,0 +1,153 @@
+//! What a file cannot carry, each thing with its share of the tip's deflection.
+
+use super::snapshot::Snapshot;
+use crate::arm::LinkModel;
+use crate::arm::load::LoadCase;
+use crate::arm::structure::{Piece, Structure};
+use nalgebra::Vector3;
+use serde_json::{Value, json};
+
+/// Something of an arm or a case that a file does not have.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct LeftOut {
+    /// What it is.
+    pub what: &'static str,
+    /// Where it is: a link, a joint, or `arm`.
+    pub at: String,
+    /// Why, and what to do instead.
+    pub why: String,
+    /// The part of the tip's deflection that goes with it, along the whole deflection. All parts and what stays add up to 1.
+    pub tip_share: f64,
+}
+
+impl LeftOut {
+    pub(crate) fn to_json(&self) -> Value {
+        json!({"what": self.what, "at": self.at, "why": self.why, "tip_share": self.tip_share})
+    }
+}
+
+/// An arm in a case, from which things are taken away.
+pub(crate) struct Remainder {
+    /// What is left.
+    pub structure: Structure,
+    case: LoadCase,
+    tip_m: Vector3<f64>,
+    /// What was taken away.
+    pub left_out: Vec<LeftOut>,
+}
+
+impl Remainder {
+    /// The whole arm.
+    pub(crate) fn new(structure: Structure, case: &LoadCase) -> Self {
+        let tip_m = Snapshot::new(structure.clone(), case, case.links).tip_m();
+        Self { structure, case: case.clone(), tip_m, left_out: Vec::new() }
+    }
+
+    /// The part of a displacement along the whole displacement of the tip.
+    fn share(&self, part_m: &Vector3<f64>) -> f64 {
+        match self.tip_m.norm_squared() {
+            0.0 => 0.0,
+            whole => part_m.dot(&self.tip_m) / whole,
+        }
+    }
+
+    /// Takes away what `change` removes from the arm.
+    fn remove(&mut self, what: &'static str, at: &str, why: &str, change: impl FnOnce(&mut Structure)) {
+        let before_m = Snapshot::new(self.structure.clone(), &self.case, self.case.links).tip_m();
+        change(&mut self.structure);
+        let after_m = Snapshot::new(self.structure.clone(), &self.case, self.case.links).tip_m();
+        let tip_share = self.share(&(before_m - after_m));
+        self.left_out.push(LeftOut { what, at: at.into(), why: why.into(), tip_share });
+    }
+
+    /// Water around the arm: its buoyancy and its added mass.
+    pub(crate) fn without_water(&mut self) {
+        if self.structure.water.is_some() {
+            let why = "the file has no water: buoyancy and added mass are missing";
+            self.remove("water", "arm", why, |structure| structure.water = None);
+        }
+    }
+
+    /// Springs that balance the arm, one by one.
+    pub(crate) fn without_balance_springs(&mut self) {
+        let names: Vec<String> = self.structure.springs.iter().map(|spring| spring.name.clone()).collect();
+        for name in names {
+            let why = "the file has no springs that balance the arm: its joints hold their torque too";
+            self.remove("balance_spring", &name, why, |structure| {
+                structure.springs.retain(|spring| spring.name != name);
+            });
+        }
+    }
+
+    /// The compliance of every link.
+    pub(crate) fn without_flexible_links(&mut self, why: &str) {
+        let names: Vec<String> = self
+            .structure
+            .pieces
+            .iter()
+            .filter_map(|piece| match piece {
+                Piece::Link(link) if link.beam.is_some_and(|beam| beam.flexibility > 0.0) => {
+                    Some(link.name.clone())
+                }
+                _ => None,
+            })
+            .collect();
+        if self.case.links != LinkModel::Rigid {
+            names.iter().for_each(|name| self.without_flexible_link(name, why));
+        }
+    }
+
+    /// The compliance of one link.
+    pub(crate) fn without_flexible_link(&mut self, name: &str, why: &str) {
+        self.remove("link_compliance", name, why, |structure| {
+            for piece in &mut structure.pieces {
+                if let Piece::Link(link) = piece
+                    && link.name == name
+                    && let Some(beam) = &mut link.beam
+                {
+                    beam.flexibility = 0.0;
+                }
+            }
+        });
+    }
+
+    /// Force and moment at the tip.
+    pub(crate) fn without_tip_load(&mut self, why: &str) -> LoadCase {
+        let bare =
+            LoadCase { tip_force_n: Vector3::zeros(), tip_moment_nm: Vector3::zeros(), ..self.case.clone() };
+        if bare != self.case {
+            let rest_m = Snapshot::new(self.structure.clone(), &bare, bare.links).tip_m();
+            let whole_m = Snapshot::new(self.structure.clone(), &self.case, self.case.links).tip_m();
+            let tip_share = self.share(&(whole_m - rest_m));
+            self.left_out.push(LeftOut { what: "tip_load", at: "tip".into(), why: why.into(), tip_share });
+        }
+        self.case = bare;
+        self.case.clone()
+    }
+
+    /// Every spring of joints, bearings and frames, for files that know none.
+    pub(crate) fn without_springs(&mut self, why: &str) {
+        let statics = {
+            let snapshot = Snapshot::new(self.structure.clone(), &self.case, self.case.links);
+            snapshot.posed().statics()
+        };
+        let is_link = |name: &str| {
+            let links = self.structure.pieces.iter().filter_map(|piece| match piece {
+                Piece::Link(link) => Some(&link.name),
+                _ => None,
+            });
+            links.into_iter().any(|link| link == name)
+        };
+        let springs =
+            statics.shares_m.iter().filter(|(name, share)| !is_link(name) && *share != Vector3::zeros());
+        let out: Vec<LeftOut> = springs
+            .map(|(name, share)| LeftOut {
+                what: "spring",
+                at: name.clone(),
+                why: why.into(),
+                tip_share: self.share(share),
+            })
+            .collect();
+        self.left_out.extend(out);
+    }
+}

@@ -1,0 +1,221 @@
+//! MJCF, the files of MuJoCo.
+//!
+//! A driven joint is two hinges in series: the motor's, with the inertia of rotor and gear (`armature`) and an actuator, and the
+//! gear's, with the spring and without armature. Both on one hinge would be another machine: its rotor would move with the
+//! output. The two tilts of a bearing are two more hinges. A torsion curve is its tangent at the load of the case; the spring's
+//! position of rest (`springref`) is such that it deflects at this load as much as the curve does.
+
+use super::snapshot::Snapshot;
+use super::tree::{Hinge, Node, Role, TreeOptions, mass_properties, tree};
+use super::xml::{Xml, numbers, triple};
+use crate::arm::structure::JointAngle;
+use nalgebra::{Matrix3, Vector3};
+use std::collections::BTreeMap;
+
+/// Mass and moment of inertia of a body that has none, and the least moment of a body \[kg, kg m²\]. MuJoCo takes no moving
+/// body without both.
+const LEAST: f64 = 1e-9;
+
+/// Inertia that stands in for a rotor that nobody knows, at the joint \[kg m²\]. Without any, motor and gear would be two hinges of
+/// one axis with nothing between them, and the mass matrix singular. With motors held it changes nothing.
+pub(crate) const STAND_IN_KGM2: f64 = 0.1;
+
+/// What a motor adds to a joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Motor {
+    /// Inertia of rotor and gear, at the joint \[kg m²\].
+    pub armature_kgm2: f64,
+    /// Peak torque of the motor, at the joint, without losses \[N m\].
+    pub peak_nm: Option<f64>,
+}
+
+/// The file and what is to be said of it.
+pub(crate) struct Mjcf {
+    /// The text.
+    pub text: String,
+    /// Whether an inertia is one that no solid has, so that MuJoCo must change it.
+    pub balanced: bool,
+}
+
+/// Writes an arm in a case as MJCF.
+pub(crate) fn mjcf(
+    name: &str,
+    snapshot: &Snapshot,
+    options: &TreeOptions,
+    motors: &BTreeMap<String, Motor>,
+) -> Mjcf {
+    let nodes = tree(snapshot, options);
+    let balanced = nodes.iter().any(|node| !is_solid(node));
+    let case = &snapshot.case;
+    let comment = format!(
+        "{name}, case \"{}\": pose {:?} deg, payload {} kg at {:?} m from the tip. Torsion curves are tangents at the torques of this case",
+        case.name,
+        case.pose_deg,
+        case.payload.mass_kg,
+        case.payload.cg_m.as_slice()
+    );
+    let mut xml = Xml::new(&comment);
+    xml.open("mujoco", &[("model", name.into())]);
+    let mut compiler = vec![("angle", "radian".to_string()), ("autolimits", "true".into())];
+    if balanced {
+        compiler.push(("balanceinertia", "true".into()));
+    }
+    xml.leaf("compiler", &compiler);
+    let gravity = snapshot.structure.down * snapshot.structure.gravity_m_s2;
+    xml.leaf(
+        "option",
+        &[
+            ("gravity", triple(&gravity)),
+            ("integrator", "implicitfast".into()),
+            ("timestep", "0.0001".into()),
+        ],
+    );
+    xml.open("worldbody", &[]);
+    let mut before_m = Vector3::zeros();
+    for node in &nodes {
+        body(&mut xml, node, &before_m, motors);
+        before_m = node.origin_m;
+    }
+    let posed = snapshot.at_zero();
+    xml.leaf(
+        "site",
+        &[("name", "tip".into()), ("pos", triple(&(posed.tip_m - before_m))), ("size", "0.01".into())],
+    );
+    nodes.iter().for_each(|_| xml.close());
+    xml.close();
+    couplings(&mut xml, snapshot, &nodes);
+    actuators(&mut xml, snapshot, motors);
+    keyframes(&mut xml, snapshot, &nodes);
+    Mjcf { text: xml.finish(), balanced }
+}
+
+/// Opens a body, which stays open for those that it carries.
+fn body(xml: &mut Xml, node: &Node, before_m: &Vector3<f64>, motors: &BTreeMap<String, Motor>) {
+    xml.open("body", &[("name", node.name.clone()), ("pos", triple(&(node.origin_m - before_m)))]);
+    for hinge in &node.hinges {
+        xml.leaf("joint", &joint(hinge, &node.origin_m, motors));
+    }
+    let (mass_kg, cg_m, inertia) = mass_properties(&node.inertia);
+    let (mass_kg, cg_m) = if mass_kg > 0.0 { (mass_kg, cg_m) } else { (LEAST, node.origin_m) };
+    let inertia = inertia + Matrix3::identity() * LEAST;
+    let full = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|at| inertia[at]);
+    xml.leaf(
+        "inertial",
+        &[
+            ("pos", triple(&(cg_m - node.origin_m))),
+            ("mass", numbers(&[mass_kg])),
+            ("fullinertia", numbers(&full)),
+        ],
+    );
+    for (from_m, to_m, radius_m) in &node.rods {
+        let ends = format!("{} {}", triple(&(from_m - node.origin_m)), triple(&(to_m - node.origin_m)));
+        xml.leaf(
+            "geom",
+            &[
+                ("type", "capsule".into()),
+                ("fromto", ends),
+                ("size", numbers(&[*radius_m])),
+                ("contype", "0".into()),
+                ("conaffinity", "0".into()),
+            ],
+        );
+    }
+}
+
+fn joint(
+    hinge: &Hinge,
+    origin_m: &Vector3<f64>,
+    motors: &BTreeMap<String, Motor>,
+) -> Vec<(&'static str, String)> {
+    let mut out = vec![
+        ("name", hinge.name.clone()),
+        ("type", if hinge.slides { "slide" } else { "hinge" }.to_string()),
+        ("axis", triple(&hinge.axis)),
+        ("pos", triple(&(hinge.at_m - origin_m))),
+    ];
+    match hinge.role {
+        Role::Motor => {
+            if let Some(motor) = motors.get(&hinge.name) {
+                out.push(("armature", numbers(&[motor.armature_kgm2])));
+            }
+        }
+        Role::Spring(working) => {
+            out.push(("stiffness", numbers(&[working.tangent_nm_per_rad()])));
+            out.push(("springref", numbers(&[working.rest_rad()])));
+        }
+        Role::Play(half_rad) => out.push(("range", numbers(&[-half_rad, half_rad]))),
+    }
+    out
+}
+
+/// A passive joint follows the motors and the gears of its drivers: a tendon that stays at zero.
+fn couplings(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
+    let driven: Vec<&str> = snapshot.case_joints();
+    let has_gear =
+        |joint: &str| nodes.iter().flat_map(|n| &n.hinges).any(|h| h.name == format!("{joint}.gear"));
+    let passive: Vec<_> = snapshot.structure.joints().filter(|joint| !joint.is_driven()).collect();
+    if passive.is_empty() {
+        return;
+    }
+    xml.open("tendon", &[]);
+    for joint in &passive {
+        let JointAngle::Coupled(terms) = &joint.angle else { continue };
+        xml.open("fixed", &[("name", format!("{}.coupling", joint.name))]);
+        xml.leaf("joint", &[("joint", joint.name.clone()), ("coef", "1".into())]);
+        for (index, factor) in terms {
+            let driver = driven[*index];
+            let geared = has_gear(driver).then(|| format!("{driver}.gear"));
+            for hinge in [Some(driver.to_string()), geared].into_iter().flatten() {
+                xml.leaf("joint", &[("joint", hinge), ("coef", numbers(&[-factor]))]);
+            }
+        }
+        xml.close();
+    }
+    xml.close();
+    xml.open("equality", &[]);
+    for joint in &passive {
+        let tendon = format!("{}.coupling", joint.name);
+        xml.leaf("tendon", &[("tendon1", tendon), ("polycoef", "0 0 0 0 0".into())]);
+    }
+    xml.close();
+}
+
+fn actuators(xml: &mut Xml, snapshot: &Snapshot, motors: &BTreeMap<String, Motor>) {
+    xml.open("actuator", &[]);
+    for joint in snapshot.case_joints() {
+        let mut attributes = vec![("name", joint.to_string()), ("joint", joint.to_string())];
+        if let Some(peak_nm) = motors.get(joint).and_then(|motor| motor.peak_nm) {
+            attributes.push(("ctrlrange", numbers(&[-peak_nm, peak_nm])));
+        }
+        xml.leaf("motor", &attributes);
+    }
+    xml.close();
+}
+
+/// The pose of the case: with all springs straight, in which frequencies and torques are compared, and deflected.
+fn keyframes(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
+    let pose_rad: Vec<f64> = snapshot.case.pose_deg.iter().map(|deg| deg.to_radians()).collect();
+    let angle = |name: &str| {
+        let joint = snapshot.structure.joints().find(|joint| joint.name == name);
+        joint.map_or(0.0, |joint| joint.angle.of(&pose_rad))
+    };
+    let position = |deflected: bool| {
+        let of = |hinge: &Hinge| match hinge.role {
+            Role::Motor => angle(&hinge.name),
+            Role::Spring(working) if deflected => working.deflection_rad,
+            _ => 0.0,
+        };
+        numbers(&nodes.iter().flat_map(|node| &node.hinges).map(of).collect::<Vec<_>>())
+    };
+    xml.open("keyframe", &[]);
+    xml.leaf("key", &[("name", "pose".into()), ("qpos", position(false))]);
+    xml.leaf("key", &[("name", "deflected".into()), ("qpos", position(true))]);
+    xml.close();
+}
+
+/// Whether a solid can have the inertia of a body: no principal moment exceeds the sum of the others.
+fn is_solid(node: &Node) -> bool {
+    let (_, _, inertia) = mass_properties(&node.inertia);
+    let moments = (inertia + Matrix3::identity() * LEAST).symmetric_eigenvalues();
+    2.0 * moments.max() <= moments.sum() * (1.0 + 1e-9)
+}

@@ -1,0 +1,64 @@
+//! To other tools and back: robots of URDF files as arms, and arms as models for finite elements, simulation and purchase.
+//!
+//! - In: [`import`] makes an arm of the way from the root of a URDF file ([`urdf_file`], read by the crate `urdf-rs`) to a tip.
+//!   [`given`] reads what a URDF does not know, the stiffness of the joints; [`report`] says what became of the rest.
+//! - Out: [`export`] writes an arm in a load case. [`snapshot`] has its springs at their working points, and [`tree`] makes it a chain
+//!   of rigid bodies for [`mjcf`] and [`urdf_out`]. [`calculix`] makes solids of it, [`bill`] and [`design_table`] make tables.
+//!   [`left_out`] says what a file cannot carry, with its share of the tip's deflection.
+
+pub(crate) mod bill;
+pub(crate) mod calculix;
+mod csv_text;
+pub(crate) mod design_table;
+pub(crate) mod export;
+pub(crate) mod given;
+pub(crate) mod import;
+pub(crate) mod left_out;
+pub(crate) mod mjcf;
+pub(crate) mod report;
+pub(crate) mod snapshot;
+pub(crate) mod tree;
+pub(crate) mod urdf_file;
+pub(crate) mod urdf_out;
+mod xml;
+
+use crate::arm::Arm;
+use crate::catalog::Catalogs;
+use crate::input::json::{Document, Faults};
+use serde_json::Value;
+
+/// The arm from the root of a URDF file to a link, and what `import.json` says of it.
+///
+/// `file` is the name of the file in messages. `stiffness` has the stiffness of the joints, as in docs/interchange.md; joints that it
+/// does not name are rigid.
+///
+/// # Errors
+/// All faults of the URDF, or all of the stiffness file.
+///
+/// ```
+/// use armwright::catalog::Catalogs;
+/// use armwright::interchange::import_urdf;
+///
+/// let text = r#"<robot name="lever"><link name="base"/>
+///     <link name="arm"><inertial><origin xyz="0.4 0 0"/><mass value="2"/>
+///       <inertia ixx="0" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link>
+///     <joint name="j" type="continuous"><parent link="base"/><child link="arm"/><axis xyz="0 1 0"/></joint></robot>"#;
+/// let (arm, report) = import_urdf("lever.urdf", text, "arm", None, &Catalogs::default()).expect("a sound robot");
+/// assert_eq!((arm.mass_kg(), arm.driven_joint_names()), (2.0, vec!["j"]));
+/// assert_eq!(report["left_rigid"][0], "j");
+/// ```
+pub fn import_urdf(
+    file: &str,
+    text: &str,
+    tip: &str,
+    stiffness: Option<Document>,
+    catalogs: &Catalogs,
+) -> Result<(Arm, Value), Faults> {
+    let robot = import::Robot::read(file, text, tip)?;
+    let given = match stiffness {
+        Some(document) => given::read_given(document, &robot.joints(), catalogs)?,
+        None => Vec::new(),
+    };
+    let (arm, report) = robot.arm(&given);
+    Ok((arm, report.to_json()))
+}

@@ -1,0 +1,194 @@
+//! `import.json`: what became of the links and joints of a robot, what was guessed, and what was left rigid.
+
+use super::urdf_file::{UrdfTree, moves};
+use crate::arm::joint_law::Curve;
+use nalgebra::Isometry3;
+use serde_json::{Value, json};
+use urdf_rs::{Joint, JointType, Link};
+
+/// What is to be said of an import.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ImportReport {
+    source: String,
+    robot: String,
+    tip: String,
+    joints: Vec<Value>,
+    joined: Vec<Value>,
+    lumped: Vec<Value>,
+    guessed: Vec<String>,
+    /// Joints that nothing gives a stiffness.
+    pub left_rigid: Vec<String>,
+    ignored: Vec<String>,
+    tip_frame: Value,
+    /// Elements with an inertia that no solid has.
+    pub impossible: Vec<String>,
+    /// Mass of the arm \[kg\].
+    pub mass_kg: f64,
+}
+
+impl ImportReport {
+    pub(super) fn new(source: &str, robot: &str, tip: &str) -> Self {
+        Self {
+            source: source.into(),
+            robot: robot.into(),
+            tip: tip.into(),
+            joints: Vec::new(),
+            joined: Vec::new(),
+            lumped: Vec::new(),
+            guessed: Vec::new(),
+            left_rigid: Vec::new(),
+            ignored: Vec::new(),
+            tip_frame: Value::Null,
+            impossible: Vec::new(),
+            mass_kg: 0.0,
+        }
+    }
+
+    /// A joint of the arm, with the curve that the stiffness file gives it.
+    pub(super) fn joint(&mut self, joint: &Joint, curve: Option<&Curve>, coupled: Option<&[(String, f64)]>) {
+        let stiffness = match curve {
+            None => "rigid: not given",
+            Some(Curve::Rigid) => "rigid: given so",
+            Some(_) => "given",
+        };
+        if curve.is_none() {
+            self.left_rigid.push(joint.name.clone());
+        }
+        if joint.joint_type == JointType::Continuous {
+            self.guessed.push(format!("{}: continuous, taken as revolute without a range", joint.name));
+        }
+        let (lower, upper) = match joint.joint_type {
+            JointType::Continuous => (None, None),
+            _ => (finite(joint.limit.lower), finite(joint.limit.upper)),
+        };
+        if let Some((driver, factor)) = coupled.and_then(|terms| terms.first()) {
+            let offset_deg = joint.mimic.as_ref().and_then(|mimic| mimic.offset).unwrap_or(0.0).to_degrees();
+            self.guessed.push(format!(
+                "{}: a passive joint, {factor} times {driver}; its offset of {offset_deg} deg is in the zero position",
+                joint.name
+            ));
+        }
+        self.joints.push(json!({
+            "name": joint.name,
+            "type": word(joint),
+            "lower_deg": lower.map(f64::to_degrees),
+            "upper_deg": upper.map(f64::to_degrees),
+            "max_torque_nm": finite(joint.limit.effort).filter(|x| *x > 0.0),
+            "max_speed_rad_s": finite(joint.limit.velocity).filter(|x| *x > 0.0),
+            "stiffness": stiffness,
+            "coupled": coupled.and_then(|terms| terms.first()).map(|(driver, factor)| json!({driver.as_str(): factor})),
+        }));
+    }
+
+    /// A joint on the way to the tip that does not move.
+    pub(super) fn joined(&mut self, joint: &Joint, link: &str, angle_rad: f64) {
+        self.joined.push(json!({
+            "joint": joint.name, "type": word(joint), "link": joint.child.link, "onto": link,
+            "held_at_deg": moves(joint).then(|| angle_rad.to_degrees()),
+        }));
+    }
+
+    /// A link beside the way, which goes with a link of the arm.
+    pub(super) fn lumped(&mut self, link: &Link, onto: &str, by: &Joint) {
+        self.lumped.push(json!({
+            "link": link.name, "onto": onto, "mass_kg": link.inertial.mass.value, "joint": by.name, "type": word(by),
+        }));
+        let limits = &by.limit;
+        if moves(by) && by.joint_type != JointType::Continuous && (limits.lower > 0.0 || limits.upper < 0.0) {
+            self.guessed.push(format!(
+                "{}: beside the way to the tip, held at zero, which is outside its range of {} to {}",
+                by.name, limits.lower, limits.upper
+            ));
+        }
+    }
+
+    /// What holds of the whole robot. `tip` is the frame of the tip link in the world.
+    pub(super) fn finish(&mut self, tree: &UrdfTree, tip: &Isometry3<f64>, name: &str) {
+        let (roll, pitch, yaw) = tip.rotation.euler_angles();
+        self.tip_frame = json!({
+            "xyz_m": tip.translation.vector.as_slice(),
+            "rpy_deg": [roll.to_degrees(), pitch.to_degrees(), yaw.to_degrees()],
+        });
+        let shapes: usize = tree.links.iter().map(|link| link.visual.len() + link.collision.len()).sum();
+        if shapes > 0 {
+            self.ignored.push(format!("{shapes} meshes and shapes of <visual> and <collision>"));
+        }
+        let damped = tree.joints.iter().filter(|joint| joint.dynamics.is_some()).count();
+        if damped > 0 {
+            self.ignored.push(format!("damping and friction of {damped} joints (<dynamics>)"));
+        }
+        let outboard = tree.child_joints(name).count();
+        if outboard > 0 {
+            self.guessed
+                .push(format!("what the tip link \"{name}\" carries is part of the arm, held at zero"));
+        }
+        self.guessed.push(
+            "links are rigid: a URDF has neither sections nor materials, and its bodies have the drives in them".into(),
+        );
+    }
+
+    /// The report as `import.json` has it.
+    pub(crate) fn to_json(&self) -> Value {
+        json!({
+            "source": self.source,
+            "robot": self.robot,
+            "tip": self.tip,
+            "tip_frame_at_zero": self.tip_frame,
+            "tip_frame_note": "arms measure payload and tip force in a last frame that is parallel to the root's at zero angles",
+            "mass_kg": self.mass_kg,
+            "payload": null,
+            "gravity_m_s2": 9.81,
+            "joints": self.joints,
+            "joined": self.joined,
+            "lumped": self.lumped,
+            "guessed": self.guessed,
+            "left_rigid": self.left_rigid,
+            "ignored": self.ignored,
+            "impossible_inertias": self.impossible,
+        })
+    }
+
+    /// The report in words.
+    pub(crate) fn to_text(&self) -> String {
+        let passive = self.joints.iter().filter(|joint| !joint["coupled"].is_null()).count();
+        let mut out = format!(
+            "{}: {} joints to \"{}\", {:.3} kg\n",
+            self.robot,
+            self.joints.len(),
+            self.tip,
+            self.mass_kg
+        );
+        if passive > 0 {
+            out += &format!("  passive joints: {passive}\n");
+        }
+        out += &format!(
+            "  joints on the way that do not move: {}; links beside the way: {}\n",
+            self.joined.len(),
+            self.lumped.len()
+        );
+        if !self.left_rigid.is_empty() {
+            out +=
+                &format!("  left rigid, because nothing gives a stiffness: {}\n", self.left_rigid.join(", "));
+        }
+        if !self.impossible.is_empty() {
+            out += &format!("  no solid has the inertia of: {}\n", self.impossible.join(", "));
+        }
+        out
+    }
+}
+
+fn finite(x: f64) -> Option<f64> {
+    Some(x).filter(|x| x.is_finite())
+}
+
+fn word(joint: &Joint) -> &'static str {
+    match joint.joint_type {
+        JointType::Revolute => "revolute",
+        JointType::Continuous => "continuous",
+        JointType::Prismatic => "prismatic",
+        JointType::Fixed => "fixed",
+        JointType::Floating => "floating",
+        JointType::Planar => "planar",
+        JointType::Spherical => "spherical",
+    }
+}

@@ -1,0 +1,286 @@
+//! An arm as a chain of rigid bodies with hinges between them, all angles zero: what simulators and URDF files know.
+//!
+//! A driven joint is a hinge that a motor turns, and the gear is a hinge with a spring in series with it. A bearing is two hinges
+//! in series with both. A link is rigid, or it is cut into rigid pieces with springs between them: in the middle of each of `N`
+//! equal parts two hinges bend, one twists, and three slides shear and stretch. That converges with 1/N².
+
+use super::snapshot::{Snapshot, Working};
+use crate::arm::LinkModel;
+use crate::arm::structure::{Beam, LinkPiece};
+use crate::mechanics::beam::{line_stiffnesses, tube_inertia};
+use crate::mechanics::chain::{ElasticElement, Item, OwnMass, Yielding};
+use crate::mechanics::{Twist, angular, body_inertia, linear};
+use nalgebra::{Matrix3, Matrix6, Vector3};
+use std::collections::BTreeMap;
+
+/// Radius with which a link without section is drawn \[m\].
+const THIN_M: f64 = 0.02;
+/// Most hinges of one body in MuJoCo.
+const MOST_HINGES: usize = 6;
+
+/// What a hinge is for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Role {
+    /// A motor turns it.
+    Motor,
+    /// A spring holds it.
+    Spring(Working),
+    /// It is free within a half width \[rad\]: backlash.
+    Play(f64),
+}
+
+/// One axis about which a body turns against the body before it, or along which it slides.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Hinge {
+    /// Name.
+    pub name: String,
+    /// Name of the elastic element.
+    pub element: String,
+    /// Direction in the world, all angles zero; a unit vector.
+    pub axis: Vector3<f64>,
+    /// Place in the world, all angles zero \[m\].
+    pub at_m: Vector3<f64>,
+    /// Whether it slides.
+    pub slides: bool,
+    /// What it is for.
+    pub role: Role,
+}
+
+/// A rigid body and the hinges that carry it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Node {
+    /// Name.
+    pub name: String,
+    /// Place of its frame in the world, all angles zero \[m\].
+    pub origin_m: Vector3<f64>,
+    /// Hinges from the body before it, base to tip; the first body has none.
+    pub hinges: Vec<Hinge>,
+    /// Inertia about the world's origin, all angles zero.
+    pub inertia: Matrix6<f64>,
+    /// Rods to draw: ends and radius \[m\].
+    pub rods: Vec<(Vector3<f64>, Vector3<f64>, f64)>,
+}
+
+/// Mass, centre of gravity and inertia about it of a rigid body whose inertia about the world's origin is given.
+pub(crate) fn mass_properties(inertia: &Matrix6<f64>) -> (f64, Vector3<f64>, Matrix3<f64>) {
+    let mass_kg = inertia[(0, 0)];
+    if mass_kg == 0.0 {
+        return (0.0, Vector3::zeros(), inertia.fixed_view::<3, 3>(3, 3).into_owned());
+    }
+    let cg_m = Vector3::new(inertia[(1, 5)], -inertia[(0, 5)], inertia[(0, 4)]) / mass_kg;
+    let cross = cg_m.cross_matrix();
+    let about_cg = inertia.fixed_view::<3, 3>(3, 3) + mass_kg * cross * cross;
+    (mass_kg, cg_m, 0.5 * (about_cg + about_cg.transpose()))
+}
+
+/// How an arm becomes a tree.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct TreeOptions {
+    /// Whether gears, bearings and frames are hinges with springs; else they are rigid.
+    pub springs: bool,
+    /// In how many pieces flexible links are cut; 0 for rigid links.
+    pub pieces: usize,
+    /// How the pieces yield.
+    pub links: LinkModel,
+    /// Half width of the backlash of joints that have one \[rad\].
+    pub plays: BTreeMap<String, f64>,
+}
+
+/// The bodies of an arm, base to tip.
+pub(crate) fn tree(snapshot: &Snapshot, options: &TreeOptions) -> Vec<Node> {
+    let mut builder = Builder { options, nodes: Vec::new() };
+    builder.open("base", Vector3::zeros());
+    let posed = snapshot.at_zero();
+    let mut workings = snapshot.working_points().into_iter();
+    for item in &posed.items {
+        match item {
+            Item::Body(body) => builder.last().inertia += body.inertia(),
+            // forces are no part of a tree
+            Item::Load(_) => {}
+            Item::Elastic(element) => {
+                let workings = workings.next().unwrap_or_default();
+                match &element.own {
+                    Some(own) => builder.link(snapshot.link(own.piece), own),
+                    None => builder.springs(element, &workings),
+                }
+            }
+        }
+    }
+    builder.nodes
+}
+
+struct Builder<'o> {
+    options: &'o TreeOptions,
+    nodes: Vec<Node>,
+}
+
+impl Builder<'_> {
+    fn open(&mut self, name: &str, origin_m: Vector3<f64>) {
+        self.nodes.push(Node {
+            name: name.into(),
+            origin_m,
+            hinges: Vec::new(),
+            inertia: Matrix6::zeros(),
+            rods: Vec::new(),
+        });
+    }
+
+    fn last(&mut self) -> &mut Node {
+        self.nodes.last_mut().expect("the base is opened first")
+    }
+
+    /// Adds the hinges of a joint, of its bearing, or of a frame.
+    fn springs(&mut self, element: &ElasticElement, workings: &[Working]) {
+        let is_joint = matches!(element.yielding, Yielding::Joint(_));
+        let yields = self.options.springs && workings.iter().any(|working| !working.is_rigid());
+        if !is_joint && !yields {
+            return;
+        }
+        // a joint is in one body with its bearing, whose name begins with the joint's
+        let node = element.name.strip_suffix(".bearing").unwrap_or(&element.name).to_string();
+        let last = self.last();
+        let shares = last.name == node && last.inertia == Matrix6::zeros();
+        if !shares || last.hinges.len() + element.twists.len() > MOST_HINGES - 2 {
+            self.open(&node, element.at_m);
+        }
+        if is_joint {
+            let name = element.name.clone();
+            let motor = hinge(&element.twists[0], name.clone(), &name, element.at_m, Role::Motor);
+            self.last().hinges.push(motor);
+            if let Some(half_rad) = self.options.plays.get(&name).copied() {
+                let name = format!("{name}.backlash");
+                let play = hinge(&element.twists[0], name, &element.name, element.at_m, Role::Play(half_rad));
+                self.last().hinges.push(play);
+            }
+        }
+        if !yields {
+            return;
+        }
+        for (i, (twist, working)) in element.twists.iter().zip(workings).enumerate() {
+            let name = match is_joint {
+                true => format!("{}.gear", element.name),
+                false => format!("{}_{}", element.name, i + 1),
+            };
+            let spring = hinge(twist, name, &element.name, element.at_m, Role::Spring(*working));
+            self.last().hinges.push(spring);
+        }
+    }
+
+    /// Adds a link with mass along it, whole or in pieces.
+    fn link(&mut self, link: Option<&LinkPiece>, own: &OwnMass) {
+        let Some(link) = link else { return };
+        let vector_m = own.frame.column(0) * link.vector_m.norm();
+        let radius_m = link.beam.map_or(THIN_M, |beam| {
+            let (width_m, height_m) = beam.section.outer_m();
+            width_m.min(height_m) / 2.0
+        });
+        match link.beam.filter(|beam| self.options.pieces > 0 && beam.flexibility > 0.0) {
+            Some(beam) => self.pieces(link, &beam, own, radius_m),
+            None => {
+                let node = self.last();
+                node.inertia += own.rigid;
+                node.rods.push((own.root_m, own.root_m + vector_m, radius_m));
+            }
+        }
+    }
+
+    /// Adds a link as pieces with springs between them.
+    fn pieces(&mut self, link: &LinkPiece, beam: &Beam, own: &OwnMass, radius_m: f64) {
+        let count = self.options.pieces;
+        let length_m = link.vector_m.norm();
+        let along = own.frame.column(0).into_owned();
+        let cut = |k: usize| match k {
+            0 => 0.0,
+            k if k > count => 1.0,
+            k => (k as f64 - 0.5) / count as f64,
+        };
+        for k in 0..=count {
+            let (from, to) = (cut(k), cut(k + 1));
+            let place = |xi: f64| own.root_m + along * (xi * length_m);
+            if k > 0 {
+                self.open(&format!("{}.{k}", link.name), place(from));
+                let hinges = piece_hinges(link, beam, own, place(from), k, self.options);
+                self.last().hinges.extend(hinges);
+            }
+            let model = self.options.links;
+            let mut inertia = piece_inertia(link, beam, own, (place(from), place(to)), model);
+            for body in &link.bodies {
+                // at zero angles the carried frame is parallel to the world's
+                let xi = (body.cg_m.dot(&along) / length_m).clamp(0.0, 1.0);
+                if xi >= from && (xi < to || k == count) {
+                    inertia += body_inertia(body.mass_kg, &(own.root_m + body.cg_m), &body.inertia_kgm2);
+                }
+            }
+            let node = self.last();
+            node.inertia += inertia;
+            node.rods.push((place(from), place(to), radius_m));
+        }
+    }
+}
+
+/// The hinge or slide of a twist.
+fn hinge(twist: &Twist, name: String, element: &str, at_m: Vector3<f64>, role: Role) -> Hinge {
+    let turn = angular(twist);
+    let slides = turn == Vector3::zeros();
+    let axis = if slides { linear(twist) } else { turn };
+    Hinge { name, element: element.into(), axis, at_m, slides, role }
+}
+
+/// Mass and inertia about the world's origin of a piece of a link between two places.
+fn piece_inertia(
+    link: &LinkPiece,
+    beam: &Beam,
+    own: &OwnMass,
+    (from_m, to_m): (Vector3<f64>, Vector3<f64>),
+    model: LinkModel,
+) -> Matrix6<f64> {
+    let length_m = (to_m - from_m).norm();
+    let line = tube_inertia(beam, model);
+    let mass_kg = (line.along_kg_per_m + link.harness_kg_per_m) * length_m;
+    let rod = mass_kg * length_m * length_m / 12.0;
+    let moments = Vector3::new(
+        line.polar_kg_m * length_m,
+        rod + line.rotary_y_kg_m * length_m,
+        rod + line.rotary_z_kg_m * length_m,
+    );
+    let inertia = own.frame * Matrix3::from_diagonal(&moments) * own.frame.transpose();
+    body_inertia(mass_kg, &((from_m + to_m) / 2.0), &inertia)
+}
+
+/// The springs between two pieces of a link: slides along the axes of the section and hinges about them.
+fn piece_hinges(
+    link: &LinkPiece,
+    beam: &Beam,
+    own: &OwnMass,
+    at_m: Vector3<f64>,
+    piece: usize,
+    options: &TreeOptions,
+) -> Vec<Hinge> {
+    let length_m = link.vector_m.norm() / options.pieces as f64;
+    let [bending_y, bending_z, shear, torsion, stretch] = line_stiffnesses(beam);
+    let all = [
+        ("stretch", 0, true, stretch, LinkModel::Full),
+        ("shear_y", 1, true, shear, LinkModel::Full),
+        ("shear_z", 2, true, shear, LinkModel::Full),
+        ("twist", 0, false, torsion, LinkModel::Full),
+        ("bend_y", 1, false, bending_y, LinkModel::Bending),
+        ("bend_z", 2, false, bending_z, LinkModel::Bending),
+    ];
+    let asked = |model: LinkModel| options.links == LinkModel::Full || model == options.links;
+    all.into_iter()
+        .filter(|(_, _, _, stiffness, model)| stiffness.is_finite() && asked(*model))
+        .map(|(word, column, slides, stiffness, _)| Hinge {
+            name: format!("{}.{piece}.{word}", link.name),
+            element: link.name.clone(),
+            axis: own.frame.column(column).into_owned(),
+            at_m,
+            slides,
+            // straight springs: they are at rest without a load
+            role: Role::Spring(Working {
+                load_nm: 0.0,
+                deflection_rad: 0.0,
+                tangent_rad_per_nm: beam.flexibility * length_m / stiffness,
+            }),
+        })
+        .collect()
+}

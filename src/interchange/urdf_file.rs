@@ -1,0 +1,248 @@
+//! Reading a URDF file as a tree: links, joints, and every fault of the file at once.
+//!
+//! The text is parsed by the crate `urdf-rs`. What it does not look at is checked here: names that are taken or unknown, links
+//! with two parents, circles, axes without direction, masses and inertias that no body can have.
+
+use crate::input::json::{Fault, Faults};
+use crate::input::names::unfit_name;
+use nalgebra::{Isometry3, Matrix3, SymmetricEigen, Translation3, UnitQuaternion, Vector3};
+use std::collections::BTreeMap;
+use urdf_rs::{Joint, JointType, Link, Pose, Robot};
+
+/// Negative principal moment that counts as rounding, per largest entry of the tensor.
+const ROUNDING: f64 = 1e-6;
+
+/// A robot as a tree of links.
+#[derive(Debug, Clone)]
+pub(crate) struct UrdfTree {
+    /// Name of the robot.
+    pub name: String,
+    /// The links, in the order of the file.
+    pub links: Vec<Link>,
+    /// The joints, in the order of the file.
+    pub joints: Vec<Joint>,
+}
+
+/// Whether a joint moves.
+pub(crate) fn moves(joint: &Joint) -> bool {
+    !matches!(joint.joint_type, JointType::Fixed)
+}
+
+/// Place and attitude of an `<origin>`.
+pub(crate) fn isometry(pose: &Pose) -> Isometry3<f64> {
+    let [roll, pitch, yaw] = pose.rpy.0;
+    let turn = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
+    Isometry3::from_parts(Translation3::from(Vector3::from(pose.xyz.0)), turn)
+}
+
+/// Inertia about the centre of gravity in axes of the inertial frame \[kg m²\].
+pub(crate) fn tensor(link: &Link) -> Matrix3<f64> {
+    let i = &link.inertial.inertia;
+    Matrix3::new(i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz)
+}
+
+impl UrdfTree {
+    /// Reads a robot from the text of a URDF file; `file` is its name in messages.
+    ///
+    /// # Errors
+    /// All faults of the file.
+    pub(crate) fn read(file: &str, text: &str) -> Result<Self, Faults> {
+        let fault = |name: &str, problem: String, hint: &str| Fault {
+            file: file.into(),
+            line: line_of(text, name),
+            field: name.into(),
+            problem,
+            hint: hint.into(),
+        };
+        let robot: Robot = urdf_rs::read_from_string(text).map_err(|e| {
+            let hint = "the file must be plain URDF: expand macros first with `xacro FILE.xacro > FILE.urdf`";
+            Faults(vec![Fault { line: None, ..fault("", format!("is no URDF: {e}"), hint) }])
+        })?;
+        let tree = Self { name: robot.name, links: robot.links, joints: robot.joints };
+        let faults: Vec<Fault> =
+            tree.problems().into_iter().map(|(name, problem, hint)| fault(&name, problem, hint)).collect();
+        if faults.is_empty() { Ok(tree) } else { Err(Faults(faults)) }
+    }
+
+    /// The link of a name.
+    pub(crate) fn link(&self, name: &str) -> Option<&Link> {
+        self.links.iter().find(|link| link.name == name)
+    }
+
+    /// The joint that carries a link; the root has none.
+    pub(crate) fn parent_joint(&self, link: &str) -> Option<&Joint> {
+        self.joints.iter().find(|joint| joint.child.link == link)
+    }
+
+    /// The joints that a link carries.
+    pub(crate) fn child_joints(&self, link: &str) -> impl Iterator<Item = &Joint> {
+        self.joints.iter().filter(move |joint| joint.parent.link == link)
+    }
+
+    /// The joints from the root to a link, in this order.
+    pub(crate) fn path_to(&self, tip: &str) -> Vec<&Joint> {
+        let mut path = Vec::new();
+        let mut link = tip;
+        while let Some(joint) = self.parent_joint(link) {
+            path.push(joint);
+            link = &joint.parent.link;
+        }
+        path.reverse();
+        path
+    }
+
+    /// The links that carry nothing, where an arm may end.
+    pub(crate) fn ends(&self) -> Vec<&str> {
+        let is_end = |link: &&Link| self.child_joints(&link.name).next().is_none();
+        self.links.iter().filter(is_end).map(|link| link.name.as_str()).collect()
+    }
+
+    /// Everything that is wrong: name of the link or joint, problem, and what to try.
+    fn problems(&self) -> Vec<(String, String, &'static str)> {
+        let mut out = Vec::new();
+        if self.links.is_empty() {
+            out.push((self.name.clone(), "has no link".into(), "give at least one <link>"));
+        }
+        let names = |kind: &str, names: Vec<&String>, out: &mut Vec<_>| {
+            for (i, name) in names.iter().enumerate() {
+                if names[..i].contains(name) {
+                    let problem = format!("the name of the {kind} is taken");
+                    out.push((name.to_string(), problem, "give each a name of its own"));
+                }
+                if let Some((problem, hint)) = unfit_name(name) {
+                    out.push((name.to_string(), problem, hint));
+                }
+            }
+        };
+        names("link", self.links.iter().map(|link| &link.name).collect(), &mut out);
+        names("joint", self.joints.iter().map(|joint| &joint.name).collect(), &mut out);
+        self.links.iter().for_each(|link| body_problems(link, &mut out));
+        self.joints.iter().for_each(|joint| self.joint_problems(joint, &mut out));
+        self.tree_problems(&mut out);
+        out
+    }
+
+    fn joint_problems(&self, joint: &Joint, out: &mut Vec<(String, String, &'static str)>) {
+        for end in [&joint.parent.link, &joint.child.link] {
+            if self.link(end).is_none() {
+                out.push((
+                    joint.name.clone(),
+                    format!("names the link \"{end}\", which is not in the file"),
+                    "",
+                ));
+            }
+        }
+        let axis = Vector3::from(joint.axis.xyz.0);
+        if moves(joint) && !(axis.norm() > 0.0 && axis.norm().is_finite()) {
+            out.push((
+                joint.name.clone(),
+                "has an axis without direction".into(),
+                "give <axis xyz=\"0 0 1\"/>",
+            ));
+        }
+        if let Some(mimic) = &joint.mimic
+            && !self.joints.iter().any(|other| other.name == mimic.joint)
+        {
+            let problem = format!("mimics \"{}\", which is no joint of the file", mimic.joint);
+            out.push((joint.name.clone(), problem, "name a joint, or remove <mimic>"));
+        }
+    }
+
+    /// Each link has one parent but one, which has none; and every way leads to it.
+    fn tree_problems(&self, out: &mut Vec<(String, String, &'static str)>) {
+        let mut parents: BTreeMap<&str, usize> = BTreeMap::new();
+        self.joints.iter().for_each(|joint| *parents.entry(&joint.child.link).or_default() += 1);
+        for (link, count) in &parents {
+            if *count > 1 {
+                let problem = format!("is the child of {count} joints");
+                out.push((link.to_string(), problem, "a URDF is a tree: remove the joints that close loops"));
+            }
+        }
+        let roots: Vec<&str> =
+            self.links.iter().map(|l| l.name.as_str()).filter(|l| !parents.contains_key(l)).collect();
+        if let [_, others @ ..] = roots.as_slice()
+            && !others.is_empty()
+        {
+            let problem = format!("is not the only root: {} have no parent either", others.join(", "));
+            out.push((roots[0].into(), problem, "join them to the tree by fixed joints"));
+        }
+        let circular = |link: &&Link| {
+            let mut at = link.name.as_str();
+            let mut steps = 0;
+            while let Some(joint) = self.parent_joint(at) {
+                at = &joint.parent.link;
+                steps += 1;
+                if steps > self.joints.len() {
+                    return true;
+                }
+            }
+            false
+        };
+        if let Some(link) = self.links.iter().find(circular) {
+            out.push((link.name.clone(), "is carried by itself: the joints go in a circle".into(), ""));
+        }
+    }
+}
+
+/// A body must have a mass and moments that are not negative.
+fn body_problems(link: &Link, out: &mut Vec<(String, String, &'static str)>) {
+    let mass_kg = link.inertial.mass.value;
+    if !(mass_kg >= 0.0 && mass_kg.is_finite()) {
+        out.push((
+            link.name.clone(),
+            format!("has a mass of {mass_kg} kg"),
+            "give a mass that is not negative",
+        ));
+    }
+    let tensor = tensor(link);
+    if tensor.iter().any(|entry| !entry.is_finite()) {
+        out.push((link.name.clone(), "has an inertia that is no number".into(), ""));
+        return;
+    }
+    let least = SymmetricEigen::new(tensor).eigenvalues.min();
+    if least < -ROUNDING * tensor.amax() {
+        let problem = format!("has a negative principal moment of inertia, {least} kg m²");
+        out.push((
+            link.name.clone(),
+            problem,
+            "check the signs of ixy, ixz and iyz: they are entries of the tensor",
+        ));
+    }
+}
+
+/// The line in which a link or joint of this name begins.
+fn line_of(text: &str, name: &str) -> Option<usize> {
+    let quoted = [format!("name=\"{name}\""), format!("name='{name}'")];
+    let begins = |line: &str| quoted.iter().any(|q| line.contains(q.as_str()));
+    text.lines().position(begins).map(|at| at + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_fault_of_a_file_is_found_at_once() {
+        let text = r#"<robot name="r">
+          <link name="a"><inertial><mass value="-1"/><inertia ixx="1" ixy="2" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+          <link name="b"/><link name="b"/><link name="c"/>
+          <joint name="j" type="revolute"><parent link="a"/><child link="d"/><axis xyz="0 0 0"/>
+            <limit effort="1" velocity="1"/><mimic joint="k"/></joint>
+        </robot>"#;
+        let faults = UrdfTree::read("r.urdf", text).expect_err("faults").0;
+        let said: Vec<String> = faults.iter().map(ToString::to_string).collect();
+        for part in [
+            "r.urdf:3: b: the name of the link is taken",
+            "r.urdf:2: a: has a mass of -1 kg",
+            "principal moment of inertia, -1",
+            "r.urdf:4: j: names the link \"d\"",
+            "axis without direction",
+            "mimics \"k\"",
+            "is not the only root",
+        ] {
+            assert!(said.iter().any(|s| s.contains(part)), "{part} in {said:#?}");
+        }
+        let no_xml = UrdfTree::read("r.urdf", "<robot").expect_err("no XML").to_string();
+        assert!(no_xml.contains("is no URDF") && no_xml.contains("xacro"), "{no_xml}");
+    }
+}

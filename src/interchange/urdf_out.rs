@@ -1,0 +1,109 @@
+//! URDF: the rigid arm, and a side file for what a URDF does not know, the stiffness of its joints.
+//!
+//! The side file is the stiffness file that an import reads, so that an exported arm comes back with the same torques and, its links
+//! being rigid, the same modes.
+
+use super::snapshot::Snapshot;
+use super::tree::{Node, TreeOptions, mass_properties, tree};
+use super::xml::{Xml, numbers, triple};
+use crate::arm::structure::JointAngle;
+use crate::arm::{Arm, Joint};
+use nalgebra::Vector3;
+use serde_json::{Map, Value, json};
+
+/// Writes an arm as URDF. The payload of the case is no part of it.
+pub(crate) fn urdf(arm: &Arm, snapshot: &Snapshot) -> String {
+    let nodes = tree(snapshot, &TreeOptions::default());
+    let comment = format!(
+        "{}: rigid links and joints; frames are parallel at zero angles; stiffness.json has the stiffness of the joints",
+        arm.name
+    );
+    let mut xml = Xml::new(&comment);
+    xml.open("robot", &[("name", arm.name.clone())]);
+    for (i, node) in nodes.iter().enumerate() {
+        link(&mut xml, &link_name(i, node), node);
+    }
+    for (i, pair) in nodes.windows(2).enumerate() {
+        joint(
+            &mut xml,
+            snapshot,
+            (&link_name(i, &pair[0]), &pair[0]),
+            (&link_name(i + 1, &pair[1]), &pair[1]),
+        );
+    }
+    if let Some((i, last)) = nodes.iter().enumerate().last() {
+        let tip_m = snapshot.at_zero().tip_m - last.origin_m;
+        xml.leaf("link", &[("name", "tip".into())]);
+        xml.open("joint", &[("name", "tip_frame".into()), ("type", "fixed".into())]);
+        ends(&mut xml, &link_name(i, last), "tip", &tip_m);
+        xml.close();
+    }
+    xml.finish()
+}
+
+/// Links and joints have names of their own in a URDF.
+fn link_name(number: usize, node: &Node) -> String {
+    if number == 0 { "base".into() } else { format!("{}_link", node.name) }
+}
+
+fn link(xml: &mut Xml, name: &str, node: &Node) {
+    let name = [("name", name.to_string())];
+    let (mass_kg, cg_m, inertia) = mass_properties(&node.inertia);
+    if mass_kg == 0.0 {
+        return xml.leaf("link", &name);
+    }
+    xml.open("link", &name);
+    xml.open("inertial", &[]);
+    xml.leaf("origin", &[("xyz", triple(&(cg_m - node.origin_m))), ("rpy", "0 0 0".into())]);
+    xml.leaf("mass", &[("value", numbers(&[mass_kg]))]);
+    let entries = [("ixx", 0, 0), ("ixy", 0, 1), ("ixz", 0, 2), ("iyy", 1, 1), ("iyz", 1, 2), ("izz", 2, 2)];
+    xml.leaf("inertia", &entries.map(|(key, i, j)| (key, numbers(&[inertia[(i, j)]]))));
+    xml.close();
+    xml.close();
+}
+
+fn ends(xml: &mut Xml, parent: &str, child: &str, xyz_m: &Vector3<f64>) {
+    xml.leaf("parent", &[("link", parent.into())]);
+    xml.leaf("child", &[("link", child.into())]);
+    xml.leaf("origin", &[("xyz", triple(xyz_m)), ("rpy", "0 0 0".into())]);
+}
+
+/// A joint. An arm has no ranges, so its joints are continuous.
+fn joint(xml: &mut Xml, snapshot: &Snapshot, (from, parent): (&str, &Node), (to, node): (&str, &Node)) {
+    xml.open("joint", &[("name", node.name.clone()), ("type", "continuous".into())]);
+    ends(xml, from, to, &(node.origin_m - parent.origin_m));
+    if let Some(hinge) = node.hinges.first() {
+        xml.leaf("axis", &[("xyz", triple(&hinge.axis))]);
+    }
+    let piece = snapshot.structure.joints().find(|piece| piece.name == node.name);
+    if let Some(JointAngle::Coupled(terms)) = piece.map(|piece| &piece.angle)
+        && let [(driver, factor)] = terms.as_slice()
+    {
+        let driver = snapshot.case_joints()[*driver].to_string();
+        xml.leaf("mimic", &[("joint", driver), ("multiplier", numbers(&[*factor])), ("offset", "0".into())]);
+    }
+    xml.close();
+}
+
+/// Passive joints with several drivers, which no `<mimic>` can follow.
+pub(crate) fn with_several_drivers(arm: &Arm) -> Vec<&Joint> {
+    arm.joints().filter(|joint| joint.coupled.as_ref().is_some_and(|terms| terms.len() != 1)).collect()
+}
+
+/// The stiffness file of an arm.
+pub(crate) fn stiffness_file(arm: &Arm) -> Value {
+    let joints: Map<String, Value> = arm
+        .joints()
+        .map(|joint| {
+            let (key, curve) = joint.curve.to_json();
+            let mut of_joint = json!({key: curve, "bearing": joint.bearing.map(|bearing| bearing.to_json())});
+            for (key, part) in [("gear", &joint.gear), ("motor", &joint.motor)] {
+                if let Some(part) = part {
+                    of_joint[key] = json!(part);
+                }
+            }
+            (joint.name.clone(), of_joint)
+        })
+        .collect();
+    json!({"joints": joints})
+}

@@ -1,0 +1,90 @@
+//! What springs without a name leave open in those that are named.
+//!
+//! Every joint and bearing yields a little. Those that yield too little to be worth their price are not in the model, and the
+//! named ones take over a part of what they do. How much follows from the linearized model with all of them in it: a spring
+//! without a name is taken to yield about as much as the stiffest that is named, before the readings are asked. The readings
+//! then say what it may be, `m ± P`, and a number `p` of the model, which moves by `-L` per unit of it, has the variance
+//! `σ² + L P Lᵀ + (L m)²`.
+
+use super::analysis::Positions;
+use super::fitted::Sample;
+use super::loads::Yielding;
+use super::normal::Factor;
+use super::rows::normal;
+use crate::arm::effect::kind::Yields;
+use crate::arm::structure::Piece;
+use crate::reconcile::readings::declared::BASE;
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+impl Positions {
+    /// Widens the standard deviations of the model by what springs without a name leave open.
+    pub(super) fn widen(&mut self) {
+        let unnamed = self.unnamed_springs();
+        let Some(usual) = self.stiffest_named().filter(|_| !unnamed.is_empty()) else { return };
+        let Some(further) = self.further_variances(&unnamed, usual) else { return };
+        let compliances = self.fitted.deviations.iter_mut().flatten();
+        let own = self.fitted.number_deviations.iter_mut().chain(compliances);
+        own.zip(&further).for_each(|(own, more)| *own = (own.powi(2) + more).sqrt());
+    }
+
+    /// The candidates that are single springs, and neither in the model nor part of a frame that is.
+    fn unnamed_springs(&self) -> Vec<usize> {
+        // the base and a first joint that tilt are one thing
+        let place = |c: &Yielding| match (c.yields, self.tree.pieces.first()) {
+            (Yields::Tilt, Some(Piece::Joint(first))) if c.at == first.name => BASE.to_string(),
+            _ => c.at.clone(),
+        };
+        let is_named = |c: usize| {
+            let candidate = &self.candidates[c];
+            self.fitted.effects.iter().any(|&e| {
+                let named = &self.candidates[e];
+                (named.yields, place(named)) == (candidate.yields, place(candidate))
+                    || self.tree.contains(named, candidate)
+            })
+        };
+        let is_spring = |c: &usize| {
+            let candidate = &self.candidates[*c];
+            self.considered[*c] && candidate.play_nm.is_none() && candidate.yields != Yields::Frame
+        };
+        (0..self.candidates.len()).filter(is_spring).filter(|c| !is_named(*c)).collect()
+    }
+
+    /// The least compliance of a single spring that is named \[rad/(N m)\].
+    fn stiffest_named(&self) -> Option<f64> {
+        let named = self.fitted.effects.iter().zip(&self.fitted.compliances);
+        let springs = named.filter(|(e, own)| self.candidates[**e].play_nm.is_none() && own.len() == 1);
+        springs.map(|(_, own)| own[0]).filter(|c| *c > 0.0).reduce(f64::min)
+    }
+
+    /// What the springs without a name add to the variance of every number, those of the geometry first. `usual` is the
+    /// prior standard deviation of their compliances. `None` if the equations are singular.
+    fn further_variances(&self, unnamed: &[usize], usual: f64) -> Option<Vec<f64>> {
+        let all: Vec<&Sample> = self.samples.iter().collect();
+        let from_level = self.fitted.geometry.level_to_instrument();
+        let gravity = &self.fitted.geometry.gravity;
+        let equations = normal(&all, &self.numbers, &self.fitted, &mut |sample, _, columns| {
+            for &candidate in unnamed {
+                sample.deflection.per_compliance(candidate, gravity, |by| columns.push(from_level * by));
+            }
+        });
+        let (own, count) = (equations.own, unnamed.len());
+        let factor = Factor::new(&equations.curvature, &(0..own).collect::<Vec<_>>())?;
+        let cross = equations.curvature.view((0, own), (own, count)).into_owned();
+        let columns: Vec<DVector<f64>> =
+            (0..count).map(|k| factor.solve(&cross.column(k).into_owned())).collect();
+        let moves = DMatrix::from_columns(&columns);
+        let whole = equations.curvature.view((own, own), (count, count));
+        // in units of the usual compliance; errors of the readings count as the estimator sees them
+        let per = (usual / self.fitted.robust_factor).powi(2);
+        let seen = (whole - cross.transpose() * &moves) * per + DMatrix::identity(count, count);
+        let pull = equations.gradient.rows(own, count) - moves.transpose() * equations.gradient.rows(0, own);
+        let seen = Cholesky::new(seen)?;
+        // no spring yields the wrong way
+        let likely = seen.solve(&(pull * (per / usual))).map(|c| c.max(0.0) * usual);
+        let variance = |row: usize| {
+            let row = moves.row(row).transpose();
+            row.dot(&seen.solve(&row)) * usual.powi(2) + row.dot(&likely).powi(2)
+        };
+        Some((0..own).map(variance).collect())
+    }
+}

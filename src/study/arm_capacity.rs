@@ -1,0 +1,162 @@
+//! How much an arm file holds at rest: the largest payload in each pose for which no joint bears more torque than it may.
+//!
+//! An arm file says nothing of motion and duty, so only static torques are judged. They are affine in the mass of the payload, whose
+//! centre stays where the case has it. A joint's torque is limited by what a file states, such as the `import.json` of a robot; else
+//! by the average torque of its gear and the continuous torque of its motor, if the catalogs know them.
+
+use super::capacity::{AtPose, Capacity, Limit};
+use crate::arm::Arm;
+use crate::arm::load::LoadCase;
+use crate::catalog::Catalogs;
+use crate::input::json::{Document, Faults, Node};
+use crate::mechanics::chain::Chain;
+
+/// The most torque that a joint may bear at rest.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct TorqueLimit {
+    /// Name of the joint.
+    pub joint: String,
+    /// What limits it.
+    pub check: &'static str,
+    /// The torque \[N m\].
+    pub most_nm: f64,
+}
+
+/// Reads the limits of a file with `{"joints": [{"name": "j1", "max_torque_nm": 87}]}`, such as `import.json`. Joints without a number
+/// have no limit.
+///
+/// # Errors
+/// All faults of the file.
+pub(crate) fn read_limits(document: Document) -> Result<Vec<TorqueLimit>, Faults> {
+    let root = document.root();
+    let limits = match root.value().get("joints") {
+        Some(_) => joints(&root),
+        None => {
+            root.fault("has no \"joints\"", "write {\"joints\": [{\"name\": \"j1\", \"max_torque_nm\": 87}]}")
+        }
+    };
+    document.finish(limits)
+}
+
+fn joints(root: &Node) -> Option<Vec<TorqueLimit>> {
+    let (_, node) = root.entries()?.into_iter().find(|(key, _)| *key == "joints")?;
+    let read: Vec<Option<Option<TorqueLimit>>> = node
+        .array()?
+        .iter()
+        .map(|joint| {
+            let entries = joint.entries()?;
+            let of = |key: &str| entries.iter().find(|(k, _)| *k == key).map(|(_, node)| node);
+            let Some(name) = of("name") else {
+                return joint.fault("lacks \"name\"", "name the joint");
+            };
+            let joint = name.string()?.to_string();
+            match of("max_torque_nm").filter(|node| !node.is_null()) {
+                None => Some(None),
+                Some(node) => {
+                    Some(Some(TorqueLimit { joint, check: "torque limit", most_nm: node.positive()? }))
+                }
+            }
+        })
+        .collect();
+    Some(read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect())
+}
+
+/// The limits of the gears and motors that an arm names.
+pub(crate) fn limits_of_parts(arm: &Arm, catalogs: &Catalogs) -> Vec<TorqueLimit> {
+    let of_joint = |joint: &crate::arm::Joint| {
+        let gear = joint.gear.as_ref().and_then(|name| catalogs.gear(name).ok());
+        let motor = joint.motor.as_ref().and_then(|name| catalogs.motor(name).ok());
+        let average_nm = gear.and_then(|gear| gear.average_torque_limit_nm);
+        let continuous_nm = gear.zip(motor).and_then(|(gear, motor)| {
+            Some(motor.rated_torque_nm? * gear.ratio * gear.efficiency.unwrap_or(1.0))
+        });
+        let limit = |check, most_nm: Option<f64>| {
+            most_nm.map(|most_nm| TorqueLimit { joint: joint.name.clone(), check, most_nm })
+        };
+        [
+            limit("average torque of the gear", average_nm),
+            limit("continuous torque of the motor", continuous_nm),
+        ]
+    };
+    arm.joints().filter(|joint| joint.coupled.is_none()).flat_map(of_joint).flatten().collect()
+}
+
+/// The largest payload of an arm in its cases.
+pub(crate) fn arm_capacity(arm: &Arm, cases: &[LoadCase], limits: &[TorqueLimit]) -> Capacity {
+    let mut table: Vec<AtPose> = cases
+        .iter()
+        .map(|case| {
+            let structure = arm.structure_in(case);
+            let tip_m = Chain::new(&structure, case.links).pose(case).tip_m;
+            AtPose {
+                pose: case.name.clone(),
+                reach_m: (tip_m - arm.down * arm.down.dot(&tip_m)).norm(),
+                limit: limit(arm, case, limits),
+            }
+        })
+        .collect();
+    table.sort_by(|a, b| a.reach_m.total_cmp(&b.reach_m));
+    let least = table.iter().min_by(|a, b| a.limit.payload_kg.total_cmp(&b.limit.payload_kg));
+    let (limit, pose) = match least {
+        Some(at) => (at.limit.clone(), at.pose.clone()),
+        None => {
+            (Limit { payload_kg: f64::INFINITY, piece: String::new(), check: String::new() }, String::new())
+        }
+    };
+    Capacity { limit, pose, table }
+}
+
+/// The largest payload in a case.
+fn limit(arm: &Arm, case: &LoadCase, limits: &[TorqueLimit]) -> Limit {
+    let chain = Chain::new(&arm.structure_in(case), case.links);
+    let torques_nm = |payload_kg: f64| {
+        let mut loaded = case.clone();
+        loaded.payload.mass_kg = payload_kg;
+        chain.pose(&loaded).statics().joint_torques_nm
+    };
+    let (empty, one_kg) = (torques_nm(0.0), torques_nm(1.0));
+    let mut least = Limit { payload_kg: f64::INFINITY, piece: String::new(), check: String::new() };
+    for limit in limits {
+        let Some(index) = empty.iter().position(|(name, _)| *name == limit.joint) else { continue };
+        let (without_nm, per_kg) = (empty[index].1, one_kg[index].1 - empty[index].1);
+        let payload_kg = match without_nm.abs() > limit.most_nm {
+            true => 0.0,
+            false if per_kg == 0.0 => f64::INFINITY,
+            false => (limit.most_nm.copysign(per_kg) - without_nm) / per_kg,
+        };
+        if payload_kg < least.payload_kg {
+            least = Limit { payload_kg, piece: limit.joint.clone(), check: limit.check.into() };
+        }
+    }
+    least
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::file::read_arm_document;
+    use crate::arm::load::read_load_cases;
+
+    #[test]
+    fn a_lever_holds_what_its_torque_allows() {
+        // 2 kg in the middle of 1 m and m at its end, on 50 N m: m = (50/9.81 - 1)/1; folded up nothing limits it
+        let text = r#"{"chain": [{"type": "joint", "name": "j", "axis": [0, 1, 0], "stiffness_nm_per_rad": null},
+            {"type": "link", "name": "l", "vector_m": [1, 0, 0], "mass_kg": 2}]}"#;
+        let arm = read_arm_document(Document::parse("a", text).expect("JSON"), &Catalogs::default())
+            .expect("an arm");
+        let cases = r#"[{"name": "out", "pose_deg": [0]}, {"name": "half", "pose_deg": [-60]}]"#;
+        let cases = read_load_cases(Document::parse("c", cases).expect("JSON"), &["j"]).expect("cases");
+        let limits = r#"{"robot": "r", "joints": [{"name": "j", "max_torque_nm": 50}, {"name": "k", "max_torque_nm": null}]}"#;
+        let limits = read_limits(Document::parse("l", limits).expect("JSON")).expect("limits");
+        let found = arm_capacity(&arm, &cases, &limits);
+        let out_kg = 50.0 / 9.81 - 1.0;
+        assert!((found.limit.payload_kg - out_kg).abs() < 1e-9 && found.pose == "out", "{found:?}");
+        assert!((found.table[0].limit.payload_kg - (100.0 / 9.81 - 1.0)).abs() < 1e-9, "{found:?}");
+        assert_eq!((found.limit.piece.as_str(), found.limit.check.as_str()), ("j", "torque limit"));
+        let faulty = r#"{"joints": [{"name": "j", "max_torque_nm": -5}, {"max_torque_nm": 5}]}"#;
+        assert_eq!(
+            read_limits(Document::parse("l", faulty).expect("JSON")).expect_err("two faults").0.len(),
+            2
+        );
+    }
+}

@@ -1,0 +1,83 @@
+"""Loads exported arms into MuJoCo and compares torques, deflection and frequencies with what the export says must be found.
+
+usage: mujoco_export.py BINARY FOLDER [NAME-OF-AN-ARM ...]    needs numpy and mujoco
+"""
+import os
+import sys
+
+import mujoco
+import numpy as np
+
+from arms import arms
+from common import Table, apart, export
+
+# rigid links are the same mechanics: what remains is rounding, and 1e-9 kg of bodies that MuJoCo wants to have a mass
+TORQUE_NM, TIP, MODE = 1e-6, 1e-6, 1e-4
+# links of 24 parts: the error of a uniformly loaded cantilever is 1/(2 N^2), that of frequencies below it
+PARTS, FLEXIBLE = 24, 2e-3
+
+
+def solve(path):
+    """Torques of the motors, deflection of the tip with the springs at rest under the load, and frequencies, motors held."""
+    m = mujoco.MjModel.from_xml_path(path)
+    d = mujoco.MjData(m)
+    mujoco.mj_resetDataKeyframe(m, d, m.key("pose").id)
+    mujoco.mj_forward(m, d)
+    mass = np.zeros((m.nv, m.nv))
+    try:
+        mujoco.mj_fullM(m, mass, d.qM)
+    except (TypeError, AttributeError):
+        mujoco.mj_fullM(m, d, mass)
+    # a passive joint follows the others of its tendon
+    follow = np.eye(m.nv)
+    passive = []
+    for t in range(m.ntendon):
+        wraps = range(m.tendon_adr[t], m.tendon_adr[t] + m.tendon_num[t])
+        terms = [(m.jnt_dofadr[m.wrap_objid[w]], m.wrap_prm[w]) for w in wraps]
+        for dof, coefficient in terms[1:]:
+            follow[terms[0][0], dof] = -coefficient / terms[0][1]
+        follow[terms[0][0], terms[0][0]] = 0
+        passive.append(terms[0][0])
+    load = follow.T @ -d.qfrc_bias
+    motors = {m.actuator(a).name: m.jnt_dofadr[m.actuator_trnid[a, 0]] for a in range(m.nu)}
+    springs = [v for v in range(m.nv) if v not in passive and v not in motors.values()]
+    stiffness = np.asarray(m.jnt_stiffness, float).reshape(m.njnt, -1)[:, 0][m.dof_jntid[springs]]
+    rest = m.qpos_spring[m.jnt_qposadr[m.dof_jntid[springs]]]
+    jacobian = np.zeros((3, m.nv))
+    mujoco.mj_jacSite(m, d, jacobian, None, m.site("tip").id)
+    tip = (jacobian @ follow)[:, springs] @ (rest + load[springs] / stiffness)
+    soft = 1 / np.sqrt(stiffness)
+    inner = soft[:, None] * (follow.T @ mass @ follow)[np.ix_(springs, springs)] * soft
+    values = np.sort(np.linalg.eigvalsh(inner))[::-1]
+    values = values[values > 1e-13 * values[0]]
+    return {name: load[dof] for name, dof in motors.items()}, tip, 1 / np.sqrt(values) / 2 / np.pi, m.body_mass.sum()
+
+
+def compare(table, name, arm, path, record, limits):
+    torques, tip, frequencies, mass = solve(path)
+    expected = record["expected"]
+    torque = max(abs(nm - expected["joint_torque_nm"][joint]) for joint, nm in torques.items())
+    known = expected["frequencies_hz"][:3]
+    mode = max(abs(a / b - 1) for a, b in zip(frequencies, known))
+    rows = [("torque Nm", torque, limits[0]), ("tip", apart(tip, expected["tip_displacement_m"]), limits[1]), ("three modes", mode, limits[2])]
+    if not arm["effects"]:  # which add masses
+        rows.append(("mass", abs(mass / (record["mass_kg"] + record["case"]["payload"]["mass_kg"]) - 1), 1e-7))
+    table.row(name, rows)
+
+
+def main(binary, folder, names):
+    table = Table()
+    for name, arm, cases in arms():
+        if names and name not in names:
+            continue
+        here = os.path.join(folder, arm["name"])
+        out, record = export(binary, here, arm, cases, "mjcf")
+        compare(table, name, arm, os.path.join(out, "arm.xml"), record, (TORQUE_NM, TIP, MODE))
+        if name in ("boxes", "layup", "bodies", "random 1"):
+            out, record = export(binary, here, arm, cases, "mjcf", "--flexible", PARTS)
+            compare(table, f"{name}, {PARTS} parts", arm, os.path.join(out, "arm.xml"), record, (TORQUE_NM, FLEXIBLE, FLEXIBLE))
+    table.end()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], sys.argv[2], sys.argv[3:])

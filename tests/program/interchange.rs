@@ -1,0 +1,472 @@
+//! Robots of URDF files come in, arms and designs go out to other programs, and both are the same machine as before.
+//!
+//! `tests/data/urdf` has five public robots, written down from published figures, and a made-up one with everything that a URDF
+//! may have beside a plain chain. The comparisons with CalculiX and MuJoCo are in `tests/interchange`; they run where these
+//! programs are found.
+
+use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// The robots and their tips.
+const ROBOTS: [(&str, &str); 6] = [
+    ("ur5e", "tool0"),
+    ("ur10e", "tool0"),
+    ("panda", "panda_hand_tcp"),
+    ("iiwa14", "tool0"),
+    ("irb120", "tool0"),
+    ("mixed", "flange"),
+];
+
+/// Poses in which the torques of a robot are compared.
+const POSES: usize = 50;
+
+fn project() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn urdf(name: &str) -> PathBuf {
+    project().join(format!("tests/data/urdf/{name}.urdf"))
+}
+
+fn armwright(words: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_armwright")).args(words).output().expect("it runs")
+}
+
+fn done(words: &[&str]) -> String {
+    let output = armwright(words);
+    assert!(output.status.success(), "{words:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("text")
+}
+
+fn read(path: impl AsRef<Path>) -> Value {
+    let text =
+        fs::read_to_string(path.as_ref()).unwrap_or_else(|e| panic!("{}: {e}", path.as_ref().display()));
+    serde_json::from_str(&text).expect("JSON")
+}
+
+fn write(path: &Path, value: &Value) -> String {
+    fs::write(path, value.to_string()).expect("written");
+    path.display().to_string()
+}
+
+/// Numbers from -1 to 1 that are the same everywhere.
+fn numbers() -> impl FnMut() -> f64 {
+    let mut state = 12345u64;
+    move || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+/// The torques of gravity on the joints of a robot, from its file alone: every link is placed by the joints above it, and a joint
+/// holds the weight of everything that it moves. `angles` are those of the joints that an arm to the tip has; others stand at zero.
+fn torques_nm(robot: &urdf_rs::Robot, angles: &BTreeMap<String, f64>) -> BTreeMap<String, f64> {
+    let place = |pose: &urdf_rs::Pose| {
+        let [roll, pitch, yaw] = pose.rpy.0;
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw)
+            * UnitQuaternion::from_axis_angle(&Vector3::y_axis(), pitch)
+            * UnitQuaternion::from_axis_angle(&Vector3::x_axis(), roll);
+        Isometry3::from_parts(Translation3::from(Vector3::from(pose.xyz.0)), turn)
+    };
+    // angle of a joint, and its slope with respect to each joint of `angles`
+    fn angle(
+        robot: &urdf_rs::Robot,
+        name: &str,
+        angles: &BTreeMap<String, f64>,
+    ) -> (f64, BTreeMap<String, f64>) {
+        let joint = robot.joints.iter().find(|j| j.name == name).expect("a joint");
+        if let Some(mimic) = &joint.mimic {
+            let factor = mimic.multiplier.unwrap_or(1.0);
+            let (value, slopes) = angle(robot, &mimic.joint, angles);
+            let slopes = slopes.into_iter().map(|(n, s)| (n, factor * s)).collect();
+            return (factor * value + mimic.offset.unwrap_or(0.0), slopes);
+        }
+        match angles.get(name) {
+            Some(value) => (*value, BTreeMap::from([(name.to_string(), 1.0)])),
+            None => (0.0, BTreeMap::new()),
+        }
+    }
+    let mut out: BTreeMap<String, f64> = angles.keys().map(|name| (name.clone(), 0.0)).collect();
+    for link in &robot.links {
+        // the joints above the link, from the root
+        let mut above = Vec::new();
+        let mut at = link.name.as_str();
+        while let Some(joint) = robot.joints.iter().find(|j| j.child.link == at) {
+            above.push(joint);
+            at = &joint.parent.link;
+        }
+        let mut frame = Isometry3::identity();
+        let mut axes = Vec::new();
+        for joint in above.iter().rev() {
+            frame *= place(&joint.origin);
+            let axis = Unit::new_normalize(Vector3::from(joint.axis.xyz.0));
+            let turns =
+                matches!(joint.joint_type, urdf_rs::JointType::Revolute | urdf_rs::JointType::Continuous);
+            if turns {
+                let (value, slopes) = angle(robot, &joint.name, angles);
+                axes.push((frame.rotation * axis.into_inner(), frame.translation.vector, slopes));
+                frame *= UnitQuaternion::from_axis_angle(&axis, value);
+            }
+        }
+        let centre = (frame * place(&link.inertial.origin)).translation.vector;
+        let weight_n = Vector3::new(0.0, 0.0, -9.81 * link.inertial.mass.value);
+        for (axis, at, slopes) in axes {
+            for (joint, slope) in slopes {
+                *out.get_mut(&joint).expect("a joint of the arm") +=
+                    slope * axis.dot(&(centre - at).cross(&weight_n));
+            }
+        }
+    }
+    out
+}
+
+#[test]
+fn imported_robots_have_the_torques_of_their_files() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, tip) in ROBOTS {
+        let out = folder.path().join(name);
+        let file = urdf(name).display().to_string();
+        done(&["import", &file, "--tip", tip, "--out", &out.display().to_string()]);
+        let report = read(out.join("import.json"));
+        let joints: Vec<String> = report["joints"]
+            .as_array()
+            .expect("joints")
+            .iter()
+            .filter(|joint| joint["coupled"].is_null())
+            .map(|joint| joint["name"].as_str().expect("a name").to_string())
+            .collect();
+        assert!(joints.len() >= 4, "{name}: {joints:?}");
+        let mut random = numbers();
+        let poses: Vec<Vec<f64>> =
+            (0..POSES).map(|_| joints.iter().map(|_| 150.0 * random()).collect()).collect();
+        let cases = json!(poses.iter().map(|pose| json!({"pose_deg": pose})).collect::<Vec<_>>());
+        let cases = write(&out.join("cases.json"), &cases);
+        let arm = out.join("arm.json").display().to_string();
+        let found: Value =
+            serde_json::from_str(&done(&["analyze", &arm, "--cases", &cases, "--json"])).expect("JSON");
+        let robot = urdf_rs::read_file(urdf(name)).expect("a URDF");
+        let whole: f64 = robot.links.iter().map(|link| link.inertial.mass.value).sum();
+        assert!((report["mass_kg"].as_f64().expect("kg") / whole - 1.0).abs() < 1e-12, "{name}: mass");
+        for (pose, found) in poses.iter().zip(found.as_array().expect("cases")) {
+            let angles = joints.iter().cloned().zip(pose.iter().map(|deg| deg.to_radians())).collect();
+            for (joint, nm) in torques_nm(&robot, &angles) {
+                let ours = found["joint_torque_nm"][&joint].as_f64().expect("a torque");
+                // both are sums of some hundred products of doubles
+                assert!((ours - nm).abs() < 1e-9, "{name}, {joint}: {ours} and {nm} Nm");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_an_import_lumps_guesses_and_leaves_rigid_is_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().display().to_string();
+    let file = urdf("mixed").display().to_string();
+    let said = done(&["import", &file, "--tip", "flange", "--out", &out]);
+    assert!(said.contains("left rigid"), "{said}");
+    let report = read(folder.path().join("import.json"));
+    let names = |key: &str, field: &str| {
+        let items = report[key].as_array().expect("a list").iter();
+        items.map(|item| item[field].as_str().expect("a name").to_string()).collect::<Vec<_>>()
+    };
+    assert_eq!(names("joined", "joint"), ["stand", "arm_bolts", "follows_camera"]);
+    assert_eq!(names("lumped", "link"), ["camera", "lens"]);
+    assert_eq!(report["joints"][3]["coupled"], json!({"elbow": -0.8}));
+    assert_eq!(report["joints"][4]["coupled"], json!({"elbow": -0.4}));
+    let guessed = report["guessed"].to_string();
+    for part in ["turn: continuous", "camera_tilt: beside the way to the tip, held at zero, which is outside"]
+    {
+        assert!(guessed.contains(part), "{part} in {guessed}");
+    }
+    // the stiffness file comes back filled in
+    let stiffness = folder.path().join("stiffness.json");
+    let mut given = read(&stiffness);
+    given["joints"]["elbow"] = json!({"gear": "CSG-20-100", "motor": "ILM70x18", "bearing": null});
+    given["joints"]["lift"] = json!({"stiffness_nm_per_rad": 2e4});
+    let given = write(&stiffness, &given);
+    done(&["import", &file, "--tip", "flange", "--stiffness", &given, "--out", &out]);
+    let arm = read(folder.path().join("arm.json"));
+    let elbow =
+        arm["chain"].as_array().expect("a chain").iter().find(|e| e["name"] == "elbow").expect("the elbow");
+    assert!(elbow["windup"]["k1_nm_per_rad"].as_f64().is_some_and(|k| k > 0.0));
+    assert_eq!(elbow["mass_kg"], 0.0);
+    let solved: Value =
+        serde_json::from_str(&done(&["analyze", &format!("{out}/arm.json"), "--json"])).expect("JSON");
+    assert!(solved["modes"][0]["frequency_hz"].as_f64().is_some_and(|hz| hz > 1.0));
+}
+
+#[test]
+fn faults_of_an_import_are_said_with_what_to_try() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out").display().to_string();
+    let fails = |words: &[&str], exit: i32, parts: &[&str]| {
+        let output = armwright(words);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(exit), "{words:?}: {said}");
+        for part in parts {
+            assert!(said.contains(part), "{part} in {said}");
+        }
+    };
+    let panda = urdf("panda").display().to_string();
+    let tip = |tip: &'static str| ["import", &panda, "--tip", tip, "--out", &out].map(str::to_string);
+    let words = tip("flange");
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    fails(&words, 3, &["\"flange\" is no link", "panda_link8", "panda_hand_tcp"]);
+    let words = tip("panda_leftfinger");
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    fails(&words, 3, &["panda_finger_joint1", "prismatic", "--tip"]);
+    let given = write(
+        &folder.path().join("given.json"),
+        &json!({"joints": {"panda_joint9": {"stiffness_nm_per_rad": 1e4}, "panda_joint1": {"stiffness_nm_per_rad": -1}}}),
+    );
+    let words = ["import", &panda, "--tip", "panda_hand", "--stiffness", &given, "--out", &out];
+    fails(
+        &words,
+        3,
+        &["2 faults", "\"panda_joint9\" is no moving joint", "panda_joint1.stiffness_nm_per_rad"],
+    );
+    fails(&["import", "no.urdf", "--tip", "a", "--out", &out], 7, &["no.urdf"]);
+    assert!(!folder.path().join("out").exists());
+}
+
+#[test]
+fn the_capacity_of_an_imported_robot_takes_a_joint_to_its_limit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().display().to_string();
+    done(&["import", &urdf("ur5e").display().to_string(), "--tip", "tool0", "--out", &out]);
+    let cases = json!([{"name": "out", "pose_deg": [0, 0, 0, 0, 0, 0]}, {"name": "bent", "pose_deg": [10, -70, 100, -30, 20, 0]}]);
+    let cases = write(&folder.path().join("cases.json"), &cases);
+    let arm = format!("{out}/arm.json");
+    let found: Value =
+        serde_json::from_str(&done(&["capacity", &arm, "--cases", &cases, "--json"])).expect("JSON");
+    assert_eq!((found["pose"].as_str(), found["check"].as_str()), (Some("out"), Some("torque limit")));
+    let payload_kg = found["payload_kg"].as_f64().expect("kg");
+    assert!(payload_kg > 3.0 && payload_kg < 30.0, "{payload_kg}");
+    let analyzed = done(&["analyze", &arm, "--payload-kg", &payload_kg.to_string(), "--json"]);
+    let analyzed: Value = serde_json::from_str(&analyzed).expect("JSON");
+    let joint = found["joint"].as_str().expect("a joint");
+    let limit_nm = if joint.starts_with("wrist") { 28.0 } else { 150.0 };
+    let torque_nm = analyzed["joint_torque_nm"][joint].as_f64().expect("Nm");
+    assert!((torque_nm.abs() - limit_nm).abs() < 1e-9, "{joint}: {torque_nm} Nm");
+    // the description of the IRB 120 has no torques
+    let other = folder.path().join("irb120").display().to_string();
+    done(&["import", &urdf("irb120").display().to_string(), "--tip", "tool0", "--out", &other]);
+    let output = armwright(&["capacity", &format!("{other}/arm.json")]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("--limits"));
+}
+
+/// An arm with a curve, bearings, tubes, a body, extras, a coupled joint and effects.
+fn arm() -> Value {
+    json!({"name": "every kind", "materials": {"steel": {"youngs_modulus_pa": 2.1e11, "shear_modulus_pa": 8.1e10, "density_kg_m3": 7850}},
+      "chain": [
+        {"type": "joint", "name": "j1", "axis": [0, 0, 1], "gear": "CSG-32-100", "motor": "ILM85x23", "gear_mass": "housed_unit",
+         "extras": {"housing_kg": 0.5, "brake_kg": 0.2}},
+        {"type": "link", "name": "column", "vector_m": [0, 0, 0.3], "mass_kg": 2},
+        {"type": "joint", "name": "j2", "axis": [0, 1, 0], "gear": "CSG-32-100", "motor": "ILM85x23", "gear_mass": "housed_unit"},
+        {"type": "link", "name": "upper", "vector_m": [0.6, 0, 0], "material": "steel",
+         "section": {"shape": "round_tube", "diameter_m": 0.1, "wall_m": 0.004},
+         "bodies": [{"mass_kg": 0.8, "cg_m": [0.3, 0.05, 0], "inertia_kgm2": [[0.002, 0, 0], [0, 0.002, 0], [0, 0, 0.001]]}]},
+        {"type": "joint", "name": "j3", "axis": [0, 1, 0], "stiffness_nm_per_rad": 4e4, "mass_kg": 3,
+         "bearing": {"tilt_stiffness_nm_per_rad": 1e5, "mass_kg": 0.4}},
+        {"type": "link", "name": "fore", "vector_m": [0.5, 0, 0], "material": "Structural steel S355",
+         "section": {"shape": "rectangular_tube", "width_m": 0.08, "height_m": 0.08, "wall_m": 0.004}},
+        {"type": "joint", "name": "level", "axis": [0, 1, 0], "stiffness_nm_per_rad": null, "mass_kg": 0.5, "coupled": {"j3": -1}},
+        {"type": "link", "name": "hand", "vector_m": [0.1, 0, 0]}],
+      "effects": [{"effect": "immersion", "at": "arm", "parameters": {"water_density_kg_m3": 1000, "added_mass_coefficient": 1}}]})
+}
+
+/// Exports the arm in a pose, and gives the folder's record.
+fn exported(folder: &Path, form: &str, flags: &[&str]) -> Value {
+    let file = write(&folder.join("arm.json"), &arm());
+    let out = folder.join(form).display().to_string();
+    let words =
+        ["export", &file, "--pose-deg", "20,-30,70", "--payload-kg", "6", "--to", form, "--out", &out];
+    done(&[words.as_slice(), flags].concat());
+    read(folder.join(form).join("export.json"))
+}
+
+#[test]
+fn a_bill_of_materials_weighs_what_the_arm_weighs() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let record = exported(folder.path(), "bom", &[]);
+    let mut table = csv::Reader::from_path(folder.path().join("bom/bom.csv")).expect("a table");
+    let header: Vec<String> = table.headers().expect("a header").iter().map(String::from).collect();
+    let first = ["item", "count", "part", "kind", "mass_kg", "length_m", "source", "confidence", "cost_eur"];
+    assert_eq!(header[..9], first);
+    let rows: Vec<csv::StringRecord> = table.records().map(|row| row.expect("a row")).collect();
+    let mass_kg: f64 = rows.iter().map(|row| row[4].parse::<f64>().expect("kg")).sum();
+    assert!((mass_kg - record["mass_kg"].as_f64().expect("kg")).abs() < 1e-12 * mass_kg, "{mass_kg}");
+    let of = |kind: &str| rows.iter().filter(|row| &row[3] == kind).collect::<Vec<_>>();
+    // the two equal gears are one row, and the motors another
+    assert_eq!((of("gear").len(), &of("gear")[0][1], &of("gear")[0][9]), (1, "2", "j1 j2"));
+    assert_eq!((of("motor").len(), &of("motor")[0][1]), (1, "2"));
+    assert!(of("gear")[0][2].contains("CSG-32-100") && of("gear")[0][6].len() > 3);
+    for kind in ["housing", "brake", "bearing", "drive", "offset", "link", "body"] {
+        assert!(!of(kind).is_empty(), "no {kind}");
+    }
+    assert!(
+        of("link").iter().any(|row| &row[5] == "0.5" && !row[8].is_empty()),
+        "a link with length and cost"
+    );
+}
+
+#[test]
+fn what_is_left_out_and_what_stays_make_the_whole_deflection() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("arm.json").display().to_string();
+    for (form, flags, left) in [
+        ("mjcf", [].as_slice(), vec!["water", "link_compliance", "link_compliance"]),
+        ("mjcf", ["--flexible", "4"].as_slice(), vec!["water"]),
+        ("calculix", [].as_slice(), vec!["water"]),
+    ] {
+        let record = exported(folder.path(), form, flags);
+        let words = ["analyze", &file, "--pose-deg", "20,-30,70", "--payload-kg", "6", "--json"];
+        let whole: Value = serde_json::from_str(&done(&words)).expect("JSON");
+        let vector =
+            |value: &Value| Vector3::from_iterator((0..3).map(|i| value[i].as_f64().expect("a number")));
+        let whole = vector(&whole["tip_displacement_m"]);
+        let stays = vector(&record["expected"]["tip_displacement_m"]).dot(&whole) / whole.norm_squared();
+        let items = record["left_out"].as_array().expect("a list");
+        let kinds: Vec<&str> = items.iter().map(|item| item["what"].as_str().expect("a word")).collect();
+        assert_eq!(kinds, left, "{form}");
+        let shares: f64 = items.iter().map(|item| item["tip_share"].as_f64().expect("a share")).sum();
+        assert!((stays + shares - 1.0).abs() < 1e-9, "{form}: {stays} and {shares}");
+        assert!(shares.abs() > 1e-3, "{form}: something was left out");
+    }
+}
+
+#[test]
+fn an_arm_that_goes_out_as_urdf_comes_back_the_same() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut dry = arm();
+    dry["effects"] = json!([]);
+    let file = write(&folder.path().join("dry.json"), &dry);
+    let back = folder.path().join("back");
+    let out = folder.path().join("out").display().to_string();
+    let into = back.display().to_string();
+    done(&["export", &file, "--to", "urdf", "--out", &out]);
+    let (urdf, stiffness) = (format!("{out}/arm.urdf"), format!("{out}/stiffness.json"));
+    done(&["import", &urdf, "--tip", "tip", "--stiffness", &stiffness, "--out", &into]);
+    let again = back.join("arm.json").display().to_string();
+    let mut random = numbers();
+    for _ in 0..5 {
+        let pose = [0; 3].map(|_| format!("{}", 150.0 * random())).join(",");
+        let solve = |file: &str| -> Value {
+            let words =
+                ["analyze", file, "--pose-deg", &pose, "--payload-kg", "6", "--links", "rigid", "--json"];
+            serde_json::from_str(&done(&words)).expect("JSON")
+        };
+        let (before, after) = (solve(&file), solve(&again));
+        for joint in ["j1", "j2", "j3"] {
+            let nm = |value: &Value| value["joint_torque_nm"][joint].as_f64().expect("Nm");
+            assert!((nm(&before) - nm(&after)).abs() < 1e-9, "{joint}: {} {}", nm(&before), nm(&after));
+        }
+        let modes = |value: &Value| {
+            let modes = value["modes"].as_array().expect("modes").iter();
+            modes.map(|mode| mode["frequency_hz"].as_f64().expect("Hz")).collect::<Vec<_>>()
+        };
+        let (before, after) = (modes(&before), modes(&after));
+        assert_eq!(before.len(), after.len());
+        for (a, b) in before.iter().zip(&after) {
+            assert!((a / b - 1.0).abs() < 1e-9, "{a} {b} Hz");
+        }
+    }
+}
+
+#[test]
+fn exports_have_the_same_bytes_and_refuse_what_they_cannot() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for form in ["calculix", "mjcf", "urdf", "json", "csv", "bom"] {
+        let bytes = || {
+            let record = exported(folder.path(), form, &[]);
+            let names = record["files"].as_array().expect("files").iter();
+            let file = |name: &Value| {
+                fs::read(folder.path().join(form).join(name.as_str().expect("a name"))).expect("a file")
+            };
+            names.map(file).collect::<Vec<_>>()
+        };
+        let first = bytes();
+        assert!(!first.is_empty() && first.iter().all(|file| !file.is_empty()));
+        assert_eq!(first, bytes(), "{form}");
+    }
+    let file = folder.path().join("arm.json").display().to_string();
+    let out = folder.path().join("x").display().to_string();
+    for (words, exit, part) in [
+        (vec!["--to", "step"], 2, "calculix, mjcf, urdf"),
+        (vec!["--to", "urdf", "--flexible", "4"], 2, "--to mjcf"),
+        (vec!["--to", "mjcf", "--pose-deg", "1,2"], 2, "3 driven joints: j1, j2, j3"),
+        (vec!["--to", "mjcf", "--case", "up"], 2, "the cases are: case"),
+    ] {
+        let output = armwright(&[["export", &file, "--out", &out].as_slice(), words.as_slice()].concat());
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(exit), "{words:?}: {said}");
+        assert!(said.contains(part), "{part} in {said}");
+    }
+    let output = armwright(&["export", "results/none#abc", "--to", "bom", "--out", &out]);
+    assert_eq!(output.status.code(), Some(7), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// A Python that has MuJoCo: `ARMWRIGHT_PYTHON`, that of `scripts/test`, or the system's.
+fn python() -> Option<String> {
+    let own = project().join("target/mujoco/bin/python").display().to_string();
+    let candidates = [std::env::var("ARMWRIGHT_PYTHON").ok(), Some(own), Some("python3".into())];
+    candidates.into_iter().flatten().find(|python| {
+        Command::new(python)
+            .args(["-c", "import mujoco, numpy"])
+            .output()
+            .is_ok_and(|output| output.status.success())
+    })
+}
+
+/// Runs a comparison of `tests/interchange`.
+fn compared(python: &str, script: &str, words: &[&str]) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = Command::new(python)
+        .arg(project().join("tests/interchange").join(script))
+        .args([env!("CARGO_BIN_EXE_armwright"), &folder.path().display().to_string()])
+        .args(words)
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .output()
+        .expect("it runs");
+    let said = String::from_utf8_lossy(&output.stdout);
+    println!("{said}");
+    assert!(output.status.success(), "{script}:\n{said}{}", String::from_utf8_lossy(&output.stderr));
+    assert!(said.lines().count() > 0, "{script} compared nothing");
+}
+
+#[test]
+fn mujoco_finds_the_torques_deflections_and_frequencies_of_exported_arms() {
+    match python() {
+        Some(python) => compared(&python, "mujoco_export.py", &[]),
+        None => eprintln!("SKIPPED: no Python with mujoco (set ARMWRIGHT_PYTHON)"),
+    }
+}
+
+#[test]
+fn mujoco_finds_the_torques_of_imported_robots() {
+    let robots = ROBOTS.map(|(name, tip)| format!("{}:{tip}", urdf(name).display()));
+    let robots = robots.each_ref().map(String::as_str);
+    match python() {
+        Some(python) => compared(&python, "mujoco_import.py", &robots),
+        None => eprintln!("SKIPPED: no Python with mujoco (set ARMWRIGHT_PYTHON)"),
+    }
+}
+
+#[test]
+fn calculix_finds_the_deflections_and_frequencies_of_exported_arms() {
+    let has = |program: &str| Command::new(program).arg("-v").output().is_ok();
+    if !has("ccx") || !has("python3") {
+        return eprintln!("SKIPPED: no ccx or no python3 on the PATH");
+    }
+    // all arms take a minute or more: ARMWRIGHT_CALCULIX=all
+    match std::env::var("ARMWRIGHT_CALCULIX").as_deref() {
+        Ok("all") => compared("python3", "calculix.py", &[]),
+        _ => compared("python3", "calculix.py", &["linkage", "bodies"]),
+    }
+}

@@ -1,0 +1,23 @@
+//! How tests run the program.
+
+use std::path::Path;
+use std::process::Command;
+
+/// The program with these words, in a folder.
+pub(crate) fn command(folder: &Path, words: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_armwright"));
+    command.current_dir(folder).args(words);
+    command
+}
+
+/// Exit code, -1 after a signal, and everything that was said.
+pub(crate) fn said(command: &mut Command) -> (i32, String) {
+    let output = command.output().expect("it runs");
+    let text = [output.stdout, output.stderr].concat();
+    (output.status.code().unwrap_or(-1), String::from_utf8_lossy(&text).into_owned())
+}
+
+/// Exit code, and everything that the program said to these words in a folder.
+pub(crate) fn armwright(folder: &Path, words: &[&str]) -> (i32, String) {
+    said(&mut command(folder, words))
+}
