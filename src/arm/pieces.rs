@@ -1,8 +1,8 @@
 //! Links of several pieces: steps, tapers, and factors for holes and inserts.
 //!
 //! A link with `pieces` is as many links, one behind the other. A taper is divided into [`SLICES`] pieces of equal length with
-//! the section at their middle: of a tube whose height halves towards its end the deflection under a load at the end is then 0.23 % too large
-//! (the error falls with the square of the number of slices).
+//! the section at their middle: where the height halves towards the end, the deflection under a load at the end is then 0.3 %
+//! too large (the error falls with the square of the number of slices).
 
 use super::body::{RigidBody, read_link_bodies};
 use super::keys::PIECE;
@@ -95,7 +95,8 @@ pub(crate) fn read_links(
     }
     let (link, factors) = (read_link(object, materials, catalogs), Factors::read(object));
     let (link, factors) = (link?, factors?);
-    if !factors.is_none() && matches!(link.body, LinkBody::Offset { .. }) {
+    let has_factor = object.has("stiffness_factor") || object.has("mass_factor");
+    if has_factor && matches!(link.body, LinkBody::Offset { .. }) {
         return object.node().fault(
             "has a factor and no section",
             "stiffness_factor and mass_factor belong to a tube; state the mass of an offset as mass_kg",

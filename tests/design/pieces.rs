@@ -30,7 +30,7 @@ fn bar(height_m: f64) -> Value {
 }
 
 /// A bar whose height falls from `h` at the root to `t` at the tip bends by `12 F / (E b g³) (ln(h/t) + 2t/h - t²/(2h²) - 3/2)`,
-/// `g = (h - t)/L`. Twelve slices err by 0.4 % at most down to a third of the height; the mass is exact.
+/// `g = (h - t)/L`. Twelve slices err by 0.6 % at most down to a third of the height; the mass is exact.
 #[test]
 fn a_tapered_cantilever_bends_as_its_closed_form_says() {
     let length_m: f64 = 0.6;
@@ -45,7 +45,7 @@ fn a_tapered_cantilever_bends_as_its_closed_form_says() {
         let expected = 12.0 * 100.0 * integral / (2.1e11 * 0.03);
         let found = deflection_m(&read, LinkModel::Bending, 100.0);
         println!("{root_m} to {tip_m}: {:.3e}", found / expected - 1.0);
-        assert!((found / expected - 1.0).abs() < 0.004, "{root_m} to {tip_m}: {found} {expected}");
+        assert!((found / expected - 1.0).abs() < 0.006, "{root_m} to {tip_m}: {found} {expected}");
         let mass_kg = 7850.0 * 0.03 * (root_m + tip_m) / 2.0 * length_m;
         assert!((read.mass_kg() / mass_kg - 1.0).abs() < 1e-12);
     }

@@ -53,6 +53,6 @@ fn the_printed_arm_has_steppers_with_planetary_gears() {
 #[test]
 fn the_palletizer_is_lighter_with_its_gas_spring() {
     let (run, summary) = run("palletizer.json", None);
-    answers("A palletizer with a gas spring", &run, &summary, 144);
+    answers("A palletizer with a gas spring", &run, &summary, 16);
     assert!(summary.contains("stiffness that they add to modes is left out"), "{summary}");
 }
