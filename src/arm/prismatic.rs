@@ -117,6 +117,25 @@ impl Prismatic {
     pub(crate) fn read(object: &Object) -> Option<Self> {
         let name = read_name(object);
         let axis = object.required("axis").and_then(|n| read_axis(&n));
+        let springs = Self::read_springs(object);
+        let mass_kg = object.or("mass_kg", 0.0, Node::non_negative);
+        let fixed_mass_kg = object.or("fixed_mass_kg", 0.0, Node::non_negative);
+        let bodies = read_prismatic_bodies(object);
+        let (stiffness_n_per_m, guide, moves) = springs?;
+        Some(Self {
+            name: name?,
+            axis: axis?,
+            stiffness_n_per_m,
+            guide,
+            moves,
+            mass_kg: mass_kg?,
+            fixed_mass_kg: fixed_mass_kg?,
+            bodies: bodies?,
+        })
+    }
+
+    /// Reads how a prismatic joint yields: its stiffness along the travel, its guide, and what travels.
+    pub(crate) fn read_springs(object: &Object) -> Option<(Option<f64>, Guide, Moves)> {
         let stiffness = match object.optional("stiffness_n_per_m") {
             Some(node) => positive_or_rigid(&node),
             None => object.node().fault(
@@ -126,19 +145,7 @@ impl Prismatic {
         };
         let guide = object.or("guide", Guide::default(), Guide::read);
         let moves = object.or("moves", Moves::default(), read_moves);
-        let mass_kg = object.or("mass_kg", 0.0, Node::non_negative);
-        let fixed_mass_kg = object.or("fixed_mass_kg", 0.0, Node::non_negative);
-        let bodies = read_prismatic_bodies(object);
-        Some(Self {
-            name: name?,
-            axis: axis?,
-            stiffness_n_per_m: stiffness?,
-            guide: guide?,
-            moves: moves?,
-            mass_kg: mass_kg?,
-            fixed_mass_kg: fixed_mass_kg?,
-            bodies: bodies?,
-        })
+        Some((stiffness?, guide?, moves?))
     }
 
     /// The joint as files write it.

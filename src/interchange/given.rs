@@ -5,11 +5,13 @@
 //! ```
 //!
 //! Each joint has the keys that it has in an arm file: `stiffness_nm_per_rad` (null is rigid), `windup` or `gear`; `motor`;
-//! `bearing`. The masses of named parts and of bearings are not added, because the bodies of a URDF have them.
+//! `bearing`. A prismatic joint has `stiffness_n_per_m`, `guide` and `moves`. The masses of named parts and of bearings are not
+//! added, because the bodies of a URDF have them.
 
 use crate::arm::bearing::Bearing;
 use crate::arm::file::{read_curve, read_joint_bearing};
 use crate::arm::joint_law::Curve;
+use crate::arm::prismatic::{Guide, Moves, Prismatic};
 use crate::catalog::Catalogs;
 use crate::input::json::{Document, Faults, Node};
 use serde_json::{Map, Value, json};
@@ -19,17 +21,56 @@ use serde_json::{Map, Value, json};
 pub(crate) struct GivenJoint {
     /// Name of the joint.
     pub name: String,
-    /// Torsion curve.
-    pub curve: Curve,
-    /// Output bearing.
-    pub bearing: Option<Bearing>,
-    /// Name of the gear.
-    pub gear: Option<String>,
-    /// Name of the motor.
-    pub motor: Option<String>,
+    /// How it yields.
+    pub springs: GivenSprings,
 }
 
-const KEYS: [&str; 6] = ["stiffness_nm_per_rad", "windup", "gear", "gear_mass", "motor", "bearing"];
+/// How a joint yields.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum GivenSprings {
+    /// One that turns.
+    Hinge {
+        /// Torsion curve.
+        curve: Curve,
+        /// Output bearing.
+        bearing: Option<Bearing>,
+        /// Name of the gear.
+        gear: Option<String>,
+        /// Name of the motor.
+        motor: Option<String>,
+    },
+    /// One that slides.
+    Slide {
+        /// Stiffness along the travel \[N/m\]; `None` is rigid.
+        stiffness_n_per_m: Option<f64>,
+        /// Guide.
+        guide: Guide,
+        /// What travels.
+        moves: Moves,
+    },
+}
+
+impl GivenSprings {
+    /// Whether the drive is given as rigid.
+    pub(crate) fn is_rigid(&self) -> bool {
+        match self {
+            Self::Hinge { curve, .. } => *curve == Curve::Rigid,
+            Self::Slide { stiffness_n_per_m, .. } => stiffness_n_per_m.is_none(),
+        }
+    }
+}
+
+/// A joint of which a stiffness may be given.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct MovingJoint<'a> {
+    /// Name.
+    pub name: &'a str,
+    /// Whether it slides and does not turn.
+    pub slides: bool,
+}
+
+const HINGE_KEYS: [&str; 6] = ["stiffness_nm_per_rad", "windup", "gear", "gear_mass", "motor", "bearing"];
+const SLIDE_KEYS: [&str; 3] = ["stiffness_n_per_m", "guide", "moves"];
 
 /// Reads a stiffness file for a robot with these joints.
 ///
@@ -37,7 +78,7 @@ const KEYS: [&str; 6] = ["stiffness_nm_per_rad", "windup", "gear", "gear_mass", 
 /// All faults of the file.
 pub(crate) fn read_given(
     document: Document,
-    joints: &[&str],
+    joints: &[MovingJoint],
     catalogs: &Catalogs,
 ) -> Result<Vec<GivenJoint>, Faults> {
     let root = document.root();
@@ -50,26 +91,42 @@ pub(crate) fn read_given(
     document.finish(given)
 }
 
-fn read_joint(name: &str, node: &Node, joints: &[&str], catalogs: &Catalogs) -> Option<GivenJoint> {
-    if !joints.contains(&name) {
+fn read_joint(name: &str, node: &Node, joints: &[MovingJoint], catalogs: &Catalogs) -> Option<GivenJoint> {
+    let Some(joint) = joints.iter().find(|joint| joint.name == name) else {
+        let names: Vec<&str> = joints.iter().map(|joint| joint.name).collect();
         return node.fault(
             format!("\"{name}\" is no moving joint on the way to the tip"),
-            &format!("the joints are: {}", joints.join(", ")),
+            &format!("the joints are: {}", names.join(", ")),
         );
-    }
-    let object = node.object(&KEYS)?;
+    };
+    let springs = match joint.slides {
+        true => {
+            let (stiffness_n_per_m, guide, moves) = Prismatic::read_springs(&node.object(&SLIDE_KEYS)?)?;
+            GivenSprings::Slide { stiffness_n_per_m, guide, moves }
+        }
+        false => read_hinge(node, catalogs)?,
+    };
+    Some(GivenJoint { name: name.into(), springs })
+}
+
+fn read_hinge(node: &Node, catalogs: &Catalogs) -> Option<GivenSprings> {
+    let object = node.object(&HINGE_KEYS)?;
     let text = |key| object.or(key, None, |n| n.string().map(|s| Some(s.to_string())));
     let (gear, motor) = (text("gear"), text("motor"));
     let curve = read_curve(&object, catalogs);
     let bearing = read_joint_bearing(&object, catalogs);
     // the bodies of the file have the bearing's mass in them
     let bearing = bearing?.map(|bearing| Bearing { mass_kg: 0.0, ..bearing });
-    Some(GivenJoint { name: name.into(), curve: curve?, bearing, gear: gear?, motor: motor? })
+    Some(GivenSprings::Hinge { curve: curve?, bearing, gear: gear?, motor: motor? })
 }
 
 /// A stiffness file that leaves all joints rigid, to be filled in.
-pub(crate) fn blank(joints: &[&str]) -> Value {
+pub(crate) fn blank(joints: &[MovingJoint]) -> Value {
+    let rigid = |joint: &MovingJoint| match joint.slides {
+        true => json!({"stiffness_n_per_m": null, "guide": {}}),
+        false => json!({"stiffness_nm_per_rad": null}),
+    };
     let entries: Map<String, Value> =
-        joints.iter().map(|name| (name.to_string(), json!({"stiffness_nm_per_rad": null}))).collect();
+        joints.iter().map(|joint| (joint.name.to_string(), rigid(joint))).collect();
     json!({"joints": entries})
 }

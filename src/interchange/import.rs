@@ -8,15 +8,15 @@
 //!
 //! A URDF says nothing of stiffness. A joint that the stiffness file does not give stays rigid.
 
-use super::given::GivenJoint;
+use super::given::{GivenJoint, GivenSprings, MovingJoint};
 use super::report::ImportReport;
-use super::urdf_file::{UrdfTree, isometry, moves, tensor};
+use super::urdf_file::{UrdfTree, isometry, moves, slides, tensor};
 use crate::arm::body::RigidBody;
 use crate::arm::extras::Extras;
 use crate::arm::joint_law::Curve;
-use crate::arm::{Arm, Element, Joint, JointBodies, Link, LinkBody};
+use crate::arm::{Arm, Element, Joint, JointBodies, Link, LinkBody, Prismatic};
 use crate::input::json::{Fault, Faults};
-use nalgebra::{Isometry3, Unit, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 use std::collections::BTreeSet;
 use urdf_rs::JointType;
 
@@ -31,9 +31,9 @@ pub(crate) struct Robot<'a> {
 
 /// How a joint on the way to the tip moves.
 enum Moves<'t> {
-    /// It does not, and stands at this angle \[rad\].
+    /// It does not, and stands at this angle \[rad\] or travel \[m\].
     Not(f64),
-    /// By an angle of its own.
+    /// By an angle or a travel of its own.
     Driven,
     /// With other joints: its angle is a factor times the angle of a driven joint, plus a constant \[rad\].
     With(&'t str, f64, f64),
@@ -72,14 +72,19 @@ impl<'a> Robot<'a> {
         let path = self.tree.path_to(self.tip);
         let unfit = path.iter().filter_map(|joint| {
             let word = match joint.joint_type {
-                JointType::Fixed | JointType::Revolute | JointType::Continuous => return None,
-                JointType::Prismatic => "prismatic",
+                JointType::Prismatic if self.follows(joint) => "mimicking prismatic",
+                JointType::Revolute | JointType::Continuous if self.follows_a_slide(joint) => {
+                    "joint that mimics a prismatic"
+                }
+                JointType::Fixed | JointType::Revolute | JointType::Continuous | JointType::Prismatic => {
+                    return None;
+                }
                 JointType::Floating => "floating",
                 JointType::Planar => "planar",
                 JointType::Spherical => "spherical",
             };
-            let hint = "the joints of an arm are revolute, continuous or fixed; choose a --tip before this joint, or make \
-                        it fixed in the position that you want to look at";
+            let hint = "the joints of an arm are revolute, continuous, prismatic or fixed, and only those that turn mimic one \
+                        another; choose a --tip before this joint, or make it fixed in the position that you want to look at";
             Some(self.fault(&joint.name, format!("is a {word} joint on the way to the tip"), hint.into()))
         });
         let mut out: Vec<Fault> = unfit.collect();
@@ -91,11 +96,22 @@ impl<'a> Robot<'a> {
         out
     }
 
-    /// Names of the joints of the arm, base to tip, passive ones included.
-    pub(crate) fn joints(&self) -> Vec<&str> {
-        let path = self.tree.path_to(self.tip);
-        let moving = path.iter().filter(|joint| !matches!(self.motion_of(&joint.name), Moves::Not(_)));
-        moving.map(|joint| joint.name.as_str()).collect()
+    /// The joints of the arm, base to tip, passive ones included.
+    pub(crate) fn joints(&self) -> Vec<MovingJoint<'_>> {
+        let path = self.tree.path_to(self.tip).into_iter();
+        let moving = path.filter(|joint| !matches!(self.motion_of(&joint.name), Moves::Not(_)));
+        moving.map(|joint| MovingJoint { name: &joint.name, slides: slides(joint) }).collect()
+    }
+
+    /// Whether a joint moves with another one.
+    fn follows(&self, joint: &urdf_rs::Joint) -> bool {
+        matches!(self.motion_of(&joint.name), Moves::With(..))
+    }
+
+    /// Whether a joint moves with one that slides.
+    fn follows_a_slide(&self, joint: &urdf_rs::Joint) -> bool {
+        let Moves::With(driver, ..) = self.motion_of(&joint.name) else { return false };
+        self.tree.joints.iter().any(|other| other.name == driver && slides(other))
     }
 
     /// How a joint moves. A mimic of a mimic follows the joint that both follow in the end.
@@ -132,7 +148,7 @@ impl<'a> Robot<'a> {
             start_m: Vector3::zeros(),
             name: String::new(),
             bodies: Vec::new(),
-            taken: self.joints().into_iter().map(String::from).collect(),
+            taken: self.joints().into_iter().map(|joint| joint.name.to_string()).collect(),
             chain: Vec::new(),
             report: ImportReport::new(self.file, &self.tree.name, self.tip),
         };
@@ -200,30 +216,25 @@ impl<'t> Walk<'t> {
         let axis = Unit::new_normalize(Vector3::from(joint.axis.xyz.0));
         let child = joint.child.link.as_str();
         let (coupled, offset_rad) = match motion {
-            Moves::Not(angle_rad) => {
-                self.at *= UnitQuaternion::from_axis_angle(&axis, angle_rad);
-                self.report.joined(joint, &self.name, angle_rad);
+            Moves::Not(held_at) => {
+                match slides(joint) {
+                    true => self.at *= Translation3::from(axis.into_inner() * held_at),
+                    false => self.at *= UnitQuaternion::from_axis_angle(&axis, held_at),
+                }
+                self.report.joined(joint, &self.name, held_at);
                 return self.lump(child, self.at, None);
             }
             Moves::Driven => (None, 0.0),
             Moves::With(driver, factor, offset_rad) => (Some(vec![(driver.to_string(), factor)]), offset_rad),
         };
         self.end_link();
-        let of_file = given.iter().find(|given| given.name == joint.name);
-        self.report.joint(joint, of_file.map(|given| &given.curve), coupled.as_deref());
-        self.chain.push(Element::Joint(Joint {
-            name: joint.name.clone(),
-            axis: Unit::new_normalize(self.at.rotation * axis.into_inner()),
-            curve: of_file.map_or(Curve::Rigid, |given| given.curve),
-            // the bodies of the file have the drives in them
-            mass_kg: 0.0,
-            bearing: of_file.and_then(|given| given.bearing),
-            extras: Extras::default(),
-            bodies: JointBodies::default(),
-            gear: of_file.and_then(|given| given.gear.clone()),
-            motor: of_file.and_then(|given| given.motor.clone()),
-            coupled,
-        }));
+        let springs = given.iter().find(|given| given.name == joint.name).map(|given| &given.springs);
+        self.report.joint(joint, springs, coupled.as_deref());
+        let in_world = Unit::new_normalize(self.at.rotation * axis.into_inner());
+        self.chain.push(match slides(joint) {
+            true => Element::Prismatic(slide(&joint.name, in_world, springs)),
+            false => Element::Joint(hinge(&joint.name, in_world, springs, coupled)),
+        });
         self.at *= UnitQuaternion::from_axis_angle(&axis, offset_rad);
         self.begin(child);
     }
@@ -258,6 +269,41 @@ impl<'t> Walk<'t> {
                 self.lump(&joint.child.link, at * isometry(&joint.origin), Some(joint));
             }
         }
+    }
+}
+
+/// A joint that turns. The bodies of the file have its drive in them.
+fn hinge(
+    name: &str,
+    axis: Unit<Vector3<f64>>,
+    springs: Option<&GivenSprings>,
+    coupled: Option<Vec<(String, f64)>>,
+) -> Joint {
+    let (curve, bearing, gear, motor) = match springs {
+        Some(GivenSprings::Hinge { curve, bearing, gear, motor }) => {
+            (*curve, *bearing, gear.clone(), motor.clone())
+        }
+        _ => (Curve::Rigid, None, None, None),
+    };
+    let (extras, bodies) = (Extras::default(), JointBodies::default());
+    Joint { name: name.into(), axis, curve, mass_kg: 0.0, bearing, extras, bodies, gear, motor, coupled }
+}
+
+/// A joint that slides. The bodies of the file have its drive in them.
+fn slide(name: &str, axis: Unit<Vector3<f64>>, springs: Option<&GivenSprings>) -> Prismatic {
+    let (stiffness_n_per_m, guide, moves) = match springs {
+        Some(GivenSprings::Slide { stiffness_n_per_m, guide, moves }) => (*stiffness_n_per_m, *guide, *moves),
+        _ => Default::default(),
+    };
+    Prismatic {
+        name: name.into(),
+        axis,
+        stiffness_n_per_m,
+        guide,
+        moves,
+        mass_kg: 0.0,
+        fixed_mass_kg: 0.0,
+        bodies: JointBodies::default(),
     }
 }
 

@@ -1,7 +1,7 @@
 //! `import.json`: what became of the links and joints of a robot, what was guessed, and what was left rigid.
 
-use super::urdf_file::{UrdfTree, moves};
-use crate::arm::joint_law::Curve;
+use super::given::GivenSprings;
+use super::urdf_file::{UrdfTree, moves, slides};
 use nalgebra::Isometry3;
 use serde_json::{Value, json};
 use urdf_rs::{Joint, JointType, Link};
@@ -44,14 +44,19 @@ impl ImportReport {
         }
     }
 
-    /// A joint of the arm, with the curve that the stiffness file gives it.
-    pub(super) fn joint(&mut self, joint: &Joint, curve: Option<&Curve>, coupled: Option<&[(String, f64)]>) {
-        let stiffness = match curve {
+    /// A joint of the arm, with the springs that the stiffness file gives it.
+    pub(super) fn joint(
+        &mut self,
+        joint: &Joint,
+        springs: Option<&GivenSprings>,
+        coupled: Option<&[(String, f64)]>,
+    ) {
+        let stiffness = match springs.map(GivenSprings::is_rigid) {
             None => "rigid: not given",
-            Some(Curve::Rigid) => "rigid: given so",
-            Some(_) => "given",
+            Some(true) => "rigid: given so",
+            Some(false) => "given",
         };
-        if curve.is_none() {
+        if springs.is_none() {
             self.left_rigid.push(joint.name.clone());
         }
         if joint.joint_type == JointType::Continuous {
@@ -68,23 +73,38 @@ impl ImportReport {
                 joint.name
             ));
         }
+        let positive = |x: f64| finite(x).filter(|x| *x > 0.0);
+        let (effort, velocity) = (positive(joint.limit.effort), positive(joint.limit.velocity));
+        if slides(joint) {
+            self.joints.push(json!({
+                "name": joint.name,
+                "type": word(joint),
+                "lower_mm": lower.map(|m| 1e3 * m),
+                "upper_mm": upper.map(|m| 1e3 * m),
+                "max_force_n": effort,
+                "max_speed_m_s": velocity,
+                "stiffness": stiffness,
+            }));
+            return;
+        }
         self.joints.push(json!({
             "name": joint.name,
             "type": word(joint),
             "lower_deg": lower.map(f64::to_degrees),
             "upper_deg": upper.map(f64::to_degrees),
-            "max_torque_nm": finite(joint.limit.effort).filter(|x| *x > 0.0),
-            "max_speed_rad_s": finite(joint.limit.velocity).filter(|x| *x > 0.0),
+            "max_torque_nm": effort,
+            "max_speed_rad_s": velocity,
             "stiffness": stiffness,
             "coupled": coupled.and_then(|terms| terms.first()).map(|(driver, factor)| json!({driver.as_str(): factor})),
         }));
     }
 
-    /// A joint on the way to the tip that does not move.
-    pub(super) fn joined(&mut self, joint: &Joint, link: &str, angle_rad: f64) {
+    /// A joint on the way to the tip that does not move, and the angle \[rad\] or travel \[m\] at which it stands.
+    pub(super) fn joined(&mut self, joint: &Joint, link: &str, held_at: f64) {
         self.joined.push(json!({
             "joint": joint.name, "type": word(joint), "link": joint.child.link, "onto": link,
-            "held_at_deg": moves(joint).then(|| angle_rad.to_degrees()),
+            "held_at_deg": (moves(joint) && !slides(joint)).then(|| held_at.to_degrees()),
+            "held_at_mm": slides(joint).then_some(1e3 * held_at),
         }));
     }
 

@@ -28,6 +28,11 @@ pub(crate) fn moves(joint: &Joint) -> bool {
     !matches!(joint.joint_type, JointType::Fixed)
 }
 
+/// Whether a joint slides.
+pub(crate) fn slides(joint: &Joint) -> bool {
+    matches!(joint.joint_type, JointType::Prismatic)
+}
+
 /// Place and attitude of an `<origin>`.
 pub(crate) fn isometry(pose: &Pose) -> Isometry3<f64> {
     let [roll, pitch, yaw] = pose.rpy.0;

@@ -217,9 +217,12 @@ fn faults_of_an_import_are_said_with_what_to_try() {
     let words = tip("flange");
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     fails(&words, 3, &["\"flange\" is no link", "panda_link8", "panda_hand_tcp"]);
-    let words = tip("panda_leftfinger");
-    let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    fails(&words, 3, &["panda_finger_joint1", "prismatic", "--tip"]);
+    let floating =
+        fs::read_to_string(urdf("panda")).expect("a robot").replace("\"prismatic\"", "\"floating\"");
+    let file = folder.path().join("floating.urdf").display().to_string();
+    fs::write(&file, floating).expect("written");
+    let words = ["import", &file, "--tip", "panda_leftfinger", "--out", &out];
+    fails(&words, 3, &["panda_finger_joint1", "floating", "--tip"]);
     let given = write(
         &folder.path().join("given.json"),
         &json!({"joints": {"panda_joint9": {"stiffness_nm_per_rad": 1e4}, "panda_joint1": {"stiffness_nm_per_rad": -1}}}),
@@ -232,6 +235,43 @@ fn faults_of_an_import_are_said_with_what_to_try() {
     );
     fails(&["import", "no.urdf", "--tip", "a", "--out", &out], 7, &["no.urdf"]);
     assert!(!folder.path().join("out").exists());
+}
+
+/// A rail along the world's y, and on it a quill that travels down with 3 kg, 0.2 m further along the rail.
+const GANTRY: &str = r#"<robot name="gantry"><link name="base"/>
+    <joint name="rail" type="prismatic"><parent link="base"/><child link="bridge"/><axis xyz="1 0 0"/>
+        <origin xyz="0 0 1" rpy="0 0 1.5707963267948966"/><limit lower="-0.5" upper="1.5" effort="900" velocity="2"/></joint>
+    <link name="bridge"><inertial><mass value="10"/>
+        <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+    <joint name="quill" type="prismatic"><parent link="bridge"/><child link="tool"/><axis xyz="0 0 1"/>
+        <origin xyz="0.2 0 0" rpy="3.141592653589793 0 0"/><limit lower="0" upper="0.3" effort="200" velocity="1"/></joint>
+    <link name="tool"><inertial><mass value="3"/>
+        <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>"#;
+
+#[test]
+fn prismatic_joints_come_in_with_ranges_and_given_springs() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    fs::write(at("gantry.urdf"), GANTRY).expect("written");
+    let springs = json!({"joints": {"quill": {"stiffness_n_per_m": 1e6},
+        "rail": {"stiffness_n_per_m": null, "guide": {"pitch_nm_per_rad": 1e5}}}});
+    let given = write(&folder.path().join("given.json"), &springs);
+    let words = ["import", &at("gantry.urdf"), "--tip", "tool", "--stiffness", &given, "--out", &at("arm")];
+    done(&words);
+    let import = read(folder.path().join("arm/import.json"));
+    let rail = &import["joints"][0];
+    assert_eq!((&rail["lower_mm"], &rail["upper_mm"]), (&json!(-500.0), &json!(1500.0)));
+    assert_eq!((&rail["type"], &rail["max_force_n"]), (&json!("prismatic"), &json!(900.0)));
+    let words = ["analyze", &at("arm/arm.json"), "--pose", "quill_mm=100,rail_mm=400", "--json"];
+    let solved: Value = serde_json::from_str(&done(&words)).expect("JSON");
+    let close = |a: &Value, b: f64| (a.as_f64().expect("a number") - b).abs() < 1e-12;
+    // the quill holds the weight; the rail pitches under its moment, at 0.2 m beside and 0.1 m below
+    let weight_n = 3.0 * 9.81;
+    let tilt_rad = 0.2 * weight_n / 1e5;
+    assert!((solved["joint_force_n"]["quill"].as_f64().expect("N") - weight_n).abs() < 1e-9, "{solved}");
+    let tip_m = &solved["tip_displacement_m"];
+    assert!(close(&tip_m[0], 0.0) && close(&tip_m[1], -0.1 * tilt_rad), "{tip_m}");
+    assert!(close(&tip_m[2], -weight_n / 1e6 - 0.2 * tilt_rad), "{tip_m}");
 }
 
 #[test]

@@ -226,9 +226,11 @@ fn is_default_here(
 ) -> bool {
     let shapes = schema.printed["$defs"].as_object().expect("definitions").values();
     let keys = shapes.map(|shape| shape["properties"].as_object().expect("keys"));
-    let mut fitting =
-        keys.filter(|keys| keys.contains_key(name) && map.keys().all(|key| keys.contains_key(key)));
-    fitting.all(|keys| keys[name].get("default") == Some(default))
+    let mut fitting = keys
+        .filter(|keys| keys.contains_key(name) && map.keys().all(|key| keys.contains_key(key)))
+        .peekable();
+    // an object of names, such as a pose, is of no kind
+    fitting.peek().is_some() && fitting.all(|keys| keys[name].get("default") == Some(default))
 }
 
 /// An arm with every kind of object.
