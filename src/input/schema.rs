@@ -58,11 +58,9 @@ impl FileKind {
 /// Adds the shapes of a kind of value to `found`.
 fn collect(kind: &Kind, found: &mut Vec<&'static Shape>) {
     match kind {
-        Kind::Object(shape) => {
-            if !found.iter().any(|other| other.name == shape.name) {
-                found.push(shape);
-                shape.keys.iter().map(|key| &key.kind).chain(shape.others).for_each(|k| collect(k, found));
-            }
+        Kind::Object(shape) if !found.iter().any(|other| other.name == shape.name) => {
+            found.push(shape);
+            shape.keys.iter().map(|key| &key.kind).chain(shape.others).for_each(|k| collect(k, found));
         }
         Kind::Array(_, inner) | Kind::List(inner) | Kind::NonEmpty(inner) | Kind::Map(inner) => {
             collect(inner, found);

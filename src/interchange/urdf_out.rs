@@ -31,7 +31,7 @@ pub(crate) fn urdf(arm: &Arm, snapshot: &Snapshot) -> String {
             (&link_name(i + 1, &pair[1]), &pair[1]),
         );
     }
-    if let Some((i, last)) = nodes.iter().enumerate().last() {
+    if let Some((i, last)) = nodes.iter().enumerate().next_back() {
         let tip_m = snapshot.at_zero().tip_m - last.origin_m;
         xml.leaf("link", &[("name", "tip".into())]);
         xml.open("joint", &[("name", "tip_frame".into()), ("type", "fixed".into())]);

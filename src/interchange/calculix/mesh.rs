@@ -198,14 +198,14 @@ mod tests {
         for brick in &mesh.bricks {
             for (x, y, z) in (0..8).map(corner).map(|(a, b, c)| (a * g, b * g, c * g)) {
                 let mut jacobian = Matrix3::zeros();
-                for n in 0..8 {
+                for (n, node) in brick.iter().enumerate().take(8) {
                     let (a, b, c) = corner(n);
                     let slopes = Vector3::new(
                         a * (1.0 + b * y) * (1.0 + c * z),
                         b * (1.0 + a * x) * (1.0 + c * z),
                         c * (1.0 + a * x) * (1.0 + b * y),
                     ) / 8.0;
-                    jacobian += mesh.nodes_m[brick[n]] * slopes.transpose();
+                    jacobian += mesh.nodes_m[*node] * slopes.transpose();
                 }
                 volume += jacobian.determinant();
             }

@@ -209,7 +209,7 @@ impl PickedArm {
             pivots: pivots.collect(),
             payload: (solved.case.payload.mass_kg > 0.0)
                 .then(|| (view.place(&solved.payload_m), view.place(&tip))),
-            springs: self.springs(&solved.case, view),
+            springs: self.springs(solved.case, view),
             upright: view.upright,
             ..ArmSketch::default()
         }
