@@ -46,13 +46,13 @@ enum Verb {
     Run(super::run::RunArgs),
     /// Size every joint of a study's arm, from the tip inward
     Size(size::SizeArgs),
-    /// Find the largest payload of a study's arm
+    /// Find the largest payload that an arm holds
     Capacity(capacity::CapacityArgs),
     /// Compute statics, modes and response of an arm file
     Analyze(analyze::AnalyzeArgs),
     /// Write a design of a result as an arm file
     Design(design::DesignArgs),
-    /// Write an arm or a design for another program: CalculiX, MuJoCo, URDF, JSON, CSV, bill of materials
+    /// Write an arm or a design for CalculiX, MuJoCo, URDF, or as a bill of materials
     Export(export::ExportArgs),
     /// Make an arm file of a robot in a URDF file
     Import(import::ImportArgs),

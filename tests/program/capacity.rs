@@ -90,11 +90,11 @@ fn the_capacity_is_where_sizing_begins_to_fail() {
 }
 
 #[test]
-fn an_arm_file_has_no_motion_to_size_for() {
+fn an_arm_file_whose_joints_have_no_limit_is_refused_with_what_to_give() {
     let dir = tempfile::tempdir().expect("a folder");
     let arm = json!({"name": "a", "chain": [{"type": "joint", "name": "j", "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e4}]});
     std::fs::write(dir.path().join("arm.json"), arm.to_string()).expect("written");
     let output = armwright(&["capacity", "arm.json"], dir.path());
     assert_eq!(output.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&output.stderr).contains("is an arm file"));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("give --limits FILE"));
 }
