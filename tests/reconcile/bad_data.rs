@@ -84,7 +84,7 @@ fn missing_columns_and_unknown_joints_are_named() {
     });
     let text = faults(folder.path());
     assert!(text.contains("sigma_mm: the column is missing"), "{text}");
-    assert!(text.contains("q_j33_deg: is the angle of no driven joint"), "{text}");
+    assert!(text.contains("q_j33_deg: is the angle or travel of no driven joint"), "{text}");
     let folder = edited("windup.csv", |_, text| Some(text.replace("j5", "j9")));
     assert!(faults(folder.path()).contains("\"j9\" is no joint of the arm"));
 }
