@@ -91,7 +91,7 @@ fn the_exact_front_is_whole_with_bearings_that_tilt_and_limit() {
     println!(
         "{studies} studies, {feasible} feasible, {points} front designs; bearings ask for a heavier drive in {excluded}"
     );
-    assert!(feasible * 2 > studies, "only {feasible} of {studies} studies are feasible");
+    assert!(feasible * 5 > 2 * studies, "only {feasible} of {studies} studies are feasible");
     assert!(points as u64 > 8 * feasible, "fronts are too small to say much: {points} designs");
     assert!(excluded as u64 * 5 > studies, "ratings bind in {excluded} of {studies} studies only");
 }

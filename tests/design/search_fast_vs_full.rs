@@ -4,7 +4,7 @@
 //! offset centre and inertia, water, tip force, given and sized joints, and in what the innermost level is. Shoulders are
 //! rigid offsets or tubes; bearings are those of the gears, stated or rigid. All of it is tested once without and once
 //! with effects at random joints and links. A design must hold in both or in neither, and all objectives must agree to
-//! 1e-10 (half of them to 1e-13).
+//! 5e-10 (half of them to 1e-13).
 
 use crate::bodies::add_bodies;
 use crate::dice::Dice;
@@ -23,8 +23,9 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 
-/// Largest relative difference of an objective.
-const AGREE: f64 = 1e-10;
+/// Largest relative difference of an objective: half of what the sweep allows between its objectives and those of the full model
+/// when it drops designs. Differences beyond 1e-12 are rare; they are those of lowest modes in which a joint hardly takes part.
+const AGREE: f64 = 5e-10;
 
 fn link(dice: &mut Dice, name: &str, length_m: f64, largest_mm: u32) -> Value {
     let section = match dice.below(3) {

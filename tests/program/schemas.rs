@@ -201,6 +201,11 @@ fn hold_defaults(schema: &Schema, read: &Reader, base: &Value, tried: &mut BTree
     let mut all = Vec::new();
     places(base, &Vec::new(), &mut all);
     for place in all {
+        // an object of names, such as a pose, has no keys of its own
+        if matches!(place.last(), Some(Step::Key(key)) if ["parameters", "coupled", "pose"].contains(&key.as_str()))
+        {
+            continue;
+        }
         let mut own = base.clone();
         let Value::Object(map) = at(&mut own, &place).clone() else { continue };
         for (name, default) in schema.defaults().into_iter().filter(|(name, _)| !map.contains_key(name)) {
@@ -226,11 +231,9 @@ fn is_default_here(
 ) -> bool {
     let shapes = schema.printed["$defs"].as_object().expect("definitions").values();
     let keys = shapes.map(|shape| shape["properties"].as_object().expect("keys"));
-    let mut fitting = keys
-        .filter(|keys| keys.contains_key(name) && map.keys().all(|key| keys.contains_key(key)))
-        .peekable();
-    // an object of names, such as a pose, is of no kind
-    fitting.peek().is_some() && fitting.all(|keys| keys[name].get("default") == Some(default))
+    let mut fitting =
+        keys.filter(|keys| keys.contains_key(name) && map.keys().all(|key| keys.contains_key(key)));
+    fitting.all(|keys| keys[name].get("default") == Some(default))
 }
 
 /// An arm with every kind of object.
