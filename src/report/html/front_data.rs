@@ -26,6 +26,8 @@ pub(crate) const MOST_ROWS: usize = 20_000;
 pub(crate) const MOST_BYTES: usize = 1_200_000;
 /// Axes with fewer values than this are labelled value by value.
 const FEW: usize = 18;
+/// Nearest values that get labels of their own, as a part of the whole range: those of nearer ones would overlap.
+const APART: f64 = 0.04;
 
 /// Designs that are drawn in one style.
 #[derive(Debug, Clone, PartialEq)]
@@ -277,7 +279,8 @@ fn number_axis(empty: Axis, numbers: &[Option<f64>]) -> Axis {
     let scale = if low > 0.0 && high > WIDE * low { Scale::Log } else { Scale::Linear };
     let ruling = rule(scale, low, high, 6);
     let mut axis = Axis { range: Some((ruling.low, ruling.high, scale)), values, ..empty };
-    if distinct.len() <= FEW && distinct.len() > 1 {
+    let nearest = distinct.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+    if distinct.len() <= FEW && distinct.len() > 1 && nearest >= APART * (high - low) {
         let margin = 0.04 * (high - low);
         axis.range = Some((low - margin, high + margin, Scale::Linear));
         axis.ticks = distinct.iter().map(|v| (axis.place(*v), crate::report::number::shortest(*v))).collect();
