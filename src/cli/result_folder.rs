@@ -10,7 +10,9 @@ use super::failure::Failure;
 use super::lock::Lock;
 use super::manifest::{Earlier, Files, MANIFESTS, sealed};
 use super::unfinished::{ENDING, remove};
-use crate::report::whole_file::{create_folder, folder_of, remove_file, rename, sync_folder, write_staged};
+use crate::report::whole_file::{
+    create_folder, folder_of, remove_file, remove_temporaries, rename, sync_folder, write_staged,
+};
 use std::collections::BTreeSet;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -99,6 +101,10 @@ impl ResultFolder {
             Ok(exit) => exit != Exit::Interrupted,
             Err(failure) => matches!(failure, Failure::Infeasible(_) | Failure::Partial(_)),
         };
+        if is_over {
+            // a process that was killed while it kept a state leaves a temporary file; this one has the lock
+            remove_temporaries(&self.folder.join(STATE));
+        }
         let entries = std::fs::read_dir(self.folder.join(STATE)).into_iter().flatten().flatten();
         let states =
             entries.map(|entry| entry.path()).filter(|path| path.to_string_lossy().ends_with(ENDING));

@@ -58,14 +58,27 @@ pub(crate) fn folder_of(path: &Path) -> PathBuf {
 
 /// Removes temporary files that a stopped process left in a folder.
 fn sweep(folder: &Path) {
+    temporaries(folder).into_iter().filter(|path| is_left_behind(path)).for_each(|path| {
+        let _ = std::fs::remove_file(path);
+    });
+}
+
+/// Removes all temporary files from a folder in which no other process writes.
+pub(crate) fn remove_temporaries(folder: &Path) {
+    temporaries(folder).into_iter().for_each(|path| {
+        let _ = std::fs::remove_file(path);
+    });
+}
+
+/// The temporary files in a folder.
+fn temporaries(folder: &Path) -> Vec<PathBuf> {
     let [prefix, suffix] = TEMPORARY;
-    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
-        let name = entry.file_name();
-        let is_ours = name.to_str().is_some_and(|name| name.starts_with(prefix) && name.ends_with(suffix));
-        if is_ours && is_left_behind(&entry.path()) {
-            let _ = std::fs::remove_file(entry.path());
-        }
-    }
+    let is_ours = |name: &str| name.starts_with(prefix) && name.ends_with(suffix);
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    entries
+        .filter(|entry| entry.file_name().to_str().is_some_and(is_ours))
+        .map(|entry| entry.path())
+        .collect()
 }
 
 fn is_left_behind(path: &Path) -> bool {
