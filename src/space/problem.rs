@@ -10,6 +10,7 @@ use super::design_space::{DesignSpace, SpacePiece};
 use super::effects::Layer;
 use super::fit::RoomAtJoint;
 use super::full_model::full_objectives;
+use super::group::Group;
 use super::levels::OutwardIn;
 pub(crate) use super::slot::SizedJoint;
 pub(crate) use super::slot::Slot;
@@ -76,15 +77,6 @@ impl Partial {
     pub(crate) fn slot_options(&self) -> &[u32] {
         &self.options
     }
-}
-
-/// The material of the links so far.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) enum Group {
-    #[default]
-    None,
-    One(usize),
-    Mixed,
 }
 
 impl<'c> ArmProblem<'c> {
@@ -577,25 +569,5 @@ impl OutwardIn for ArmProblem<'_> {
 
     fn group(&self, complete: &Partial) -> Option<usize> {
         complete.group.material()
-    }
-}
-
-impl Group {
-    /// The material, if all links so far are of one.
-    pub(crate) fn material(self) -> Option<usize> {
-        match self {
-            Group::One(material) => Some(material),
-            _ => None,
-        }
-    }
-
-    /// The group with one more link. A given tube has no material here and changes nothing.
-    pub(crate) fn with(self, material: Option<usize>) -> Self {
-        match (self, material) {
-            (group, None) => group,
-            (Group::None, Some(m)) => Group::One(m),
-            (Group::One(a), Some(m)) if a == m => Group::One(a),
-            _ => Group::Mixed,
-        }
     }
 }

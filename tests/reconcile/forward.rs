@@ -5,9 +5,10 @@ use armwright::catalog::Catalogs;
 use armwright::reconcile::Campaign;
 use armwright::reconcile::fit::descent::{Weights, evaluate, jacobian};
 use armwright::reconcile::forward::Forward;
+use armwright::reconcile::model::calibration::Nuisance;
 use armwright::reconcile::model::candidates::candidates;
 use armwright::reconcile::model::exact::Exact;
-use armwright::reconcile::model::parameters::{Model, Nuisance};
+use armwright::reconcile::model::parameters::Model;
 use std::path::Path;
 
 fn campaign() -> Campaign {

@@ -9,8 +9,9 @@
 use super::curve_interval::curve_intervals;
 use super::descent::{Effort, Fit, Weights, data_curvature, descent};
 use crate::reconcile::forward::prepared::Forward;
+use crate::reconcile::model::calibration::Calibration;
 use crate::reconcile::model::estimate::Interval;
-use crate::reconcile::model::parameters::{Calibration, Model};
+use crate::reconcile::model::parameters::Model;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 

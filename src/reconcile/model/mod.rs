@@ -1,6 +1,7 @@
 //! What is fitted: calibrated parameters, candidate effects and their expected sizes. Also the prediction of
 //! readings by mechanics directly.
 
+pub mod calibration;
 pub mod candidates;
 pub(crate) mod estimate;
 pub mod exact;

@@ -1,6 +1,7 @@
 //! Leaves out the effects that no reading of a campaign can show.
 
-use super::parameters::{Candidate, Model, Nuisance};
+use super::calibration::Nuisance;
+use super::parameters::{Candidate, Model};
 use crate::reconcile::fit::descent::{Weights, change, evaluate};
 use crate::reconcile::forward::prepared::Forward;
 

@@ -15,8 +15,9 @@ use crate::arm::structure::Piece;
 use crate::reconcile::fit::descent::{Effort, Fit, Weights, fit};
 use crate::reconcile::fit::interval::intervals;
 use crate::reconcile::fit::stats::ln_chi_squared_tail;
+use crate::reconcile::model::calibration::Calibration;
 use crate::reconcile::model::estimate::{Estimate, Finding};
-use crate::reconcile::model::parameters::{Calibration, FreeParameter, Model};
+use crate::reconcile::model::parameters::{FreeParameter, Model};
 use crate::reconcile::readings::campaign::Campaign;
 use rayon::prelude::*;
 

@@ -15,7 +15,7 @@ use crate::mechanics::product::transposed_product;
 use crate::reconcile::fit::descent::{Fit, Weights};
 use crate::reconcile::fit::stats::ln_chi_squared_tail;
 use crate::reconcile::forward::prepared::Forward;
-use crate::reconcile::model::parameters::Calibration;
+use crate::reconcile::model::calibration::Calibration;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 

@@ -439,7 +439,8 @@ mod tests {
     use crate::catalog::Catalogs;
     use crate::reconcile::fit::descent::{Effort, fit};
     use crate::reconcile::fit::noise::Noise;
-    use crate::reconcile::model::parameters::{Calibration, Model, Nuisance};
+    use crate::reconcile::model::calibration::{Calibration, Nuisance};
+    use crate::reconcile::model::parameters::Model;
     use std::path::Path;
 
     /// Checks the laws about the model as it is against the sensitivities of the calibration.

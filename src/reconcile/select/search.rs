@@ -6,7 +6,8 @@
 use crate::reconcile::fit::descent::{Effort, Fit, Point, Weights, descent, evaluate_near, fit};
 use crate::reconcile::fit::steps::{self, NARROW, WIDE};
 use crate::reconcile::forward::prepared::Forward;
-use crate::reconcile::model::parameters::{Candidate, Model, Nuisance};
+use crate::reconcile::model::calibration::Nuisance;
+use crate::reconcile::model::parameters::{Candidate, Model};
 use crate::reconcile::readings::campaign::Campaign;
 use rayon::prelude::*;
 

@@ -11,7 +11,8 @@ use crate::reconcile::fit::noise::{Noise, gross_lists};
 use crate::reconcile::fit::steps::best_fit;
 use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::prepared::Forward;
-use crate::reconcile::model::parameters::{Candidate, Model, Nuisance};
+use crate::reconcile::model::calibration::Nuisance;
+use crate::reconcile::model::parameters::{Candidate, Model};
 use crate::reconcile::readings::campaign::Campaign;
 
 /// Cost of a gross error, in ln of the evidence, where it replaces an effect. About one row in a thousand is a gross

@@ -6,8 +6,8 @@ use crate::arm::effect::kind::Place;
 use crate::arm::{Arm, Element, LinkBody};
 use crate::reconcile::fit::descent::Fit;
 use crate::reconcile::forward::prepared::Forward;
+use crate::reconcile::model::calibration::Calibration;
 use crate::reconcile::model::estimate::Finding;
-use crate::reconcile::model::parameters::Calibration;
 use crate::reconcile::readings::campaign::Campaign;
 use serde_json::{Value, json};
 

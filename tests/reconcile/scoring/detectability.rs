@@ -4,8 +4,9 @@ use armwright::reconcile::Campaign;
 use armwright::reconcile::fit::descent::{Effort, fit};
 use armwright::reconcile::fit::noise::Noise;
 use armwright::reconcile::forward::Forward;
+use armwright::reconcile::model::calibration::Nuisance;
 use armwright::reconcile::model::candidates::candidates;
-use armwright::reconcile::model::parameters::{Candidate, Model, Nuisance};
+use armwright::reconcile::model::parameters::{Candidate, Model};
 use serde_json::Value;
 
 /// By how many standard deviations readings without noise depart from the best that calibration within
