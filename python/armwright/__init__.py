@@ -12,9 +12,9 @@ of the program's files.
 """
 
 from ._armwright import Catalogs, __version__
+from ._front import Front
 from ._mujoco import from_mujoco
 from ._questions import (
-    Interrupted,
     Outcome,
     analyze,
     capacity,
@@ -24,11 +24,11 @@ from ._questions import (
     paper,
     predict,
     reconcile,
-    run,
     size,
     studies,
     study,
 )
+from ._run import Interrupted, run
 from .errors import (
     ArmwrightError,
     CatalogError,
@@ -40,7 +40,7 @@ from .errors import (
     OutOfTimeError,
     UsageError,
 )
-from .table import Front, Prediction, Table
+from .table import Prediction, Table
 
 __all__ = [
     "ArmwrightError",

@@ -1,0 +1,69 @@
+"""The front of a study, and what can be asked of its designs."""
+
+from __future__ import annotations
+
+from typing import Any, Dict, List, Optional
+
+import numpy as np
+
+from . import _questions
+from .table import Table
+
+
+class Front(Table):
+    """The designs of a study that no other dominates, lightest first, with the columns of ``front.csv``.
+
+    ``front.objectives`` has tip deflection [mm], mass [kg] and lowest mode [Hz] of each design; ``front.arm(id)`` is a design
+    as an arm file.
+    """
+
+    facts: Dict[str, Any]
+    """What is known of the search, by the keys of ``run.json``: ``status``, ``designs_total``, ``gap``, ``elapsed_s`` and others."""
+    by_material: Dict[str, Front]
+    """The fronts of the designs whose chosen links are all of one material. An exact search has them only if it found the
+    whole front."""
+
+    _texts = ("design_id", "material", "shape", "profile", "gear", "motor", "binds")
+
+    def __init__(self, columns, rows, facts, study, catalogs, by_material=None):
+        super().__init__(columns, rows)
+        self.facts = facts
+        self.by_material = by_material or {}
+        self._study = study
+        self._catalogs = catalogs
+
+    @property
+    def status(self) -> str:
+        """How the search ended: ``complete``, ``certified``, ``partial`` or ``interrupted``."""
+        return self.facts["status"]
+
+    @property
+    def ids(self) -> List[str]:
+        """The ``design_id`` of every design."""
+        return list(self["design_id"])
+
+    @property
+    def objectives(self) -> np.ndarray:
+        """Tip deflection [mm], mass [kg] and lowest mode [Hz], one row a design."""
+        columns = ("tip_deflection_mm", "mass_kg", "lowest_mode_hz")
+        return np.column_stack([self[column] for column in columns])
+
+    def arm(self, design_id: str) -> Dict[str, Any]:
+        """A design as an arm file, with every part resolved to numbers."""
+        return _questions.design(self._study, design_id, catalogs=self._catalogs)[0]
+
+    def cases(self, design_id: str) -> List[Dict[str, Any]]:
+        """The cases in which a design is judged, for :func:`armwright.analyze`."""
+        return _questions.design(self._study, design_id, catalogs=self._catalogs)[1]
+
+    def size(self, design_id: str) -> List[Dict[str, Any]]:
+        """The sizing of the joints of a design, as :func:`armwright.size` gives it."""
+        return _questions.size(self._study, design=design_id, catalogs=self._catalogs)
+
+    def capacity(self, design_id: str) -> Dict[str, Any]:
+        """The largest payload of a design, as :func:`armwright.capacity` gives it."""
+        return _questions.capacity(self._study, design=design_id, catalogs=self._catalogs)
+
+    def lightest(self) -> Optional[str]:
+        """The ``design_id`` of the lightest design."""
+        return self.ids[0] if len(self) else None

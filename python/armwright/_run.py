@@ -1,0 +1,75 @@
+"""The search of a study."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any, Callable, Dict, Optional, Tuple
+
+from . import _armwright
+from ._armwright import Catalogs
+from ._front import Front
+from ._input import catalogs_or_builtin, source
+from ._questions import Described, studies
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C during :func:`run`. ``front`` has what was found until then, or is None."""
+
+    front: Optional[Front] = None
+
+
+def run(
+    study: Described,
+    *,
+    progress: Optional[Callable[[Dict[str, Any]], Any]] = None,
+    search: Optional[str] = None,
+    gap_percent: Optional[float] = None,
+    time_limit_s: Optional[float] = None,
+    threads: int = 0,
+    catalogs: Optional[Catalogs] = None,
+) -> Front:
+    """The front of a study: the designs that no other dominates in tip deflection, mass and lowest mode.
+
+    The interpreter's lock is free while it works. Ctrl-C ends it and raises :class:`Interrupted`, whose ``front`` has what was
+    found. Nothing is written to disk.
+
+    :param study: name of a built-in study, path, dict or JSON text
+    :param progress: is called five times a second with a dict of ``elapsed_s``, ``designs``, ``designs_total``, ``gap`` (a
+        fraction), ``front_size`` and ``boxes_open``; None stands for what is not known. An exception that it raises ends the search.
+    :param search: ``exhaustive``, ``exact``, or None for the one that is estimated to cost less
+    :param gap_percent: the exact search may end when for every design some listed one is worse by at most this percentage in each
+        objective; 0 asks for the whole front. Default: the study's.
+    :param time_limit_s: ends an exact search [s]
+    :param threads: worker threads; 0 is one a core. Results do not depend on it.
+    :raises InfeasibleError: no design meets the study; the message says which limits are in the way
+    :raises EmptySpaceError: there is nothing to choose from
+    :raises OutOfTimeError: the time limit came before any design was found
+    """
+    held = catalogs_or_builtin(catalogs)
+    asked = source(study, "study")
+
+    def front(found: Any) -> Front:
+        (columns, rows), materials, facts = found
+        facts = json.loads(facts)
+        by_material = {name: Front(c, r, facts, asked_again, held) for name, (c, r) in materials}
+        return Front(columns, rows, facts, asked_again, held, by_material)
+
+    # a file may change: the designs of this front are those of the study as it was read
+    asked_again = _as_read(asked)
+    try:
+        return front(_armwright.run(held, asked, search, gap_percent, time_limit_s, threads, progress))
+    except KeyboardInterrupt as stopped:
+        interrupted = Interrupted(*stopped.args)
+        found = getattr(stopped, "_found", None)
+        if found is not None and found[0][1]:
+            interrupted.front = front(found)
+        raise interrupted from None
+
+
+def _as_read(asked: Tuple[str, Optional[str]]) -> Any:
+    name, text = asked
+    if text is not None:
+        return text
+    path = Path(name)
+    return path.read_text(encoding="utf-8") if path.is_file() and name not in studies() else name
