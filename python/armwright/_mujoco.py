@@ -112,7 +112,7 @@ class _Reader:
 
     def _path(self, body: int) -> List[int]:
         """The bodies from the world, which is left out, to the tip's."""
-        path = []
+        path: List[int] = []
         while body:
             path.insert(0, body)
             body = int(self.model.body_parentid[body])

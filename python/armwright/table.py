@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import csv
 import io
-from typing import TYPE_CHECKING, Any, Dict, Iterator, List, Optional, Sequence
+from typing import TYPE_CHECKING, Any, Dict, Iterator, List, Optional, Sequence, Type, TypeVar
 
 import numpy as np
 
 if TYPE_CHECKING:
     import pandas
+
+
+T = TypeVar("T", bound="Table")
 
 
 def _array(cells: Sequence[str]) -> np.ndarray:
@@ -38,7 +41,7 @@ class Table:
         self._arrays: Dict[str, np.ndarray] = {}
 
     @classmethod
-    def from_csv(cls, text: str) -> Table:
+    def from_csv(cls: Type[T], text: str) -> T:
         """The table of a CSV text with a heading."""
         rows = list(csv.reader(io.StringIO(text)))
         return cls(rows[0], rows[1:]) if rows else cls([], [])
