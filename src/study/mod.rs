@@ -36,6 +36,7 @@ pub(crate) mod page;
 pub(crate) mod pick_poses;
 pub(crate) mod pose_search;
 pub mod question;
+mod rails;
 pub(crate) mod range;
 pub(crate) mod read;
 pub(crate) mod refusal;
@@ -48,6 +49,7 @@ pub(crate) mod shards;
 pub(crate) mod table;
 pub(crate) mod ties;
 pub(crate) mod tolerance;
+mod transmissions;
 pub(crate) mod worst_pose;
 
 pub use ballast::{BallastFlags, ballast_flags};
