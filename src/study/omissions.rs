@@ -20,8 +20,8 @@ pub(super) fn omissions(space: &DesignSpace) -> Vec<String> {
     };
     let rigid = named(|joint| joint.bearing == BearingSource::Stated(None)).map(|names| {
         format!(
-            "Rigid output bearing without mass in {names}: the study states none there, so that no bearing yields, is \
-             checked or is weighed."
+            "Rigid output bearing without mass in {names}: the study states none there, so that no bearing tilts, \
+             is checked or is weighed."
         )
     });
     let bare = named(|joint| joint.drive.is_sized() && joint.extras == ExtrasSource::NONE).map(|names| {
