@@ -204,6 +204,11 @@ impl Transmission {
         }
     }
 
+    /// Whether the motor sits at the joint and drives the gear itself.
+    pub(crate) fn is_none(&self) -> bool {
+        self.motor_at.is_none() && self.stages.is_empty()
+    }
+
     /// Whether the motor sits elsewhere than the joint.
     pub(crate) fn is_elsewhere(&self) -> bool {
         self.motor_at.is_some()

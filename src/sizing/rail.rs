@@ -9,7 +9,7 @@
 //! |---|---|---|
 //! | buckling | F = 0.5 η₁ π² E I / L², η₁ = 1/4, 1, 2, 4 by the ends (Euler) | THK, general catalog 514E, page A15-30 |
 //! | critical speed | n = 0.8 · 60 λ² / (2π L²) √(E I / ρ A), λ = 1.875, π, 3.927, 4.730 | MISUMI 2025, page 1677; λ: the roots of the uniform beam |
-//! | life of the nut | L10 = (C / F_m)³ · 10⁶ turns, F_m the cubic mean over the way | ISO 3408-5, as the rating C is defined |
+//! | life of the nut | L10 = (C / F_m)³ · 10⁶ turns, F_m the cubic mean over the way | definition of C: linearwizard.com, screw drives, calculation principles |
 //! | stiffness of the shaft | E A / L, with both ends fixed 4 E A / L: where the nut is farthest from what holds the shaft | the bar, the bar held at both ends |
 //!
 //! I, A are those of the root of the thread, E = 206 GPa and ρ = 7850 kg/m³ those of steel. The mass of the shaft turns with the motor and does not

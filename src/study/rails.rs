@@ -2,6 +2,7 @@
 
 use super::drives::{Drives, read_drives};
 use super::keys::{DRIVES, RACK_KEYS, SCREW_KEYS};
+use crate::arm::element_keys::read_name;
 use crate::catalog::Catalogs;
 use crate::catalog::gear::Gear;
 use crate::input::json::{Node, Object};
@@ -86,12 +87,12 @@ pub(super) fn read_rail_drive(
 }
 
 fn all(node: &Node, read: impl Fn(&Node) -> Option<Gear>) -> Option<Vec<Gear>> {
-    let read: Vec<Option<Gear>> = node.array()?.iter().map(read).collect();
+    let items = node.array()?;
+    if items.is_empty() {
+        return node.fault("is empty", "list one part at least, or leave the key away");
+    }
+    let read: Vec<Option<Gear>> = items.iter().map(read).collect();
     read.into_iter().collect()
-}
-
-fn read_name(object: &Object) -> Option<String> {
-    object.required("name").and_then(|n| n.string().map(String::from))
 }
 
 fn read_efficiency(object: &Object) -> Option<f64> {

@@ -47,6 +47,9 @@ fn behind_one_ratio(
     catalogs: &Catalogs,
     seen: &[Seen],
 ) -> Option<()> {
+    if transmission.is_none() {
+        return Some(());
+    }
     if filter.actuator_ids.as_ref().is_none_or(|ids| !ids.is_empty()) {
         return node.fault(
             "lets actuators be chosen behind a transmission, and an actuator has its motor within",
