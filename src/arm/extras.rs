@@ -54,14 +54,14 @@ const CABLE_KG: f64 = 0.05;
 /// Outer diameter of a housed gear per size \[m\], where the catalog has none: size 20 is 0.093 m.
 const DIAMETER_PER_SIZE_M: f64 = 0.0046;
 
-/// Outer diameter of a gear \[m\]. Where the catalog has none, the size of a harmonic drive gives it; that of others does not,
-/// and their flange is left out.
-fn diameter_m(gear: &Gear) -> f64 {
+/// Outer diameter of a gear \[m\]. Where the catalog has none, as of every component set, the size of a harmonic drive gives
+/// it; that of others does not, and their flange is left out.
+fn diameter_m(gear: &Gear, which: GearMass) -> f64 {
     let by_size = match gear.kind {
         GearKind::StrainWave => DIAMETER_PER_SIZE_M * f64::from(gear.size),
         _ => 0.0,
     };
-    gear.envelope.outer_diameter_m.unwrap_or(by_size)
+    gear.envelope_as(which).outer_diameter_m.unwrap_or(by_size)
 }
 
 impl Extras {
@@ -89,7 +89,7 @@ impl Extras {
             GearMass::ComponentSet => HOUSING_SHARE * set_kg,
             GearMass::HousedUnit => 0.0,
         };
-        let flange_kg = FLANGE_KG_PER_M3 * diameter_m(gear).powi(3);
+        let flange_kg = FLANGE_KG_PER_M3 * diameter_m(gear, which).powi(3);
         Self {
             housing_kg: motor_housing_kg + gear_housing_kg,
             brake_kg: BRAKE_SHARE * (set_kg + motor_kg),

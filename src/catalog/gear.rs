@@ -214,6 +214,14 @@ impl Gear {
         }
     }
 
+    /// Outer size in the build a study asks for. The catalog has that of housed units; of component sets nothing is known.
+    pub(crate) fn envelope_as(&self, which: GearMass) -> Envelope {
+        match which {
+            GearMass::ComponentSet => Envelope::default(),
+            GearMass::HousedUnit => self.envelope,
+        }
+    }
+
     /// Whether the two make a drive: an actuator goes with its own motor only, and that motor with nothing else.
     pub fn goes_with(&self, motor: &Motor) -> bool {
         match (self.kind, motor.kind) {

@@ -72,7 +72,8 @@ impl Provenance {
         self.file.starts_with(BUILT_IN)
     }
 
-    /// What is said beside a part whose core figures no document was seen for: `from memory` or `representative`.
+    /// What is said beside a part whose core figures were not read in its vendor's document: `third party`, `from memory` or
+    /// `representative`.
     ///
     /// ```
     /// use armwright::catalog::Catalogs;
@@ -84,8 +85,8 @@ impl Provenance {
     /// ```
     pub fn caveat(&self) -> Option<&'static str> {
         match self.confidence {
-            Confidence::Verified | Confidence::ThirdParty => None,
-            Confidence::FromMemory | Confidence::Representative => {
+            Confidence::Verified => None,
+            Confidence::ThirdParty | Confidence::FromMemory | Confidence::Representative => {
                 Some(Confidence::WORDS[self.confidence as usize])
             }
         }

@@ -147,7 +147,7 @@ pub(super) fn run(args: &AnalyzeArgs, catalogs: &Catalogs) -> Result<String, Fai
         (true, Some(_)) => pretty(&Value::Array(solved.iter().map(|s| s.to_json(&arm)).collect())),
         (false, _) => {
             let text = solved.iter().map(|s| s.to_text(&arm)).collect::<Vec<_>>().join("\n");
-            text + &ignored_text(&ignored) + &creep_text(&arm, catalogs)
+            text + &ignored_text(&ignored) + &creep_text(&arm, catalogs) + &left_out_text(&arm)
         }
     })
 }
@@ -160,6 +160,14 @@ fn ignored_text(ignored: &[String]) -> String {
             format!("  ignored, because they describe a test and not the arm: {}\n", effects.join(", "))
         }
     }
+}
+
+/// What no number of an arm with gears has; nothing for one without.
+fn left_out_text(arm: &Arm) -> String {
+    let has_gear = |element: &Element| matches!(element, Element::Joint(joint) if joint.gear.is_some());
+    let words = "Left out of every number, unless the file states it: the compliance of the connections between links and \
+                 joints, and the cables along the links. Also temperature, and whether the parts fit into each other.";
+    if arm.chain.iter().any(has_gear) { wrap(words, TERMINAL, "") } else { String::new() }
 }
 
 /// What is said of the arm's materials that creep, and of links with stated factors.

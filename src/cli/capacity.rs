@@ -7,6 +7,7 @@ use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::report::number::fixed;
 use crate::report::whole_file::folder_of;
+use crate::report::words::{TERMINAL, wrap};
 use crate::study::arm_capacity::{arm_capacity, limits_of_parts, read_limits};
 use crate::study::capacity::{Capacity, Limit, capacity_of};
 use crate::study::load::load_study;
@@ -52,15 +53,24 @@ pub(super) fn run(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Fa
         return Err(Failure::Usage(words.into()));
     }
     let (study, _) = load_study(&args.study, catalogs)?;
-    Ok(said(args, &study.name, &capacity_of(&study, args.design.as_deref(), catalogs)?))
+    Ok(said(args, &study.name, &capacity_of(&study, args.design.as_deref(), catalogs)?, &study.remarks))
 }
 
-fn said(args: &CapacityArgs, name: &str, found: &Capacity) -> String {
-    match args.json {
-        true => serde_json::to_string_pretty(&found.to_json()).expect("numbers and strings serialize"),
-        false => to_text(name, found),
+/// The capacity, with what a reader should know of the numbers.
+fn said(args: &CapacityArgs, name: &str, found: &Capacity, remarks: &[String]) -> String {
+    if args.json {
+        let mut json = found.to_json();
+        json["remarks"] = json!(remarks);
+        return serde_json::to_string_pretty(&json).expect("numbers and strings serialize");
     }
+    let lines: String = remarks.iter().map(|words| wrap(words, TERMINAL, "")).collect();
+    let above = if lines.is_empty() { "" } else { "\n" };
+    format!("{}{above}{lines}", to_text(name, found))
 }
+
+/// What the capacity of an arm file leaves out.
+const AT_REST: &str =
+    "Only the torques at rest are judged: motion, output bearings, heat and strength are not checked.";
 
 /// Whether the file is an arm and no study, which has poses.
 fn is_arm_file(path: &str) -> bool {
@@ -98,7 +108,7 @@ fn of_arm(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Failure> {
             joints.first().copied().unwrap_or("j1")
         )));
     }
-    Ok(said(args, &arm.name, &arm_capacity(&arm, &cases, &limits)))
+    Ok(said(args, &arm.name, &arm_capacity(&arm, &cases, &limits), &[AT_REST.to_string()]))
 }
 
 fn kilograms(limit: &Limit) -> String {

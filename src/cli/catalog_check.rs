@@ -1,12 +1,14 @@
 //! `armwright catalog check`: what the catalogs hold, what they leave blank, and what cannot be chosen for it.
 
 use super::catalog_table::{TextTable, cell, provenances};
+use crate::arm::bearing::BearingSource;
 use crate::catalog::gear::{GearKind, GearMass};
 use crate::catalog::load::Loaded;
 use crate::catalog::needs::{Lack, words};
 use crate::catalog::schema::CatalogFile;
 use crate::catalog::{Catalogs, Confidence, Provenance};
 use crate::input::json::InputError;
+use crate::sizing::bearing_checks::RigidBearing;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -22,6 +24,7 @@ pub(crate) fn check(overlay: Option<&Path>) -> Result<String, InputError> {
     out.push_str(&blanks_table(&catalogs));
     out.push_str(&unchoosable(&catalogs));
     out.push_str(&by_usual_life(&catalogs));
+    out.push_str(&rigid_bearings(&catalogs));
     match catalogs.warnings.as_slice() {
         [] => out.push_str("\nNo faults, no warnings.\n"),
         warnings => {
@@ -166,6 +169,30 @@ fn named(parts: &[(usize, &str)]) -> String {
     match parts.len().saturating_sub(NAMED) {
         0 => names.join(", "),
         more => format!("{} and {more} more", names.join(", ")),
+    }
+}
+
+/// Housed gears and actuators whose output bearing counts as rigid because their row states no tilting stiffness, a line
+/// for each file.
+fn rigid_bearings(catalogs: &Catalogs) -> String {
+    let mut by_file: BTreeMap<&str, Vec<(usize, &str)>> = BTreeMap::new();
+    for gear in &catalogs.gears {
+        let is_housed = gear.mass_housed_unit_kg.is_some() && !gear.kind.slides();
+        if is_housed && RigidBearing::of(&BearingSource::OfGear, gear, GearMass::HousedUnit).is_some() {
+            let Provenance { file, line, .. } = &gear.provenance;
+            by_file.entry(file.as_str()).or_default().push((*line, gear.id.as_str()));
+        }
+    }
+    let lines = by_file.into_iter().map(|(file, mut parts)| {
+        parts.sort_unstable();
+        format!("  {file}:{} {}: no tilting_stiffness_nm_per_rad\n", parts[0].0, named(&parts))
+    });
+    let lines: String = lines.collect();
+    match lines.is_empty() {
+        true => lines,
+        false => {
+            format!("\nOutput bearings that count as rigid (the tip deflects more than printed):\n{lines}")
+        }
     }
 }
 

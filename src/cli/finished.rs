@@ -35,6 +35,7 @@ use crate::study::bearing_remarks::bearing_remarks;
 use crate::study::budget::budgets;
 use crate::study::definition::Study;
 use crate::study::effects::Correction;
+use crate::study::given_remarks::given_drive_remarks;
 use crate::study::outcome::StudyOutcome;
 use crate::study::page::study_page;
 use crate::study::range::range_words;
@@ -316,10 +317,19 @@ impl Finished<'_> {
         }
     }
 
-    /// What a reader should know of the question, and of the output bearings in the answer.
+    /// What a reader should know of the question, and of the output bearings and the given drives in the answer.
     fn remarks(&self, front: &FrontTable) -> Vec<String> {
         let of_study = self.study.remarks.iter().cloned();
-        of_study.chain(bearing_remarks(&self.study.space, self.catalogs, front)).collect()
+        let of_bearings = bearing_remarks(&self.study.space, self.catalogs, front);
+        let of_given = given_drive_remarks(self.problem, self.catalogs, &self.outcome.front);
+        of_study.chain(of_bearings).chain(of_given).collect()
+    }
+
+    /// The parts of the picks whose figures are not their vendor's, in a sentence; `None` if there are none.
+    fn caveats(&self, summary: &SummaryInput) -> Option<String> {
+        let picked = picks::rows_and_names(&picks::picks(&picks::designs(&summary.overall)));
+        let sentence = summary.facts.caveats.sentence(&summary.overall, &picked);
+        (!sentence.is_empty()).then(|| sentence.split_whitespace().collect::<Vec<_>>().join(" "))
     }
 
     /// The study's effects. An effect that describes a test does not count, and says so.
@@ -386,6 +396,7 @@ impl Finished<'_> {
             "materials": materials,
             "not_checked": study.not_checked,
             "remarks": summary.facts.remarks,
+            "caveats": self.caveats(summary),
             "effects": self.effects(),
             "effects_mass_kg": study.space.effects_mass_kg(),
             "carried_over": corrections::to_json(self.corrections),

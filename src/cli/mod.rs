@@ -12,6 +12,7 @@ pub(crate) mod check;
 mod check_files;
 mod check_same;
 pub(crate) mod compare;
+mod compare_remarks;
 pub(crate) mod corrections;
 pub(crate) mod design;
 pub(crate) mod exit;

@@ -54,16 +54,17 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failur
     refuse_empty(&study, catalogs)?;
     let (space, chosen) = chosen_design(&study, args.design.as_deref(), catalogs)?;
     let problem = ArmProblem::new(&space, catalogs);
+    let remarks: String = study.remarks.iter().map(|words| wrap(words, TERMINAL, "")).collect();
+    let remarks = if remarks.is_empty() { remarks } else { format!("\n{remarks}") };
     if let Some(joint) = &args.explain {
-        return explain(&problem, &chosen, joint);
+        return Ok(explain(&problem, &chosen, joint)? + &remarks);
     }
     if let Some(joint) = &args.all_fits {
-        return all_fits(&problem, &chosen, joint);
+        return Ok(all_fits(&problem, &chosen, joint)? + &remarks);
     }
     let rows =
         sizing_rows(&problem, catalogs, &chosen).map_err(|slot| why_not_held(&problem, &chosen, slot))?;
-    let remarks: String = study.remarks.iter().map(|words| wrap(words, TERMINAL, "")).collect();
-    let text = format!("{}{}\n{remarks}", heading(&study, &problem, &chosen), render_rows(&rows));
+    let text = format!("{}{}{remarks}", heading(&study, &problem, &chosen), render_rows(&rows));
     let json = serde_json::to_string_pretty(&rows).expect("rows of numbers and strings serialize");
     if let Some(dir) = &args.out {
         let files = [("sizing.json", &json), ("sizing.txt", &text)];
@@ -191,7 +192,7 @@ fn room_words(room: &LinkRoom) -> String {
     format!("{}{}", part("gear", room.gear_m), part("motor", room.motor_m))
 }
 
-/// What loads the output bearing of a joint; nothing if it is not checked.
+/// What loads the output bearing of a joint; nothing if it has none.
 fn bearing_line(joint: &str, demand: &BearingDemand) -> String {
     if demand.is_zero() {
         return String::new();

@@ -38,7 +38,7 @@ impl Parts {
                 demand.with_heat_times(relaxed[end]).with_room(room[end])
             });
             // the load on a bearing has no upper bound here, so it may ask for a heavier drive than the torques
-            let by_bearing = problem.bearing_loads().levers[slot].is_some();
+            let by_bearing = problem.bearing_loads().checked[slot];
             let heaviest = if sized.all_fits || by_bearing { None } else { sized.table.first_fit(&most) };
             dropped |= self.keep(slot, |_, option| {
                 sized.table.limits(option as usize).hold(&least)

@@ -5,6 +5,7 @@ use super::pose::pose_words;
 use super::small_displacement::too_far;
 use super::springs::{spring_json, springs_in, springs_text};
 use crate::arm::effect::entry::Effect;
+use crate::arm::extras::Extras;
 use crate::arm::load::LoadCase;
 use crate::arm::pose::any_slides;
 use crate::arm::springs::Drawn;
@@ -99,6 +100,8 @@ impl Analysis {
             "bearing_moment_nm": moments,
             "bearings": self.bearings_json(arm),
             "rigid_bearings": rigid_bearings(arm),
+            "bearings_without_stiffness": bearings_without_stiffness(arm),
+            "without_extras": without_extras(arm),
             "tip_displacement_m": self.statics.tip_displacement_m.as_slice(),
             "small_displacements": too_far(self.statics.tip_displacement_m.norm(), arm.reach_m()).is_none(),
             "shares": shares,
@@ -260,6 +263,22 @@ impl Analysis {
         if !rigid.is_empty() {
             let _ = writeln!(out, "  rigid output bearing without mass: {}", rigid.join(", "));
         }
+        let unknown = bearings_without_stiffness(arm);
+        if !unknown.is_empty() {
+            let _ = writeln!(
+                out,
+                "  rigid output bearing, because its tilting stiffness is unknown (the tip deflects more than printed): {}",
+                unknown.join(", ")
+            );
+        }
+        let bare = without_extras(arm);
+        if !bare.is_empty() {
+            let _ = writeln!(
+                out,
+                "  nothing weighed beyond gear, motor and bearing (no \"extras\" in the file): {}",
+                bare.join(", ")
+            );
+        }
         springs_text(&self.springs, &mut out);
         self.modes_text(&mut out);
         self.response_text(&mut out);
@@ -324,6 +343,26 @@ impl Analysis {
 fn rigid_bearings(arm: &Arm) -> Vec<&str> {
     let rigid = |element: &Element| matches!(element, Element::Joint(joint) if joint.gear.is_some() && joint.bearing.is_none());
     arm.chain.iter().filter(|element| rigid(element)).map(Element::name).collect()
+}
+
+/// The joints whose output bearing counts as rigid because nobody knows how it tilts, with the gear.
+fn bearings_without_stiffness(arm: &Arm) -> Vec<String> {
+    let named = |element: &Element| {
+        let Element::Joint(joint) = element else { return None };
+        joint.bearing.filter(|bearing| bearing.tilt_stiffness_nm_per_rad.is_none())?;
+        let gear = joint.gear.as_ref().map_or(String::new(), |gear| format!(" ({gear})"));
+        Some(format!("{}{gear}", joint.name))
+    };
+    arm.chain.iter().filter_map(named).collect()
+}
+
+/// The joints with a gear and a motor beside which the file weighs nothing.
+fn without_extras(arm: &Arm) -> Vec<&str> {
+    let is_bare = |element: &&Element| {
+        matches!(element, Element::Joint(joint)
+            if joint.gear.is_some() && joint.motor.is_some() && joint.extras == Extras::default())
+    };
+    arm.chain.iter().filter(is_bare).map(Element::name).collect()
 }
 
 /// An output bearing and what it carries at rest.

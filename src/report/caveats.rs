@@ -1,4 +1,4 @@
-//! Parts whose figures no document was seen for, or are typical of their class: it is said beside every pick that uses them.
+//! Parts whose figures were not read in their vendor's document: it is said beside every pick that uses them.
 
 use super::front_table::FrontTable;
 use super::words::{TERMINAL, wrap};
@@ -24,7 +24,7 @@ impl Caveats {
         Self(parts.filter_map(caveat).collect())
     }
 
-    /// `representative` or `from memory`; `None` for a part that a document was seen for.
+    /// `third party`, `representative` or `from memory`; `None` for a part whose vendor's document was seen.
     pub fn of_part(&self, name: &str) -> Option<&'static str> {
         self.0.get(name).copied()
     }
@@ -56,7 +56,9 @@ impl Caveats {
             used.iter().map(|(part, names)| format!("{} in {}", self.marked(part), place(names))).collect();
         match words.is_empty() {
             true => String::new(),
-            false => wrap(&format!("Figures not from a document: {}.", words.join("; ")), TERMINAL, ""),
+            false => {
+                wrap(&format!("Figures not from the vendor's document: {}.", words.join("; ")), TERMINAL, "")
+            }
         }
     }
 }

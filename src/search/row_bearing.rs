@@ -137,7 +137,8 @@ impl RowBearing {
     /// because all its drives feel the same loads.
     pub(crate) fn all(problem: &ArmProblem, first: usize) -> Vec<Self> {
         let slots = problem.slots();
-        let levers = problem.bearing_loads().levers.iter().enumerate().skip(first);
+        let loads = problem.bearing_loads();
+        let levers = loads.levers.iter().enumerate().skip(first).filter(|(slot, _)| loads.checked[*slot]);
         let checked = levers.filter_map(|(slot, lever)| {
             let is_inboard = matches!(&slots[slot], Slot::Sized(sized) if slot > first || !sized.all_fits);
             lever.as_ref().filter(|_| is_inboard).map(|lever| (slot, lever))

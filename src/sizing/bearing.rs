@@ -93,7 +93,7 @@ impl BearingLoad {
 }
 
 impl BearingDemand {
-    /// Whether every load is zero: nothing loads the bearing, or it is not checked.
+    /// Whether every load is zero: nothing loads the bearing, or there is none.
     pub fn is_zero(&self) -> bool {
         *self == Self::default()
     }

@@ -1,6 +1,6 @@
 //! What output bearings reject at one joint, what helps, and which of them could not be checked.
 
-use super::bearing_checks::{BlankRatings, bearing_that_holds};
+use super::bearing_checks::{BlankRatings, RigidBearing, bearing_that_holds};
 use super::check::Check;
 use super::checks::gear_checks;
 use super::demand::JointDemand;
@@ -20,9 +20,30 @@ struct Overloaded<'t> {
 
 impl DriveTable<'_> {
     /// What is to be said of the output bearings of this joint, in sentences: how many gears they reject and what helps,
-    /// and which ratings are blank. Empty if every bearing holds and all ratings are known.
+    /// which ratings are blank, and which bearings count as rigid. Empty if every bearing holds and all figures are known.
     pub fn explain_bearings(&self, demand: &JointDemand) -> Vec<String> {
-        self.overloaded_bearings(demand).into_iter().chain(self.blank_bearings()).collect()
+        let said = self.overloaded_bearings(demand).into_iter().chain(self.blank_bearings());
+        said.chain(self.rigid_bearings()).collect()
+    }
+
+    /// The bearings whose tilting stiffness is blank, one line each; a stated bearing is the same with every gear.
+    fn rigid_bearings(&self) -> Vec<String> {
+        let rigid = |gear: &Gear| {
+            let (whose, rigid) =
+                (self.whose(gear), RigidBearing::of(self.bearing_source(), gear, self.gear_mass())?);
+            Some(format!("joint {}: {}", self.joint(), rigid.words(&[whose])))
+        };
+        let mut lines: Vec<String> = self.gears().iter().filter_map(|gear| rigid(gear)).collect();
+        lines.dedup();
+        lines
+    }
+
+    /// Whose bearing the joint has with a gear.
+    fn whose<'g>(&self, gear: &'g Gear) -> &'g str {
+        match self.bearing_source() {
+            BearingSource::OfGear => &gear.id,
+            BearingSource::Stated(_) => "the stated bearing",
+        }
     }
 
     /// How many gears their bearings reject, the one that comes nearest, and what helps.
@@ -48,7 +69,8 @@ impl DriveTable<'_> {
     /// The gear, if its bearing fails a check.
     fn overloaded<'t>(&self, gear: &'t Gear, demand: &JointDemand) -> Option<Overloaded<'t>> {
         let bearing = self.bearing_of(gear);
-        let failed = not_holding(gear_checks(gear, bearing.as_ref(), self.motion(), demand));
+        let checks = gear_checks(gear, self.gear_mass(), bearing.as_ref(), self.motion(), demand);
+        let failed = not_holding(checks);
         let check = *failed.iter().find(|check| check.kind.is_bearing())?;
         let is_alone = failed.iter().all(|check| check.kind.is_bearing());
         Some(Overloaded { gear: &gear.id, check, is_alone })

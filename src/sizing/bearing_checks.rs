@@ -94,6 +94,52 @@ impl BlankRatings {
     }
 }
 
+/// Names of the tilting stiffness: a column of the catalog of gears, and a key of a bearing that a file states.
+const STIFFNESS: [&str; 2] = ["tilting_stiffness_nm_per_rad", "tilt_stiffness_nm_per_rad"];
+
+/// A bearing whose tilting stiffness is unknown: it counts as rigid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct RigidBearing {
+    /// Name of the stiffness that is blank.
+    lacks: &'static str,
+}
+
+impl RigidBearing {
+    /// The bearing of a joint with this gear; `None` if its stiffness is known or the joint has no bearing.
+    pub(crate) fn of(source: &BearingSource, gear: &Gear, which: GearMass) -> Option<Self> {
+        let has_stiffness = source.with_gear(gear, which)?.tilt_stiffness_nm_per_rad.is_some();
+        let lacks = match source {
+            BearingSource::OfGear => STIFFNESS[0],
+            BearingSource::Stated(_) => STIFFNESS[1],
+        };
+        (!has_stiffness && !gear.kind.slides()).then_some(Self { lacks })
+    }
+
+    /// A bearing that a file states, or that of the gear which the file names; `None` if its stiffness is known. The second
+    /// is whose bearing it is, if it is the gear's.
+    pub(crate) fn of_given<'g>(bearing: &Bearing, gear: Option<&'g Gear>) -> Option<(Self, Option<&'g str>)> {
+        if bearing.tilt_stiffness_nm_per_rad.is_some() {
+            return None;
+        }
+        let is_of = |gear: &&Gear| Bearing::of_gear(gear, GearMass::HousedUnit).as_ref() == Some(bearing);
+        match gear.filter(is_of) {
+            Some(gear) => Some((Self { lacks: STIFFNESS[0] }, Some(&gear.id))),
+            None => Some((Self { lacks: STIFFNESS[1] }, None)),
+        }
+    }
+
+    /// `rigid output bearing: TPMA-50-55 lacks tilting_stiffness_nm_per_rad (the tip deflects more than printed)`, where
+    /// `whose` has the bearing.
+    pub(crate) fn words(&self, whose: &[&str]) -> String {
+        let lack = if whose.len() > 1 { "lack" } else { "lacks" };
+        format!(
+            "rigid output bearing: {} {lack} {} (the tip deflects more than printed)",
+            whose.join(", "),
+            self.lacks
+        )
+    }
+}
+
 /// The rating with which a bearing of the joint's own would pass a check that fails, in words; `None` for checks of other
 /// parts.
 pub(super) fn bearing_that_holds(check: &Check) -> Option<String> {

@@ -9,11 +9,12 @@ use super::heat::MotorHeat;
 use super::limits as limit;
 use super::motor_curve;
 use crate::arm::bearing::Bearing;
-use crate::catalog::gear::Gear;
+use crate::catalog::gear::{Gear, GearMass};
 
 /// The checks of a gear and of the output bearing, which do not depend on the motor.
 pub fn gear_checks(
     gear: &Gear,
+    which: GearMass,
     bearing: Option<&Bearing>,
     motion: &JointMotion,
     demand: &JointDemand,
@@ -38,7 +39,7 @@ pub fn gear_checks(
         checks.push(plain(CheckKind::GearStops, stops, allowed.ok_or(rule)));
     }
     checks.retain(|check| !limit::is_unlimited(gear, check.kind));
-    checks.extend(gear_fits(gear, &motion.fit, &demand.room));
+    checks.extend(gear_fits(gear, which, &motion.fit, &demand.room));
     if let Some(bearing) = bearing {
         checks.extend(bearing_checks(bearing, motion, &demand.bearing));
     }
@@ -129,7 +130,7 @@ fn motor_rms(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check
 
 /// All checks of a drive: first those of the gear, then those of the motor.
 pub fn checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Vec<Check> {
-    let mut all = gear_checks(drive.gear, drive.bearing().as_ref(), motion, demand);
+    let mut all = gear_checks(drive.gear, drive.gear_mass, drive.bearing().as_ref(), motion, demand);
     all.extend(motor_checks(drive, motion, demand));
     all
 }

@@ -74,7 +74,7 @@ fn life_fails_alone_when_more_is_required_than_the_bearing_gives() {
 #[test]
 fn buckling_and_ratcheting_are_not_checked_where_the_catalog_has_no_torque_and_exclude_nothing() {
     let (gear, _) = ample();
-    let checks = gear_checks(&gear, None, &motion(), &demand());
+    let checks = gear_checks(&gear, GearMass::HousedUnit, None, &motion(), &demand());
     let open: Vec<_> = checks.iter().filter(|c| c.needed.is_some() && c.allowed.is_none()).collect();
     assert_eq!(
         open.iter().map(|c| c.to_string()).collect::<Vec<_>>(),
@@ -137,12 +137,14 @@ fn a_component_set_has_no_bearing_to_tilt() {
     let demand = demand().with_bearing(bearing_loads(9999.0));
     assert!(all_hold(&gear_checks(
         &gear,
+        GearMass::ComponentSet,
         Bearing::of_gear(&gear, GearMass::ComponentSet).as_ref(),
         &motion(),
         &demand
     )));
     assert!(!all_hold(&gear_checks(
         &gear,
+        GearMass::HousedUnit,
         Bearing::of_gear(&gear, GearMass::HousedUnit).as_ref(),
         &motion(),
         &demand
@@ -152,8 +154,13 @@ fn a_component_set_has_no_bearing_to_tilt() {
 #[test]
 fn the_life_is_the_vendors_formula() {
     let (gear, _) = ample();
-    let checks =
-        gear_checks(&gear, Bearing::of_gear(&gear, GearMass::HousedUnit).as_ref(), &motion(), &demand());
+    let checks = gear_checks(
+        &gear,
+        GearMass::HousedUnit,
+        Bearing::of_gear(&gear, GearMass::HousedUnit).as_ref(),
+        &motion(),
+        &demand(),
+    );
     let life = checks.iter().find(|c| c.kind == CheckKind::GearLife).unwrap();
     let mean_rpm = 100.0 * 0.4 / 1.35 * 30.0 / std::f64::consts::PI;
     let by_hand = 10_000.0 * (600.0 / demand().mean_torque_nm()).powi(3) * (2000.0 / mean_rpm);
@@ -166,8 +173,13 @@ fn a_check_reads_as_needed_and_allowed() {
     let mut gear = hfuc_40_100();
     gear.repeated_peak_torque_nm = Some(523.0);
     let demand = motion().demand_of_torques(376.0, 192.3);
-    let checks =
-        gear_checks(&gear, Bearing::of_gear(&gear, GearMass::HousedUnit).as_ref(), &motion(), &demand);
+    let checks = gear_checks(
+        &gear,
+        GearMass::HousedUnit,
+        Bearing::of_gear(&gear, GearMass::HousedUnit).as_ref(),
+        &motion(),
+        &demand,
+    );
     assert_eq!(checks[0].to_string(), "peak 568 N m needed, 523 allowed");
 }
 

@@ -4,6 +4,7 @@ use super::demand::{JointMotion, input_speed_rpm};
 use crate::arm::bearing::{Bearing, BearingSource};
 use crate::arm::extras::{Extras, ExtrasSource};
 use crate::arm::transmission::{Stage, Stages};
+use crate::catalog::envelope::Envelope;
 use crate::catalog::gear::{Gear, GearKind, GearMass};
 use crate::catalog::motor::Motor;
 
@@ -77,6 +78,11 @@ impl Drive<'_> {
             return self.gear.id.clone();
         }
         format!("{} + {}", self.gear.id, self.motor.id)
+    }
+
+    /// Outer size of the gear, as far as it is known.
+    pub(super) fn gear_envelope(&self) -> Envelope {
+        self.gear.envelope_as(self.gear_mass)
     }
 
     /// What the joint weighs beyond gear, motor and bearing.

@@ -199,7 +199,8 @@ impl<'c> DriveTable<'c> {
 
     /// The checks of a gear, and what of its torsion is blank where the joint needs it.
     fn checks_of_gear(&self, gear: &Gear, demand: &JointDemand) -> Vec<Check> {
-        let mut checks = gear_checks(gear, self.bearing_of(gear).as_ref(), self.motion(), demand);
+        let mut checks =
+            gear_checks(gear, self.gear_mass(), self.bearing_of(gear).as_ref(), self.motion(), demand);
         if !self.knows_torsion(gear) {
             checks.extend(torsion_checks(gear));
         }

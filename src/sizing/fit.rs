@@ -7,12 +7,11 @@
 //! | cables along the axis | bore of the gear, and of a motor behind it; the smallest bore asked for |
 //! | room at the joint | length of the gear, with that of a motor behind it; the largest length asked for |
 //!
-//! A size that the catalog leaves blank is not checked and excludes nothing. The first two follow from the link, so they are part
+//! A size that the catalog leaves blank is not checked and excludes nothing; of component sets it has no sizes at all. The first two follow from the link, so they are part
 //! of the [demand](super::demand::JointDemand) on the joint; the others exclude a drive whatever the arm. Where a part is does
 //! not depend on these sizes: the geometry of a chain is stated.
 
-use crate::catalog::gear::Gear;
-use crate::catalog::motor::Motor;
+use crate::catalog::envelope::Envelope;
 
 /// A part that is just as wide as its room fits; rounding of a factor times a width must not decide.
 const ROUNDING: f64 = 1e-9;
@@ -83,11 +82,11 @@ impl LinkRoom {
 
 impl DriveWidths {
     /// The widths of a gear and a motor that count under a requirement.
-    pub(super) fn of(gear: &Gear, motor: &Motor, fit: &FitRequirement) -> Self {
+    pub(super) fn of(gear: &Envelope, motor: &Envelope, fit: &FitRequirement) -> Self {
         let counts = |asked: bool, width_m: Option<f64>| width_m.filter(|_| asked).unwrap_or(0.0);
         Self {
-            gear_m: counts(fit.gear_to_link_max.is_some(), gear.envelope.outer_diameter_m),
-            motor_m: counts(fit.motor == MotorPlace::InLink, motor.envelope.outer_diameter_m),
+            gear_m: counts(fit.gear_to_link_max.is_some(), gear.outer_diameter_m),
+            motor_m: counts(fit.motor == MotorPlace::InLink, motor.outer_diameter_m),
         }
     }
 
@@ -136,7 +135,7 @@ impl FitRequirement {
     }
 
     /// Whether a gear and a motor fit whatever the link: their bores and their length, as far as they are known.
-    pub(super) fn allows(&self, gear: &Gear, motor: &Motor) -> bool {
+    pub(super) fn allows(&self, gear: &Envelope, motor: &Envelope) -> bool {
         let bore_holds = |bore_m: Option<f64>| match (self.least_bore_m(), bore_m) {
             (Some(least_m), Some(bore_m)) => least_m <= bore_m,
             _ => true,
@@ -146,8 +145,8 @@ impl FitRequirement {
             _ => true,
         };
         length_holds
-            && bore_holds(gear.envelope.hollow_bore_m)
-            && (self.motor != MotorPlace::Behind || bore_holds(motor.envelope.hollow_bore_m))
+            && bore_holds(gear.hollow_bore_m)
+            && (self.motor != MotorPlace::Behind || bore_holds(motor.hollow_bore_m))
     }
 
     /// Smallest bore, but for rounding \[m\].
@@ -161,10 +160,10 @@ impl FitRequirement {
     }
 
     /// Length of a drive along the axis \[m\]; `None` if one of its parts has no length in the catalog.
-    pub(super) fn length_m(&self, gear: &Gear, motor: &Motor) -> Option<f64> {
+    pub(super) fn length_m(&self, gear: &Envelope, motor: &Envelope) -> Option<f64> {
         match self.motor {
-            MotorPlace::Behind => Some(gear.envelope.length_m? + motor.envelope.length_m?),
-            MotorPlace::InLink | MotorPlace::Beside => gear.envelope.length_m,
+            MotorPlace::Behind => Some(gear.length_m? + motor.length_m?),
+            MotorPlace::InLink | MotorPlace::Beside => gear.length_m,
         }
     }
 }

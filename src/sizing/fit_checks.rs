@@ -3,12 +3,26 @@
 use super::check::{Check, CheckKind, check};
 use super::drive::{Drive, Rating, known};
 use super::fit::{FitRequirement, LinkRoom, MotorPlace};
-use crate::catalog::gear::Gear;
+use crate::catalog::gear::{Gear, GearMass};
+
+/// The size of a gear that is blank, by its column; component sets have no columns.
+fn size_of(which: GearMass, column: &'static str) -> &'static str {
+    match which {
+        GearMass::ComponentSet => "the size of the component set, which the catalog does not have",
+        GearMass::HousedUnit => column,
+    }
+}
 
 /// What is asked of the sizes of a gear.
-pub(super) fn gear_fits(gear: &Gear, fit: &FitRequirement, room: &LinkRoom) -> impl Iterator<Item = Check> {
-    let width = known(gear.envelope.outer_diameter_m, "gear outer_diameter_mm");
-    let bore = known(gear.envelope.hollow_bore_m, "gear hollow_bore_mm");
+pub(super) fn gear_fits(
+    gear: &Gear,
+    which: GearMass,
+    fit: &FitRequirement,
+    room: &LinkRoom,
+) -> impl Iterator<Item = Check> {
+    let size = gear.envelope_as(which);
+    let width = known(size.outer_diameter_m, size_of(which, "gear outer_diameter_mm"));
+    let bore = known(size.hollow_bore_m, size_of(which, "gear hollow_bore_mm"));
     let width = at_most(CheckKind::GearWidth, width, room.gear_m);
     [width, fit.least_bore_m().map(|least_m| bore_check(CheckKind::GearBore, least_m, bore))]
         .into_iter()
@@ -21,10 +35,13 @@ pub(super) fn motor_fits(
     fit: &FitRequirement,
     room: &LinkRoom,
 ) -> impl Iterator<Item = Check> {
-    let (gear, motor) = (&drive.gear.envelope, &drive.motor.envelope);
+    let (gear, motor) = (&drive.gear_envelope(), &drive.motor.envelope);
     let width = known(motor.outer_diameter_m, "motor outer_diameter_mm");
-    let blank = if gear.length_m.is_none() { "gear length_mm" } else { "motor length_mm" };
-    let length = known(fit.length_m(drive.gear, drive.motor), blank);
+    let blank = match gear.length_m {
+        None => size_of(drive.gear_mass, "gear length_mm"),
+        Some(_) => "motor length_mm",
+    };
+    let length = known(fit.length_m(gear, motor), blank);
     let bore = known(motor.hollow_bore_m, "motor hollow_bore_mm");
     let least_bore_m = fit.least_bore_m().filter(|_| fit.motor == MotorPlace::Behind);
     let checks = [
@@ -126,9 +143,40 @@ mod tests {
                 drive_length_max_m: Some(0.2),
                 ..FitRequirement::default()
             };
-            assert!(fit.allows(&gear, &motor), "{place:?}");
-            assert!(!FitRequirement { motor: MotorPlace::Behind, ..fit }.allows(&gear, &motor));
+            assert!(fit.allows(&gear.envelope, &motor.envelope), "{place:?}");
+            assert!(
+                !FitRequirement { motor: MotorPlace::Behind, ..fit }.allows(&gear.envelope, &motor.envelope)
+            );
         }
+    }
+
+    #[test]
+    fn of_a_component_set_no_size_is_known_whatever_the_housed_unit_has() {
+        let (mut gear, mut motor) = ample();
+        gear.mass_component_set_kg = gear.mass_housed_unit_kg;
+        gear.envelope =
+            Envelope { outer_diameter_m: Some(9.0), length_m: Some(9.0), hollow_bore_m: Some(0.0) };
+        motor.envelope =
+            Envelope { outer_diameter_m: Some(0.1), length_m: Some(0.1), hollow_bore_m: Some(0.1) };
+        let fit = FitRequirement {
+            gear_to_link_max: Some(1.2),
+            motor: MotorPlace::Behind,
+            cable_bore_min_m: Some(0.02),
+            drive_length_max_m: Some(0.2),
+        };
+        let motion = JointMotion { fit, ..motion() };
+        let demand = motion.demand_of_torques(300.0, 100.0).with_room(fit.room(0.15, 0.14));
+        let holds = |which| {
+            let drive = Drive { gear_mass: which, ..housed(&gear, &motor) };
+            let said = checks(&drive, &motion, &demand).into_iter().filter(|c| c.kind.is_fit());
+            let said: Vec<String> = said.map(|c| c.to_string()).collect();
+            (DriveLimits::of(&drive, &motion).is_ok_and(|limits| limits.hold(&demand)), said)
+        };
+        assert!(!holds(GearMass::HousedUnit).0);
+        let (fits, said) = holds(GearMass::ComponentSet);
+        assert!(fits, "nothing is known that does not fit");
+        let lacks = "not checked: lacks the size of the component set, which the catalog does not have";
+        assert_eq!(said.iter().filter(|words| words.ends_with(lacks)).count(), 3, "{said:?}");
     }
 
     #[test]

@@ -89,7 +89,7 @@ impl DriveLimits {
         {
             return Err(Obstacle::TooManyStops);
         }
-        if !motion.fit.allows(drive.gear, drive.motor) {
+        if !motion.fit.allows(&drive.gear_envelope(), &drive.motor.envelope) {
             return Err(Obstacle::DoesNotFit);
         }
         Ok(Self {
@@ -98,7 +98,7 @@ impl DriveLimits {
             stop_torque_nm: gear_stop_nm(gear)?,
             mean_torque_cubed_nm3: gear_average_cubed_nm3(gear)?.min(gear_life_cubed_nm3(gear, motion)?),
             bearing: BearingLimits::of(drive.bearing().as_ref(), motion.mean_speed_rad_s(), motion.life_h),
-            widths: DriveWidths::of(drive.gear, drive.motor, &motion.fit),
+            widths: DriveWidths::of(&drive.gear_envelope(), &drive.motor.envelope, &motion.fit),
             heat: MotorHeat::of(drive, motion)?,
         })
     }

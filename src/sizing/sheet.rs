@@ -1,6 +1,6 @@
 //! The sizing table: the numbers of one joint in a row, from the tip to the base.
 
-use super::bearing_checks::{BlankRatings, bearing_margin};
+use super::bearing_checks::{BlankRatings, RigidBearing, bearing_margin};
 use super::check::{Check, CheckKind, CheckState};
 use super::checks::{binding, checks, motor_checks};
 use super::demand::{JointDemand, JointMotion, input_speed_rpm, mean_input_speed_rpm};
@@ -88,7 +88,7 @@ pub struct JointSizingRow {
     pub checks: Vec<Check>,
     /// Checks that fail, in words; a fixed selection may have some.
     pub fails: Vec<String>,
-    /// Checks that could not be made, in words.
+    /// Checks that could not be made, and a bearing that counts as rigid for want of a stiffness, in words.
     pub not_checked: Vec<String>,
 }
 
@@ -174,12 +174,17 @@ impl JointSizingRow {
 
 /// The checks in words, with the part that they are about.
 fn remarks<'c>(checks: impl Iterator<Item = &'c Check>) -> Vec<String> {
-    let part = |c: &Check| match c.kind {
+    checks.map(with_part).collect()
+}
+
+/// A check in words, with the part that it is about: `gear peak 111 N m needed, 107 allowed`.
+pub(crate) fn with_part(check: &Check) -> String {
+    let part = match check.kind {
         kind if kind.is_bearing() => "",
         kind if kind.is_gear() => "gear ",
         _ => "motor ",
     };
-    checks.map(|c| format!("{}{c}", part(c))).collect()
+    format!("{part}{check}")
 }
 
 /// What could not be checked, in words. One line is enough for a bearing, whatever it lacks.
@@ -192,6 +197,8 @@ fn not_checked(drive: &Drive, checks: &[Check]) -> Vec<String> {
     };
     let blank = BlankRatings::of(&drive.bearing, drive.gear, drive.gear_mass);
     out.extend(blank.map(|blank| blank.words(&[whose])));
+    let rigid = RigidBearing::of(&drive.bearing, drive.gear, drive.gear_mass);
+    out.extend(rigid.map(|rigid| rigid.words(&[whose])));
     out
 }
 

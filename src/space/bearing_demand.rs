@@ -62,7 +62,7 @@ fn take(largest: &mut [f64; 3], load: [f64; 3]) {
 
 impl ArmProblem<'_> {
     /// Loads on the bearing of the joint in a slot in some cases, when an arm of these states and options is everything outboard of it;
-    /// zero if the bearing is not checked.
+    /// zero if it has none.
     pub(crate) fn bearing_demand(
         &self,
         cases: &[usize],

@@ -4,8 +4,10 @@
 use super::design_space::{DesignSpace, SpaceJoint, SpacePiece};
 use super::slot::Slot;
 use super::station::StationJoint;
+use crate::arm::bearing::BearingSource;
 use crate::arm::section::Section;
 use crate::arm::{Bearing, Element, Link, LinkBody};
+use crate::catalog::gear::GearMass;
 use crate::mechanics::beam::section_frame;
 use crate::mechanics::chain::across;
 use crate::mechanics::{Wrench, angular, linear};
@@ -16,8 +18,10 @@ use nalgebra::Vector3;
 pub(crate) struct BearingLoads {
     /// The joints of the chain, tip first.
     pub movers: Vec<Mover>,
-    /// Where the link attaches to the joint in each slot; `None` if its bearing is not checked.
+    /// Where the link attaches to the joint in each slot; `None` if it has no bearing.
     pub levers: Vec<Option<Lever>>,
+    /// Whether the bearing in each slot can exclude a design. One whose ratings are unknown cannot.
+    pub checked: Vec<bool>,
     /// Ratio of emergency deceleration to acceleration.
     pub stop_factor: f64,
 }
@@ -91,6 +95,7 @@ impl BearingLoads {
     /// The loads of a space whose slots are known. `reaches_m` are in order from the base.
     pub(crate) fn new(space: &DesignSpace, slots: &[Slot], piece_slots: &[usize], reaches_m: &[f64]) -> Self {
         let mut levers: Vec<Option<Lever>> = slots.iter().map(|_| None).collect();
+        let mut checked = vec![false; slots.len()];
         let mut movers = Vec::new();
         let mut reaches_m = reaches_m.iter();
         for (piece, what) in space.pieces.iter().enumerate() {
@@ -102,17 +107,26 @@ impl BearingLoads {
             if joint.coupled.is_none() {
                 movers.push(Mover { slot, acceleration_rad_s2: motion.acceleration_rad_s2 });
             }
-            if is_checked(&slots[slot], joint) {
+            if has_bearing(&slots[slot], joint) {
                 levers[slot] = Some(Lever::new(space, piece, joint, piece_slots));
+                checked[slot] = is_checked(&slots[slot], joint);
             }
         }
         movers.reverse();
-        Self { movers, levers, stop_factor: space.motion.stop_factor() }
+        Self { movers, levers, checked, stop_factor: space.motion.stop_factor() }
     }
 
-    /// Whether some bearing is checked.
+    /// Whether some joint has a bearing.
     pub(crate) fn any(&self) -> bool {
         self.levers.iter().any(Option::is_some)
+    }
+}
+
+/// Whether a joint has an output bearing, rated or not.
+fn has_bearing(slot: &Slot, joint: &SpaceJoint) -> bool {
+    match (slot, joint.bearing) {
+        (Slot::Sized(sized), BearingSource::OfGear) => sized.table.gear_mass() == GearMass::HousedUnit,
+        _ => joint.bearing.stated().is_some(),
     }
 }
 

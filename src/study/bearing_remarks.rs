@@ -1,19 +1,20 @@
 //! Output bearings of a front that could not be checked or are overloaded, so that it can be said beside the front.
 
+use crate::arm::bearing::BearingSource;
 use crate::catalog::Catalogs;
 use crate::report::front_table::FrontTable;
-use crate::sizing::bearing_checks::BlankRatings;
+use crate::report::words::capital;
+use crate::sizing::bearing_checks::{BlankRatings, RigidBearing};
 use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint, SpacePiece};
 
 /// The most names in one sentence.
 const MOST_NAMES: usize = 4;
 
 /// Bearings by what they lack, in the order of the chain.
-#[derive(Default)]
-struct Unchecked(Vec<(BlankRatings, Vec<String>)>);
+struct ByLack<L>(Vec<(L, Vec<String>)>);
 
-impl Unchecked {
-    fn add(&mut self, blank: BlankRatings, whose: String) {
+impl<L: PartialEq> ByLack<L> {
+    fn add(&mut self, blank: L, whose: String) {
         match self.0.iter_mut().find(|(other, _)| *other == blank) {
             Some((_, names)) if names.contains(&whose) => {}
             Some((_, names)) => names.push(whose),
@@ -21,19 +22,20 @@ impl Unchecked {
         }
     }
 
-    fn sentences(&self) -> Vec<String> {
-        let sentence = |(blank, names): &(BlankRatings, Vec<String>)| {
+    fn sentences(&self, words: impl Fn(&L, &[&str]) -> String) -> Vec<String> {
+        let sentence = |(blank, names): &(L, Vec<String>)| {
             let more = format!("and {} more", names.len().saturating_sub(MOST_NAMES));
             let mut whose: Vec<&str> = names.iter().take(MOST_NAMES).map(String::as_str).collect();
             whose.extend((names.len() > MOST_NAMES).then_some(more.as_str()));
-            format!("Output {}.", blank.words(&whose))
+            format!("{}.", words(blank, &whose))
         };
         self.0.iter().map(sentence).collect()
     }
 }
 
-/// What a reader of a front should know of its output bearings, in sentences: which lack ratings, which belong to drives that
-/// are given without the names of both parts, and which of a given drive carry too much.
+/// What a reader of a front should know of its output bearings, in sentences: which count as rigid for want of a stiffness, which
+/// lack ratings, which belong to drives that are given without the names of both parts, and which of a given drive carry too
+/// much.
 pub(crate) fn bearing_remarks(space: &DesignSpace, catalogs: &Catalogs, front: &FrontTable) -> Vec<String> {
     let joints = || {
         space.pieces.iter().filter_map(|piece| match piece {
@@ -48,8 +50,15 @@ pub(crate) fn bearing_remarks(space: &DesignSpace, catalogs: &Catalogs, front: &
             unnamed.join(", ")
         )
     });
-    let blank = unchecked(joints(), catalogs, front).sentences();
-    blank.into_iter().chain(of_unnamed).chain(joints().filter_map(|joint| overloaded(joint, front))).collect()
+    let rigid = rigid(joints(), catalogs, front).sentences(|rigid, whose| capital(&rigid.words(whose)));
+    let blank = unchecked(joints(), catalogs, front)
+        .sentences(|blank, whose| format!("Output {}", blank.words(whose)));
+    rigid
+        .into_iter()
+        .chain(blank)
+        .chain(of_unnamed)
+        .chain(joints().filter_map(|joint| overloaded(joint, front)))
+        .collect()
 }
 
 /// Whether the joint has a bearing, and a drive without the name of a gear or motor.
@@ -77,8 +86,8 @@ fn unchecked<'s>(
     joints: impl Iterator<Item = &'s SpaceJoint>,
     catalogs: &Catalogs,
     front: &FrontTable,
-) -> Unchecked {
-    let mut unchecked = Unchecked::default();
+) -> ByLack<BlankRatings> {
+    let mut unchecked = ByLack(Vec::new());
     for joint in joints {
         match &joint.drive {
             DriveChoice::FirstFit(filter) | DriveChoice::AllFits(filter) => {
@@ -98,6 +107,36 @@ fn unchecked<'s>(
         }
     }
     unchecked
+}
+
+/// The bearings that count as rigid, because nobody knows how they tilt.
+fn rigid<'s>(
+    joints: impl Iterator<Item = &'s SpaceJoint>,
+    catalogs: &Catalogs,
+    front: &FrontTable,
+) -> ByLack<RigidBearing> {
+    let mut rigid = ByLack(Vec::new());
+    for joint in joints {
+        match (&joint.drive, joint.bearing) {
+            (DriveChoice::FirstFit(filter) | DriveChoice::AllFits(filter), BearingSource::OfGear) => {
+                for gear in gears_of(front, joint).filter_map(|id| catalogs.gear(id).ok()) {
+                    let of_gear = RigidBearing::of(&joint.bearing, gear, filter.gear_mass);
+                    of_gear.into_iter().for_each(|bearing| rigid.add(bearing, gear.id.clone()));
+                }
+            }
+            (drive, BearingSource::Stated(Some(bearing))) => {
+                let gear = match drive {
+                    DriveChoice::Given { gear: Some(gear), .. } => catalogs.gear(gear).ok(),
+                    _ => None,
+                };
+                if let Some((given, whose)) = RigidBearing::of_given(&bearing, gear) {
+                    rigid.add(given, whose.map_or_else(|| bearing_of(joint), String::from));
+                }
+            }
+            _ => {}
+        }
+    }
+    rigid
 }
 
 fn bearing_of(joint: &SpaceJoint) -> String {

@@ -2,6 +2,7 @@
 
 use super::keys::FIT;
 use crate::catalog::Catalogs;
+use crate::catalog::gear::GearMass;
 use crate::input::json::{Node, Object};
 use crate::report::number::significant;
 use crate::sizing::fit::{FitRequirement, MotorPlace};
@@ -64,7 +65,26 @@ pub(super) fn fit_remarks(space: &DesignSpace, catalogs: &Catalogs) -> Vec<Strin
             without.join(", ")
         )
     });
-    [Some(asked), no_link, unknown_sizes(&asking, catalogs)].into_iter().flatten().collect()
+    let sentences = [Some(asked), no_link, component_sets(&asking), unknown_sizes(&asking, catalogs)];
+    sentences.into_iter().flatten().collect()
+}
+
+/// The joints whose gears are component sets, of which no size is known.
+fn component_sets(asking: &[&SpaceJoint]) -> Option<String> {
+    let is_set = |joint: &&&SpaceJoint| match &joint.drive {
+        DriveChoice::FirstFit(filter) | DriveChoice::AllFits(filter) => {
+            filter.gear_mass == GearMass::ComponentSet
+        }
+        DriveChoice::Given { .. } => false,
+    };
+    let names: Vec<&str> = asking.iter().filter(is_set).map(|joint| joint.name.as_str()).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "The gears of {} are not checked for fit: the sizes of component sets are not in the catalogs, which have those of \
+             housed units.",
+            names.join(", ")
+        )
+    })
 }
 
 /// The sized joints of which a study asks that their parts fit.
@@ -109,8 +129,8 @@ fn unknown_sizes(asking: &[&SpaceJoint], catalogs: &Catalogs) -> Option<String> 
         })
     };
     let gears = catalogs.gears.iter().filter(|gear| {
-        let size = &gear.envelope;
         by_any(&|fit, filter| {
+            let size = gear.envelope_as(filter.gear_mass);
             filter.allows_gear(gear)
                 && (is_blank(fit.gear_to_link_max.is_some(), size.outer_diameter_m)
                     || is_blank(fit.cable_bore_min_m.is_some(), size.hollow_bore_m)

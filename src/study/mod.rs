@@ -20,6 +20,7 @@ pub(crate) mod diagnose;
 mod drives;
 pub(crate) mod effects;
 mod fit;
+pub(crate) mod given_remarks;
 mod harness;
 pub(crate) mod joint_obstacle;
 pub(crate) mod keys;

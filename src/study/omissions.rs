@@ -29,11 +29,17 @@ pub(super) fn omissions(space: &DesignSpace) -> Vec<String> {
             "Nothing is weighed beyond gear, motor and bearing in {names}: the study states no extras there."
         )
     });
+    let bare_given = named(|joint| !joint.drive.is_sized() && joint.extras == ExtrasSource::NONE).map(|names| {
+        format!(
+            "Nothing is weighed beyond the drive that is given and its bearing in {names}: the extras of a study are those of \
+             its sized joints, and a joint with a given drive has what it states itself (\"extras\")."
+        )
+    });
     let heat = (!space.motion.checks_motor_heat && with_gear.iter().any(|joint| joint.drive.is_sized()))
         .then(|| {
             "Motor heat not checked: the study turns it off (check_motor_heat in its motion).".to_string()
         });
-    [rigid, bare, heat, Some(left_out_everywhere(space))].into_iter().flatten().collect()
+    [rigid, bare, bare_given, heat, Some(left_out_everywhere(space))].into_iter().flatten().collect()
 }
 
 /// What no number of a study has.

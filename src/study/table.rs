@@ -141,7 +141,10 @@ pub(crate) fn sizing_rows(
             open = Some((slot, problem.demand_at(partial, slot), problem.mass_kg(partial)));
         } else if let Some(fixed) = problem.fixed_drive(piece, catalogs) {
             let demand = problem.fixed_demand(partial, slot, &fixed.motion);
-            let passed = problem.mass_kg(partial) + fixed.mass_kg;
+            let passed = problem.mass_kg(partial)
+                + fixed.mass_kg
+                + fixed.drive.extras().total_kg()
+                + bearing_kg(problem, piece);
             let name = joint_name(problem, piece);
             let row = JointSizingRow::new(name, &fixed.drive, &fixed.motion, &demand, passed);
             rows.push(at_cycle_efficiency(row, catalogs, &fixed.drive, &fixed.motion, &demand));
@@ -149,6 +152,14 @@ pub(crate) fn sizing_rows(
     })?;
     rows.extend(close(problem, catalogs, open.take(), &complete));
     Ok(rows)
+}
+
+/// Mass of a bearing that is a part of its own \[kg\].
+fn bearing_kg(problem: &ArmProblem, piece: usize) -> f64 {
+    match &problem.space().pieces[piece] {
+        SpacePiece::Joint(joint) => joint.bearing.stated().map_or(0.0, |bearing| bearing.mass_kg),
+        _ => 0.0,
+    }
 }
 
 fn joint_name<'p>(problem: &'p ArmProblem, piece: usize) -> &'p str {
@@ -169,7 +180,7 @@ fn close(
     let piece = problem.piece_of_slot(slot);
     let table = &problem.sized_joint(piece)?.table;
     let index = problem.options(with_it).nth(piece)? as usize;
-    let passed = outboard_kg + table.mass_kg(index);
+    let passed = outboard_kg + table.mass_kg(index) + bearing_kg(problem, piece);
     let drive = table.drive(index);
     let row = JointSizingRow::new(table.joint(), &drive, table.motion(), &demand, passed);
     Some(at_cycle_efficiency(row, catalogs, &drive, table.motion(), &demand))

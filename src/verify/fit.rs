@@ -13,8 +13,7 @@
 
 use super::question::{AskedFit, AskedJoint};
 use crate::arm::section::Section;
-use crate::catalog::gear::Gear;
-use crate::catalog::motor::Motor;
+use crate::catalog::envelope::Envelope;
 use crate::mechanics::beam::section_frame;
 use nalgebra::Vector3;
 
@@ -56,19 +55,16 @@ fn width_m(axis: &Vector3<f64>, vector_m: &Vector3<f64>, section: &Section) -> f
 }
 
 /// How wide the parts of a drive are, where the joint asks; 0 if nobody knows.
-pub(super) fn widths(fit: &AskedFit, gear: &Gear, motor: &Motor) -> Widths {
+pub(super) fn widths(fit: &AskedFit, gear: &Envelope, motor: &Envelope) -> Widths {
     let of = |asked: bool, width_m: Option<f64>| if asked { width_m.unwrap_or(0.0) } else { 0.0 };
-    [
-        of(fit.gear_to_link_max.is_some(), gear.envelope.outer_diameter_m),
-        of(fit.motor_in_link, motor.envelope.outer_diameter_m),
-    ]
+    [of(fit.gear_to_link_max.is_some(), gear.outer_diameter_m), of(fit.motor_in_link, motor.outer_diameter_m)]
 }
 
 /// Whether a drive has the bores and the length that its joint asks for, whatever the link.
-pub(super) fn goes_into_joint(fit: &AskedFit, gear: &Gear, motor: &Motor) -> bool {
-    let mut on_axis = vec![gear.envelope];
+pub(super) fn goes_into_joint(fit: &AskedFit, gear: &Envelope, motor: &Envelope) -> bool {
+    let mut on_axis = vec![*gear];
     if fit.motor_on_axis {
-        on_axis.push(motor.envelope);
+        on_axis.push(*motor);
     }
     let least_m = fit.cable_bore_min_m.unwrap_or(0.0) * (1.0 - SAME_SIZE);
     let most_m = fit.drive_length_max_m.unwrap_or(f64::INFINITY) * (1.0 + SAME_SIZE);

@@ -129,6 +129,7 @@ fn offers(
             *stiffness *= 1.0 / (1.0 + joint.connection_share);
         }
         let (law, tilt_rad_per_nm) = springs(Curve::Windup(windup), bearing);
+        let size = gear.envelope_as(allowed.gear_mass);
         let extras = |motor| joint.extras.with_parts(gear, motor, allowed.gear_mass);
         let motors = catalogs.motors.iter().enumerate();
         let motors = motors.filter(|(_, motor)| gear.goes_with(motor) && allowed.allows_motor(motor));
@@ -143,7 +144,7 @@ fn offers(
                 bearing,
                 law,
                 tilt_rad_per_nm,
-                ratings: Ratings::of(gear, motor, bearing.as_ref(), duty)?,
+                ratings: Ratings::of(gear, &size, motor, bearing.as_ref(), duty)?,
             })
         }));
     }

@@ -14,6 +14,7 @@ use super::fit::{Widths, goes_into_joint, widths};
 use super::heat::{MotorHeat, continuous_nm, efficiency, input_inertia_kgm2, peak_nm};
 use super::question::AskedStage;
 use crate::arm::bearing::Bearing;
+use crate::catalog::envelope::Envelope;
 use crate::catalog::gear::{Gear, GearKind, LifeLaw};
 use crate::catalog::motor::Motor;
 
@@ -57,8 +58,15 @@ impl Ratings {
     };
 
     /// The ratings of a drive under a joint's motion; `None` if the motion is too fast for the drive, if the drive does not
-    /// go into the joint, or if the catalog lacks a number. A blank number of the bearing or of a size excludes nothing.
-    pub(super) fn of(gear: &Gear, motor: &Motor, bearing: Option<&Bearing>, duty: &Duty) -> Option<Self> {
+    /// go into the joint, or if the catalog lacks a number. A blank number of the bearing or of a size excludes nothing; `size`
+    /// is that of the gear in the build that is asked for.
+    pub(super) fn of(
+        gear: &Gear,
+        size: &Envelope,
+        motor: &Motor,
+        bearing: Option<&Bearing>,
+        duty: &Duty,
+    ) -> Option<Self> {
         let heat = match duty.checks_heat {
             true => {
                 let parts = (gear, motor, &duty.stage);
@@ -67,13 +75,14 @@ impl Ratings {
             false => MotorHeat::NONE,
         };
         let bearing = BearingRatings::of(bearing, [duty.mean_speed_rad_s, duty.life_h]);
-        let mut ratings = Self { bearing, heat, widths: widths(&duty.fit, gear, motor), ..Self::UNLIMITED };
+        let mut ratings =
+            Self { bearing, heat, widths: widths(&duty.fit, size, &motor.envelope), ..Self::UNLIMITED };
         for check in &CHECKS {
             let most = (check.most)(gear, motor, duty)?;
             let rating = &mut ratings.most[check.on as usize];
             *rating = rating.min(most);
         }
-        let goes_in = goes_into_joint(&duty.fit, gear, motor);
+        let goes_in = goes_into_joint(&duty.fit, size, &motor.envelope);
         (turns_as_fast(gear, motor, duty)? && bears_the_stops(gear, duty) && goes_in).then_some(ratings)
     }
 
@@ -243,7 +252,7 @@ mod tests {
     fn the_ratings_of_a_drive_are_those_worked_out_by_hand() {
         let catalogs = Catalogs::builtin();
         let (gear, motor) = (catalogs.gear("HFUC-58-100").unwrap(), catalogs.motor("F11-10").unwrap());
-        let ratings = Ratings::of(gear, motor, None, &duty()).unwrap();
+        let ratings = Ratings::of(gear, &gear.envelope, motor, None, &duty()).unwrap();
         let near = |quantity, by_hand: f64| {
             let rating = ratings.on(quantity);
             assert!((rating / by_hand - 1.0).abs() < 1e-12, "{quantity:?}: {rating}, by hand {by_hand}");
@@ -277,7 +286,7 @@ mod tests {
         let slow = Gear { max_input_speed_rpm: Some(10.0), ..gear.clone() };
         let unknown = Gear { life: LifeLaw { rated_h: None, ..gear.life }, ..gear.clone() };
         for gear in [blank, slow, unknown] {
-            assert_eq!(Ratings::of(&gear, motor, None, &duty()), None);
+            assert_eq!(Ratings::of(&gear, &gear.envelope, motor, None, &duty()), None);
         }
     }
 }

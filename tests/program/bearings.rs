@@ -257,9 +257,99 @@ fn a_bearing_that_lacks_ratings_is_named_beside_the_results_and_in_the_sizing() 
     let nothing =
         format!("bearing not checked: CSG-20-100 lacks {permitted}, {pitch}, {}, {}", loads[0], loads[1]);
     assert_eq!(said_of(&[permitted, pitch, loads[0], loads[1]], &nothing), "");
+    // what loads it follows from the geometry, whether or not it is rated
+    let (_, sized) = armwright(here.path(), &["size", "study.json", "--catalogs", "parts", "--json"]);
+    let sized: Value = serde_json::from_str(&sized).expect("JSON");
+    let moment_nm = sized[0]["bearing_moment_nm"].as_f64().expect("a number");
+    assert!((moment_nm / (91.0 / by_hand) - 1.0).abs() < 1e-9, "{sized}");
+    assert_eq!(sized[0]["bearing_moment_permissible_nm"], Value::Null);
+    let rigid = "igid output bearing: CSG-20-100 lacks tilting_stiffness_nm_per_rad (the tip deflects more than printed)";
+    said_of(&["tilting_stiffness_nm_per_rad"], rigid);
+    let (_, checked) = armwright(here.path(), &["catalog", "check", "--catalogs", "parts"]);
+    let line = "Output bearings that count as rigid (the tip deflects more than printed):";
+    assert!(
+        checked.contains(line) && checked.contains("CSG-20-100: no tilting_stiffness_nm_per_rad"),
+        "{checked}"
+    );
+    std::fs::write(here.path().join("arm.json"), arm().to_string()).expect("written");
+    let (_, analyzed) = armwright(here.path(), &["analyze", "arm.json", "--catalogs", "parts"]);
+    assert!(
+        analyzed.contains(
+            "its tilting stiffness is unknown (the tip deflects more than printed): j1 (CSG-20-100)"
+        )
+    );
     catalog_without(here.path(), &[]);
     let (_, whole) = armwright(here.path(), &["size", "study.json", "--catalogs", "parts"]);
-    assert!(!whole.contains("not checked"), "{whole}");
+    assert!(!whole.contains("not checked") && !whole.contains("igid output bearing"), "{whole}");
+}
+
+#[test]
+fn a_given_drive_says_what_is_not_weighed_and_each_check_that_it_fails() {
+    let given = |payload_kg: f64, more: Value| {
+        let mut given = study(payload_kg, json!({}));
+        let joint = given["chain"][0].as_object_mut().expect("a joint");
+        joint.remove("drive");
+        joint.extend(
+            json!({"axis": [0, 1, 0], "gear": "CSG-20-100", "motor": "ILM70x18"})
+                .as_object()
+                .expect("keys")
+                .clone(),
+        );
+        joint.extend(more.as_object().expect("keys").clone());
+        given["chain"][1] = json!({"type": "link", "name": "arm", "vector_m": [0.5, 0, 0], "choose": {
+            "materials": ["Aluminium 6061-T6"],
+            "sections": [{"shape": "rectangular_tube", "width_mm": [60, 80], "wall_mm": [2, 3]}]}});
+        let (said, here) = run(&given, &[]);
+        let remarks = record(here.path())["remarks"].to_string();
+        (said.split_whitespace().collect::<Vec<_>>().join(" "), remarks)
+    };
+    let bare = "Nothing is weighed beyond the drive that is given and its bearing in j1";
+    let weak = "The drive of j1 (CSG-20-100 + ILM70x18) is too weak in";
+    let (said, record) = given(1.0, json!({}));
+    for text in [&said, &record] {
+        assert!(text.contains(bare) && !text.contains(weak), "{text}");
+    }
+    let (said, record) = given(30.0, json!({"extras": {"housing_kg": 0.4}}));
+    for text in [&said, &record] {
+        assert!(!text.contains(bare) && text.contains(weak), "{text}");
+        // 30 kg at 0.5 m alone are 147 N m
+        for part in ["at worst gear peak ", "gear mean ", "gear life ", "motor hold "] {
+            assert!(text.contains(part), "{part}: {text}");
+        }
+    }
+}
+
+#[test]
+fn an_explanation_says_what_the_numbers_leave_out() {
+    let mut bare = study(6.0, of_gears(&["CSG-20-100"]));
+    bare["chain"][0]["bearing"] = json!(null);
+    bare["motion"] = json!({"check_motor_heat": false});
+    let here = folder_with("study.json", &bare);
+    for flag in ["--explain", "--all-fits"] {
+        let (code, said) = armwright(here.path(), &["size", "study.json", flag, "j1"]);
+        assert_eq!(code, 0, "{said}");
+        let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+        for words in [
+            "Rigid output bearing without mass in j1",
+            "Motor heat not checked: the study turns it off",
+            "whether the parts fit into each other",
+        ] {
+            assert!(said.contains(words), "{words}: {said}");
+        }
+    }
+}
+
+#[test]
+fn the_mass_that_is_passed_inward_has_the_bearing_that_the_joint_states() {
+    let inward = |bearing_kg: f64| {
+        let mut stated = of_gears(&["CSG-20-100"]);
+        stated["bearing"] = json!({"tilt_stiffness_nm_per_rad": 1e5, "mass_kg": bearing_kg});
+        let here = folder_with("study.json", &study(6.0, stated));
+        let (_, sized) = armwright(here.path(), &["size", "study.json", "--json"]);
+        let sized: Value = serde_json::from_str(&sized).expect("JSON");
+        sized[0]["mass_passed_inward_kg"].as_f64().expect("a number")
+    };
+    assert!((inward(0.8) - inward(0.0) - 0.8).abs() < 1e-12);
 }
 
 #[test]

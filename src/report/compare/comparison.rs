@@ -62,6 +62,8 @@ pub struct Comparison {
     pub reach: Vec<Reach>,
     /// One row a question and limit.
     pub rows: Vec<Row>,
+    /// Where the questions of the results differ, and what the results say beside their numbers, in sentences.
+    pub remarks: Vec<String>,
     /// Changes from the first result to each other one, if all are runs of one study.
     pub moved: Vec<Moved>,
 }
@@ -84,6 +86,7 @@ pub fn compare(contenders: &[Contender], thresholds: &Thresholds) -> Comparison 
     Comparison {
         reach: contenders.iter().zip(&fronts).map(|(c, f)| reach(c, f)).collect(),
         rows: Question::ALL.into_iter().flat_map(ask).collect(),
+        remarks: Vec::new(),
         moved: Vec::new(),
     }
 }

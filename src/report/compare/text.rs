@@ -48,6 +48,10 @@ impl Comparison {
         for moved in &self.moved {
             out.push_str(&format!("\n{}", wrap(&moved.words, WIDTH, "")));
         }
+        if !self.remarks.is_empty() {
+            out.push('\n');
+            self.remarks.iter().for_each(|words| out.push_str(&wrap(words, WIDTH, "")));
+        }
         out
     }
 
@@ -71,6 +75,10 @@ impl Comparison {
         if !self.moved.is_empty() {
             out.push_str("\n## What moved\n\n");
             self.moved.iter().for_each(|m| out.push_str(&format!("- {}\n", m.words)));
+        }
+        if !self.remarks.is_empty() {
+            out.push_str("\n## Remarks\n\n");
+            self.remarks.iter().for_each(|words| out.push_str(&format!("- {words}\n")));
         }
         out
     }

@@ -28,6 +28,7 @@ pub(crate) fn page(comparison: &Comparison, contenders: &[Contender], picture: S
         "front": views.context(&mut gallery),
         "reach": table(&comparison.reach_table()),
         "questions": Question::ALL.into_iter().filter_map(question).collect::<Vec<_>>(),
+        "remarks": comparison.remarks,
         "moved": comparison.moved.iter().map(|m| m.words.as_str()).collect::<Vec<_>>(),
     });
     let data = json!({"front": views.json()});
