@@ -6,7 +6,7 @@ use super::body::read_joint_bodies;
 use super::effect::channel::Channel;
 use super::effect::entry::Effect;
 use super::effect::servo_compliance;
-use super::element_keys::{read_axis, read_name};
+use super::element_keys::{read_axis, read_coupling, read_name};
 use super::extras::read_extras;
 use super::file_keys::{ARM, EFFECT, JOINT, LINK, MATERIAL};
 use super::joint_law::{Curve, Windup};
@@ -220,7 +220,7 @@ fn read_joint(object: &Object, catalogs: &Catalogs) -> Option<(Joint, Option<Tra
     let bodies = read_joint_bodies(object);
     let coupled = object.or("coupled", None, |n| read_coupling(n).map(Some));
     let turns_with = read_turns_with(object);
-    let transmission = Transmission::read(object, catalogs);
+    let transmission = Transmission::read(object, catalogs, motor_side_kg(object, catalogs));
     let (curve, transmission) = (curve?, transmission?);
     let joint = Joint {
         name: name?,
@@ -376,13 +376,6 @@ fn find_motor_mass(node: &Node, catalogs: &Catalogs) -> Option<Option<f64>> {
 
 fn part_mass(node: &Node, mass_kg: Option<f64>) -> Option<f64> {
     mass_kg.or_else(|| node.fault("has no mass in the catalog", "give the joint's \"mass_kg\""))
-}
-
-/// Reads the drivers of a passive joint, each with its factor.
-pub(crate) fn read_coupling(node: &Node) -> Option<Vec<(String, f64)>> {
-    let read: Vec<_> =
-        node.entries()?.iter().map(|(name, n)| n.number().map(|f| (name.to_string(), f))).collect();
-    read.into_iter().collect()
 }
 
 /// Reads a list of effects. Whether each effect fits its arm is checked later.

@@ -1,6 +1,6 @@
 //! Reads `"drives"`: the parts among which the joints of a study are sized.
 
-use super::keys::DRIVES;
+use super::drive_keys::DRIVES;
 use super::motor_kinds::{read_motor_kinds, usual_motor_kinds};
 use crate::arm::bearing::BearingSource;
 use crate::arm::extras::ExtrasSource;

@@ -15,10 +15,11 @@ use super::drives::{Drives, read_drives};
 use super::effects::check_effects;
 use super::fit::{fit_remarks, read_fit};
 use super::harness::{harness_effects, harness_remark};
-use super::keys::{CONSTRAINTS, JOINT, LINK, MODELS, OF_CATALOG_DRIVE, PRISMATIC, STUDY};
+use super::keys::{CONSTRAINTS, JOINT, LINK, MODELS, STUDY};
 use super::linkages::drivers_are_inboard;
 use super::motion::{read_duty, read_motion};
 use super::omissions::omissions;
+use super::rail_keys::{OF_CATALOG_DRIVE, PRISMATIC};
 use super::rails::read_rail_drive;
 use super::range::{check_poses, read_range};
 use super::sections::{Aside, MOST_OPTIONS, read_materials, read_sections};
@@ -26,9 +27,10 @@ use super::transmissions::{of_joint, place_transmissions, with_stages};
 use crate::arm::MOST_ELEMENTS;
 use crate::arm::bearing::{BearingSource, Stated, read_bearing};
 use crate::arm::body::{read_joint_bodies, read_link_bodies};
+use crate::arm::element_keys::read_coupling;
 use crate::arm::element_keys::{read_axis, read_name};
 use crate::arm::extras::{ExtrasSource, read_extras_source};
-use crate::arm::file::{NO_TYPE, read_coupling, read_curve, read_effects, read_gravity, read_joint_mass};
+use crate::arm::file::{NO_TYPE, motor_side_kg, read_curve, read_effects, read_gravity, read_joint_mass};
 use crate::arm::load::{vector, word};
 use crate::arm::pieces::{elements_of, read_links};
 use crate::arm::pose::{DrivenJoint, Motion};
@@ -300,7 +302,10 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<(SpaceJoint, Option<Tran
         );
     }
     let coupled = object.or("coupled", None, |n| read_coupling(n).map(Some));
-    let (turns_with, transmission) = (read_turns_with(&object), Transmission::read(&object, open.catalogs));
+    let (turns_with, transmission) = (
+        read_turns_with(&object),
+        Transmission::read(&object, open.catalogs, motor_side_kg(&object, open.catalogs)),
+    );
     let drive = match object.optional("drive") {
         Some(drive) => {
             let given = [
