@@ -71,9 +71,12 @@ pub(crate) fn limits_of_parts(arm: &Arm, catalogs: &Catalogs) -> Vec<TorqueLimit
     let of_joint = |joint: &crate::arm::Joint| {
         let gear = joint.gear.as_ref().and_then(|name| catalogs.gear(name).ok());
         let motor = joint.motor.as_ref().and_then(|name| catalogs.motor(name).ok());
-        let average_nm = gear.and_then(|gear| gear.average_torque_limit_nm);
+        let average_nm = gear.and_then(|gear| Some(gear.average_torque_limit_nm? * joint.stages.after.ratio));
         let continuous_nm = gear.zip(motor).and_then(|(gear, motor)| {
-            Some(motor.rated_torque_nm? * gear.ratio * gear.efficiency.unwrap_or(1.0))
+            let stages = &joint.stages;
+            let efficiency =
+                stages.before.efficiency * gear.efficiency.unwrap_or(1.0) * stages.after.efficiency;
+            Some(motor.rated_torque_nm? * stages.whole_ratio(gear.ratio) * efficiency)
         });
         let limit = |check, most_nm: Option<f64>| {
             most_nm.map(|most_nm| TorqueLimit { joint: joint.name.clone(), check, most_nm })
