@@ -156,6 +156,62 @@ fn a_shard_goes_on_too() {
     is_whole(here.path());
 }
 
+#[test]
+fn a_shard_of_an_exact_search_goes_on_too() {
+    if !has_faults() {
+        return;
+    }
+    let here = searched("exact", EXACT);
+    for part in ["1/2", "2/2"] {
+        let out = format!("parts/{}", &part[..1]);
+        let words = ["run", "study.json", "--search", "exact", "--shard", part, "--out", &out];
+        let mut dies = command(here.path(), &words);
+        dies.env("ARMWRIGHT_KEEP_EVERY_MS", "0").env("ARMWRIGHT_FAULT", "kill:8");
+        assert_eq!(said(&mut dies).0, -1);
+        assert!(succeeds(here.path(), &words).contains(GOES_ON));
+        assert!(!here.path().join(out).join(".armwright").exists());
+    }
+    succeeds(here.path(), &["merge", "parts", "--out", "out"]);
+    for front in ["front.csv", "front.aluminium-6061-t6.csv"] {
+        let [whole, joined] =
+            ["whole", "out"].map(|dir| fs::read(here.path().join(dir).join(front)).expect("a front"));
+        assert!(whole == joined, "another {front}");
+    }
+}
+
+#[test]
+fn a_check_that_is_killed_goes_on_to_the_same_words() {
+    if !has_faults() {
+        return;
+    }
+    let here = searched("exact", EXACT);
+    let check = ["front", "check", "whole"];
+    let whole = succeeds(here.path(), &check);
+    let (mut died, mut went_on) = (0, 0);
+    for step in [3, 5, 9, 14] {
+        let mut command = command(here.path(), &check);
+        command.env("ARMWRIGHT_KEEP_EVERY_MS", "0").env("ARMWRIGHT_FAULT", format!("kill:{step}"));
+        let (code, text) = said(&mut command);
+        died += usize::from(code == -1);
+        went_on += usize::from(text.contains(GOES_ON));
+    }
+    assert!(died == 4 && went_on >= 3, "{died} died, {went_on} went on");
+    let text = succeeds(here.path(), &check);
+    let words = text.lines().filter(|line| !line.contains(GOES_ON)).collect::<Vec<_>>().join("\n");
+    assert_eq!(words.trim(), whole.trim(), "boxes that were bounded before count once");
+    assert!(!here.path().join("whole/.armwright").exists(), "the state is still there");
+    // the state of a check of another front is not used
+    let mut dies = command(here.path(), &check);
+    assert_eq!(said(dies.env("ARMWRIGHT_KEEP_EVERY_MS", "0").env("ARMWRIGHT_FAULT", "kill:9")).0, -1);
+    succeeds(here.path(), &["run", "study.json", "--search", "exact", "--gap", "5%", "--out", "other"]);
+    fs::create_dir(here.path().join("other/.armwright")).expect("made");
+    let state = "other/.armwright/check.unfinished";
+    fs::copy(here.path().join("whole/.armwright/check.unfinished"), here.path().join(state))
+        .expect("a state");
+    let text = succeeds(here.path(), &["front", "check", "other"]);
+    assert!(!text.contains(GOES_ON), "{text}");
+}
+
 fn spawn(command: &mut Command) -> Child {
     command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("it runs")
 }
