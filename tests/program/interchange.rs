@@ -294,7 +294,9 @@ fn a_scara_comes_in_and_its_quill_alone_holds_weight() {
     let given = write(&folder.path().join("given.json"), &given);
     let words = ["import", &file, "--tip", SCARA.1, "--stiffness", &given, "--out", &at("arm")];
     done(&words);
-    assert!((read(folder.path().join("arm/import.json"))["mass_kg"].as_f64().expect("kg") - 24.5).abs() < 1e-9);
+    assert!(
+        (read(folder.path().join("arm/import.json"))["mass_kg"].as_f64().expect("kg") - 24.5).abs() < 1e-9
+    );
     let pose = "axis_1_deg=40,axis_2_deg=-70,axis_3_mm=-120,axis_4_deg=30";
     let words = ["analyze", &at("arm/arm.json"), "--pose", pose, "--payload-kg", "3", "--json"];
     let solved: Value = serde_json::from_str(&done(&words)).expect("JSON");
@@ -308,8 +310,28 @@ fn a_scara_comes_in_and_its_quill_alone_holds_weight() {
     let down_m = solved["tip_displacement_m"][2].as_f64().expect("m");
     assert!((down_m + weight_n / 4e5).abs() < 1e-7, "{down_m}");
     // it goes out to a simulator and back
-    done(&["export", &at("arm/arm.json"), "--pose", pose, "--payload-kg", "3", "--to", "urdf", "--out", &at("out")]);
-    let again = ["import", &at("out/arm.urdf"), "--tip", "tip", "--stiffness", &at("out/stiffness.json"), "--out", &at("back")];
+    done(&[
+        "export",
+        &at("arm/arm.json"),
+        "--pose",
+        pose,
+        "--payload-kg",
+        "3",
+        "--to",
+        "urdf",
+        "--out",
+        &at("out"),
+    ]);
+    let again = [
+        "import",
+        &at("out/arm.urdf"),
+        "--tip",
+        "tip",
+        "--stiffness",
+        &at("out/stiffness.json"),
+        "--out",
+        &at("back"),
+    ];
     done(&again);
     let words = ["analyze", &at("back/arm.json"), "--pose", pose, "--payload-kg", "3", "--json"];
     let back: Value = serde_json::from_str(&done(&words)).expect("JSON");
@@ -321,7 +343,10 @@ fn a_scara_comes_in_and_its_quill_alone_holds_weight() {
     assert!((hz(&solved) / hz(&back) - 1.0).abs() < 1e-9, "{} and {} Hz", hz(&solved), hz(&back));
     let words = ["export", &at("arm/arm.json"), "--to", "calculix", "--out", &at("fe")];
     let output = armwright(&words);
-    assert!(output.status.code() == Some(2) && String::from_utf8_lossy(&output.stderr).contains("axis_3"), "{output:?}");
+    assert!(
+        output.status.code() == Some(2) && String::from_utf8_lossy(&output.stderr).contains("axis_3"),
+        "{output:?}"
+    );
 }
 
 #[test]

@@ -145,7 +145,9 @@ fn a_small_disk_that_fills_while_states_are_kept_ends_no_search() {
 /// Faults that the system makes and not the program: a rename that fails, and a process that dies at one.
 #[test]
 fn a_rename_that_the_system_refuses_or_kills_at_loses_nothing() {
-    let can = Command::new("strace").args(["-f", "-o", "/dev/null", "-e", "inject=rename:error=EIO:when=1", "true"]).status();
+    let can = Command::new("strace")
+        .args(["-f", "-o", "/dev/null", "-e", "inject=rename:error=EIO:when=1", "true"])
+        .status();
     if !can.is_ok_and(|status| status.success()) {
         eprintln!("SKIPPED faults made by the system: no strace that may trace here");
         return;
@@ -154,7 +156,16 @@ fn a_rename_that_the_system_refuses_or_kills_at_loses_nothing() {
     for fault in ["error=EIO:when=1+", "error=ENOSPC:when=2+", "signal=KILL:when=1", "signal=KILL:when=4"] {
         let inject = format!("inject=rename,renameat,renameat2:{fault}");
         let mut command = Command::new("strace");
-        command.args(["-f", "--seccomp-bpf", "-o", "/dev/null", "-e", "trace=rename,renameat,renameat2", "-e", &inject]);
+        command.args([
+            "-f",
+            "--seccomp-bpf",
+            "-o",
+            "/dev/null",
+            "-e",
+            "trace=rename,renameat,renameat2",
+            "-e",
+            &inject,
+        ]);
         command.arg(env!("CARGO_BIN_EXE_armwright")).args(run("exact"));
         let (code, text) = said(command.current_dir(here.path()).env("ARMWRIGHT_KEEP_EVERY_MS", "0"));
         assert_ne!(code, 0, "{fault}: {text}");
