@@ -142,7 +142,12 @@ static PICK: Shape = Shape::new(
         ),
         required("mass_lower_bound_kg", NUMBER_OR_NULL, "kg", "No design as stiff and as fast weighs less."),
         required("mixture_kg", NUMBER_OR_NULL, "kg", "Approximate mass if parts could be blended."),
-        required("loads_oppose", Kind::Flag, "-", "Whether loads of both signs weaken the bound."),
+        required(
+            "loads_oppose",
+            Kind::Either(&[Kind::Flag, Kind::Null]),
+            "-",
+            "Whether loads of both signs weaken the bound; null if there is none.",
+        ),
     ],
     &[],
 );
