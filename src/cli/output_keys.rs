@@ -265,12 +265,7 @@ static VERDICT: Shape = Shape::new(
         required("suspects", Kind::List(&Kind::Object(&FINDING)), "-", "Effects that may be there."),
         required("empirical", Kind::List(&Kind::Object(&FINDING)), "-", "Laws without a name."),
         required("corrected_models", LIST, "-", "Models that the corrected arm could have."),
-        required(
-            "kept_out",
-            Kind::Anything,
-            "-",
-            "Errors on readings kept out of the fit, before and after.",
-        ),
+        required("kept_out", Kind::Anything, "-", "Errors on held-out readings, before and after."),
         required("located", Kind::Anything, "-", "Where the gap is."),
         required(
             "next_test",

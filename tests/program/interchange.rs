@@ -335,7 +335,7 @@ fn a_scara_comes_in_and_its_quill_alone_holds_weight() {
     done(&again);
     let words = ["analyze", &at("back/arm.json"), "--pose", pose, "--payload-kg", "3", "--json"];
     let back: Value = serde_json::from_str(&done(&words)).expect("JSON");
-    for axis in 0..3 {
+    for axis in 0..3usize {
         let [a, b] = [&solved, &back].map(|value| value["tip_displacement_m"][axis].as_f64().expect("m"));
         assert!((a - b).abs() < 1e-12, "{a} and {b} m");
     }
