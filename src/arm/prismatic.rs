@@ -162,6 +162,15 @@ impl Prismatic {
         Some((stiffness?, guide?, moves?))
     }
 
+    /// How the joint yields, as [`read_springs`](Self::read_springs) reads it.
+    pub(crate) fn springs_to_json(&self) -> Value {
+        json!({
+            "stiffness_n_per_m": self.stiffness_n_per_m,
+            "guide": self.guide.to_json(),
+            "moves": self.moves.word(),
+        })
+    }
+
     /// The joint as files write it.
     pub(crate) fn to_json(&self) -> Value {
         let mut value = json!({
