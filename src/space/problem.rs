@@ -14,7 +14,8 @@ use super::group::Group;
 use super::levels::OutwardIn;
 pub(crate) use super::slot::SizedJoint;
 pub(crate) use super::slot::Slot;
-use super::slot::{choice_slot, joint_slot, link_slot};
+use super::joints::TabulatedJoints;
+use super::slot::{choice_slot, link_slot};
 use super::state::StationState;
 use super::station::{Block, BlockSlot, Modal, Station, StationSlot, reaches_m};
 use crate::arm::joint_law::JointLaw;
@@ -85,10 +86,13 @@ impl<'c> ArmProblem<'c> {
     /// The work grows with the number of link options and of cases; a space may be reduced first
     /// ([`DesignSpace::excerpt`]).
     pub fn new(space: &'c DesignSpace, catalogs: &'c Catalogs) -> Self {
+        Self::with_joints(space, &TabulatedJoints::new(space, catalogs))
+    }
+
+    /// As [`new`](Self::new), of joints that are tabulated already.
+    pub(crate) fn with_joints(space: &'c DesignSpace, joints: &TabulatedJoints<'c>) -> Self {
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
         let reaches = reaches_m(space, sizing);
-        // reaches are in order from the base and layers from the tip
-        let mut reaches_from_tip = reaches.iter().rev();
         let mut piece_slots = vec![0; space.pieces.len()];
         let mut slots: Vec<Slot> = Vec::new();
         for (piece, layer) in space.layers() {
@@ -96,8 +100,9 @@ impl<'c> ArmProblem<'c> {
                 piece_slots[piece] = slots.len();
             }
             slots.push(match layer {
-                Layer::Piece(SpacePiece::Joint(joint)) => {
-                    joint_slot(space, joint, reaches_from_tip.next().copied().unwrap_or_default(), catalogs)
+                Layer::Piece(SpacePiece::Joint(_)) => {
+                    // every joint of the space is tabulated
+                    joints.slot(piece).unwrap_or(Slot::Offset { mass_kg: 0.0 })
                 }
                 Layer::Piece(SpacePiece::Prismatic(slide)) => {
                     Slot::Given { law: space.slide_law(slide), mass_kg: 0.0 }

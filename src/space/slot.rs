@@ -8,13 +8,14 @@ use crate::arm::{Link, LinkBody};
 use crate::catalog::Catalogs;
 use crate::sizing::demand::{JointDemand, JointMotion};
 use crate::sizing::select::{DriveFilter, DriveTable};
+use std::sync::Arc;
 
 /// What the search adds in one step.
 pub(crate) enum Slot<'c> {
     /// A joint with a given drive, or a spring that an effect adds.
     Given { law: JointLaw, mass_kg: f64 },
     /// A joint whose drive comes from the catalogs.
-    Sized(SizedJoint<'c>),
+    Sized(Arc<SizedJoint<'c>>),
     /// A spring of the bearing of a sized joint: the slot of the joint, and the law by its drives.
     Bearing { joint: usize, laws: Vec<JointLaw> },
     /// A tube. It is a choice of the search if it is `open`; a given tube has one option.
@@ -96,7 +97,11 @@ impl<'c> Slot<'c> {
 impl Slot<'_> {
     /// Whether the search chooses here.
     pub(crate) fn is_level(&self) -> bool {
-        matches!(self, Slot::Link { open: true, .. } | Slot::Sized(SizedJoint { all_fits: true, .. }))
+        match self {
+            Slot::Link { open, .. } => *open,
+            Slot::Sized(sized) => sized.all_fits,
+            _ => false,
+        }
     }
 
     /// Number of options.
@@ -175,7 +180,7 @@ pub(crate) fn joint_slot<'c>(
         .collect();
     let laws = pieces.iter().map(|piece| piece.law).collect();
     let tilts_rad_per_nm = pieces.iter().map(|piece| piece.tilt_rad_per_nm).collect();
-    Slot::Sized(SizedJoint { table, laws, tilts_rad_per_nm, all_fits })
+    Slot::Sized(Arc::new(SizedJoint { table, laws, tilts_rad_per_nm, all_fits }))
 }
 
 /// The slot of a link that the study gives.
