@@ -254,12 +254,7 @@ impl<'c> Problem<'c> {
         let drives =
             |kind: &[u32]| DriveBox::of_kind(kind.iter().map(|&i| drive_box(&sized, i, &rays, tilts)));
         let tree = Tree::build(kinds.iter().filter_map(|kind| Some((kind[0], drives(kind)?))))?;
-        Some(Part::Drives {
-            sized,
-            kinds: Arc::new(kinds),
-            tree: Arc::new(tree),
-            rays: Arc::new(rays),
-        })
+        Some(Part::Drives { sized, kinds: Arc::new(kinds), tree: Arc::new(tree), rays: Arc::new(rays) })
     }
 
     /// A joint that takes the lightest drive that can carry its load.

@@ -102,7 +102,8 @@ impl EightGroups {
     /// Packs at most eight groups that have curves, for gears and the play of their joint.
     fn new(groups: &[(&CurveGroup, &CurveBox)], gears: &[&Gear], play: Option<&JointPlay>) -> Self {
         let group = |lane: usize| groups[lane.min(groups.len() - 1)].0;
-        let lanes = |of: &dyn Fn(&CurveGroup) -> f64| -> Eight { std::array::from_fn(|lane| of(group(lane))) };
+        let lanes =
+            |of: &dyn Fn(&CurveGroup) -> f64| -> Eight { std::array::from_fn(|lane| of(group(lane))) };
         let both = |group: &CurveGroup| [group.lightest, group.heaviest];
         Self {
             mass_kg: [0, 1].map(|end| lanes(&|group| both(group)[end].0)),
@@ -158,7 +159,8 @@ impl LaneWork for GroupPrices<'_> {
             let (twist, torque, slope) = (V::splat(gear.twist), V::splat(gear.torque), V::splat(gear.slope));
             let mut least = V::splat(f64::INFINITY);
             for state in states {
-                let [less, more] = [twist * V::load(&state.twist_rad[0]), twist * V::load(&state.twist_rad[1])];
+                let [less, more] =
+                    [twist * V::load(&state.twist_rad[0]), twist * V::load(&state.twist_rad[1])];
                 let of_state = less.min(more) + torque * V::load(&state.torque_nm);
                 least = least.min(of_state - slope * V::load(&state.slope));
             }

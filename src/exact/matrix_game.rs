@@ -49,8 +49,7 @@ pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game 
         for (j, number) in numbers[..count].iter_mut().enumerate() {
             *number = entry(i, rows[j * width + i]);
         }
-        numbers[count] =
-            if balanced.contains(&i) { BALANCED * (1.0 + i as f64 / width as f64) } else { 1.0 };
+        numbers[count] = if balanced.contains(&i) { BALANCED * (1.0 + i as f64 / width as f64) } else { 1.0 };
     }
     table[width * line..width * line + count].fill(-1.0);
     for _ in 0..MOST_PIVOTS {

@@ -85,9 +85,8 @@ impl<B: Bounds> Tree<B> {
             return Some(Arc::clone(tree));
         }
         let whole = tree.whole.as_ref().unwrap_or(tree);
-        let item = |&at: &u32| {
-            Item { at: WHOLE + at, members: whole.node(at).members, key: whole.node(at).key() }
-        };
+        let item =
+            |&at: &u32| Item { at: WHOLE + at, members: whole.node(at).members, key: whole.node(at).key() };
         let mut items: Vec<Item> = kept.iter().map(item).collect();
         let mut nodes = Vec::with_capacity((2 * items.len()).max(1) - 1);
         match &items[..] {

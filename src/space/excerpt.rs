@@ -6,8 +6,8 @@
 
 use super::design::{number, options};
 use super::design_space::{DesignSpace, Excerpt, LinkChoice, LinkOption, SpacePiece};
-use super::problem::ArmProblem;
 use super::joints::TabulatedJoints;
+use super::problem::ArmProblem;
 use super::slot::Slot;
 use crate::catalog::Catalogs;
 use std::collections::BTreeSet;

@@ -136,7 +136,8 @@ fn next_part<'o>(
     let mm_per_kg = |other: &Element| {
         let changed = with(other);
         let tip_deflection_m = full_deflection_m(&changed, cases);
-        gain(objectives, &Objectives { tip_deflection_m, mass_kg: changed.mass_kg(), ..*objectives }).mm_per_kg
+        gain(objectives, &Objectives { tip_deflection_m, mass_kg: changed.mass_kg(), ..*objectives })
+            .mm_per_kg
     };
     let mut by_deflection: Vec<(f64, &(String, Element))> =
         others.map(|other| (mm_per_kg(&other.1), other)).collect();
