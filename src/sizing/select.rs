@@ -203,28 +203,45 @@ impl<'c> DriveTable<'c> {
                 legal.push((mass_kg, drive, pair, limits));
             }
         }
-        // names settle ties, so that the order of the catalog files does not matter
-        legal.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| parts(&a.1).cmp(&parts(&b.1))));
-        for (mass_kg, _, pair, limits) in legal {
-            self.pairs.push(pair);
-            self.masses_kg.push(mass_kg);
-            self.limits.push(limits);
+        // places are sorted, because the limits are large; names settle ties, so that the order of the catalog files does
+        // not matter
+        let mut places: Vec<usize> = (0..legal.len()).collect();
+        places.sort_by(|&a, &b| {
+            let (a, b) = (&legal[a], &legal[b]);
+            a.0.total_cmp(&b.0).then_with(|| parts(&a.1).cmp(&parts(&b.1)))
+        });
+        for place in places {
+            let (mass_kg, _, pair, limits) = &legal[place];
+            self.pairs.push(*pair);
+            self.masses_kg.push(*mass_kg);
+            self.limits.push(*limits);
         }
     }
 
     /// Builds the ladder.
     fn raise_ladder(&mut self) {
-        for (index, limits) in self.limits.iter().enumerate() {
+        for index in 0..self.limits.len() {
+            let limits = self.limits[index];
             // whatever a covered drive holds, a lighter one holds too
-            if !self.ladder_limits.iter().any(|lighter| lighter.cover(limits)) {
-                self.ladder.push(index as u32);
-                self.ladder_limits.push(*limits);
-                self.ladder_reach.push(self.ladder_reach.last().map_or(*limits, |reach| reach.max(limits)));
+            if self.is_covered(&limits) {
+                continue;
             }
+            if self.ladder.len().is_multiple_of(FLIGHT) {
+                self.ladder_flights.push(limits);
+            } else if let Some(most) = self.ladder_flights.last_mut() {
+                *most = most.max(&limits);
+            }
+            self.ladder.push(index as u32);
+            self.ladder_limits.push(limits);
+            self.ladder_reach.push(self.ladder_reach.last().map_or(limits, |reach| reach.max(&limits)));
         }
-        let most =
-            |flight: &[DriveLimits]| flight[1..].iter().fold(flight[0], |most, limits| most.max(limits));
-        self.ladder_flights = self.ladder_limits.chunks(FLIGHT).map(most).collect();
+    }
+
+    /// Whether a step of the ladder covers these limits. No step of a flight does if the largest limits of the flight do not.
+    fn is_covered(&self, limits: &DriveLimits) -> bool {
+        let flights = self.ladder_flights.iter().zip(self.ladder_limits.chunks(FLIGHT));
+        let mut near = flights.filter(|(most, _)| most.cover(limits)).flat_map(|(_, flight)| flight);
+        near.any(|lighter| lighter.cover(limits))
     }
 
     fn all_pairs(&self) -> impl Iterator<Item = (Drive<'c>, Pair)> + '_ {

@@ -2,6 +2,7 @@
 
 use super::bearing_loads::resolved;
 use super::design_space::{DriveChoice, LinkOption, MotorPlace, SpaceJoint, SpacePiece};
+pub(crate) use super::full_model::full_deflection_m;
 pub use super::full_model::{full_objectives, objectives_with};
 use super::levels::OutwardIn;
 use super::prismatic::SpacePrismatic;

@@ -11,10 +11,11 @@ use super::effects::Layer;
 use super::fit::RoomAtJoint;
 use super::full_model::full_objectives;
 use super::group::Group;
+use super::joints::TabulatedJoints;
 use super::levels::OutwardIn;
 pub(crate) use super::slot::SizedJoint;
 pub(crate) use super::slot::Slot;
-use super::slot::{choice_slot, joint_slot, link_slot, rail_slot};
+use super::slot::{choice_slot, link_slot, rail_slot};
 use super::state::StationState;
 use super::station::{Block, BlockSlot, Modal, Station, StationSlot, reaches_m};
 use crate::arm::joint_law::{Curve, JointLaw};
@@ -85,10 +86,13 @@ impl<'c> ArmProblem<'c> {
     /// The work grows with the number of link options and of cases; a space may be reduced first
     /// ([`DesignSpace::excerpt`]).
     pub fn new(space: &'c DesignSpace, catalogs: &'c Catalogs) -> Self {
+        Self::with_joints(space, &TabulatedJoints::new(space, catalogs))
+    }
+
+    /// As [`new`](Self::new), of joints that are tabulated already.
+    pub(crate) fn with_joints(space: &'c DesignSpace, joints: &TabulatedJoints<'c>) -> Self {
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
         let reaches = reaches_m(space, sizing);
-        // reaches are in order from the base and layers from the tip
-        let mut reaches_from_tip = reaches.iter().rev();
         let mut piece_slots = vec![0; space.pieces.len()];
         let mut slots: Vec<Slot> = Vec::new();
         for (piece, layer) in space.layers() {
@@ -96,8 +100,9 @@ impl<'c> ArmProblem<'c> {
                 piece_slots[piece] = slots.len();
             }
             slots.push(match layer {
-                Layer::Piece(SpacePiece::Joint(joint)) => {
-                    joint_slot(space, joint, reaches_from_tip.next().copied().unwrap_or_default(), catalogs)
+                Layer::Piece(SpacePiece::Joint(_)) => {
+                    // every joint of the space is tabulated
+                    joints.slot(piece).unwrap_or(Slot::Offset { mass_kg: 0.0 })
                 }
                 Layer::Piece(SpacePiece::Prismatic(slide)) => rail_slot(space, slide, catalogs),
                 Layer::Piece(SpacePiece::Link(link)) => link_slot(space, link),

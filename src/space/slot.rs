@@ -10,13 +10,14 @@ use crate::arm::{Link, LinkBody};
 use crate::catalog::Catalogs;
 use crate::sizing::demand::{JointDemand, JointMotion};
 use crate::sizing::select::{DriveFilter, DriveTable};
+use std::sync::Arc;
 
 /// What the search adds in one step.
 pub(crate) enum Slot<'c> {
     /// A joint with a given drive, or a spring that an effect adds.
     Given { law: JointLaw, mass_kg: f64 },
     /// A joint whose drive comes from the catalogs.
-    Sized(SizedJoint<'c>),
+    Sized(Arc<SizedJoint<'c>>),
     /// A spring of the bearing of a sized joint: the slot of the joint, and the law by its drives.
     Bearing { joint: usize, laws: Vec<JointLaw> },
     /// The motor of a sized joint, which stands elsewhere: the slot of the joint, and the mass by its drives \[kg\].
@@ -112,7 +113,11 @@ impl<'c> Slot<'c> {
 impl Slot<'_> {
     /// Whether the search chooses here.
     pub(crate) fn is_level(&self) -> bool {
-        matches!(self, Slot::Link { open: true, .. } | Slot::Sized(SizedJoint { all_fits: true, .. }))
+        match self {
+            Slot::Link { open, .. } => *open,
+            Slot::Sized(sized) => sized.all_fits,
+            _ => false,
+        }
     }
 
     /// Number of options.
@@ -198,7 +203,7 @@ pub(crate) fn joint_slot<'c>(
     let laws = pieces.iter().map(|piece| piece.law).collect();
     let tilts_rad_per_nm = pieces.iter().map(|piece| piece.tilt_rad_per_nm).collect();
     let away_kg = (0..table.len()).map(|i| joint.away_kg(&table.drive(i))).collect();
-    Slot::Sized(SizedJoint { table, laws, tilts_rad_per_nm, away_kg, all_fits })
+    Slot::Sized(Arc::new(SizedJoint { table, laws, tilts_rad_per_nm, away_kg, all_fits }))
 }
 
 /// The slot of a prismatic joint.
@@ -227,7 +232,7 @@ pub(crate) fn rail_slot<'c>(
     let tilts_rad_per_nm = vec![0.0; table.len()];
     // screw and motor stay where the joint begins
     let away_kg = (0..table.len()).map(|i| table.mass_kg(i)).collect();
-    Slot::Sized(SizedJoint { table, laws, tilts_rad_per_nm, away_kg, all_fits: false })
+    Slot::Sized(Arc::new(SizedJoint { table, laws, tilts_rad_per_nm, away_kg, all_fits: false }))
 }
 
 /// The slot of a link that the study gives.

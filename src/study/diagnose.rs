@@ -8,6 +8,7 @@ use crate::catalog::Catalogs;
 use crate::space::constraint::Constraints;
 use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint, SpacePiece};
 use crate::space::prismatic::SpacePrismatic;
+use crate::space::joints::TabulatedJoints;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
@@ -26,13 +27,15 @@ pub fn why_infeasible(
 ) -> String {
     let latest = Instant::now() + LONGEST;
     let deadline = deadline.map_or(latest, |deadline| deadline.min(latest));
-    let limited = Limited { space: &study.space, catalogs, stop, deadline };
+    let joints = TabulatedJoints::new(&study.space, catalogs);
+    let designs = study.space.designs_with(&joints);
+    let limited = Limited { space: &study.space, catalogs, joints, stop, deadline };
     let without_limits = DesignSpace { constraints: Constraints::default(), ..study.space.clone() };
     let reasons = match study.space.beyond_exact() {
         Some(unknown) => obstacles_alone(&without_limits, catalogs, &unknown),
         None => reasons(&limited, &without_limits),
     };
-    let head = match study.space.designs(catalogs) {
+    let head = match designs {
         Some(0) => format!("no design meets the study \"{}\"", study.name),
         Some(designs) => format!("no design of {designs} meets the study \"{}\"", study.name),
         None => format!("no design of more than 1e38 meets the study \"{}\"", study.name),
