@@ -1,6 +1,6 @@
 //! The prepared model that fits use against mechanics itself, for every effect at every place.
 
-use armwright::arm::{Bearing, Curve, Element, Windup};
+use armwright::arm::{Bearing, Curve, Effect, Element, JointModel, Windup};
 use armwright::catalog::Catalogs;
 use armwright::reconcile::Campaign;
 use armwright::reconcile::fit::descent::{Weights, evaluate, jacobian};
@@ -9,6 +9,7 @@ use armwright::reconcile::model::calibration::Nuisance;
 use armwright::reconcile::model::candidates::candidates;
 use armwright::reconcile::model::exact::Exact;
 use armwright::reconcile::model::parameters::Model;
+use nalgebra::Vector3;
 use std::path::Path;
 
 fn campaign() -> Campaign {
@@ -40,6 +41,47 @@ fn the_prepared_model_is_mechanics_for_every_effect_at_every_place() {
 #[test]
 fn the_prepared_model_of_an_arm_with_bearings_is_mechanics_for_every_effect_at_every_place() {
     is_mechanics(campaign_with_bearings());
+}
+
+/// The same campaign of an arm of which a joint softens while it is tested and whose base turns once.
+fn campaign_that_changes() -> Campaign {
+    let mut campaign = campaign();
+    let law = |at: &str, parameters: &[(&str, &[f64])]| Effect {
+        effect: "empirical".into(),
+        at: at.into(),
+        parameters: parameters.iter().map(|(name, numbers)| (name.to_string(), numbers.to_vec())).collect(),
+        source: None,
+    };
+    let softening: [(&str, &[f64]); 4] = [
+        ("static_softening", &[0.3]),
+        ("static_softening_rows", &[7.0]),
+        ("modal_softening", &[-0.2]),
+        ("modal_softening_rows", &[5.0]),
+    ];
+    let turn: [(&str, &[f64]); 2] =
+        [("base_turn_rad", &[1e-4, -2e-4, 3e-4]), ("base_turn_from_row", &[11.0])];
+    campaign.arm.effects.extend([law("j2", &softening), law("static", &turn)]);
+    campaign
+}
+
+#[test]
+fn the_prepared_model_of_an_arm_that_changes_while_it_is_tested_is_mechanics() {
+    let campaign = campaign_that_changes();
+    is_mechanics(campaign.clone());
+    // both laws show: the joint's in the first pose, the base's by its rotation in the rows from the eleventh on
+    let steady = |effects: usize| {
+        let mut arm = campaign.arm.clone();
+        arm.effects.truncate(effects);
+        let subject = arm.subject(JointModel::ThreeSegment);
+        Exact::new(&subject).statics_mm(&campaign.statics)
+    };
+    let [plain, soft, turned] = [0, 1, 2].map(steady);
+    let moved = |a: &[f64; 3], b: &[f64; 3]| (Vector3::from(*a) - Vector3::from(*b)).norm();
+    assert!(moved(&plain[0], &soft[0]) < 1e-12, "the first row is of the joint as it was");
+    assert!(moved(&plain[2], &soft[2]) > 0.01 * Vector3::from(plain[2]).norm());
+    assert!(moved(&soft[9], &turned[9]) == 0.0);
+    let tip_m = moved(&soft[10], &turned[10]) / 1e3 / Vector3::new(1e-4, -2e-4, 3e-4).norm();
+    assert!((0.05..3.0).contains(&tip_m), "a lever within the reach of the arm: {tip_m}");
 }
 
 fn is_mechanics(campaign: Campaign) {

@@ -4,13 +4,16 @@
 //! environment variable ARMWRIGHT_MEASURED, and their tests say aloud when they are skipped.
 
 use crate::measured;
-use crate::positions_maker::{EVEN_RAD_PER_NM, LOPSIDED_RAD_PER_NM, Made, UNEVEN_RAD, standard};
+use crate::positions_maker::{
+    EVEN_RAD_PER_NM, LOPSIDED_RAD_PER_NM, LOST_NM, LOST_RAD, Made, UNEVEN_RAD, standard,
+};
 
 use armwright::arm::JointModel;
 use armwright::arm::read_arm_document;
 use armwright::catalog::Catalogs;
 use armwright::input::Document;
 use armwright::reconcile::Campaign;
+use armwright::reconcile::model::estimate::Estimate;
 use armwright::reconcile::model::exact::Exact;
 use armwright::reconcile::readings::components::Component;
 use armwright::reconcile::readings::placement::Placement;
@@ -178,6 +181,24 @@ fn a_joint_that_turns_unevenly_is_named_with_its_error() {
     let at = outcome.stages.iter().position(|s| s.added.contains("transmission")).expect("a stage");
     let before = &outcome.stages[at - 1];
     assert!(median_mm(&outcome, "transmission") < 0.7 * before.median_mm, "on poses kept out");
+}
+
+#[test]
+fn a_joint_that_lags_in_the_sense_of_its_torque_is_named_with_its_lost_motion() {
+    let made = standard();
+    let campaign = read(made.write(&Made::lagging).path());
+    let outcome = reconcile(&campaign);
+    assert_eq!(outcome.verdict, Verdict::Explained, "{}", outcome.to_text());
+    let finding = outcome.effects.iter().find(|f| f.label() == "lost_motion@q3");
+    let finding = finding.unwrap_or_else(|| panic!("{}", outcome.to_text()));
+    for (name, truth) in [("half_width_rad", LOST_RAD), ("torque_nm", LOST_NM)] {
+        let (_, estimates) = finding.parameters.iter().find(|(n, _)| n == name).expect("a number");
+        let Estimate { low, high, .. } = estimates[0];
+        let holds = low.is_none_or(|low| low <= truth) && high.is_none_or(|high| truth <= high);
+        assert!(holds, "{name}: {truth} {:?}", estimates[0]);
+    }
+    // one of five torque scales stands for the true one, which leaves a few hundredths of the half width
+    assert!(predicted_median_mm(&campaign, &outcome) < 1.4 * 1.538 * made.sigma_mm);
 }
 
 #[test]

@@ -68,9 +68,15 @@ impl Subject {
         self.setups[channel as usize].of(&self.structure)
     }
 
+    /// Whether the arm is the same in all tests of a channel.
+    pub fn is_steady(&self, channel: Channel) -> bool {
+        self.warming.is_none() && self.setups[channel as usize].is_steady()
+    }
+
     /// The arm as it is in a test of a channel at a moment.
     pub fn structure_at(&self, channel: Channel, when: &Moment) -> Structure {
         let mut out = self.structure_in(channel);
+        self.setups[channel as usize].soften(&mut out, when.row);
         let factor = self.warming.factor(when);
         for piece in &mut out.pieces {
             if let Piece::Link(LinkPiece { beam: Some(beam), .. }) = piece {

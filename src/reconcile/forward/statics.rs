@@ -281,6 +281,20 @@ fn follow(law: &JointLaw, dead_nm: f64, loaded_nm: &[f64], twists_rad: &mut [f64
     }
 }
 
+/// The same of a joint whose law is another under each load: each reading follows its own law from rest on.
+fn follow_changing(
+    laws: impl Iterator<Item = JointLaw>,
+    dead_nm: f64,
+    loaded_nm: &[f64],
+    twists_rad: &mut [f64],
+) {
+    let mut own_rad = vec![0.0; loaded_nm.len()];
+    for (load, law) in laws.enumerate() {
+        follow(&law, dead_nm, &loaded_nm[..=load], &mut own_rad[..=load]);
+        twists_rad[load] = own_rad[load];
+    }
+}
+
 /// Torque of the dead weight on each joint, and its moments about world x and y on the base \[N m\].
 fn dead_torques(posed: &Posed) -> (Vec<f64>, [f64; 2]) {
     let mut wrench = Wrench::zeros();
@@ -364,8 +378,16 @@ impl StaticPose {
             }
             if is_loaded_otherwise || changes.payload || changes.laws[j] {
                 let own = j * count..(j + 1) * count;
-                let law = coefficients.law_at(j, Channel::Static, geometry.angles_rad[j]);
-                follow(&law, state.dead_nm[j], &state.loaded_nm[own.clone()], &mut state.twists_rad[own]);
+                let law = |row| coefficients.law_at(j, Channel::Static, geometry.angles_rad[j], row);
+                let (dead_nm, loaded_nm) = (state.dead_nm[j], &state.loaded_nm[own.clone()]);
+                let twists_rad = &mut state.twists_rad[own];
+                match coefficients.tests[Channel::Static as usize].softening_of(j) {
+                    None => follow(&law(0), dead_nm, loaded_nm, twists_rad),
+                    Some(_) => {
+                        let rows = self.loads.iter().map(|load| load.when.row);
+                        follow_changing(rows.map(law), dead_nm, loaded_nm, twists_rad);
+                    }
+                }
             }
         }
     }

@@ -114,6 +114,28 @@ impl FreeParameter {
         Estimate { value, low: low.map(|u| self.value(u)), high: high.map(|u| self.value(u)) }
     }
 
+    /// The interval with its open ends at the limits of what the number can be, where it says how an effect acts: a torque is
+    /// positive, and a gear's slopes are within the range in which they are looked for. The size of an effect has no such
+    /// limit.
+    pub(crate) fn closed(&self, interval: Interval) -> Interval {
+        match self.scale {
+            Scale::Stiffness if self.absent.is_none() => {
+                Interval { low: interval.low.or(Some(self.low)), high: interval.high.or(Some(self.high)) }
+            }
+            Scale::Log => Interval { low: interval.low.or(Some(f64::NEG_INFINITY)), ..interval },
+            _ => interval,
+        }
+    }
+
+    /// Whether an end of an interval is such a limit.
+    pub(crate) fn is_limit(&self, u: f64) -> bool {
+        match self.scale {
+            Scale::Stiffness if self.absent.is_none() => u <= self.low || u >= self.high,
+            Scale::Log => u == f64::NEG_INFINITY,
+            _ => false,
+        }
+    }
+
     /// Whether the value falls when `u` rises.
     pub fn reversed(&self) -> bool {
         matches!(self.scale, Scale::Stiffness | Scale::Reciprocal)
