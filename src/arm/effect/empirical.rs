@@ -1,5 +1,5 @@
 //! `empirical`: a law without a name, as it was found in readings. At a joint it is a further twist, a polynomial of the
-//! torque, or a compliance that changes in the course of the tests; at a channel it is a reading that bends, that has a gain
+//! torque, or a compliance that changes in the course of the tests; at the base a tilt that differs about x and y; at a channel it is a reading that bends, that has a gain
 //! of its own in each direction, or that shows how the base turned once.
 
 use super::channel::Channel;
@@ -8,7 +8,7 @@ use super::setup::Turned;
 use super::subject::Subject;
 use super::warming::Softening;
 use crate::arm::joint_law::FurtherTwist;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 /// Coefficients of a joint's further twist that change sign with its torque.
 pub(crate) const ODD_TWIST: &str = "odd_twist_rad";
@@ -26,6 +26,8 @@ pub(crate) const BEND: &str = "bend";
 pub(crate) const BEND_SCALE: &str = "bend_scale";
 /// Factor of each direction.
 pub(crate) const GAIN: &str = "gain";
+/// Further tilt of the base per moment about world x and about y.
+pub(crate) const LEAN: &str = "tilt_rad_per_nm";
 /// Rotation by which the base turned once.
 pub(crate) const BASE_TURN: &str = "base_turn_rad";
 /// The first row after that, counted from 1.
@@ -46,6 +48,8 @@ const OF_CHANNEL: &[Parameter] = &[
     optional(BEND_SCALE, 1, 1e-9, 1e9, 1.0),
     optional(GAIN, 3, 0.01, 100.0, 1.0),
 ];
+
+const OF_BASE: &[Parameter] = &[optional(LEAN, 2, 0.0, 1.0, 0.0)];
 
 const OF_STATIC: &[Parameter] = &[
     OF_CHANNEL[0],
@@ -68,12 +72,14 @@ pub(crate) const KIND: Kind = Kind {
     scope: Scope::Product,
     places: &[
         Place::Joint,
+        Place::Base,
         Place::Channel(Channel::Static),
         Place::Channel(Channel::Modal),
         Place::Channel(Channel::Windup),
     ],
     parameters: |place| match place {
         Place::Joint => OF_JOINT,
+        Place::Base => OF_BASE,
         Place::Channel(Channel::Static) => OF_STATIC,
         _ => OF_CHANNEL,
     },
@@ -90,7 +96,9 @@ pub(crate) fn is_of_tests_alone(parameters: &[(String, Vec<f64>)]) -> bool {
 }
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
-    if let Some(joint) = subject.structure.joint_mut(at) {
+    if let [about_x, about_y] = *numbers {
+        subject.structure.base_frame.0 += Matrix3::from_diagonal(&Vector3::new(about_x, about_y, 0.0));
+    } else if let Some(joint) = subject.structure.joint_mut(at) {
         let [a, b, c, d, torque_nm, softening @ ..] = numbers else { return };
         if [a, b, c, d] != [&0.0; 4] {
             let twist = FurtherTwist { odd_rad: [*a, *b], even_rad: [*c, *d], torque_nm: *torque_nm };

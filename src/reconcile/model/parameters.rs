@@ -228,8 +228,13 @@ impl Candidate {
 
     /// Every number with the name of its parameter, in the order of the kind.
     pub(crate) fn named_numbers(&self) -> Vec<(&'static str, Number)> {
-        // channels may have parameters of their own
-        let is_own = |place: &&Place| matches!(place, Place::Channel(channel) if channel.word() == self.at);
+        // a base and channels may have parameters of their own
+        let count = |place: Place| (self.kind.parameters)(place).iter().map(|p| p.count).sum::<usize>();
+        let is_own = |place: &&Place| match place {
+            Place::Channel(channel) => channel.word() == self.at,
+            Place::Base => self.at == "base" && count(Place::Base) == self.numbers.len(),
+            _ => false,
+        };
         let place = self.kind.places.iter().find(is_own).or(self.kind.places.first());
         let Some(place) = place else { return Vec::new() };
         let names = (self.kind.parameters)(*place).iter().flat_map(|p| std::iter::repeat_n(p.name, p.count));

@@ -8,7 +8,7 @@
 use super::search::{Scored, Search};
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::empirical::{
-    BASE_TURN, BEND, EVEN_TWIST, GAIN, KIND, ODD_TWIST, SOFTENING, SOFTENING_ROWS,
+    BASE_TURN, BEND, EVEN_TWIST, GAIN, KIND, LEAN, ODD_TWIST, SOFTENING, SOFTENING_ROWS,
 };
 use crate::arm::effect::kind::{Absent, Parameter, Scale};
 use crate::reconcile::fit::descent::{Effort, Fit, Weights};
@@ -33,6 +33,10 @@ const LARGEST: f64 = 3.0;
 const SOFTENING_IN: [Channel; 2] = [Channel::Static, Channel::Modal];
 /// Parts of the rows of a file in which most of a change comes, where a fit starts.
 const SOFTENED_AFTER: [f64; 2] = [0.08, 0.5];
+/// The place of the base.
+const BASE: &str = "base";
+/// Largest tilt of a base that is looked for, as a multiple of what the first joint yields.
+const SOFTEST: f64 = 100.0;
 /// Fewest poses before and after a base turned.
 const FEWEST_POSES: usize = 2;
 
@@ -57,6 +61,7 @@ pub(crate) fn laws(forward: &Forward, baseline: &Fit, weights: &Weights) -> Vec<
             out.extend(readings(channel, largest));
         }
     }
+    out.extend(lean(forward));
     out.extend(most_telling_row(forward, baseline, weights).map(base_turn));
     out
 }
@@ -77,6 +82,18 @@ fn softening(forward: &Forward, joint: &str, torque_nm: f64, channel: usize) -> 
     numbers[first..first + 2].fill(Free);
     let starts = SOFTENED_AFTER.map(|part| vec![1.0, libm::log((part * rows).max(1.0))]).to_vec();
     Some(Candidate { kind: &KIND, at: joint.into(), free_parameters, numbers, starts, twins: Vec::new() })
+}
+
+/// A base that tilts about world x and about y, each by its own compliance; sizes are those of the first joint that yields.
+/// `None` if a piece of the arm is called as the base is.
+fn lean(forward: &Forward) -> Option<Candidate> {
+    let laws = forward.coefficients(&forward.nominal).laws;
+    let size = laws.iter().map(|law| law.tangent_compliance_rad_per_nm(0.0)).find(|c| *c > 0.0)?;
+    let is_free = forward.nominal.structure.pieces.iter().all(|piece| piece.name() != BASE);
+    let tilt = Parameter { count: 2, ..Parameter::number(LEAN, 0.0, SOFTEST * size, size, Scale::Linear) };
+    let starts = vec![vec![0.1, 0.5], vec![0.5, 0.1]];
+    let lean = Candidate { numbers: vec![Free; 2], starts, ..law(BASE, tilt, 0.0) };
+    is_free.then_some(lean)
 }
 
 /// A base that turned before a row of the displacements.
@@ -126,6 +143,7 @@ pub(crate) fn may_be(candidate: &Candidate) -> &'static str {
             "it may be a gear that warms up or a connection that works loose; from the first rows on, a servo that holds the \
              joint otherwise in these tests"
         }
+        Some(LEAN) => "it may be a foot, a plate or a wall that yields more one way than the other",
         Some(BASE_TURN) => "it may be a base that slipped on its bolts, or an instrument that was touched",
         Some(BEND) => {
             "it may be an instrument that is not straight, or a displacement too large for a straight law"
@@ -146,6 +164,7 @@ pub(crate) fn in_words(candidate: &Candidate) -> String {
         Some(name) if name == SOFTENING[1] => {
             format!("a stiffness of {at} that changes with the order of the modal tests")
         }
+        Some(LEAN) => format!("a {at} that tilts about x and y unequally"),
         Some(BASE_TURN) => match candidate.numbers.last() {
             Some(Stated(row)) => format!("a base that turned before row {row} of the {at} readings"),
             _ => format!("a base that turned in the course of the {at} readings"),
