@@ -13,7 +13,6 @@ use armwright::arm::read_arm_document;
 use armwright::catalog::Catalogs;
 use armwright::input::Document;
 use armwright::reconcile::Campaign;
-use armwright::reconcile::model::estimate::Estimate;
 use armwright::reconcile::model::exact::Exact;
 use armwright::reconcile::readings::components::Component;
 use armwright::reconcile::readings::placement::Placement;
@@ -193,9 +192,9 @@ fn a_joint_that_lags_in_the_sense_of_its_torque_is_named_with_its_lost_motion() 
     let finding = finding.unwrap_or_else(|| panic!("{}", outcome.to_text()));
     for (name, truth) in [("half_width_rad", LOST_RAD), ("torque_nm", LOST_NM)] {
         let (_, estimates) = finding.parameters.iter().find(|(n, _)| n == name).expect("a number");
-        let Estimate { low, high, .. } = estimates[0];
-        let holds = low.is_none_or(|low| low <= truth) && high.is_none_or(|high| truth <= high);
-        assert!(holds, "{name}: {truth} {:?}", estimates[0]);
+        let own = estimates[0];
+        let holds = own.low.is_none_or(|low| low <= truth) && own.high.is_none_or(|high| truth <= high);
+        assert!(holds, "{name}: {truth} {own:?}");
     }
     // one of five torque scales stands for the true one, which leaves a few hundredths of the half width
     assert!(predicted_median_mm(&campaign, &outcome) < 1.4 * 1.538 * made.sigma_mm);
