@@ -52,11 +52,12 @@ fn law(at: &str, parameters: &[(&str, &[f64])]) -> Effect {
 
 /// A joint that softens while it is tested, a base that turns once, and one that tilts more about one axis.
 fn laws() -> [Effect; 3] {
-    let softening: [(&str, &[f64]); 4] = [
+    let softening: [(&str, &[f64]); 5] = [
         ("static_softening", &[0.3]),
         ("static_softening_rows", &[7.0]),
         ("modal_softening", &[-0.2]),
         ("modal_softening_rows", &[5.0]),
+        ("static_softening_reference", &[0.3]),
     ];
     let turn: [(&str, &[f64]); 2] =
         [("base_turn_rad", &[1e-4, -2e-4, 3e-4]), ("base_turn_from_row", &[11.0])];

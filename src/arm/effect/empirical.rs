@@ -20,6 +20,8 @@ pub(crate) const TORQUE: &str = "torque_nm";
 pub(crate) const SOFTENING: [&str; 2] = ["static_softening", "modal_softening"];
 /// The numbers of rows in which most of these changes come.
 pub(crate) const SOFTENING_ROWS: [&str; 2] = ["static_softening_rows", "modal_softening_rows"];
+/// Part of the change in the static tests that the reference of a displacement has.
+pub(crate) const SOFTENING_REFERENCE: &str = "static_softening_reference";
 /// How far readings bend.
 pub(crate) const BEND: &str = "bend";
 /// The reading at which that is the bend.
@@ -41,6 +43,7 @@ const OF_JOINT: &[Parameter] = &[
     optional(SOFTENING_ROWS[0], 1, 0.1, 1e6, 1.0),
     optional(SOFTENING[1], 1, -0.9, 10.0, 0.0),
     optional(SOFTENING_ROWS[1], 1, 0.1, 1e6, 1.0),
+    optional(SOFTENING_REFERENCE, 1, 0.0, 1.0, 1.0),
 ];
 
 const OF_CHANNEL: &[Parameter] = &[
@@ -121,16 +124,18 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
     }
 }
 
-/// Lets a joint soften in the course of the static and of the modal tests: a change, and the rows in which it comes, of each.
+/// Lets a joint soften in the course of the static and of the modal tests: a change, and the rows in which it comes, of each,
+/// and the part of the first that references have.
 fn soften(numbers: &[f64], at: &str, subject: &mut Subject) {
-    for (channel, own) in [Channel::Static, Channel::Modal].into_iter().zip(numbers.chunks(2)) {
-        if let [change, rows] = *own
-            && change != 0.0
-        {
+    let [static_change, static_rows, modal_change, modal_rows, reference] = *numbers else { return };
+    for (channel, change, rows) in
+        [(Channel::Static, static_change, static_rows), (Channel::Modal, modal_change, modal_rows)]
+    {
+        if change != 0.0 {
             let own = &mut subject.setups[channel as usize].softening;
             // one law of the order of the tests is enough
             own.retain(|(joint, _)| joint != at);
-            own.push((at.into(), Softening { change, rows }));
+            own.push((at.into(), Softening { change, rows, reference }));
         }
     }
 }

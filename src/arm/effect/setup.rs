@@ -52,11 +52,11 @@ impl Setup {
         self.softening.iter().rfind(|(name, _)| name == joint).map(|(_, softening)| *softening)
     }
 
-    /// Softens the joints of a structure to what they are in a row of the channel's file.
-    pub(crate) fn soften(&self, structure: &mut Structure, row: usize) {
+    /// Softens the joints of a structure, each by its factor.
+    pub(crate) fn soften(&self, structure: &mut Structure, factor: impl Fn(&Softening) -> f64) {
         for (name, softening) in &self.softening {
             if let Some(joint) = structure.joint_mut(name) {
-                joint.law = joint.law.softer(softening.factor(row));
+                joint.law = joint.law.softer(factor(softening));
             }
         }
     }

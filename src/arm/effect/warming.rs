@@ -22,12 +22,20 @@ pub struct Softening {
     pub change: f64,
     /// Number of rows after which 63 % of this change is reached.
     pub rows: f64,
+    /// Part of the change that the reference of a displacement has: 1 if it is read just before the displacement, 0 if it was
+    /// read before all tests.
+    pub reference: f64,
 }
 
 impl Softening {
     /// Factor on the compliance of the joint in a row of the channel's file, from 0.
     pub fn factor(&self, row: usize) -> f64 {
         (1.0 + self.change * done(row, self.rows)).max(LEAST)
+    }
+
+    /// The same factor when the reference of that row's displacement was read.
+    pub fn reference_factor(&self, row: usize) -> f64 {
+        (1.0 + self.change * self.reference * done(row, self.rows)).max(LEAST)
     }
 }
 

@@ -361,7 +361,8 @@ impl Coefficients {
         let is_heavier = (own.mass_kg, own.cg_m) != (others.mass_kg, others.cg_m)
             || self.weights != other.weights
             || self.torques != other.torques;
-        let is_linear = self.lift.is_none() && self.laws.iter().all(is_proportional);
+        let is_steady = [own, others].iter().all(|test| test.softening.is_empty());
+        let is_linear = self.lift.is_none() && is_steady && self.laws.iter().all(is_proportional);
         let weights = is_heavier && (is_other || !is_linear);
         StaticChanges { linear, weights, payload, lift, laws }
     }

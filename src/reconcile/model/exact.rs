@@ -45,8 +45,9 @@ impl<'a> Exact<'a> {
         let (mut play, mut lag) = (Vec::new(), Vector3::zeros());
         for row in rows {
             let chain = self.chain_at(Channel::Static, &row.moment());
-            // the reference is as warm as the reading
-            let unloaded = self.posed(&chain, &row.pose_deg, &Payload::default(), Vector3::zeros());
+            // the links of the reference are as warm as those of the reading
+            let reference = self.reference_at(&row.moment());
+            let unloaded = self.posed(&reference, &row.pose_deg, &Payload::default(), Vector3::zeros());
             let unloaded_m = unloaded.statics().tip_displacement_m;
             if row.pose_deg != pose || out.is_empty() {
                 pose = &row.pose_deg;
@@ -140,6 +141,14 @@ impl<'a> Exact<'a> {
             return Cow::Borrowed(self.special[channel as usize].as_ref().unwrap_or(&self.chain));
         }
         Cow::Owned(Chain::new(&self.subject.structure_at(channel, when), LinkModel::Full))
+    }
+
+    /// The arm as it was when the reference of a displacement was read.
+    fn reference_at(&self, when: &Moment) -> Cow<'_, Chain> {
+        match self.subject.setups[Channel::Static as usize].is_steady() {
+            true => self.chain_at(Channel::Static, when),
+            false => Cow::Owned(Chain::new(&self.subject.reference_at(when), LinkModel::Full)),
+        }
     }
 
     fn posed<'c>(

@@ -8,7 +8,7 @@
 use super::search::{Scored, Search};
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::empirical::{
-    BASE_TURN, BEND, EVEN_TWIST, GAIN, KIND, LEAN, ODD_TWIST, SOFTENING, SOFTENING_ROWS,
+    BASE_TURN, BEND, EVEN_TWIST, GAIN, KIND, LEAN, ODD_TWIST, SOFTENING, SOFTENING_REFERENCE, SOFTENING_ROWS,
 };
 use crate::arm::effect::kind::{Absent, Parameter, Scale};
 use crate::reconcile::fit::descent::{Effort, Fit, Weights};
@@ -72,16 +72,31 @@ fn softening(forward: &Forward, joint: &str, torque_nm: f64, channel: usize) -> 
     let rows = forward.data[range].iter().map(|datum| datum.row + 1).max()? as f64;
     let size = Parameter::number(SOFTENING[channel], -0.8, 3.0, 0.3, Scale::Linear);
     let pace = Parameter::number(SOFTENING_ROWS[channel], 0.1, 1e6, rows, Scale::Log);
-    let free_parameters = vec![
+    let mut free_parameters = vec![
         FreeParameter::new(&size, 0, 1.0),
         FreeParameter::new(&pace, 0, 1.0).within(libm::log(0.1), libm::log(3.0 * rows)),
     ];
-    let mut numbers =
-        [vec![Stated(0.0); 4], vec![Stated(torque_nm)], vec![Stated(0.0), Stated(1.0)].repeat(2)].concat();
+    let mut numbers = [vec![Stated(0.0); 4], vec![Stated(torque_nm)], steady()].concat();
     let first = 5 + 2 * channel;
     numbers[first..first + 2].fill(Free);
-    let starts = SOFTENED_AFTER.map(|part| vec![1.0, libm::log((part * rows).max(1.0))]).to_vec();
+    let paces = SOFTENED_AFTER.map(|part| libm::log((part * rows).max(1.0)));
+    let mut starts = paces.map(|pace| vec![1.0, pace]).to_vec();
+    if SOFTENING_IN[channel] == Channel::Static {
+        let reference =
+            Parameter::number(SOFTENING_REFERENCE, 0.0, 1.0, 1.0, Scale::Linear).absent(Absent::Never);
+        free_parameters.push(FreeParameter::new(&reference, 0, 1.0));
+        numbers[9] = Free;
+        starts = starts
+            .iter()
+            .flat_map(|start| [0.1, 0.9].map(|part| [start.as_slice(), &[part]].concat()))
+            .collect();
+    }
     Some(Candidate { kind: &KIND, at: joint.into(), free_parameters, numbers, starts, twins: Vec::new() })
+}
+
+/// The numbers of a joint that does not soften.
+fn steady() -> Vec<Number> {
+    [0.0, 1.0, 0.0, 1.0, 1.0].map(Stated).to_vec()
 }
 
 /// A base that tilts about world x and about y, each by its own compliance; sizes are those of the first joint that yields.
@@ -211,8 +226,7 @@ fn twists(joint: &str, torque_nm: f64, twist_rad: f64) -> [Candidate; 2] {
     let sized =
         |name| Parameter { count: 2, ..Parameter::number(name, -most, most, twist_rad, Scale::Linear) };
     // the stiffness does not change meanwhile
-    let steady = [Stated(0.0), Stated(1.0), Stated(0.0), Stated(1.0)];
-    let with = |twist: [Number; 4]| [twist.as_slice(), &[Stated(torque_nm)], &steady].concat();
+    let with = |twist: [Number; 4]| [twist.as_slice(), &[Stated(torque_nm)], &steady()].concat();
     let odd = law(joint, sized(ODD_TWIST), 0.0);
     let even = law(joint, sized(EVEN_TWIST), 0.0);
     [
