@@ -127,6 +127,6 @@ fn catalog_gears(gears: &CatalogGears) -> Vec<PaperRow> {
         row("deflection_total_catalog_curve", "total, three-segment curve, full links")
             .paper(1.39, "1.39")
             .exact(1e3 * curve.drop_m())
-            .because("what the paper's arm would sag with the catalog's gears"),
+            .because("how far the paper's arm would deflect with the catalog's gears"),
     ]
 }

@@ -44,7 +44,7 @@ fn check(row: &Row) {
         row.fault(
             "outer_h_m",
             format!("= {h} differs from outer_b_m = {b}"),
-            "write both alike, or shape rectangular",
+            "write both equal, or shape rectangular",
         );
     }
     if t >= b.min(h) / 2.0 {
