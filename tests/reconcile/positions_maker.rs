@@ -52,7 +52,7 @@ pub const LOPSIDED_RAD_PER_NM: [[f64; 3]; 2] = [[8e-6, 3e-6, 4e-6], [1e-6, 3e-6,
 pub const UNEVEN_RAD: f64 = 2e-3;
 /// Half width of the third joint's lost motion, and the torque at which three quarters of it are used up \[N m\].
 pub const LOST_RAD: f64 = 1.5e-3;
-pub const LOST_NM: f64 = 2.0;
+const LOST_NM: f64 = 2.0;
 /// A base that tilts alike about x and y \[rad/(N m)\].
 pub const EVEN_RAD_PER_NM: f64 = 6e-6;
 
