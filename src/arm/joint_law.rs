@@ -338,11 +338,15 @@ impl JointLaw {
         }
         let waves = transmission_waves(angle_rad);
         let varied: f64 = waves.iter().zip(&self.waves).map(|(wave, size)| wave * size).sum();
-        let softer = (1.0 + varied).max(STIFFEST);
+        Self { waves: [0.0; 4], ..self.softer((1.0 + varied).max(STIFFEST)) }
+    }
+
+    /// The law with the compliance of gear and connection multiplied by a factor.
+    #[must_use]
+    pub fn softer(&self, factor: f64) -> Self {
         Self {
-            curve: self.curve.stiffened(1.0 / softer),
-            connection_rad_per_nm: self.connection_rad_per_nm * softer,
-            waves: [0.0; 4],
+            curve: self.curve.stiffened(1.0 / factor),
+            connection_rad_per_nm: self.connection_rad_per_nm * factor,
             ..*self
         }
     }

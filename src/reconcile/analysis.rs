@@ -59,13 +59,13 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         candidates: &candidates,
         weights: &weights,
     };
-    let with_laws = [candidates.as_slice(), &empirical::laws(&forward)].concat();
     let hopeless = found.selection.given_up || !search.may_explain(chosen);
     let best = match hopeless {
         true => search.fit(&chosen.effects, &chosen.u, Effort::default()),
         false => search.polish(&chosen.effects, &chosen.u),
     };
     let baseline = search.fit(&[], &found.selection.baseline.u, Effort::default());
+    let with_laws = [candidates.as_slice(), &empirical::laws(&forward, &baseline, &weights)].concat();
     let fit_test = lack_of_fit(campaign, &forward, &best, &weights);
     let alternatives = search.alternatives(chosen, &found.selection.others);
     let explaining = few.then(|| found.selection.others.clone());
@@ -200,6 +200,9 @@ impl Analysis<'_> {
         let (effects, suspects) = verdict.named_and_suspected(findings, Vec::new());
         let Corrections { calibrated, empirical, models, corrected, provenance } =
             self.corrections(verdict, &effects);
+        if verdict == Verdict::Explained {
+            reasons.extend(caution::unbounded(&self.best, self.ends()));
+        }
         if matches!(verdict, Verdict::Explained | Verdict::NoGap) {
             let shown = if verdict == Verdict::NoGap { &self.baseline } else { &self.best };
             reasons.extend(caution::beyond_tolerance(shown, &calibrated));

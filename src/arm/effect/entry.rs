@@ -2,6 +2,7 @@
 
 use super::catalogue::kind;
 use super::channel::Channel;
+use super::empirical;
 use super::kind::{Kind, Parameter, Scope};
 use super::subject::Subject;
 use serde_json::Value;
@@ -55,9 +56,12 @@ impl Effect {
         self.kind().is_some_and(|k| k.traits.changes_bending)
     }
 
-    /// Whether the effect describes the test and not the product. Whatever sits at a channel does.
+    /// Whether the effect describes the test and not the product. Whatever sits at a channel does, and a law of a joint that
+    /// only says how the joint changed in the course of the tests.
     pub fn is_of_test(&self) -> bool {
-        self.kind().is_some_and(|k| k.scope == Scope::Test) || Channel::from_word(&self.at).is_some()
+        self.kind().is_some_and(|k| k.scope == Scope::Test)
+            || Channel::from_word(&self.at).is_some()
+            || (self.effect == empirical::KIND.name && empirical::is_of_tests_alone(&self.parameters))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::channel::{Channel, Reading};
 use super::setup::Setup;
-use super::warming::{Moment, Warming};
+use super::warming::{Moment, Softening, Warming};
 use super::waves::transmission_rad;
 use crate::arm::load::Payload;
 use crate::arm::structure::{JointAngle, LinkPiece, Piece, Structure};
@@ -68,14 +68,29 @@ impl Subject {
         self.setups[channel as usize].of(&self.structure)
     }
 
+    /// Whether the arm is the same in all tests of a channel.
+    pub fn is_steady(&self, channel: Channel) -> bool {
+        self.warming.is_none() && self.setups[channel as usize].is_steady()
+    }
+
     /// The arm as it is in a test of a channel at a moment.
     pub fn structure_at(&self, channel: Channel, when: &Moment) -> Structure {
+        self.softened(channel, when, |softening| softening.factor(when.row))
+    }
+
+    /// The arm as it was when the reference of a displacement was read.
+    pub fn reference_at(&self, when: &Moment) -> Structure {
+        self.softened(Channel::Static, when, |softening| softening.reference_factor(when.row))
+    }
+
+    fn softened(&self, channel: Channel, when: &Moment, factor: impl Fn(&Softening) -> f64) -> Structure {
         let mut out = self.structure_in(channel);
-        let factor = self.warming.factor(when);
+        self.setups[channel as usize].soften(&mut out, factor);
+        let stiffer = self.warming.factor(when);
         for piece in &mut out.pieces {
             if let Piece::Link(LinkPiece { beam: Some(beam), .. }) = piece {
-                beam.material.youngs_modulus_pa *= factor;
-                beam.material.shear_modulus_pa *= factor;
+                beam.material.youngs_modulus_pa *= stiffer;
+                beam.material.shear_modulus_pa *= stiffer;
             }
         }
         out

@@ -1,4 +1,5 @@
-//! Warming: how the moduli of the links change while an arm is tested, with its temperature or with the order of the tests.
+//! Warming: how the moduli of the links change while an arm is tested, with its temperature or with the order of the tests,
+//! and how joints soften with the order of the tests.
 
 /// When a reading was taken.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -11,8 +12,37 @@ pub struct Moment {
 
 /// Temperature at which moduli are as drawn \[°C\].
 pub(crate) const DRAWN_AT_C: f64 = 20.0;
-/// Least factor on a modulus: a law that is carried far beyond its readings must not turn a link around.
+/// Least factor on a modulus or a compliance: a law that is carried far beyond its readings must not turn it around.
 const LEAST: f64 = 0.05;
+
+/// How the compliance of a joint changes in the course of the tests of one channel: a gear warms up, bolts work loose.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Softening {
+    /// Change of the factor on the compliance after many rows.
+    pub change: f64,
+    /// Number of rows after which 63 % of this change is reached.
+    pub rows: f64,
+    /// Part of the change that the reference of a displacement has: 1 if it is read just before the displacement, 0 if it was
+    /// read before all tests.
+    pub reference: f64,
+}
+
+impl Softening {
+    /// Factor on the compliance of the joint in a row of the channel's file, from 0.
+    pub fn factor(&self, row: usize) -> f64 {
+        (1.0 + self.change * done(row, self.rows)).max(LEAST)
+    }
+
+    /// The same factor when the reference of that row's displacement was read.
+    pub fn reference_factor(&self, row: usize) -> f64 {
+        (1.0 + self.change * self.reference * done(row, self.rows)).max(LEAST)
+    }
+}
+
+/// Part of a change that is done in a row, where 63 % of it comes in `rows` rows.
+fn done(row: usize, rows: f64) -> f64 {
+    1.0 - libm::exp(-(row as f64) / rows)
+}
 
 /// How the moduli of all links change.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,7 +70,6 @@ impl Warming {
     /// Factor on the moduli of elasticity and shear.
     pub fn factor(&self, when: &Moment) -> f64 {
         let warmer_k = when.temperature_c.map_or(0.0, |c| c - DRAWN_AT_C);
-        let done = 1.0 - libm::exp(-(when.row as f64) / self.rows);
-        (1.0 + self.per_k * warmer_k + self.change * done).max(LEAST)
+        (1.0 + self.per_k * warmer_k + self.change * done(when.row, self.rows)).max(LEAST)
     }
 }

@@ -32,7 +32,7 @@ pub(crate) fn deviations(fit: &Fit) -> Vec<f64> {
 pub(crate) fn intervals(forward: &Forward, best: &Fit, weights: &Weights) -> Vec<Interval> {
     let deviations = deviations(best);
     let breaks = best.model.break_points();
-    let of_effect = |effect: usize| {
+    let of_effect = |effect: usize| -> Vec<Interval> {
         let first = best.model.first_parameter(effect);
         let own = first..first + best.model.effects[effect].free_parameters.len();
         let pair: Vec<usize> = breaks.iter().copied().filter(|p| own.contains(p)).collect();
@@ -49,10 +49,11 @@ pub(crate) fn intervals(forward: &Forward, best: &Fit, weights: &Weights) -> Vec
             _ => own.map(|p| interval(forward, best, weights, effect, p, deviations[p])).collect(),
         }
     };
-    (0..best.model.effects.len())
-        .into_par_iter()
-        .flat_map_iter(|e| -> Vec<Interval> { of_effect(e) })
-        .collect()
+    let closed = |effect: usize| -> Vec<Interval> {
+        let own = best.model.effects[effect].free_parameters.iter().zip(of_effect(effect));
+        own.map(|(parameter, ends)| parameter.closed(ends)).collect()
+    };
+    (0..best.model.effects.len()).into_par_iter().flat_map_iter(closed).collect()
 }
 
 /// The interval of parameter `p`, which belongs to an effect and has the standard deviation `sd`.

@@ -3,9 +3,9 @@
 use crate::arm::LinkModel;
 use crate::arm::base_lift::BaseLift;
 use crate::arm::effect::channel::{Channel, Reading};
-use crate::arm::effect::setup::Setup;
+use crate::arm::effect::setup::{Setup, Turned};
 use crate::arm::effect::subject::Subject;
-use crate::arm::effect::warming::Warming;
+use crate::arm::effect::warming::{Softening, Warming};
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::arm::joint_torque::JointTorque;
 use crate::arm::load::Water;
@@ -69,6 +69,10 @@ pub struct TestNumbers {
     pub cg_m: Vector3<f64>,
     /// Further compliance of each joint \[rad/(N m)\], base to tip; empty if no joint yields further.
     pub servo_rad_per_nm: Vec<f64>,
+    /// How each joint softens in the course of the tests, base to tip; empty if none does.
+    pub softening: Vec<Option<Softening>>,
+    /// The base turned in the course of the tests.
+    pub turned: Option<Turned>,
 }
 
 impl TestNumbers {
@@ -77,7 +81,16 @@ impl TestNumbers {
             true => Vec::new(),
             false => layout.joints.iter().map(|j| setup.servo_of(&j.name)).collect(),
         };
-        Self { mass_kg: setup.mass_kg, cg_m: setup.cg_m, servo_rad_per_nm }
+        let softening = match setup.is_steady() {
+            true => Vec::new(),
+            false => layout.joints.iter().map(|j| setup.softening_of(&j.name)).collect(),
+        };
+        Self { mass_kg: setup.mass_kg, cg_m: setup.cg_m, servo_rad_per_nm, softening, turned: setup.turned }
+    }
+
+    /// How a joint softens; `None` if it does not.
+    pub(crate) fn softening_of(&self, joint: usize) -> Option<Softening> {
+        self.softening.get(joint).copied().flatten()
     }
 
     /// Weight of the mass as a wrench about the world's origin; zero if there is none.
@@ -260,7 +273,9 @@ impl Coefficients {
     pub fn new(layout: &Layout, nominal: &Subject, subject: &Subject) -> Self {
         let structure = &subject.structure;
         let mut linear = vec![0.0; layout.n];
-        linear[..2].fill(structure.base_tilt_rad_per_nm);
+        // a frame of the nominal base has coordinates of its own; what a subject's yields beyond it is a tilt
+        let further = structure.base_frame.0 - nominal.structure.base_frame.0;
+        (0..2).for_each(|i| linear[i] = structure.base_tilt_rad_per_nm + further[(i, i)]);
         layout.frames.iter().for_each(|(at, compliance)| linear[*at] = *compliance);
         let mut masses = Vec::with_capacity(layout.with_mass.len());
         let mut laws = Vec::with_capacity(layout.joints.len());
@@ -310,9 +325,13 @@ impl Coefficients {
         }
     }
 
-    /// The law of a joint at an angle, in a test of a channel.
-    pub(crate) fn law_at(&self, joint: usize, channel: Channel, angle_rad: f64) -> JointLaw {
-        self.law(joint, channel).at_angle(angle_rad)
+    /// The law of a joint at an angle, in a row of a channel's file.
+    pub(crate) fn law_at(&self, joint: usize, channel: Channel, angle_rad: f64, row: usize) -> JointLaw {
+        let law = self.law(joint, channel).at_angle(angle_rad);
+        match self.tests[channel as usize].softening_of(joint) {
+            Some(softening) => law.softer(softening.factor(row)),
+            None => law,
+        }
     }
 
     /// The law of a joint in a test of a channel, at its mean over all angles.
@@ -326,7 +345,9 @@ impl Coefficients {
 
     /// What differs between two subjects for static readings.
     pub(crate) fn static_changes(&self, other: &Self) -> StaticChanges {
-        let in_test = |c: &Self, joint: usize| c.law(joint, Channel::Static);
+        let in_test = |c: &Self, joint: usize| {
+            (c.law(joint, Channel::Static), c.tests[Channel::Static as usize].softening_of(joint))
+        };
         let laws: Vec<bool> = (0..self.laws.len()).map(|j| in_test(self, j) != in_test(other, j)).collect();
         let linear = self.linear != other.linear || self.warming != other.warming;
         let payload = self.payload_delta_kg != other.payload_delta_kg
@@ -340,7 +361,8 @@ impl Coefficients {
         let is_heavier = (own.mass_kg, own.cg_m) != (others.mass_kg, others.cg_m)
             || self.weights != other.weights
             || self.torques != other.torques;
-        let is_linear = self.lift.is_none() && self.laws.iter().all(is_proportional);
+        let is_steady = [own, others].iter().all(|test| test.softening.is_empty());
+        let is_linear = self.lift.is_none() && is_steady && self.laws.iter().all(is_proportional);
         let weights = is_heavier && (is_other || !is_linear);
         StaticChanges { linear, weights, payload, lift, laws }
     }

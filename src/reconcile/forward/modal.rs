@@ -255,7 +255,7 @@ impl ModalTest {
         }
         for (j, slot) in layout.joints.iter().enumerate() {
             let torque = dead[j] + self.geometry.joints[j].twist.dot(&wrench);
-            let law = coefficients.law_at(j, Channel::Modal, self.geometry.angles_rad[j]);
+            let law = coefficients.law_at(j, Channel::Modal, self.geometry.angles_rad[j], self.when.row);
             out[slot.twist] = tangent(&law, torque, coefficients.smoothing);
         }
         out

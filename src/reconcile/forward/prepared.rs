@@ -189,13 +189,26 @@ impl Forward {
         for pose in &self.statics {
             let state = pose.state(&self.layout, coefficients);
             for load in 0..pose.count() {
-                let true_mm = pose.displacement_mm(&state, load);
+                let mut true_mm = pose.displacement_mm(&state, load);
                 // every component of a row is read at the same time
                 let row = pose.measured(load).next().map_or(0, |(_, datum)| self.data[datum].row);
+                if let Some(turned) = coefficients.tests[Channel::Static as usize].turned {
+                    true_mm += 1e3 * turned.moved_m(&pose.geometry.tip_m, row);
+                }
                 out.push(std::array::from_fn(|c| reading.of(true_mm[c], c, row)));
             }
         }
         out
+    }
+
+    /// Adds to the displacements \[mm\] what a base that turned in the course of the tests moves the tip by.
+    fn turn(&self, coefficients: &Coefficients, out: &mut [f64]) {
+        let Some(turned) = coefficients.tests[Channel::Static as usize].turned else { return };
+        for pose in &self.statics {
+            for (component, datum) in (0..pose.count()).flat_map(|load| pose.measured(load)) {
+                out[datum] += 1e3 * turned.moved_m(&pose.geometry.tip_m, self.data[datum].row)[component];
+            }
+        }
     }
 
     /// Predicts statics and bench only. The modal entries stay as they are. Returns the state of each static pose.
@@ -241,6 +254,7 @@ impl Forward {
 
     /// Turns true values into readings.
     pub fn read(&self, coefficients: &Coefficients, out: &mut [f64]) {
+        self.turn(coefficients, out);
         for (value, datum) in out.iter_mut().zip(&self.data) {
             *value = coefficients.channels[datum.channel as usize].of(*value, datum.component, datum.row);
         }

@@ -274,10 +274,36 @@ impl PoseGeometry {
 /// Twists of a joint under loads that follow each other, each from the twist of the unloaded arm, which comes to rest
 /// before each pose and whose reading is the reference. The loads' torques come on top of that of the dead weight.
 fn follow(law: &JointLaw, dead_nm: f64, loaded_nm: &[f64], twists_rad: &mut [f64]) {
-    let mut play_nm = law.play_at_rest_nm(dead_nm);
-    let reference_rad = law.play_angle_rad(dead_nm, &mut play_nm);
+    follow_from(law, law, dead_nm, loaded_nm, twists_rad);
+}
+
+/// The same where the unloaded arm had another law when the reference was read.
+fn follow_from(
+    reference: &JointLaw,
+    law: &JointLaw,
+    dead_nm: f64,
+    loaded_nm: &[f64],
+    twists_rad: &mut [f64],
+) {
+    let mut play_nm = reference.play_at_rest_nm(dead_nm);
+    let reference_rad = reference.play_angle_rad(dead_nm, &mut play_nm);
     for (twist_rad, loaded_nm) in twists_rad.iter_mut().zip(loaded_nm) {
         *twist_rad = law.play_angle_rad(dead_nm + loaded_nm, &mut play_nm) - reference_rad;
+    }
+}
+
+/// The same of a joint whose law is another under each load: each reading follows its own laws, of its reference and of
+/// itself, from rest on.
+fn follow_changing(
+    laws: impl Iterator<Item = (JointLaw, JointLaw)>,
+    dead_nm: f64,
+    loaded_nm: &[f64],
+    twists_rad: &mut [f64],
+) {
+    let mut own_rad = vec![0.0; loaded_nm.len()];
+    for (load, (reference, law)) in laws.enumerate() {
+        follow_from(&reference, &law, dead_nm, &loaded_nm[..=load], &mut own_rad[..=load]);
+        twists_rad[load] = own_rad[load];
     }
 }
 
@@ -364,8 +390,19 @@ impl StaticPose {
             }
             if is_loaded_otherwise || changes.payload || changes.laws[j] {
                 let own = j * count..(j + 1) * count;
-                let law = coefficients.law_at(j, Channel::Static, geometry.angles_rad[j]);
-                follow(&law, state.dead_nm[j], &state.loaded_nm[own.clone()], &mut state.twists_rad[own]);
+                let law = |row| coefficients.law_at(j, Channel::Static, geometry.angles_rad[j], row);
+                let (dead_nm, loaded_nm) = (state.dead_nm[j], &state.loaded_nm[own.clone()]);
+                let twists_rad = &mut state.twists_rad[own];
+                match coefficients.tests[Channel::Static as usize].softening_of(j) {
+                    None => follow(&law(0), dead_nm, loaded_nm, twists_rad),
+                    Some(softening) => {
+                        let unchanged = coefficients.law(j, Channel::Static).at_angle(geometry.angles_rad[j]);
+                        let rows = self.loads.iter().map(|load| load.when.row);
+                        let laws =
+                            rows.map(|row| (unchanged.softer(softening.reference_factor(row)), law(row)));
+                        follow_changing(laws, dead_nm, loaded_nm, twists_rad);
+                    }
+                }
             }
         }
     }

@@ -39,13 +39,15 @@ impl<'a> Exact<'a> {
     /// Displacement readings \[mm\], with the rows in the order of their file.
     pub fn statics_mm(&self, rows: &[StaticRow]) -> Vec<[f64; 3]> {
         let reading = &self.subject.channels[Channel::Static as usize];
+        let turned = self.subject.setups[Channel::Static as usize].turned;
         let mut out = Vec::with_capacity(rows.len());
         let mut pose: &[f64] = &[];
         let (mut play, mut lag) = (Vec::new(), Vector3::zeros());
         for row in rows {
             let chain = self.chain_at(Channel::Static, &row.moment());
-            // the reference is as warm as the reading
-            let unloaded = self.posed(&chain, &row.pose_deg, &Payload::default(), Vector3::zeros());
+            // the links of the reference are as warm as those of the reading
+            let reference = self.reference_at(&row.moment());
+            let unloaded = self.posed(&reference, &row.pose_deg, &Payload::default(), Vector3::zeros());
             let unloaded_m = unloaded.statics().tip_displacement_m;
             if row.pose_deg != pose || out.is_empty() {
                 pose = &row.pose_deg;
@@ -53,7 +55,8 @@ impl<'a> Exact<'a> {
                 lag = tip_m(&unloaded, &mut play) - unloaded_m;
             }
             let loaded = self.posed(&chain, pose, &row.payload, row.force_n);
-            let d = tip_m(&loaded, &mut play) - (unloaded_m + lag);
+            let slipped_m = turned.map_or(Vector3::zeros(), |t| t.moved_m(&unloaded.tip_m, row.row));
+            let d = tip_m(&loaded, &mut play) - (unloaded_m + lag) + slipped_m;
             out.push(std::array::from_fn(|c| reading.of(1e3 * d[c], c, row.row)));
         }
         out
@@ -103,7 +106,7 @@ impl<'a> Exact<'a> {
         let mut out = Vec::with_capacity(rows.len());
         for (row, stand) in rows.iter().zip(placement.stands(rows)) {
             let tool_m = stand.point_m(&row.point);
-            if !self.subject.warming.is_none() {
+            if !self.subject.is_steady(Channel::Positions) {
                 chains.clear(); // no chain serves another row
             }
             if !chains.iter().any(|(at_m, _)| *at_m == tool_m) {
@@ -134,10 +137,18 @@ impl<'a> Exact<'a> {
 
     /// The arm as it is in a test of a channel at a moment.
     fn chain_at(&self, channel: Channel, when: &Moment) -> Cow<'_, Chain> {
-        if self.subject.warming.is_none() {
+        if self.subject.is_steady(channel) {
             return Cow::Borrowed(self.special[channel as usize].as_ref().unwrap_or(&self.chain));
         }
         Cow::Owned(Chain::new(&self.subject.structure_at(channel, when), LinkModel::Full))
+    }
+
+    /// The arm as it was when the reference of a displacement was read.
+    fn reference_at(&self, when: &Moment) -> Cow<'_, Chain> {
+        match self.subject.setups[Channel::Static as usize].is_steady() {
+            true => self.chain_at(Channel::Static, when),
+            false => Cow::Owned(Chain::new(&self.subject.reference_at(when), LinkModel::Full)),
+        }
     }
 
     fn posed<'c>(

@@ -114,6 +114,28 @@ impl FreeParameter {
         Estimate { value, low: low.map(|u| self.value(u)), high: high.map(|u| self.value(u)) }
     }
 
+    /// The interval with its open ends at the limits of what the number can be, where it says how an effect acts: a torque is
+    /// positive, and a gear's slopes are within the range in which they are looked for. The size of an effect has no such
+    /// limit.
+    pub(crate) fn closed(&self, interval: Interval) -> Interval {
+        match self.scale {
+            Scale::Stiffness if self.absent.is_none() => {
+                Interval { low: interval.low.or(Some(self.low)), high: interval.high.or(Some(self.high)) }
+            }
+            Scale::Log => Interval { low: interval.low.or(Some(f64::NEG_INFINITY)), ..interval },
+            _ => interval,
+        }
+    }
+
+    /// Whether an end of an interval is such a limit.
+    pub(crate) fn is_limit(&self, u: f64) -> bool {
+        match self.scale {
+            Scale::Stiffness if self.absent.is_none() => u <= self.low || u >= self.high,
+            Scale::Log => u == f64::NEG_INFINITY,
+            _ => false,
+        }
+    }
+
     /// Whether the value falls when `u` rises.
     pub fn reversed(&self) -> bool {
         matches!(self.scale, Scale::Stiffness | Scale::Reciprocal)
@@ -206,8 +228,13 @@ impl Candidate {
 
     /// Every number with the name of its parameter, in the order of the kind.
     pub(crate) fn named_numbers(&self) -> Vec<(&'static str, Number)> {
-        // channels may have parameters of their own
-        let is_own = |place: &&Place| matches!(place, Place::Channel(channel) if channel.word() == self.at);
+        // a base and channels may have parameters of their own
+        let count = |place: Place| (self.kind.parameters)(place).iter().map(|p| p.count).sum::<usize>();
+        let is_own = |place: &&Place| match place {
+            Place::Channel(channel) => channel.word() == self.at,
+            Place::Base => self.at == "base" && count(Place::Base) == self.numbers.len(),
+            _ => false,
+        };
         let place = self.kind.places.iter().find(is_own).or(self.kind.places.first());
         let Some(place) = place else { return Vec::new() };
         let names = (self.kind.parameters)(*place).iter().flat_map(|p| std::iter::repeat_n(p.name, p.count));

@@ -1,7 +1,7 @@
 //! Asks whether positions that no calibration comes near were written down by another convention: in another unit, in a
 //! frame whose axes are swapped or left-handed, or with joint angles of another sign or zero.
 //!
-//! The search is greedy. From the file as it is, every single change, or every pair, is tried by a quick fit of the
+//! The search is greedy. From the file as it is, in the unit in which its positions spread as the arm's do, every single change, or every pair, is tried by a quick fit of the
 //! placement alone; the best is kept while it helps. What it finds is then calibrated in full like the file itself, and said if the errors
 //! that are left are several times smaller. Nothing is applied: which convention holds is for the user to say.
 
@@ -210,15 +210,27 @@ impl Asked<'_> {
         tried.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
+    /// The unit in which the positions spread about as much as those of the nominal arm; `None` for millimetres. Whatever
+    /// else is written otherwise, this can be told, and no other change can be judged before.
+    fn unit_by_size(&self) -> Option<Change> {
+        let nominal = Fitted::rigid(self.nominal.clone(), ROUGH_M);
+        // a coordinate that was not measured is zero in both
+        let measured = |at_m: Vector3<f64>, sample: &Sample| {
+            at_m.zip_map(&sample.precision, |x, p| if p > 0.0 { x } else { 0.0 })
+        };
+        let expected_m =
+            spread_m(self.samples.iter().map(|sample| measured(nominal.predicted_m(sample), sample)));
+        let ratio = expected_m / self.spread_m(&[]);
+        let off = |unit_mm: f64| libm::log(ratio / unit_mm).abs();
+        let nearest = (0..UNITS.len()).min_by(|a, b| off(UNITS[*a].1).total_cmp(&off(UNITS[*b].1)))?;
+        (off(UNITS[nearest].1) < off(1.0)).then_some(Change::Unit(nearest))
+    }
+
     /// Root mean square distance of the positions from their centre \[m\].
     fn spread_m(&self, changes: &[Change]) -> f64 {
-        let at_m = |sample: &Sample| {
+        spread_m(self.samples.iter().map(|sample| {
             changes.iter().fold(sample.clone(), |sample, change| change.applied(sample)).measured_m
-        };
-        let all: Vec<Vector3<f64>> = self.samples.iter().map(at_m).collect();
-        let count = all.len().max(1) as f64;
-        let centre = all.iter().sum::<Vector3<f64>>() / count;
-        (all.iter().map(|at| (at - centre).norm_squared()).sum::<f64>() / count).sqrt()
+        }))
     }
 
     /// Without the changes that a later one made needless.
@@ -253,6 +265,14 @@ impl Asked<'_> {
     }
 }
 
+/// Root mean square distance of points from their centre \[m\].
+fn spread_m(points_m: impl Iterator<Item = Vector3<f64>>) -> f64 {
+    let all: Vec<Vector3<f64>> = points_m.collect();
+    let count = all.len().max(1) as f64;
+    let centre = all.iter().sum::<Vector3<f64>>() / count;
+    (all.iter().map(|at| (at - centre).norm_squared()).sum::<f64>() / count).sqrt()
+}
+
 impl Positions {
     /// A sentence on the convention by which the positions would fit far better, if calibration does not come near them
     /// and there is one.
@@ -271,9 +291,10 @@ impl Positions {
         let asked = Asked { spec, samples, nominal, groups: groups.collect() };
         let all = changes(spec, self.tree.driven.len());
         let is_far_off = self.rigid.scale_m > FAR_OFF * asked.spread_m(&[]);
-        let mut starts = vec![vec![]];
+        let by_size: Vec<Change> = asked.unit_by_size().into_iter().collect();
+        let mut starts = vec![by_size.clone()];
         if spec.base_placement && is_far_off {
-            starts.push(vec![Change::LeftHanded]);
+            starts.push([by_size, vec![Change::LeftHanded]].concat());
         }
         let found = starts.into_iter().map(|start| asked.search(&all, start)).filter(|made| !made.is_empty());
         let judged = found.map(|made| (asked.full_m(&made), made));

@@ -6,13 +6,9 @@ use super::fitted::Fitted;
 use super::points::Point;
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::select::lack_of_fit::LackOfFit;
-use crate::reconcile::verdict::next_test::{ENOUGH, spread_pose};
+use crate::reconcile::verdict::next_test::{WORTHLESS_SIGMAS, readings_needed, spread_pose};
 use crate::reconcile::verdict::outcome::{NextTest, Verdict};
 use std::collections::HashSet;
-
-/// Separation that one reading must reach \[standard deviations\]. With less, a hundred readings would not be
-/// enough.
-const WORTHLESS_SIGMAS: f64 = 0.1 * ENOUGH;
 
 /// Number of poses among which the next test is chosen.
 const PROPOSED_POSES: usize = 60;
@@ -76,7 +72,7 @@ impl Positions {
             joint: None,
             separates: names.to_vec(),
             expected_sigmas: sigmas,
-            readings_needed: (ENOUGH / sigmas).powi(2).ceil().min(9999.0) as usize,
+            readings_needed: readings_needed(sigmas),
         })
     }
 

@@ -72,6 +72,24 @@ pub(crate) fn may_be_absent(fit: &Fit, ends: &[Interval]) -> Vec<usize> {
     out
 }
 
+/// Says which numbers of the effects have an end of their interval that the readings do not bound, if some do.
+pub(crate) fn unbounded(fit: &Fit, ends: &[Interval]) -> Option<String> {
+    let of_effect = |effect: &&Candidate| vec![effect.label(); effect.free_parameters.len()];
+    let labels = fit.model.effects.iter().flat_map(|effect| of_effect(effect));
+    let numbers = fit.model.free_parameters().zip(ends).zip(labels);
+    let is_limit = |parameter: &FreeParameter, end: Option<f64>| end.is_some_and(|u| parameter.is_limit(u));
+    let unbounded = numbers
+        .filter(|((parameter, ends), _)| is_limit(parameter, ends.low) || is_limit(parameter, ends.high))
+        .map(|((parameter, _), label)| format!("{} of {label}", parameter.name));
+    let unbounded: Vec<String> = unbounded.collect();
+    (!unbounded.is_empty()).then(|| {
+        format!(
+            "the readings do not bound one side of {}: the end is that of what a part can be",
+            unbounded.join(", ")
+        )
+    })
+}
+
 /// Says which calibrated factors leave the tolerance, if any do.
 pub(crate) fn beyond_tolerance(fit: &Fit, calibrated: &[Calibrated]) -> Option<String> {
     let numbers = fit.model.nuisance.numbers.iter().zip(calibrated);

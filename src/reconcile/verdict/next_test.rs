@@ -35,8 +35,11 @@ const MODAL_POSES: usize = 4;
 const PROPOSALS: usize = 4;
 /// Separation that settles a question \[standard deviations\].
 pub(crate) const ENOUGH: f64 = 4.0;
-/// A test that separates by less than this is not worth any number of readings \[standard deviations\].
-pub(crate) const WORTHLESS_SIGMAS: f64 = 0.1;
+/// Separation that one reading must reach \[standard deviations\]. With less, a hundred readings would not be
+/// enough.
+pub(crate) const WORTHLESS_SIGMAS: f64 = 0.1 * ENOUGH;
+/// Largest number of readings that is printed.
+const MOST_READINGS: f64 = 9999.0;
 /// Standard deviations that are assumed where a channel was not measured.
 const DEFAULT_SIGMA_MM: f64 = 0.01;
 const DEFAULT_SIGMA_PART: f64 = 0.003;
@@ -102,6 +105,11 @@ pub(crate) fn propose(question: &Question) -> Vec<NextTest> {
     });
     out.truncate(PROPOSALS);
     out
+}
+
+/// How many readings settle a question, if the models differ by so many standard deviations in one.
+pub(crate) fn readings_needed(sigmas: f64) -> usize {
+    (ENOUGH / sigmas).powi(2).ceil().min(MOST_READINGS) as usize
 }
 
 /// Says that no reading of the arm tells the models apart.
@@ -339,10 +347,17 @@ fn describe(question: &Question, test: &Test, sigmas: f64, open: &[usize]) -> Ne
             .filter(|name| !name.is_empty())
             .collect(),
         expected_sigmas: sigmas,
-        readings_needed: if sigmas > 1e-3 {
-            (ENOUGH / sigmas).powi(2).ceil().min(9999.0) as usize
-        } else {
-            9999
-        },
+        readings_needed: readings_needed(sigmas),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_test_is_worth_a_hundred_readings_at_most() {
+        assert_eq!([ENOUGH, 0.5 * ENOUGH, WORTHLESS_SIGMAS].map(readings_needed), [1, 4, 100]);
+        assert_eq!(readings_needed(0.0), MOST_READINGS as usize, "models that do not differ");
     }
 }
