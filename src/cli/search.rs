@@ -163,9 +163,11 @@ pub(super) struct With<'a> {
 /// # Errors
 /// The search that is asked for does not suit the study, finds nothing, is interrupted, or its front cannot be written.
 pub(super) fn search(asked: &Asked, with: &With) -> Result<Written, Failure> {
-    if asked.study.space.has_linkages() && with.supplements.scatters() {
+    let space = &asked.study.space;
+    if (space.has_linkages() || space.has_motors_elsewhere()) && with.supplements.scatters() {
         return Err(Failure::Usage(format!(
-            "--tolerance samples a front without coupled joints, and the study \"{}\" has some; leave it away",
+            "--tolerance samples a front without joints that turn with others and without motors elsewhere, and the study \
+             \"{}\" has some; leave it away",
             asked.study.name
         )));
     }

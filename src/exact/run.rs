@@ -21,6 +21,8 @@ use crate::pareto::objectives::{Objective, Objectives};
 use crate::search::resume::Resume;
 use crate::search::sweep::Shard;
 use crate::space::design_space::{DesignSpace, LinkOption};
+use crate::space::joints::TabulatedJoints;
+use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
@@ -84,6 +86,8 @@ pub struct Exact<'p> {
     most_with_ties: usize,
     pub(super) live: Live,
     journal: Journal<'p>,
+    /// The joints with their drives, once they are tabulated.
+    joints: OnceLock<TabulatedJoints<'p>>,
 }
 
 /// How the passes of a search ended: the gap that was proved, and the bounds of what is open.
@@ -112,7 +116,17 @@ impl<'p> Exact<'p> {
             most_with_ties: MOST_WITH_TIES,
             live: Live::default(),
             journal: Journal::default(),
+            joints: OnceLock::new(),
         }
+    }
+
+    /// Takes joints that are tabulated already. They are those of a space with the same joints and cases.
+    pub(crate) fn with_joints(self, joints: TabulatedJoints<'p>) -> Self {
+        Self { joints: OnceLock::from(joints), ..self }
+    }
+
+    fn joints(&self) -> &TabulatedJoints<'p> {
+        self.joints.get_or_init(|| TabulatedJoints::new(self.space, self.catalogs))
     }
 
     /// Searches the space region by region if it has more designs than this. The default is 1e14. It changes the time
@@ -191,7 +205,7 @@ impl<'p> Exact<'p> {
 
     /// The compiled space with the link options for which `takes` is true. `None` if a level has no option.
     pub(super) fn problem(&self, takes: &dyn Fn(&LinkOption) -> bool, ties: Ties) -> Option<Problem<'p>> {
-        Problem::new(self.space, self.catalogs, takes, ties)
+        Problem::with_joints(self.space, self.joints(), takes, ties)
     }
 
     /// Searches a part of the study from a state, or takes what an earlier process found in it. The flag tells whether no
@@ -247,7 +261,7 @@ impl<'p> Exact<'p> {
         front.dedup_by_key(|c| c.number);
         ExactOutcome {
             // Also of a space of which nothing was compiled because no option of a level can hold.
-            designs_total: self.space.designs(self.catalogs).unwrap_or(u128::MAX),
+            designs_total: self.space.designs_with(self.joints()).unwrap_or(u128::MAX),
             designs_evaluated,
             boxes,
             boxes_open,

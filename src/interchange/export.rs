@@ -269,9 +269,11 @@ fn motors(arm: &Arm, catalogs: &Catalogs, notes: &mut Vec<String>) -> BTreeMap<S
             out.insert(joint.name.clone(), Motor { armature_kgm2: STAND_IN_KGM2, peak_nm: None });
             continue;
         };
-        let input_kgm2 = rotor_kgm2 + gear.inertia_input_kgm2.unwrap_or_default();
-        let armature_kgm2 = gear.ratio * gear.ratio * input_kgm2;
-        let peak_nm = motor.peak_torque_nm.map(|nm| nm * gear.ratio);
+        let ratio = joint.stages.whole_ratio(gear.ratio);
+        let gear_kgm2 = gear.inertia_input_kgm2.unwrap_or_default();
+        let input_kgm2 = joint.stages.input_inertia_kgm2(rotor_kgm2, gear_kgm2, gear.ratio);
+        let armature_kgm2 = ratio * ratio * input_kgm2;
+        let peak_nm = motor.peak_torque_nm.map(|nm| nm * ratio);
         out.insert(joint.name.clone(), Motor { armature_kgm2, peak_nm });
     }
     for joint in arm.prismatics() {
