@@ -149,6 +149,8 @@ impl<'c> Problem<'c> {
                 Layer::Mass(_) | Layer::Travelling(_) | Layer::Springs(_) => Part::Offset { mass_kg: 0.0 },
                 Layer::Extra(mass_kg) => Part::Offset { mass_kg },
                 Layer::Bodies(carried) => Part::Offset { mass_kg: carried.mass_kg() },
+                // A motor elsewhere is beyond this search.
+                Layer::Motor(_) => return None,
                 // The tilts of a gear's bearing are coordinates of its joint.
                 Layer::Bearing(_) => continue,
             };
@@ -186,7 +188,7 @@ impl<'c> Problem<'c> {
             Slot::Given { law, mass_kg } => Some(Part::Given { mass_kg, curve: CurveBox::of(&law) }),
             Slot::Sized(sized) if sized.all_fits => self.drives(sized, tilts, ties),
             Slot::Sized(sized) => self.first_fit(sized, tilts),
-            Slot::Link { .. } | Slot::Offset { .. } | Slot::Bearing { .. } => None,
+            Slot::Link { .. } | Slot::Offset { .. } | Slot::Bearing { .. } | Slot::Motor { .. } => None,
         }
     }
 

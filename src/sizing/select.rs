@@ -8,6 +8,7 @@ use super::drive::Drive;
 use super::limits::DriveLimits;
 use crate::arm::bearing::{Bearing, BearingSource};
 use crate::arm::extras::ExtrasSource;
+use crate::arm::transmission::Stage;
 use crate::catalog::gear::{Gear, GearKind, GearMass};
 use crate::catalog::motor::{Motor, MotorKind};
 use std::ops::Range;
@@ -21,6 +22,8 @@ pub struct DriveFilter {
     pub bearing: BearingSource,
     /// Where the masses beyond gear, motor and bearing come from.
     pub extras: ExtrasSource,
+    /// Stage between motor and gear.
+    pub stage: Stage,
     /// Whether a gear must have a torsion curve, because the arm's deflection is computed.
     pub needs_torsion: bool,
     /// Series of gears, such as `CSG`.
@@ -46,6 +49,7 @@ impl DriveFilter {
             gear_mass,
             bearing: BearingSource::OfGear,
             extras: ExtrasSource::NONE,
+            stage: Stage::NONE,
             needs_torsion: false,
             gear_series: None,
             ratios: None,
@@ -100,6 +104,7 @@ pub struct DriveTable<'c> {
     gear_mass: GearMass,
     bearing: BearingSource,
     extras: ExtrasSource,
+    stage: Stage,
     needs_torsion: bool,
     gears: Vec<&'c Gear>,
     motors: Vec<&'c Motor>,
@@ -171,6 +176,7 @@ impl<'c> DriveTable<'c> {
             gear_mass: filter.gear_mass,
             bearing: filter.bearing,
             extras: filter.extras,
+            stage: filter.stage,
             needs_torsion: filter.needs_torsion,
             gears: gears.iter().filter(|g| filter.allows_gear(g)).collect(),
             motors: motors.iter().filter(|m| filter.allows_motor(m)).collect(),
@@ -252,7 +258,14 @@ impl<'c> DriveTable<'c> {
 
     /// The drive of a gear and a motor in this joint.
     pub(crate) fn pair(&self, gear: &'c Gear, motor: &'c Motor) -> Drive<'c> {
-        Drive { gear, motor, gear_mass: self.gear_mass, bearing: self.bearing, extras: self.extras }
+        Drive {
+            gear,
+            motor,
+            gear_mass: self.gear_mass,
+            bearing: self.bearing,
+            extras: self.extras,
+            stage: self.stage,
+        }
     }
 
     /// Where the output bearing of the joint comes from.
@@ -477,7 +490,7 @@ mod tests {
             let mut slow = Vec::new();
             for gear in &gears {
                 for motor in &motors {
-                    let drive = Drive { gear, motor, gear_mass, bearing: BearingSource::OfGear, extras: ExtrasSource::NONE };
+                    let drive = Drive { gear, motor, gear_mass, bearing: BearingSource::OfGear, extras: ExtrasSource::NONE, stage: Stage::NONE };
                     if all_hold(&checks(&drive, &motion, &demand)) {
                         slow.push((drive.mass_kg().unwrap(), gear.id.clone(), motor.id.clone()));
                     }

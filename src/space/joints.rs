@@ -37,7 +37,7 @@ impl<'c> TabulatedJoints<'c> {
         match self.get(piece)? {
             Slot::Given { law, mass_kg } => Some(Slot::Given { law: *law, mass_kg: *mass_kg }),
             Slot::Sized(sized) => Some(Slot::Sized(Arc::clone(sized))),
-            Slot::Bearing { .. } | Slot::Link { .. } | Slot::Offset { .. } => None,
+            Slot::Bearing { .. } | Slot::Motor { .. } | Slot::Link { .. } | Slot::Offset { .. } => None,
         }
     }
 }

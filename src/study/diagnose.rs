@@ -7,6 +7,7 @@ use super::relaxed_limits::{Limited, Relaxation};
 use crate::catalog::Catalogs;
 use crate::space::constraint::Constraints;
 use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint, SpacePiece};
+use crate::space::prismatic::SpacePrismatic;
 use crate::space::joints::TabulatedJoints;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -107,6 +108,7 @@ pub fn empty_pieces(space: &DesignSpace, catalogs: &Catalogs) -> Vec<String> {
             choice.name
         )),
         SpacePiece::Joint(joint) => no_drive_offered(joint, catalogs),
+        SpacePiece::Prismatic(slide) => no_motor_offered(slide, catalogs),
         _ => None,
     };
     space.pieces.iter().filter_map(words).collect()
@@ -135,6 +137,14 @@ fn parts_offered(joint: &SpaceJoint, catalogs: &Catalogs) -> Option<[usize; 2]> 
     let gears = catalogs.gears.iter().filter(|gear| filter.allows_gear(gear));
     let motors = catalogs.motors.iter().filter(|motor| filter.allows_motor(motor));
     Some([gears.count(), motors.count()])
+}
+
+/// A rail for whose drive the study leaves no motor, in words.
+fn no_motor_offered(slide: &SpacePrismatic, catalogs: &Catalogs) -> Option<String> {
+    let drive = slide.drive.as_ref()?;
+    let offered = catalogs.motors.iter().any(|motor| drive.motors.allows_motor(motor));
+    (!offered)
+        .then(|| format!("joint {}: \"drives\" leaves no motor of the catalogs; widen it", slide.joint.name))
 }
 
 /// A joint for whose drive the study leaves no gear or no motor, in words.

@@ -10,6 +10,7 @@ use crate::bodies::add_bodies;
 use crate::dice::Dice;
 use crate::exact_support::{agree, agrees, judged, read};
 use crate::prismatic::add_prismatic;
+use crate::transmissions::add_stages;
 use armwright::catalog::Catalogs;
 use armwright::exact::{DomainReduction, Exact};
 use armwright::input::Document;
@@ -146,6 +147,9 @@ fn the_exact_front_is_the_front_of_every_design() {
         let mut text = random_study(seed);
         if seed % 8 == 5 {
             add_prismatic(&mut text, seed);
+        }
+        if seed % 8 == 6 {
+            add_stages(&mut text, seed);
         }
         let study = read(&text, &catalogs);
         let problem = ArmProblem::new(&study.space, &catalogs);
