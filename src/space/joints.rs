@@ -4,7 +4,7 @@
 //! time in which a small problem is made, so problems over one study share them.
 
 use super::design_space::{DesignSpace, SpacePiece};
-use super::slot::{Slot, joint_slot};
+use super::slot::{Slot, joint_slot, rail_slot};
 use super::station::reaches_m;
 use crate::catalog::Catalogs;
 use std::sync::Arc;
@@ -15,14 +15,15 @@ pub(crate) struct TabulatedJoints<'c>(Arc<[Option<Slot<'c>>]>);
 
 impl<'c> TabulatedJoints<'c> {
     /// Tabulates the drives of every joint.
-    pub(crate) fn new(space: &DesignSpace, catalogs: &'c Catalogs) -> Self {
+    pub(crate) fn new(space: &'c DesignSpace, catalogs: &'c Catalogs) -> Self {
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
         let mut reaches_m = reaches_m(space, sizing).into_iter();
-        let slot = |piece: &SpacePiece| match piece {
+        let slot = |piece: &'c SpacePiece| match piece {
             SpacePiece::Joint(joint) => {
                 Some(joint_slot(space, joint, reaches_m.next().unwrap_or_default(), catalogs))
             }
-            SpacePiece::Prismatic(_) | SpacePiece::Link(_) | SpacePiece::Choice(_) => None,
+            SpacePiece::Prismatic(slide) => Some(rail_slot(space, slide, catalogs)),
+            SpacePiece::Link(_) | SpacePiece::Choice(_) => None,
         };
         Self(space.pieces.iter().map(slot).collect())
     }

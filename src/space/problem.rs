@@ -15,7 +15,7 @@ use super::joints::TabulatedJoints;
 use super::levels::OutwardIn;
 pub(crate) use super::slot::SizedJoint;
 pub(crate) use super::slot::Slot;
-use super::slot::{choice_slot, link_slot, rail_slot};
+use super::slot::{choice_slot, link_slot};
 use super::state::StationState;
 use super::station::{Block, BlockSlot, Modal, Station, StationSlot, reaches_m};
 use crate::arm::joint_law::{Curve, JointLaw};
@@ -100,11 +100,10 @@ impl<'c> ArmProblem<'c> {
                 piece_slots[piece] = slots.len();
             }
             slots.push(match layer {
-                Layer::Piece(SpacePiece::Joint(_)) => {
+                Layer::Piece(SpacePiece::Joint(_) | SpacePiece::Prismatic(_)) => {
                     // every joint of the space is tabulated
                     joints.slot(piece).unwrap_or(Slot::Offset { mass_kg: 0.0 })
                 }
-                Layer::Piece(SpacePiece::Prismatic(slide)) => rail_slot(space, slide, catalogs),
                 Layer::Piece(SpacePiece::Link(link)) => link_slot(space, link),
                 Layer::Piece(SpacePiece::Choice(choice)) => choice_slot(space, choice),
                 Layer::Bearing(_) => Slot::bearing(piece_slots[piece], &slots),

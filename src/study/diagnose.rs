@@ -7,8 +7,8 @@ use super::relaxed_limits::{Limited, Relaxation};
 use crate::catalog::Catalogs;
 use crate::space::constraint::Constraints;
 use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint, SpacePiece};
-use crate::space::prismatic::SpacePrismatic;
 use crate::space::joints::TabulatedJoints;
+use crate::space::prismatic::SpacePrismatic;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
