@@ -27,3 +27,10 @@ pub(crate) fn read_axis(node: &Node) -> Option<Unit<Vector3<f64>>> {
         node.fault("has no direction", "give a vector such as [0, 1, 0]; its length does not matter")
     })
 }
+
+/// Reads the drivers of a passive joint, each with its factor.
+pub(crate) fn read_coupling(node: &Node) -> Option<Vec<(String, f64)>> {
+    let read: Vec<_> =
+        node.entries()?.iter().map(|(name, n)| n.number().map(|f| (name.to_string(), f))).collect();
+    read.into_iter().collect()
+}

@@ -6,7 +6,7 @@ use super::body::read_joint_bodies;
 use super::effect::channel::Channel;
 use super::effect::entry::Effect;
 use super::effect::servo_compliance;
-use super::element_keys::{read_axis, read_name};
+use super::element_keys::{read_axis, read_coupling, read_name};
 use super::extras::read_extras;
 use super::file_keys::{ARM, EFFECT, JOINT, LINK, MATERIAL};
 use super::joint_law::{Curve, Windup};
@@ -20,6 +20,8 @@ use super::prismatic_keys::PRISMATIC;
 use super::section::LinkMaterial;
 use super::springs::Spring;
 use super::springs_file::{BodiesOf, Named, hang, read_counterweights, read_springs};
+use super::transmission::{Seen, Transmission, gear_is_at_motor, read_turns_with};
+use super::transmissions::{Driven, place_all};
 use super::{Arm, Element, Joint};
 use crate::catalog::Catalogs;
 use crate::catalog::gear::{Gear, GearMass};
@@ -73,12 +75,25 @@ pub(crate) fn arm(node: &Node, catalogs: &Catalogs) -> Option<Arm> {
     let chain = root.required("chain").and_then(|n| read_chain(&n, &materials, catalogs));
     let effects = root.or("effects", Vec::new(), read_effects);
     let (gravity_m_s2, down) = gravity?;
-    let mut chain = chain?;
+    let (mut chain, driven) = chain?;
+    place_transmissions(&mut chain, &driven)?;
     let springs = read_balance(&root, &mut chain);
     let arm = Arm { name: name?, gravity_m_s2, down, chain, effects: effects?, springs: springs? };
     check_names(&arm, &root)?;
     check_effects(&arm, &root)?;
     Some(arm)
+}
+
+/// Puts the motors of an arm where they sit, and tells every joint with which others it turns.
+fn place_transmissions(chain: &mut [Element], driven: &[Driven]) -> Option<()> {
+    let seen: Vec<Seen> = chain.iter().map(Element::seen).collect();
+    for (joint, placed) in place_all(driven, &seen)? {
+        if let (Element::Joint(joint), Some(terms)) = (&mut chain[joint], placed.turns_with) {
+            joint.turns_with = terms;
+        }
+        placed.hung.iter().for_each(|hung| chain[hung.element].carrier().carry(hung));
+    }
+    Some(())
 }
 
 /// Reads the springs of an arm, and hangs its counterweights on the elements that carry them.
@@ -129,7 +144,12 @@ fn read_material(node: &Node) -> Option<LinkMaterial> {
     })
 }
 
-fn read_chain(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> Option<Vec<Element>> {
+/// Reads the elements of the chain, and how the joints among them are driven.
+fn read_chain<'n>(
+    node: &Node<'n>,
+    materials: &[NamedMaterial],
+    catalogs: &Catalogs,
+) -> Option<(Vec<Element>, Vec<Driven<'n>>)> {
     let items = node.array()?;
     if items.is_empty() {
         return node.fault("is empty", "an arm has at least one joint or link");
@@ -140,7 +160,27 @@ fn read_chain(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> 
         return node.fault(problem, "join links that lie in line, or model a part of the arm");
     }
     let read: Vec<_> = items.iter().map(|n| read_element(n, materials, catalogs)).collect();
-    Some(read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect())
+    let (mut chain, mut driven) = (Vec::new(), Vec::new());
+    for (read, node) in read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().zip(items) {
+        if let [Element::Joint(joint)] = read.elements.as_slice() {
+            let turns_with = joint.turns_with.clone();
+            driven.push(Driven { node, joint: chain.len(), transmission: read.transmission, turns_with });
+        }
+        chain.extend(read.elements);
+    }
+    Some((chain, driven))
+}
+
+/// An item of the chain as it is read: a link may have several pieces, a joint a transmission.
+struct Item {
+    elements: Vec<Element>,
+    transmission: Option<Transmission>,
+}
+
+impl From<Vec<Element>> for Item {
+    fn from(elements: Vec<Element>) -> Self {
+        Self { elements, transmission: None }
+    }
 }
 
 /// What is wrong with an element of no known type, and what to try.
@@ -150,22 +190,25 @@ pub(crate) const NO_TYPE: (&str, &str) = (
 );
 
 /// Reads a joint, or a link with its pieces.
-fn read_element(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> Option<Vec<Element>> {
+fn read_element(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> Option<Item> {
     let kind = node.value().get("type").and_then(|v| v.as_str());
     match kind {
-        Some("joint") => read_joint(&node.shaped(&JOINT)?, catalogs).map(|joint| vec![Element::Joint(joint)]),
+        Some("joint") => {
+            let (joint, transmission) = read_joint(&node.shaped(&JOINT)?, catalogs)?;
+            Some(Item { elements: vec![Element::Joint(joint)], transmission })
+        }
         Some("prismatic") => {
-            Prismatic::read(&node.shaped(&PRISMATIC)?).map(|joint| vec![Element::Prismatic(joint)])
+            Prismatic::read(&node.shaped(&PRISMATIC)?).map(|joint| vec![Element::Prismatic(joint)].into())
         }
         Some("link") => {
             let links = read_links(&node.shaped(&LINK)?, materials, catalogs)?;
-            Some(links.into_iter().map(Element::Link).collect())
+            Some(links.into_iter().map(Element::Link).collect::<Vec<_>>().into())
         }
         _ => node.fault(NO_TYPE.0, NO_TYPE.1),
     }
 }
 
-fn read_joint(object: &Object, catalogs: &Catalogs) -> Option<Joint> {
+fn read_joint(object: &Object, catalogs: &Catalogs) -> Option<(Joint, Option<Transmission>)> {
     let name = read_name(object);
     let axis = object.required("axis").and_then(|n| read_axis(&n));
     let text = |key| object.or(key, None, |n| n.string().map(|s| Some(s.to_string())));
@@ -176,10 +219,13 @@ fn read_joint(object: &Object, catalogs: &Catalogs) -> Option<Joint> {
     let extras = read_extras(object);
     let bodies = read_joint_bodies(object);
     let coupled = object.or("coupled", None, |n| read_coupling(n).map(Some));
-    Some(Joint {
+    let turns_with = read_turns_with(object);
+    let transmission = Transmission::read(object, catalogs, motor_side_kg(object, catalogs));
+    let (curve, transmission) = (curve?, transmission?);
+    let joint = Joint {
         name: name?,
         axis: axis?,
-        curve: curve?,
+        curve: transmission.as_ref().map_or(curve, |transmission| transmission.curve(curve)),
         mass_kg: mass_kg?,
         bearing: bearing?,
         extras: extras?,
@@ -187,7 +233,10 @@ fn read_joint(object: &Object, catalogs: &Catalogs) -> Option<Joint> {
         gear: gear?,
         motor: motor?,
         coupled: coupled?,
-    })
+        stages: transmission.as_ref().map_or_else(Default::default, |t| t.stages().rigid()),
+        turns_with: turns_with?,
+    };
+    Some((joint, transmission))
 }
 
 /// The joint's output bearing: what the file states, else that of the gear it names, if the catalogs know it.
@@ -196,8 +245,11 @@ pub(crate) fn read_joint_bearing(object: &Object, catalogs: &Catalogs) -> Option
         return Some(bearing);
     }
     let which = read_gear_mass(object)?;
-    // a name beside explicit numbers need not be a catalog's
-    let gear = object.optional("gear").and_then(|n| catalogs.gear(n.value().as_str()?).ok());
+    // a name beside explicit numbers need not be a catalog's, and the bearing of a gear elsewhere is not that of the joint
+    let gear = object
+        .optional("gear")
+        .filter(|_| !gear_is_at_motor(object))
+        .and_then(|n| catalogs.gear(n.value().as_str()?).ok());
     Some(gear.and_then(|gear| Bearing::of_gear(gear, which)))
 }
 
@@ -268,13 +320,36 @@ fn gear_windup(gear: &Gear, node: &Node) -> Option<Windup> {
     })
 }
 
-/// The mass of a joint: the number if it is given, else gear plus motor from the catalog, else zero.
+/// The mass of what sits at a joint: the number if it is given, else gear plus motor from the catalog, else zero. A motor
+/// elsewhere does not count, nor does a gear that sits at it.
 pub(crate) fn read_joint_mass(object: &Object, catalogs: &Catalogs) -> Option<f64> {
     let which = read_gear_mass(object)?;
     if let Some(mass) = object.optional("mass_kg") {
         return mass.non_negative();
     }
-    let gear = match object.optional("gear") {
+    let is_elsewhere = object.has("motor_at");
+    let gear = match object.optional("gear").filter(|_| !(is_elsewhere && gear_is_at_motor(object))) {
+        Some(node) => part_mass(&node, find_gear(&node, catalogs)?.mass_kg(which))?,
+        None => 0.0,
+    };
+    let motor = match object.optional("motor").filter(|_| !is_elsewhere) {
+        Some(node) => part_mass(&node, find_motor_mass(&node, catalogs)?)?,
+        None => 0.0,
+    };
+    Some(gear + motor)
+}
+
+/// The mass of what sits at a motor elsewhere: the number if it is given, else motor, and gear if it sits there, from the
+/// catalog, else zero.
+pub(crate) fn motor_side_kg(object: &Object, catalogs: &Catalogs) -> Option<f64> {
+    if !object.has("motor_at") {
+        return Some(0.0);
+    }
+    if let Some(mass) = object.optional("motor_mass_kg") {
+        return mass.non_negative();
+    }
+    let which = read_gear_mass(object)?;
+    let gear = match object.optional("gear").filter(|_| gear_is_at_motor(object)) {
         Some(node) => part_mass(&node, find_gear(&node, catalogs)?.mass_kg(which))?,
         None => 0.0,
     };
@@ -301,13 +376,6 @@ fn find_motor_mass(node: &Node, catalogs: &Catalogs) -> Option<Option<f64>> {
 
 fn part_mass(node: &Node, mass_kg: Option<f64>) -> Option<f64> {
     mass_kg.or_else(|| node.fault("has no mass in the catalog", "give the joint's \"mass_kg\""))
-}
-
-/// Reads the drivers of a passive joint, each with its factor.
-pub(crate) fn read_coupling(node: &Node) -> Option<Vec<(String, f64)>> {
-    let read: Vec<_> =
-        node.entries()?.iter().map(|(name, n)| n.number().map(|f| (name.to_string(), f))).collect();
-    read.into_iter().collect()
 }
 
 /// Reads a list of effects. Whether each effect fits its arm is checked later.

@@ -2,8 +2,9 @@
 
 use super::effect::catalogue::NAMES as EFFECTS;
 use super::keys::{
-    BEARING_VALUE, COUNTERWEIGHTS, COUPLING, EXTRAS, GEAR_MASS, GRAVITY, JOINT_BODIES, LINK_BODIES,
-    MASS_FACTOR, PIECES, POSITIVE_OR_NULL, SECTION, SPRINGS, STATED, STIFFNESS_FACTOR, VECTOR, WINDUP,
+    BEARING_VALUE, COUNTERWEIGHTS, COUPLING, EXTRAS, GEAR_AT, GEAR_MASS, GEAR_RATIO, GRAVITY, JOINT_BODIES,
+    LINK_BODIES, MASS_FACTOR, MOTOR_AT, MOTOR_MASS, MOTOR_POINT, PIECES, POSITIVE_OR_NULL, SECTION, SPRINGS,
+    STATED, STIFFNESS_FACTOR, TRANSMISSION, TRANSMISSION_RULES, TURNS_WITH, VECTOR, WINDUP,
 };
 use super::prismatic_keys::PRISMATIC;
 use crate::input::key::{Kind, Rule, SCHEMA_ADDRESS, Shape, optional, required};
@@ -132,10 +133,21 @@ pub(crate) static JOINT: Shape = Shape::new(
             "none",
             "A passive joint of a linkage: the factors of the driven joints that turn it.",
         ),
+        MOTOR_AT,
+        MOTOR_POINT,
+        MOTOR_MASS,
+        GEAR_AT,
+        GEAR_RATIO,
+        TRANSMISSION,
+        TURNS_WITH,
     ],
     &[
         Rule::Any(&["stiffness_nm_per_rad", "windup", "gear"]),
         Rule::Refuses("stiffness_nm_per_rad", &["windup"]),
+        TRANSMISSION_RULES[0],
+        TRANSMISSION_RULES[1],
+        TRANSMISSION_RULES[2],
+        TRANSMISSION_RULES[3],
     ],
 );
 

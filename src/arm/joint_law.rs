@@ -173,6 +173,39 @@ impl Curve {
         }
     }
 
+    /// The curve with a compliance in series \[rad/(N m)\]: every slope yields more, and the break points stay.
+    #[must_use]
+    pub fn in_series(&self, rad_per_nm: f64) -> Curve {
+        if rad_per_nm == 0.0 {
+            return *self;
+        }
+        let both = |k: f64| 1.0 / (1.0 / k + rad_per_nm);
+        let windup = |w: &Windup| Windup {
+            k1_nm_per_rad: both(w.k1_nm_per_rad),
+            k2_nm_per_rad: both(w.k2_nm_per_rad),
+            k3_nm_per_rad: both(w.k3_nm_per_rad),
+            ..*w
+        };
+        match self {
+            Curve::Rigid => Curve::Linear(1.0 / rad_per_nm),
+            Curve::Linear(stiffness) => Curve::Linear(both(*stiffness)),
+            Curve::Windup(w) => Curve::Windup(windup(w)),
+            Curve::WindupK1(w) => Curve::WindupK1(windup(w)),
+        }
+    }
+
+    /// The curve as the output of a reduction behind it feels it: torques times the ratio, twists over it.
+    #[must_use]
+    pub fn behind(&self, ratio: f64) -> Curve {
+        let stiffened = self.stiffened(ratio * ratio);
+        let moved = |w: Windup| Windup { t1_nm: w.t1_nm * ratio, t2_nm: w.t2_nm * ratio, ..w };
+        match stiffened {
+            Curve::Windup(w) => Curve::Windup(moved(w)),
+            Curve::WindupK1(w) => Curve::WindupK1(moved(w)),
+            other => other,
+        }
+    }
+
     /// The curve that a joint model uses.
     pub fn reduced(&self, model: JointModel) -> Curve {
         match model {

@@ -212,6 +212,114 @@ pub(crate) static STATED: Shape = Shape::new(
     &[],
 );
 
+/// A stage between a motor and the joint that it drives.
+pub(crate) static STAGE: Shape = Shape::new(
+    "stage",
+    "A belt, chain, shaft or gear stage between a motor and the joint that it drives.",
+    &[
+        required("ratio", Kind::Positive, "-", "Turns of the input per turn of the output; 1 for an idler."),
+        optional("efficiency", Kind::Positive, "-", "1", "Part of the power that arrives, at most 1."),
+        optional(
+            "stiffness_nm_per_rad",
+            POSITIVE_OR_NULL,
+            "N m/rad",
+            "null",
+            "Torque at the output per twist there, with the input held; null is rigid.",
+        ),
+        optional("inertia_kgm2", Kind::NonNegative, "kg m²", "0", "Moment of inertia at the input."),
+        optional("mass_kg", Kind::NonNegative, "kg", "0", "Mass, half of it at either end."),
+    ],
+    &[],
+);
+
+/// Where a motor sits that is not at its joint.
+pub(crate) const MOTOR_AT: Key = optional(
+    "motor_at",
+    Kind::Name,
+    "-",
+    "the joint",
+    "The part that carries the joint's motor: an element inboard of the joint, or base.",
+);
+
+/// Where on that part.
+pub(crate) const MOTOR_POINT: Key = optional(
+    "motor_point_m",
+    VECTOR,
+    "m",
+    "[0, 0, 0]",
+    "Where it is, from the start of the element in the frame that it carries.",
+);
+
+/// What sits there.
+pub(crate) const MOTOR_MASS: Key = optional(
+    "motor_mass_kg",
+    Kind::NonNegative,
+    "kg",
+    "from the parts, else 0",
+    "Mass of what sits at a motor elsewhere; mass_kg is then what stays at the joint.",
+);
+
+/// Where the gear sits.
+pub(crate) const GEAR_AT: Key = optional(
+    "gear_at",
+    Kind::Word(&["joint", "motor"]),
+    "-",
+    "\"joint\"",
+    "Whether the gear stands at the joint, after the stages, or at the motor, before them.",
+);
+
+/// Ratio of a gear that is given in numbers.
+pub(crate) const GEAR_RATIO: Key = optional(
+    "gear_ratio",
+    Kind::Positive,
+    "-",
+    "the gear's",
+    "Ratio of a gear at the joint that is given in numbers; 1 if the stages drive the joint itself.",
+);
+
+/// Stages in a list.
+const STAGES: Kind = Kind::List(&STAGE_OBJECT);
+
+const STAGE_OBJECT: Kind = Kind::Object(&STAGE);
+
+/// The stages.
+pub(crate) const TRANSMISSION: Key = optional(
+    "transmission",
+    STAGES,
+    "-",
+    "[]",
+    "Stages from the motor to the gear (or from motor and gear to the joint), in this order; the last ones run along the links \
+     behind the joints that lie between.",
+);
+
+/// How the joint turns with others.
+pub(crate) const TURNS_WITH: Key = optional(
+    "turns_with",
+    COUPLING,
+    "-",
+    "what the stages give",
+    "How far the joint turns per turn of joints inboard of it, while its own motor stands.",
+);
+
+/// What holds for the keys of motors elsewhere.
+pub(crate) const TRANSMISSION_RULES: [Rule; 4] = [
+    Rule::Needs("motor_point_m", &["motor_at"]),
+    Rule::Needs("motor_mass_kg", &["motor_at"]),
+    Rule::Needs("gear_ratio", &["transmission"]),
+    Rule::Refuses(
+        "coupled",
+        &[
+            "motor_at",
+            "motor_point_m",
+            "motor_mass_kg",
+            "gear_at",
+            "gear_ratio",
+            "transmission",
+            "turns_with",
+        ],
+    ),
+];
+
 /// Springs of an arm or a study.
 pub(crate) const SPRINGS: Kind =
     Kind::List(&Kind::Either(&[Kind::Object(&SPRING), Kind::Object(&TORSION_SPRING)]));

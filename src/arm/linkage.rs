@@ -1,33 +1,75 @@
-//! Linkages: which joints drive a passive joint, and how far each of them turns it.
+//! Linkages: which joints turn another joint beside its own drive, and how far.
+//!
+//! A linkage turns a passive joint with its drivers. A motor that sits inboard of other joints turns its joint with them
+//! while it stands ([`transmission`](super::transmission)). A joint may turn with another that turns with a third: the
+//! factors of all ways from one joint to another are multiplied along each way and added.
 
-use super::structure::{JointAngle, Piece, Structure};
+use super::structure::{JointAngle, JointPiece, Structure};
 
-/// One driver of a passive joint.
+/// A joint that turns another.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Linkage {
     /// Name of the joint that drives.
     pub driver: String,
-    /// Name of the passive joint.
+    /// Name of the joint that it turns.
     pub passive: String,
     /// Rotation of the passive joint per rotation of the driver.
     pub factor: f64,
 }
 
-/// The linkages of an arm: every driver of every passive joint.
+/// The linkages of an arm: every joint that turns another.
 pub(crate) fn linkages(structure: &Structure) -> Vec<Linkage> {
-    let driver = |index: usize| {
-        structure.joints().find(|j| j.angle == JointAngle::Driven(index)).map(|j| j.name.clone())
+    let direct =
+        |name: &str| structure.joints().find(|j| j.name == name).map_or(Vec::new(), |j| terms(j, structure));
+    let of = |joint: &JointPiece| {
+        let passive = joint.name.clone();
+        let all = composed(&joint.name, &direct).into_iter();
+        all.map(move |(driver, factor)| Linkage { driver, passive: passive.clone(), factor })
+            .collect::<Vec<_>>()
     };
-    let mut out = Vec::new();
-    for piece in &structure.pieces {
-        if let Piece::Joint(joint) = piece
-            && let JointAngle::Coupled(terms) = &joint.angle
-        {
-            let of = |(index, factor): &(usize, f64)| {
-                Some(Linkage { driver: driver(*index)?, passive: joint.name.clone(), factor: *factor })
-            };
-            out.extend(terms.iter().filter_map(of));
+    structure.joints().flat_map(of).collect()
+}
+
+/// The joints that a joint turns with at once, each with its factor.
+fn terms(joint: &JointPiece, structure: &Structure) -> Vec<(String, f64)> {
+    let JointAngle::Coupled(entries) = &joint.angle else { return joint.turns_with.clone() };
+    let name = |entry: usize| {
+        structure.joints().find(|j| j.angle == JointAngle::Driven(entry)).map(|j| j.name.clone())
+    };
+    entries.iter().filter_map(|(entry, factor)| Some((name(*entry)?, *factor))).collect()
+}
+
+/// All joints that a joint turns with, at once and through others, each with its factor. `direct` tells the joints that one
+/// turns with at once; no joint turns with itself on any way.
+pub(crate) fn composed(name: &str, direct: &dyn Fn(&str) -> Vec<(String, f64)>) -> Vec<(String, f64)> {
+    let mut out: Vec<(String, f64)> = Vec::new();
+    let mut add = |driver: String, factor: f64| match out.iter_mut().find(|(known, _)| *known == driver) {
+        Some((_, sum)) => *sum += factor,
+        None => out.push((driver, factor)),
+    };
+    for (driver, factor) in direct(name) {
+        for (beyond, further) in composed(&driver, direct) {
+            add(beyond, factor * further);
         }
+        add(driver, factor);
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn factors_multiply_along_a_way_and_add_over_ways() {
+        let direct = |name: &str| match name {
+            "c" => vec![("a".to_string(), 0.5), ("b".to_string(), -2.0)],
+            "b" => vec![("a".to_string(), -1.0)],
+            _ => Vec::new(),
+        };
+        let mut of_c = composed("c", &direct);
+        of_c.sort_by(|x, y| x.0.cmp(&y.0));
+        assert_eq!(of_c, [("a".to_string(), 0.5 + 2.0), ("b".to_string(), -2.0)]);
+        assert_eq!(composed("a", &direct), []);
+    }
 }

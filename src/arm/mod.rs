@@ -34,6 +34,8 @@ pub(crate) mod springs;
 pub(crate) mod springs_file;
 pub(crate) mod structure;
 pub(crate) mod torsion;
+pub(crate) mod transmission;
+pub(crate) mod transmissions;
 pub(crate) mod write;
 
 pub use bearing::{Bearing, BearingSource};
@@ -51,6 +53,7 @@ pub use prismatic::{Guide, Moves, Prismatic, PrismaticPiece};
 pub use section::{LinkMaterial, Section, SectionProperties, StatedSection};
 pub use springs::{Drawn, Spring, SpringEnd, SpringKind, SpringLaw, SpringPlace};
 pub use structure::{Beam, FrameCompliance, JointAngle, JointPiece, LinkPiece, Piece, Structure};
+pub use transmission::{Stage, Stages};
 
 use crate::input::json::Fault;
 use nalgebra::{Unit, Vector3};
@@ -148,6 +151,8 @@ impl JointModel {
 ///     gear: None,
 ///     motor: None,
 ///     coupled: None,
+///     stages: Default::default(),
+///     turns_with: Vec::new(),
 /// };
 /// let body = LinkBody::Offset { mass_kg: 5.0 };
 /// let link = Link { name: "upper_arm".into(), vector_m: Vector3::new(0.8, 0.0, 0.0), body, bodies: Vec::new() };
@@ -207,6 +212,11 @@ pub struct Joint {
     pub motor: Option<String>,
     /// The angle of a passive joint: a sum of factors times the angles of driven joints. `None` for a driven joint.
     pub coupled: Option<Vec<(String, f64)>>,
+    /// Stages between motor, gear and joint, for information: their compliance is in the curve, their masses are bodies.
+    pub stages: Stages,
+    /// How far a driven joint turns per turn of joints inboard of it while its own motor stands, since the motor sits inboard
+    /// of them. Its angle in a pose is its own, whatever they do.
+    pub turns_with: Vec<(String, f64)>,
 }
 
 /// A link: a hollow tube, or a rigid offset.
@@ -343,6 +353,34 @@ impl Arm {
                    over as the effect joint_torque"
                 .into(),
         })
+    }
+
+    /// The fault that a motor sits beyond other joints than its own; `None` if none does. The model of absolute positions
+    /// lacks how its joint turns with them. `file` is the name of the arm's file.
+    pub(crate) fn turns_with_fault(&self, file: &str) -> Option<Fault> {
+        let joint = self.joints().find(|joint| !joint.turns_with.is_empty())?;
+        Some(Fault {
+            file: file.into(),
+            line: None,
+            field: "chain".into(),
+            problem: format!(
+                "has a motor beyond other joints, that of \"{}\", in an arm whose absolute positions are measured, and the model \
+                 of positions does not know how the joint turns with them",
+                joint.name
+            ),
+            hint: "campaigns of static, modal and windup readings take such motors".into(),
+        })
+    }
+
+    /// What of the arm the model of absolute positions does not know, in words; `None` if it knows all of it.
+    pub(crate) fn beyond_positions(&self) -> Option<&'static str> {
+        if self.prismatics().next().is_some() {
+            return Some("prismatic joints");
+        }
+        if !self.springs.is_empty() {
+            return Some("springs");
+        }
+        self.joints().any(|joint| !joint.turns_with.is_empty()).then_some("joints that turn with others")
     }
 
     /// Reach \[m\]: the sum of the lengths of the links outboard of the first joint that is not vertical. What carries this

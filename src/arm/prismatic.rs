@@ -115,9 +115,23 @@ impl Prismatic {
 
     /// Reads a prismatic joint; the caller has checked the keys.
     pub(crate) fn read(object: &Object) -> Option<Self> {
+        let springs = Self::read_springs(object);
+        Self::read_with(object, springs)
+    }
+
+    /// Reads a prismatic joint whose drive is not known yet; the caller has checked the keys.
+    pub(crate) fn read_undriven(object: &Object) -> Option<Self> {
+        let (guide, moves) = (
+            object.or("guide", Guide::default(), Guide::read),
+            object.or("moves", Moves::default(), read_moves),
+        );
+        let springs = guide.zip(moves).map(|(guide, moves)| (None, guide, moves));
+        Self::read_with(object, springs)
+    }
+
+    fn read_with(object: &Object, springs: Option<(Option<f64>, Guide, Moves)>) -> Option<Self> {
         let name = read_name(object);
         let axis = object.required("axis").and_then(|n| read_axis(&n));
-        let springs = Self::read_springs(object);
         let mass_kg = object.or("mass_kg", 0.0, Node::non_negative);
         let fixed_mass_kg = object.or("fixed_mass_kg", 0.0, Node::non_negative);
         let bodies = read_prismatic_bodies(object);
@@ -146,6 +160,15 @@ impl Prismatic {
         let guide = object.or("guide", Guide::default(), Guide::read);
         let moves = object.or("moves", Moves::default(), read_moves);
         Some((stiffness?, guide?, moves?))
+    }
+
+    /// How the joint yields, as [`read_springs`](Self::read_springs) reads it.
+    pub(crate) fn springs_to_json(&self) -> Value {
+        json!({
+            "stiffness_n_per_m": self.stiffness_n_per_m,
+            "guide": self.guide.to_json(),
+            "moves": self.moves.word(),
+        })
     }
 
     /// The joint as files write it.

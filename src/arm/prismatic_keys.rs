@@ -6,7 +6,10 @@ use crate::input::key::{Key, Kind, Shape, optional, required};
 /// Bodies of a prismatic joint.
 const PRISMATIC_BODIES: Kind = Kind::List(&Kind::Object(&PRISMATIC_BODY));
 
-/// The keys of a prismatic joint in an arm file; a study has one more.
+/// The place of the stiffness among them.
+pub(crate) const STIFFNESS: usize = 3;
+
+/// The keys of a prismatic joint in an arm file; a study has more.
 pub(crate) const KEYS: [Key; 9] = [
     required("type", Kind::Word(&["prismatic"]), "-", "Says that this is a prismatic joint."),
     required("name", Kind::Name, "-", "Name, unique in the chain."),

@@ -92,6 +92,8 @@ pub struct JointPiece {
     pub bodies: JointBodies,
     /// Source of the joint's angle.
     pub angle: JointAngle,
+    /// How far it turns per turn of joints inboard of it while its own motor stands.
+    pub turns_with: Vec<(String, f64)>,
 }
 
 impl JointPiece {
@@ -262,6 +264,7 @@ fn joint_piece(joint: &Joint, driven: &[&str], model: JointModel) -> JointPiece 
         mass_kg: joint.total_mass_kg(),
         bodies: joint.bodies.clone(),
         angle,
+        turns_with: joint.turns_with.clone(),
     }
 }
 

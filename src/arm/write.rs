@@ -88,9 +88,13 @@ impl Joint {
         if let Some(bodies) = self.bodies.to_json() {
             map.insert("bodies".into(), bodies);
         }
+        let by_name = |terms: &[(String, f64)]| terms.iter().map(|(n, f)| (n.clone(), json!(f))).collect();
         if let Some(terms) = &self.coupled {
-            let terms: Map<String, Value> = terms.iter().map(|(n, f)| (n.clone(), json!(f))).collect();
-            map.insert("coupled".into(), Value::Object(terms));
+            map.insert("coupled".into(), Value::Object(by_name(terms)));
+        }
+        map.extend(self.stages.to_json().into_iter().map(|(key, value)| (key.to_string(), value)));
+        if !self.turns_with.is_empty() {
+            map.insert("turns_with".into(), Value::Object(by_name(&self.turns_with)));
         }
         Value::Object(map)
     }

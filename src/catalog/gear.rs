@@ -23,6 +23,10 @@ pub enum GearKind {
     Direct,
     /// The gear within an actuator of `actuators.csv`, whose ratings are those of the whole.
     Actuator,
+    /// Ball screw of a prismatic joint: its ratings are forces, its ratio is in rad/m.
+    Screw,
+    /// Rack and pinion of a prismatic joint, likewise.
+    Rack,
 }
 
 impl GearKind {
@@ -38,18 +42,27 @@ impl GearKind {
 
     /// The kind's word.
     pub fn word(self) -> &'static str {
-        Self::WORDS.get(self as usize).copied().unwrap_or("actuator")
+        match self {
+            GearKind::Screw => "screw",
+            GearKind::Rack => "rack",
+            _ => Self::WORDS.get(self as usize).copied().unwrap_or("actuator"),
+        }
+    }
+
+    /// Whether it drives along a travel, so that forces take the place of torques.
+    pub fn slides(self) -> bool {
+        matches!(self, GearKind::Screw | GearKind::Rack)
     }
 
     /// Whether ratings that a row leaves blank do not exist. A direct drive has no teeth; an actuator is rated as a whole, by
     /// its motor's figures.
     pub fn has_no_ratings_of_its_own(self) -> bool {
-        matches!(self, GearKind::Direct | GearKind::Actuator)
+        self.slides() || matches!(self, GearKind::Direct | GearKind::Actuator)
     }
 
     /// Whether a gear of this kind has a life that its bearings set. That of a belt is checked if its row states one.
     pub fn wears_out(self) -> bool {
-        !matches!(self, GearKind::Belt | GearKind::Direct | GearKind::Actuator)
+        !self.slides() && !matches!(self, GearKind::Belt | GearKind::Direct | GearKind::Actuator)
     }
 
     /// The life that a blank cell stands for \[h\]: of strain-wave gears the usual 7000 h, for rated torque and 2000 rpm.

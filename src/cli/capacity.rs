@@ -7,7 +7,7 @@ use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::report::number::fixed;
 use crate::report::whole_file::folder_of;
-use crate::study::arm_capacity::{arm_capacity, limits_of_parts, read_limits};
+use crate::study::arm_capacity::{arm_capacity, has_rated_bearings, limits_of_parts, read_limits};
 use crate::study::capacity::{Capacity, Limit, capacity_of};
 use crate::study::load::load_study;
 use clap::Args;
@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
                         armwright capacity ur5e/arm.json --cases poses.json\n\n\
                         The drives are those of the design at the study's own payload; the payload keeps its centre and moments. Of an arm \
                         file, which says nothing of motion, the static torques are judged: by the limits of --limits, or of import.json beside \
-                        it, or by the catalog's gears and motors that it names."
+                        it, or by the catalog's gears and motors that it names. Output bearings are judged at rest by their ratings."
 )]
 pub(crate) struct CapacityArgs {
     /// A built-in study, a study file or an arm file
@@ -90,7 +90,7 @@ fn of_arm(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Failure> {
         None if beside.is_file() => read_limits(Document::read(&beside)?)?,
         None => limits_of_parts(&arm, catalogs),
     };
-    if limits.is_empty() {
+    if limits.is_empty() && !has_rated_bearings(&arm) {
         return Err(Failure::Usage(format!(
             "nothing is known of the torques that the joints of {} may bear: give --limits FILE with {{\"joints\": [{{\"name\": \"{}\", \
              \"max_torque_nm\": 87}}]}}, or name gears and motors of the catalogs in the arm file",

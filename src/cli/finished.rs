@@ -451,7 +451,7 @@ pub(super) fn pretty(value: &Value) -> Vec<u8> {
 }
 
 /// A count as a JSON number; above 2^53 it is rounded.
-fn count(n: u128) -> Value {
+pub(super) fn count(n: u128) -> Value {
     u64::try_from(n).map_or_else(|_| json!(n as f64), |n| json!(n))
 }
 

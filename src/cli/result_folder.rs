@@ -146,6 +146,17 @@ impl Drop for ResultFolder {
     }
 }
 
+/// Removes the state of an unfinished search, and what it leaves empty.
+///
+/// # Errors
+/// The state cannot be removed.
+pub(super) fn settle(state: &Path) -> Result<(), Failure> {
+    remove(state)?;
+    // a folder that is not empty is in use
+    let _ = std::fs::remove_dir(folder_of(state));
+    Ok(())
+}
+
 /// The file of the state of an unfinished search in a folder of results.
 pub(super) fn unfinished_in(folder: &Path, name: &str) -> PathBuf {
     folder.join(STATE).join(format!("{name}{ENDING}"))

@@ -11,7 +11,8 @@ use super::manifest::{RUN, SHARD};
 use super::progress::Record;
 use super::result_folder::{ResultFolder, unfinished_in};
 use super::search::{SearchArgs, With, search};
-use super::shard::{CANDIDATES, STUDY, folder_of, run_shard, shard_of};
+use super::shard::{run_shard, shard_of};
+use super::shard_files::{CANDIDATES, STUDY, folder_of};
 use super::supplements::{FILES, SupplementArgs};
 use super::write::{is_same_file, refuse_overwriting};
 use crate::catalog::Catalogs;
@@ -60,10 +61,15 @@ pub(crate) struct RunArgs {
     /// boxes_open. There is a line every second and whenever the gap falls; null stands for what is not known
     #[arg(long, value_name = "FILE")]
     progress: Option<PathBuf>,
-    /// Visit part M of N of the designs only, and write what it found for `armwright merge`. The parts can run one after
-    /// the other or on many machines; the front is the same
+    /// Search part M of N of the designs only, and write what it found for `armwright merge`. The parts can run one after
+    /// the other or on many machines; the front is the same. Every design is visited unless --search exact or --gap is
+    /// given
     #[arg(long, value_name = "M/N", value_parser = shard_of)]
     shard: Option<Shard>,
+    /// Shards of exact searches of the same study, such as one to a wide gap on one machine: a shard of an exact search
+    /// begins with the designs that they found, and so prunes from the start what they dominate
+    #[arg(long, value_name = "SHARD|DIR", num_args = 1.., requires = "shard")]
+    incumbents: Vec<PathBuf>,
     #[command(flatten)]
     search: SearchArgs,
     #[command(flatten)]
@@ -177,7 +183,7 @@ pub(super) fn run(
     Ok(Answer { text, exit: written.exit })
 }
 
-/// Visits one part of the designs.
+/// Searches one part of the designs.
 fn run_part(
     args: &RunArgs,
     shard: Shard,
@@ -196,6 +202,8 @@ fn run_part(
     }
     let mut words = vec!["run".to_string(), args.study.clone()];
     words.extend(args.mass_max_kg.into_iter().flat_map(|kg| ["--mass-max-kg".into(), kg.to_string()]));
+    words.extend(args.search.words());
+    words.extend(args.incumbents.iter().flat_map(|dir| ["--incumbents".into(), dir.display().to_string()]));
     words.extend(overlay.into_iter().flat_map(|dir| ["--catalogs".into(), dir.display().to_string()]));
     let shards = Path::new("results").join(args.folder(&asked.study)).join("shards");
     let dir = args.out.clone().unwrap_or_else(|| folder_of(&shards, shard));
@@ -205,7 +213,7 @@ fn run_part(
     let keep = |files: &[(String, Vec<u8>)]| folder.publish(files);
     let unfinished = &unfinished_in(&dir, "search");
     let with = With { catalogs, overlay, dir: &dir, keep: &keep, unfinished, how, supplements, record, log };
-    let answer = run_shard(asked, shard, words, &with);
+    let answer = run_shard(asked, (shard, &args.incumbents), words, &with);
     folder.settle(answer.as_ref().map(|answer| answer.exit))?;
     answer
 }

@@ -21,7 +21,7 @@ use crate::study::diagnose::why_infeasible;
 use crate::study::outcome::{ExactStudy, Extent, StudyOutcome, judge_swept, resume_exact, sweep_shard};
 use crate::study::search_method::{SearchMethod, SearchWish};
 use crate::study::tolerance::part;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Once;
@@ -52,6 +52,11 @@ pub(crate) struct SearchArgs {
 }
 
 impl SearchArgs {
+    /// What asks for a method and a gap.
+    pub(super) fn asking_for(search: Option<SearchMethod>, gap: Option<f64>) -> Self {
+        Self { search, gap, ..Self::default() }
+    }
+
     /// What is asked of the search.
     fn wish(&self) -> SearchWish {
         let (has_gap, has_time_limit) = (self.gap.is_some(), self.time_limit.is_some());
@@ -78,17 +83,40 @@ impl SearchArgs {
         Ok(self.wish().check(study, catalogs)?)
     }
 
-    /// Checks that nothing but a visit to every design was asked for, and counts the designs.
+    /// Checks that a search of one shard suits the study, and counts the study's designs. Every design is visited unless the
+    /// exact search or a gap is asked for: an estimate must not decide otherwise for another shard.
     ///
     /// # Errors
-    /// Something else was asked for, or the visit would take years.
-    pub(super) fn check_exhaustive(&self, study: &Study, catalogs: &Catalogs) -> Result<u128, Failure> {
-        if self.search == Some(SearchMethod::Exact) {
+    /// It does not suit the study, would take years, or a time limit is asked for.
+    pub(super) fn check_shard(
+        &self,
+        study: &Study,
+        catalogs: &Catalogs,
+    ) -> Result<(SearchMethod, u128), Failure> {
+        if self.time_limit.is_some() {
             return Err(Failure::Usage(
-                "--shard goes with --search exhaustive: the exact search runs on one machine".into(),
+                "--shard does not go with --time-limit: a shard that is stopped goes on with the same command".into(),
             ));
         }
-        Self { search: Some(SearchMethod::Exhaustive), ..*self }.check(study, catalogs)
+        let of_gap = if self.gap.is_some() { SearchMethod::Exact } else { SearchMethod::Exhaustive };
+        let method = self.search.unwrap_or(of_gap);
+        let designs = Self { search: Some(method), ..*self }.check(study, catalogs)?;
+        Ok((method, designs))
+    }
+
+    /// The gap to which an exact search of a study goes.
+    pub(super) fn gap_of(&self, study: &Study) -> f64 {
+        self.gap.unwrap_or(study.gap)
+    }
+
+    /// The words of the command line that ask for this search again.
+    pub(super) fn words(&self) -> Vec<String> {
+        let method = self.search.iter().flat_map(|method| {
+            let word = method.to_possible_value().map(|value| value.get_name().to_string());
+            std::iter::once("--search".to_string()).chain(word)
+        });
+        let gap = self.gap.iter().flat_map(|gap| ["--gap".to_string(), gap.to_string()]);
+        method.chain(gap).collect()
     }
 
     /// Whether what an earlier process left is not to be used.
@@ -103,7 +131,7 @@ impl SearchArgs {
 }
 
 /// A percentage, which may be 0.
-fn part_or_none(text: &str) -> Result<f64, String> {
+pub(super) fn part_or_none(text: &str) -> Result<f64, String> {
     match text.trim_end_matches('%').trim_end().parse::<f64>() {
         Ok(0.0) => Ok(0.0),
         _ => part(text),
@@ -135,9 +163,11 @@ pub(super) struct With<'a> {
 /// # Errors
 /// The search that is asked for does not suit the study, finds nothing, is interrupted, or its front cannot be written.
 pub(super) fn search(asked: &Asked, with: &With) -> Result<Written, Failure> {
-    if asked.study.space.has_linkages() && with.supplements.scatters() {
+    let space = &asked.study.space;
+    if (space.has_linkages() || space.has_motors_elsewhere()) && with.supplements.scatters() {
         return Err(Failure::Usage(format!(
-            "--tolerance samples a front without coupled joints, and the study \"{}\" has some; leave it away",
+            "--tolerance samples a front without joints that turn with others and without motors elsewhere, and the study \
+             \"{}\" has some; leave it away",
             asked.study.name
         )));
     }
@@ -238,7 +268,7 @@ fn search_exactly(asked: &Asked, with: &With) -> Result<Written, Failure> {
     let Asked { study, text, corrections } = asked;
     let With { catalogs, overlay, dir, keep, how, supplements, record, log, .. } = *with;
     let stop = stopped_by_signal();
-    let gap = how.gap.unwrap_or(study.gap);
+    let gap = how.gap_of(study);
     let unfinished = with.go_on(asked, json!({"search": "exact", "gap": gap}))?;
     let started = unfinished.started();
     let extent =

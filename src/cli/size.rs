@@ -104,7 +104,7 @@ fn before(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<(usize, u
         .space()
         .pieces
         .iter()
-        .position(|p| matches!(p, SpacePiece::Joint(j) if j.name == joint))
+        .position(|p| matches!(p, SpacePiece::Joint(_) | SpacePiece::Prismatic(_)) && p.name() == joint)
         .ok_or_else(|| Failure::Usage(format!("the study has no joint \"{joint}\"")))?;
     let mut found = None;
     let walked = problem.walk(chosen, |slot, partial| {
@@ -148,19 +148,27 @@ fn all_fits(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<String,
     let table = &sized(problem, piece, joint)?.table;
     let demand = problem.demand_at(&partial, slot);
     let mut out = format!("{}\n", demand_line(joint, &demand, table));
-    let _ = writeln!(out, "{:>9}  {:>14}  drive", "mass kg", "K2 Nm/rad");
+    let slides = table.gears().iter().any(|gear| gear.kind.slides());
+    let stiffness = if slides { "N/m" } else { "K2 Nm/rad" };
+    let _ = writeln!(out, "{:>9}  {stiffness:>14}  drive", "mass kg");
     for index in table.all_fits(&demand) {
         let drive = table.drive(index);
-        let k2 = drive.gear.k2_nm_per_rad.map_or("unknown".into(), |k| format!("{k:.0}"));
+        let k2 = drive
+            .gear
+            .k2_nm_per_rad
+            .or(drive.gear.k1_nm_per_rad.filter(|_| slides))
+            .map_or("unknown".into(), |k| format!("{k:.0}"));
         let _ = writeln!(out, "{:>9.3}  {k2:>14}  {}", table.mass_kg(index), drive.name());
     }
     Ok(out)
 }
 
 fn demand_line(joint: &str, demand: &JointDemand, table: &DriveTable) -> String {
+    let slides = table.gears().iter().any(|gear| gear.kind.slides());
+    let (unit, speed_unit) = if slides { ("N", "m/s") } else { ("N m", "rad/s") };
     format!(
-        "joint {joint}: static {:.1} N m, linear {:.1} N m, peak {:.1} N m, stop {:.1} N m, mean {:.1} N m, {:.2} rad/s; \
-         {} drives are fast enough{}, {} hold{}",
+        "joint {joint}: static {:.1} {unit}, linear {:.1} {unit}, peak {:.1} {unit}, stop {:.1} {unit}, mean {:.1} {unit}, \
+         {:.2} {speed_unit}; {} drives are fast enough{}, {} hold{}",
         demand.static_torque_nm,
         demand.linear_torque_nm,
         demand.peak_torque_nm(),

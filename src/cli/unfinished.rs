@@ -7,7 +7,7 @@
 use super::failure::Failure;
 use super::log::Log;
 use super::manifest::hash;
-use crate::report::whole_file::{remove_file, write_whole};
+use crate::report::whole_file::{create_folder, folder_of, remove_file, write_whole};
 use crate::search::resume::{KeepState, Resume};
 use serde_json::{Value, json};
 use std::io::ErrorKind;
@@ -66,6 +66,14 @@ impl Unfinished {
             Ok(bytes) => out.go_on_from(&bytes)?,
         }
         Ok(out)
+    }
+
+    /// As [`open`](Self::open), but a state of another search or a damaged one is removed, and the search begins.
+    ///
+    /// # Errors
+    /// The state cannot be read or removed.
+    pub(super) fn open_or_begin(path: &Path, search: &Value, log: Log) -> Result<Self, Failure> {
+        Self::open(path, search.clone(), false, log).or_else(|_| Self::open(path, search.clone(), true, log))
     }
 
     fn go_on_from(&mut self, bytes: &[u8]) -> Result<(), Failure> {
@@ -127,7 +135,10 @@ impl KeepState for Unfinished {
         let mut head = self.search.clone();
         head["elapsed_s"] = json!(self.started().elapsed().as_secs_f64());
         head["hash"] = json!(hash(state));
-        let written = write_whole(&self.path, &[format!("{head}\n").as_bytes(), state].concat());
+        let folder = folder_of(&self.path);
+        let there = if folder.is_dir() { Ok(()) } else { create_folder(&folder) };
+        let written =
+            there.and_then(|()| write_whole(&self.path, &[format!("{head}\n").as_bytes(), state].concat()));
         let mut due = self.due();
         due.at = Instant::now() + due.every.max(begun.elapsed() * SHARE);
         if let Err(e) = written
@@ -158,9 +169,10 @@ pub(super) fn remove(path: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Time between two states. Builds with debug assertions let a test have more of them.
+/// Time between two states, unless the environment asks for another one: a slow shared disk is written less often, and a test
+/// writes more often.
 fn keep_every() -> Duration {
-    let asked = std::env::var("ARMWRIGHT_KEEP_EVERY_MS").ok().filter(|_| cfg!(debug_assertions));
+    let asked = std::env::var("ARMWRIGHT_KEEP_EVERY_MS").ok();
     asked.and_then(|ms| ms.parse().ok()).map_or(KEEP_EVERY, Duration::from_millis)
 }
 

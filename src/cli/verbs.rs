@@ -110,7 +110,7 @@ pub fn run(cli: Cli) -> Result<Answer, Failure> {
     let catalogs = Catalogs::load(overlay).map_err(Failure::catalog);
     let text = match cli.verb {
         Verb::Run(args) => return super::run::run(&args, &catalogs?, overlay, log),
-        Verb::Front(args) => return front::run(&args, &catalogs?),
+        Verb::Front(args) => return front::run(&args, &catalogs?, log),
         Verb::Check(args) => return check::run(&args, &catalogs?),
         Verb::Completions(args) => Ok(shell::completions(&args, Cli::command())),
         Verb::Man(args) => shell::man(&args, Cli::command()),

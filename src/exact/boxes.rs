@@ -25,8 +25,20 @@ pub(super) struct OpenBox {
 impl OpenBox {
     /// The box of all designs. `None` if no design meets the constraints.
     fn root(problem: &Problem) -> Option<Self> {
-        let shapes = Arc::new(problem.first_shapes(&mut Work::default())?);
-        Some(Self { design_box: problem.root(), shapes, box_bound: BoxBound::OPEN })
+        Self::first(problem, &[problem.root()]).pop()
+    }
+
+    /// Boxes of a space that are searched first. None if no design of the space meets the constraints.
+    pub(super) fn first(problem: &Problem, boxes: &[DesignBox]) -> Vec<Self> {
+        let Some(shapes) = problem.first_shapes(&mut Work::default()).map(Arc::new) else {
+            return Vec::new();
+        };
+        let open = |design_box: &DesignBox| Self {
+            design_box: design_box.clone(),
+            shapes: Arc::clone(&shapes),
+            box_bound: BoxBound::OPEN,
+        };
+        boxes.iter().map(open).collect()
     }
 
     /// The two halves of a box along a level. The half to bound first stands last, because the stack is emptied from
@@ -89,18 +101,17 @@ pub(super) fn open_boxes<F: Default>(
     Done { tasks: stack, findings }
 }
 
-/// One pass over all boxes, or over those that an earlier process left open. `keep` is shown the state and the open boxes
-/// after each round. Returns the bounds of the boxes that are still open when the search is stopped.
+/// One pass over some boxes and all into which they are divided. `keep` is shown the state and the open boxes after each
+/// round. Returns the bounds of the boxes that are still open when the search is stopped.
 pub(super) fn pass_by_boxes(
     budget: &Budget,
     problem: &Problem,
     state: &mut SearchState,
-    (slack, left): (f64, Option<Vec<OpenBox>>),
+    (slack, first): (f64, Vec<OpenBox>),
     live: Option<&Live>,
     keep: impl Fn(&SearchState, &[OpenBox]),
 ) -> Vec<BoxBound> {
     let bounds = |open: &[OpenBox]| open.iter().map(|opened| opened.box_bound).collect::<Vec<_>>();
-    let first = left.unwrap_or_else(|| OpenBox::root(problem).into_iter().collect());
     let left = go_through_boxes(
         budget,
         state,

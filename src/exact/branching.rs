@@ -201,8 +201,8 @@ impl Problem<'_> {
     /// The coordinates that separate a node of a level's tree from other nodes.
     fn key(&self, level: usize, node: u32) -> Key {
         match &self.parts[self.level_pieces[level]] {
-            Part::Drives { tree, .. } => tree.node(node).key,
-            Part::Links { tree, .. } => tree.node(node).key,
+            Part::Drives { tree, .. } => tree.node(node).key(),
+            Part::Links { tree, .. } => tree.node(node).key(),
             _ => Key::default(),
         }
     }
@@ -236,8 +236,8 @@ impl Problem<'_> {
         let part = &self.parts[self.level_pieces[level]];
         let is_low = |node: &&u32| {
             let key = match part {
-                Part::Drives { tree, .. } => tree.whole_node(**node).key,
-                Part::Links { tree, .. } => tree.whole_node(**node).key,
+                Part::Drives { tree, .. } => tree.whole_node(**node).key(),
+                Part::Links { tree, .. } => tree.whole_node(**node).key(),
                 _ => Key::default(),
             };
             key[axis] <= at

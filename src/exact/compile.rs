@@ -21,7 +21,8 @@ use crate::space::bearing_loads::Lever as LeverByOption;
 use crate::space::design_space::{DesignSpace, LinkOption, SpaceJoint, SpacePiece};
 use crate::space::effects::Layer;
 use crate::space::fit::RoomAtJoint;
-use crate::space::slot::{SizedJoint, Slot, joint_slot};
+use crate::space::joints::TabulatedJoints;
+use crate::space::slot::{SizedJoint, Slot};
 use crate::space::station::reaches_m;
 use std::sync::Arc;
 
@@ -39,8 +40,8 @@ struct Joints<'c> {
 }
 
 impl<'c> Joints<'c> {
-    /// Tabulates the drives of a space.
-    fn new(space: &'c DesignSpace, catalogs: &'c Catalogs) -> Self {
+    /// The joints of a space, whose drives are tabulated.
+    fn new(space: &'c DesignSpace, tabulated: &TabulatedJoints<'c>) -> Self {
         let numbers = piece_numbers(space);
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
         let mut reaches_m = reaches_m(space, sizing).into_iter();
@@ -49,14 +50,13 @@ impl<'c> Joints<'c> {
         let mut joints =
             Self { slots: Vec::new(), needs: Vec::new(), levers: Vec::new(), rooms, numbers: Vec::new() };
         for (place, piece) in space.pieces.iter().enumerate() {
-            let SpacePiece::Joint(joint) = piece else {
+            let (SpacePiece::Joint(joint), Some(slot)) = (piece, tabulated.slot(place)) else {
                 joints.slots.push(None);
                 joints.needs.push(JointNeeds::default());
                 joints.levers.push(None);
                 continue;
             };
             let reach_m = reaches_m.next().unwrap_or_default();
-            let slot = joint_slot(space, joint, reach_m, catalogs);
             let needs = JointNeeds::of(space, joint, reach_m, &slot);
             let lever = needs.is_checked.then(|| LeverByOption::new(space, place, joint, &numbers));
             joints.slots.push(Some(slot));
@@ -105,7 +105,17 @@ impl<'c> Problem<'c> {
         takes: &dyn Fn(&LinkOption) -> bool,
         ties: Ties,
     ) -> Option<Self> {
-        let mut joints = Joints::new(space, catalogs);
+        Self::with_joints(space, &TabulatedJoints::new(space, catalogs), takes, ties)
+    }
+
+    /// As [`new`](Self::new), of joints that are tabulated already.
+    pub(super) fn with_joints(
+        space: &'c DesignSpace,
+        tabulated: &TabulatedJoints<'c>,
+        takes: &dyn Fn(&LinkOption) -> bool,
+        ties: Ties,
+    ) -> Option<Self> {
+        let mut joints = Joints::new(space, tabulated);
         let poses = (0..space.cases.len()).map(|i| Pose::new(space, i, &joints.needs)).collect();
         let mut problem = Self {
             space,
@@ -139,6 +149,8 @@ impl<'c> Problem<'c> {
                 Layer::Mass(_) | Layer::Travelling(_) | Layer::Springs(_) => Part::Offset { mass_kg: 0.0 },
                 Layer::Extra(mass_kg) => Part::Offset { mass_kg },
                 Layer::Bodies(carried) => Part::Offset { mass_kg: carried.mass_kg() },
+                // A motor elsewhere is beyond this search.
+                Layer::Motor(_) => return None,
                 // The tilts of a gear's bearing are coordinates of its joint.
                 Layer::Bearing(_) => continue,
             };
@@ -176,7 +188,7 @@ impl<'c> Problem<'c> {
             Slot::Given { law, mass_kg } => Some(Part::Given { mass_kg, curve: CurveBox::of(&law) }),
             Slot::Sized(sized) if sized.all_fits => self.drives(sized, tilts, ties),
             Slot::Sized(sized) => self.first_fit(sized, tilts),
-            Slot::Link { .. } | Slot::Offset { .. } | Slot::Bearing { .. } => None,
+            Slot::Link { .. } | Slot::Offset { .. } | Slot::Bearing { .. } | Slot::Motor { .. } => None,
         }
     }
 
@@ -237,28 +249,23 @@ impl<'c> Problem<'c> {
     }
 
     /// A joint whose drive is a level of the search.
-    fn drives(&mut self, sized: SizedJoint<'c>, tilts: bool, ties: Ties) -> Option<Part<'c>> {
+    fn drives(&mut self, sized: Arc<SizedJoint<'c>>, tilts: bool, ties: Ties) -> Option<Part<'c>> {
         self.level(sized.table.len());
         let rays = self.rays(self.parts.len(), sized.table.motion());
         let kinds = Kinds::of(&sized, ties);
         let drives =
             |kind: &[u32]| DriveBox::of_kind(kind.iter().map(|&i| drive_box(&sized, i, &rays, tilts)));
         let tree = Tree::build(kinds.iter().filter_map(|kind| Some((kind[0], drives(kind)?))))?;
-        Some(Part::Drives {
-            sized: Arc::new(sized),
-            kinds: Arc::new(kinds),
-            tree: Arc::new(tree),
-            rays: Arc::new(rays),
-        })
+        Some(Part::Drives { sized, kinds: Arc::new(kinds), tree: Arc::new(tree), rays: Arc::new(rays) })
     }
 
     /// A joint that takes the lightest drive that can carry its load.
-    fn first_fit(&self, sized: SizedJoint<'c>, tilts: bool) -> Option<Part<'c>> {
+    fn first_fit(&self, sized: Arc<SizedJoint<'c>>, tilts: bool) -> Option<Part<'c>> {
         let rays = self.rays(self.parts.len(), sized.table.motion());
         let candidates = sized.table.first_fit_candidates();
         let steps: Vec<DriveBox> = candidates.iter().map(|&i| drive_box(&sized, i, &rays, tilts)).collect();
         let ladder = (!steps.is_empty()).then(|| Arc::new(Ladder::new(steps)))?;
-        Some(Part::FirstFit { ladder, sized: Arc::new(sized) })
+        Some(Part::FirstFit { ladder, sized })
     }
 
     /// Opens the next level and returns the numbers of its options.

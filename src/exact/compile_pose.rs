@@ -201,7 +201,7 @@ fn posed(
         Layer::Mass(mass_kg) | Layer::Travelling(mass_kg) | Layer::Extra(mass_kg) => {
             body(mass_kg, at_m, Matrix3::zeros())
         }
-        Layer::Bearing(_) => return None,
+        Layer::Bearing(_) | Layer::Motor(_) => return None,
         Layer::Springs(_) | Layer::Bodies(Carried { by: Carrier::Tube, .. }) => {
             PosedPiece::Body(Matrix6::zeros())
         }

@@ -109,6 +109,21 @@ impl GearStates {
     }
 }
 
+/// Collects the candidate states of a curve under torques in an interval \[N m\].
+#[inline]
+pub(super) fn states_of(
+    curve: &CurveBox,
+    play: Option<&JointPlay>,
+    torques_nm: [f64; 2],
+    states: &mut GearStates,
+) {
+    states.count = 0;
+    each_state(curve, play, torques_nm, &mut |state| {
+        states.all[states.count] = state;
+        states.count += 1;
+    });
+}
+
 /// Calls `see` for every candidate state of a curve under torques in an interval \[N m\].
 #[inline(always)]
 fn each_state(
@@ -194,11 +209,7 @@ impl JointPrice {
     /// Collects the candidate states of a joint with this curve in `ends`.
     #[inline]
     pub(super) fn ends(&self, curve: &CurveBox, ends: &mut GearStates) {
-        ends.count = 0;
-        each_state(curve, self.play.as_ref(), self.torques_nm, &mut |end| {
-            ends.all[ends.count] = end;
-            ends.count += 1;
-        });
+        states_of(curve, self.play.as_ref(), self.torques_nm, ends);
     }
 
     /// Price and state of a rigid joint. A box without a curve has a rigid member, and perhaps members about which
@@ -258,6 +269,44 @@ impl DualPrice {
     }
 }
 
+/// The price of a tube, prepared for many tubes: the sign of each number's price says which end of an interval costs less.
+pub(super) struct TubePrice<'a> {
+    price: &'a DualPrice,
+    inertia_ends: [usize; INERTIAS],
+    compliance_ends: [usize; STIFFNESSES],
+}
+
+impl<'a> TubePrice<'a> {
+    pub(super) fn new(price: &'a DualPrice) -> Self {
+        let end = |price: f64| usize::from(price < 0.0);
+        Self { price, inertia_ends: price.inertia.map(end), compliance_ends: price.compliance.map(end) }
+    }
+
+    /// Price of a tube, as [`DualPrice::of_tube`] but for rounding. The three sums do not wait for each other.
+    #[inline]
+    fn of(&self, tube: &LinkBox) -> f64 {
+        let DualPrice { inertia, compliance, stiffness, .. } = self.price;
+        let inertias = [&tube.low.inertias, &tube.high.inertias];
+        let [mut of_inertia, mut of_compliance, mut earned] = [0.0; 3];
+        for k in 0..INERTIAS {
+            of_inertia += inertia[k] * inertias[self.inertia_ends[k]][k];
+        }
+        for k in 0..STIFFNESSES {
+            of_compliance += compliance[k] * tube.compliances[self.compliance_ends[k]][k];
+            // An infinite stiffness times a zero price must not become NaN.
+            if stiffness[k] > 0.0 {
+                earned += stiffness[k] * tube.high.stiffnesses[k];
+            }
+        }
+        of_inertia + of_compliance - earned
+    }
+
+    /// The least price of a tube below a node, and its node.
+    pub(super) fn cheapest(&self, tree: &Tree<LinkBox>, node: u32) -> (f64, u32) {
+        cheapest(tree, node, |tube| self.of(tube))
+    }
+}
+
 /// The least price of a number in an interval.
 #[inline]
 fn least(price: f64, [low, high]: [f64; 2]) -> f64 {
@@ -266,7 +315,7 @@ fn least(price: f64, [low, high]: [f64; 2]) -> f64 {
 
 /// The least price of an option below a node, and its node. If the search ends early the node is a box of
 /// several options, and the price is a lower bound.
-pub(super) fn cheapest<B: Bounds>(tree: &Tree<B>, node: u32, price: impl Fn(&B) -> f64) -> (f64, u32) {
+fn cheapest<B: Bounds>(tree: &Tree<B>, node: u32, price: impl Fn(&B) -> f64) -> (f64, u32) {
     let offer = |node: u32| Offer { price: price(&tree.node(node).bounds), node };
     let mut open = BinaryHeap::with_capacity(2 + MOST_LOOKS / 2);
     let (mut cheapest, mut looks) = (offer(node), 0);

@@ -8,7 +8,7 @@
 use super::bound::{BoxBound, DesignBox};
 use super::boxes::OpenBox;
 use super::budget::Budget;
-use super::outcome::ExactOutcome;
+use super::outcome::FoundInShard;
 use super::plan::Pass;
 use super::problem::Problem;
 use super::search_state::{KeptState, SearchState};
@@ -30,7 +30,7 @@ pub(super) struct Journal<'s> {
 #[derive(Default, Serialize, Deserialize)]
 struct State {
     /// The results of the parts that are finished.
-    finished: Vec<ExactOutcome>,
+    finished: Vec<FoundInShard>,
     /// How many of them were used in this process.
     #[serde(skip)]
     used: usize,
@@ -77,11 +77,11 @@ impl<'s> Journal<'s> {
     }
 
     /// The result of the next part, if an earlier process finished it.
-    pub(super) fn next_finished(&self) -> Option<ExactOutcome> {
+    pub(super) fn next_finished(&self) -> Option<FoundInShard> {
         let mut state = self.lock();
-        let outcome = state.finished.get(state.used).cloned()?;
+        let found = state.finished.get(state.used).cloned()?;
         state.used += 1;
-        Some(outcome)
+        Some(found)
     }
 
     /// Where an earlier process left the next part.
@@ -90,12 +90,12 @@ impl<'s> Journal<'s> {
     }
 
     /// Takes down the result of a part.
-    pub(super) fn finish(&self, outcome: &ExactOutcome) {
+    pub(super) fn finish(&self, found: &FoundInShard) {
         if let Some(keeper) = self.keeper {
             let mut state = self.lock();
-            state.finished.push(outcome.clone());
+            state.finished.push(found.clone());
             state.used += 1;
-            state.boxes = outcome.boxes;
+            state.boxes = found.boxes;
             state.begun = None;
             if keeper.is_due() {
                 keeper.keep(&bytes(&state));

@@ -9,7 +9,7 @@
 //! cutting-plane method). If none refutes the bound, the modes of the mixed arm give new rows.
 
 use super::bound::STARTS;
-use super::dual_price::{DualPrice, JointPrice, cheapest};
+use super::dual_price::{DualPrice, JointPrice, TubePrice};
 use super::local_upper_bounds::LocalUpperBound;
 use super::matrix_game::{Game, solve};
 use super::parts::{INERTIAS, LinkBox, STIFFNESSES, inertia, stiffness_of};
@@ -128,7 +128,7 @@ impl Rows<'_> {
             total += match part {
                 Part::Drives { tree, .. } => {
                     let price = price();
-                    let cheapest = self.drives[level].as_ref().and_then(|drives| drives.cheapest(&price));
+                    let cheapest = self.priced[level].as_ref().and_then(|drives| drives.cheapest(&price));
                     // If no drive is feasible the sum is infinite, and any local upper bound is refuted.
                     let (least, at) = cheapest.unwrap_or((f64::INFINITY, design_box[level]));
                     member.design_box[level] = at;
@@ -145,7 +145,7 @@ impl Rows<'_> {
                 }
                 Part::Links { tree, length_m } => {
                     let price = price();
-                    let (least, at) = cheapest(tree, design_box[level], |links| price.of_tube(links));
+                    let (least, at) = TubePrice::new(&price).cheapest(tree, design_box[level]);
                     member.design_box[level] = at;
                     levels.push(least);
                     self.add_tube(piece, *length_m, &tree.node(at).bounds, &mut member);

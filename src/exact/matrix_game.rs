@@ -38,43 +38,47 @@ pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game 
     let spread = (most - least).max(f64::MIN_POSITIVE);
     let entry =
         |i: usize, a: f64| if balanced.contains(&i) { a / spread } else { (a - least) / spread + 1.0 };
-    // The tableau has one line for each column of the game (its slack is basic) and one for the objective.
-    // Each line has z, the slacks and the right side.
-    let line = count + width + 1;
+    // The tableau has one line for each column of the game (its slack is basic at first) and one for the objective. A
+    // line has a number for each variable that is not basic, and the right side. Basic variables have unit vectors, which
+    // are left out. Lines are filled with zeros to whole registers.
+    let line = (count + 1).next_multiple_of(LANES);
     let mut table = vec![0.0; (width + 1) * line];
-    let mut basic: Vec<usize> = (count..count + width).collect();
-    for i in 0..width {
-        for j in 0..count {
-            table[i * line + j] = entry(i, rows[j * width + i]);
+    let (mut basic, mut others): (Vec<usize>, Vec<usize>) =
+        ((count..count + width).collect(), (0..count).collect());
+    for (i, numbers) in table.chunks_exact_mut(line).enumerate().take(width) {
+        for (j, number) in numbers[..count].iter_mut().enumerate() {
+            *number = entry(i, rows[j * width + i]);
         }
-        table[i * line + count + i] = 1.0;
-        table[i * line + line - 1] =
-            if balanced.contains(&i) { BALANCED * (1.0 + i as f64 / width as f64) } else { 1.0 };
+        numbers[count] = if balanced.contains(&i) { BALANCED * (1.0 + i as f64 / width as f64) } else { 1.0 };
     }
     table[width * line..width * line + count].fill(-1.0);
     for _ in 0..MOST_PIVOTS {
-        let objective = &table[width * line..width * line + line - 1];
+        let objective = &table[width * line..width * line + count];
         let cost = in_lanes(Least(objective));
         // No variable improves the objective: the tableau is optimal.
         if cost > -NOTHING {
             break;
         }
-        let Some(enter) = objective.iter().position(|x| *x == cost) else { break };
+        // Among equals the variable of the lowest number, wherever it stands.
+        let equals = (0..count).filter(|&j| objective[j] == cost);
+        let Some(enter) = equals.min_by_key(|&j| others[j]) else { break };
         let ratio = |i: usize| {
             let a = table[i * line + enter];
-            if a > NOTHING { table[i * line + line - 1] / a } else { f64::INFINITY }
+            if a > NOTHING { table[i * line + count] / a } else { f64::INFINITY }
         };
         let ratios = (0..width).map(|i| (i, ratio(i)));
         // The program is bounded, so without a finite ratio this is rounding; the solution so far is used.
         let least = ratios.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, ratio)| ratio.is_finite());
         let Some((leave, _)) = least else { break };
-        basic[leave] = enter;
+        std::mem::swap(&mut basic[leave], &mut others[enter]);
         in_lanes(Pivot { table: &mut table, line, leave, enter });
     }
-    let mut weights: Vec<f64> = (0..width).map(|i| table[width * line + count + i].max(0.0)).collect();
-    let mut mix = vec![0.0; count];
+    let (mut weights, mut mix) = (vec![0.0; width], vec![0.0; count]);
+    for (j, &variable) in others.iter().enumerate().filter(|(_, variable)| **variable >= count) {
+        weights[variable - count] = table[width * line + j].max(0.0);
+    }
     for (i, &variable) in basic.iter().enumerate().filter(|(_, variable)| **variable < count) {
-        mix[variable] = table[i * line + line - 1].max(0.0);
+        mix[variable] = table[i * line + count].max(0.0);
     }
     for shares in [&mut weights, &mut mix] {
         let sum: f64 = shares.iter().sum();
@@ -102,7 +106,8 @@ impl LaneWork for Least<'_> {
     }
 }
 
-/// One step of the simplex method: the variable `enter` becomes basic in the place of that of line `leave`.
+/// One step of the simplex method: the variable of column `enter` becomes basic in the place of that of line `leave`, whose
+/// column takes its place.
 struct Pivot<'a> {
     table: &'a mut [f64],
     /// Numbers in a line.
@@ -118,6 +123,8 @@ impl LaneWork for Pivot<'_> {
     fn run<V: Lanes>(self) {
         let Self { table, line, leave, enter } = self;
         let by = 1.0 / table[leave * line + enter];
+        // The column of the variable that leaves was a unit vector.
+        table[leave * line + enter] = 1.0;
         for x in &mut table[leave * line..(leave + 1) * line] {
             *x *= by;
         }
@@ -127,6 +134,7 @@ impl LaneWork for Pivot<'_> {
             for other in half.chunks_exact_mut(line) {
                 let factor = other[enter];
                 if factor != 0.0 {
+                    other[enter] = 0.0;
                     subtract_multiple::<V>(other, factor, pivotal);
                 }
             }

@@ -3,6 +3,26 @@
 use crate::search::sweep::Candidate;
 use serde::{Deserialize, Serialize};
 
+/// What was found in the boxes of one shard, before designs with tied drives are listed.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct FoundInShard {
+    /// The subtrees of the space that were searched. A subtree is named by the halves that lead to it from the box of all
+    /// designs, such as `0110`; the box of all designs has the name of no letters.
+    pub subtrees: Vec<String>,
+    /// Number of designs whose three objectives were computed.
+    pub designs_evaluated: u64,
+    /// Number of boxes bounded.
+    pub boxes: u64,
+    /// Number of boxes or regions that were still open when the search was stopped.
+    pub boxes_open: u64,
+    /// The gap that was proved for the designs of the subtrees; `None` if nothing is known.
+    pub gap: Option<f64>,
+    /// The designs found that no other of them dominates.
+    pub decided: Vec<Candidate>,
+    /// Designs for which rounding leaves open whether a part carries its demand. The full model judges them.
+    pub undecided: Vec<Candidate>,
+}
+
 /// The result of the search.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ExactOutcome {

@@ -143,12 +143,16 @@ impl<'c> Problem<'c> {
 
     /// Number of designs in a box, if all drives of a kind are counted as one.
     pub(super) fn members(&self, design_box: &[u32]) -> f64 {
-        let of = |(&piece, &node): (&usize, &u32)| match &self.parts[piece] {
-            Part::Drives { tree, .. } => f64::from(tree.node(node).members),
-            Part::Links { tree, .. } => f64::from(tree.node(node).members),
-            _ => 1.0,
-        };
-        self.level_pieces.iter().zip(design_box).map(of).product()
+        (0..design_box.len()).map(|level| f64::from(self.members_at(design_box, level))).product()
+    }
+
+    /// Number of options of a box at a level, if all drives of a kind are counted as one.
+    pub(super) fn members_at(&self, design_box: &[u32], level: usize) -> u32 {
+        match &self.parts[self.level_pieces[level]] {
+            Part::Drives { tree, .. } => tree.node(design_box[level]).members,
+            Part::Links { tree, .. } => tree.node(design_box[level]).members,
+            _ => 1,
+        }
     }
 
     /// For each level, the options below some nodes of its base tree. All drives of a kind are included.

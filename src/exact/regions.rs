@@ -52,13 +52,13 @@ enum Task<'p> {
     Boxes { problem: Arc<Problem<'p>>, upper: LocalUpperBound, first: OpenBox },
 }
 
-/// One pass over the whole search region. `seen` is called after each round. Returns one bound for each task that is left
+/// One pass over the whole search region, for the designs of some boxes. `seen` is called after each round. Returns one bound for each task that is left
 /// when the search is stopped.
 pub(super) fn pass_by_regions<'p>(
     budget: &Budget<'p>,
     problem: &Problem<'p>,
     state: &mut SearchState,
-    slack: f64,
+    (slack, boxes): (f64, &[DesignBox]),
     regions_to: f64,
     (live, seen): (Option<&Live>, impl Fn()),
 ) -> Vec<BoxBound> {
@@ -67,8 +67,10 @@ pub(super) fn pass_by_regions<'p>(
     // Fewer incumbents leave more open, so nothing is missed; the regions stay within the slack.
     found = thinned(found, THINNED * slack, |o| o);
     let upper_bounds = Arc::new(LocalUpperBounds::new(&mut found, problem.limits()));
-    let subproblem = Subproblem::whole(problem, state.incumbents.all().len(), &mut Work::default());
-    let first = subproblem.map(|subproblem| Task::Region { upper_bounds, at: 0, subproblem });
+    let (seen_to, mut work) = (state.incumbents.all().len(), Work::default());
+    let subproblems = boxes.iter().filter_map(|of| Subproblem::of_box(problem, of, seen_to, &mut work));
+    let region = |subproblem| Task::Region { upper_bounds: Arc::clone(&upper_bounds), at: 0, subproblem };
+    let first: Vec<Task<'p>> = subproblems.map(region).collect();
     let task = |state: &SearchState, task: Task<'p>| match task {
         Task::Region { upper_bounds, at, subproblem } => {
             let mut findings = Findings::default();
@@ -90,8 +92,7 @@ pub(super) fn pass_by_regions<'p>(
             live.update(|| state.known(&state.front(), open.len(), None));
         });
     };
-    let remaining =
-        in_rounds(state, first.into_iter().collect(), || budget.stopped(), task, SearchState::learn, see);
+    let remaining = in_rounds(state, first, || budget.stopped(), task, SearchState::learn, see);
     remaining.iter().map(|_| BoxBound::OPEN).collect()
 }
 
@@ -207,6 +208,20 @@ impl<'p> Subproblem<'p> {
             shapes: Arc::new(shapes),
             incumbents_seen,
         })
+    }
+
+    /// The subproblem of a box of a whole space. `None` if none of its designs meets the constraints.
+    fn of_box(
+        problem: &Problem<'p>,
+        design_box: &DesignBox,
+        incumbents_seen: usize,
+        work: &mut Work,
+    ) -> Option<Self> {
+        if *design_box == problem.root() {
+            return Self::whole(problem, incumbents_seen, work);
+        }
+        let nodes: Vec<Vec<u32>> = design_box.iter().map(|&node| vec![node]).collect();
+        Self::whole(&problem.restricted_to(&nodes)?, incumbents_seen, work)
     }
 
     /// Bounds a subproblem below a local upper bound. Returns the survivors, and whether the subproblem was

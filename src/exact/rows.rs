@@ -15,7 +15,7 @@
 //! [`lagrangian`](super::lagrangian) minimizes the sum.
 
 use super::bound::{BoxBound, DesignBox, STARTS};
-use super::drives_by_curve::FeasibleDrives;
+use super::drives_by_curve::{FeasibleDrives, PricedDrives};
 use super::dual_price::Gear;
 use super::local_upper_bounds::LocalUpperBound;
 use super::parts::{INERTIAS, STIFFNESSES};
@@ -69,7 +69,9 @@ pub(super) struct Rows<'a> {
     /// Index of the first mode row.
     pub first_mode: usize,
     /// The feasible drives of each level; `None` for a level of links.
-    pub drives: Vec<Option<FeasibleDrives>>,
+    drives: Vec<Option<FeasibleDrives>>,
+    /// They with the states that their gears may have in this box.
+    pub priced: Vec<Option<PricedDrives>>,
 }
 
 /// A force that the weights make in a judged case. It takes two rows, one for its least and one for its greatest
@@ -173,6 +175,7 @@ impl<'a> Rows<'a> {
             modes: Vec::new(),
             first_mode: 0,
             drives: problem.drives_of_levels(design_box, work, &warm_start.drives),
+            priced: Vec::new(),
         };
         for (judged, case) in problem.judged_cases().enumerate() {
             let (tip, fixed_m) = TipRow::new(problem, judged, case, work);
@@ -188,10 +191,21 @@ impl<'a> Rows<'a> {
             rows.push_force_bounds(judged, case);
         }
         rows.first_mode = rows.scale.len();
+        rows.priced = rows.priced_drives();
         for (place, shape) in warm_start.shapes.iter().enumerate() {
             rows.push_mode(place / STARTS.len(), place % STARTS.len(), shape.clone());
         }
         rows
+    }
+
+    /// The feasible drives of each level with the states of their gears.
+    fn priced_drives(&self) -> Vec<Option<PricedDrives>> {
+        let of = |(&piece, drives): (&usize, &Option<FeasibleDrives>)| {
+            let gears: Vec<&Gear> = self.gears.iter().filter(|gear| gear.piece == piece).collect();
+            let play = self.problem.joint_plays[piece].as_ref();
+            drives.as_ref().map(|drives| PricedDrives::new(drives, &gears, play))
+        };
+        self.problem.level_pieces.iter().zip(&self.drives).map(of).collect()
     }
 
     /// Adds the gears of a judged case, with two rows for each gear whose slope may change.

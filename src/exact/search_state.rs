@@ -124,19 +124,22 @@ impl SearchState {
         }
     }
 
-    /// The designs found that no other design dominates, in ascending order, followed by the undecided designs.
-    pub(super) fn into_front(self) -> Vec<Candidate> {
-        let mut front = self.kept;
-        clear(&mut front);
-        front.sort_unstable_by_key(|c| c.number);
-        front.dedup_by_key(|c| c.number);
-        // A design that would have been pruned had it come later is removed too, so that the result does not
-        // depend on the order of discovery.
-        let all = front.clone();
-        front.retain(|c| !all.iter().any(|other| is_better(&other.objectives, &c.objectives)));
-        front.extend(self.undecided);
-        front
+    /// The designs found that no other design dominates, in ascending order, and the undecided designs.
+    pub(super) fn into_found(self) -> [Vec<Candidate>; 2] {
+        [nondominated(self.kept), self.undecided]
     }
+}
+
+/// The designs that no other of them dominates, in ascending order.
+pub(super) fn nondominated(mut front: Vec<Candidate>) -> Vec<Candidate> {
+    clear(&mut front);
+    front.sort_unstable_by_key(|c| c.number);
+    front.dedup_by_key(|c| c.number);
+    // A design that would have been pruned had it come later is removed too, so that the result does not
+    // depend on the order of discovery.
+    let all = front.clone();
+    front.retain(|c| !all.iter().any(|other| is_better(&other.objectives, &c.objectives)));
+    front
 }
 
 /// Removes the candidates that another candidate dominates.

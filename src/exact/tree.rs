@@ -34,8 +34,8 @@ const WHOLE: u32 = 1 << 31;
 /// One node of a [`Tree`].
 pub(super) struct Node<B> {
     pub bounds: B,
-    /// The coordinates by which the node is separated from others.
-    pub key: Key,
+    /// The coordinates by which the node is separated from others; `None` for a node that no tree will stand on.
+    key: Option<Key>,
     /// Number of options below the node.
     pub members: u32,
     /// The two halves of the node, or its single option.
@@ -49,6 +49,13 @@ pub(super) enum NodeKind {
     Split([u32; 2]),
     /// One option.
     Option(u32),
+}
+
+impl<B: Bounds> Node<B> {
+    /// The coordinates by which the node is separated from others.
+    pub(super) fn key(&self) -> Key {
+        self.key.unwrap_or_else(|| self.bounds.key())
+    }
 }
 
 impl<B: Bounds> Tree<B> {
@@ -78,10 +85,8 @@ impl<B: Bounds> Tree<B> {
             return Some(Arc::clone(tree));
         }
         let whole = tree.whole.as_ref().unwrap_or(tree);
-        let item = |&at: &u32| {
-            let Node { members, key, .. } = *whole.node(at);
-            Item { at: WHOLE + at, members, key }
-        };
+        let item =
+            |&at: &u32| Item { at: WHOLE + at, members: whole.node(at).members, key: whole.node(at).key() };
         let mut items: Vec<Item> = kept.iter().map(item).collect();
         let mut nodes = Vec::with_capacity((2 * items.len()).max(1) - 1);
         match &items[..] {
@@ -247,11 +252,11 @@ fn grow<'b, B: Bounds + 'b>(
     let (kind, bounds) = leaf(&items[0]);
     if let [Item { at, members, key }] = *items {
         let Some(kind) = kind else { return at };
-        nodes.push(Node { bounds: bounds.clone(), key, members, kind });
+        nodes.push(Node { bounds: bounds.clone(), key: Some(key), members, kind });
         return here as u32;
     }
     // The root is the first node, so its place is taken before its halves grow.
-    nodes.push(Node { bounds: bounds.clone(), key: items[0].key, members: 0, kind: NodeKind::Option(0) });
+    nodes.push(Node { bounds: bounds.clone(), key: None, members: 0, kind: NodeKind::Option(0) });
     // Halving the widest coordinate keeps the boxes narrow, and so their bounds sharp.
     let axis = widest(items);
     let middle = items.len() / 2;
@@ -262,7 +267,8 @@ fn grow<'b, B: Bounds + 'b>(
     let of =
         |half: &[Item], at: u32| nodes.get(at as usize).map_or_else(|| leaf(&half[0]).1, |node| &node.bounds);
     let bounds = of(low, halves[0]).join(of(high, halves[1]));
-    let key = bounds.key();
+    // A tree stands on nodes of the base tree alone, and logarithms take long.
+    let key = kind.map(|_| bounds.key());
     let members = items.iter().map(|item| item.members).sum();
     nodes[here] = Node { bounds, key, members, kind: NodeKind::Split(halves) };
     here as u32

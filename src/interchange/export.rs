@@ -9,7 +9,7 @@ use super::left_out::{LeftOut, Remainder};
 use super::mjcf::{Motor, STAND_IN_KGM2, mjcf};
 use super::snapshot::Snapshot;
 use super::tree::TreeOptions;
-use super::urdf_out::{stiffness_file, urdf, with_several_drivers};
+use super::urdf_out::{TRAVEL_M, stiffness_file, urdf, with_several_drivers};
 use crate::arm::effect::entry::Effect;
 use crate::arm::load::{LoadCase, Payload};
 use crate::arm::section::Section;
@@ -269,14 +269,20 @@ fn motors(arm: &Arm, catalogs: &Catalogs, notes: &mut Vec<String>) -> BTreeMap<S
             out.insert(joint.name.clone(), Motor { armature_kgm2: STAND_IN_KGM2, peak_nm: None });
             continue;
         };
-        let input_kgm2 = rotor_kgm2 + gear.inertia_input_kgm2.unwrap_or_default();
-        let armature_kgm2 = gear.ratio * gear.ratio * input_kgm2;
-        let peak_nm = motor.peak_torque_nm.map(|nm| nm * gear.ratio);
+        let ratio = joint.stages.whole_ratio(gear.ratio);
+        let gear_kgm2 = gear.inertia_input_kgm2.unwrap_or_default();
+        let input_kgm2 = joint.stages.input_inertia_kgm2(rotor_kgm2, gear_kgm2, gear.ratio);
+        let armature_kgm2 = ratio * ratio * input_kgm2;
+        let peak_nm = motor.peak_torque_nm.map(|nm| nm * ratio);
         out.insert(joint.name.clone(), Motor { armature_kgm2, peak_nm });
+    }
+    for joint in arm.prismatics() {
+        unknown.push(joint.name.as_str());
+        out.insert(joint.name.clone(), Motor { armature_kgm2: STAND_IN_KGM2, peak_nm: None });
     }
     if !unknown.is_empty() {
         notes.push(format!(
-            "an armature of {STAND_IN_KGM2} kg m2 stands in where the catalogs do not know the rotor's inertia: {}",
+            "an armature of {STAND_IN_KGM2} kg m2 (kg where a joint slides) stands in where the catalogs do not know the rotor's inertia: {}",
             unknown.join(", ")
         ));
     }
@@ -296,6 +302,11 @@ fn to_urdf(asked: &Asked) -> Export {
     let snapshot = Snapshot::new(rest.structure, &case, LinkModel::Rigid);
     let mut notes =
         vec!["the payload is not part of the file; joints have no ranges and are continuous".to_string()];
+    if asked.arm.prismatics().next().is_some() {
+        notes.push(format!(
+            "a URDF must have ranges of prismatic joints and an arm has none: {TRAVEL_M} m to either side stand in"
+        ));
+    }
     let several = with_several_drivers(asked.arm);
     if !several.is_empty() {
         let names: Vec<&str> = several.iter().map(|joint| joint.name.as_str()).collect();
@@ -312,8 +323,17 @@ fn to_urdf(asked: &Asked) -> Export {
         left_out: rest.left_out,
         notes,
         // a rigid arm has torques and nothing else
-        expected: json!({"joint_torque_nm": snapshot.expected()["joint_torque_nm"]}),
+        expected: torques_and_forces(&snapshot),
     }
+}
+
+/// What holds the driven joints of a rigid arm.
+fn torques_and_forces(snapshot: &Snapshot) -> Value {
+    let mut expected = snapshot.expected();
+    if let Some(expected) = expected.as_object_mut() {
+        expected.retain(|key, _| key.starts_with("joint_"));
+    }
+    expected
 }
 
 fn to_json(asked: &Asked) -> Export {

@@ -286,7 +286,20 @@ fn hinge(
         _ => (Curve::Rigid, None, None, None),
     };
     let (extras, bodies) = (Extras::default(), JointBodies::default());
-    Joint { name: name.into(), axis, curve, mass_kg: 0.0, bearing, extras, bodies, gear, motor, coupled }
+    Joint {
+        name: name.into(),
+        axis,
+        curve,
+        mass_kg: 0.0,
+        bearing,
+        extras,
+        bodies,
+        gear,
+        motor,
+        coupled,
+        stages: Default::default(),
+        turns_with: Vec::new(),
+    }
 }
 
 /// A joint that slides. The bodies of the file have its drive in them.

@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 /// body without both.
 const LEAST: f64 = 1e-9;
 
-/// Inertia that stands in for a rotor that nobody knows, at the joint \[kg m²\]. Without any, motor and gear would be two hinges of
+/// Inertia that stands in for a rotor that nobody knows, at the joint \[kg m²; kg where it slides\]. Without any, motor and gear would be two hinges of
 /// one axis with nothing between them, and the mass matrix singular. With motors held it changes nothing.
 pub(crate) const STAND_IN_KGM2: f64 = 0.1;
 
@@ -48,9 +48,9 @@ pub(crate) fn mjcf(
     let balanced = nodes.iter().any(|node| !is_solid(node));
     let case = &snapshot.case;
     let comment = format!(
-        "{name}, case \"{}\": pose {:?} deg, payload {} kg at {:?} m from the tip. Torsion curves are tangents at the torques of this case",
+        "{name}, case \"{}\": pose {}, payload {} kg at {:?} m from the tip. Torsion curves are tangents at the torques of this case",
         case.name,
-        case.pose_deg,
+        snapshot.pose_words(),
         case.payload.mass_kg,
         case.payload.cg_m.as_slice()
     );
@@ -150,7 +150,7 @@ fn joint(
 
 /// A passive joint follows the motors and the gears of its drivers: a tendon that stays at zero.
 fn couplings(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
-    let driven: Vec<&str> = snapshot.case_joints();
+    let driven = snapshot.case_joints();
     let has_gear =
         |joint: &str| nodes.iter().flat_map(|n| &n.hinges).any(|h| h.name == format!("{joint}.gear"));
     let passive: Vec<_> = snapshot.structure.joints().filter(|joint| !joint.is_driven()).collect();
@@ -163,7 +163,7 @@ fn couplings(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
         xml.open("fixed", &[("name", format!("{}.coupling", joint.name))]);
         xml.leaf("joint", &[("joint", joint.name.clone()), ("coef", "1".into())]);
         for (index, factor) in terms {
-            let driver = driven[*index];
+            let driver = &driven[*index];
             let geared = has_gear(driver).then(|| format!("{driver}.gear"));
             for hinge in [Some(driver.to_string()), geared].into_iter().flatten() {
                 xml.leaf("joint", &[("joint", hinge), ("coef", numbers(&[-factor]))]);
@@ -183,8 +183,8 @@ fn couplings(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
 fn actuators(xml: &mut Xml, snapshot: &Snapshot, motors: &BTreeMap<String, Motor>) {
     xml.open("actuator", &[]);
     for joint in snapshot.case_joints() {
-        let mut attributes = vec![("name", joint.to_string()), ("joint", joint.to_string())];
-        if let Some(peak_nm) = motors.get(joint).and_then(|motor| motor.peak_nm) {
+        let mut attributes = vec![("name", joint.clone()), ("joint", joint.clone())];
+        if let Some(peak_nm) = motors.get(&joint).and_then(|motor| motor.peak_nm) {
             attributes.push(("ctrlrange", numbers(&[-peak_nm, peak_nm])));
         }
         xml.leaf("motor", &attributes);
@@ -194,10 +194,11 @@ fn actuators(xml: &mut Xml, snapshot: &Snapshot, motors: &BTreeMap<String, Motor
 
 /// The pose of the case: with all springs straight, in which frequencies and torques are compared, and deflected.
 fn keyframes(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
-    let pose_rad: Vec<f64> = snapshot.case.pose_deg.iter().map(|deg| deg.to_radians()).collect();
+    let (driven, pose) = (snapshot.case_joints(), snapshot.pose_si());
     let angle = |name: &str| {
-        let joint = snapshot.structure.joints().find(|joint| joint.name == name);
-        joint.map_or(0.0, |joint| joint.angle.of(&pose_rad))
+        let passive = snapshot.structure.joints().find(|joint| joint.name == name);
+        let entry = driven.iter().position(|joint| joint == name).map(|at| pose[at]);
+        entry.or(passive.map(|joint| joint.angle.of(&pose))).unwrap_or_default()
     };
     let position = |deflected: bool| {
         let of = |hinge: &Hinge| match hinge.role {

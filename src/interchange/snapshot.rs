@@ -5,8 +5,11 @@
 
 use crate::arm::LinkModel;
 use crate::arm::load::LoadCase;
+use crate::arm::pose::any_slides;
+use crate::arm::prismatic::{Moves, PrismaticPiece};
 use crate::arm::structure::{LinkPiece, Piece, Structure};
 use crate::mechanics::chain::{Chain, Item, Posed, Yielding};
+use crate::mechanics::prismatic::guide_name;
 use nalgebra::Vector3;
 use serde_json::{Map, Value, json};
 
@@ -18,7 +21,8 @@ const MODES: usize = 6;
 /// A spring at the load of a case.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Working {
-    /// Generalized force on the coordinate \[N m\].
+    /// Generalized force on the coordinate \[N m\]. Of a coordinate that slides it is a force \[N\], and deflection and
+    /// compliance are in m and m/N.
     pub load_nm: f64,
     /// What the coordinate yields \[rad\].
     pub deflection_rad: f64,
@@ -95,9 +99,35 @@ impl Snapshot {
         }
     }
 
+    /// The prismatic joint whose guide has this name, if the guide travels with a carriage.
+    pub(crate) fn carriage(&self, guide: &str) -> Option<&PrismaticPiece> {
+        let prismatics = self.structure.pieces.iter().filter_map(|piece| match piece {
+            Piece::Prismatic(joint) => Some(joint),
+            _ => None,
+        });
+        let mut carriages = prismatics.filter(|joint| joint.moves == Moves::Carriage);
+        carriages.find(|joint| guide_name(&joint.name) == guide)
+    }
+
     /// Names of the driven joints, in the order of the pose.
-    pub(crate) fn case_joints(&self) -> Vec<&str> {
-        self.structure.joints().filter(|joint| joint.is_driven()).map(|joint| joint.name.as_str()).collect()
+    pub(crate) fn case_joints(&self) -> Vec<String> {
+        self.structure.driven_joints().into_iter().map(|joint| joint.name).collect()
+    }
+
+    /// The pose of the case: an entry for each driven joint \[rad or m\].
+    pub(crate) fn pose_si(&self) -> Vec<f64> {
+        let joints = self.structure.driven_joints();
+        joints.iter().zip(&self.case.pose_deg).map(|(joint, entry)| joint.motion.si(*entry)).collect()
+    }
+
+    /// The pose of the case in words.
+    pub(crate) fn pose_words(&self) -> String {
+        let joints = self.structure.driven_joints();
+        if !any_slides(&joints) {
+            return format!("{:?} deg", self.case.pose_deg);
+        }
+        let entries = joints.iter().zip(&self.case.pose_deg);
+        entries.map(|(joint, entry)| format!("{} {entry}", joint.key())).collect::<Vec<_>>().join(", ")
     }
 
     /// The working point of each coordinate, element by element, base to tip.
@@ -143,10 +173,16 @@ impl Snapshot {
         let torques: Map<String, Value> =
             statics.joint_torques_nm.iter().map(|(name, nm)| (name.clone(), json!(nm))).collect();
         let modes: Vec<f64> = posed.modes(&statics, MODES).iter().map(|mode| mode.frequency_hz).collect();
-        json!({
+        let forces: Map<String, Value> =
+            statics.joint_forces_n.iter().map(|(name, n)| (name.clone(), json!(n))).collect();
+        let mut out = json!({
             "joint_torque_nm": torques,
             "tip_displacement_m": statics.tip_displacement_m.as_slice(),
             "frequencies_hz": modes,
-        })
+        });
+        if !forces.is_empty() {
+            out["joint_force_n"] = Value::Object(forces);
+        }
+        out
     }
 }

@@ -1,15 +1,17 @@
 //! An arm as a chain of rigid bodies with hinges between them, all angles zero: what simulators and URDF files know.
 //!
 //! A driven joint is a hinge that a motor turns, and the gear is a hinge with a spring in series with it. A bearing is two hinges
-//! in series with both. A link is rigid, or it is cut into rigid pieces with springs between them: in the middle of each of `N`
+//! in series with both. A prismatic joint is a slide that a motor moves, a slide with the spring of its drive, and up to three
+//! hinges of its guide: outboard of the motor's slide where a carriage moves, inboard of it where a ram does. A link is rigid, or it is cut into rigid pieces with springs between them: in the middle of each of `N`
 //! equal parts two hinges bend, one twists, and three slides shear and stretch. That converges with 1/N².
 
 use super::snapshot::{Snapshot, Working};
 use crate::arm::LinkModel;
+use crate::arm::prismatic::PrismaticPiece;
 use crate::arm::structure::{Beam, LinkPiece};
 use crate::mechanics::beam::{line_stiffnesses, tube_inertia};
 use crate::mechanics::chain::{ElasticElement, Item, OwnMass, Yielding};
-use crate::mechanics::{Twist, angular, body_inertia, linear};
+use crate::mechanics::{Twist, angular, body_inertia, linear, stack};
 use nalgebra::{Matrix3, Matrix6, Vector3};
 use std::collections::BTreeMap;
 
@@ -101,7 +103,7 @@ pub(crate) fn tree(snapshot: &Snapshot, options: &TreeOptions) -> Vec<Node> {
                 let workings = workings.next().unwrap_or_default();
                 match &element.own {
                     Some(own) => builder.link(snapshot.link(own.piece), own),
-                    None => builder.springs(element, &workings),
+                    None => builder.springs(element, &workings, snapshot.carriage(&element.name)),
                 }
             }
         }
@@ -129,21 +131,32 @@ impl Builder<'_> {
         self.nodes.last_mut().expect("the base is opened first")
     }
 
-    /// Adds the hinges of a joint, of its bearing, or of a frame.
-    fn springs(&mut self, element: &ElasticElement, workings: &[Working]) {
-        let is_joint = matches!(element.yielding, Yielding::Joint(_));
+    /// Adds the hinges of a joint, of its bearing or guide, or of a frame. `carriage` is the joint whose guide this is, if the
+    /// guide travels.
+    fn springs(&mut self, element: &ElasticElement, workings: &[Working], carriage: Option<&PrismaticPiece>) {
+        let slides = matches!(element.yielding, Yielding::Slide { .. });
+        let is_joint = slides || matches!(element.yielding, Yielding::Joint(_));
         let yields = self.options.springs && workings.iter().any(|working| !working.is_rigid());
         if !is_joint && !yields {
             return;
         }
-        // a joint is in one body with its bearing, whose name begins with the joint's
-        let node = element.name.strip_suffix(".bearing").unwrap_or(&element.name).to_string();
+        // a joint is in one body with its bearing or guide, whose name begins with the joint's
+        let of_joint = [".bearing", ".guide"].iter().find_map(|end| element.name.strip_suffix(end));
+        let node = of_joint.unwrap_or(&element.name).to_string();
         let last = self.last();
         let shares = last.name == node && last.inertia == Matrix6::zeros();
-        if !shares || last.hinges.len() + element.twists.len() > MOST_HINGES - 2 {
+        // a joint that turns may bring its motor and its backlash too
+        let more = if slides { 1 } else { 2 };
+        if !shares || last.hinges.len() + element.twists.len() > MOST_HINGES - more {
             self.open(&node, element.at_m);
         }
-        if is_joint {
+        if let Some(joint) = carriage {
+            let travel = stack(&joint.axis, &Vector3::zeros());
+            let motor = hinge(&travel, joint.name.clone(), &joint.name, element.at_m, Role::Motor);
+            self.last().hinges.push(motor);
+        }
+        let has_motor = self.last().hinges.iter().any(|hinge| hinge.name == element.name);
+        if is_joint && !has_motor {
             let name = element.name.clone();
             let motor = hinge(&element.twists[0], name.clone(), &name, element.at_m, Role::Motor);
             self.last().hinges.push(motor);
@@ -158,6 +171,7 @@ impl Builder<'_> {
         }
         for (i, (twist, working)) in element.twists.iter().zip(workings).enumerate() {
             let name = match is_joint {
+                true if slides => format!("{}.drive", element.name),
                 true => format!("{}.gear", element.name),
                 false => format!("{}_{}", element.name, i + 1),
             };

@@ -68,18 +68,27 @@ fn ends(xml: &mut Xml, parent: &str, child: &str, xyz_m: &Vector3<f64>) {
     xml.leaf("origin", &[("xyz", triple(xyz_m)), ("rpy", "0 0 0".into())]);
 }
 
-/// A joint. An arm has no ranges, so its joints are continuous.
+/// The range of a prismatic joint, which a URDF must have and an arm does not \[m\].
+pub(crate) const TRAVEL_M: f64 = 1e3;
+
+/// A joint. An arm has no ranges, so its joints are continuous where they turn.
 fn joint(xml: &mut Xml, snapshot: &Snapshot, (from, parent): (&str, &Node), (to, node): (&str, &Node)) {
-    xml.open("joint", &[("name", node.name.clone()), ("type", "continuous".into())]);
+    let slides = node.hinges.first().is_some_and(|hinge| hinge.slides);
+    let kind = if slides { "prismatic" } else { "continuous" };
+    xml.open("joint", &[("name", node.name.clone()), ("type", kind.into())]);
     ends(xml, from, to, &(node.origin_m - parent.origin_m));
     if let Some(hinge) = node.hinges.first() {
         xml.leaf("axis", &[("xyz", triple(&hinge.axis))]);
+    }
+    if slides {
+        let limits = [("lower", -TRAVEL_M), ("upper", TRAVEL_M), ("effort", 1e9), ("velocity", 1e3)];
+        xml.leaf("limit", &limits.map(|(key, value)| (key, numbers(&[value]))));
     }
     let piece = snapshot.structure.joints().find(|piece| piece.name == node.name);
     if let Some(JointAngle::Coupled(terms)) = piece.map(|piece| &piece.angle)
         && let [(driver, factor)] = terms.as_slice()
     {
-        let driver = snapshot.case_joints()[*driver].to_string();
+        let driver = snapshot.case_joints()[*driver].clone();
         xml.leaf("mimic", &[("joint", driver), ("multiplier", numbers(&[*factor])), ("offset", "0".into())]);
     }
     xml.close();
@@ -92,18 +101,17 @@ pub(crate) fn with_several_drivers(arm: &Arm) -> Vec<&Joint> {
 
 /// The stiffness file of an arm.
 pub(crate) fn stiffness_file(arm: &Arm) -> Value {
-    let joints: Map<String, Value> = arm
-        .joints()
-        .map(|joint| {
-            let (key, curve) = joint.curve.to_json();
-            let mut of_joint = json!({key: curve, "bearing": joint.bearing.map(|bearing| bearing.to_json())});
-            for (key, part) in [("gear", &joint.gear), ("motor", &joint.motor)] {
-                if let Some(part) = part {
-                    of_joint[key] = json!(part);
-                }
+    let turning = arm.joints().map(|joint| {
+        let (key, curve) = joint.curve.to_json();
+        let mut of_joint = json!({key: curve, "bearing": joint.bearing.map(|bearing| bearing.to_json())});
+        for (key, part) in [("gear", &joint.gear), ("motor", &joint.motor)] {
+            if let Some(part) = part {
+                of_joint[key] = json!(part);
             }
-            (joint.name.clone(), of_joint)
-        })
-        .collect();
+        }
+        (joint.name.clone(), of_joint)
+    });
+    let sliding = arm.prismatics().map(|joint| (joint.name.clone(), joint.springs_to_json()));
+    let joints: Map<String, Value> = turning.chain(sliding).collect();
     json!({"joints": joints})
 }

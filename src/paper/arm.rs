@@ -139,6 +139,8 @@ impl PaperArm {
             gear: None,
             motor: None,
             coupled: None,
+            stages: Default::default(),
+            turns_with: Vec::new(),
         })
     }
 

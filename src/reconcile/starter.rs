@@ -22,10 +22,22 @@ pub(crate) fn files(arm: &Arm, name: &str) -> Vec<(String, String)> {
             format!("{}\n", columns_for(channel, &joints).join(",")),
         )
     };
-    let mut out = vec![("campaign.json".to_string(), format!("{:#}\n", campaign_json(name)))];
-    out.extend(Channel::ALL.map(table));
+    let mut campaign = campaign_json(name);
+    if arm.beyond_positions().is_some()
+        && let Some(blocks) = campaign.as_object_mut()
+    {
+        blocks.remove(Channel::Positions.word());
+    }
+    let mut out = vec![("campaign.json".to_string(), format!("{campaign:#}\n"))];
+    out.extend(channels(arm).map(table));
     out.push((PAGE.to_string(), page(arm, name, &joints)));
     out
+}
+
+/// The kinds of readings that a campaign of the arm can have.
+fn channels(arm: &Arm) -> impl Iterator<Item = Channel> {
+    let has_positions = arm.beyond_positions().is_none();
+    Channel::ALL.into_iter().filter(move |channel| has_positions || *channel != Channel::Positions)
 }
 
 fn campaign_json(name: &str) -> Value {
@@ -121,9 +133,10 @@ fn kinds(joints: usize) -> [Kind; 4] {
 }
 
 fn page(arm: &Arm, name: &str, joints: &[DrivenJoint]) -> String {
+    let kinds_of_readings = if arm.beyond_positions().is_none() { "four" } else { "three" };
     let mut out = format!(
         "# Campaign {name}: readings of {}\n\nFill the tables, then run:\n\n```sh\narmwright reconcile .\n```\n\nAny one of the \
-         four kinds of readings suffices; several together say more. Delete the block in `campaign.json` and the file of each \
+         {kinds_of_readings} kinds of readings suffices; several together say more. Delete the block in `campaign.json` and the file of each \
          kind that you do not measure. Separate columns by commas and write decimals with a point. A spreadsheet is read too: \
          `\"files\": {{\"static\": {{\"file\": \"m.xlsx\", \"sheet\": \"S1\"}}}}`; and columns may have names of their own: \
          `\"columns\": {{\"static\": {{\"dz_mm\": \"Gauge 1\"}}}}`.\n\nTo see what the nominal arm would show in the poses \
@@ -131,7 +144,13 @@ fn page(arm: &Arm, name: &str, joints: &[DrivenJoint]) -> String {
          campaign.json\n```\n",
         arm.name
     );
-    for kind in kinds(joints.len()) {
+    if let Some(what) = arm.beyond_positions() {
+        out.push_str(&format!(
+            "\nAbsolute positions are left out: the arm has {what}, which the model of positions does not know.\n"
+        ));
+    }
+    let known: Vec<Channel> = channels(arm).collect();
+    for kind in kinds(joints.len()).into_iter().filter(|kind| known.contains(&kind.channel)) {
         let file = DEFAULT_FILES[kind.channel as usize];
         out.push_str(&format!(
             "\n## {}: `{file}`\n\n{}\n\n{}\n\n| column | unit | what it is |\n|---|---|---|\n",

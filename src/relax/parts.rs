@@ -33,7 +33,7 @@ impl Parts {
             })
             .collect();
         let bearing = |(slot, piece): (usize, &Slot)| match piece {
-            Slot::Bearing { joint, .. } => Some((slot, *joint)),
+            Slot::Bearing { joint, .. } | Slot::Motor { joint, .. } => Some((slot, *joint)),
             _ => None,
         };
         let bearings = problem.slots().iter().enumerate().filter_map(bearing).collect();
@@ -126,5 +126,6 @@ fn slot_masses(slot: &Slot) -> Vec<f64> {
         Slot::Sized(sized) => (0..sized.table.len()).map(|i| sized.table.mass_kg(i)).collect(),
         Slot::Link { options, .. } => options.iter().map(|o| o.mass_kg).collect(),
         Slot::Bearing { laws, .. } => vec![0.0; laws.len()],
+        Slot::Motor { masses_kg, .. } => masses_kg.clone(),
     }
 }

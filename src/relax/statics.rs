@@ -296,6 +296,7 @@ fn joint_masses(slot: &Slot) -> Vec<f64> {
         Slot::Sized(sized) => (0..sized.table.len()).map(|i| sized.table.mass_kg(i)).collect(),
         Slot::Given { mass_kg, .. } | Slot::Offset { mass_kg } => vec![*mass_kg],
         Slot::Bearing { laws, .. } => vec![0.0; laws.len()],
+        Slot::Motor { masses_kg, .. } => masses_kg.clone(),
         Slot::Link { .. } => Vec::new(),
     }
 }

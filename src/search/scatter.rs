@@ -216,7 +216,7 @@ impl BuiltParts<'_, '_> {
                 Slot::Given { .. } | Slot::Sized(_) => joint.map_or(0.0, |j| j.mass_kg),
                 Slot::Link { options, .. } => options[option as usize].mass_kg,
                 Slot::Offset { mass_kg } => *mass_kg,
-                Slot::Bearing { .. } => 0.0,
+                Slot::Bearing { .. } | Slot::Motor { .. } => 0.0,
             };
             arm.mass_kg += mass_kg;
             for &case in &problem.space().judged_cases {

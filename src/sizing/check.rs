@@ -193,13 +193,31 @@ pub struct Check {
     pub state: CheckState,
     /// Power of the torque that the margin goes with; of a gear's life, the exponent of its law.
     pub torque_exponent: f64,
+    /// Whether forces along a travel take the place of torques about an axis.
+    pub slides: bool,
 }
 
 impl Check {
+    /// Unit of needed and allowed.
+    pub fn unit(&self) -> &'static str {
+        match self.kind.unit() {
+            "N m" if self.slides && self.kind.is_gear() => "N",
+            "N m/rad" if self.slides => "N/m",
+            unit => unit,
+        }
+    }
+
     /// A check that a blank rating prevents.
     pub(super) fn not_made(kind: CheckKind, rating: MissingRating) -> Self {
         let torque_exponent = kind.torque_exponent();
-        Self { kind, needed: None, allowed: None, state: CheckState::NotChecked(rating), torque_exponent }
+        Self {
+            kind,
+            needed: None,
+            allowed: None,
+            state: CheckState::NotChecked(rating),
+            torque_exponent,
+            slides: false,
+        }
     }
 
     /// Allowed over needed; below 1 the check fails. `None` if it could not be checked.
@@ -247,7 +265,7 @@ impl fmt::Display for Check {
             (CheckState::NotChecked(rating), _, _) => write!(f, "{name} not checked: lacks {rating}"),
             (_, Some(needed), Some(allowed)) => {
                 let digits = digits_that_differ(needed, allowed);
-                let unit = self.kind.unit();
+                let unit = self.unit();
                 match self.kind {
                     CheckKind::BearingRest | CheckKind::BearingStop => {
                         write!(f, "{name} {needed:.digits$} needed, {allowed:.digits$} reached")
@@ -288,7 +306,7 @@ pub(super) fn check(kind: CheckKind, needed: Rating, allowed: Rating, load: f64,
         Err(rating) => CheckState::NotChecked(rating),
     };
     let torque_exponent = kind.torque_exponent();
-    Check { kind, needed: needed.ok(), allowed: allowed.ok(), state, torque_exponent }
+    Check { kind, needed: needed.ok(), allowed: allowed.ok(), state, torque_exponent, slides: false }
 }
 
 /// A check that compares the printed numbers themselves.

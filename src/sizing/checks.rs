@@ -42,6 +42,7 @@ pub fn gear_checks(
     if let Some(bearing) = bearing {
         checks.extend(bearing_checks(bearing, motion, &demand.bearing));
     }
+    checks.iter_mut().for_each(|check| check.slides = gear.kind.slides());
     checks
 }
 
@@ -83,7 +84,7 @@ pub fn motor_checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -
     }
     checks.push(plain(
         CheckKind::MotorSpeed,
-        input_speed_rpm(drive.gear, motion),
+        drive.motor_speed_rpm(motion),
         limit::motor_max_speed_rpm(drive.motor),
     ));
     checks.extend(motor_fits(drive, &motion.fit, &demand.room));
@@ -111,7 +112,7 @@ fn motor_peak(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Chec
     check(
         CheckKind::MotorPeak,
         drive.peak_motor_torque_nm(motion, peak_nm),
-        motor_curve::peak_torque_nm(drive.motor, input_speed_rpm(drive.gear, motion)),
+        motor_curve::peak_torque_nm(drive.motor, drive.motor_speed_rpm(motion)),
         peak_nm,
         limit::motor_peak_nm(drive, motion),
     )
@@ -119,8 +120,8 @@ fn motor_peak(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Chec
 
 /// Root mean square of the motor's torque over the cycle, compared with its continuous torque at the cruising speed.
 fn motor_rms(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check {
-    let input_rpm = input_speed_rpm(drive.gear, motion);
-    let continuous_nm = motor_curve::continuous_torque_nm(drive.motor, input_rpm);
+    let motor_rpm = drive.motor_speed_rpm(motion);
+    let continuous_nm = motor_curve::continuous_torque_nm(drive.motor, motor_rpm);
     let used = MotorHeat::of(drive, motion).map(|heat| heat.share_squared(demand));
     let needed = used.and_then(|used| Ok(used.sqrt() * continuous_nm?));
     check(CheckKind::MotorRms, needed, continuous_nm, used.unwrap_or(f64::NAN), used.map(|_| 1.0))

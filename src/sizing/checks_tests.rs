@@ -235,7 +235,7 @@ proptest! {
         link_m in any_link_m(),
     ) {
         let gear_mass = if housed { GearMass::HousedUnit } else { GearMass::ComponentSet };
-        let drive = Drive { gear: &gear, motor: &motor, gear_mass, bearing: BearingSource::OfGear, extras: ExtrasSource::NONE };
+        let drive = Drive { gear: &gear, motor: &motor, gear_mass, bearing: BearingSource::OfGear, extras: ExtrasSource::NONE, stage: crate::arm::Stage::NONE };
         let demand = motion
             .demand_of_torques(torques[0], torques[1])
             .with_bearing(bearing_loads(torques[2]))

@@ -1,8 +1,9 @@
 //! A drive: a gear and a motor, with torques on either side of the gear (Eqs 9-12).
 
-use super::demand::JointMotion;
+use super::demand::{JointMotion, input_speed_rpm};
 use crate::arm::bearing::{Bearing, BearingSource};
 use crate::arm::extras::{Extras, ExtrasSource};
+use crate::arm::transmission::{Stage, Stages};
 use crate::catalog::gear::{Gear, GearKind, GearMass};
 use crate::catalog::motor::Motor;
 
@@ -39,13 +40,13 @@ pub(super) fn if_any(gear: &Gear, rating: Option<f64>, none: f64, name: &'static
 ///
 /// ```
 /// use armwright::catalog::Catalogs;
-/// use armwright::arm::{BearingSource, ExtrasSource};
+/// use armwright::arm::{BearingSource, ExtrasSource, Stage};
 /// use armwright::catalog::GearMass;
 /// use armwright::sizing::{Drive, MotionRequirement};
 ///
 /// let catalogs = Catalogs::builtin();
 /// let (gear, motor) = (catalogs.gear("HFUC-58-100").unwrap(), catalogs.motor("F11-10").unwrap());
-/// let drive = Drive { gear, motor, gear_mass: GearMass::ComponentSet, bearing: BearingSource::OfGear, extras: ExtrasSource::NONE };
+/// let drive = Drive { gear, motor, gear_mass: GearMass::ComponentSet, bearing: BearingSource::OfGear, extras: ExtrasSource::NONE, stage: Stage::NONE };
 /// assert_eq!(drive.name(), "HFUC-58-100 + F11-10");
 /// assert_eq!(drive.mass_kg().unwrap(), 12.2);
 /// // Eq 11: the torque that accelerates rotor and wave generator, on the motor's side [N m]
@@ -65,6 +66,8 @@ pub struct Drive<'c> {
     pub bearing: BearingSource,
     /// Where the masses beyond gear, motor and bearing come from.
     pub extras: ExtrasSource,
+    /// Belt, chain or spur stage between motor and gear; its mass is not the drive's.
+    pub stage: Stage,
 }
 
 impl Drive<'_> {
@@ -94,9 +97,18 @@ impl Drive<'_> {
         self.bearing.with_gear(self.gear, self.gear_mass)
     }
 
-    /// Reduction ratio N.
+    /// Reduction ratio N of stage and gear.
     pub fn ratio(&self) -> f64 {
-        self.gear.ratio
+        self.stages().whole_ratio(self.gear.ratio)
+    }
+
+    fn stages(&self) -> Stages {
+        Stages { before: self.stage, ..Stages::default() }
+    }
+
+    /// Speed of the motor while the joint cruises \[rpm\].
+    pub fn motor_speed_rpm(&self, motion: &JointMotion) -> f64 {
+        self.stage.ratio * input_speed_rpm(self.gear, motion)
     }
 
     /// Mass of gear and motor \[kg\], rounded to the microgram, so that equal sums of catalog masses are equal numbers.
@@ -115,7 +127,7 @@ impl Drive<'_> {
         Ok((sum_kg * PER_KG).round() / PER_KG)
     }
 
-    /// Eq 9: J_in = rotor + input of the gear (wave generator), motor side \[kg m²\].
+    /// Eq 9: J_in = rotor + input of the gear (wave generator), motor side \[kg m²\], with that of a stage between both.
     ///
     /// # Errors
     /// The inertia that the catalog leaves blank.
@@ -125,15 +137,17 @@ impl Drive<'_> {
             _ => "rotor_inertia_kgm2",
         };
         let rotor_kgm2 = known(self.motor.rotor_inertia_kgm2, rotor)?;
-        Ok(rotor_kgm2 + if_any(self.gear, self.gear.inertia_input_kgm2, 0.0, "inertia_input_kgm2")?)
+        let gear_kgm2 = if_any(self.gear, self.gear.inertia_input_kgm2, 0.0, "inertia_input_kgm2")?;
+        Ok(self.stages().input_inertia_kgm2(rotor_kgm2, gear_kgm2, self.gear.ratio))
     }
 
-    /// Efficiency of the gear.
+    /// Efficiency of stage and gear.
     ///
     /// # Errors
     /// Its name if the catalog leaves it blank.
     pub fn efficiency(&self) -> Result<f64, MissingRating> {
-        if_any(self.gear, self.gear.efficiency, 1.0, "efficiency_rated_2000rpm")
+        let gear = if_any(self.gear, self.gear.efficiency, 1.0, "efficiency_rated_2000rpm")?;
+        Ok(self.stage.efficiency * gear)
     }
 
     /// Output torque per newton metre at the motor: N η.
@@ -212,6 +226,7 @@ mod tests {
             gear_mass: GearMass::ComponentSet,
             bearing: BearingSource::OfGear,
             extras: ExtrasSource::NONE,
+            stage: Stage::NONE,
         };
         let inertia = drive.input_inertia_kgm2().unwrap();
         assert_eq!(inertia, 0.00312);
@@ -239,6 +254,7 @@ mod tests {
                 gear_mass,
                 bearing: BearingSource::OfGear,
                 extras: ExtrasSource::NONE,
+                stage: Stage::NONE,
             }
             .mass_kg()
         };

@@ -137,7 +137,7 @@ impl fmt::Display for Shortfall {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "joint {}: no drive holds; nearest {}: {}", self.joint, self.drive, self.check)?;
         if let Some(missing) = self.check.shortfall() {
-            let (digits, unit) = (digits_of(missing), self.check.kind.unit());
+            let (digits, unit) = (digits_of(missing), self.check.unit());
             write!(f, " (short by {missing:.digits$} {unit})")?;
         }
         let steps: Vec<_> = self.relaxations.iter().map(Relaxation::to_string).collect();

@@ -29,7 +29,7 @@
 //! Source of the rule (root mean square within the continuous torque): the selection guides of motor vendors, such as
 //! Oriental Motor, "Motor Sizing Basics Part 3: Acceleration Torque (and RMS Torque)".
 
-use super::demand::{JointDemand, JointMotion, input_speed_rpm};
+use super::demand::{JointDemand, JointMotion};
 use super::drive::Drive;
 use super::motor_curve;
 
@@ -56,8 +56,7 @@ impl MotorHeat {
         if !motion.checks_motor_heat {
             return Ok(Self::NONE);
         }
-        let continuous_nm =
-            motor_curve::continuous_torque_nm(drive.motor, input_speed_rpm(drive.gear, motion))?;
+        let continuous_nm = motor_curve::continuous_torque_nm(drive.motor, drive.motor_speed_rpm(motion))?;
         let (ratio, efficiency) = (drive.ratio(), drive.efficiency()?);
         let heat = Self {
             driving_per_nm: 1.0 / (ratio * efficiency * continuous_nm),

@@ -21,13 +21,13 @@ use crate::catalog::motor::Motor;
 ///
 /// ```
 /// use armwright::catalog::Catalogs;
-/// use armwright::arm::{BearingSource, ExtrasSource};
+/// use armwright::arm::{BearingSource, ExtrasSource, Stage};
 /// use armwright::catalog::GearMass;
 /// use armwright::sizing::{Drive, DriveLimits, MotionRequirement};
 ///
 /// let catalogs = Catalogs::builtin();
 /// let (gear, motor) = (catalogs.gear("HFUC-58-100").unwrap(), catalogs.motor("F11-10").unwrap());
-/// let drive = Drive { gear, motor, gear_mass: GearMass::ComponentSet, bearing: BearingSource::OfGear, extras: ExtrasSource::NONE };
+/// let drive = Drive { gear, motor, gear_mass: GearMass::ComponentSet, bearing: BearingSource::OfGear, extras: ExtrasSource::NONE, stage: Stage::NONE };
 /// let motion = MotionRequirement::default().joint_motion(1.35, None);
 /// let limits = DriveLimits::of(&drive, &motion).expect("nothing excludes this drive");
 /// assert!(limits.hold(&motion.demand_of_torques(500.0, 250.0)));
@@ -171,7 +171,7 @@ fn speeds_hold(drive: &Drive, motion: &JointMotion) -> Result<bool, MissingRatin
     let input_rpm = input_speed_rpm(drive.gear, motion);
     let gear_max = input_rpm <= gear_max_speed_rpm(drive.gear)?;
     let gear_mean = mean_input_speed_rpm(drive.gear, motion) <= gear_average_speed_rpm(drive.gear)?;
-    Ok(gear_max && gear_mean && input_rpm <= motor_max_speed_rpm(drive.motor)?)
+    Ok(gear_max && gear_mean && drive.motor_speed_rpm(motion) <= motor_max_speed_rpm(drive.motor)?)
 }
 
 /// A limit of a gear; none, which is infinite, where its kind has no such limit and its row states none.
@@ -207,7 +207,7 @@ pub(super) fn motor_continuous_nm(drive: &Drive) -> Rating {
 
 /// Output torque at which the accelerating motor gives its peak torque: (T_peak - J_in N α) N η.
 pub(super) fn motor_peak_nm(drive: &Drive, motion: &JointMotion) -> Rating {
-    let peak = motor_curve::peak_torque_nm(drive.motor, input_speed_rpm(drive.gear, motion))?;
+    let peak = motor_curve::peak_torque_nm(drive.motor, drive.motor_speed_rpm(motion))?;
     Ok((peak - drive.rotary_torque_motor_nm(motion)?) * drive.gain()?)
 }
 

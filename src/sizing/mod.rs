@@ -45,6 +45,7 @@ pub(crate) mod heat;
 pub(crate) mod limits;
 pub(crate) mod missing;
 mod motor_curve;
+pub(crate) mod rail;
 pub(crate) mod requirement;
 pub(crate) mod select;
 pub(crate) mod sheet;
@@ -67,6 +68,7 @@ pub use explain::{RejectedPart, Rejection, Relaxation, RelaxationKind, Shortfall
 pub use fit::{DriveWidths, FitRequirement, LinkRoom, MotorPlace};
 pub use heat::MotorHeat;
 pub use limits::{DriveLimits, Obstacle};
+pub use rail::{Ends, Rack, Screw};
 pub use requirement::{MotionRequirement, RequirementError};
 pub use select::{DriveFilter, DriveTable};
 pub use sheet::{JointSizingRow, render_rows};

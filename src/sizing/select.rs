@@ -8,6 +8,7 @@ use super::drive::Drive;
 use super::limits::DriveLimits;
 use crate::arm::bearing::{Bearing, BearingSource};
 use crate::arm::extras::ExtrasSource;
+use crate::arm::transmission::Stage;
 use crate::catalog::gear::{Gear, GearKind, GearMass};
 use crate::catalog::motor::{Motor, MotorKind};
 use std::ops::Range;
@@ -21,6 +22,8 @@ pub struct DriveFilter {
     pub bearing: BearingSource,
     /// Where the masses beyond gear, motor and bearing come from.
     pub extras: ExtrasSource,
+    /// Stage between motor and gear.
+    pub stage: Stage,
     /// Whether a gear must have a torsion curve, because the arm's deflection is computed.
     pub needs_torsion: bool,
     /// Series of gears, such as `CSG`.
@@ -46,6 +49,7 @@ impl DriveFilter {
             gear_mass,
             bearing: BearingSource::OfGear,
             extras: ExtrasSource::NONE,
+            stage: Stage::NONE,
             needs_torsion: false,
             gear_series: None,
             ratios: None,
@@ -100,6 +104,7 @@ pub struct DriveTable<'c> {
     gear_mass: GearMass,
     bearing: BearingSource,
     extras: ExtrasSource,
+    stage: Stage,
     needs_torsion: bool,
     gears: Vec<&'c Gear>,
     motors: Vec<&'c Motor>,
@@ -171,6 +176,7 @@ impl<'c> DriveTable<'c> {
             gear_mass: filter.gear_mass,
             bearing: filter.bearing,
             extras: filter.extras,
+            stage: filter.stage,
             needs_torsion: filter.needs_torsion,
             gears: gears.iter().filter(|g| filter.allows_gear(g)).collect(),
             motors: motors.iter().filter(|m| filter.allows_motor(m)).collect(),
@@ -197,28 +203,45 @@ impl<'c> DriveTable<'c> {
                 legal.push((mass_kg, drive, pair, limits));
             }
         }
-        // names settle ties, so that the order of the catalog files does not matter
-        legal.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| parts(&a.1).cmp(&parts(&b.1))));
-        for (mass_kg, _, pair, limits) in legal {
-            self.pairs.push(pair);
-            self.masses_kg.push(mass_kg);
-            self.limits.push(limits);
+        // places are sorted, because the limits are large; names settle ties, so that the order of the catalog files does
+        // not matter
+        let mut places: Vec<usize> = (0..legal.len()).collect();
+        places.sort_by(|&a, &b| {
+            let (a, b) = (&legal[a], &legal[b]);
+            a.0.total_cmp(&b.0).then_with(|| parts(&a.1).cmp(&parts(&b.1)))
+        });
+        for place in places {
+            let (mass_kg, _, pair, limits) = &legal[place];
+            self.pairs.push(*pair);
+            self.masses_kg.push(*mass_kg);
+            self.limits.push(*limits);
         }
     }
 
     /// Builds the ladder.
     fn raise_ladder(&mut self) {
-        for (index, limits) in self.limits.iter().enumerate() {
+        for index in 0..self.limits.len() {
+            let limits = self.limits[index];
             // whatever a covered drive holds, a lighter one holds too
-            if !self.ladder_limits.iter().any(|lighter| lighter.cover(limits)) {
-                self.ladder.push(index as u32);
-                self.ladder_limits.push(*limits);
-                self.ladder_reach.push(self.ladder_reach.last().map_or(*limits, |reach| reach.max(limits)));
+            if self.is_covered(&limits) {
+                continue;
             }
+            if self.ladder.len().is_multiple_of(FLIGHT) {
+                self.ladder_flights.push(limits);
+            } else if let Some(most) = self.ladder_flights.last_mut() {
+                *most = most.max(&limits);
+            }
+            self.ladder.push(index as u32);
+            self.ladder_limits.push(limits);
+            self.ladder_reach.push(self.ladder_reach.last().map_or(limits, |reach| reach.max(&limits)));
         }
-        let most =
-            |flight: &[DriveLimits]| flight[1..].iter().fold(flight[0], |most, limits| most.max(limits));
-        self.ladder_flights = self.ladder_limits.chunks(FLIGHT).map(most).collect();
+    }
+
+    /// Whether a step of the ladder covers these limits. No step of a flight does if the largest limits of the flight do not.
+    fn is_covered(&self, limits: &DriveLimits) -> bool {
+        let flights = self.ladder_flights.iter().zip(self.ladder_limits.chunks(FLIGHT));
+        let mut near = flights.filter(|(most, _)| most.cover(limits)).flat_map(|(_, flight)| flight);
+        near.any(|lighter| lighter.cover(limits))
     }
 
     fn all_pairs(&self) -> impl Iterator<Item = (Drive<'c>, Pair)> + '_ {
@@ -235,7 +258,14 @@ impl<'c> DriveTable<'c> {
 
     /// The drive of a gear and a motor in this joint.
     pub(crate) fn pair(&self, gear: &'c Gear, motor: &'c Motor) -> Drive<'c> {
-        Drive { gear, motor, gear_mass: self.gear_mass, bearing: self.bearing, extras: self.extras }
+        Drive {
+            gear,
+            motor,
+            gear_mass: self.gear_mass,
+            bearing: self.bearing,
+            extras: self.extras,
+            stage: self.stage,
+        }
     }
 
     /// Where the output bearing of the joint comes from.
@@ -460,7 +490,7 @@ mod tests {
             let mut slow = Vec::new();
             for gear in &gears {
                 for motor in &motors {
-                    let drive = Drive { gear, motor, gear_mass, bearing: BearingSource::OfGear, extras: ExtrasSource::NONE };
+                    let drive = Drive { gear, motor, gear_mass, bearing: BearingSource::OfGear, extras: ExtrasSource::NONE, stage: Stage::NONE };
                     if all_hold(&checks(&drive, &motion, &demand)) {
                         slow.push((drive.mass_kg().unwrap(), gear.id.clone(), motor.id.clone()));
                     }

@@ -61,6 +61,8 @@ pub struct JointSizingRow {
     pub joint_speed_rpm: f64,
     /// Speed of the motor \[rpm\].
     pub motor_speed_rpm: f64,
+    /// Speed of the gear's input while the joint cruises \[rpm\]: that of the motor, unless a stage lies between.
+    pub input_speed_rpm: f64,
     /// Mean speed of the motor over the cycle, rests included \[rpm\].
     pub mean_input_speed_rpm: f64,
     /// Number of emergency stops that the gear may bear in its life.
@@ -75,6 +77,8 @@ pub struct JointSizingRow {
     pub margin: Option<f64>,
     /// L10 of the wave-generator bearing \[h\].
     pub life_h: Option<f64>,
+    /// Whether the joint slides: its torques are then forces \[N\], and its speed is in m/s times 30/π.
+    pub slides: bool,
     /// Mass of the drive \[kg\].
     pub mass_kg: Option<f64>,
     /// Mass outboard of the next joint inward, as far as this joint: everything outboard, and this drive \[kg\].
@@ -128,7 +132,8 @@ impl JointSizingRow {
             bearing_life_h: allowed(CheckKind::BearingLife),
             bearing_margin: bearing_margin(&checks).filter(finite),
             joint_speed_rpm: rpm_from_rad_s(motion.speed_rad_s),
-            motor_speed_rpm: input_speed_rpm(drive.gear, motion),
+            motor_speed_rpm: drive.motor_speed_rpm(motion),
+            input_speed_rpm: input_speed_rpm(drive.gear, motion),
             mean_input_speed_rpm: mean_input_speed_rpm(drive.gear, motion),
             emergency_stops_allowed: stops_allowed(drive.gear, motion),
             gear: drive.gear.id.clone(),
@@ -136,6 +141,7 @@ impl JointSizingRow {
             binds: bound.map(|c| c.kind.label()),
             margin: bound.and_then(Check::torque_margin).filter(finite),
             life_h: allowed(CheckKind::GearLife),
+            slides: drive.gear.kind.slides(),
             mass_kg: drive.mass_kg().ok(),
             mass_passed_inward_kg,
             fails: remarks(checks.iter().filter(|c| c.state == CheckState::Fails)),
@@ -226,6 +232,17 @@ const CYCLE_HEADERS: [Header; 9] = [
     ("stops", "-", true),
 ];
 
+/// The same headers for joints that slide: forces along the travel in place of torques, and a speed in mm/s.
+fn of_rails<const N: usize>(headers: [Header; N]) -> [Header; N] {
+    let at_motor = ["rot.mot", "motor rms", "allowed"];
+    headers.map(|(name, unit, right)| match (name, unit) {
+        ("gear", _) => ("screw or rack", unit, right),
+        ("speed", _) => (name, "mm/s", right),
+        (_, "N m") if !at_motor.contains(&name) => (name, "N", right),
+        _ => (name, unit, right),
+    })
+}
+
 /// What the output bearings carry.
 const BEARING_HEADERS: [Header; 7] = [
     ("joint", "", false),
@@ -244,9 +261,19 @@ const REPRESENTATIVE: &str = "~ at the gear's efficiency at the mean speed and t
 /// The rows as text tables of about 120 characters a line: the drives, the whole cycle, and the output bearings if there
 /// are any. Remarks on checks that failed or could not be made follow them.
 pub fn render_rows(rows: &[JointSizingRow]) -> String {
-    let mut text = table(&HEADERS, rows.iter().map(cells));
-    text.push_str("\nover the cycle:\n");
-    text.push_str(&table(&CYCLE_HEADERS, rows.iter().map(cycle_cells)));
+    let (sliding, turning): (Vec<_>, Vec<_>) = rows.iter().partition(|row| row.slides);
+    let mut text = String::new();
+    for (rows, headers, cycle) in
+        [(&turning, HEADERS, CYCLE_HEADERS), (&sliding, of_rails(HEADERS), of_rails(CYCLE_HEADERS))]
+    {
+        if rows.is_empty() {
+            continue;
+        }
+        let above = if text.is_empty() { "" } else { "\n" };
+        text.push_str(&format!("{above}{}", table(&headers, rows.iter().map(|row| cells(row)))));
+        text.push_str("\nover the cycle:\n");
+        text.push_str(&table(&cycle, rows.iter().map(|row| cycle_cells(row))));
+    }
     if rows.iter().any(|row| row.cycle_efficiency.is_some()) {
         text.push_str(REPRESENTATIVE);
     }
@@ -292,7 +319,10 @@ fn cells(row: &JointSizingRow) -> [String; 15] {
         or_open(row.rotary_torque_motor_nm, 3),
         or_open(row.rotary_torque_output_nm, 2),
         or_open(row.total_torque_nm, 1),
-        digits(row.joint_speed_rpm, 1),
+        match row.slides {
+            true => digits(row.joint_speed_rpm * super::RAD_S_PER_RPM * 1e3, 1),
+            false => digits(row.joint_speed_rpm, 1),
+        },
         digits(row.motor_speed_rpm, 0),
         row.gear.clone(),
         shortened(&row.motor),
@@ -365,6 +395,7 @@ mod tests {
             gear_mass: GearMass::ComponentSet,
             bearing: BearingSource::OfGear,
             extras: ExtrasSource::NONE,
+            stage: crate::arm::Stage::NONE,
         };
         JointSizingRow::new("j2", &drive, &motion, &motion.demand(568.3, 0.0), 80.0)
     }
@@ -395,6 +426,7 @@ mod tests {
             gear_mass: GearMass::ComponentSet,
             bearing: BearingSource::OfGear,
             extras: ExtrasSource::NONE,
+            stage: crate::arm::Stage::NONE,
         };
         let row = JointSizingRow::new("j2", &drive, &motion, &motion.demand(400.0, 1.0), 80.0);
         let life = row.checks.iter().find(|c| c.kind == CheckKind::GearLife).unwrap();
@@ -433,6 +465,7 @@ mod tests {
             gear_mass: GearMass::ComponentSet,
             bearing: BearingSource::OfGear,
             extras: ExtrasSource::NONE,
+            stage: crate::arm::Stage::NONE,
         };
         let row = JointSizingRow::new("j2", &drive, &motion, &motion.demand_of_torques(500.0, 100.0), 0.0);
         assert_eq!(row.fails[0], "gear peak 600 N m needed, 568 allowed");

@@ -31,6 +31,7 @@ pub(crate) fn housed<'c>(gear: &'c Gear, motor: &'c Motor) -> Drive<'c> {
         gear_mass: GearMass::HousedUnit,
         bearing: BearingSource::OfGear,
         extras: ExtrasSource::NONE,
+        stage: crate::arm::Stage::NONE,
     }
 }
 

@@ -1,14 +1,20 @@
 //! One complete design: its number, its parts, its arm, and its objectives by the full model.
 
 use super::bearing_loads::resolved;
-use super::design_space::{DriveChoice, LinkOption, SpaceJoint, SpacePiece};
+use super::design_space::{DriveChoice, LinkOption, MotorPlace, SpaceJoint, SpacePiece};
+pub(crate) use super::full_model::full_deflection_m;
 pub use super::full_model::{full_objectives, objectives_with};
 use super::levels::OutwardIn;
+use super::prismatic::SpacePrismatic;
 use super::problem::{ArmProblem, Partial};
+use crate::arm::body::RigidBody;
 use crate::arm::load::LoadCase;
+use crate::arm::prismatic::Prismatic;
+use crate::arm::transmission::{Hung, HungOn};
 use crate::arm::{Arm, Element, Joint};
 use crate::pareto::objectives::Objectives;
 use crate::sizing::drive::Drive;
+use nalgebra::Matrix3;
 
 /// The part chosen for one piece of the arm.
 #[derive(Debug, Clone)]
@@ -92,10 +98,10 @@ impl<'c> ArmProblem<'c> {
             .zip(self.options(complete))
             .map(|((piece, what), option)| match what {
                 SpacePiece::Choice(choice) => Part::Link(&choice.options[option as usize]),
-                SpacePiece::Joint(_) => self
+                SpacePiece::Joint(_) | SpacePiece::Prismatic(_) => self
                     .sized_joint(piece)
                     .map_or(Part::Given, |s| Part::Drive(s.table.drive(option as usize))),
-                SpacePiece::Prismatic(_) | SpacePiece::Link(_) => Part::Given,
+                SpacePiece::Link(_) => Part::Given,
             })
             .collect()
     }
@@ -108,21 +114,30 @@ impl<'c> ArmProblem<'c> {
     /// A complete arm with every part resolved to numbers; `None` if the catalog leaves a mass blank.
     pub(crate) fn arm_of(&self, complete: &Partial) -> Option<Arm> {
         let space = self.space();
-        let chain = space
+        let parts = self.parts_of(complete);
+        let mut chain = space
             .pieces
             .iter()
-            .zip(self.parts_of(complete))
+            .zip(&parts)
             .map(|(piece, part)| match (piece, part) {
                 (SpacePiece::Choice(choice), Part::Link(option)) => Some(Element::Link(choice.link(option))),
                 (SpacePiece::Link(link), _) => Some(Element::Link(link.clone())),
+                (SpacePiece::Prismatic(slide), Part::Drive(drive)) => {
+                    rail_with(slide, drive).map(Element::Prismatic)
+                }
                 (SpacePiece::Prismatic(slide), _) => Some(Element::Prismatic(slide.joint.clone())),
                 (SpacePiece::Joint(joint), Part::Drive(drive)) => {
-                    joint_with(joint, &drive).map(Element::Joint)
+                    joint_with(joint, drive).map(Element::Joint)
                 }
                 (SpacePiece::Joint(joint), _) => given_joint(joint).map(Element::Joint),
                 _ => None,
             })
             .collect::<Option<Vec<_>>>()?;
+        for (piece, part) in space.pieces.iter().zip(&parts) {
+            if let (SpacePiece::Joint(joint), Part::Drive(drive)) = (piece, part) {
+                stand_elsewhere(joint, drive, &mut chain);
+            }
+        }
         Some(Arm {
             name: space.name.clone(),
             gravity_m_s2: space.gravity_m_s2,
@@ -178,19 +193,35 @@ fn with_levers(mut chain: Vec<Element>) -> Vec<Element> {
     chain
 }
 
+/// Puts the motor of a joint on the element that carries it, if it does not stand at the joint.
+fn stand_elsewhere(joint: &SpaceJoint, drive: &Drive, chain: &mut [Element]) {
+    let Some(MotorPlace { piece, moves, point_m }) = joint.motor_place else { return };
+    let on = if moves { HungOn::Moving } else { HungOn::Start };
+    let body = RigidBody { mass_kg: joint.away_kg(drive), cg_m: point_m, inertia_kgm2: Matrix3::zeros() };
+    chain[piece].carrier().carry(&Hung { element: piece, on, body });
+}
+
+/// A prismatic joint with its screw or rack and its motor; `None` if the catalog leaves a mass blank.
+fn rail_with(slide: &SpacePrismatic, drive: &Drive) -> Option<Prismatic> {
+    let joint = slide.driven_by(drive.gear);
+    Some(Prismatic { fixed_mass_kg: joint.fixed_mass_kg + drive.mass_kg().ok()?, ..joint })
+}
+
 /// A joint with a drive of the catalogs, with its bearing and extras; `None` if the catalog leaves a mass blank.
 pub(crate) fn joint_with(joint: &SpaceJoint, drive: &Drive) -> Option<Joint> {
     Some(Joint {
         name: joint.name.clone(),
         axis: joint.axis,
         curve: joint.curve_with(drive.gear),
-        mass_kg: drive.mass_kg().ok()?,
+        mass_kg: drive.mass_kg().ok()? - joint.away_kg(drive),
         bearing: joint.bearing_with(drive),
         extras: drive.extras(),
         bodies: joint.bodies.clone(),
         gear: Some(drive.gear.id.clone()),
         motor: Some(drive.motor.id.clone()),
         coupled: None,
+        stages: joint.stages.rigid(),
+        turns_with: joint.turns_with.clone(),
     })
 }
 
@@ -208,6 +239,8 @@ fn given_joint(joint: &SpaceJoint) -> Option<Joint> {
         gear: gear.clone(),
         motor: motor.clone(),
         coupled: joint.coupled.clone(),
+        stages: joint.stages.rigid(),
+        turns_with: joint.turns_with.clone(),
     })
 }
 
@@ -248,6 +281,9 @@ mod tests {
             fit: Default::default(),
             connection_share: 0.0,
             coupled: None,
+            stages: Default::default(),
+            motor_place: None,
+            turns_with: Vec::new(),
         };
         let given = given_joint(&joint).expect("given");
         assert_eq!((given.curve, given.mass_kg), (Curve::Linear(4e5), 3.2));

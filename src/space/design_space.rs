@@ -8,12 +8,14 @@ use crate::arm::effect::entry::Effect;
 use crate::arm::extras::ExtrasSource;
 use crate::arm::file::windup_of;
 use crate::arm::joint_law::Curve;
+use crate::arm::linkage::composed;
 use crate::arm::load::Payload;
 use crate::arm::load::Water;
 use crate::arm::pose::{DrivenJoint, Motion};
 use crate::arm::section::{LinkMaterial, Section};
 use crate::arm::springs::{Side, Spring};
 use crate::arm::structure::Beam;
+use crate::arm::transmission::Stages;
 use crate::arm::{JointModel, Link, LinkBody, LinkModel};
 use crate::catalog::gear::Gear;
 use crate::sizing::demand::JointMotion;
@@ -76,6 +78,9 @@ use std::sync::Arc;
 ///             fit: FitRequirement::default(),
 ///             connection_share: 0.0,
 ///             coupled: None,
+///             stages: Default::default(),
+///             motor_place: None,
+///             turns_with: Vec::new(),
 ///         }),
 ///         SpacePiece::Choice(LinkChoice {
 ///             name: "upper_arm".into(),
@@ -181,6 +186,18 @@ impl SpacePiece {
         }
     }
 
+    /// Where the motor of a drive that is sized stands, if not at its joint. The piece has this number.
+    pub(crate) fn motor_place(&self, number: usize) -> Option<MotorPlace> {
+        match self {
+            Self::Joint(joint) => joint.motor_place,
+            Self::Prismatic(slide) => {
+                let stays = MotorPlace { piece: number, moves: false, point_m: Vector3::zeros() };
+                slide.drive.as_ref().map(|_| stays)
+            }
+            Self::Link(_) | Self::Choice(_) => None,
+        }
+    }
+
     /// The choices of a link; `None` for a piece that leaves no section open.
     pub(crate) fn as_choice(&self) -> Option<&LinkChoice> {
         match self {
@@ -229,6 +246,24 @@ pub struct SpaceJoint {
     /// The angle of a passive joint: a sum of factors times the angles of driven joints inboard of it. `None` for a driven
     /// joint, which has an entry in every pose.
     pub coupled: Option<Vec<(String, f64)>>,
+    /// Stages between motor, gear and joint. Those of a drive that is given yield in its curve already.
+    pub stages: Stages,
+    /// Where the motor of a drive that is sized stands, if not at the joint.
+    pub motor_place: Option<MotorPlace>,
+    /// How far a driven joint turns per turn of joints inboard of it while its own motor stands; empty unless its motor sits
+    /// inboard of them.
+    pub turns_with: Vec<(String, f64)>,
+}
+
+/// Where a motor stands that is not at its joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MotorPlace {
+    /// Number of the piece that carries it.
+    pub piece: usize,
+    /// Whether it moves with that piece; if not, it stands where the chain begins.
+    pub moves: bool,
+    /// Where it is, from the start of the piece in the frame that it carries \[m\].
+    pub point_m: Vector3<f64>,
 }
 
 /// How a joint's drive is found.
@@ -305,7 +340,14 @@ impl SpaceJoint {
     /// Torsion curve of the joint with a gear of the catalogs, its connections included; rigid if the gear has none.
     pub(crate) fn curve_with(&self, gear: &Gear) -> Curve {
         let yields = 1.0 + self.connection_share;
-        windup_of(gear).map_or(Curve::Rigid, |windup| Curve::Windup(windup.stiffened(1.0 / yields)))
+        let of_gear =
+            windup_of(gear).map_or(Curve::Rigid, |windup| Curve::Windup(windup.stiffened(1.0 / yields)));
+        of_gear.in_series(self.stages.before.rad_per_nm / (gear.ratio * gear.ratio))
+    }
+
+    /// Mass of what sits elsewhere than the joint with this drive \[kg\]: of a motor that does, its own.
+    pub(crate) fn away_kg(&self, drive: &Drive) -> f64 {
+        self.motor_place.and(drive.motor.mass_kg).unwrap_or(0.0)
     }
 
     /// Output bearing of the joint with a drive of the catalogs, its connections included.
@@ -327,6 +369,14 @@ impl SpaceJoint {
 }
 
 impl DriveChoice {
+    /// Among which parts the drive is sized; `None` if it is given.
+    pub(crate) fn filter(&self) -> Option<&DriveFilter> {
+        match self {
+            DriveChoice::FirstFit(filter) | DriveChoice::AllFits(filter) => Some(filter),
+            DriveChoice::Given { .. } => None,
+        }
+    }
+
     /// Whether the search chooses the drive.
     pub fn is_open(&self) -> bool {
         matches!(self, DriveChoice::AllFits(_))
@@ -385,7 +435,7 @@ impl LinkOption {
     }
 }
 
-/// One driver of a passive joint, by the numbers of their pieces.
+/// A joint that turns another beside its own drive, by the numbers of their pieces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SpaceLinkage {
     pub driver: usize,
@@ -401,9 +451,19 @@ fn in_words(list: [Option<String>; 2]) -> Option<String> {
 }
 
 impl DesignSpace {
-    /// Whether linkages turn passive joints.
+    /// Whether a joint turns with others: linkages turn it, or its motor sits beyond other joints.
     pub fn has_linkages(&self) -> bool {
-        self.joints().any(|(_, joint)| joint.coupled.is_some())
+        self.joints().any(|(_, joint)| joint.coupled.is_some() || !joint.turns_with.is_empty())
+    }
+
+    /// Whether a motor of a drive that is sized stands elsewhere than its joint, or at the end of a rail.
+    pub fn has_motors_elsewhere(&self) -> bool {
+        self.pieces.iter().any(|piece| piece.motor_place(0).is_some())
+    }
+
+    /// Whether the drive of a prismatic joint is sized.
+    fn sizes_rails(&self) -> bool {
+        self.pieces.iter().any(|piece| matches!(piece, SpacePiece::Prismatic(slide) if slide.drive.is_some()))
     }
 
     /// What the bounds of the exact search do not cover in this space, in words for people; `None` if they cover all of it.
@@ -411,7 +471,12 @@ impl DesignSpace {
         let is_known =
             |effect: &&Effect| effect.is_of_test() || effect.kind().is_none_or(|kind| kind.traits.in_bounds);
         let law = self.effects.iter().find(|effect| !is_known(effect)).map(Effect::label);
-        in_words([self.has_linkages().then(|| "coupled joints".into()), law])
+        let motors = match (self.sizes_rails(), self.has_motors_elsewhere()) {
+            (true, _) => Some("rails whose drive is sized".to_string()),
+            (false, elsewhere) => elsewhere.then(|| "motors that sit elsewhere than their joints".into()),
+        };
+        let turns = self.has_linkages().then(|| "joints that turn with others".to_string());
+        in_words([in_words([turns, motors]), law])
     }
 
     /// What the bounds of the verifier and of the relaxation do not cover in this space, in words for people; `None` if they
@@ -443,16 +508,20 @@ impl DesignSpace {
         })
     }
 
-    /// Every driver of every passive joint.
+    /// Every joint that turns another beside its own drive.
     pub(crate) fn linkages(&self) -> Vec<SpaceLinkage> {
-        let piece = |name: &str| self.joints().find(|(_, joint)| joint.name == name).map(|(piece, _)| piece);
+        let named = |name: &str| self.joints().find(|(_, joint)| joint.name == name);
+        let direct = |name: &str| {
+            let terms =
+                |(_, joint): (usize, &SpaceJoint)| joint.coupled.clone().unwrap_or(joint.turns_with.clone());
+            named(name).map_or(Vec::new(), terms)
+        };
         let of = |(passive, joint): (usize, &SpaceJoint)| -> Vec<SpaceLinkage> {
-            let terms = joint.coupled.iter().flatten();
-            terms
-                .filter_map(|(name, factor)| {
-                    Some(SpaceLinkage { driver: piece(name)?, passive, factor: *factor })
-                })
-                .collect()
+            let all = composed(&joint.name, &direct).into_iter();
+            let linkage = |(name, factor): (String, f64)| {
+                Some(SpaceLinkage { driver: named(&name)?.0, passive, factor })
+            };
+            all.filter_map(linkage).collect()
         };
         self.joints().flat_map(of).collect()
     }

@@ -4,7 +4,7 @@
 //! tilts, or a mass. The code that applies an effect to an arm file applies it here too, so the search, `analyze` and
 //! `reconcile` compute the same thing. Stations, rows and lanes know pieces only; they know nothing of effects.
 
-use super::design_space::{DesignSpace, SpaceJoint, SpacePiece};
+use super::design_space::{DesignSpace, MotorPlace, SpaceJoint, SpacePiece};
 use super::prismatic::SpacePrismatic;
 use crate::arm::bearing::Bearing;
 use crate::arm::body::{JointBodies, RigidBody, total_kg};
@@ -30,6 +30,8 @@ pub(crate) enum Layer<'s> {
     Guide(GuideSpring<'s>),
     /// A spring of the output bearing of the gear that is chosen for a joint.
     Bearing(BearingSpring<'s>),
+    /// The motor of a joint further out whose drive is sized.
+    Motor(MotorElsewhere),
     /// A point mass at a joint that an effect adds: it weighs, but is none of the links and drives whose mass counts
     /// \[kg\].
     Mass(f64),
@@ -41,6 +43,16 @@ pub(crate) enum Layer<'s> {
     Bodies(Carried<'s>),
     /// What the springs that balance the arm do to a part of it.
     Springs(Side),
+}
+
+/// A motor that stands elsewhere than its joint.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct MotorElsewhere {
+    /// Number of the piece that is its joint.
+    pub of: usize,
+    pub place: MotorPlace,
+    /// Whether it stands where its piece ends rather than where it begins: outboard of a joint.
+    is_at_end: bool,
 }
 
 /// Rigid bodies of a piece.
@@ -131,6 +143,7 @@ impl<'s> Layer<'s> {
         let is_carriage = |slide: &SpacePrismatic| slide.joint.moves == Moves::Carriage;
         match self {
             Layer::Bodies(Carried { by: Carrier::RotatedFrame, .. }) | Layer::Travelling(_) => true,
+            Layer::Motor(motor) => motor.is_at_end,
             Layer::Guide(spring) => is_carriage(spring.slide),
             Layer::Piece(SpacePiece::Prismatic(slide)) => is_carriage(slide),
             _ => false,
@@ -195,6 +208,8 @@ impl DesignSpace {
                     let by = if is_tube { Carrier::Tube } else { Carrier::Frame };
                     out.extend(carried(&link.bodies, by).map(|bodies| (index, bodies)));
                     out.extend(self.pulled(index, Side::Moving(index)));
+                    out.extend(self.motors_on(index, true));
+                    out.extend(self.motors_on(index, false));
                     out.extend(self.root_springs(link).map(|tilt| (index, tilt)));
                     continue;
                 }
@@ -202,12 +217,15 @@ impl DesignSpace {
                     out.push((index, Layer::Piece(piece)));
                     out.extend(carried(&choice.bodies, Carrier::Tube).map(|bodies| (index, bodies)));
                     out.extend(self.pulled(index, Side::Moving(index)));
+                    out.extend(self.motors_on(index, true));
+                    out.extend(self.motors_on(index, false));
                     out.extend(self.root_springs(&choice.first_link()).map(|tilt| (index, tilt)));
                     continue;
                 }
             };
             out.extend(carried(&joint.bodies.rotating, Carrier::RotatedFrame).map(|bodies| (index, bodies)));
             out.extend(self.pulled(index, Side::Moving(index)));
+            out.extend(self.motors_on(index, true));
             let bearing = joint.bearing.stated();
             let affected = self.joint_piece(joint, Curve::Rigid, bearing);
             if joint.bearing_is_open() {
@@ -226,6 +244,7 @@ impl DesignSpace {
             }
             out.extend(carried(&joint.bodies.fixed, Carrier::Frame).map(|bodies| (index, bodies)));
             out.extend(self.pulled(index, Side::Fixed(index)));
+            out.extend(self.motors_on(index, false));
         }
         out.extend(self.pulled(0, Side::Base));
         let base = self.surroundings();
@@ -255,12 +274,14 @@ impl DesignSpace {
             out.push((index, Layer::Travelling(added_kg)));
         }
         out.extend(self.pulled(index, Side::Moving(index)));
+        out.extend(self.motors_on(index, true));
         out.push((index, Layer::Piece(piece)));
         let springs = affected.guide_rad_per_nm.iter().enumerate().filter(|(_, c)| **c > 0.0);
         out.extend(
             springs.map(|(which, c)| (index, Layer::Guide(GuideSpring { slide, which, rad_per_nm: *c }))),
         );
         out.extend(carried(&slide.staying, Carrier::Frame).map(|bodies| (index, bodies)));
+        out.extend(self.motors_on(index, false));
     }
 
     /// A prismatic joint with the effects at it.
@@ -296,6 +317,15 @@ impl DesignSpace {
     fn pulled(&self, piece: usize, on: Side) -> Option<(usize, Layer<'_>)> {
         let is_pulled = self.springs.iter().any(|spring| spring.sides().contains(&on));
         is_pulled.then_some((piece, Layer::Springs(on)))
+    }
+
+    /// The motors that stand on a piece and move with it, or those that do not; of a rail that is sized its screw too.
+    fn motors_on(&self, piece: usize, moves: bool) -> impl Iterator<Item = (usize, Layer<'_>)> {
+        let is_joint = !matches!(self.pieces[piece], SpacePiece::Link(_) | SpacePiece::Choice(_));
+        self.pieces.iter().enumerate().filter_map(move |(of, what)| {
+            let place = what.motor_place(of).filter(|place| place.piece == piece && place.moves == moves)?;
+            Some((piece, Layer::Motor(MotorElsewhere { of, place, is_at_end: is_joint && moves })))
+        })
     }
 
     /// The springs of the frame at the root of a link.
@@ -399,6 +429,7 @@ fn nominal_joint(joint: &SpaceJoint, curve: Curve) -> JointPiece {
         mass_kg: 0.0,
         bodies: JointBodies::default(),
         angle: JointAngle::Driven(0),
+        turns_with: Vec::new(),
     }
 }
 

@@ -6,9 +6,9 @@
 
 use super::design::{number, options};
 use super::design_space::{DesignSpace, Excerpt, LinkChoice, LinkOption, SpacePiece};
+use super::joints::TabulatedJoints;
 use super::problem::ArmProblem;
-use super::slot::{Slot, joint_slot};
-use super::station::reaches_m;
+use super::slot::Slot;
 use crate::catalog::Catalogs;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -16,33 +16,41 @@ use std::sync::Arc;
 impl DesignSpace {
     /// Number of options of each level, tip first. It is found without tabulating the options of links.
     pub fn level_sizes(&self, catalogs: &Catalogs) -> Vec<u32> {
-        let sizing = self.sizing_cases.iter().map(|&i| &self.cases[i]);
-        let mut reaches = reaches_m(self, sizing).into_iter();
-        let mut sizes: Vec<u32> = self
-            .pieces
-            .iter()
-            .filter_map(|piece| match piece {
-                SpacePiece::Joint(joint) => {
-                    let slot = joint_slot(self, joint, reaches.next().unwrap_or_default(), catalogs);
-                    slot.is_level().then(|| slot.options())
-                }
-                SpacePiece::Choice(choice) => Some(choice.options.len() as u32),
-                SpacePiece::Prismatic(_) | SpacePiece::Link(_) => None,
-            })
-            .collect();
+        self.level_sizes_with(&TabulatedJoints::new(self, catalogs))
+    }
+
+    /// As [`level_sizes`](Self::level_sizes), of joints that are tabulated already.
+    fn level_sizes_with(&self, joints: &TabulatedJoints) -> Vec<u32> {
+        let size = |(place, piece): (usize, &SpacePiece)| match piece {
+            SpacePiece::Joint(_) => joints.get(place).filter(|slot| slot.is_level()).map(Slot::options),
+            SpacePiece::Choice(choice) => Some(choice.options.len() as u32),
+            SpacePiece::Prismatic(_) | SpacePiece::Link(_) => None,
+        };
+        let mut sizes: Vec<u32> = self.pieces.iter().enumerate().filter_map(size).collect();
         sizes.reverse();
         sizes
     }
 
     /// Number of designs; `None` if it does not fit into 128 bits.
     pub fn designs(&self, catalogs: &Catalogs) -> Option<u128> {
-        self.level_sizes(catalogs).into_iter().try_fold(1u128, |n, size| n.checked_mul(u128::from(size)))
+        self.designs_with(&TabulatedJoints::new(self, catalogs))
+    }
+
+    /// As [`designs`](Self::designs), of joints that are tabulated already.
+    pub(crate) fn designs_with(&self, joints: &TabulatedJoints) -> Option<u128> {
+        let sizes = self.level_sizes_with(joints);
+        sizes.into_iter().try_fold(1u128, |n, size| n.checked_mul(u128::from(size)))
     }
 
     /// The space reduced to the link options that the designs with these numbers use; `None` if one of the designs is
     /// not in the space.
     pub fn excerpt(&self, catalogs: &Catalogs, designs: &[u128]) -> Option<DesignSpace> {
-        let sizes = self.level_sizes(catalogs);
+        self.excerpt_with(&TabulatedJoints::new(self, catalogs), designs)
+    }
+
+    /// As [`excerpt`](Self::excerpt), of joints that are tabulated already.
+    pub(crate) fn excerpt_with(&self, joints: &TabulatedJoints, designs: &[u128]) -> Option<DesignSpace> {
+        let sizes = self.level_sizes_with(joints);
         let mut used: Vec<BTreeSet<u32>> = vec![BTreeSet::new(); sizes.len()];
         for &design in designs {
             for (used, option) in used.iter_mut().zip(options(&sizes, design)?) {

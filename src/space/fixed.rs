@@ -42,7 +42,14 @@ impl ArmProblem<'_> {
             false => GearMass::HousedUnit,
         };
         Some(FixedDrive {
-            drive: Drive { gear, motor, gear_mass, bearing: joint.bearing, extras: joint.extras },
+            drive: Drive {
+                gear,
+                motor,
+                gear_mass,
+                bearing: joint.bearing,
+                extras: joint.extras,
+                stage: joint.stages.before,
+            },
             mass_kg: *mass_kg,
             motion: joint.motion(&space.motion, reach_m),
         })

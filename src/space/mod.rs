@@ -21,6 +21,7 @@ pub(crate) mod fit;
 pub(crate) mod fixed;
 pub(crate) mod full_model;
 pub(crate) mod group;
+pub(crate) mod joints;
 pub(crate) mod levels;
 pub(crate) mod posed;
 pub mod prismatic;

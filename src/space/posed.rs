@@ -194,6 +194,7 @@ impl Builder<'_> {
             Layer::Tilt(tilt) => self.hinge(&tilt.axis(rotation)),
             Layer::Bearing(spring) => self.hinge(&spring.axis(rotation)),
             Layer::Guide(spring) => self.hinge(&spring.axis(rotation)),
+            Layer::Motor(motor) => self.weight_at(at_m + rotation * motor.place.point_m),
             Layer::Mass(mass_kg) | Layer::Travelling(mass_kg) | Layer::Extra(mass_kg) => {
                 self.body(*mass_kg, at_m)
             }
@@ -235,7 +236,15 @@ impl Builder<'_> {
 
     /// A joint or a spring at this place that moves everything outboard by a twist.
     fn spring(&self, twist: Twist) -> StationSlot {
-        let (at_m, _) = self.place;
+        self.mass_on(twist, &self.place.0)
+    }
+
+    /// What moves nothing, and has a mass at a point that depends on the design.
+    fn weight_at(&self, at_m: Vector3<f64>) -> StationSlot {
+        self.mass_on(Twist::zeros(), &at_m)
+    }
+
+    fn mass_on(&self, twist: Twist, at_m: &Vector3<f64>) -> StationSlot {
         StationSlot::Joint(StationJoint {
             twist,
             at_m: *at_m,

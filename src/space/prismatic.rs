@@ -1,16 +1,44 @@
-//! A prismatic joint of a study: its stiffness, guide and masses are given.
+//! A prismatic joint of a study: its guide and masses are given, and its drive is given or sized.
 
 use crate::arm::body::RigidBody;
 use crate::arm::prismatic::Prismatic;
+use crate::catalog::gear::Gear;
+use crate::sizing::demand::{JointMotion, LinearReading};
+use crate::sizing::requirement::MotionRequirement;
+use crate::sizing::select::DriveFilter;
 use nalgebra::{Matrix3, Vector3};
 
-/// A prismatic joint whose numbers the study gives.
+/// How the drive of a prismatic joint is sized: the lightest pair of a screw or rack and a motor that holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RailDrive {
+    /// Screws and racks to choose from, as gears whose ratings are forces.
+    pub gears: Vec<Gear>,
+    /// Which motors it may have.
+    pub motors: DriveFilter,
+    /// Largest speed that the study asks for \[m/s\]; `None`: that of the tip.
+    pub max_speed_m_s: Option<f64>,
+    /// Whether a brake holds the joint at rest, so that the motor need not.
+    pub has_brake: bool,
+}
+
+impl RailDrive {
+    /// The motion of the joint, with m/s for rad/s. What it moves has one acceleration, so Eq 8 is the force on its mass.
+    pub(crate) fn motion(&self, asked: &MotionRequirement) -> JointMotion {
+        let speed_m_s = self.max_speed_m_s.unwrap_or(asked.tip_speed_m_s);
+        let motion = asked.joint_motion(1.0, Some(speed_m_s)).with_linear_reading(LinearReading::Exact);
+        motion.of_joint(Some(speed_m_s), self.has_brake, None)
+    }
+}
+
+/// A prismatic joint of a study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpacePrismatic {
     /// The joint.
     pub joint: Prismatic,
     /// Smallest and largest travel \[mm\]; `None`: not stated.
     pub range_mm: Option<[f64; 2]>,
+    /// How its drive is sized; `None`: the stiffness of the joint is that of a given drive.
+    pub drive: Option<RailDrive>,
     /// All that stays where the joint begins.
     pub(crate) staying: Vec<RigidBody>,
     /// All that travels, measured from the moved point.
@@ -20,9 +48,14 @@ pub struct SpacePrismatic {
 impl SpacePrismatic {
     /// A joint with a range of travel \[mm\].
     pub fn new(joint: Prismatic, range_mm: Option<[f64; 2]>) -> Self {
-        let mut out = Self { joint, range_mm, staying: Vec::new(), travelling: Vec::new() };
+        let mut out = Self { joint, range_mm, drive: None, staying: Vec::new(), travelling: Vec::new() };
         out.collect_bodies();
         out
+    }
+
+    /// The joint with a screw or rack of this stiffness \[N/m\].
+    pub(crate) fn driven_by(&self, gear: &Gear) -> Prismatic {
+        Prismatic { stiffness_n_per_m: gear.single_slope_nm_per_rad(), ..self.joint.clone() }
     }
 
     /// Collects what stays and what travels from the masses and bodies of the joint.

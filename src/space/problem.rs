@@ -11,13 +11,14 @@ use super::effects::Layer;
 use super::fit::RoomAtJoint;
 use super::full_model::full_objectives;
 use super::group::Group;
+use super::joints::TabulatedJoints;
 use super::levels::OutwardIn;
 pub(crate) use super::slot::SizedJoint;
 pub(crate) use super::slot::Slot;
-use super::slot::{choice_slot, joint_slot, link_slot};
+use super::slot::{choice_slot, link_slot, rail_slot};
 use super::state::StationState;
 use super::station::{Block, BlockSlot, Modal, Station, StationSlot, reaches_m};
-use crate::arm::joint_law::JointLaw;
+use crate::arm::joint_law::{Curve, JointLaw};
 use crate::catalog::Catalogs;
 use crate::mechanics::Wrench;
 use crate::mechanics::lanes::LANES;
@@ -85,10 +86,13 @@ impl<'c> ArmProblem<'c> {
     /// The work grows with the number of link options and of cases; a space may be reduced first
     /// ([`DesignSpace::excerpt`]).
     pub fn new(space: &'c DesignSpace, catalogs: &'c Catalogs) -> Self {
+        Self::with_joints(space, &TabulatedJoints::new(space, catalogs))
+    }
+
+    /// As [`new`](Self::new), of joints that are tabulated already.
+    pub(crate) fn with_joints(space: &'c DesignSpace, joints: &TabulatedJoints<'c>) -> Self {
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
         let reaches = reaches_m(space, sizing);
-        // reaches are in order from the base and layers from the tip
-        let mut reaches_from_tip = reaches.iter().rev();
         let mut piece_slots = vec![0; space.pieces.len()];
         let mut slots: Vec<Slot> = Vec::new();
         for (piece, layer) in space.layers() {
@@ -96,15 +100,15 @@ impl<'c> ArmProblem<'c> {
                 piece_slots[piece] = slots.len();
             }
             slots.push(match layer {
-                Layer::Piece(SpacePiece::Joint(joint)) => {
-                    joint_slot(space, joint, reaches_from_tip.next().copied().unwrap_or_default(), catalogs)
+                Layer::Piece(SpacePiece::Joint(_)) => {
+                    // every joint of the space is tabulated
+                    joints.slot(piece).unwrap_or(Slot::Offset { mass_kg: 0.0 })
                 }
-                Layer::Piece(SpacePiece::Prismatic(slide)) => {
-                    Slot::Given { law: space.slide_law(slide), mass_kg: 0.0 }
-                }
+                Layer::Piece(SpacePiece::Prismatic(slide)) => rail_slot(space, slide, catalogs),
                 Layer::Piece(SpacePiece::Link(link)) => link_slot(space, link),
                 Layer::Piece(SpacePiece::Choice(choice)) => choice_slot(space, choice),
                 Layer::Bearing(_) => Slot::bearing(piece_slots[piece], &slots),
+                Layer::Motor(motor) => Slot::motor(piece_slots[motor.of], &slots),
                 Layer::Extra(mass_kg) => Slot::Offset { mass_kg },
                 Layer::Bodies(carried) => Slot::Offset { mass_kg: carried.mass_kg() },
                 Layer::Tilt(tilt) => Slot::Given { law: tilt.law(), mass_kg: 0.0 },
@@ -334,6 +338,10 @@ impl<'c> ArmProblem<'c> {
                 to.options[slot] = to.options[*joint];
                 self.add_joint(slot, &laws[to.options[slot] as usize], 0.0, to)
             }
+            Slot::Motor { joint, masses_kg } => {
+                to.options[slot] = to.options[*joint];
+                self.add_joint(slot, &JointLaw::from(Curve::Rigid), masses_kg[to.options[slot] as usize], to)
+            }
             Slot::Link { options, .. } => self.add_link(slot, option, &options[option as usize], to),
             Slot::Offset { mass_kg } => self.add_offset(slot, *mass_kg, to),
         };
@@ -355,7 +363,7 @@ impl<'c> ArmProblem<'c> {
     /// from the arm.
     fn add_drive(&self, slot: usize, sized: &SizedJoint, index: usize, to: &mut Partial) -> bool {
         to.options[slot] = index as u32;
-        self.add_joint(slot, &sized.laws[index], sized.table.mass_kg(index), to)
+        self.add_joint(slot, &sized.laws[index], sized.table.mass_kg(index) - sized.away_kg[index], to)
     }
 
     /// Demand on a joint: the largest static torque (Eq 7, and what acts on the joint beside weight and load) and the
@@ -556,8 +564,8 @@ impl OutwardIn for ArmProblem<'_> {
     }
 
     fn objectives(&self, complete: &Partial) -> Option<Objectives> {
-        // the passes for the lowest mode do not know linkages
-        if self.space.has_linkages() {
+        // the passes for the lowest mode do not know linkages, nor masses that depend on a drive elsewhere
+        if self.space.has_linkages() || self.space.has_motors_elsewhere() {
             return Some(full_objectives(&self.arm_of(complete)?, &self.load_cases()));
         }
         Some(objectives_over(self.judged(complete), complete))

@@ -2,21 +2,26 @@
 
 use super::attributes::{OptionAttributes, attributes_of};
 use super::design_space::{DesignSpace, DriveChoice, LinkChoice, LinkOption, SpaceJoint};
+use super::prismatic::SpacePrismatic;
+use crate::arm::bearing::BearingSource;
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::arm::structure::JointPiece;
 use crate::arm::{Link, LinkBody};
 use crate::catalog::Catalogs;
 use crate::sizing::demand::{JointDemand, JointMotion};
 use crate::sizing::select::{DriveFilter, DriveTable};
+use std::sync::Arc;
 
 /// What the search adds in one step.
 pub(crate) enum Slot<'c> {
     /// A joint with a given drive, or a spring that an effect adds.
     Given { law: JointLaw, mass_kg: f64 },
     /// A joint whose drive comes from the catalogs.
-    Sized(SizedJoint<'c>),
+    Sized(Arc<SizedJoint<'c>>),
     /// A spring of the bearing of a sized joint: the slot of the joint, and the law by its drives.
     Bearing { joint: usize, laws: Vec<JointLaw> },
+    /// The motor of a sized joint, which stands elsewhere: the slot of the joint, and the mass by its drives \[kg\].
+    Motor { joint: usize, masses_kg: Vec<f64> },
     /// A tube. It is a choice of the search if it is `open`; a given tube has one option.
     Link { options: Vec<OptionAttributes>, open: bool },
     /// A rigid offset with its point mass.
@@ -31,6 +36,8 @@ pub struct SizedJoint<'c> {
     pub(crate) laws: Vec<JointLaw>,
     /// Tilt of the output bearing of each drive per moment \[rad/(N m)\]: the gear's, and what an effect adds.
     pub(crate) tilts_rad_per_nm: Vec<f64>,
+    /// Mass of each drive that does not sit at the joint \[kg\]: of a motor elsewhere.
+    pub(crate) away_kg: Vec<f64>,
     /// Whether every drive that holds is an option of the search; if not, the lightest one that holds is taken.
     pub(crate) all_fits: bool,
 }
@@ -75,6 +82,7 @@ impl SizedJoint<'_> {
         self.table.mass_kg(a) == self.table.mass_kg(b)
             && self.laws[a] == self.laws[b]
             && self.tilts_rad_per_nm[a] == self.tilts_rad_per_nm[b]
+            && self.away_kg[a] == self.away_kg[b]
     }
 }
 
@@ -91,12 +99,25 @@ impl<'c> Slot<'c> {
         };
         Slot::Bearing { joint, laws }
     }
+
+    /// The motor of the joint in an earlier slot, which stands elsewhere.
+    pub(crate) fn motor(joint: usize, slots: &[Slot<'c>]) -> Self {
+        let masses_kg = match &slots[joint] {
+            Slot::Sized(sized) => sized.away_kg.clone(),
+            _ => Vec::new(),
+        };
+        Slot::Motor { joint, masses_kg }
+    }
 }
 
 impl Slot<'_> {
     /// Whether the search chooses here.
     pub(crate) fn is_level(&self) -> bool {
-        matches!(self, Slot::Link { open: true, .. } | Slot::Sized(SizedJoint { all_fits: true, .. }))
+        match self {
+            Slot::Link { open, .. } => *open,
+            Slot::Sized(sized) => sized.all_fits,
+            _ => false,
+        }
     }
 
     /// Number of options.
@@ -112,7 +133,7 @@ impl Slot<'_> {
     pub(crate) fn fixed_kg(&self) -> Option<f64> {
         match self {
             Slot::Given { mass_kg, .. } | Slot::Offset { mass_kg } => Some(*mass_kg),
-            Slot::Bearing { .. } => Some(0.0),
+            Slot::Bearing { .. } | Slot::Motor { .. } => Some(0.0),
             _ => None,
         }
     }
@@ -163,7 +184,13 @@ pub(crate) fn joint_slot<'c>(
     let table = DriveTable::build(
         &joint.name,
         motion,
-        &DriveFilter { bearing: joint.bearing, extras: joint.extras, needs_torsion: true, ..filter.clone() },
+        &DriveFilter {
+            bearing: joint.bearing,
+            extras: joint.extras,
+            stage: joint.stages.before,
+            needs_torsion: true,
+            ..filter.clone()
+        },
         &catalogs.gears,
         &catalogs.motors,
     );
@@ -175,7 +202,37 @@ pub(crate) fn joint_slot<'c>(
         .collect();
     let laws = pieces.iter().map(|piece| piece.law).collect();
     let tilts_rad_per_nm = pieces.iter().map(|piece| piece.tilt_rad_per_nm).collect();
-    Slot::Sized(SizedJoint { table, laws, tilts_rad_per_nm, all_fits })
+    let away_kg = (0..table.len()).map(|i| joint.away_kg(&table.drive(i))).collect();
+    Slot::Sized(Arc::new(SizedJoint { table, laws, tilts_rad_per_nm, away_kg, all_fits }))
+}
+
+/// The slot of a prismatic joint.
+pub(crate) fn rail_slot<'c>(
+    space: &DesignSpace,
+    slide: &'c SpacePrismatic,
+    catalogs: &'c Catalogs,
+) -> Slot<'c> {
+    let Some(drive) = &slide.drive else { return Slot::Given { law: space.slide_law(slide), mass_kg: 0.0 } };
+    let filter = DriveFilter {
+        bearing: BearingSource::Stated(None),
+        needs_torsion: true,
+        gear_kinds: None,
+        gear_series: None,
+        gear_ids: None,
+        ratios: None,
+        ..drive.motors.clone()
+    };
+    let motion = drive.motion(&space.motion);
+    let table = DriveTable::build(&slide.joint.name, motion, &filter, &drive.gears, &catalogs.motors);
+    let law = |i: usize| {
+        let joint = slide.driven_by(table.drive(i).gear);
+        space.slide_law(&SpacePrismatic { joint, ..slide.clone() })
+    };
+    let laws = (0..table.len()).map(law).collect();
+    let tilts_rad_per_nm = vec![0.0; table.len()];
+    // screw and motor stay where the joint begins
+    let away_kg = (0..table.len()).map(|i| table.mass_kg(i)).collect();
+    Slot::Sized(Arc::new(SizedJoint { table, laws, tilts_rad_per_nm, away_kg, all_fits: false }))
 }
 
 /// The slot of a link that the study gives.

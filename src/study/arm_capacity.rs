@@ -1,15 +1,20 @@
-//! How much an arm file holds at rest: the largest payload in each pose for which no joint bears more torque than it may.
+//! How much an arm file holds at rest: the largest payload in each pose for which no joint bears more torque, and no output bearing
+//! more load, than it may.
 //!
-//! An arm file says nothing of motion and duty, so only static torques are judged. They are affine in the mass of the payload, whose
-//! centre stays where the case has it. A joint's torque is limited by what a file states, such as the `import.json` of a robot; else
-//! by the average torque of its gear and the continuous torque of its motor, if the catalogs know them.
+//! An arm file says nothing of motion and duty, so only static loads are judged. The payload's centre stays where the case has it.
+//! Torques are affine in the mass of the payload. A joint's torque is limited by what a file states, such as the `import.json` of a
+//! robot; else by the average torque of its gear and the continuous torque of its motor, if the catalogs know them. An output bearing
+//! is limited by its permissible moment and by its static safety at rest, if it has these ratings.
 
 use super::capacity::{AtPose, Capacity, Limit};
-use crate::arm::Arm;
 use crate::arm::load::LoadCase;
+use crate::arm::{Arm, Element};
 use crate::catalog::Catalogs;
 use crate::input::json::{Document, Faults, Node};
 use crate::mechanics::chain::Chain;
+use crate::mechanics::statics::JointLoad;
+use crate::sizing::bearing::{BearingLimits, BearingLoad};
+use crate::space::bearing_loads::resolved;
 
 /// The most torque that a joint may bear at rest.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,9 +71,12 @@ pub(crate) fn limits_of_parts(arm: &Arm, catalogs: &Catalogs) -> Vec<TorqueLimit
     let of_joint = |joint: &crate::arm::Joint| {
         let gear = joint.gear.as_ref().and_then(|name| catalogs.gear(name).ok());
         let motor = joint.motor.as_ref().and_then(|name| catalogs.motor(name).ok());
-        let average_nm = gear.and_then(|gear| gear.average_torque_limit_nm);
+        let average_nm = gear.and_then(|gear| Some(gear.average_torque_limit_nm? * joint.stages.after.ratio));
         let continuous_nm = gear.zip(motor).and_then(|(gear, motor)| {
-            Some(motor.rated_torque_nm? * gear.ratio * gear.efficiency.unwrap_or(1.0))
+            let stages = &joint.stages;
+            let efficiency =
+                stages.before.efficiency * gear.efficiency.unwrap_or(1.0) * stages.after.efficiency;
+            Some(motor.rated_torque_nm? * stages.whole_ratio(gear.ratio) * efficiency)
         });
         let limit = |check, most_nm: Option<f64>| {
             most_nm.map(|most_nm| TorqueLimit { joint: joint.name.clone(), check, most_nm })
@@ -115,7 +123,7 @@ fn limit(arm: &Arm, case: &LoadCase, limits: &[TorqueLimit]) -> Limit {
         chain.pose(&loaded).statics().joint_torques_nm
     };
     let (empty, one_kg) = (torques_nm(0.0), torques_nm(1.0));
-    let mut least = Limit { payload_kg: f64::INFINITY, piece: String::new(), check: String::new() };
+    let mut least = limit_of_bearings(arm, case);
     for limit in limits {
         let Some(index) = empty.iter().position(|(name, _)| *name == limit.joint) else { continue };
         let (without_nm, per_kg) = (empty[index].1, one_kg[index].1 - empty[index].1);
@@ -130,6 +138,92 @@ fn limit(arm: &Arm, case: &LoadCase, limits: &[TorqueLimit]) -> Limit {
     }
     least
 }
+
+/// The ratings of an output bearing of an arm, with the lever at which its link attaches.
+struct RatedBearing {
+    /// Name of the joint.
+    joint: String,
+    /// Lever along the axis from the centre of the bearing to the link \[m\].
+    lever_m: f64,
+    limits: BearingLimits,
+}
+
+impl RatedBearing {
+    /// The load at rest as a part of what is allowed, for both checks that a standing bearing has to pass.
+    fn uses(&self, load: &JointLoad) -> [(f64, &'static str); 2] {
+        let JointLoad { moment_nm, radial_n, axial_n } = *load;
+        let load = BearingLoad { moment_nm, radial_n, axial_n }.with_lever(self.lever_m);
+        [
+            (self.limits.moment_nm(&load) / self.limits.running_moment_nm, "bearing moment"),
+            (self.limits.static_load_n(&load) / self.limits.at_rest_n, "bearing static safety"),
+        ]
+    }
+}
+
+/// The output bearings of an arm.
+fn rated_bearings(arm: &Arm) -> impl Iterator<Item = RatedBearing> + '_ {
+    arm.chain.iter().enumerate().filter_map(|(at, element)| {
+        let Element::Joint(joint) = element else { return None };
+        let bearing = resolved(joint.bearing?, &joint.axis, arm.chain.get(at + 1));
+        Some(RatedBearing {
+            joint: joint.name.clone(),
+            lever_m: bearing.offset_m.unwrap_or_default().abs(),
+            // speed and life limit what a bearing bears while it turns, and an arm file says nothing of motion
+            limits: BearingLimits::of(Some(&bearing), 0.0, 0.0),
+        })
+    })
+}
+
+/// Whether any output bearing of an arm has a rating that limits its load at rest.
+pub(crate) fn has_rated_bearings(arm: &Arm) -> bool {
+    rated_bearings(arm).any(|b| b.limits.running_moment_nm.min(b.limits.at_rest_n).is_finite())
+}
+
+/// The largest payload in a case that all output bearings hold at rest. Their loads are norms of what is affine in the payload's mass,
+/// and so convex: those of no payload and of the largest one hold everything between.
+fn limit_of_bearings(arm: &Arm, case: &LoadCase) -> Limit {
+    let chain = Chain::new(&arm.structure_in(case), case.links);
+    let bearings: Vec<RatedBearing> = rated_bearings(arm).collect();
+    let worst = |payload_kg: f64| {
+        let mut loaded = case.clone();
+        loaded.payload.mass_kg = payload_kg;
+        let statics = chain.pose(&loaded).statics();
+        let loads = statics.joint_torques_nm.iter().zip(&statics.bearing_loads);
+        loads
+            .filter_map(|((name, _), load)| Some((bearings.iter().find(|b| b.joint == *name)?, load)))
+            .flat_map(|(bearing, load)| bearing.uses(load).map(|(part, check)| (part, bearing, check)))
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let none = Limit { payload_kg: f64::INFINITY, piece: String::new(), check: String::new() };
+    let fails = |payload_kg: f64| worst(payload_kg).is_some_and(|(part, ..)| part > 1.0);
+    let (mut held_kg, mut failed_kg) = (0.0, 1.0);
+    if fails(0.0) {
+        failed_kg = 0.0;
+    } else {
+        while !fails(failed_kg) {
+            (held_kg, failed_kg) = (failed_kg, 2.0 * failed_kg);
+            if failed_kg > MOST_PAYLOAD_KG {
+                return none;
+            }
+        }
+        while failed_kg - held_kg > SAME_PAYLOAD * failed_kg {
+            let middle_kg = 0.5 * (held_kg + failed_kg);
+            if fails(middle_kg) { failed_kg = middle_kg } else { held_kg = middle_kg }
+        }
+    }
+    match worst(failed_kg) {
+        Some((_, bearing, check)) => {
+            Limit { payload_kg: held_kg, piece: bearing.joint.clone(), check: check.into() }
+        }
+        None => none,
+    }
+}
+
+/// Payload beyond which nothing is said to limit an arm \[kg\].
+const MOST_PAYLOAD_KG: f64 = 1e9;
+
+/// Relative width of the interval in which the largest payload of the bearings is found.
+const SAME_PAYLOAD: f64 = 1e-13;
 
 #[cfg(test)]
 mod tests {

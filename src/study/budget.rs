@@ -21,7 +21,9 @@ use crate::relax::relaxation::Relaxation;
 use crate::report::budget::{BudgetRow, Gain, NextPart, PickBound, PickBudget, PieceKind};
 use crate::report::front_table::FrontTable;
 use crate::report::picks::{Pick, designs, picks};
-use crate::space::design::{evaluate, full_objectives, number, number_of, objectives_with};
+use crate::space::design::{
+    evaluate, full_deflection_m, full_objectives, number, number_of, objectives_with,
+};
 use crate::space::design_space::DesignSpace;
 use crate::space::design_space::SpacePiece;
 use crate::space::levels::OutwardIn;
@@ -97,25 +99,15 @@ fn budget(
     let heaviest_kg = objectives.mass_kg * MOST_OF_ARM;
     let row = |(piece, element): (usize, &Element)| {
         let mass_kg = element.mass_kg();
-        let with = |other: &Element| {
-            let mut changed = arm.clone();
-            changed.chain[piece] = other.clone();
-            gain(objectives, &full_objectives(&changed, &cases))
-        };
         let heavier = |kg: f64| kg > mass_kg * (1.0 + 1e-6) && kg - mass_kg <= heaviest_kg;
-        let next_part = others[piece]
-            .iter()
-            .filter(|(_, other)| heavier(other.mass_kg()))
-            .map(|(name, other)| NextPart { name: name.clone(), mass_kg: other.mass_kg(), gain: with(other) })
-            .filter(|next| next.gain.helps())
-            .min_by(|a, b| a.gain.mm_per_kg.total_cmp(&b.gain.mm_per_kg));
+        let others = others[piece].iter().filter(|(_, other)| heavier(other.mass_kg()));
         BudgetRow {
             piece: element.name().to_string(),
             kind: if matches!(element, Element::Link(_)) { PieceKind::Link } else { PieceKind::Joint },
             mass_kg,
             share: shares.of_element(element.name()).unwrap_or(0.0),
             in_place: Some(in_place(&arm, piece, &cases)),
-            next_part,
+            next_part: next_part(&arm, piece, others, objectives, &cases),
         }
     };
     let rows = |(piece, element): (usize, &Element)| {
@@ -124,6 +116,36 @@ fn budget(
     };
     let rows: Vec<Vec<BudgetRow>> = arm.chain.par_iter().enumerate().map(rows).collect();
     Some(rows.concat())
+}
+
+/// The heavier part that helps and has the best change of deflection per kilogram; among equals the first.
+///
+/// Deflections say which it is. The modes of the others are not asked for: they take most of the time of the full model.
+fn next_part<'o>(
+    arm: &Arm,
+    piece: usize,
+    others: impl Iterator<Item = &'o (String, Element)>,
+    objectives: &Objectives,
+    cases: &[LoadCase],
+) -> Option<NextPart> {
+    let with = |other: &Element| {
+        let mut changed = arm.clone();
+        changed.chain[piece] = other.clone();
+        changed
+    };
+    let mm_per_kg = |other: &Element| {
+        let changed = with(other);
+        let tip_deflection_m = full_deflection_m(&changed, cases);
+        gain(objectives, &Objectives { tip_deflection_m, mass_kg: changed.mass_kg(), ..*objectives })
+            .mm_per_kg
+    };
+    let mut by_deflection: Vec<(f64, &(String, Element))> =
+        others.map(|other| (mm_per_kg(&other.1), other)).collect();
+    by_deflection.sort_by(|a, b| a.0.total_cmp(&b.0));
+    by_deflection.into_iter().find_map(|(_, (name, other))| {
+        let gain = gain(objectives, &full_objectives(&with(other), cases));
+        gain.helps().then(|| NextPart { name: name.clone(), mass_kg: other.mass_kg(), gain })
+    })
 }
 
 /// Change from one design to another per kilogram.

@@ -11,11 +11,13 @@ use crate::pareto::front::nondominated;
 use crate::pareto::objectives::Objectives;
 use crate::report::front_table::FrontTable;
 use crate::report::number::significant;
+use crate::search::resume::Resume;
 use crate::search::sweep::Candidate;
 use crate::space::design::{id_of, number, number_of, options};
 use crate::space::levels::OutwardIn;
 use crate::space::problem::ArmProblem;
 use crate::verify::judge::{Judge, Judged, Pick};
+use crate::verify::ledger::Ledger;
 use crate::verify::missing::conditions;
 use crate::verify::settings::Settings;
 use rayon::prelude::*;
@@ -73,10 +75,30 @@ pub struct Claim<'t> {
 pub fn check_front(
     study: &Study,
     catalogs: &Catalogs,
-    Claim { table, gap, ties_listed, ties_csv }: &Claim,
+    claim: &Claim,
     stop: &AtomicBool,
     deadline: Option<Instant>,
 ) -> FrontCheck {
+    let until = (stop, deadline);
+    // without a state there is none that cannot be read
+    resume_check(study, catalogs, claim, until, None).unwrap_or_else(|why| FrontCheck {
+        faults: Vec::new(),
+        rows: 0,
+        completeness: Err(why),
+    })
+}
+
+/// As [`check_front`], from the state in `resume`; the states of this search for missing designs are kept.
+///
+/// # Errors
+/// The state is of another search, in words.
+pub fn resume_check(
+    study: &Study,
+    catalogs: &Catalogs,
+    Claim { table, gap, ties_listed, ties_csv }: &Claim,
+    until: (&AtomicBool, Option<Instant>),
+    resume: Option<Resume>,
+) -> Result<FrontCheck, String> {
     let mut faults = Vec::new();
     let ids: Vec<&str> = table.rows.iter().map(|row| row[0].as_str()).collect();
     let sizes = study.space.level_sizes(catalogs);
@@ -88,7 +110,8 @@ pub fn check_front(
         faults.push("a design_id is there twice, or is none".into());
     }
     let Some(space) = study.space.excerpt(catalogs, &known) else {
-        return FrontCheck { faults, rows: table.rows.len(), completeness: Err("no row is a design".into()) };
+        let completeness = Err("no row is a design".into());
+        return Ok(FrontCheck { faults, rows: table.rows.len(), completeness });
     };
     let problem = ArmProblem::new(&space, catalogs);
     let candidates: Vec<Candidate> = known.iter().filter_map(|&n| candidate(&problem, n)).collect();
@@ -108,7 +131,7 @@ pub fn check_front(
     let completeness = match gap {
         Some(gap) => {
             let front = Claimed { front: &front, gap: *gap, ties_listed: *ties_listed };
-            let look = look_for_missing(study, &judge, catalogs, &front, (stop, deadline));
+            let look = look_for_missing(study, &judge, catalogs, &front, until, resume)?;
             let missing = missing(study, &judge, catalogs, &front, (&problem, &rows), &look.designs);
             list(&mut faults, missing, "designs are missing");
             if *ties_listed && look.lacks_ties {
@@ -118,7 +141,7 @@ pub fn check_front(
         }
         None => Err("the run was stopped early and claims no more than its rows".into()),
     };
-    FrontCheck { faults, rows: table.rows.len(), completeness }
+    Ok(FrontCheck { faults, rows: table.rows.len(), completeness })
 }
 
 /// A row of a front, and its parts as the verifier names them.
@@ -159,19 +182,32 @@ fn look_for_missing(
     catalogs: &Catalogs,
     front: &Claimed,
     until: (&AtomicBool, Option<Instant>),
-) -> Look {
+    resume: Option<Resume>,
+) -> Result<Look, String> {
     let (stop, deadline) = until;
     let unseen = conditions(judge.question()).err();
     let (designs, boxes, open, lacks_ties) = match unseen {
         None => {
             let settings = Settings { apart: APART * front.gap, ..Default::default() };
-            let looked = judge.missing(&front.objectives(), settings, stop, deadline);
+            let keep = |state: &dyn Fn() -> Vec<u8>| {
+                let due = resume.filter(|resume| resume.keeper.is_due());
+                due.into_iter().for_each(|resume| resume.keeper.keep(&state()));
+            };
+            let ledger = match resume {
+                Some(Resume { from, .. }) => Ledger::resumed(from, &keep)?,
+                None => Ledger::default(),
+            };
+            let looked = judge.missing_since(&ledger, &front.objectives(), settings, until);
             let lacks_ties = front.gap == 0.0 && !looked.ties_listed;
             (looked.candidates, looked.boxes, looked.open, lacks_ties)
         }
         Some(_) => {
             let rows: Vec<Objectives> = front.front.iter().map(|d| d.design.objectives).collect();
             let search = Exact::new(&study.space, catalogs, stop, deadline).to_gap(front.gap);
+            let search = match resume {
+                Some(resume) => search.resumed(resume)?,
+                None => search,
+            };
             let found = search.run(&rows);
             let numbers: Vec<u128> = found.front.iter().map(|c| c.number).collect();
             let designs = judged(study, judge, catalogs, &numbers);
@@ -182,7 +218,7 @@ fn look_for_missing(
         0 => Ok(Completeness { boxes, gap: front.gap, by_exact_search: unseen }),
         open => Err(format!("stopped with {open} boxes or regions unopened")),
     };
-    Look { designs, completeness, lacks_ties }
+    Ok(Look { designs, completeness, lacks_ties })
 }
 
 /// Numbered designs of the whole study by the verifier's judge.

@@ -7,6 +7,8 @@ use super::relaxed_limits::{Limited, Relaxation};
 use crate::catalog::Catalogs;
 use crate::space::constraint::Constraints;
 use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint, SpacePiece};
+use crate::space::prismatic::SpacePrismatic;
+use crate::space::joints::TabulatedJoints;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
@@ -25,13 +27,15 @@ pub fn why_infeasible(
 ) -> String {
     let latest = Instant::now() + LONGEST;
     let deadline = deadline.map_or(latest, |deadline| deadline.min(latest));
-    let limited = Limited { space: &study.space, catalogs, stop, deadline };
+    let joints = TabulatedJoints::new(&study.space, catalogs);
+    let designs = study.space.designs_with(&joints);
+    let limited = Limited { space: &study.space, catalogs, joints, stop, deadline };
     let without_limits = DesignSpace { constraints: Constraints::default(), ..study.space.clone() };
     let reasons = match study.space.beyond_exact() {
         Some(unknown) => obstacles_alone(&without_limits, catalogs, &unknown),
         None => reasons(&limited, &without_limits),
     };
-    let head = match study.space.designs(catalogs) {
+    let head = match designs {
         Some(0) => format!("no design meets the study \"{}\"", study.name),
         Some(designs) => format!("no design of {designs} meets the study \"{}\"", study.name),
         None => format!("no design of more than 1e38 meets the study \"{}\"", study.name),
@@ -104,6 +108,7 @@ pub fn empty_pieces(space: &DesignSpace, catalogs: &Catalogs) -> Vec<String> {
             choice.name
         )),
         SpacePiece::Joint(joint) => no_drive_offered(joint, catalogs),
+        SpacePiece::Prismatic(slide) => no_motor_offered(slide, catalogs),
         _ => None,
     };
     space.pieces.iter().filter_map(words).collect()
@@ -132,6 +137,14 @@ fn parts_offered(joint: &SpaceJoint, catalogs: &Catalogs) -> Option<[usize; 2]> 
     let gears = catalogs.gears.iter().filter(|gear| filter.allows_gear(gear));
     let motors = catalogs.motors.iter().filter(|motor| filter.allows_motor(motor));
     Some([gears.count(), motors.count()])
+}
+
+/// A rail for whose drive the study leaves no motor, in words.
+fn no_motor_offered(slide: &SpacePrismatic, catalogs: &Catalogs) -> Option<String> {
+    let drive = slide.drive.as_ref()?;
+    let offered = catalogs.motors.iter().any(|motor| drive.motors.allows_motor(motor));
+    (!offered)
+        .then(|| format!("joint {}: \"drives\" leaves no motor of the catalogs; widen it", slide.joint.name))
 }
 
 /// A joint for whose drive the study leaves no gear or no motor, in words.

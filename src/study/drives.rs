@@ -1,9 +1,10 @@
 //! Reads `"drives"`: the parts among which the joints of a study are sized.
 
-use super::keys::DRIVES;
+use super::drive_keys::DRIVES;
 use super::motor_kinds::{read_motor_kinds, usual_motor_kinds};
 use crate::arm::bearing::BearingSource;
 use crate::arm::extras::ExtrasSource;
+use crate::arm::transmission::Stage;
 use crate::catalog::Catalogs;
 use crate::catalog::gear::{Gear, GearKind, GearMass};
 use crate::catalog::motor::{Motor, MotorKind};
@@ -61,6 +62,7 @@ pub(super) fn read_drives(node: &Node, catalogs: &Catalogs) -> Option<Drives> {
             gear_mass: gear_mass?,
             bearing: BearingSource::OfGear,
             extras: ExtrasSource::NONE,
+            stage: Stage::NONE,
             needs_torsion: false,
             gear_series: gear_series?,
             ratios: ratios?,

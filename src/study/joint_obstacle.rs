@@ -22,8 +22,14 @@ pub(super) fn joint_obstacles(space: &DesignSpace, catalogs: &Catalogs) -> Vec<S
     let mut found = Vec::new();
     while let Some((piece, words)) = first_obstacle(&space, catalogs) {
         found.push(words);
-        if let SpacePiece::Joint(joint) = &mut space.pieces[piece] {
-            joint.drive = DriveChoice::Given { curve: Curve::Rigid, mass_kg: 0.0, gear: None, motor: None };
+        match &mut space.pieces[piece] {
+            SpacePiece::Joint(joint) => {
+                joint.drive =
+                    DriveChoice::Given { curve: Curve::Rigid, mass_kg: 0.0, gear: None, motor: None };
+                joint.motor_place = None;
+            }
+            SpacePiece::Prismatic(slide) => slide.drive = None,
+            SpacePiece::Link(_) | SpacePiece::Choice(_) => {}
         }
     }
     if found.is_empty() {

@@ -1,17 +1,16 @@
 //! The keys of study files: what the readers of this room know, and what `armwright schema study` prints.
 
 use super::choose_keys::CHOOSE;
-use super::motor_kinds::MOTOR_WORDS;
+use super::drive_keys::DRIVES;
+use super::rail_keys::PRISMATIC;
 use crate::arm::case_keys::{JOINT_MODELS, LINK_MODELS, POSE_RULES};
 use crate::arm::file_keys::{EFFECT_LIST, GIVEN_LINK_RULES};
 use crate::arm::keys::{
-    BEARING_VALUE, COUNTERWEIGHTS, COUPLING, EXTRAS, GEAR_MASS, GRAVITY, JOINT_BODIES, LINK_BODIES,
-    MASS_FACTOR, PAYLOAD, PIECES, POSITIVE_OR_NULL, SECTION, SPRINGS, STIFFNESS_FACTOR, VECTOR, WATER,
-    WINDUP,
+    BEARING_VALUE, COUNTERWEIGHTS, COUPLING, EXTRAS, GEAR_AT, GEAR_MASS, GEAR_RATIO, GRAVITY, JOINT_BODIES,
+    LINK_BODIES, MASS_FACTOR, MOTOR_AT, MOTOR_MASS, MOTOR_POINT, PAYLOAD, PIECES, POSITIVE_OR_NULL, SECTION,
+    SPRINGS, STIFFNESS_FACTOR, TRANSMISSION, TRANSMISSION_RULES, TURNS_WITH, VECTOR, WATER, WINDUP,
 };
-use crate::arm::prismatic_keys;
-use crate::catalog::gear::GearKind;
-use crate::input::key::{Key, Kind, Rule, SCHEMA_ADDRESS, Shape, optional, required, words_of};
+use crate::input::key::{Kind, Rule, SCHEMA_ADDRESS, Shape, optional, required};
 use crate::input::schema::FileKind;
 
 /// A study file.
@@ -21,7 +20,6 @@ pub const STUDY_FILE: FileKind = FileKind {
     root: Kind::Object(&STUDY),
 };
 
-const TEXTS: Kind = Kind::List(&Kind::Text);
 const EXTRAS_VALUE: Kind = Kind::Either(&[Kind::Word(&["usual", "none"]), Kind::Object(&EXTRAS)]);
 const FIT_VALUE: Kind = Kind::Either(&[Kind::Object(&FIT), Kind::Null]);
 const DUTY: Kind = Kind::NonEmpty(&Kind::Object(&STATED_PHASE));
@@ -127,35 +125,6 @@ pub(super) static STUDY: Shape = Shape::new(
     &[],
 );
 
-/// A prismatic joint of a study.
-pub(super) static PRISMATIC: Shape = Shape::new(
-    "prismatic joint",
-    "A joint that slides everything after it along its axis; its numbers are given.",
-    &PRISMATIC_KEYS,
-    &[],
-);
-
-const PRISMATIC_KEYS: [Key; 10] = {
-    let mut keys = [RANGE_MM; 10];
-    let mut i = 0;
-    while i < prismatic_keys::KEYS.len() {
-        keys[i] = prismatic_keys::KEYS[i];
-        i += 1;
-    }
-    keys
-};
-
-const RANGE_MM: Key = optional(
-    "range_mm",
-    Kind::Array(2, &Kind::Number),
-    "mm",
-    "the travels of the poses",
-    "Smallest and largest travel of the joint.",
-);
-
-/// Keys of a joint whose drive is sized, which a prismatic joint has none of.
-pub(super) const OF_SIZED_DRIVE: [&str; 4] = ["drive", "drives", "gear", "motor"];
-
 const OF_GIVEN_DRIVE: [&str; 6] = ["stiffness_nm_per_rad", "windup", "gear", "motor", "gear_mass", "mass_kg"];
 
 /// A joint of a study.
@@ -242,6 +211,13 @@ pub(super) static JOINT: Shape = Shape::new(
             "none",
             "A passive joint of a linkage: the factors of the driven joints that turn it.",
         ),
+        MOTOR_AT,
+        MOTOR_POINT,
+        MOTOR_MASS,
+        GEAR_AT,
+        GEAR_RATIO,
+        TRANSMISSION,
+        TURNS_WITH,
     ],
     &[
         Rule::Any(&["drive", "stiffness_nm_per_rad", "windup", "gear"]),
@@ -252,6 +228,11 @@ pub(super) static JOINT: Shape = Shape::new(
         Rule::Needs("duty", &["drive", "motor"]),
         Rule::Needs("fit", &["drive", "motor"]),
         Rule::Refuses("coupled", &["drive", "motor", "range_deg", "max_speed_rad_s", "brake", "duty"]),
+        Rule::Refuses("drive", &["motor_mass_kg", "gear_at", "gear_ratio"]),
+        TRANSMISSION_RULES[0],
+        TRANSMISSION_RULES[1],
+        TRANSMISSION_RULES[2],
+        TRANSMISSION_RULES[3],
     ],
 );
 
@@ -439,41 +420,6 @@ pub(super) static STATED_PHASE: Shape = Shape::new(
         required("torque_nm", Kind::Number, "N m", "Torque; negative where the load drives the motor."),
         required("time_s", Kind::NonNegative, "s", "How long."),
         required("speed_rpm", Kind::NonNegative, "rpm", "Mean speed of the phase."),
-    ],
-    &[],
-);
-
-/// Which parts may be chosen.
-pub(super) static DRIVES: Shape = Shape::new(
-    "drives",
-    "Which catalog parts may be chosen; a part must pass every filter given.",
-    &[
-        optional("gear_series", TEXTS, "-", "all", "Series of gears."),
-        optional("gears", TEXTS, "-", "all", "Single gears by name."),
-        optional(
-            "gear_kinds",
-            Kind::List(&Kind::Word(&GearKind::WORDS)),
-            "-",
-            "strain_wave; all if gears or series are named",
-            "Kinds of gears.",
-        ),
-        optional("ratios", Kind::List(&Kind::Positive), "-", "all", "Ratios of gears."),
-        optional("gear_mass", GEAR_MASS, "-", "\"housed_unit\"", "Which mass of a gear counts."),
-        optional(
-            "actuators",
-            Kind::Either(&[Kind::Word(&["all"]), TEXTS]),
-            "-",
-            "none",
-            "Models of actuators, or all of them.",
-        ),
-        optional(
-            "motors",
-            Kind::List(&Kind::Word(&words_of::<_, 7>(&MOTOR_WORDS))),
-            "-",
-            "all but steppers",
-            "Kinds of motors.",
-        ),
-        optional("motor_models", TEXTS, "-", "all", "Single motors by name."),
     ],
     &[],
 );

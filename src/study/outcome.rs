@@ -131,7 +131,7 @@ pub fn judge_swept(study: &Study, problem: &ArmProblem, outcome: SweepOutcome) -
 }
 
 /// Does the work while another thread watches. The watcher is told when the work ends, even by a panic.
-fn watched<T>(watch: impl FnOnce(&AtomicBool) + Send, work: impl FnOnce() -> T) -> T {
+pub(super) fn watched<T>(watch: impl FnOnce(&AtomicBool) + Send, work: impl FnOnce() -> T) -> T {
     struct EndOnDrop<'f>(&'f AtomicBool);
     impl Drop for EndOnDrop<'_> {
         fn drop(&mut self) {
@@ -178,26 +178,29 @@ pub struct Extent {
 }
 
 /// What the searches found; designs are numbered in the whole space.
-struct Searched {
+pub(super) struct Searched {
     whole: ExactOutcome,
     by_material: Vec<(String, ExactOutcome)>,
     near: Option<NearDesigns>,
 }
 
 impl Searched {
-    /// Searches for the front of all designs, then, if that one is whole, for those of the materials and for the
-    /// designs near the front.
-    fn new(search: &Exact, space: &DesignSpace, near: Option<Slack>) -> Self {
-        let whole = search.run(&[]);
+    /// Takes the front of all designs, then, if that one is whole, finds those of the materials and the designs near the
+    /// front.
+    pub(super) fn new(
+        search: &Exact,
+        space: &DesignSpace,
+        (whole, of_material): (ExactOutcome, impl Fn(usize) -> ExactOutcome),
+        near: Option<Slack>,
+    ) -> Self {
         if whole.boxes_open > 0 || whole.gap != Some(0.0) || whole.front.is_empty() {
             return Self { whole, by_material: Vec::new(), near: None };
         }
         let names = space.material_names();
-        let of_material = |index: usize| match names.len() {
-            1 => whole.clone(),
-            _ => search.run_of_material(index),
+        let by_material: Vec<ExactOutcome> = match names.len() {
+            1 => vec![whole.clone()],
+            materials => (0..materials).map(of_material).collect(),
         };
-        let by_material: Vec<ExactOutcome> = (0..names.len()).map(of_material).collect();
         Self {
             // among millions of ties of the front nothing else would be near it
             near: near.filter(|_| whole.ties_listed).and_then(|slack| {
@@ -309,9 +312,20 @@ fn searched_by(
     Extent { near, .. }: Extent,
     watch: impl FnOnce(&(dyn Fn() -> Known + Sync), &AtomicBool) + Send,
 ) -> ExactStudy {
+    let of_material = |index: usize| search.run_of_material(index);
+    let work = || Searched::new(search, &study.space, (search.run(&[]), of_material), near);
+    let searched = watched(|finished| watch(&|| search.known(), finished), work);
+    judged_exactly(&searched, study, catalogs, near)
+}
+
+/// Judges what was found by the full model, in an excerpt of the study's space.
+pub(super) fn judged_exactly(
+    searched: &Searched,
+    study: &Study,
+    catalogs: &Catalogs,
+    near: Option<Slack>,
+) -> ExactStudy {
     let most = near.map(|slack| slack.most);
-    let searched =
-        watched(|finished| watch(&|| search.known(), finished), || Searched::new(search, &study.space, near));
     let space = study.space.excerpt(catalogs, &searched.numbers()).unwrap_or_else(|| study.space.clone());
     let study = Study { space, ..study.clone() };
     let whole = &searched.whole;

@@ -19,7 +19,7 @@ use crate::space::problem::ArmProblem;
 use crate::verify::judge::Pick;
 use crate::verify::question::{
     AllowedParts, AskedDrive, AskedDutyPhase, AskedFit, AskedJoint, AskedLink, AskedMotion, AskedPhase,
-    AskedPhaseKind, AskedPiece, AskedTube, Limits, LinearTorque, Question,
+    AskedPhaseKind, AskedPiece, AskedStage, AskedTube, Limits, LinearTorque, Question,
 };
 
 /// What a study asks, without anything that a search has made of it.
@@ -80,6 +80,12 @@ fn asked_joint(joint: &SpaceJoint) -> AskedJoint {
         has_brake: joint.has_brake,
         duty: joint.duty.iter().flat_map(|duty| &duty.phases).map(phase).collect(),
         connection_share: joint.connection_share,
+        stage: AskedStage {
+            ratio: joint.stages.before.ratio,
+            efficiency: joint.stages.before.efficiency,
+            inertia_kgm2: joint.stages.before.inertia_kgm2,
+            rad_per_nm: joint.stages.before.rad_per_nm,
+        },
         fit: AskedFit {
             gear_to_link_max: joint.fit.gear_to_link_max,
             motor_in_link: joint.fit.motor == MotorPlace::InLink,

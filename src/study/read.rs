@@ -15,22 +15,27 @@ use super::drives::{Drives, read_drives};
 use super::effects::check_effects;
 use super::fit::{fit_remarks, read_fit};
 use super::harness::{harness_effects, harness_remark};
-use super::keys::{CONSTRAINTS, JOINT, LINK, MODELS, OF_SIZED_DRIVE, PRISMATIC, STUDY};
+use super::keys::{CONSTRAINTS, JOINT, LINK, MODELS, STUDY};
 use super::linkages::drivers_are_inboard;
 use super::motion::{read_duty, read_motion};
 use super::omissions::omissions;
+use super::rail_keys::{OF_CATALOG_DRIVE, PRISMATIC};
+use super::rails::read_rail_drive;
 use super::range::{check_poses, read_range};
 use super::sections::{Aside, MOST_OPTIONS, read_materials, read_sections};
+use super::transmissions::{of_joint, place_transmissions, with_stages};
 use crate::arm::MOST_ELEMENTS;
 use crate::arm::bearing::{BearingSource, Stated, read_bearing};
 use crate::arm::body::{read_joint_bodies, read_link_bodies};
+use crate::arm::element_keys::read_coupling;
 use crate::arm::element_keys::{read_axis, read_name};
 use crate::arm::extras::{ExtrasSource, read_extras_source};
-use crate::arm::file::{NO_TYPE, read_coupling, read_curve, read_effects, read_gravity, read_joint_mass};
+use crate::arm::file::{NO_TYPE, motor_side_kg, read_curve, read_effects, read_gravity, read_joint_mass};
 use crate::arm::load::{vector, word};
 use crate::arm::pieces::{elements_of, read_links};
 use crate::arm::pose::{DrivenJoint, Motion};
 use crate::arm::prismatic::Prismatic;
+use crate::arm::transmission::{Transmission, read_turns_with};
 use crate::arm::{JointModel, LinkModel};
 use crate::catalog::Catalogs;
 use crate::catalog::gear::GearMass;
@@ -229,11 +234,17 @@ fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePi
         let problem = format!("has {elements} joints and links, and the limit is {MOST_ELEMENTS}");
         return node.fault(problem, "join links that lie in line, or study a part of the arm");
     }
+    let mut transmissions = Vec::new();
     let read: Vec<Option<Vec<SpacePiece>>> = items
         .iter()
         .map(|n| match n.value().get("type").and_then(|v| v.as_str()) {
-            Some("joint") => read_space_joint(n, open).map(|joint| vec![SpacePiece::Joint(joint)]),
-            Some("prismatic") => read_space_prismatic(n).map(|slide| vec![SpacePiece::Prismatic(slide)]),
+            Some("joint") => read_space_joint(n, open).map(|(joint, transmission)| {
+                transmissions.push(transmission);
+                vec![SpacePiece::Joint(joint)]
+            }),
+            Some("prismatic") => {
+                read_space_prismatic(n, open).map(|slide| vec![SpacePiece::Prismatic(slide)])
+            }
             Some("link") => read_space_link(n, open, aside),
             _ => n.fault(NO_TYPE.0, NO_TYPE.1),
         })
@@ -245,6 +256,13 @@ fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePi
     number_materials(&mut pieces);
     unique_names(node, &pieces)?;
     drivers_are_inboard(&items, &pieces)?;
+    let mut transmissions = transmissions.into_iter();
+    let driven = pieces.iter().zip(&items).enumerate().filter_map(|(number, (piece, node))| match piece {
+        SpacePiece::Joint(joint) => Some(of_joint(node, joint, number, transmissions.next()?)),
+        _ => None,
+    });
+    let driven = driven.collect();
+    place_transmissions(&mut pieces, driven, open.catalogs)?;
     Some(pieces)
 }
 
@@ -258,7 +276,7 @@ fn unique_names(node: &Node, pieces: &[SpacePiece]) -> Option<()> {
     }
 }
 
-fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
+fn read_space_joint(node: &Node, open: &Open) -> Option<(SpaceJoint, Option<Transmission>)> {
     let object = node.shaped(&JOINT)?;
     let name = read_name(&object);
     let axis = object.required("axis").and_then(|n| read_axis(&n));
@@ -284,9 +302,23 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
         );
     }
     let coupled = object.or("coupled", None, |n| read_coupling(n).map(Some));
+    let (turns_with, transmission) = (
+        read_turns_with(&object),
+        Transmission::read(&object, open.catalogs, motor_side_kg(&object, open.catalogs)),
+    );
     let drive = match object.optional("drive") {
         Some(drive) => {
-            let given = ["stiffness_nm_per_rad", "windup", "gear", "motor", "gear_mass", "mass_kg"];
+            let given = [
+                "stiffness_nm_per_rad",
+                "windup",
+                "gear",
+                "motor",
+                "gear_mass",
+                "mass_kg",
+                "motor_mass_kg",
+                "gear_at",
+                "gear_ratio",
+            ];
             stray(
                 &object,
                 &given,
@@ -318,7 +350,9 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
     let (extras, range_deg) = (extras?, range_deg?);
     let (max_speed_rad_s, has_brake, duty) = (max_speed?, brake?, duty?);
     let (name, axis, fit) = (name?, axis?, fit?);
-    Some(SpaceJoint {
+    let transmission = transmission?;
+    let drive = with_stages(drive, transmission.as_ref());
+    let joint = SpaceJoint {
         name,
         axis,
         bearing,
@@ -332,22 +366,30 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<SpaceJoint> {
         fit,
         connection_share,
         coupled: coupled?,
-    })
+        stages: transmission.as_ref().map_or_else(Default::default, Transmission::stages),
+        motor_place: None,
+        turns_with: turns_with?,
+    };
+    Some((joint, transmission))
 }
 
-/// Reads a prismatic joint, whose numbers a study gives.
-fn read_space_prismatic(node: &Node) -> Option<SpacePrismatic> {
-    if let Some(key) = OF_SIZED_DRIVE.iter().find(|key| node.value().get(*key).is_some()) {
+/// Reads a prismatic joint, whose guide and masses a study gives, and its drive too unless it is sized.
+fn read_space_prismatic(node: &Node, open: &Open) -> Option<SpacePrismatic> {
+    if let Some(key) = OF_CATALOG_DRIVE.iter().find(|key| node.value().get(*key).is_some()) {
         return node.fault_below(
             key,
-            "stands at a prismatic joint, whose drive is not sized",
-            "give the joint in numbers: stiffness_n_per_m of screw or rack, guide, mass_kg and fixed_mass_kg",
+            "stands at a prismatic joint, which has no gear of the catalogs",
+            "give the joint in numbers (stiffness_n_per_m of screw or rack), or \"drive\": \"first_fit\" with \"screws\" or \"racks\"",
         );
     }
     let object = node.shaped(&PRISMATIC)?;
     let range_mm = object.or("range_mm", None, |n| read_range(n).map(Some));
-    let joint = Prismatic::read(&object);
-    Some(SpacePrismatic::new(joint?, range_mm?))
+    let drive = read_rail_drive(&object, open.drives, open.catalogs);
+    let joint = match object.has("drive") {
+        true => Prismatic::read_undriven(&object),
+        false => Prismatic::read(&object),
+    };
+    Some(SpacePrismatic { drive: drive?, ..SpacePrismatic::new(joint?, range_mm?) })
 }
 
 /// Where the bearing of a joint comes from. A component set has none of its own, so a joint that is sized with component

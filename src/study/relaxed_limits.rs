@@ -11,6 +11,7 @@ use crate::exact::run::Exact;
 use crate::space::constraint::Constraints;
 use crate::space::design::{evaluate, number};
 use crate::space::design_space::DesignSpace;
+use crate::space::joints::TabulatedJoints;
 use crate::space::levels::OutwardIn;
 use crate::space::problem::ArmProblem;
 use std::sync::atomic::AtomicBool;
@@ -43,6 +44,8 @@ enum Answer<T> {
 pub(super) struct Limited<'a> {
     pub space: &'a DesignSpace,
     pub catalogs: &'a Catalogs,
+    /// The joints of the space, which no limit changes.
+    pub joints: TabulatedJoints<'a>,
     pub stop: &'a AtomicBool,
     pub deadline: Instant,
 }
@@ -139,10 +142,11 @@ impl Limited<'_> {
     ) -> Answer<(f64, bool)> {
         let space = DesignSpace { constraints: *constraints, ..self.space.clone() };
         let search = Exact::new(&space, self.catalogs, self.stop, Some(self.deadline));
-        let found = how(search.by_regions_from(f64::INFINITY)).run(&[]);
+        let search = search.with_joints(self.joints.clone()).by_regions_from(f64::INFINITY);
+        let found = how(search).run(&[]);
         let numbers: Vec<u128> = found.front.iter().map(|candidate| candidate.number).collect();
-        let best = space.excerpt(self.catalogs, &numbers).and_then(|part| {
-            let problem = ArmProblem::new(&part, self.catalogs);
+        let best = space.excerpt_with(&self.joints, &numbers).and_then(|part| {
+            let problem = ArmProblem::with_joints(&part, &self.joints);
             let values = numbers.iter().filter_map(|&design| reached(&problem, design, quantity));
             values.reduce(if quantity.is_least() { f64::max } else { f64::min })
         });

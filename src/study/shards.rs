@@ -1,8 +1,9 @@
-//! Shards of an exhaustive search: what each found, and how they become one front.
+//! Shards of a search: the files of what each found, and how those of an exhaustive search become one front.
 //!
 //! A shard keeps the candidates of its range of design numbers. A candidate that another shard clearly dominates is dropped
 //! when they are joined, and the full model judges the rest, as after a search on one machine: the front has the same bytes.
 
+use crate::exact::outcome::FoundInShard;
 use crate::pareto::objectives::Objectives;
 use crate::search::sweep::{Candidate, Status, SweepOutcome, clear_dominated};
 use std::fmt::Write;
@@ -33,24 +34,79 @@ pub fn read_candidates(text: &str, materials: usize) -> Result<(Vec<Candidate>, 
     let mut groups = vec![Vec::new(); materials];
     let rows = text.strip_prefix(HEADER).ok_or(1usize)?;
     for (line, row) in rows.lines().enumerate() {
-        let fault = || line + 2;
         let cells: Vec<&str> = row.split(',').collect();
-        let [of, number, tip, mass, mode] = cells[..] else { return Err(fault()) };
-        let value = |cell: &str| cell.parse::<f64>().map_err(|_| fault());
-        let candidate = Candidate {
-            number: number.parse().map_err(|_| fault())?,
-            objectives: Objectives {
-                tip_deflection_m: value(tip)?,
-                mass_kg: value(mass)?,
-                lowest_mode_hz: value(mode)?,
-            },
+        let mut read = || -> Option<()> {
+            let (of, rest) = cells.split_first()?;
+            let (of, candidate) = (front_at(of)?, candidate(rest)?);
+            match of.checked_sub(1) {
+                None => front.push(candidate),
+                Some(material) => groups.get_mut(material)?.push(candidate),
+            }
+            Some(())
         };
-        match of {
-            "all" => front.push(candidate),
-            k => groups.get_mut(k.parse::<usize>().map_err(|_| fault())?).ok_or_else(fault)?.push(candidate),
-        }
+        read().ok_or(line + 2)?;
     }
     Ok((front, groups))
+}
+
+/// The place of a front among those of a search, from its name: `all`, or the number of a material.
+fn front_at(name: &str) -> Option<usize> {
+    if name == ALL { Some(0) } else { name.parse::<usize>().ok()?.checked_add(1) }
+}
+
+/// Reads number and objectives.
+fn candidate(cells: &[&str]) -> Option<Candidate> {
+    let [number, tip, mass, mode] = cells[..] else { return None };
+    let value = |cell: &str| cell.parse::<f64>().ok();
+    let objectives =
+        Objectives { tip_deflection_m: value(tip)?, mass_kg: value(mass)?, lowest_mode_hz: value(mode)? };
+    Some(Candidate { number: number.parse().ok()?, objectives })
+}
+
+/// Name of the front of all designs; that of a material is its number.
+const ALL: &str = "all";
+
+/// What a shard of an exact search found, front by front, as CSV: as in [`candidates_csv`], and whether it is decided that a
+/// design holds.
+pub fn found_csv(fronts: &[FoundInShard]) -> String {
+    let mut out = String::from(FOUND_HEADER);
+    for (at, found) in fronts.iter().enumerate() {
+        let name = at.checked_sub(1).map_or(ALL.to_string(), |material| material.to_string());
+        let decided = found.decided.iter().map(|candidate| (candidate, "yes"));
+        for (Candidate { number, objectives: o }, word) in
+            decided.chain(found.undecided.iter().map(|candidate| (candidate, "no")))
+        {
+            let Objectives { tip_deflection_m, mass_kg, lowest_mode_hz } = o;
+            let _ = writeln!(out, "{name},{word},{number},{tip_deflection_m},{mass_kg},{lowest_mode_hz}");
+        }
+    }
+    out
+}
+
+const FOUND_HEADER: &str = "front,decided,number,tip_deflection_m,mass_kg,lowest_mode_hz\n";
+
+/// Reads [`found_csv`] of so many fronts. Only the designs are filled in.
+///
+/// # Errors
+/// The number of the first line that is no candidate.
+pub fn read_found(text: &str, fronts: usize) -> Result<Vec<FoundInShard>, usize> {
+    let mut out = vec![FoundInShard::default(); fronts];
+    let rows = text.strip_prefix(FOUND_HEADER).ok_or(1usize)?;
+    for (line, row) in rows.lines().enumerate() {
+        let cells: Vec<&str> = row.split(',').collect();
+        let mut read = || -> Option<()> {
+            let [of, decided, rest @ ..] = &cells[..] else { return None };
+            let found = out.get_mut(front_at(of)?)?;
+            match *decided {
+                "yes" => found.decided.push(candidate(rest)?),
+                "no" => found.undecided.push(candidate(rest)?),
+                _ => return None,
+            }
+            Some(())
+        };
+        read().ok_or(line + 2)?;
+    }
+    Ok(out)
 }
 
 /// What one shard found.
@@ -129,6 +185,25 @@ mod tests {
         assert_eq!(read_candidates(&text, 2), Ok((swept.front.clone(), swept.groups.clone())));
         assert_eq!(read_candidates(&text, 1), Err(3), "a material that the study does not have");
         assert_eq!(read_candidates(&text.replace("0.3333", "x"), 2), Err(2));
+    }
+
+    #[test]
+    fn what_an_exact_shard_found_reads_back_to_the_same_bits() {
+        let candidate = |number, mass_kg| Candidate {
+            number,
+            objectives: Objectives { tip_deflection_m: 1e-5 / 7.0, mass_kg, lowest_mode_hz: 1.0 / 3.0 },
+        };
+        let found = |decided, undecided| FoundInShard { decided, undecided, ..FoundInShard::default() };
+        let fronts = vec![
+            found(vec![candidate(u128::MAX, 0.1 + 0.2)], vec![candidate(5, 2e-308)]),
+            found(vec![], vec![]),
+            found(vec![candidate(0, 7.0)], vec![]),
+        ];
+        let text = found_csv(&fronts);
+        assert_eq!(read_found(&text, 3), Ok(fronts));
+        assert_eq!(read_found(&text, 2), Err(4), "a front that the study does not have");
+        assert_eq!(read_found(&text.replace(",no,", ",maybe,"), 3), Err(3));
+        assert_eq!(read_found(HEADER, 3), Err(1), "candidates of a sweep");
     }
 
     #[test]

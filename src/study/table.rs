@@ -32,15 +32,16 @@ fn columns(problem: &ArmProblem, catalogs: &Catalogs) -> Vec<String> {
             SpacePiece::Joint(joint) if has_parts(&joint.drive) => {
                 out.extend(["gear", "motor"].map(|what| format!("{}_{what}", joint.name)));
             }
+            SpacePiece::Prismatic(slide) if slide.drive.is_some() => {
+                out.extend(["gear", "motor"].map(|what| format!("{}_{what}", slide.joint.name)));
+            }
             _ => {}
         }
     }
     out.extend(["tip_deflection_mm", "mass_kg", "lowest_mode_hz", "tie_group"].map(String::from));
     for (i, piece) in problem.space().pieces.iter().enumerate() {
-        if let SpacePiece::Joint(joint) = piece
-            && (problem.sized_joint(i).is_some() || problem.fixed_drive(i, catalogs).is_some())
-        {
-            out.extend(JOINT_COLUMNS.map(|what| format!("{}_{what}", joint.name)));
+        if problem.sized_joint(i).is_some() || problem.fixed_drive(i, catalogs).is_some() {
+            out.extend(JOINT_COLUMNS.map(|what| format!("{}_{what}", piece.name())));
         }
     }
     out.extend(["stress_safety_factor", "material_cost_eur", "extras_mass_kg"].map(String::from));
@@ -61,7 +62,7 @@ fn row(problem: &ArmProblem, catalogs: &Catalogs, judged: &super::outcome::Judge
     for (piece, part) in problem.space().pieces.iter().zip(problem.parts(&chosen)?) {
         match (piece, part) {
             (SpacePiece::Choice(_), Part::Link(option)) => out.extend(link_cells(option)),
-            (SpacePiece::Joint(_), Part::Drive(drive)) => {
+            (SpacePiece::Joint(_) | SpacePiece::Prismatic(_), Part::Drive(drive)) => {
                 out.extend([drive.gear.id.clone(), drive.motor.id.clone()]);
             }
             (SpacePiece::Joint(joint), _) => {
@@ -82,7 +83,7 @@ fn row(problem: &ArmProblem, catalogs: &Catalogs, judged: &super::outcome::Judge
         out.push(joint.binds.unwrap_or_default().to_string());
         out.push(joint.bearing_margin.map_or(String::new(), number));
         out.push(joint.motor_rms_margin.map_or(String::new(), number));
-        out.push(number(joint.motor_speed_rpm));
+        out.push(number(joint.input_speed_rpm));
         // only a wave generator passes with two waves in each turn
         let waves = catalogs.gears.iter().any(|g| g.id == joint.gear && g.kind == GearKind::StrainWave);
         out.push(if waves { number(critical_rpm(o.lowest_mode_hz)) } else { String::new() });

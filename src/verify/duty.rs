@@ -7,7 +7,7 @@ use super::demand::{Demand, QUANTITIES, Quantity};
 use super::fit::ANY_WIDTH;
 use super::heat::{CycleShares, HeatDemand, StatedPhase, stated_phases};
 use super::question::{
-    AskedDutyPhase, AskedFit, AskedJoint, AskedMotion, AskedPhase, AskedPhaseKind, LinearTorque,
+    AskedDutyPhase, AskedFit, AskedJoint, AskedMotion, AskedPhase, AskedPhaseKind, AskedStage, LinearTorque,
 };
 use std::f64::consts::PI;
 
@@ -35,6 +35,8 @@ pub(super) struct Duty {
     pub emergency_stops: Option<f64>,
     /// Whether a brake holds the joint at rest.
     pub has_brake: bool,
+    /// The stage between motor and gear.
+    pub stage: AskedStage,
     /// What is asked of the sizes of the parts.
     pub fit: AskedFit,
     /// Whether the motor must not overheat.
@@ -87,6 +89,7 @@ impl Duty {
             stop_s: ramp_s / stop_factor,
             emergency_stops: motion.emergency_stops,
             has_brake: joint.has_brake,
+            stage: joint.stage,
             fit: joint.fit,
             checks_heat: motion.checks_motor_heat,
             shares: motion.shares(joint.has_brake),

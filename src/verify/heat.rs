@@ -4,7 +4,7 @@
 //! at the joint in the direction of motion, then that of the motor, with the losses of the gear against whichever side
 //! drives. The worse of the two directions counts. The search uses a formula for lifting alone.
 
-use super::question::AskedDutyPhase;
+use super::question::{AskedDutyPhase, AskedStage};
 use crate::catalog::gear::{Gear, GearKind};
 use crate::catalog::motor::Motor;
 use std::f64::consts::PI;
@@ -50,15 +50,15 @@ impl MotorHeat {
     /// The numbers of a drive whose joint cruises at a speed \[rad/s\], reached with an acceleration \[rad/s²\], or has a duty of
     /// its own; `None` if the catalog leaves blank what they need.
     pub(super) fn of(
-        (gear, motor): (&Gear, &Motor),
+        (gear, motor, stage): (&Gear, &Motor, &AskedStage),
         speed_rad_s: f64,
         acceleration_rad_s2: f64,
         stated: &[StatedPhase],
     ) -> Option<Self> {
-        let (ratio, efficiency) = (gear.ratio, efficiency(gear)?);
+        let (ratio, efficiency) = (gear.ratio * stage.ratio, efficiency(gear)? * stage.efficiency);
         let cruising_rpm = ratio * speed_rad_s * 30.0 / PI;
         let continuous_nm = continuous_nm(motor, cruising_rpm)?;
-        let own_s2 = input_inertia_kgm2(gear, motor)? * ratio / continuous_nm;
+        let own_s2 = input_inertia_kgm2(gear, motor, stage)? * ratio / continuous_nm;
         let heat = Self {
             driving: 1.0 / (ratio * efficiency) / continuous_nm,
             driven: efficiency / ratio / continuous_nm,
@@ -121,10 +121,11 @@ pub(super) fn efficiency(gear: &Gear) -> Option<f64> {
     gear.efficiency.or((gear.kind == GearKind::Direct).then_some(1.0))
 }
 
-/// Inertia of rotor and of the gear's input, at the motor \[kg m²\].
-pub(super) fn input_inertia_kgm2(gear: &Gear, motor: &Motor) -> Option<f64> {
+/// Inertia of rotor and stage, and of the gear's input behind the stage, at the motor \[kg m²\].
+pub(super) fn input_inertia_kgm2(gear: &Gear, motor: &Motor, stage: &AskedStage) -> Option<f64> {
     let none = (gear.kind == GearKind::Direct).then_some(0.0);
-    Some(motor.rotor_inertia_kgm2? + gear.inertia_input_kgm2.or(none)?)
+    let at_gear_kgm2 = gear.inertia_input_kgm2.or(none)?;
+    Some(motor.rotor_inertia_kgm2? + stage.inertia_kgm2 + at_gear_kgm2 / stage.ratio.powi(2))
 }
 
 /// The largest torque that a motor gives at every speed from rest to a speed.

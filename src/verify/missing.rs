@@ -5,6 +5,7 @@ use super::drives::Ties;
 use super::front_index::FrontIndex;
 use super::halt::{Found, Halt};
 use super::judge::{Judge, Judged, Pick};
+use super::ledger::{Branch, Ledger};
 use super::offers::JointOffers;
 use super::parts_box::{Choice, Design};
 use super::question::{AskedPiece, Question};
@@ -61,13 +62,26 @@ impl Judge<'_> {
         stop: &AtomicBool,
         deadline: Option<Instant>,
     ) -> Looked {
+        self.missing_since(&Ledger::default(), front, settings, (stop, deadline))
+    }
+
+    /// As [`missing`](Self::missing), except for the branches that the ledger says are done. It must be of the same question
+    /// and front.
+    pub fn missing_since(
+        &self,
+        ledger: &Ledger,
+        front: &[Objectives],
+        settings: Settings,
+        (stop, deadline): (&AtomicBool, Option<Instant>),
+    ) -> Looked {
         let index = FrontIndex::new(front);
-        let halt = Halt { stop, deadline, designs: Default::default(), count: Default::default() };
+        let designs = ledger.designs();
+        let halt = Halt { stop, deadline, count: designs.len().into(), designs: designs.into() };
         let found = match self.designs().is_none_or(|designs| designs > settings.regions_from) {
-            false => self.explore_boxes(&index, &halt),
+            false => self.explore_boxes(&index, &halt, ledger),
             true => {
                 let parts = self.skeleton.parts(self.question, &self.offers, Ties::Together);
-                let work = Work { front, index: &index, settings, halt: &halt };
+                let work = Work { front, index: &index, settings, halt: &halt, ledger };
                 RegionSearch::explore_all(Arc::clone(&self.skeleton), parts, &work)
             }
         };
@@ -83,11 +97,11 @@ impl Judge<'_> {
         looked
     }
 
-    fn explore_boxes(&self, front: &FrontIndex, halt: &Halt) -> Found {
+    fn explore_boxes(&self, front: &FrontIndex, halt: &Halt, ledger: &Ledger) -> Found {
         let parts = self.skeleton.parts(self.question, &self.offers, Ties::Apart);
         let boxes = Boxes::of(Arc::clone(&self.skeleton), parts);
-        let search = Search { boxes: &boxes, front, upper: UpperBound::OPEN, halt };
-        boxes.root().map_or_else(Found::default, |root| search.explore(&root))
+        let search = Search { boxes: &boxes, front, upper: UpperBound::OPEN, halt, ledger };
+        boxes.root().map_or_else(Found::default, |root| search.explore(&root, Branch::ROOT))
     }
 
     /// Number of designs of the question; `None` if it exceeds 128 bits.

@@ -40,6 +40,7 @@ pub(crate) mod halt;
 pub(crate) mod heat;
 pub(crate) mod judge;
 pub(crate) mod layout;
+pub(crate) mod ledger;
 pub(crate) mod missing;
 pub(crate) mod modes;
 pub(crate) mod offers;
@@ -59,6 +60,7 @@ pub(crate) mod upper_bound;
 
 pub use boxes::Boxes;
 pub use judge::{Judge, Judged, Pick};
+pub use ledger::{Keep, Ledger};
 pub use missing::{Looked, conditions};
 pub use parts_box::PartsBox;
 pub use question::{

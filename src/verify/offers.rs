@@ -121,7 +121,7 @@ fn offers(
     for (gear_place, gear) in catalogs.gears.iter().enumerate().filter(|(_, gear)| allowed.allows_gear(gear))
     {
         // a gear whose torsion is not known cannot be judged
-        let Some(windup) = torsion_curve(gear, joint.connection_share) else { continue };
+        let Some(windup) = torsion_curve(gear, joint) else { continue };
         let mut bearing = with_gear(&joint.bearing, gear, allowed.gear_mass);
         if joint.bearing == BearingSource::OfGear
             && let Some(Bearing { tilt_stiffness_nm_per_rad: Some(stiffness), .. }) = &mut bearing
@@ -161,8 +161,14 @@ fn drive_kg(allowed: &AllowedParts, gear: &Gear, motor: &Motor) -> Option<f64> {
 
 /// The torsion curve of a gear whose connections yield by a share of what the gear itself does; `None` if the catalog lacks a
 /// number of the curve.
-fn torsion_curve(gear: &Gear, share: f64) -> Option<Windup> {
-    let together = |stiffness: Option<f64>| Some(stiffness? * (1.0 / (1.0 + share)));
+fn torsion_curve(gear: &Gear, joint: &AskedJoint) -> Option<Windup> {
+    let share = joint.connection_share;
+    // a stage before the gear yields in series, by the square of the gear's ratio less
+    let before = joint.stage.rad_per_nm / (gear.ratio * gear.ratio);
+    let together = |stiffness: Option<f64>| {
+        let own = stiffness? * (1.0 / (1.0 + share));
+        Some(if before > 0.0 { 1.0 / (1.0 / own + before) } else { own })
+    };
     // K1 alone, or equal slopes without break points, are a straight line, which any break points describe
     let [k1, k2, k3] = [gear.k1_nm_per_rad, gear.k2_nm_per_rad, gear.k3_nm_per_rad];
     let breaks = gear.t1_nm.is_some() as usize + gear.t2_nm.is_some() as usize;

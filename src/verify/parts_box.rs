@@ -1,5 +1,7 @@
 //! A set of designs: one set of options for each level.
 
+use serde::{Deserialize, Serialize};
+
 /// The piece whose part a level chooses. Joints and tubes are each counted from base to tip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Place {
@@ -15,7 +17,7 @@ pub(super) enum Place {
 pub struct PartsBox(pub(super) Vec<u32>);
 
 /// Options of one level that no objective tells apart.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(super) struct Choice {
     /// Numbers of the options. Those that hold whatever rounding does come first.
     pub options: Vec<u32>,

@@ -83,6 +83,26 @@ pub struct AskedJoint {
     pub fit: AskedFit,
     /// Compliance of its connections, as a share of that of a gear of the catalogs and of the gear's bearing.
     pub connection_share: f64,
+    /// The stage between motor and gear, of a drive that is sized.
+    pub stage: AskedStage,
+}
+
+/// A stage between motor and gear.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AskedStage {
+    /// Turns of the motor per turn of the gear's input.
+    pub ratio: f64,
+    /// Part of the power that arrives.
+    pub efficiency: f64,
+    /// Moment of inertia at the motor \[kg m²\].
+    pub inertia_kgm2: f64,
+    /// Twist of the gear's input per torque there \[rad/(N m)\].
+    pub rad_per_nm: f64,
+}
+
+impl AskedStage {
+    /// The motor turns the gear itself.
+    pub const NONE: Self = Self { ratio: 1.0, efficiency: 1.0, inertia_kgm2: 0.0, rad_per_nm: 0.0 };
 }
 
 /// What is asked of the sizes of a joint's parts; nothing by default.
@@ -341,6 +361,8 @@ impl AskedJoint {
             gear: None,
             motor: None,
             coupled: None,
+            stages: Default::default(),
+            turns_with: Vec::new(),
         })
     }
 }

@@ -12,6 +12,7 @@ use super::demand::{Demand, QUANTITIES, Quantity};
 use super::duty::Duty;
 use super::fit::{Widths, goes_into_joint, widths};
 use super::heat::{MotorHeat, continuous_nm, efficiency, input_inertia_kgm2, peak_nm};
+use super::question::AskedStage;
 use crate::arm::bearing::Bearing;
 use crate::catalog::gear::{Gear, GearKind, LifeLaw};
 use crate::catalog::motor::Motor;
@@ -60,7 +61,8 @@ impl Ratings {
     pub(super) fn of(gear: &Gear, motor: &Motor, bearing: Option<&Bearing>, duty: &Duty) -> Option<Self> {
         let heat = match duty.checks_heat {
             true => {
-                MotorHeat::of((gear, motor), duty.speed_rad_s, duty.acceleration_rad_s2, &duty.stated.phases)?
+                let parts = (gear, motor, &duty.stage);
+                MotorHeat::of(parts, duty.speed_rad_s, duty.acceleration_rad_s2, &duty.stated.phases)?
             }
             false => MotorHeat::NONE,
         };
@@ -121,7 +123,7 @@ fn turns_as_fast(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<bool> {
     let mean_rpm = input_rpm(gear, duty.mean_speed_rad_s);
     Some(
         fastest_rpm <= limit(gear, gear.max_input_speed_rpm)?
-            && fastest_rpm <= motor_max_rpm
+            && fastest_rpm * duty.stage.ratio <= motor_max_rpm
             && mean_rpm <= limit(gear, gear.average_input_speed_limit_rpm)?,
     )
 }
@@ -147,30 +149,32 @@ fn bears_the_stops(gear: &Gear, duty: &Duty) -> bool {
     duty.emergency_stops.is_none_or(|stops| !has_waves || stops <= 1e4 / waves.max(1.0))
 }
 
-/// Speed of the motor \[rpm\] when the joint turns at `output_rad_s`.
+/// Speed of the gear's input \[rpm\] when the joint turns at `output_rad_s`.
 fn input_rpm(gear: &Gear, output_rad_s: f64) -> f64 {
     gear.ratio * (output_rad_s * 30.0 / std::f64::consts::PI)
 }
 
 /// Torque at the joint for one newton metre at the motor.
-fn gain(gear: &Gear) -> Option<f64> {
-    Some(gear.ratio * efficiency(gear)?)
+fn gain(gear: &Gear, stage: &AskedStage) -> Option<f64> {
+    Some(gear.ratio * efficiency(gear)? * stage.ratio * stage.efficiency)
 }
 
 /// Torque at the joint that the motor can hold without end: `T_rated N η` \[N m\]. A brake holds any.
 fn motor_hold_nm(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<f64> {
     match duty.has_brake {
         true => Some(f64::INFINITY),
-        false => Some(continuous_nm(motor, 0.0)? * gain(gear)?),
+        false => Some(continuous_nm(motor, 0.0)? * gain(gear, &duty.stage)?),
     }
 }
 
 /// Torque at the joint when the motor gives its peak torque \[N m\]. The rotor's and the wave generator's own
 /// acceleration is subtracted (Eqs 9-12): `(T_peak - (J_rotor + J_input) N α) N η`.
 fn motor_peak_nm(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<f64> {
-    let own_nm = input_inertia_kgm2(gear, motor)? * gear.ratio * duty.acceleration_rad_s2;
-    let peak_nm = peak_nm(motor, input_rpm(gear, duty.speed_rad_s))?;
-    Some((peak_nm - own_nm) * gain(gear)?)
+    let stage = &duty.stage;
+    let motor_rad_s2 = gear.ratio * stage.ratio * duty.acceleration_rad_s2;
+    let own_nm = input_inertia_kgm2(gear, motor, stage)? * motor_rad_s2;
+    let peak_nm = peak_nm(motor, input_rpm(gear, duty.speed_rad_s) * stage.ratio)?;
+    Some((peak_nm - own_nm) * gain(gear, stage)?)
 }
 
 /// Cube of the mean torque under which the gear lasts for the required life \[(N m)³\], from `L10 = L_rated (T_rated /
@@ -208,6 +212,7 @@ mod tests {
             duty: Vec::new(),
             fit: AskedFit::default(),
             connection_share: 0.0,
+            stage: AskedStage::NONE,
         }
     }
 

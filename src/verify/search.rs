@@ -4,6 +4,7 @@ use super::boxes::Boxes;
 use super::branch_score::BranchScore;
 use super::front_index::FrontIndex;
 use super::halt::{Found, Halt};
+use super::ledger::{Branch, Ledger};
 use super::parts_box::PartsBox;
 use super::upper_bound::UpperBound;
 
@@ -14,11 +15,16 @@ pub(super) struct Search<'s> {
     /// Only designs below this upper bound are looked for.
     pub upper: UpperBound,
     pub halt: &'s Halt<'s>,
+    pub ledger: &'s Ledger<'s>,
 }
 
 impl Search<'_> {
-    /// Bounds a box and, unless it is discarded, explores its halves.
-    pub(super) fn explore(&self, parts: &PartsBox) -> Found {
+    /// Bounds a box and, unless it is discarded, explores its halves; unless that was done before.
+    pub(super) fn explore(&self, parts: &PartsBox, branch: Branch) -> Found {
+        self.ledger.of(branch, self.halt, || self.explore_now(parts, branch))
+    }
+
+    fn explore_now(&self, parts: &PartsBox, branch: Branch) -> Found {
         if self.halt.stopped() {
             return Found { open: 1, ..Found::default() };
         }
@@ -28,7 +34,8 @@ impl Search<'_> {
             self.halt.note(self.boxes.design(parts));
             return here;
         };
-        let (a, b) = rayon::join(|| self.explore(&a), || self.explore(&b));
+        let [of_a, of_b] = branch.halves();
+        let (a, b) = rayon::join(|| self.explore(&a, of_a), || self.explore(&b, of_b));
         here.with(a).with(b)
     }
 

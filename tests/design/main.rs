@@ -25,11 +25,13 @@ mod paper;
 mod paper_support;
 mod pieces;
 mod prismatic;
+mod rails;
 mod reference_arms;
 mod relaxation;
 mod search_fast_vs_full;
 mod springs;
 mod study_rerun;
+mod transmissions;
 #[path = "../witness/mod.rs"]
 mod witness;
 mod witness_bearings;

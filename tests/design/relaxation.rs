@@ -4,6 +4,7 @@
 use crate::bodies::add_bodies;
 use crate::dice::Dice;
 use crate::prismatic::add_prismatic;
+use crate::transmissions::add_stages;
 use armwright::catalog::Catalogs;
 use armwright::input::Document;
 use armwright::pareto::Objectives;
@@ -139,6 +140,9 @@ fn no_design_that_meets_a_target_is_lighter_than_the_bound() {
         }
         if round % 8 == 5 {
             add_prismatic(&mut drawn, round as u64);
+        }
+        if round % 8 == 6 {
+            add_stages(&mut drawn, round as u64);
         }
         let text = drawn.to_string();
         let study = read_study(Document::parse("random", &text).expect("JSON"), &catalogs)

@@ -9,6 +9,7 @@
 use crate::bodies::add_bodies;
 use crate::dice::Dice;
 use crate::prismatic::add_prismatic;
+use crate::transmissions::add_stages;
 use armwright::catalog::Catalogs;
 use armwright::input::Document;
 use armwright::search::FinishRows;
@@ -98,6 +99,9 @@ fn study(seed: u64, catalogs: &Catalogs) -> Study {
     }
     if seed % 4 == 1 {
         add_prismatic(&mut text, seed);
+    }
+    if seed % 4 == 2 {
+        add_stages(&mut text, seed);
     }
     read(seed, &text, catalogs)
 }

@@ -9,6 +9,7 @@
 use crate::bodies::add_bodies;
 use crate::dice::Dice;
 use crate::prismatic::add_prismatic;
+use crate::transmissions::add_stages;
 use armwright::catalog::Catalogs;
 use armwright::input::Document;
 use armwright::pareto::Objectives;
@@ -164,6 +165,9 @@ fn random_study(seed: u64) -> Value {
     }
     if seed % 8 == 5 {
         add_prismatic(&mut study, seed);
+    }
+    if seed % 8 == 6 {
+        add_stages(&mut study, seed);
     }
     study
 }

@@ -202,7 +202,7 @@ fn hold_defaults(schema: &Schema, read: &Reader, base: &Value, tried: &mut BTree
     places(base, &Vec::new(), &mut all);
     for place in all {
         // an object of names, such as a pose, has no keys of its own
-        if matches!(place.last(), Some(Step::Key(key)) if ["parameters", "coupled", "pose", "source"].contains(&key.as_str()))
+        if matches!(place.last(), Some(Step::Key(key)) if ["parameters", "coupled", "turns_with", "pose", "source"].contains(&key.as_str()))
         {
             continue;
         }
@@ -271,6 +271,38 @@ fn whole_arm() -> Value {
         "provenance": {"by": "a test"}})
 }
 
+/// An arm with a motor that sits elsewhere.
+fn belt_arm() -> Value {
+    json!({"name": "belt", "chain": [
+        {"type": "joint", "name": "j1", "axis": [0, 0, 1], "stiffness_nm_per_rad": 1e5},
+        {"type": "joint", "name": "j2", "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e5},
+        {"type": "link", "name": "a", "vector_m": [0.4, 0, 0], "mass_kg": 1},
+        {"type": "joint", "name": "j3", "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e4, "motor_at": "j1",
+            "motor_point_m": [0, 0.1, 0], "motor_mass_kg": 2, "gear_at": "joint", "gear_ratio": 50,
+            "transmission": [{"ratio": 2, "efficiency": 0.95, "stiffness_nm_per_rad": 300, "inertia_kgm2": 1e-5, "mass_kg": 0.5},
+                {"ratio": 1}]},
+        {"type": "link", "name": "b", "vector_m": [0.3, 0, 0], "mass_kg": 1},
+        {"type": "joint", "name": "j4", "axis": [1, 0, 0], "stiffness_nm_per_rad": 1e4, "turns_with": {"j3": 0.5}}]})
+}
+
+/// A study with a rail that is sized and a belt before a gear.
+fn rail_study() -> Value {
+    json!({"name": "rail", "chain": [
+        {"type": "prismatic", "name": "lift", "axis": [0, 0, 1], "mass_kg": 9, "drive": "first_fit", "max_speed_m_s": 0.2, "brake": true,
+            "drives": {"motors": ["electric"]},
+            "screws": [{"name": "s", "lead_mm": 10, "root_diameter_mm": 17, "length_mm": 900, "ends": "fixed_fixed",
+                "dynamic_load_rating_n": 9000, "max_force_n": 12000, "max_speed_rpm": 3000, "efficiency": 0.85,
+                "nut_stiffness_n_per_m": 2e8, "inertia_kgm2": 1e-5, "mass_kg": 1}, {"name": "t", "lead_mm": 5,
+                "root_diameter_mm": 12, "length_mm": 900}],
+            "racks": [{"name": "r", "pinion_radius_mm": 20, "ratio": 10, "efficiency": 0.9, "max_force_n": 3000,
+                "max_speed_rpm": 4000, "stiffness_n_per_m": 2e7, "inertia_kgm2": 1e-5, "mass_kg": 2}]},
+        {"type": "joint", "name": "j1", "axis": [0, 1, 0], "drive": "first_fit", "drives": {"ratios": [100]},
+            "motor_at": "lift", "motor_point_m": [0, 0, 0], "turns_with": {},
+            "transmission": [{"ratio": 2, "efficiency": 0.95, "stiffness_nm_per_rad": 300}]},
+        {"type": "link", "name": "a", "vector_m": [0.4, 0, 0], "mass_kg": 1}],
+        "payload": {"mass_kg": 1}, "poses": [{"pose": {"lift_mm": 100}}]})
+}
+
 /// A study with every kind of object.
 fn whole_study() -> Value {
     json!({"name": "whole", "question": "?", "notes": "!", "gravity_m_s2": 9.81,
@@ -330,6 +362,8 @@ fn arm_and_cases_readers_and_their_schemas_judge_every_change_of_a_file_equally(
     let mut count = hold_together(&schema, &read, &whole_arm());
     let mut tried = BTreeSet::new();
     hold_defaults(&schema, &read, &whole_arm(), &mut tried);
+    count += hold_together(&schema, &read, &belt_arm());
+    hold_defaults(&schema, &read, &belt_arm(), &mut tried);
     let plain = json!({"chain": [{"type": "joint", "name": "a", "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e5, "bearing": {}},
         {"type": "link", "name": "b", "vector_m": [1, 0, 0], "bodies": [{"mass_kg": 1}]}]});
     hold_defaults(&schema, &read, &plain, &mut tried);
@@ -349,13 +383,13 @@ fn arm_and_cases_readers_and_their_schemas_judge_every_change_of_a_file_equally(
 fn the_study_reader_and_its_schema_judge_every_change_of_a_file_equally() {
     let catalogs = Catalogs::builtin();
     let (schema, read) = (Schema::of("study"), study_reader(&catalogs));
-    for base in [whole_study(), bench_study()] {
+    for base in [whole_study(), bench_study(), rail_study()] {
         assert!(schema.takes(&base), "{:?}", schema.complaint(&base));
         read(&base).unwrap_or_else(|faults| panic!("{faults:?}"));
     }
-    let count = hold_together(&schema, &read, &whole_study());
+    let count = hold_together(&schema, &read, &whole_study()) + hold_together(&schema, &read, &rail_study());
     let mut tried = BTreeSet::new();
-    for base in [whole_study(), bench_study()] {
+    for base in [whole_study(), bench_study(), rail_study()] {
         hold_defaults(&schema, &read, &base, &mut tried);
     }
     assert!(count > 1000 && tried.len() >= 12, "{count} changes, {tried:?}");

@@ -269,7 +269,8 @@ impl Campaign {
         }
         if !campaign.positions.is_empty() {
             let arms = std::iter::once(&campaign.arm).chain(&campaign.other_arms);
-            faults.extend(arms.filter_map(|arm| arm.springs_fault(&arm.name)));
+            let faults_of = |arm: &Arm| [arm.springs_fault(&arm.name), arm.turns_with_fault(&arm.name)];
+            faults.extend(arms.flat_map(faults_of).flatten());
         }
         let specs = &campaign.statement.records;
         let turning = driven_joints(&campaign.arms()).into_iter().filter(|j| j.motion == Motion::Turns);

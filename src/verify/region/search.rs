@@ -4,6 +4,7 @@ use super::super::bound::{Members, ROUNDING};
 use super::super::boxes::Boxes;
 use super::super::front_index::FrontIndex;
 use super::super::halt::{Found, Halt};
+use super::super::ledger::{Branch, Ledger};
 use super::super::modes::eigenvalue_of;
 use super::super::search::Search;
 use super::super::settings::Settings;
@@ -28,6 +29,7 @@ pub(in super::super) struct Work<'s> {
     pub index: &'s FrontIndex,
     pub settings: Settings,
     pub halt: &'s Halt<'s>,
+    pub ledger: &'s Ledger<'s>,
 }
 
 /// A search of all regions that the designs of a front leave open.
@@ -59,11 +61,20 @@ impl RegionSearch<'_> {
         let uppers = UpperBounds::new(work.front, limit, work.settings.apart);
         let table = PartsTable::new(parts);
         let Some(whole) = Subproblem::whole(&table) else { return Found::default() };
-        RegionSearch { skeleton, table, work }.explore(&uppers, 0, whole)
+        RegionSearch { skeleton, table, work }.explore((&uppers, 0), whole, Branch::ROOT)
     }
 
-    /// Searches the regions below a node of the tree of upper bounds.
-    fn explore(&self, uppers: &UpperBounds, at: usize, mut subproblem: Subproblem) -> Found {
+    /// Searches the regions below a node of the tree of upper bounds, unless that was done before.
+    fn explore(&self, uppers: (&UpperBounds, usize), subproblem: Subproblem, branch: Branch) -> Found {
+        self.work.ledger.of(branch, self.work.halt, || self.explore_now(uppers, subproblem, branch))
+    }
+
+    fn explore_now(
+        &self,
+        (uppers, at): (&UpperBounds, usize),
+        mut subproblem: Subproblem,
+        branch: Branch,
+    ) -> Found {
         let Some((upper, halves)) = uppers.node(at) else { return Found::default() };
         let mut found = Found::default();
         let branchings = match self.narrow(&mut subproblem, upper, &mut found.boxes) {
@@ -78,7 +89,11 @@ impl RegionSearch<'_> {
         };
         let Some([a, b]) = subproblems else { return found.with(self.explore_boxes(&subproblem, upper)) };
         let [first, second] = halves.unwrap_or([at; 2]);
-        let (a, b) = rayon::join(|| self.explore(uppers, first, a), || self.explore(uppers, second, b));
+        let [of_a, of_b] = branch.halves();
+        let (a, b) = rayon::join(
+            || self.explore((uppers, first), a, of_a),
+            || self.explore((uppers, second), b, of_b),
+        );
         found.with(a).with(b)
     }
 
@@ -153,7 +168,8 @@ impl RegionSearch<'_> {
     /// Searches the designs of a subproblem box by box.
     fn explore_boxes(&self, subproblem: &Subproblem, upper: UpperBound) -> Found {
         let boxes = Boxes::of(Arc::clone(&self.skeleton), subproblem.parts(&self.table));
-        let search = Search { boxes: &boxes, front: self.work.index, upper, halt: self.work.halt };
-        boxes.root().map_or_else(Found::default, |root| search.explore(&root))
+        let Work { index, halt, ledger, .. } = *self.work;
+        let search = Search { boxes: &boxes, front: index, upper, halt, ledger };
+        boxes.root().map_or_else(Found::default, |root| search.explore(&root, Branch::DEEP))
     }
 }

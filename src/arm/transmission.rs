@@ -1,0 +1,515 @@
+//! Motors that do not sit at the joint they drive, and the belts, chains, shafts and gear stages between both.
+//!
+//! *Torsion.* The stages transmit one torque, each multiplied by the ratios after it. At the joint they yield by the sum of
+//! `1/(k R²)` in series with the gear, with the stiffness k at the output of a stage and the product R of the ratios after it.
+//!
+//! *Coupled motion.* A motor that stands on a part inboard of other joints holds the pulley on the axis of each of these
+//! joints still while the link turns under it. Seen from the link the pulley turns back by the angle of the joint, and the
+//! driven joint by that angle over the product R of the ratios from this pulley on: `q = e - Σ qᵢ / Rᵢ`, with the twist `e` of
+//! gear and stages. By virtual work the drive of joint i then holds its own torque and `-1/Rᵢ` times that of the driven joint,
+//! and the rest of it is held by the part that carries the motor. Both enter as a [`Linkage`](super::linkage::Linkage).
+//!
+//! *Masses.* Motor (and gear, if it sits there) are a point on the part that carries them. A stage between two axes has half
+//! of its mass on each.
+
+use super::body::{JointBodies, RigidBody};
+use super::element_keys::read_coupling;
+use super::joint_law::Curve;
+use super::keys::STAGE;
+use super::load::vector;
+use crate::catalog::Catalogs;
+use crate::input::json::{Node, Object};
+use nalgebra::{Matrix3, Vector3};
+use serde_json::{Value, json};
+
+/// Stages between a motor and what it drives, as one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stage {
+    /// Turns of the input per turn of the output.
+    pub ratio: f64,
+    /// Part of the power that arrives at the output.
+    pub efficiency: f64,
+    /// Twist of the output per torque there, with the input held \[rad/(N m)\].
+    pub rad_per_nm: f64,
+    /// Moment of inertia at the input \[kg m²\].
+    pub inertia_kgm2: f64,
+    /// Mass \[kg\].
+    pub mass_kg: f64,
+}
+
+impl Stage {
+    /// No stage at all.
+    pub const NONE: Self =
+        Self { ratio: 1.0, efficiency: 1.0, rad_per_nm: 0.0, inertia_kgm2: 0.0, mass_kg: 0.0 };
+
+    /// This stage and another behind it, as one.
+    #[must_use]
+    pub fn then(self, next: Self) -> Self {
+        Self {
+            ratio: self.ratio * next.ratio,
+            efficiency: self.efficiency * next.efficiency,
+            rad_per_nm: self.rad_per_nm / (next.ratio * next.ratio) + next.rad_per_nm,
+            inertia_kgm2: self.inertia_kgm2 + next.inertia_kgm2 / (self.ratio * self.ratio),
+            mass_kg: self.mass_kg + next.mass_kg,
+        }
+    }
+
+    fn read(node: &Node) -> Option<Self> {
+        let object = node.shaped(&STAGE)?;
+        let ratio = object.required("ratio").and_then(|n| n.positive());
+        let efficiency = object.or("efficiency", 1.0, |n| match n.positive()? {
+            part if part <= 1.0 => Some(part),
+            part => n.fault(format!("= {part} is more than the whole"), "give a part such as 0.95"),
+        });
+        let rad_per_nm = object.or("stiffness_nm_per_rad", 0.0, |n| match n.is_null() {
+            true => Some(0.0),
+            false => n.positive().map(|k| 1.0 / k),
+        });
+        let inertia_kgm2 = object.or("inertia_kgm2", 0.0, Node::non_negative);
+        let mass_kg = object.or("mass_kg", 0.0, Node::non_negative);
+        Some(Self {
+            ratio: ratio?,
+            efficiency: efficiency?,
+            rad_per_nm: rad_per_nm?,
+            inertia_kgm2: inertia_kgm2?,
+            mass_kg: mass_kg?,
+        })
+    }
+}
+
+/// The stages of a joint's drive on either side of its gear.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stages {
+    /// Between the motor and the gear.
+    pub before: Stage,
+    /// Between the gear and the joint.
+    pub after: Stage,
+}
+
+impl Default for Stages {
+    fn default() -> Self {
+        Self { before: Stage::NONE, after: Stage::NONE }
+    }
+}
+
+impl Stages {
+    /// Turns of the motor per turn of the joint, with a gear of this ratio.
+    pub fn whole_ratio(&self, gear_ratio: f64) -> f64 {
+        self.before.ratio * gear_ratio * self.after.ratio
+    }
+
+    /// Moment of inertia at the motor of rotor, gear input and stages \[kg m²\].
+    pub fn input_inertia_kgm2(&self, rotor_kgm2: f64, gear_kgm2: f64, gear_ratio: f64) -> f64 {
+        let Self { before, after } = self;
+        let at_gear_kgm2 = gear_kgm2 + after.inertia_kgm2 / (gear_ratio * gear_ratio);
+        rotor_kgm2 + before.inertia_kgm2 + at_gear_kgm2 / (before.ratio * before.ratio)
+    }
+
+    /// The same without what yields and weighs, which a design has in its curves and bodies.
+    #[must_use]
+    pub fn rigid(&self) -> Self {
+        let rigid = |stage: Stage| Stage { rad_per_nm: 0.0, mass_kg: 0.0, ..stage };
+        Self { before: rigid(self.before), after: rigid(self.after) }
+    }
+
+    /// The keys that files have for them: their compliance is in the torsion curve and their mass in bodies.
+    pub(crate) fn to_json(self) -> Vec<(&'static str, Value)> {
+        let one = |stage: Stage| json!([{"ratio": stage.ratio, "efficiency": stage.efficiency, "inertia_kgm2": stage.inertia_kgm2}]);
+        match (self.before == Stage::NONE, self.after == Stage::NONE) {
+            (true, true) => Vec::new(),
+            (false, _) => vec![("transmission", one(self.before))],
+            (true, false) => vec![("gear_at", json!("motor")), ("transmission", one(self.after))],
+        }
+    }
+}
+
+/// Keys of a joint whose motor sits elsewhere or drives it through stages.
+pub(crate) const TRANSMISSION_KEYS: [&str; 6] =
+    ["motor_at", "motor_point_m", "motor_mass_kg", "gear_at", "gear_ratio", "transmission"];
+
+/// How a motor drives its joint, as the file says it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Transmission {
+    /// Name of the part that carries the motor, or `base`; `None` if the motor sits at the joint.
+    motor_at: Option<String>,
+    motor_point_m: Vector3<f64>,
+    /// Mass of what sits there \[kg\]; 0 where the drive is chosen, whose motor's mass is known later.
+    motor_kg: f64,
+    /// Whether the gear sits at the motor, before the stages.
+    gear_at_motor: bool,
+    /// Ratio of a gear at the joint, after the stages; `None` if no gear is known.
+    gear_ratio: Option<f64>,
+    stages: Vec<Stage>,
+    /// Whether the file says how the joint turns with those before it.
+    is_coupling_stated: bool,
+}
+
+/// Whether a joint's gear sits at a motor elsewhere.
+pub(crate) fn gear_is_at_motor(object: &Object) -> bool {
+    object.optional("gear_at").is_some_and(|n| n.value().as_str() == Some("motor"))
+}
+
+impl Transmission {
+    /// Reads it from the keys of a joint; `None` within if the joint has none of them. `motor_kg` is the mass of what sits at the
+    /// motor \[kg\].
+    pub(crate) fn read(object: &Object, catalogs: &Catalogs, motor_kg: Option<f64>) -> Option<Option<Self>> {
+        fits_beside(object)?;
+        if !TRANSMISSION_KEYS.iter().any(|key| object.has(key)) {
+            return Some(None);
+        }
+        let motor_at = object.or("motor_at", None, |n| n.string().map(|name| Some(name.to_string())));
+        let motor_point_m = object.or("motor_point_m", Vector3::zeros(), vector);
+        let gear_at_motor = object.or("gear_at", false, |n| match n.string()? {
+            "joint" => Some(false),
+            "motor" => Some(true),
+            word => n.fault(format!("\"{word}\" is not known"), "choose one of: joint, motor"),
+        });
+        let stages = object.or("transmission", Vec::new(), |n| {
+            n.array()?.iter().map(Stage::read).collect::<Vec<_>>().into_iter().collect()
+        });
+        let gear_ratio = object.or("gear_ratio", gear_ratio(object, catalogs), |n| n.positive().map(Some))?;
+        let is_told = gear_ratio.is_some() || gear_at_motor != Some(false) || object.has("drive");
+        if !is_told && stages.iter().flatten().any(|stage| stage.rad_per_nm > 0.0) {
+            return object.node().fault(
+                "has stages that yield before a gear of unknown ratio",
+                "add \"gear_ratio\" (1 if the stages drive the joint itself), or \"gear_at\": \"motor\"",
+            );
+        }
+        Some(Some(Self {
+            motor_at: motor_at?,
+            motor_point_m: motor_point_m?,
+            motor_kg: motor_kg?,
+            gear_at_motor: gear_at_motor?,
+            gear_ratio,
+            stages: stages?,
+            is_coupling_stated: object.has("turns_with"),
+        }))
+    }
+
+    /// The same behind a gear of this ratio at the joint.
+    pub(crate) fn with_gear_ratio(&self, ratio: f64) -> Self {
+        Self { gear_ratio: Some(ratio), ..self.clone() }
+    }
+
+    /// All stages as one.
+    pub(crate) fn stage(&self) -> Stage {
+        self.stages.iter().fold(Stage::NONE, |whole, next| whole.then(*next))
+    }
+
+    /// The stages on either side of the gear.
+    pub(crate) fn stages(&self) -> Stages {
+        match self.gear_at_motor {
+            true => Stages { after: self.stage(), ..Stages::default() },
+            false => Stages { before: self.stage(), ..Stages::default() },
+        }
+    }
+
+    /// Whether the motor sits at the joint and drives the gear itself.
+    pub(crate) fn is_none(&self) -> bool {
+        self.motor_at.is_none() && self.stages.is_empty()
+    }
+
+    /// Whether the motor sits elsewhere than the joint.
+    pub(crate) fn is_elsewhere(&self) -> bool {
+        self.motor_at.is_some()
+    }
+
+    /// The torsion curve of the joint with this curve of its gear.
+    pub(crate) fn curve(&self, gear: Curve) -> Curve {
+        let stage = self.stage();
+        match self.gear_at_motor {
+            true => gear.behind(stage.ratio).in_series(stage.rad_per_nm),
+            false => gear.in_series(stage.rad_per_nm / self.ratio_at_joint().powi(2)),
+        }
+    }
+
+    /// Ratio of the gear that stands between the stages and the joint.
+    fn ratio_at_joint(&self) -> f64 {
+        if self.gear_at_motor { 1.0 } else { self.gear_ratio.unwrap_or(1.0) }
+    }
+}
+
+/// Checks that no key stands where it says nothing: a passive joint has no motor, and the motor's place and mass belong to a
+/// motor elsewhere.
+fn fits_beside(object: &Object) -> Option<()> {
+    let mut sound = Some(());
+    let mut stray = |keys: &[&str], problem: &str, hint: &str| {
+        for key in keys.iter().filter(|key| object.has(key)) {
+            sound = object.node().fault_below(key, problem, hint);
+        }
+    };
+    if object.has("coupled") {
+        let of_motor = [&TRANSMISSION_KEYS[..], &["turns_with"]].concat();
+        stray(
+            &of_motor,
+            "stands beside \"coupled\"",
+            "a linkage turns this joint: write it at the joint that drives it",
+        );
+        return sound;
+    }
+    if !object.has("motor_at") {
+        stray(
+            &["motor_point_m", "motor_mass_kg"],
+            "has no \"motor_at\" beside it",
+            "add \"motor_at\", the part that carries the motor; a motor at the joint counts in mass_kg",
+        );
+    }
+    if !object.has("transmission") {
+        stray(&["gear_ratio"], "has no \"transmission\" beside it", "add \"transmission\", or leave it away");
+    }
+    sound
+}
+
+/// The ratio of a gear of the catalogs.
+fn gear_ratio(object: &Object, catalogs: &Catalogs) -> Option<f64> {
+    let gear = object.optional("gear")?;
+    catalogs.gear(gear.value().as_str()?).ok().map(|gear| gear.ratio)
+}
+
+/// An element of a chain, as a transmission sees it.
+#[derive(Debug, Clone)]
+pub(crate) struct Seen {
+    /// Name.
+    pub name: String,
+    /// What the element does.
+    pub motion: SeenMotion,
+}
+
+/// What an element of a chain does, as a transmission sees it.
+#[derive(Debug, Clone)]
+pub(crate) enum SeenMotion {
+    /// It turns about this axis of the frame with all angles zero; a passive joint has the names of its drivers.
+    Turns(Vector3<f64>, Vec<String>),
+    /// It slides.
+    Slides,
+    /// It is a link.
+    Stays,
+}
+
+/// The side of an element on which a body is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum HungOn {
+    /// Inboard of what moves there.
+    Start,
+    /// What moves there.
+    Moving,
+}
+
+/// A part of a transmission, as a body of an element of the chain.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Hung {
+    /// Number of the element.
+    pub element: usize,
+    /// The side of it.
+    pub on: HungOn,
+    /// The part.
+    pub body: RigidBody,
+}
+
+/// A transmission in its chain.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Placed {
+    /// How far the joint turns per turn of each joint that the stages cross, while the motor stands; `None` if the file says it.
+    pub turns_with: Option<Vec<(String, f64)>>,
+    /// Masses of the motor and of the stages.
+    pub hung: Vec<Hung>,
+    /// Where the motor is: element, side and point. At the joint if it does not sit elsewhere.
+    pub motor: (usize, HungOn, Vector3<f64>),
+    /// Whether the stages cross joints.
+    pub crosses: bool,
+}
+
+impl Transmission {
+    /// Puts the transmission of the joint that is element number `joint` into its chain. `node` is that of the joint.
+    pub(crate) fn place(&self, node: &Node, joint: usize, chain: &[Seen]) -> Option<Placed> {
+        let motor = self.motor_place(node, joint, chain)?;
+        let first = match motor {
+            _ if self.motor_at.is_none() => joint,
+            (element, HungOn::Moving, _) => element + 1,
+            (element, HungOn::Start, _) => element,
+        };
+        let crossed = crossed(node, first, joint, chain)?;
+        if self.stages.len() < crossed.len() && !(self.is_coupling_stated && self.stages.is_empty()) {
+            let names: Vec<&str> = crossed.iter().map(|&(i, _)| chain[i].name.as_str()).collect();
+            return node.fault_below(
+                "transmission",
+                format!(
+                    "has {} stages, and between the motor and the joint there are {} joints: {}",
+                    self.stages.len(),
+                    crossed.len(),
+                    names.join(", ")
+                ),
+                "give a stage for every link along which a belt runs, the last one to this joint; an idler has ratio 1",
+            );
+        }
+        let along = self.stages.len().saturating_sub(crossed.len());
+        let turns_with = match self.is_coupling_stated {
+            true => None,
+            false => Some(self.coupling(node, joint, &crossed, along, chain)?),
+        };
+        let hung = self.hung(motor, joint, &crossed, along);
+        Some(Placed { turns_with, hung, motor, crosses: !crossed.is_empty() })
+    }
+
+    fn motor_place(
+        &self,
+        node: &Node,
+        joint: usize,
+        chain: &[Seen],
+    ) -> Option<(usize, HungOn, Vector3<f64>)> {
+        let Some(name) = &self.motor_at else { return Some((joint, HungOn::Start, Vector3::zeros())) };
+        let inboard = &chain[..joint];
+        match inboard.iter().rposition(|seen| seen.name == *name) {
+            Some(element) => Some((element, HungOn::Moving, self.motor_point_m)),
+            None if name == "base" => Some((0, HungOn::Start, self.motor_point_m)),
+            None => {
+                let names: Vec<&str> = inboard.iter().map(|seen| seen.name.as_str()).collect();
+                node.fault_below(
+                    "motor_at",
+                    format!("\"{name}\" is no part of the arm inboard of this joint"),
+                    &format!("choose base, or one of: {}", names.join(", ")),
+                )
+            }
+        }
+    }
+
+    /// How far the joint turns per turn of the joints that are crossed, while the motor stands. From stage `along` on the
+    /// stages run along the links behind these joints.
+    fn coupling(
+        &self,
+        node: &Node,
+        joint: usize,
+        crossed: &[(usize, Vector3<f64>)],
+        along: usize,
+        chain: &[Seen],
+    ) -> Option<Vec<(String, f64)>> {
+        let SeenMotion::Turns(own, _) = &chain[joint].motion else { return Some(Vec::new()) };
+        if !crossed.is_empty() && self.gear_ratio.is_none() && !self.gear_at_motor {
+            return node.fault(
+                "is driven from beyond another joint, and the ratio of its gear is not known",
+                "add \"gear_ratio\" (1 if the stages drive the joint itself), or \"gear_at\": \"motor\"",
+            );
+        }
+        let mut terms = Some(Vec::new());
+        for (k, (element, axis)) in crossed.iter().enumerate() {
+            let name = &chain[*element].name;
+            let from_here: f64 = self.stages[along + k..].iter().map(|stage| stage.ratio).product();
+            let cosine = axis.dot(own);
+            if cosine.abs() < PARALLEL {
+                terms = node.fault_below(
+                    "motor_at",
+                    format!("lies beyond \"{name}\", whose axis is not parallel to that of this joint"),
+                    "say in \"turns_with\" how far this joint turns per turn of each joint between, while the motor stands",
+                );
+                continue;
+            }
+            if let Some(terms) = &mut terms {
+                terms.push((name.clone(), -cosine.signum() / (from_here * self.ratio_at_joint())));
+            }
+        }
+        terms
+    }
+
+    /// The motor, and the stages on their axes.
+    fn hung(
+        &self,
+        (at, on, point_m): (usize, HungOn, Vector3<f64>),
+        joint: usize,
+        crossed: &[(usize, Vector3<f64>)],
+        along: usize,
+    ) -> Vec<Hung> {
+        let near_kg: f64 = self.stages[..along].iter().map(|stage| stage.mass_kg).sum();
+        let mut hung = vec![(at, on, point_m, self.motor_kg + near_kg)];
+        for (k, stage) in self.stages[along..].iter().enumerate() {
+            let end = crossed.get(k + 1).map_or(joint, |(element, _)| *element);
+            hung.push((crossed[k].0, HungOn::Moving, Vector3::zeros(), stage.mass_kg / 2.0));
+            hung.push((end, HungOn::Start, Vector3::zeros(), stage.mass_kg / 2.0));
+        }
+        let body = |(element, on, cg_m, mass_kg)| Hung {
+            element,
+            on,
+            body: RigidBody { mass_kg, cg_m, inertia_kgm2: Matrix3::zeros() },
+        };
+        hung.into_iter().filter(|(.., mass_kg)| *mass_kg > 0.0).map(body).collect()
+    }
+}
+
+/// Least cosine between axes that count as parallel.
+const PARALLEL: f64 = 0.999_999;
+
+/// The joints that lie between a motor and the joint that it drives, each with its axis.
+fn crossed(node: &Node, first: usize, joint: usize, chain: &[Seen]) -> Option<Vec<(usize, Vector3<f64>)>> {
+    let mut out = Vec::new();
+    for (element, seen) in chain.iter().enumerate().take(joint).skip(first) {
+        match &seen.motion {
+            SeenMotion::Stays => {}
+            SeenMotion::Slides => {
+                return node.fault_below(
+                    "motor_at",
+                    format!("lies beyond \"{}\", which slides", seen.name),
+                    "transmissions over prismatic joints are not modelled: let the motor travel along",
+                );
+            }
+            SeenMotion::Turns(axis, drivers) => {
+                let outboard = |driver: &&String| !chain[..element].iter().any(|seen| seen.name == **driver);
+                if let Some(driver) = drivers.iter().find(outboard) {
+                    return node.fault_below(
+                        "motor_at",
+                        format!("lies beyond \"{}\", which \"{driver}\" turns from further out", seen.name),
+                        "put the motor outboard of it",
+                    );
+                }
+                out.push((element, *axis));
+            }
+        }
+    }
+    Some(out)
+}
+
+/// Reads `turns_with`: how far the joint turns per turn of joints inboard of it, while its motor stands; none without the key.
+pub(crate) fn read_turns_with(object: &Object) -> Option<Vec<(String, f64)>> {
+    object.or("turns_with", Vec::new(), read_coupling)
+}
+
+/// Checks that every joint of `turns_with` of element number `joint` is a joint inboard of it that turns.
+pub(crate) fn turns_with_joints_inboard(
+    node: &Node,
+    terms: &[(String, f64)],
+    joint: usize,
+    chain: &[Seen],
+) -> Option<()> {
+    let turns = |seen: &&Seen| matches!(seen.motion, SeenMotion::Turns(..));
+    let inboard: Vec<&str> = chain[..joint].iter().filter(turns).map(|seen| seen.name.as_str()).collect();
+    let mut sound = Some(());
+    for (name, _) in terms.iter().filter(|(name, _)| !inboard.contains(&name.as_str())) {
+        sound = node.fault_below(
+            "turns_with",
+            format!("\"{name}\" is no joint inboard of this one that turns"),
+            &format!("joints inboard: {}", inboard.join(", ")),
+        );
+    }
+    sound
+}
+
+/// The bodies of an element, to which parts of transmissions are added.
+pub(crate) enum Carrier<'a> {
+    /// Of a joint.
+    Joint(&'a mut JointBodies),
+    /// Of a link.
+    Link(&'a mut Vec<RigidBody>),
+}
+
+impl Carrier<'_> {
+    /// Hangs a part on the element.
+    pub(crate) fn carry(&mut self, hung: &Hung) {
+        match (self, hung.on) {
+            (Self::Joint(bodies), HungOn::Start) => bodies.fixed.push(hung.body),
+            (Self::Joint(bodies), HungOn::Moving) => bodies.rotating.push(hung.body),
+            // what stands at the base, before a chain that begins with a link, does not move with it
+            (Self::Link(bodies), HungOn::Start) => {
+                bodies.push(RigidBody { cg_m: Vector3::zeros(), ..hung.body });
+            }
+            (Self::Link(bodies), HungOn::Moving) => bodies.push(hung.body),
+        }
+    }
+}

@@ -1,0 +1,319 @@
+//! Drives of prismatic joints: ball screws, and racks with their pinions, as gears.
+//!
+//! A screw of lead p turns the motor by `2π/p` radians a metre, a pinion of radius r by `1/r`, times the ratio of a gear at it.
+//! With this ratio every equation of a joint holds along a travel, with a force \[N\] for the torque, a speed \[m/s\] for the
+//! angular speed and a stiffness \[N/m\]: the motor's torque is `F / (N η) + J N a` (Eqs 9 to 12). So a screw *is* a
+//! [`Gear`] whose ratings are forces.
+//!
+//! | of a screw | formula | source |
+//! |---|---|---|
+//! | buckling | F = 0.5 η₁ π² E I / L², η₁ = 1/4, 1, 2, 4 by the ends (Euler) | THK, general catalog 514E, page A15-30 |
+//! | critical speed | n = 0.8 · 60 λ² / (2π L²) √(E I / ρ A), λ = 1.875, π, 3.927, 4.730 | MISUMI 2025, page 1677; λ: the roots of the uniform beam |
+//! | life of the nut | L10 = (C / F_m)³ · 10⁶ turns, F_m the cubic mean over the way | definition of C: linearwizard.com, screw drives, calculation principles |
+//! | stiffness of the shaft | E A / L, with both ends fixed 4 E A / L: where the nut is farthest from what holds the shaft | the bar, the bar held at both ends |
+//!
+//! I, A are those of the root of the thread, E = 206 GPa and ρ = 7850 kg/m³ those of steel. The mass of the shaft turns with the motor and does not
+//! travel.
+
+use crate::catalog::envelope::Envelope;
+use crate::catalog::gear::{BearingRatings, Gear, GearKind, LifeLaw};
+use crate::catalog::{Confidence, Provenance};
+use std::f64::consts::PI;
+
+/// Young's modulus of the shaft \[Pa\]: THK, general catalog 514E, page A15-30.
+const YOUNGS_MODULUS_PA: f64 = 2.06e11;
+/// Density of the shaft \[kg/m³\].
+const DENSITY_KG_M3: f64 = 7850.0;
+/// What the makers leave of Euler's load, and of the critical speed.
+const OF_EULER: f64 = 0.5;
+const OF_CRITICAL: f64 = 0.8;
+/// Turns for which the dynamic load rating is defined.
+const RATED_TURNS: f64 = 1e6;
+
+/// How the ends of a screw are held.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ends {
+    /// One end fixed, the other free.
+    FixedFree,
+    /// Both ends supported.
+    Supported,
+    /// One end fixed, the other supported.
+    FixedSupported,
+    /// Both ends fixed.
+    Fixed,
+}
+
+impl Ends {
+    /// The words of files, with what they mean.
+    pub const WORDS: [(&'static str, Self); 4] = [
+        ("fixed_free", Self::FixedFree),
+        ("supported_supported", Self::Supported),
+        ("fixed_supported", Self::FixedSupported),
+        ("fixed_fixed", Self::Fixed),
+    ];
+
+    /// Euler's load over that of supported ends.
+    fn buckling(self) -> f64 {
+        match self {
+            Self::FixedFree => 0.25,
+            Self::Supported => 1.0,
+            Self::FixedSupported => 2.0,
+            Self::Fixed => 4.0,
+        }
+    }
+
+    /// The lowest root λ of the beam with these ends.
+    fn root(self) -> f64 {
+        match self {
+            Self::FixedFree => 1.875_104,
+            Self::Supported => PI,
+            Self::FixedSupported => 3.926_602,
+            Self::Fixed => 4.730_041,
+        }
+    }
+}
+
+/// A ball screw with its nut.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Screw {
+    /// Name.
+    pub name: String,
+    /// Way of the nut a turn \[m\].
+    pub lead_m: f64,
+    /// Diameter at the root of the thread \[m\].
+    pub root_diameter_m: f64,
+    /// Length between what holds the shaft \[m\].
+    pub length_m: f64,
+    /// How the ends are held.
+    pub ends: Ends,
+    /// Dynamic load rating C of the nut \[N\]; `None`: no life is checked.
+    pub dynamic_load_rating_n: Option<f64>,
+    /// Largest axial force \[N\], such as the static load rating over a factor; `None` is not checked.
+    pub max_force_n: Option<f64>,
+    /// Largest speed for the balls \[rpm\]; `None` leaves the critical speed alone.
+    pub max_speed_rpm: Option<f64>,
+    /// Efficiency.
+    pub efficiency: f64,
+    /// Stiffness of nut and end bearings in series \[N/m\]; `None` is rigid.
+    pub series_n_per_m: Option<f64>,
+    /// Moment of inertia beyond that of the shaft, such as a coupling's \[kg m²\].
+    pub further_inertia_kgm2: f64,
+    /// Mass beyond that of the shaft, which stays where the joint begins \[kg\].
+    pub further_mass_kg: f64,
+}
+
+impl Screw {
+    fn area_m2(&self) -> f64 {
+        PI / 4.0 * self.root_diameter_m.powi(2)
+    }
+
+    fn second_moment_m4(&self) -> f64 {
+        PI / 64.0 * self.root_diameter_m.powi(4)
+    }
+
+    fn shaft_kg(&self) -> f64 {
+        DENSITY_KG_M3 * self.area_m2() * self.length_m
+    }
+
+    /// Force that the shaft bears without buckling \[N\]: half of Euler's.
+    pub fn buckling_n(&self) -> f64 {
+        let euler_n = PI * PI * YOUNGS_MODULUS_PA * self.second_moment_m4() / self.length_m.powi(2);
+        OF_EULER * self.ends.buckling() * euler_n
+    }
+
+    /// Largest speed \[rpm\]: 80 % of the shaft's critical speed, or that of the balls.
+    pub fn max_speed_rpm(&self) -> f64 {
+        let rigidity = YOUNGS_MODULUS_PA * self.second_moment_m4() / (DENSITY_KG_M3 * self.area_m2());
+        let critical_rad_s = (self.ends.root() / self.length_m).powi(2) * rigidity.sqrt();
+        let bent_rpm = OF_CRITICAL * critical_rad_s * 60.0 / (2.0 * PI);
+        self.max_speed_rpm.map_or(bent_rpm, |balls_rpm| bent_rpm.min(balls_rpm))
+    }
+
+    /// Stiffness along the travel \[N/m\]: shaft, nut and bearings in series, with the nut where the shaft yields most.
+    pub fn stiffness_n_per_m(&self) -> f64 {
+        let held = if self.ends == Ends::Fixed { 4.0 } else { 1.0 };
+        let shaft = self.length_m / (held * YOUNGS_MODULUS_PA * self.area_m2());
+        1.0 / (shaft + self.series_n_per_m.map_or(0.0, |k| 1.0 / k))
+    }
+
+    /// Moment of inertia at the motor \[kg m²\]: shaft, and what turns with it.
+    pub fn inertia_kgm2(&self) -> f64 {
+        self.shaft_kg() * self.root_diameter_m.powi(2) / 8.0 + self.further_inertia_kgm2
+    }
+
+    /// The screw as a gear whose ratings are forces.
+    pub fn gear(&self) -> Gear {
+        let turns_h = self.dynamic_load_rating_n.map(|_| RATED_TURNS / 60.0);
+        Gear {
+            life: LifeLaw { rated_h: turns_h.map(|_| 1.0), rated_speed_rpm: turns_h, exponent: 3.0 },
+            rated_torque_nm: self.dynamic_load_rating_n,
+            momentary_peak_torque_nm: self.max_force_n,
+            buckling_torque_nm: Some(self.buckling_n()),
+            max_input_speed_rpm: Some(self.max_speed_rpm()),
+            inertia_input_kgm2: Some(self.inertia_kgm2()),
+            k1_nm_per_rad: Some(self.stiffness_n_per_m()),
+            ..linear(GearKind::Screw, &self.name, 2.0 * PI / self.lead_m, self.efficiency)
+                .weighing(self.shaft_kg() + self.further_mass_kg)
+        }
+    }
+}
+
+/// A rack with its pinion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rack {
+    /// Name.
+    pub name: String,
+    /// Pitch radius of the pinion \[m\].
+    pub pinion_radius_m: f64,
+    /// Turns of the motor per turn of the pinion.
+    pub ratio: f64,
+    /// Efficiency of pinion and gear.
+    pub efficiency: f64,
+    /// Largest force that rack and pinion transmit \[N\]; `None` is not checked.
+    pub max_force_n: Option<f64>,
+    /// Largest speed of the gear's input \[rpm\]; `None` is not checked.
+    pub max_speed_rpm: Option<f64>,
+    /// Stiffness along the travel \[N/m\].
+    pub stiffness_n_per_m: f64,
+    /// Moment of inertia at the motor \[kg m²\].
+    pub inertia_kgm2: f64,
+    /// Mass \[kg\], which stays where the joint begins.
+    pub mass_kg: f64,
+}
+
+impl Rack {
+    /// The rack as a gear whose ratings are forces.
+    pub fn gear(&self) -> Gear {
+        Gear {
+            momentary_peak_torque_nm: self.max_force_n,
+            max_input_speed_rpm: self.max_speed_rpm,
+            inertia_input_kgm2: Some(self.inertia_kgm2),
+            k1_nm_per_rad: Some(self.stiffness_n_per_m),
+            ..linear(GearKind::Rack, &self.name, self.ratio / self.pinion_radius_m, self.efficiency)
+                .weighing(self.mass_kg)
+        }
+    }
+}
+
+/// A gear along a travel of which nothing but ratio \[rad/m\] and efficiency is known.
+fn linear(kind: GearKind, name: &str, ratio: f64, efficiency: f64) -> Gear {
+    Gear {
+        id: name.to_string(),
+        series: name.to_string(),
+        kind,
+        size: 0,
+        ratio,
+        life: LifeLaw { rated_h: None, rated_speed_rpm: None, exponent: 3.0 },
+        rated_torque_nm: None,
+        repeated_peak_torque_nm: None,
+        average_torque_limit_nm: None,
+        momentary_peak_torque_nm: None,
+        max_input_speed_rpm: None,
+        average_input_speed_limit_rpm: None,
+        inertia_input_kgm2: None,
+        mass_component_set_kg: None,
+        mass_housed_unit_kg: None,
+        t1_nm: None,
+        t2_nm: None,
+        k1_nm_per_rad: None,
+        k2_nm_per_rad: None,
+        k3_nm_per_rad: None,
+        hysteresis_loss_arcmin: None,
+        backlash_arcmin: None,
+        lost_motion_arcmin: None,
+        transmission_accuracy_arcmin: None,
+        tilting_stiffness_nm_per_rad: None,
+        permissible_tilting_moment_nm: None,
+        bearing: BearingRatings::default(),
+        buckling_torque_nm: None,
+        ratcheting_torque_nm: None,
+        envelope: Envelope::default(),
+        efficiency: Some(efficiency),
+        provenance: Provenance {
+            source: "the study".into(),
+            confidence: Confidence::Verified,
+            unverified_fields: Vec::new(),
+            file: "the study".into(),
+            line: 0,
+        },
+    }
+}
+
+impl Gear {
+    /// The same with a mass in either build \[kg\].
+    fn weighing(self, mass_kg: f64) -> Self {
+        Self { mass_component_set_kg: Some(mass_kg), mass_housed_unit_kg: Some(mass_kg), ..self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::demand::JointMotion;
+    use super::super::limits::gear_life_h;
+    use super::super::requirement::MotionRequirement;
+    use super::*;
+
+    /// A shaft of 12.5 mm at the root, fixed and supported.
+    fn screw(length_m: f64) -> Screw {
+        Screw {
+            name: "15 x 5".into(),
+            lead_m: 0.005,
+            root_diameter_m: 0.0125,
+            length_m,
+            ends: Ends::FixedSupported,
+            dynamic_load_rating_n: None,
+            max_force_n: None,
+            max_speed_rpm: None,
+            efficiency: 0.9,
+            series_n_per_m: None,
+            further_inertia_kgm2: 0.0,
+            further_mass_kg: 0.0,
+        }
+    }
+
+    /// MISUMI, catalog 2025, page 1676: 3630 N at 820 mm, with the factor m = 10 in place of 9.98.
+    #[test]
+    fn the_makers_example_of_buckling_comes_out() {
+        assert!((screw(0.820).buckling_n() / 3630.0 - 1.0).abs() < 0.003, "{}", screw(0.820).buckling_n());
+    }
+
+    /// MISUMI, page 1677, and Engineers Edge's table: n = 15.1 d / L² · 10⁷ with d and L in mm, here at 790 mm.
+    #[test]
+    fn the_makers_factor_of_the_critical_speed_comes_out() {
+        let by_table = 15.1 * 12.5 / (790.0 * 790.0) * 1e7;
+        assert!((screw(0.790).max_speed_rpm() / by_table - 1.0).abs() < 0.005);
+        let of = |ends, factor: f64| {
+            let by_table = factor * 12.5 / (790.0 * 790.0) * 1e7;
+            assert!(
+                (Screw { ends, ..screw(0.790) }.max_speed_rpm() / by_table - 1.0).abs() < 0.01,
+                "{ends:?}"
+            );
+        };
+        of(Ends::FixedFree, 3.4);
+        of(Ends::Supported, 9.7);
+        of(Ends::Fixed, 21.9);
+    }
+
+    /// The worked example of the program MITCalc (ball screws, sections 1.1 to 1.25): lead 20 mm, 1000 N with a load factor of
+    /// 1.2, 2400 rpm, 20 000 h ask for C = 17 073.1 N; with an efficiency of 0.9484 the torque is 3.3564 N m.
+    #[test]
+    fn a_worked_example_of_life_and_torque_comes_out() {
+        let screw =
+            Screw { lead_m: 0.02, dynamic_load_rating_n: Some(17_073.1), efficiency: 0.9484, ..screw(1.2) };
+        let gear = screw.gear();
+        assert!((1000.0 / (gear.ratio * screw.efficiency) - 3.3564).abs() < 1e-4);
+        let motion = MotionRequirement::default().joint_motion(1.0, Some(2400.0 / 60.0 * 0.02));
+        let always = JointMotion { mean_speed_fraction: 1.0, ..motion };
+        let life_h = gear_life_h(&gear, &always, 1200f64.powi(3)).expect("known");
+        assert!((life_h / 20_000.0 - 1.0).abs() < 1e-4, "{life_h}");
+    }
+
+    /// A screw held at both ends gives way most in its middle, as two halves side by side.
+    #[test]
+    fn a_shaft_yields_as_a_bar_and_in_series_with_its_nut() {
+        let bar = 2.06e11 * PI / 4.0 * 0.0125f64.powi(2) / 0.8;
+        assert!((screw(0.8).stiffness_n_per_m() / bar - 1.0).abs() < 1e-12);
+        let both = Screw { ends: Ends::Fixed, series_n_per_m: Some(bar), ..screw(0.8) };
+        assert!((both.stiffness_n_per_m() / (bar * 4.0 / 5.0) - 1.0).abs() < 1e-12);
+    }
+}
