@@ -158,7 +158,7 @@ pub(crate) fn may_be(candidate: &Candidate) -> &'static str {
             "it may be a gear that warms up or a connection that works loose; from the first rows on, a servo that holds the \
              joint otherwise in these tests"
         }
-        Some(LEAN) => "it may be a foot, a plate or a wall that yields more one way than the other",
+        Some(LEAN) => "it may be a foot, a plate or a wall that is more compliant one way than the other",
         Some(BASE_TURN) => "it may be a base that slipped on its bolts, or an instrument that was touched",
         Some(BEND) => {
             "it may be an instrument that is not straight, or a displacement too large for a straight law"

@@ -74,8 +74,8 @@ pub(crate) fn may_be_absent(fit: &Fit, ends: &[Interval]) -> Vec<usize> {
 
 /// Says which numbers of the effects have an end of their interval that the readings do not bound, if some do.
 pub(crate) fn unbounded(fit: &Fit, ends: &[Interval]) -> Option<String> {
-    let of_effect = |effect: &&Candidate| vec![effect.label(); effect.free_parameters.len()];
-    let labels = fit.model.effects.iter().flat_map(|effect| of_effect(effect));
+    let labels =
+        fit.model.effects.iter().flat_map(|effect| vec![effect.label(); effect.free_parameters.len()]);
     let numbers = fit.model.free_parameters().zip(ends).zip(labels);
     let is_limit = |parameter: &FreeParameter, end: Option<f64>| end.is_some_and(|u| parameter.is_limit(u));
     let unbounded = numbers
