@@ -1,4 +1,4 @@
-//! Which level of a box to halve.
+//! The choice of the level at which a box is divided.
 
 use super::bound::{IdealPoint, Members, compliances};
 use super::boxes::Boxes;
@@ -22,7 +22,8 @@ pub(super) struct BranchScore<'a> {
 }
 
 impl BranchScore<'_> {
-    /// How much worse the ideal point becomes if a level has an average part.
+    /// How much worse the ideal point becomes if the level has an average part. The number is a sum of relative
+    /// changes of mass, deflection and squared frequency.
     pub(super) fn score_of(&self, level: usize) -> f64 {
         let node = self.parts.0[level];
         let [mass_kg, tip_m, eigenvalue] = match self.boxes.skeleton.levels[level] {
@@ -38,7 +39,7 @@ impl BranchScore<'_> {
             + 0.5 * libm::log1p(slower)
     }
 
-    /// By how much an average drive makes mass \[kg\], deflection \[m\] and `λ` \[1/s²\] worse.
+    /// By how much an average drive instead of the best one raises mass \[kg\], deflection \[m\] and `λ` \[1/s²\].
     fn of_joint(&self, joint: usize, node: u32) -> [f64; 3] {
         let (range, whole) = (&self.members.drives[joint], self.boxes.joints[joint].range(node));
         let mass_kg = 0.5 * (whole.most_kg.min(range.most_kg) - range.least_kg);
@@ -58,17 +59,18 @@ impl BranchScore<'_> {
         [mass_kg, tip_m + self.deflection_per(joint) * mass_kg, eigenvalue]
     }
 
-    /// By how much an average bearing makes the strain of the mode less \[N m\].
+    /// By how much an average bearing instead of the stiffest one lowers the strain energy of the mode (times two)
+    /// \[N m\].
     fn slower_by_tilt(&self, joint: usize, range: &DriveRange) -> f64 {
         let weaker = range.greatest_tilt_stiffness() - 1.0 / range.tilt_rad_per_nm.middle();
         let coordinates = self.boxes.skeleton.coordinates.iter().zip(&self.slow.mode);
         let tilts = coordinates.filter(|(c, _)| matches!(c, Coordinate::Tilt(j, _) if *j == joint));
         let strain: f64 = tilts.map(|(_, x)| weaker * x * x).sum();
-        // a bearing that may be rigid stands still in the mode
+        // a bearing that may be rigid does not tilt in the mode of the ideal arm
         if strain.is_finite() { strain } else { 0.0 }
     }
 
-    /// By how much an average tube makes mass \[kg\], deflection \[m\] and `λ` \[1/s²\] worse.
+    /// By how much an average tube instead of the best one raises mass \[kg\], deflection \[m\] and `λ` \[1/s²\].
     fn of_tube(&self, tube: usize) -> [f64; 3] {
         let range: &TubeRange = self.members.tubes[tube];
         let pose = &self.boxes.skeleton.poses[self.ideal.worst];

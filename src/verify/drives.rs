@@ -1,4 +1,4 @@
-//! The drives that a joint may have in a box or a region, and the tree that halves them.
+//! The drives that a joint may have in a box or a region, and the binary tree over them.
 
 use super::demand::{Demand, Quantity};
 use super::drive_range::DriveRange;
@@ -8,46 +8,48 @@ use super::parts_box::Choice;
 use super::ratings::Ratings;
 use super::tree::Tree;
 
-/// In sets of no more drives than this, every drive is compared with the demand.
+/// For sets of at most this many drives, every drive is compared with the demand. In larger sets only the greatest
+/// ratings of the whole set are compared.
 const FEW: usize = 64;
 
-/// The drives that a joint may have.
+/// The drives that a joint may have, as a list.
 pub(super) struct DriveOptions {
-    /// Index among the levels of the space; `None` if the drive is no choice.
+    /// Index among the levels of the space; `None` if the drive is not chosen by the search.
     pub level: Option<usize>,
-    /// The motion of the joint; `None` for a given drive, which is not checked.
+    /// The motion of the joint; `None` for a given drive, on which nothing is checked.
     pub duty: Option<Duty>,
     /// The drives, lightest first.
     pub options: Vec<DriveOption>,
 }
 
-/// A drive, or several drives of equal mass, torsion curve and tilt of the bearing.
+/// One option: a drive, or several drives of equal mass, torsion curve and bearing stiffness.
 #[derive(Debug, Clone)]
 pub(super) struct DriveOption {
     pub range: DriveRange,
-    /// Number of each drive, and the torques that the drive holds.
+    /// Index of each drive of the option, with its ratings.
     pub drives: Vec<(u32, Ratings)>,
 }
 
-/// Whether drives of equal mass, torsion curve and tilt, which no objective tells apart, are one option.
+/// How drives of equal mass, torsion curve and bearing stiffness are treated, which no objective tells apart:
+/// `Apart` makes one option of each, `Together` one option of all.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Ties {
     Apart,
     Together,
 }
 
-/// The drives that a joint may have, in a tree whose nodes are halved down to single options.
+/// The drives that a joint may have, as a binary tree. Branching halves its nodes down to single options.
 pub(super) struct Drives {
     pub level: Option<usize>,
     pub duty: Option<Duty>,
     pub tree: Tree,
-    /// For each node of the tree, range and greatest ratings of its drives.
+    /// For each node of the tree, the ranges of its drives and the greatest of their ratings.
     nodes: Vec<(DriveRange, Ratings)>,
     options: Vec<DriveOption>,
 }
 
 impl DriveOptions {
-    /// All drives of a joint. `level` is used only if the drive is a choice.
+    /// All drives that a joint may have. `level` is stored only if the search chooses the drive.
     pub(super) fn new(offers: &JointOffers, level: usize, ties: Ties) -> Self {
         let offers = match offers {
             JointOffers::Given { law, tilt_rad_per_nm, mass_kg } => {
@@ -67,7 +69,7 @@ impl DriveOptions {
         Self { level: offers.is_choice.then_some(level), duty: Some(offers.duty.clone()), options }
     }
 
-    /// Some of the options, given by ascending indices.
+    /// Options with only the given ones kept. `some` has their indices in ascending order.
     pub(super) fn only(&self, some: &[u32]) -> Self {
         let options = some.iter().map(|&i| self.options[i as usize].clone()).collect();
         Self { level: self.level, duty: self.duty.clone(), options }
@@ -83,13 +85,13 @@ impl DriveOption {
         }
     }
 
-    /// Whether at least one drive of the option holds a demand.
+    /// Whether at least one drive of the option meets a demand.
     pub(super) fn holds(&self, asked: &Demand) -> bool {
         self.drives.iter().any(|(_, ratings)| ratings.hold(asked))
     }
 
-    /// The drives of the option that may hold a demand that lies between two, and whether the first of them surely
-    /// holds.
+    /// For a demand that is known only between a least and a greatest one: the drives of the option that may meet
+    /// it, and whether the first of these surely does.
     pub(super) fn holding(&self, [least, most]: &[Demand; 2]) -> Choice {
         let may = self.drives.iter().filter(|(_, ratings)| ratings.hold(least));
         let (mut drives, unsure): (Vec<&(u32, Ratings)>, Vec<_>) =
@@ -126,7 +128,7 @@ impl Drives {
         self.tree.options(node).iter().map(|&i| &self.options[i as usize])
     }
 
-    /// Range of a node's drives that may hold a demand of at least `asked`; `None` if there is none.
+    /// Range of those drives of a node that may meet a demand of at least `asked`; `None` if none can.
     pub(super) fn holding(&self, node: u32, asked: &Demand) -> Option<DriveRange> {
         if self.tree.options(node).len() > FEW {
             let (range, ratings) = &self.nodes[node as usize];
@@ -136,8 +138,8 @@ impl Drives {
         holding.map(|option| option.range).reduce(|a, b| a.with(&b))
     }
 
-    /// Range of the drives that may be the lightest to hold a demand that lies between two. `None` if no drive holds
-    /// the least.
+    /// Range of the drives that may be the lightest to meet a demand. The demand is known only between `least` and
+    /// `most`. `None` if no drive meets the least demand.
     pub(super) fn first_fits(&self, least: &Demand, most: &Demand) -> Option<DriveRange> {
         let fits = first_fits(self.options.iter().map(|option| ((), option)), least, most);
         fits.map(|(_, option)| option.range).reduce(|a, b| a.with(&b))
@@ -154,8 +156,8 @@ impl Drives {
     }
 }
 
-/// The drives that may be the lightest to hold a demand that lies between two. These are all drives that hold the
-/// least demand, up to the first that holds the greatest.
+/// The drives that may be the lightest to meet a demand that lies between `least` and `most`. These are all drives
+/// that meet the least demand, up to the first one that also meets the greatest.
 pub(super) fn first_fits<'o, T>(
     options: impl Iterator<Item = (T, &'o DriveOption)>,
     least: &Demand,
@@ -170,7 +172,8 @@ pub(super) fn first_fits<'o, T>(
     options.scan(false, fit).filter(move |(_, option)| option.holds(&least))
 }
 
-/// The numbers by which the tree separates drives.
+/// The coordinates by which the tree groups similar drives, each with a weight. Any grouping gives a valid proof; a
+/// good one makes the bounds tight.
 fn keys(option: &DriveOption) -> Vec<f64> {
     let (drive, ratings) = (&option.range, option.ratings());
     let stiff = &drive.stiff;

@@ -1,17 +1,16 @@
-//! An index of the rows of a front: which frequency does a design need so that no row is as good?
+//! An index of a front that tells up to which frequency a design of known mass and deflection is dominated.
 
 use crate::pareto::objectives::Objectives;
 
 /// Objectives closer than this count as equal (relative).
 const TIE: f64 = 1e-9;
-/// A design of the front must be better by this in one objective to discard a box (relative).
+/// A design of the front discards a box only if it is better by this margin in at least one objective (relative).
 const BETTER: f64 = 1e-7;
 
 /// The designs of a front, sorted by mass. The index finds the highest frequency among the designs up to a mass and a
-/// deflection.
-///
-/// Position `i` of `blocks` (from 1, as in a Fenwick tree) stands for the last `i & -i` designs up to the `i`-th:
-/// their deflections in ascending order, each with the highest frequency of the designs that deflect no more.
+/// Position `i` of `blocks` (counted from 1, as in a Fenwick tree) stands for the last `i & -i` designs up to the
+/// `i`-th: their deflections in ascending order, each with the highest frequency of those designs of the block that
+/// deflect no more.
 pub(super) struct FrontIndex {
     masses_kg: Vec<f64>,
     blocks: Vec<Vec<(f64, f64)>>,
@@ -40,8 +39,8 @@ impl FrontIndex {
         }
     }
 
-    /// Highest frequency among the designs of the front that weigh no more and deflect no more \[Hz\]; zero if there
-    /// is none.
+    /// Highest frequency \[Hz\] among the designs of the front with at most this mass and at most this deflection;
+    /// zero if there is none.
     fn highest_hz(&self, mass_kg: f64, tip_m: f64) -> f64 {
         let mut end = self.masses_kg.partition_point(|row| *row <= mass_kg);
         let mut highest = 0.0f64;
@@ -64,7 +63,7 @@ impl FrontIndex {
         (lighter.max(stiffer) * (1.0 + TIE)).max(as_good * (1.0 - BETTER))
     }
 
-    /// Whether a design of the front dominates a design.
+    /// Whether some design of the front dominates this design.
     pub(super) fn beats(&self, design: &Objectives) -> bool {
         design.lowest_mode_hz <= self.beaten_up_to_hz(design.mass_kg, design.tip_deflection_m)
     }

@@ -9,19 +9,19 @@ pub(super) enum Place {
     Tube(usize),
 }
 
-/// A box: for every level, tip first, a node of the level's tree. Its members are all designs whose options are below
-/// these nodes.
+/// A box: for every level, tip first, the index of a node in the level's option tree. Its members are all designs
+/// whose options are below these nodes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PartsBox(pub(super) Vec<u32>);
 
 /// Options of one level that no objective tells apart.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Choice {
-    /// Numbers of the options. Those that hold whatever rounding does come first.
+    /// Indices of the options. Those that pass their checks in spite of any rounding come first.
     pub options: Vec<u32>,
-    /// Whether the first option surely holds.
+    /// Whether the first option surely passes its checks.
     pub one_holds: bool,
 }
 
-/// A design, or several that no objective tells apart: the choice at each level, tip first.
+/// A design, or several that no objective tells apart: the options at each level, tip first.
 pub(super) type Design = Vec<Choice>;

@@ -1,9 +1,11 @@
-//! Stiffness and inertia of an arm as dense matrices, and whether its lowest mode is below a number.
+//! Stiffness matrix K and inertia matrix M of an arm in a pose, and the test whether its lowest mode is below a
+//! given frequency.
 //!
-//! `K - λ M` is positive definite exactly if `λ` is below every `λ_i` of `K x = λ_i M x`, so one Cholesky
-//! factorization decides. With every stiffness of a box at its largest and every inertia at its least, `K`
-//! is at least and `M` at most that of any member (in the order of positive semidefinite differences), and
-//! then so is each Rayleigh quotient, and by Courant and Fischer `λ_1`.
+//! `K - λ M` is positive definite exactly if `λ` is below every eigenvalue `λ_i` of `K x = λ_i M x`, so one
+//! Cholesky factorization decides. For a box, `K` has every stiffness at its greatest and `M` every inertia at its
+//! least. Compared with any member, `K` is then at least and `M` at most as large (in the order of positive
+//! semidefinite differences), so no Rayleigh quotient is smaller, and by Courant and Fischer `λ_1` is no smaller
+//! either.
 
 /// Diagonal stiffness matrix `K` and inertia matrix `M` of an arm's coordinates in a pose.
 pub(super) struct Pencil {
@@ -18,7 +20,7 @@ pub(super) struct Factor {
     lower: Vec<f64>,
 }
 
-/// Number of steps of inverse iteration towards a slower motion.
+/// Number of steps of inverse iteration that lower the Rayleigh quotient of a motion further.
 const STEPS: usize = 5;
 
 /// Number of entries of a lower triangle before row `i`.
@@ -45,9 +47,9 @@ impl Pencil {
         self.factor_or_slower(eigenvalue).ok()
     }
 
-    /// The factor of `K - λ M`, or a motion `x` with `xᵀ K x <= λ xᵀ M x`. The motion comes from the first pivot that
-    /// is not positive: it is one at the pivot's coordinate, zero at later coordinates, and in equilibrium at earlier
-    /// ones, so the pivot equals `xᵀ (K - λ M) x`.
+    /// The factor of `K - λ M`, or a motion `x` with `xᵀ K x <= λ xᵀ M x`. The motion comes from the first pivot
+    /// that is not positive. It is one at the coordinate of the pivot and zero at later coordinates; the earlier
+    /// coordinates are in equilibrium. The pivot then equals `xᵀ (K - λ M) x`.
     fn factor_or_slower(&self, eigenvalue: f64) -> Result<Factor, Vec<f64>> {
         let size = self.stiffness.len();
         let mut lower = vec![0.0; self.inertia.len()];
@@ -86,8 +88,8 @@ impl Pencil {
         x
     }
 
-    /// A motion whose Rayleigh quotient is at most `eigenvalue`, lowered further by a few steps of inverse iteration.
-    /// `None` if no motion has so low a quotient.
+    /// A motion whose Rayleigh quotient is at most `eigenvalue`, improved by a few steps of inverse iteration.
+    /// `None` if every motion has a larger quotient.
     pub(super) fn slower_motion(&self, eigenvalue: f64) -> Option<Vec<f64>> {
         let mut x = self.factor_or_slower(eigenvalue).err()?;
         for _ in 0..STEPS {

@@ -1,12 +1,12 @@
 //! One case of a study as sums over parts: torques, deflection, stress and inertia.
 //!
-//! *Loads* are the masses of drives \[kg\] and the weights of tubes per length \[N/m\]; each adds in
-//! proportion to the torque on a joint (its lever arm) and to the force and moment in a tube's section.
+//! *Loads* are the masses of drives \[kg\] and the weights of tubes per length \[N/m\]. Each load adds in
+//! proportion to the torque on a joint (by its lever arm) and to the force and moment in a tube's section.
 //!
-//! *Deflection* is found by the method of the unit load: the tip's displacement along `e` is the work of the
-//! real internal loads, over the stiffness, on those of a unit force `e` at the tip,
-//! `Σ θ_j (a_j · (r_j x e)) + Σ ∫ (N n/EA + V·v/κGA + T t/GJ + M_y m_y/EI_y + M_z m_z/EI_z) dx`. Real loads
-//! are at most quadratic in `x`, virtual ones linear: the quadrature is exact.
+//! *Deflection* follows from the method of the unit load. The displacement of the tip along `e` is the work of the
+//! real internal loads, divided by the stiffness, on the internal loads of a unit force `e` at the tip: `Σ θ_j (a_j
+//! · (r_j x e)) + Σ ∫ (N n/EA + V·v/κGA + T t/GJ + M_y m_y/EI_y + M_z m_z/EI_z) dx`. Real loads are at most
+//! quadratic in `x` and virtual ones linear, so the quadrature is exact.
 //!
 //! *Inertia* is the kinetic energy of the coordinates of [`super::layout`], a sum over the masses of drives
 //! and the inertias of tubes per length.
@@ -27,31 +27,33 @@ const GAUSS: [(f64, f64); 4] = [
     (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
 ];
 
-/// A case of the study, worked out for bounds.
+/// A case of the study, prepared for bounds: everything in it that does not depend on the design.
 pub(super) struct Pose {
     pub judged: bool,
     pub sizing: bool,
-    /// Index of the medium around the arm, among the study's surroundings.
+    /// Index of the medium around the arm (air or water), among the study's surroundings.
     pub water: usize,
-    /// Ratio of the stress while the arm accelerates to the stress of the static loads.
+    /// Ratio of the stress during acceleration to the stress under static loads. 1 if the case is not a sizing
+    /// case.
     pub stress_factor: f64,
     /// Torque on each joint, as a linear function of the loads \[N m\].
     pub torques: Vec<Linear>,
-    /// Displacement of the tip per unit twist of each joint \[m/rad\].
+    /// Displacement of the tip per radian of torsion of each joint \[m/rad\].
     pub tip_m_per_rad: Vec<Vector3<f64>>,
-    /// Displacement of the tip that each joint's bearing causes per compliance, as a linear function of the loads
-    /// \[m N m/rad\].
+    /// Displacement of the tip by the tilt of each joint's bearing, divided by the compliance of the bearing, as a
+    /// linear function of the loads \[m N m/rad\].
     pub by_tilts: Vec<LinearVector>,
     /// Displacement of the tip that each spring of an effect causes, as a linear function of the loads \[m\].
     pub by_springs_m: Vec<LinearVector>,
-    /// For each tube and each of its stiffnesses, the displacement of the tip times the stiffness. Divided by the
-    /// stiffness it is the displacement.
+    /// For each tube and each of its stiffnesses, the displacement of the tip that deformation against this
+    /// stiffness causes, times the stiffness.
     pub works: Vec<[LinearVector; STIFFNESSES]>,
     /// Force and moment at root and end of each tube, in the tube's frame, as linear functions of the loads.
     pub ends: Vec<[[Linear; 6]; 2]>,
-    /// Inertia matrix of everything that no choice changes: lower triangle, row by row.
+    /// Inertia matrix of everything that is the same in all designs: lower triangle, row by row.
     pub inertia: Vec<f64>,
-    /// Inertia matrix per unit mass of each drive, then per unit of each inertia per length of each tube.
+    /// Inertia matrix per unit of mass of each drive, then per unit of each inertia per length of each tube. Lower
+    /// triangles, row by row.
     pub inertia_per: Vec<Vec<f64>>,
 }
 
@@ -62,7 +64,8 @@ struct Wrench {
     moment: Vector3<f64>,
 }
 
-/// Wrench on a section: of the fixed loads, and per unit of each load.
+/// Force and moment on a section of the arm, from everything outboard: of the fixed loads, and per unit of each
+/// load.
 pub(super) struct Carried {
     fixed: Wrench,
     per_load: Vec<Wrench>,
@@ -81,11 +84,11 @@ pub(super) struct Builder<'a> {
 }
 
 impl Pose {
-    /// Works out the case with this index. `water` is the index of its surroundings.
+    /// Computes the case with this index. `water` is the index of its surroundings.
     pub(super) fn new(question: &Question, index: usize, water: usize, builder: &Builder) -> Self {
         let (case, layout) = (&question.cases[index], builder.layout);
         let sizing = question.sizing_cases.contains(&index);
-        // without gravity no stress is limited
+        // without gravity there is no ratio to the static stress, and the stress is not raised for acceleration
         let acceleration = match question.gravity_m_s2 > 0.0 {
             true => question.motion.tip_acceleration_m_s2() / question.gravity_m_s2,
             false => 0.0,
@@ -107,7 +110,7 @@ impl Pose {
     }
 }
 
-/// The water around the arm: stated by the case, or else by an effect.
+/// The water around the arm: as stated by the case, or else by an effect. `None` in air.
 pub(super) fn water_of(structure: &Structure, case: &LoadCase) -> Option<Water> {
     case.water.or(structure.water)
 }
@@ -138,7 +141,7 @@ impl Wrench {
 }
 
 impl Carried {
-    /// Its force or its moment along a direction.
+    /// Component of the force, or of the moment, along a direction.
     pub(super) fn along(&self, is_force: bool, direction: &Vector3<f64>) -> Linear {
         let part = |wrench: &Wrench| direction.dot(if is_force { &wrench.force } else { &wrench.moment });
         Linear { fixed: part(&self.fixed), per_load: self.per_load.iter().map(part).collect() }
@@ -166,14 +169,14 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The same with other coordinates.
+    /// The same inputs with other coordinates for the inertia matrix.
     pub(super) fn with_coordinates(&self, coordinates: &'a [Coordinate]) -> Self {
         Self { coordinates, ..*self }
     }
 }
 
 impl Builder<'_> {
-    /// Wrench at a point of everything outboard of it.
+    /// Force and moment at a point from everything outboard of it.
     pub(super) fn carried(&self, point: &Point) -> Carried {
         let down = |size: f64| self.down * size;
         let about_m = &point.at_m;
@@ -208,7 +211,7 @@ impl Builder<'_> {
     }
 
     /// Displacement of the tip by a joint's bearing of unit compliance: its tilts under the moments about both axes
-    /// across times the way of the tip.
+    /// across, times the displacement of the tip per tilt.
     fn by_tilt(&self, joint: usize) -> LinearVector {
         let joint = &self.layout.joints[joint];
         let carried = self.carried(&Point { at_m: joint.at_m, rank: joint.rank, inside_m: None });
@@ -219,8 +222,8 @@ impl Builder<'_> {
         LinearVector { fixed: moved(&carried.fixed), per_load: carried.per_load.iter().map(moved).collect() }
     }
 
-    /// Displacement of the tip by a spring: how far the spring yields to the moment about its axis, or to the force along it,
-    /// times the displacement of the tip per unit of that.
+    /// Displacement of the tip by a spring: the deflection of the spring under the moment about its axis (or the
+    /// force along it), times the displacement of the tip per unit of that deflection.
     fn by_spring(&self, spring: usize) -> LinearVector {
         let spring = &self.layout.springs[spring];
         let carried = self.carried(&Point { at_m: spring.at_m, rank: spring.rank, inside_m: None });
@@ -277,8 +280,8 @@ impl Builder<'_> {
         works
     }
 
-    /// Points of a tube \[m\] with the lengths that they stand for. A body on the tube makes a step in the loads, so that it
-    /// divides the tube.
+    /// Points of quadrature along a tube \[m\], each with its weight \[m\]. The tube is divided at every body on
+    /// it, because the internal loads have a step there.
     fn quadrature(&self, tube: usize) -> Vec<(f64, f64)> {
         let placed = &self.layout.tubes[tube];
         let on_tube = self.layout.masses.iter().filter(|mass| mass.carrier.rank == placed.rank);
@@ -293,7 +296,7 @@ impl Builder<'_> {
         parts.collect()
     }
 
-    /// Inertia matrix of the payload and of the masses that no choice changes.
+    /// Inertia matrix of the payload and of the masses that are the same in all designs.
     pub(super) fn fixed_inertia(&self, case: &LoadCase) -> Vec<f64> {
         let mut out = self.no_inertia();
         let rotation = &self.layout.tip_rotation;
@@ -360,8 +363,8 @@ impl Builder<'_> {
     }
 }
 
-/// For each stiffness, the product of the internal load that it resists and the same internal load of a unit tip
-/// force along each axis, times a length (method of the unit load).
+/// For each stiffness, the internal load that it resists, times the same internal load of a unit tip force along
+/// each world axis, times a length (method of the unit load).
 fn products(real: &[f64; 6], units: &[[f64; 6]; 3], length_m: f64) -> [Vector3<f64>; STIFFNESSES] {
     let product = |i: usize| Vector3::from_fn(|axis, _| real[i] * units[axis][i] * length_m);
     [product(4), product(5), product(1) + product(2), product(3), product(0)]

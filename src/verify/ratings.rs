@@ -1,11 +1,11 @@
-//! What a drive holds, worked out from its catalog rows (Eqs 7-12; docs/sizing.md, "The checks").
+//! What loads a drive can take, computed from its catalog rows (Eqs 7-12; docs/sizing.md, "The checks").
 //!
-//! Speed and duty cycle of a joint are fixed, so every check of a drive compares one torque with one number. A torque
-//! that is asked for is a [`Quantity`]; a check is an entry of [`CHECKS`] and says which quantity it limits and to
-//! what. A further check is one more entry; a further torque is one more quantity, and [`Duty::demand`] says how
-//! large it is.
+//! Speed and duty cycle of a joint are fixed, so every check of a drive compares one torque with one number. The
+//! torques are those of [`Quantity`]. Each check is an entry of [`CHECKS`], which says which quantity it limits and
+//! to what value. A further check is one more entry. A further torque is one more quantity, and [`Duty::demand`]
+//! computes its value.
 //!
-//! Nothing of `sizing` is used: a wrong threshold there must not be repeated here.
+//! Nothing of `sizing` is used, so that an error in a threshold there is not repeated here.
 
 use super::bearing::BearingRatings;
 use super::demand::{Demand, QUANTITIES, Quantity};
@@ -16,8 +16,8 @@ use crate::arm::bearing::Bearing;
 use crate::catalog::gear::{Gear, GearKind, LifeLaw};
 use crate::catalog::motor::Motor;
 
-/// The greatest torque of each quantity that a drive holds, what its output bearing holds, how its motor heats, and how wide
-/// its parts are.
+/// The limits of one drive: the greatest allowed torque of each quantity, the limits of the output bearing, the
+/// heat of the motor, and the widths of gear and motor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Ratings {
     most: [f64; QUANTITIES],
@@ -26,13 +26,14 @@ pub(super) struct Ratings {
     widths: Widths,
 }
 
-/// A limit of a drive on one quantity. `most` gives the limit; `None` if the catalog lacks a number that it needs.
+/// A limit of a drive on one quantity. `most` computes the limit; `None` if the catalog lacks a number that it
+/// needs.
 struct Check {
     on: Quantity,
     most: fn(&Gear, &Motor, &Duty) -> Option<f64>,
 }
 
-/// All checks of torques. A drive that lacks a number for one of them cannot be chosen.
+/// All checks of torques. A drive for which the catalog lacks a number of one of them is not offered.
 const CHECKS: [Check; 7] = [
     Check { on: Quantity::Static, most: motor_hold_nm },
     Check { on: Quantity::Peak, most: |gear, _, _| limit(gear, gear.repeated_peak_torque_nm) },
@@ -47,7 +48,7 @@ const CHECKS: [Check; 7] = [
 ];
 
 impl Ratings {
-    /// Ratings under which no check fails.
+    /// Ratings with which a drive passes every check.
     pub(super) const UNLIMITED: Self = Self {
         most: [f64::INFINITY; QUANTITIES],
         bearing: BearingRatings::UNLIMITED,
@@ -55,8 +56,9 @@ impl Ratings {
         widths: [0.0; 2],
     };
 
-    /// The ratings of a drive under a joint's motion; `None` if the motion is too fast for the drive, if the drive does not
-    /// go into the joint, or if the catalog lacks a number. A blank number of the bearing or of a size excludes nothing.
+    /// The ratings of a drive under a joint's motion. `None` if the motion is too fast for the drive, if the drive
+    /// does not fit into the joint, or if the catalog lacks a number. A blank number of the bearing or of a size
+    /// excludes nothing.
     pub(super) fn of(gear: &Gear, motor: &Motor, bearing: Option<&Bearing>, duty: &Duty) -> Option<Self> {
         let heat = match duty.checks_heat {
             true => {
@@ -75,10 +77,10 @@ impl Ratings {
         (turns_as_fast(gear, motor, duty)? && bears_the_stops(gear, duty) && goes_in).then_some(ratings)
     }
 
-    /// Whether a drive with these ratings holds every torque and load of a demand and fits into its room, and its motor does
-    /// not overheat.
+    /// Whether a drive with these ratings passes every check under a demand: torques, bearing, motor heat and
+    /// widths.
     pub(super) fn hold(&self, demand: &Demand) -> bool {
-        // no branch on the way: nearly every box asks this of many drives
+        // the torques are compared without a branch, because nearly every box calls this for many drives
         let torques = self.most.iter().zip(&demand.torques);
         torques.fold(true, |held, (most, asked)| held & (asked <= most))
             && self.bearing.hold(&demand.bearing)
@@ -86,7 +88,7 @@ impl Ratings {
             && self.widths.iter().zip(&demand.room).all(|(width, room)| width <= room)
     }
 
-    /// Whether a drive with these ratings holds every demand that a drive with the other ratings holds.
+    /// Whether a drive with these ratings meets every demand that a drive with the other ratings meets.
     pub(super) fn cover(&self, other: &Self) -> bool {
         self.most.iter().zip(&other.most).all(|(a, b)| a >= b)
             && self.bearing.cover(&other.bearing)
@@ -94,9 +96,9 @@ impl Ratings {
             && self.widths.iter().zip(&other.widths).all(|(a, b)| a <= b)
     }
 
-    /// Ratings under which all holds that holds under one of the two: the larger rating for each quantity, and the smaller
-    /// of each number of heat and width, for heat grows with each of its numbers and with every torque (see
-    /// [`AskedMotion::grows`](super::question::AskedMotion::grows)).
+    /// Ratings that meet every demand that one of the two meets: the larger rating for each quantity, and the
+    /// smaller of each number of heat and width. Smaller numbers are better for heat, because the heat grows with
+    /// each of them and with every torque (see [`AskedMotion::grows`](super::question::AskedMotion::grows)).
     pub(super) fn max(&self, other: &Self) -> Self {
         Self {
             most: std::array::from_fn(|i| self.most[i].max(other.most[i])),
@@ -106,7 +108,7 @@ impl Ratings {
         }
     }
 
-    /// The rating of one quantity.
+    /// The greatest allowed value of one quantity.
     pub(super) fn on(&self, quantity: Quantity) -> f64 {
         self.most[quantity as usize]
     }
@@ -126,7 +128,7 @@ fn turns_as_fast(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<bool> {
     )
 }
 
-/// A limit of a gear. A direct drive and an actuator have none but those that their rows state.
+/// A limit of a gear. For a direct drive or an actuator, a blank rating means no limit.
 fn limit(gear: &Gear, rating: Option<f64>) -> Option<f64> {
     match gear.kind {
         GearKind::Direct | GearKind::Actuator => Some(rating.unwrap_or(f64::INFINITY)),
@@ -134,13 +136,14 @@ fn limit(gear: &Gear, rating: Option<f64>) -> Option<f64> {
     }
 }
 
-/// The torque at which a gear buckles or its teeth jump, as far as the catalog knows it.
+/// The smaller of the torques at which the gear buckles or its teeth jump \[N m\]; infinite if the catalog has
+/// neither.
 fn breaks_nm(gear: &Gear) -> f64 {
     [gear.buckling_torque_nm, gear.ratcheting_torque_nm].into_iter().flatten().fold(f64::INFINITY, f64::min)
 }
 
-/// Whether the gear bears as many emergency stops as are asked for: 1e4 waves of the wave generator, two in a turn, and
-/// never fewer than one in a stop.
+/// Whether the gear survives as many emergency stops as the study asks for. It survives 1e4 waves of the wave
+/// generator in stops; a turn counts as two waves, and a stop as at least one.
 fn bears_the_stops(gear: &Gear, duty: &Duty) -> bool {
     let waves = 2.0 * input_rpm(gear, duty.speed_rad_s) / 60.0 * duty.stop_s;
     let has_waves = gear.kind == GearKind::StrainWave;
@@ -152,12 +155,13 @@ fn input_rpm(gear: &Gear, output_rad_s: f64) -> f64 {
     gear.ratio * (output_rad_s * 30.0 / std::f64::consts::PI)
 }
 
-/// Torque at the joint for one newton metre at the motor.
+/// Torque at the joint for one newton metre at the motor, losses included.
 fn gain(gear: &Gear) -> Option<f64> {
     Some(gear.ratio * efficiency(gear)?)
 }
 
-/// Torque at the joint that the motor can hold without end: `T_rated N η` \[N m\]. A brake holds any.
+/// Torque at the joint that the motor can hold continuously at rest: `T_rated N η` \[N m\]. Infinite with a brake,
+/// which holds the joint instead.
 fn motor_hold_nm(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<f64> {
     match duty.has_brake {
         true => Some(f64::INFINITY),
@@ -165,16 +169,17 @@ fn motor_hold_nm(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<f64> {
     }
 }
 
-/// Torque at the joint when the motor gives its peak torque \[N m\]. The rotor's and the wave generator's own
-/// acceleration is subtracted (Eqs 9-12): `(T_peak - (J_rotor + J_input) N α) N η`.
+/// Torque at the joint when the motor gives its peak torque \[N m\]. The torque that accelerates the rotor and the
+/// wave generator is subtracted (Eqs 9-12): `(T_peak - (J_rotor + J_input) N α) N η`.
 fn motor_peak_nm(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<f64> {
     let own_nm = input_inertia_kgm2(gear, motor)? * gear.ratio * duty.acceleration_rad_s2;
     let peak_nm = peak_nm(motor, input_rpm(gear, duty.speed_rad_s))?;
     Some((peak_nm - own_nm) * gain(gear)?)
 }
 
-/// Cube of the mean torque under which the gear lasts for the required life \[(N m)³\], from `L10 = L_rated (T_rated /
-/// T_mean)^p (n_rated / n_mean)`. A belt, a direct drive and an actuator have a life only if their rows state one.
+/// Cube of the mean torque under which the gear reaches the required life \[(N m)³\], from `L10 = L_rated (T_rated
+/// / T_mean)^p (n_rated / n_mean)`. The life of a belt, a direct drive or an actuator is checked only if its row
+/// states one.
 fn life_nm3(gear: &Gear, _: &Motor, duty: &Duty) -> Option<f64> {
     let LifeLaw { rated_h, rated_speed_rpm, exponent } = gear.life;
     if rated_h.is_none() && matches!(gear.kind, GearKind::Belt | GearKind::Direct | GearKind::Actuator) {
@@ -211,7 +216,8 @@ mod tests {
         }
     }
 
-    /// The paper's 1 m/s in 0.2 s; ramps of 0.2 s about 0.6 s of travel, then 1 s of rest.
+    /// The paper's motion: 1 m/s reached in 0.2 s; ramps of 0.2 s before and after 0.6 s of travel, then 1 s of
+    /// rest.
     fn duty() -> Duty {
         let phase = |duration_s, kind| AskedPhase { duration_s, kind };
         let motion = AskedMotion {

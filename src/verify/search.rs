@@ -1,4 +1,4 @@
-//! Going through the boxes: each is discarded, halved, or a single design.
+//! The search through the boxes: each box is discarded, halved, or a single design.
 
 use super::boxes::Boxes;
 use super::branch_score::BranchScore;
@@ -7,11 +7,11 @@ use super::halt::{Found, Halt};
 use super::parts_box::PartsBox;
 use super::upper_bound::UpperBound;
 
-/// A search, box by box, for designs that a front lacks.
+/// A search, box by box, for designs that belong on a front and are missing from it.
 pub(super) struct Search<'s> {
     pub boxes: &'s Boxes,
     pub front: &'s FrontIndex,
-    /// Only designs below this upper bound are looked for.
+    /// Only designs below this upper bound are searched for.
     pub upper: UpperBound,
     pub halt: &'s Halt<'s>,
 }

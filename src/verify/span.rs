@@ -1,4 +1,4 @@
-//! Intervals, and sums that are linear in the weights of parts.
+//! Intervals, and functions that are linear in the weights of parts.
 
 use nalgebra::Vector3;
 
@@ -10,23 +10,24 @@ pub(super) struct Span {
 }
 
 impl Span {
-    /// The interval of a number times every number of the span.
+    /// The interval of all products of a factor and a number of the span.
     pub(super) fn times(self, factor: f64) -> Self {
         let (a, b) = (self.least * factor, self.most * factor);
         Self { least: a.min(b), most: a.max(b) }
     }
 
-    /// The interval of the sums of a number of this span and a number of another.
+    /// The interval of all sums of a number of this span and a number of the other.
     pub(super) fn plus(self, other: Self) -> Self {
         Self { least: self.least + other.least, most: self.most + other.most }
     }
 
-    /// The numbers of both and all between them.
+    /// The smallest interval that contains both.
     pub(super) fn with(self, other: Self) -> Self {
         Self { least: self.least.min(other.least), most: self.most.max(other.most) }
     }
 
-    /// The least product of a number of this span and a number of a span of compliances, none of which is negative.
+    /// The least product of a number of this span and a number of a span of compliances. Compliances are never
+    /// negative.
     pub(super) fn least_product(self, compliance: Self) -> f64 {
         let factor = if self.least >= 0.0 { compliance.least } else { compliance.most };
         if self.least == 0.0 { 0.0 } else { self.least * factor }
@@ -47,7 +48,7 @@ impl Span {
     }
 }
 
-/// A linear function of the loads: a fixed part, and a part per unit of each load.
+/// A linear function of the loads: a constant, and a coefficient for each load.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Linear {
     pub fixed: f64,
@@ -55,8 +56,8 @@ pub(super) struct Linear {
 }
 
 impl Linear {
-    /// The interval of the function's values over intervals of the loads. Every load enters once, so the interval is
-    /// exact.
+    /// The interval of the function's values over intervals of the loads. It is exact, because every load enters
+    /// only once.
     pub(super) fn over(&self, loads: &[Span]) -> Span {
         let start = Span { least: self.fixed, most: self.fixed };
         self.per_load.iter().zip(loads).fold(start, |sum, (factor, load)| sum.plus(load.times(*factor)))
@@ -71,7 +72,7 @@ pub(super) struct LinearVector {
 }
 
 impl LinearVector {
-    /// The interval of the vector's component along a direction.
+    /// The interval of the vector's component along a direction, over intervals of the loads.
     pub(super) fn along(&self, direction: &Vector3<f64>, loads: &[Span]) -> Span {
         let fixed = self.fixed.dot(direction);
         let start = Span { least: fixed, most: fixed };
@@ -81,7 +82,7 @@ impl LinearVector {
             .fold(start, |sum, (factor, load)| sum.plus(load.times(factor.dot(direction))))
     }
 
-    /// The vector where every load is in the middle of its interval.
+    /// The vector for loads that are each in the middle of their intervals.
     pub(super) fn middle(&self, loads: &[Span]) -> Vector3<f64> {
         let sum = |sum, (factor, load): (&Vector3<f64>, &Span)| sum + factor * load.middle();
         self.per_load.iter().zip(loads).fold(self.fixed, sum)

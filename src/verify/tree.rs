@@ -1,4 +1,4 @@
-//! The options of one level halved again and again.
+//! The options of one level, halved again and again into a binary tree.
 
 use std::cmp::Ordering;
 
@@ -6,7 +6,7 @@ use std::cmp::Ordering;
 #[derive(Debug, Clone)]
 pub(super) struct Tree {
     nodes: Vec<Node>,
-    /// The options, in an order in which those of every node are neighbours.
+    /// The options, in an order in which the options of each node are next to each other.
     order: Vec<u32>,
 }
 
@@ -18,7 +18,7 @@ struct Node {
 }
 
 impl Tree {
-    /// Builds the tree. A set of options is halved at the median of the key in which the set is spread most.
+    /// Builds the tree. A set of options is halved at the median of the key in which the set has the widest spread.
     pub(super) fn new(options: Vec<u32>, keys: &[Vec<f64>]) -> Self {
         let mut tree = Self { nodes: Vec::new(), order: options };
         if !tree.order.is_empty() {
@@ -43,7 +43,7 @@ impl Tree {
         place as u32
     }
 
-    /// Number of nodes; the root is node 0 and there is none if there are no options.
+    /// Number of nodes. The root is node 0; without options there is no node.
     pub(super) fn len(&self) -> usize {
         self.nodes.len()
     }
@@ -54,7 +54,7 @@ impl Tree {
         &self.order[node.first..node.end]
     }
 
-    /// The two halves of a node; a single option has none.
+    /// The two halves of a node; `None` for a single option.
     pub(super) fn halves(&self, node: u32) -> Option<[u32; 2]> {
         self.nodes[node as usize].halves
     }

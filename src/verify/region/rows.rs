@@ -1,22 +1,24 @@
-//! What every member of a subproblem below an upper bound keeps to, as sums over the parts.
+//! Linear inequalities that every member of a subproblem below an upper bound satisfies, as sums over the parts.
 //!
-//! | row | at most |
-//! |---|---|
-//! | mass: the sum of the parts' masses | that of the upper bound |
-//! | in a judged case, way of the tip along a direction `e` | deflection of the upper bound |
+//! | sum over the parts | upper limit |
+//! |---|---|---|
+//! | mass: the sum of the parts' masses | mass of the upper bound |
+//! | in a judged case, displacement of the tip along a direction `e` | deflection of the upper bound |
 //! | in a judged case, for a shape `x`: `λ xᵀMx - xᵀKx`, `λ` of the upper bound | 0 |
 //! | a torque that has an interval, and its negative | the end of the interval |
 //!
-//! *Way of the tip.* With force `F`, a sum over the loads, and compliance `c` of a tube, `(F - F₀)(c - c₀) >= 0` gives
-//! `F c >= F₀ c + c₀ (F - F₀)`. A gear twists under a torque `T`, in the sense that moves the tip along `e`, by at least
-//! `φ(T₀) + c₀ (T - T₀)`: `φ(T₀)` is the part's own, `c₀` the least twist per torque that a gear of the subproblem adds beyond `T₀`.
+//! *Tip displacement.* With force `F`, a sum over the loads, and compliance `c` of a tube, `(F - F₀)(c - c₀) >= 0`
+//! gives `F c >= F₀ c + c₀ (F - F₀)`. Under a torque `T`, in the sense that moves the tip along `e`, a gear twists
+//! by at least `φ(T₀) + c₀ (T - T₀)`. Here `φ(T₀)` is the twist of the gear itself, and `c₀` is the least twist per
+//! torque that any gear of the subproblem adds beyond `T₀`.
 //!
-//! A bearing tilts like a tube: force is the way of the tip per compliance.
+//! A bearing is treated like a tube. Its force is the tip displacement per compliance.
 //!
-//! *Modes.* `M` is linear in masses and inertias per length, `K` diagonal; the slope of a gear is the largest it has
-//! under the torques of the subproblem.
+//! *Modes.* `M` is linear in masses and inertias per length, `K` is diagonal. The slope of a gear is its largest
+//! slope under the torques of the subproblem.
 //!
-//! Every row is divided by about what the upper bound allows, and that is taken from it: it is at most zero.
+//! The upper limit is subtracted from every row, and the row is divided by about this limit. Each row is then at
+//! most zero.
 
 use super::super::bound::{Members, compliances, direction};
 use super::super::drive_range::{DriveRange, angle_rad};
@@ -35,20 +37,20 @@ use nalgebra::Vector3;
 const ROUNDING: f64 = 1e-9;
 
 /// An inequality that every member below the upper bound satisfies: a linear function of the numbers of all parts
-/// that is not positive.
+/// is not positive.
 pub(super) struct Row {
     pub per_number: Vec<f64>,
     pub fixed: f64,
 }
 
-/// Positions of each part's numbers in the list of all numbers. A joint has its mass, then its twist in every judged
-/// case, then its slope in every judged case, then compliance and stiffness of its bearing. A tube has its numbers
-/// of the parts table.
+/// Positions of each part's numbers in the list of all numbers. A joint has its mass, then its twist in every
+/// judged case, then its slope in every judged case, then compliance and stiffness of its bearing. A tube has the
+/// numbers of the parts table.
 #[derive(Clone)]
 pub(super) struct Columns {
     pub cases: usize,
     pub joints: usize,
-    /// Position of the first number of each tube, and at last the length of the list.
+    /// Position of the first number of each tube; the last entry is the length of the list.
     pub tubes: Vec<usize>,
 }
 
@@ -100,12 +102,13 @@ impl Columns {
         self.mass(joint) + 1 + self.cases + case
     }
 
-    /// Compliance of the bearing.
+    /// Position of the compliance of the joint's bearing.
     pub(super) fn tilt(&self, joint: usize) -> usize {
         self.mass(joint) + 1 + 2 * self.cases
     }
 
-    /// Stiffness of the bearing; 0 if it is rigid, and then nothing is ever paid for it.
+    /// Position of the stiffness of the joint's bearing. The stiffness is stored as 0 if the bearing is rigid, so
+    /// that it never contributes to a price.
     fn tilt_stiffness(&self, joint: usize) -> usize {
         self.tilt(joint) + 1
     }
@@ -122,7 +125,8 @@ impl Columns {
         }
     }
 
-    /// Position of the number that is proportional to a load: the mass of a drive, or the weight of a tube.
+    /// Position of the number to which a load is proportional: the mass of a drive, or the weight per length of a
+    /// tube.
     pub(super) fn load(&self, load: usize, water: usize) -> usize {
         match load.checked_sub(self.joints) {
             None => self.mass(load),
@@ -136,13 +140,13 @@ impl Row {
         Self { per_number: vec![0.0; columns.len()], fixed: 0.0 }
     }
 
-    /// Adds a quantity that is linear in the loads: its fixed part, and its part per load.
+    /// Adds a quantity that is linear in the loads: its constant part, and its coefficient for each load.
     fn add(&mut self, columns: &Columns, water: usize, fixed: f64, per_load: impl Iterator<Item = f64>) {
         self.fixed += fixed;
         per_load.enumerate().for_each(|(load, per)| self.per_number[columns.load(load, water)] += per);
     }
 
-    /// Subtracts the allowed value from the row and divides the row by a scale. The row is then at most zero.
+    /// Subtracts the upper limit from the row and divides the row by a scale. The row is then at most zero.
     fn less(mut self, allowed: f64, scale: f64) -> Self {
         self.fixed = (self.fixed - allowed) / scale;
         self.per_number.iter_mut().for_each(|per| *per /= scale);
@@ -155,7 +159,8 @@ impl Row {
 }
 
 impl<'a> Rows<'a> {
-    /// The rows of a subproblem with these members. The subproblem's trial shapes give the rows of modes.
+    /// The rows of a subproblem with these members. There is one row of a mode for each trial shape of the
+    /// subproblem.
     pub(super) fn new(
         skeleton: &'a Skeleton,
         table: &'a PartsTable,
@@ -254,7 +259,7 @@ impl<'a> Rows<'a> {
     }
 
     /// Adds the linear bound of the product of a force and a compliance to a row. `number` is the position of the
-    /// compliance, `least` the least that it is.
+    /// compliance, `least` is the least value of the compliance.
     fn add_product(&self, row: &mut Row, number: usize, least: f64, force: &Force, direction: &Vector3<f64>) {
         row.per_number[number] += force.least;
         let per_load = force.work.per_load.iter().map(|per| least * per.dot(direction));
@@ -262,7 +267,7 @@ impl<'a> Rows<'a> {
         row.add(&self.columns, force.water, fixed, per_load);
     }
 
-    /// Adds a gear's part of the tip displacement to a row, and stores the least twist of each torsion curve.
+    /// Adds the tip displacement by a gear to a row, and stores the least twist of each torsion curve.
     fn add_twist(
         &mut self,
         row: &mut Row,
@@ -317,7 +322,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Adds the row of a trial shape. Coordinates that may be rigid are set to zero in the shape.
+    /// Adds the row of a mode for a trial shape. Coordinates that may be rigid are set to zero in the shape,
+    /// because a rigid coordinate cannot move.
     pub(super) fn add_mode(&mut self, case: usize, mut shape: Vec<f64>) {
         let eigenvalue = self.upper.eigenvalue();
         if eigenvalue == 0.0 {
@@ -358,7 +364,7 @@ impl<'a> Rows<'a> {
     }
 
     /// Position of the number that determines the stiffness of a coordinate, and the factor on this number. If no
-    /// part determines the stiffness, the stiffness itself as an error.
+    /// part determines the stiffness, the stiffness itself is returned as `Err`.
     fn stiffness(&self, case: usize, coordinate: &Coordinate) -> Result<(usize, f64), f64> {
         match *coordinate {
             Coordinate::Joint(joint) => Ok((self.columns.slope(joint, case), 1.0)),
@@ -393,14 +399,14 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// A force, as displacement of the tip per compliance, and the least that it is along the direction of a row.
+/// A force, given as tip displacement per compliance, and its least value along the direction of a row.
 struct Force<'w> {
     work: &'w LinearVector,
     least: f64,
     water: usize,
 }
 
-/// The numbers of a torsion curve, whose twists and slopes are not known yet, and of the bearing that comes with it.
+/// The numbers of a torsion curve and of its bearing. Twists and slopes are zero at first and are filled in later.
 fn numbers_of(range: &DriveRange, cases: usize) -> Vec<f64> {
     let stiffness = range.greatest_tilt_stiffness();
     let mut numbers = vec![0.0; 2 * cases];
@@ -414,7 +420,7 @@ fn least_twist_per_nm(range: &DriveRange, torque_nm: Span) -> f64 {
     let Span { least, most } = torque_nm;
     let stiff = &range.stiff;
     match least >= 0.0 && most > least {
-        // slopes that rise: the whole way is the stiffest
+        // the slopes of this curve rise, so the secant to the end of the interval is the stiffest
         true => (angle_rad(stiff, most) - angle_rad(stiff, least)) / (most - least) * (1.0 - ROUNDING),
         false => 1.0 / stiff.tangent_nm_per_rad(torque_nm.largest_size() * (1.0 + ROUNDING) + ROUNDING),
     }

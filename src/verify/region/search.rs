@@ -1,4 +1,4 @@
-//! Going through the local upper bounds that the rows of a front leave.
+//! The search through the local upper bounds that a front leaves open.
 
 use super::super::bound::{Members, ROUNDING};
 use super::super::boxes::Boxes;
@@ -18,7 +18,7 @@ use super::weights::Reduced;
 use crate::pareto::objectives::Objectives;
 use std::sync::Arc;
 
-/// The options are narrowed once more if the last narrowing removed at least this part of the designs.
+/// The options are reduced once more if the last reduction removed at least this fraction of the designs.
 const WORTH_IT: f64 = 0.3;
 
 /// The inputs of a search, except the parts.
@@ -30,16 +30,16 @@ pub(in super::super) struct Work<'s> {
     pub halt: &'s Halt<'s>,
 }
 
-/// A search of all regions that the designs of a front leave open.
+/// A search through all regions that the designs of a front leave open.
 pub(in super::super) struct RegionSearch<'s> {
     skeleton: Arc<Skeleton>,
     table: PartsTable,
     work: &'s Work<'s>,
 }
 
-/// The result of narrowing a subproblem.
+/// The result of reducing the options of a subproblem.
 enum Narrowed {
-    /// No member is below the upper bound.
+    /// It is proved that no member is below the upper bound.
     Refuted,
     Few,
     Many(Branchings),
@@ -82,7 +82,7 @@ impl RegionSearch<'_> {
         found.with(a).with(b)
     }
 
-    /// Narrows the options of a subproblem as long as each narrowing removes enough designs.
+    /// Reduces the options of a subproblem as long as each step removes enough designs.
     fn narrow(&self, subproblem: &mut Subproblem, upper: UpperBound, regions: &mut u64) -> Narrowed {
         loop {
             if self.work.halt.stopped() {
@@ -101,8 +101,8 @@ impl RegionSearch<'_> {
         }
     }
 
-    /// Removes the options that no member below an upper bound has, and returns ways to branch the rest. `None` if no
-    /// member is left.
+    /// Removes the options that no member below an upper bound can have, and returns ways to branch the rest.
+    /// `None` if no member is left.
     fn narrow_once(&self, subproblem: &mut Subproblem, upper: UpperBound) -> Option<Branchings> {
         let tubes = subproblem.tube_ranges(&self.table);
         let members = subproblem.hold(&self.skeleton, &self.table, &tubes)?;
@@ -133,8 +133,8 @@ impl RegionSearch<'_> {
         Some(Branchings { branchings, curves })
     }
 
-    /// Where a subproblem has no trial shape in a case, adds the lowest mode of the stiffest arm. `None` if this arm
-    /// has a frequency of `hz` or less in some case.
+    /// Adds the lowest mode of the stiffest arm as a trial shape in each case in which the subproblem has none.
+    /// `None` if this arm has a frequency of at most `hz` in some case.
     fn stiffest_shapes(&self, subproblem: &mut Subproblem, members: &Members, hz: f64) -> Option<()> {
         let eigenvalue = eigenvalue_of(hz);
         if !eigenvalue.is_finite() {
