@@ -18,17 +18,17 @@ pub struct Moved {
     pub to: String,
     /// Designs (equal in every choice) on both fronts with the same objectives.
     pub unchanged: usize,
-    /// Designs on both fronts whose objectives differ.
+    /// Designs on both fronts whose objectives differ, because they were evaluated again with other numbers.
     pub judged_anew: usize,
-    /// Designs only on the front after.
+    /// Designs that are only on the front after.
     pub came: usize,
-    /// Designs only on the front before.
+    /// Designs that are only on the front before.
     pub went: usize,
-    /// What changed, in sentences.
+    /// The changes in sentences.
     pub words: String,
 }
 
-/// What moved between two fronts.
+/// Compares a front before with a front after.
 pub fn moved(before: &Contender, after: &Contender) -> Moved {
     let (old, new) = (by_choice(&before.front), by_choice(&after.front));
     let shared = || new.iter().filter_map(|(key, row)| Some((row, old.get(key)?)));

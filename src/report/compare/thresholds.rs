@@ -33,8 +33,8 @@ impl Thresholds {
         self.deflection_mm.is_empty() && self.mass_kg.is_empty() && self.mode_hz.is_empty()
     }
 
-    /// These limits. If none is given at all, chooses round limits for these fronts (none may be empty) that
-    /// most fronts can keep and that still force a trade-off for most of them.
+    /// These limits, if at least one is given. Otherwise round limits for these fronts (none may be empty) that
+    /// most fronts can meet and that still force a trade-off for most of them.
     pub fn or_chosen(&self, fronts: &[&[Design]]) -> Self {
         if !self.is_empty() || fronts.is_empty() {
             return self.clone();
@@ -51,7 +51,7 @@ impl Thresholds {
     }
 }
 
-/// The range of useful limits: the strictest limit that three of four fronts can keep, and the loosest limit
+/// The range of useful limits: from the strictest limit that three of four fronts can meet, to the loosest limit
 /// that still constrains half of them. Beyond the latter the answer is simply the best design of the front.
 fn overlap(limited: Objective, fronts: &[&[Design]]) -> (f64, f64) {
     let at_best_of = |o, front: &[Design]| best(o, front).map(|d| limited.minimized(d));
@@ -70,15 +70,15 @@ fn asked(limited: Objective, sought: Objective) -> bool {
     Question::ALL.into_iter().any(|q| q.limited() == limited && q.sought() == sought)
 }
 
-/// The smallest value that at least this share of the values does not exceed.
+/// The smallest of the values that is not exceeded by at least this fraction of them.
 fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     let index = (share * values.len() as f64).ceil() as usize;
     values.get(index.saturating_sub(1)).copied().unwrap_or(f64::NAN)
 }
 
-/// At most `count` round numbers from `low` to `high`, spread over the range, as coarse as possible. If the
-/// range holds no round number, the nearest number of two digits that most fronts can keep.
+/// At most `count` round numbers from `low` to `high`, spread over the range and as coarse as possible. If the
+/// range has no round number, the nearest number of two digits that most fronts can meet.
 fn round_between(low: f64, high: f64, count: usize, limited: Objective) -> Vec<f64> {
     const STOPS: [&[u32]; 4] = [
         &[10, 20, 50],
@@ -103,7 +103,7 @@ fn round_between(low: f64, high: f64, count: usize, limited: Objective) -> Vec<f
     spread(&found, low, high, count)
 }
 
-/// All numbers `stop * 10^n` in a range, rising.
+/// All numbers `stop * 10^n` in a range, in ascending order.
 fn stops_between(low: f64, high: f64, stops: &[u32]) -> Vec<f64> {
     let (from, to) = (libm::log10(low).floor() as i32 - 1, libm::log10(high).ceil() as i32);
     (from..=to)
@@ -112,13 +112,14 @@ fn stops_between(low: f64, high: f64, stops: &[u32]) -> Vec<f64> {
         .collect()
 }
 
-/// `digits * 10^power`, exact where the decimal number is.
+/// `digits * 10^power`. The division keeps negative powers exact to the last digit.
 fn decimal(digits: u32, power: i32) -> f64 {
     let digits = f64::from(digits);
     if power < 0 { digits / 10f64.powi(-power) } else { digits * 10f64.powi(power) }
 }
 
-/// Picks, from rising numbers, those nearest to places that are evenly spread (in ratio) over the range.
+/// Picks, from ascending numbers, those nearest to points that are evenly spread over the range on a logarithmic
+/// scale.
 fn spread(found: &[f64], low: f64, high: f64, count: usize) -> Vec<f64> {
     let place = |i: usize| low * libm::pow(high / low, (i as f64 + 0.5) / count as f64);
     let mut out: Vec<f64> = (0..count)
@@ -131,7 +132,7 @@ fn spread(found: &[f64], low: f64, high: f64, count: usize) -> Vec<f64> {
     out
 }
 
-/// The next number of two digits on the side of the looser limit.
+/// The next number of two digits, rounded towards the looser limit.
 fn nearest_round(low: f64, high: f64, limited: Objective) -> f64 {
     let (value, up) = if limited == Objective::Mode { (low, false) } else { (high, true) };
     let power = libm::log10(value).floor() as i32 - 1;

@@ -1,18 +1,18 @@
-//! The page of a study that is a handful of pictures and tables, such as the paper's own.
+//! The page of a study that consists of pictures and tables, such as the paper's own.
 
 use super::gallery::{Gallery, Page, table};
 use crate::report::section::Figure;
 use crate::report::table::Table;
 use serde_json::{Value, json};
 
-/// Pictures and tables with words before them.
+/// The contents of such a page.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct DocumentPage {
     /// Title.
     pub title: String,
-    /// What was asked.
+    /// The question that the study answers.
     pub question: String,
-    /// Paragraphs.
+    /// Paragraphs of text.
     pub words: Vec<String>,
     /// Pictures.
     pub figures: Vec<Figure>,

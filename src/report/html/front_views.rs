@@ -1,4 +1,4 @@
-//! The front in linked views, for the page of a study and that of a comparison.
+//! The front in linked views, for the pages of studies and comparisons.
 
 use super::front_data::{Axis, FrontData, Row};
 use super::gallery::Gallery;
@@ -8,27 +8,27 @@ use crate::report::section::Figure;
 use crate::report::svg::parallel::{Parallel, ParallelAxis, ParallelLine};
 use serde_json::{Value, json};
 
-/// Lines of the still picture of parallel coordinates.
+/// Approximate largest number of lines in the static picture of parallel coordinates.
 const STILL_LINES: usize = 400;
 
-/// What a page says about its views.
+/// The linked views of a page, with the words about them.
 pub(crate) struct FrontViews<'a> {
     /// Designs, groups and axes.
     pub data: FrontData<'a>,
-    /// Picks, by name.
+    /// The picks.
     pub picks: &'a [Pick],
-    /// Still picture of both scatter views.
+    /// Static picture of both scatter views.
     pub scatter: Figure,
-    /// What a colour stands for: `material`, `result`.
+    /// The property that colours show: `material`, `result`.
     pub coloured_by: &'a str,
-    /// Whether some designs are only on the front of their group.
+    /// Whether some designs are only on the front of their own group.
     pub has_both: bool,
-    /// Where all designs are.
+    /// Name of the file with all designs.
     pub all_in: &'a str,
 }
 
 impl FrontViews<'_> {
-    /// The section's values for its template.
+    /// The values for the template of this section.
     pub(super) fn context(&self, gallery: &mut Gallery) -> Value {
         let data = &self.data;
         json!({
@@ -75,7 +75,7 @@ impl FrontViews<'_> {
         out
     }
 
-    /// Still parallel coordinates: some hundred designs, the picks drawn on top.
+    /// A static picture of parallel coordinates: some hundred designs, with the picks drawn on top.
     fn parallel(&self) -> Figure {
         let data = &self.data;
         let step = data.rows.len().div_ceil(STILL_LINES).max(1);
@@ -116,12 +116,12 @@ fn named_axis(axis: &Axis) -> String {
     if axis.unit.is_empty() { axis.label.clone() } else { format!("{} [{}]", axis.label, axis.unit) }
 }
 
-/// Names of picks with their designs.
+/// Pairs of a pick's names and its `design_id`.
 fn named(picks: &[Pick]) -> Vec<(String, String)> {
     picks.iter().map(|p| (p.names.join(", "), p.design.design_id.clone())).collect()
 }
 
-/// A design's objectives as the page and the terminal write them.
+/// The objectives of a design as page and terminal write them: name, value and unit.
 pub(crate) fn headline(design: &Design) -> [(&'static str, String, &'static str); 3] {
     [
         ("tip deflection", significant(design.tip_deflection_mm, 4), "mm"),
