@@ -34,7 +34,7 @@ fn field(column: &Column) -> Value {
     json!({"name": column.name, "type": kind, "description": figure, "constraints": constraints})
 }
 
-/// A pattern for some words, in which letters may be upper or lower case.
+/// A regular expression that matches some words in upper or lower case.
 fn any_case(words: &[&str]) -> String {
     let word = |word: &&str| -> String {
         let letter = |c: char| match c.is_ascii_alphabetic() {

@@ -1,5 +1,5 @@
-//! What holds across the rows of a catalog: ratings grow with size and with ratio, other names of series
-//! are unique, curves meet the rated point. Exceptions are warnings: vendors print some.
+//! Checks that compare the rows of a catalog: ratings grow with size and with ratio, and efficiency curves agree
+//! with the rated point. Deviations are only warnings, because vendors print some.
 
 use super::log::Log;
 use crate::catalog::efficiency::EfficiencyKind;
@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 type Figure = (&'static str, fn(&Gear) -> Option<f64>);
 
-/// Figures that grow with the size at one series and ratio.
+/// Numbers that grow with the size, within a series and ratio.
 const GROW_WITH_SIZE: &[Figure] = &[
     ("rated_torque_nm", |g| g.rated_torque_nm),
     ("repeated_peak_torque_nm", |g| g.repeated_peak_torque_nm),
@@ -32,7 +32,7 @@ const GROW_WITH_SIZE: &[Figure] = &[
     ("max_input_speed_rpm", |g| g.max_input_speed_rpm.map(|speed| -speed)),
 ];
 
-/// Figures that do not fall with the ratio at one series and size.
+/// Numbers that do not decrease with the ratio, within a series and size.
 const GROW_WITH_RATIO: &[Figure] = &[
     ("rated_torque_nm", |g| g.rated_torque_nm),
     ("repeated_peak_torque_nm", |g| g.repeated_peak_torque_nm),
@@ -41,7 +41,7 @@ const GROW_WITH_RATIO: &[Figure] = &[
     ("k2_nm_per_rad", |g| g.k2_nm_per_rad),
 ];
 
-/// Warns of gears that break the trend of their series, and of curves that miss the rated efficiency.
+/// Warns of gears that break the trend of their series, and of curves that disagree with the rated efficiency.
 pub(crate) fn check(catalogs: &Catalogs, log: &Log) {
     let by_size = families(&catalogs.gears, |g| g.ratio, |g| f64::from(g.size));
     let by_ratio = families(&catalogs.gears, |g| f64::from(g.size), |g| g.ratio);
@@ -54,7 +54,7 @@ pub(crate) fn check(catalogs: &Catalogs, log: &Log) {
     catalogs.gears.iter().for_each(|gear| rated_point(catalogs, gear, log));
 }
 
-/// The gears of each series with the same `common` figure, sorted by the `rising` one.
+/// The strain-wave gears of each series for which `common` is equal, sorted by `rising`.
 fn families(gears: &[Gear], common: fn(&Gear) -> f64, rising: fn(&Gear) -> f64) -> Vec<Vec<&Gear>> {
     let mut families: BTreeMap<(&str, u64), Vec<&Gear>> = BTreeMap::new();
     for gear in gears.iter().filter(|gear| gear.kind == GearKind::StrainWave) {
