@@ -1,4 +1,5 @@
-//! Hypervolume: the volume that a set of points dominates below a reference point. It is one number for how good a front is.
+//! Hypervolume: the volume that a set of points dominates below a reference point. It measures with one number how
+//! good a front is.
 //!
 //! The points are swept as for the front. Each point adds the area that it newly covers in the plane of the second and third
 //! objective, times its distance from the reference point along the first. Every term is positive, so nothing cancels, and
@@ -38,7 +39,8 @@ pub fn hypervolume(points: &[[f64; 3]], reference: [f64; 3]) -> Result<f64, NotA
         if height <= third {
             continue;
         }
-        // points come in the order of the first objective: what this one covers first, it covers up to the reference
+        // points come in ascending order of the first objective, so a newly covered area stays covered up to the
+        // reference
         let depth = reference[0] - first;
         let (mut from, mut open) = (start, true);
         stairs.insert(rank, third, |next, its_third| {

@@ -33,7 +33,7 @@ impl Ranking {
         let mut order = by(1, order);
         let mut second = rank(&mut order, points);
         if second.len() < order.len() / 16 {
-            // with many ties, a radix sort by the third objective is cheaper than the comparisons it saves
+            // with many ties, a radix sort by the third objective costs less than the comparisons that it saves
             order = by(1, by(2, order));
             second = rank(&mut order, points);
         }
@@ -45,13 +45,14 @@ impl Ranking {
     }
 }
 
-/// An integer key that orders numbers as they are ordered themselves. Both zeros have the same key.
+/// An integer key with the same order as the numbers. Both zeros have the same key.
 fn key(x: f64) -> u64 {
     let bits = (x + 0.0).to_bits();
     if bits >> 63 == 0 { bits | 1 << 63 } else { !bits }
 }
 
-/// Gives ranks to a list of points that is sorted by the second objective. Returns the objective of each rank.
+/// Gives ranks to a list of points that is sorted by the second objective. Returns the value of the second
+/// objective for each rank.
 fn rank(order: &mut [Ranked], points: &[[f64; 3]]) -> Vec<f64> {
     let mut second: Vec<f64> = Vec::new();
     for ranked in order {

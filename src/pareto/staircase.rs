@@ -25,13 +25,13 @@ impl Staircase {
         self.steps.at_or_below(rank).map(|step| self.third[step as usize])
     }
 
-    /// Whether some point so far is at least as good as a point in both objectives.
+    /// Whether some point so far is at least as good in the second and third objective.
     pub(crate) fn covers(&self, rank: u32, third: f64) -> bool {
         self.best(rank).is_some_and(|best| best <= third)
     }
 
-    /// Adds a step that is not covered and removes the steps that it covers. `see` is called with rank and third
-    /// objective of each step above the new one, up to and including the first that stays.
+    /// Adds a step that is not covered, and removes the steps that it covers. `see` is called with rank and third
+    /// objective of each following step, up to and including the first that stays.
     pub(crate) fn insert(&mut self, rank: u32, third: f64, mut see: impl FnMut(u32, f64)) {
         self.steps.insert(rank);
         self.third[rank as usize] = third;

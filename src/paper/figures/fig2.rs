@@ -11,13 +11,13 @@ use crate::report::number::{fixed, shortest, significant};
 use crate::report::svg::plot::{Note, Plot, Series, Side};
 use crate::report::table::{Column, Table};
 
-/// The metals of the figure: name in the legend, name in the catalog.
+/// The metals of the figure: name in the legend, and name in the catalog.
 pub const METALS: [(&str, &str); 3] = [
     ("steel", "Structural steel S235"),
     ("titanium", "Titanium Ti-6Al-4V"),
     ("aluminium", "Aluminium 6082-T6"),
 ];
-/// Other rows of the catalog that the figure's metals could be.
+/// Other rows of the catalog that the paper's metals could be.
 const OTHERS: [&str; 4] =
     ["Structural steel S355", "Titanium grade 2", "Aluminium 6061-T6", "Aluminium 7075-T6"];
 
@@ -30,7 +30,7 @@ pub struct Curve {
     pub points: Vec<BeamPoint>,
 }
 
-/// The three curves.
+/// The three curves of the figure.
 ///
 /// # Errors
 /// The catalog lacks a material.
@@ -41,7 +41,7 @@ pub fn curves(catalogs: &Catalogs) -> Result<Vec<Curve>, PaperError> {
         .collect()
 }
 
-/// The figure's claims.
+/// The claims of the paper about the figure, checked.
 pub fn claims(curves: &[Curve]) -> Vec<Claim> {
     vec![falls(curves), converges(curves), in_ratio(curves), gains_more(curves), best_metal(curves)]
 }
@@ -103,7 +103,7 @@ fn range(points: &[BeamPoint]) -> String {
     format!("{} to {}", mm(points.first()), mm(points.last()))
 }
 
-/// For each size, the largest and the smallest deflection among the metals \[m\].
+/// For each size, the largest and the smallest deflection of the metals \[m\].
 fn extremes(curves: &[Curve]) -> Vec<(f64, f64)> {
     let at = |i: usize| curves.iter().filter_map(move |c| c.points.get(i)).map(|p| p.deflection_m);
     let count = curves.first().map_or(0, |c| c.points.len());
@@ -181,7 +181,7 @@ fn best_metal(curves: &[Curve]) -> Claim {
     )
 }
 
-/// A table of every steel, titanium and aluminium of the catalog that the figure may mean.
+/// A table of every steel, titanium and aluminium of the catalog that the paper may mean.
 fn alloys(catalogs: &Catalogs) -> Result<Table, PaperError> {
     let mut table = Table::new(vec![
         Column::left("material"),
