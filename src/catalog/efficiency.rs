@@ -11,9 +11,9 @@ use super::{Catalogs, Provenance};
 /// The two kinds of curve in `gears_efficiency.csv`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EfficiencyKind {
-    /// Efficiency at rated torque; x is the input speed \[rpm\].
+    /// The value is the efficiency at rated torque, and x is the input speed \[rpm\].
     AgainstInputSpeed,
-    /// Factor on the efficiency at rated torque; x is torque over rated torque.
+    /// The value is a factor on the efficiency at rated torque, and x is the torque divided by the rated torque.
     FactorAgainstTorqueRatio,
 }
 
@@ -44,9 +44,9 @@ pub struct EfficiencyPoint {
     pub kind: EfficiencyKind,
     /// Series as printed, e.g. `HFUC-2A` (component set) or `CSF/CSG` (both series).
     pub series: String,
-    /// Size; `None` for a curve of whole series.
+    /// Size of the gear; `None` for a curve of whole series.
     pub size: Option<u32>,
-    /// Ratio; `None` for a curve of whole series.
+    /// Reduction ratio of the gear; `None` for a curve of whole series.
     pub ratio: Option<f64>,
     /// Input speed \[rpm\], or torque divided by rated torque.
     pub x: f64,

@@ -87,7 +87,7 @@ pub struct LifeLaw {
     pub rated_h: Option<f64>,
     /// Input speed at which the rated life is stated \[rpm\].
     pub rated_speed_rpm: Option<f64>,
-    /// Exponent of the torque.
+    /// Exponent of the torque ratio in the life equation.
     pub exponent: f64,
 }
 
@@ -152,7 +152,7 @@ pub struct Gear {
     pub max_input_speed_rpm: Option<f64>,
     /// Limit for average input speed \[rpm\].
     pub average_input_speed_limit_rpm: Option<f64>,
-    /// Moment of inertia at the input (wave generator) \[kg m²\].
+    /// Moment of inertia at the gear's input (of the wave generator) \[kg m²\].
     pub inertia_input_kgm2: Option<f64>,
     /// Mass of the component set \[kg\].
     pub mass_component_set_kg: Option<f64>,
@@ -168,13 +168,13 @@ pub struct Gear {
     pub k2_nm_per_rad: Option<f64>,
     /// Torsion curve: stiffness beyond T2 \[N m/rad\].
     pub k3_nm_per_rad: Option<f64>,
-    /// Hysteresis loss \[arcmin\].
+    /// Hysteresis loss: width of the hysteresis of the output angle \[arcmin\].
     pub hysteresis_loss_arcmin: Option<f64>,
     /// Backlash: play without torque \[arcmin\].
     pub backlash_arcmin: Option<f64>,
     /// Lost motion at a few percent of the rated torque \[arcmin\].
     pub lost_motion_arcmin: Option<f64>,
-    /// Transmission accuracy \[arcmin\].
+    /// Transmission accuracy: error of the output angle over a turn \[arcmin\].
     pub transmission_accuracy_arcmin: Option<f64>,
     /// Tilting stiffness of the output bearing (housed unit) \[N m/rad\].
     pub tilting_stiffness_nm_per_rad: Option<f64>,

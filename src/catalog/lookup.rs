@@ -40,7 +40,7 @@ impl fmt::Display for PartKind {
 /// Reason why a text does not identify a part.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum PartError {
-    /// No part has this name.
+    /// No part of this kind has a name that fits the text.
     #[error("no {kind} is called \"{name}\"; {}", near(.kind, .nearest))]
     Unknown {
         /// Kind of part that was asked for.

@@ -111,7 +111,7 @@ impl fmt::Display for MotorKind {
 /// One point of a motor's torque curve, as in `motor_curves.csv`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotorCurvePoint {
-    /// Speed \[rpm\].
+    /// Speed of the motor \[rpm\].
     pub speed_rpm: f64,
     /// Torque that the motor can give continuously at this speed \[N m\].
     pub continuous_torque_nm: Option<f64>,
@@ -127,7 +127,7 @@ pub struct Motor {
     pub id: String,
     /// Kind of the motor.
     pub kind: MotorKind,
-    /// Vendor.
+    /// Vendor of the motor.
     pub vendor: String,
     /// Torque that the motor can give continuously \[N m\].
     pub rated_torque_nm: Option<f64>,
@@ -135,11 +135,11 @@ pub struct Motor {
     pub peak_torque_nm: Option<f64>,
     /// Speed at rated torque \[rpm\].
     pub rated_speed_rpm: Option<f64>,
-    /// Largest speed \[rpm\].
+    /// Largest speed of the motor \[rpm\].
     pub max_speed_rpm: Option<f64>,
     /// Rotor inertia \[kg m²\].
     pub rotor_inertia_kgm2: Option<f64>,
-    /// Mass \[kg\].
+    /// Mass of the motor \[kg\].
     pub mass_kg: Option<f64>,
     /// Torque curve, by ascending speed; empty if only the single ratings above are known.
     pub curve: Vec<MotorCurvePoint>,

@@ -14,7 +14,7 @@ pub struct Lack {
 }
 
 impl fmt::Display for Lack {
-    /// `rated_life_h (life)`.
+    /// Writes the column and its purpose: `rated_life_h (life)`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} ({})", self.figure, self.purpose)
     }

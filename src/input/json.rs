@@ -14,7 +14,7 @@ use std::cell::RefCell;
 use std::fmt;
 use std::path::Path;
 
-/// One thing that is wrong with an input file.
+/// One fault of an input file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fault {
     /// File name as the user gave it.
@@ -46,7 +46,7 @@ impl fmt::Display for Fault {
     }
 }
 
-/// All faults of one or more input files, at least one.
+/// All faults of one or more input files. There is at least one.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{}", list(.0))]
 pub struct Faults(pub Vec<Fault>);
@@ -200,7 +200,7 @@ impl<'a> Node<'a> {
         &self.path
     }
 
-    /// The raw value.
+    /// The JSON value of this node, unchecked.
     pub fn value(&self) -> &'a Value {
         self.value
     }
@@ -243,7 +243,7 @@ impl<'a> Node<'a> {
         Some(Object { node: self.clone(), map })
     }
 
-    /// This node as a map of names to nodes, in file order.
+    /// This node as an object with any keys: pairs of key and node, in the order of the file.
     pub fn entries(&self) -> Option<Vec<(&'a str, Node<'a>)>> {
         let Value::Object(map) = self.value else {
             return self.fault(format!("is {}, not an object", kind(self.value)), "write { ... }");
@@ -339,7 +339,7 @@ impl<'a> Object<'a> {
         self.map.contains_key(key)
     }
 
-    /// The node under `key`, if the object has it.
+    /// The node under `key`; `None` if the object does not have the key.
     pub fn optional(&self, key: &str) -> Option<Node<'a>> {
         self.map.get(key).map(|v| self.node.child(&join(&self.node.path, key), v))
     }
@@ -366,7 +366,7 @@ impl<'a> Object<'a> {
     }
 }
 
-/// The kind of a JSON value in words, with the value itself if it is short.
+/// Description of a JSON value for messages, with the value itself if it is short.
 fn kind(value: &Value) -> String {
     match value {
         Value::Null => "null".into(),
@@ -388,7 +388,7 @@ pub fn closest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
         .map(|(_, k)| k)
 }
 
-/// Levenshtein distance between the bytes of two words.
+/// Levenshtein distance between two words: the least number of bytes to insert, remove or replace.
 fn edit_distance(a: &str, b: &str) -> usize {
     let b = b.as_bytes();
     let mut row: Vec<usize> = (0..=b.len()).collect();
@@ -486,7 +486,7 @@ impl Locator<'_> {
         }
     }
 
-    /// Moves past one value.
+    /// Moves the position past one JSON value.
     fn skip(&mut self) {
         let mut depth = 0usize;
         while let Some(&byte) = self.bytes.get(self.at) {

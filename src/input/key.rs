@@ -2,7 +2,7 @@
 //! keys that are not in this table, `armwright schema` prints the table as a JSON Schema, and `docs/keys.md` shows
 //! it.
 
-/// One kind of object: its keys, and the rules between them.
+/// One kind of object in a file: its keys, and rules on which of them may occur together.
 #[derive(Debug, Clone, Copy)]
 pub struct Shape {
     /// Name of the kind of object, which is unique within a kind of file.
@@ -17,7 +17,7 @@ pub struct Shape {
     pub others: Option<&'static Kind>,
 }
 
-/// One key of an object.
+/// One key of a kind of object.
 #[derive(Debug, Clone, Copy)]
 pub struct Key {
     /// Name of the key, with the unit.
@@ -35,13 +35,13 @@ pub struct Key {
 /// The values that are allowed.
 #[derive(Debug, Clone, Copy)]
 pub enum Kind {
-    /// Any JSON.
+    /// Any JSON value.
     Anything,
     /// `null`.
     Null,
     /// `true` or `false`.
     Flag,
-    /// A text.
+    /// Any text.
     Text,
     /// A text that is not empty.
     Name,
@@ -61,9 +61,9 @@ pub enum Kind {
     Whole(u32),
     /// A list of exactly this many values of one kind.
     Array(usize, &'static Kind),
-    /// A list of values of a kind.
+    /// A list of any length, whose values are all of one kind.
     List(&'static Kind),
-    /// A list of at least one value of a kind.
+    /// A list with at least one value, whose values are all of one kind.
     NonEmpty(&'static Kind),
     /// An object with any keys, whose values are of one kind.
     Map(&'static Kind),

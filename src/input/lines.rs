@@ -42,7 +42,7 @@ impl<'a> LineCounter<'a> {
         }
     }
 
-    /// The line of the last record.
+    /// The line of the last record that was asked for.
     pub fn line(&self) -> usize {
         self.line
     }

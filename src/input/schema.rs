@@ -16,7 +16,7 @@ pub struct FileKind {
 }
 
 impl FileKind {
-    /// The JSON Schema of such a file.
+    /// The JSON Schema of this kind of file.
     pub fn schema(&self) -> Value {
         let mut definitions = Map::new();
         for shape in self.shapes() {
@@ -39,7 +39,7 @@ impl FileKind {
         found
     }
 
-    /// The keys of such a file as Markdown tables.
+    /// The keys of this kind of file as Markdown tables.
     pub fn tables(&self) -> String {
         let mut out = format!("## {}\n\n{}\n", self.name, self.about);
         for shape in self.shapes() {

@@ -4,7 +4,7 @@ use super::names::{Unfit, unfit_name, unfit_text};
 use super::path::join;
 use serde_json::Value;
 
-/// The key whose value is a name.
+/// Name of the key whose value is a name, so that the stricter rules for names apply.
 const NAME: &str = "name";
 
 /// Path of every text that is not allowed, with the reason. Keys are checked like names.

@@ -14,7 +14,7 @@ use crate::mechanics::chain::{Chain, Posed};
 use crate::mechanics::statics::Statics;
 use nalgebra::{Unit, Vector3};
 
-/// Gravitational acceleration of the paper \[m/s²\].
+/// Gravitational acceleration that the paper uses \[m/s²\].
 pub const GRAVITY_M_S2: f64 = 9.81;
 /// Names of the joints that move in the vertical plane, base to tip.
 pub const JOINTS: [&str; 3] = ["j2", "j3", "j4"];
@@ -53,14 +53,14 @@ pub struct PaperArm {
 /// Statics and modes of an arm, computed by the library.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solved {
-    /// The static state.
+    /// Displacements, torques and the parts of the displacement under static load.
     pub statics: Statics,
     /// Natural frequencies in the vertical plane, lowest first \[Hz\].
     pub in_plane_hz: Vec<f64>,
 }
 
 impl PaperArm {
-    /// Table 1 as printed, the load 5 cm from the wrist.
+    /// The arm of Table 1 as printed, with the load 5 cm from the wrist.
     pub fn table_1() -> Self {
         let square =
             |size_m: f64| Section::RectangularTube { width_m: size_m, height_m: size_m, wall_m: 0.01 };
@@ -179,7 +179,7 @@ impl PaperArm {
         })
     }
 
-    /// Poses the stretched arm and hands it to `use_it`.
+    /// Puts the stretched arm into its pose and calls `use_it` with it.
     pub fn with_posed<T>(
         &self,
         structure: &Structure,
@@ -197,17 +197,17 @@ impl Solved {
         -self.statics.tip_displacement_m.z
     }
 
-    /// Part of the load's drop that one element causes \[m\].
+    /// Part of the load's downward displacement that one element causes \[m\].
     pub fn share_m(&self, name: &str) -> f64 {
         self.statics.shares_m.iter().filter(|(n, _)| n == name).map(|(_, s)| -s.z).sum()
     }
 
-    /// Part of the load's drop that the joints cause \[m\].
+    /// Part of the load's downward displacement that the joints cause \[m\].
     pub fn joints_m(&self) -> f64 {
         JOINTS.iter().map(|name| self.share_m(name)).sum()
     }
 
-    /// Part of the load's drop that the links cause \[m\].
+    /// Part of the load's downward displacement that the links cause \[m\].
     pub fn links_m(&self) -> f64 {
         LINKS.iter().map(|name| self.share_m(name)).sum()
     }
@@ -223,7 +223,7 @@ impl Solved {
     }
 }
 
-/// Puts a connection in series with a joint. The connection adds this compliance \[rad/(N m)\].
+/// Adds a connection in series with a joint. `compliance_rad_per_nm` is the compliance of the connection.
 pub fn connect(structure: &mut Structure, joint: &str, compliance_rad_per_nm: f64) {
     for piece in &mut structure.pieces {
         if let Piece::Joint(piece) = piece

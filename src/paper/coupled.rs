@@ -26,7 +26,7 @@ pub struct CoupledArm {
     pub mass: Matrix3<f64>,
     /// Stiffness matrix \[N m/rad\].
     pub stiffness: Matrix3<f64>,
-    /// Lengths l1, l2, l3 \[m\].
+    /// Lengths l1, l2, l3 of the links \[m\].
     pub lengths_m: Vector3<f64>,
 }
 

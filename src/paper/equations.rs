@@ -17,7 +17,8 @@ pub fn deflection_eq_4_m(
         * (force_n * length_m / 3.0 + line_weight_n_per_m * length_m.powi(2) / 8.0 + torque_nm / 2.0)
 }
 
-/// Eq 13: displacement of the end of the arm by the wind-up of a joint \[m\].
+/// Eq 13: displacement of the end of the arm by the torsion of one joint \[m\]. `length_m` is the distance of the
+/// end from the joint.
 pub fn deflection_eq_13_m(torque_nm: f64, stiffness_nm_per_rad: f64, length_m: f64) -> f64 {
     libm::sin(torque_nm / stiffness_nm_per_rad) * length_m
 }
@@ -25,7 +26,8 @@ pub fn deflection_eq_13_m(torque_nm: f64, stiffness_nm_per_rad: f64, length_m: f
 /// The total deflection by the paper's equations.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PrintedDeflection {
-    /// Wind-up of joints 2, 3 and 4 times the length to the wrist \[m\] (Eqs 13, 14).
+    /// Displacement by each of the joints 2, 3 and 4: sine of the joint's torsion times the distance to the wrist
+    /// \[m\] (Eqs 13, 14).
     pub joints_m: [f64; 3],
     /// Deflection of links 1 and 2 (Eq 4) \[m\].
     pub links_m: [f64; 2],
@@ -46,7 +48,7 @@ impl PrintedDeflection {
 /// The two interpretations of the end force F in Eq 4.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EndForce {
-    /// The weight of everything outboard of the link.
+    /// The weight of everything outboard of the link, the next links included.
     AllOutboard,
     /// The weight of the motor and gear at the link's end only, as the text of the paper says.
     DriveAtTheEnd,
@@ -83,7 +85,7 @@ pub const LOAD_ACCELERATION_M_S2: f64 = 1.0 / 0.20;
 pub struct DynamicTorque {
     /// Static torque T_j at the output \[N m\].
     pub static_nm: f64,
-    /// T_lin with the printed factor 1/2 \[N m\].
+    /// T_lin by the factor 1/2 that the paper prints, T_j / 2 \[N m\].
     pub linear_half_nm: f64,
     /// T_lin by the definition in Eq 8, (a/g) T_j \[N m\].
     pub linear_ratio_nm: f64,

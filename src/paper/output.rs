@@ -7,12 +7,12 @@ use super::names::NAMES;
 pub struct PaperStudyOutput {
     /// Files to write: name and content. `summary.md` is among them.
     pub files: Vec<(String, Vec<u8>)>,
-    /// Text for the terminal.
+    /// Text that the program prints on the terminal.
     pub terminal: String,
 }
 
 impl PaperStudyOutput {
-    /// Adds a text file.
+    /// Adds a text file to the output.
     pub(crate) fn file(&mut self, name: &str, content: String) {
         self.files.push((name.to_string(), content.into_bytes()));
     }

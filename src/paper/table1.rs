@@ -23,7 +23,7 @@ pub const DAMPING_RATIO: f64 = 0.02;
 /// All results of the study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table1 {
-    /// The paper's numbers next to ours.
+    /// Rows with the paper's numbers next to ours.
     pub rows: Vec<PaperRow>,
     /// Further tables with titles: errors that remain after the conclusions' remedies, connections, and so on.
     pub sections: Vec<Section>,
@@ -38,7 +38,7 @@ pub struct Section {
     pub title: &'static str,
     /// Explanation of the table.
     pub words: String,
-    /// The table.
+    /// Numbers of the table.
     pub table: Table,
 }
 

@@ -1,8 +1,8 @@
 //! Archive: a table that rejects dominated designs within a few nanoseconds.
 //!
-//! The table is over mass and deflection. Each cell has the highest lowest mode that was found so far at or below its mass
-//! and deflection. Both scales divide each octave into equal steps, which are the leading bits of a floating-point number.
-//! This is monotone and exact, and needs no logarithm.
+//! The table is over mass and deflection. Each cell has the highest lowest mode that was found so far at or below
+//! its mass and deflection. Both scales divide each octave (factor of two) into equal steps, which are the leading
+//! bits of a floating-point number. The map from numbers to steps is monotone and exact, and needs no logarithm.
 //!
 //! A design is entered at the next grid point above its mass and deflection. It is looked up at the next grid point
 //! below them. Its frequency is rounded down on entry. The table therefore rejects a design only if another one
@@ -57,8 +57,8 @@ impl Archive {
         f64::from(best) * (1.0 - MARGIN)
     }
 
-    /// Enters a design. If two threads write one cell at the same time, the better entry may be lost. The table then rejects
-    /// fewer designs than it could, but never more.
+    /// Enters a design. If two threads write one cell at the same time, the better entry may be lost. The table
+    /// then rejects fewer designs than it could, but never more.
     pub(crate) fn enter(&self, o: &Objectives) {
         let (row, column) = (
             self.corner(o.mass_kg, MASS_OCTAVES, Corner::Above),

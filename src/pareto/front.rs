@@ -1,6 +1,6 @@
 //! Pareto fronts of three objectives, all to be minimized.
 //!
-//! A sieve drops points that are plainly dominated. The rest are swept along the first objective, over a staircase of the
+//! A sieve first drops most dominated points. The rest are swept along the first objective, over a staircase of the
 //! other two. The method is exact, keeps duplicates, and takes O(n log n) for any set of points.
 
 use super::ranking::{Ranked, Ranking};
@@ -34,7 +34,7 @@ pub fn rounded(x: f64) -> f64 {
     if scale.is_finite() { (x * scale).round() / scale } else { x }
 }
 
-/// Refuses points with a NaN, which cannot be compared.
+/// Checks that no point has a NaN, because NaN cannot be compared. The error names the first point that has one.
 pub(crate) fn all_numbers(points: &[[f64; 3]]) -> Result<(), NotANumber> {
     let faulty = points.par_iter().position_first(|p| p.iter().any(|x| x.is_nan()));
     faulty.map_or(Ok(()), |point| Err(NotANumber { point }))

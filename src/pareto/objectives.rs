@@ -16,11 +16,11 @@ pub struct Objectives {
 /// One of the objectives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Objective {
-    /// Tip deflection, the less the better.
+    /// Tip deflection; smaller is better.
     TipDeflection,
-    /// Mass, the less the better.
+    /// Mass; smaller is better.
     Mass,
-    /// Lowest mode, the higher the better.
+    /// Lowest mode; higher is better.
     LowestMode,
 }
 

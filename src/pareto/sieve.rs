@@ -1,17 +1,17 @@
 //! Sieve: drops most dominated points in two passes, before anything is sorted.
 //!
-//! The first two objectives are divided into bins of about equal content, which a sample determines. A table has the
-//! smallest third objective of each pair of bins and of all pairs below it. A point is dropped if the pairs of *lower* bins
-//! have a smaller third objective. The point that made this entry is then smaller in all three objectives, because a
-//! number in a lower bin is a smaller number. Bad bins let more points through, but never drop a point that is not
-//! dominated.
+//! The first two objectives are divided into bins of about equal content, which a sample determines. A table has
+//! the smallest third objective of each pair of bins and of all pairs below it. A point is dropped if the pairs of
+//! *lower* bins have a smaller third objective. The point that made this entry is then smaller in all three
+//! objectives, because a number in a lower bin is a smaller number. Badly chosen bins let more points through, but
+//! never drop a point that is not dominated.
 
 use rayon::prelude::*;
 use std::cmp::Ordering;
 
 /// Smallest number of points for which the sieve is used. For fewer points it costs more than it saves.
 const WORTH_IT: usize = 1 << 12;
-/// Number of points in the sample, at most.
+/// Largest number of points in the sample.
 const SAMPLE: usize = 1 << 12;
 /// Number of bins of each of the two objectives.
 const BINS: usize = 256;
@@ -36,7 +36,7 @@ pub(crate) fn sieve(points: &[[f64; 3]], slack: f64) -> Vec<u32> {
     points.par_iter().enumerate().filter(|(_, p)| stays(p)).map(|(i, _)| index(i)).collect()
 }
 
-/// A monotone map from numbers to bins.
+/// The division of one objective into bins. A larger number is never in a lower bin.
 struct Bins {
     low: f64,
     steps_per_unit: f64,

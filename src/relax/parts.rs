@@ -6,7 +6,7 @@ use crate::space::slot::Slot;
 
 /// Remaining options of every slot, and the masses of all options.
 pub(super) struct Parts {
-    /// For each slot, the options that remain, in ascending order.
+    /// For each slot, the indices of the options that remain, in ascending order.
     pub alive: Vec<Vec<u32>>,
     /// For each slot, the option of the known design.
     pub known: Vec<u32>,

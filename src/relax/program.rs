@@ -33,7 +33,7 @@ pub(super) struct Program {
 pub(super) struct Solution {
     /// Lower bound on the mass \[kg\].
     pub bound_kg: f64,
-    /// For each slot, the weight of every remaining option in the solution.
+    /// For each slot, the weight of every remaining option in the mixture that solves the program.
     pub weights: Vec<Vec<f64>>,
     /// Whether options were added to the solver's program. The mixture may then become lighter in the next
     /// solution.
@@ -58,7 +58,7 @@ impl Program {
         Self { masses, rows, seen, best: (0.0, Vec::new()) }
     }
 
-    /// Adds an inequality.
+    /// Adds an inequality to the program.
     pub(super) fn add(&mut self, row: Row) {
         for (slot, seen) in self.seen.iter_mut().enumerate() {
             see(seen, place_of_least(&row.coefficients[slot]));
@@ -176,7 +176,7 @@ fn place_of_least(numbers: &[f64]) -> usize {
     (0..numbers.len()).min_by(|&a, &b| numbers[a].total_cmp(&numbers[b])).unwrap_or_default()
 }
 
-/// Adds an index to a sorted list. Returns whether it was new.
+/// Adds an index to a sorted list, unless it is in the list already. Returns whether it was added.
 fn see(seen: &mut Vec<usize>, at: usize) -> bool {
     match seen.binary_search(&at) {
         Ok(_) => false,

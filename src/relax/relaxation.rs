@@ -31,7 +31,7 @@ pub struct MassBound {
     pub loads_oppose: bool,
 }
 
-/// A design space compiled for bounds.
+/// A design space prepared for lower bounds on mass.
 pub struct Relaxation<'a> {
     problem: &'a ArmProblem<'a>,
     cases: Vec<CaseLoads>,
@@ -40,7 +40,7 @@ pub struct Relaxation<'a> {
 }
 
 impl<'a> Relaxation<'a> {
-    /// Compiles every case of the problem.
+    /// Prepares every case of the problem.
     pub fn new(problem: &'a ArmProblem<'a>) -> Self {
         Self {
             problem,
@@ -105,7 +105,7 @@ impl Search<'_> {
             }
             self.reduce();
             let after: usize = self.parts.alive.iter().map(Vec::len).sum();
-            // Nothing was dropped, or the bound has reached the known design.
+            // Stop if nothing was dropped, or if the bound has reached the mass of the known design.
             if after == before || self.best_kg >= self.asked.mass_kg * (1.0 - 1e-6) {
                 return;
             }

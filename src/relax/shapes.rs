@@ -21,7 +21,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Matrix6xX, SymmetricEigen, Vector3};
 /// Greatest number of shapes that are taken from one mixture.
 const MOST_SHAPES: usize = 3;
 
-/// Masses and stiffnesses of the arm in one case, over the strain coordinates.
+/// Inertias and stiffnesses of the arm in one case, over the strain coordinates.
 pub(super) struct ShapeModel {
     /// Index of the case in the study.
     pub case: usize,
@@ -46,7 +46,7 @@ struct LinkShape {
     /// Displacement and rotation at each Gauss point per unit of each coordinate, times the square root of the
     /// point's weight.
     fields: Vec<Matrix6xX<f64>>,
-    /// Inertia per length of each option.
+    /// Inertias per length of each option.
     densities: Vec<[f64; 6]>,
     /// For each option, the stiffness of each of the tube's coordinates.
     stiffness: Vec<Vec<f64>>,
@@ -199,7 +199,8 @@ impl ShapeModel {
         let scaled = DMatrix::from_fn(count, count, |i, j| soft[i] * inertia[(i, j)] * soft[j]);
         let modes = SymmetricEigen::new(scaled);
         let mut slow: Vec<usize> =
-            // The eigenvalues of the scaled matrix are reciprocals, so a low mode is a large one.
+            // An eigenvalue of the scaled matrix is the reciprocal of a squared frequency, so low modes have large
+            // eigenvalues.
             (0..count).filter(|&i| modes.eigenvalues[i] * eigenvalue > 1.0 + 1e-7).collect();
         slow.sort_by(|&a, &b| modes.eigenvalues[b].total_cmp(&modes.eigenvalues[a]));
         slow.truncate(MOST_SHAPES);

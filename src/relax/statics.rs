@@ -61,7 +61,8 @@ impl CaseLoads {
                 }
                 StationSlot::Link { options, .. } => {
                     let weights: Vec<f64> = options.iter().map(|o| o.weight_n(&station.down)).collect();
-                    // All options of a link weigh along the same line, so one of them gives the direction.
+                    // The weights of all options of a link act along the same line, so one option gives the
+                    // direction for all.
                     let weighing = options.iter().zip(&weights).find(|(_, w)| **w != 0.0);
                     unit.push(weighing.map_or(Wrench::zeros(), |(o, w)| o.weight / *w));
                     amount.push(weights);
@@ -82,7 +83,8 @@ impl CaseLoads {
         self.range(parts, slot)[usize::from(end == LoadEnd::High)]
     }
 
-    /// The wrench of everything outboard of a slot, with all loads at one end of their intervals.
+    /// The wrench (force and moment) of everything outboard of a slot, with all loads at one end of their
+    /// intervals.
     fn wrench(&self, problem: &ArmProblem, parts: &Parts, slot: usize, end: LoadEnd) -> Wrench {
         let start = problem.stations()[self.case].start_wrench;
         (0..slot).fold(start, |sum, j| sum + self.unit[j] * self.end_load(parts, j, end))
@@ -120,7 +122,7 @@ impl CaseLoads {
         })
     }
 
-    /// Least and greatest inertia outboard of a joint about its axis \[kg m²\].
+    /// Least and greatest moment of inertia, about a joint's axis, of everything outboard of the joint \[kg m²\].
     pub(super) fn inertia_range(&self, problem: &ArmProblem, parts: &Parts, slot: usize) -> [f64; 2] {
         let Some(joint) = self.joint(problem, slot) else { return [0.0; 2] };
         let start = joint.twist.dot(&(problem.stations()[self.case].start_inertia * joint.twist));

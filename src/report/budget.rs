@@ -42,7 +42,7 @@ pub enum PieceKind {
     /// The output bearing of a joint. It has its own share of the deflection; its mass and its changes per kilogram
     /// are counted with the joint.
     Bearing,
-    /// A link.
+    /// A link: its tube.
     Link,
 }
 
@@ -105,7 +105,7 @@ pub struct PickBudget {
 }
 
 impl PickBudget {
-    /// How much heavier the pick is than a given mass \[%\].
+    /// How much heavier the pick is than a design of the given mass, relative to that mass \[%\].
     fn above_percent(&self, mass_kg: f64) -> f64 {
         100.0 * (self.mass_kg / mass_kg - 1.0)
     }
@@ -126,7 +126,7 @@ impl PickBudget {
         format!("{} ({})", self.names.join(", "), self.design_id)
     }
 
-    /// The advice in a sentence: where to add mass first.
+    /// The advice in a sentence: at which piece mass should be added first.
     fn advice(&self) -> String {
         let lead = format!(
             "{}: joints give {} of the tip's deflection",

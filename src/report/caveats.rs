@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Caveats(BTreeMap<String, &'static str>);
 
-/// Columns of a front that name parts, without the link or joint.
+/// Endings of the columns that name parts. The name of the link or joint comes before the ending.
 const PARTS: [&str; 4] = ["_material", "_profile", "_gear", "_motor"];
 
 impl Caveats {

@@ -34,7 +34,7 @@ pub(crate) struct PlottedFront<'a> {
     pub muted: bool,
 }
 
-/// Fronts and picks in one picture.
+/// A picture with fronts and picks.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct FrontPicture<'a> {
     /// Title of the picture.
@@ -221,7 +221,7 @@ impl Grain {
         (self.axes[0].0.of(design), self.axes[1].0.of(design))
     }
 
-    /// Whether the markers of two designs do not touch.
+    /// Whether the markers of two designs are far enough apart that they do not touch.
     fn apart(&self, a: &Design, b: &Design) -> bool {
         let steps = |i: usize| (place(self.axes[i], a) - place(self.axes[i], b)) / self.step[i];
         libm::hypot(steps(0), steps(1)) > MARKER_STEPS

@@ -17,7 +17,7 @@ pub enum FrontTableError {
     /// The file is missing or not CSV.
     #[error("cannot read {file}: {source}")]
     Unreadable {
-        /// File name.
+        /// Name of the file.
         file: String,
         /// Reason that the CSV reader gives.
         source: csv::Error,
@@ -25,7 +25,7 @@ pub enum FrontTableError {
     /// A column that every front must have is missing.
     #[error("{file} has no column \"{column}\": is it a front written by `armwright run`?")]
     NoColumn {
-        /// File name.
+        /// Name of the file.
         file: String,
         /// Name of the missing column.
         column: &'static str,

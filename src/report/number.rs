@@ -9,7 +9,7 @@ pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return plain(value);
     }
-    // the exponent after rounding: 9.996 with three digits is 1.00e1
+    // the exponent is taken after rounding: 9.996 with three digits is 1.00e1
     let rounded = format!("{value:.*e}", digits - 1);
     let Some((mantissa, exponent)) = rounded.split_once('e') else { return rounded };
     let exponent: i32 = exponent.parse().unwrap_or(0);

@@ -11,11 +11,11 @@ use std::cmp::Ordering;
 pub struct Design {
     /// Name of the design in its result.
     pub design_id: String,
-    /// Tip deflection \[mm\].
+    /// Tip deflection of the design \[mm\].
     pub tip_deflection_mm: f64,
-    /// Mass \[kg\].
+    /// Mass of the design \[kg\].
     pub mass_kg: f64,
-    /// Lowest mode \[Hz\].
+    /// Lowest mode of the design \[Hz\].
     pub lowest_mode_hz: f64,
     /// Cost of the links' material \[EUR\]; `None` if it is unknown.
     pub material_cost_eur: Option<f64>,
@@ -151,7 +151,7 @@ impl Scale {
 pub struct Pick {
     /// What the design is picked for: one or more of `lightest`, `stiffest`, `highest mode`, `knee`.
     pub names: Vec<&'static str>,
-    /// The design.
+    /// The design that is picked.
     pub design: Design,
 }
 

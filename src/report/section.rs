@@ -22,7 +22,7 @@ pub struct Figure {
 pub struct PageSection {
     /// Title of the section.
     pub title: String,
-    /// Paragraphs.
+    /// Paragraphs of text, at the beginning of the section.
     pub words: Vec<String>,
     /// Tables with their captions.
     pub tables: Vec<(String, Table)>,

@@ -50,7 +50,7 @@ impl Table {
         Self { columns, rows: Vec::new() }
     }
 
-    /// Adds a row. Missing cells are blank.
+    /// Adds a row. Missing cells are blank, surplus cells are dropped.
     pub fn row(&mut self, cells: impl IntoIterator<Item = impl Into<String>>) {
         let mut row: Vec<String> = cells.into_iter().map(Into::into).collect();
         row.resize(self.columns.len(), String::new());
@@ -88,12 +88,12 @@ impl Table {
         self
     }
 
-    /// The columns.
+    /// The columns of the table.
     pub fn columns(&self) -> &[Column] {
         &self.columns
     }
 
-    /// The rows so far.
+    /// The rows that have been added.
     pub fn rows(&self) -> &[Vec<String>] {
         &self.rows
     }

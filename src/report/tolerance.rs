@@ -9,7 +9,7 @@ use super::table::{Column, Table, csv_line};
 use super::words::{TERMINAL, wrap};
 use serde_json::{Value, json};
 
-/// Name of the file that lists every design.
+/// Name of the file that lists the results of every design.
 pub const FILE: &str = "tolerance.csv";
 /// Key of these results in `run.json`.
 pub const KEY: &str = "tolerance";
@@ -22,7 +22,7 @@ pub const PERCENTILES: [u32; 3] = [5, 50, 95];
 /// The results of one design of the front over all samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fate {
-    /// The design with its catalog ratings.
+    /// The design, with its objectives by the catalog ratings.
     pub design: Design,
     /// What the design is picked for with the catalog ratings.
     pub picks: Vec<&'static str>,
@@ -40,17 +40,17 @@ pub struct Fate {
 /// The results of a front under scatter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scattered {
-    /// The scatter in words: `gear_stiffness 20 %`.
+    /// The scatter of each kind of rating, in words: `gear_stiffness 20 %`.
     pub words: Vec<String>,
     /// The scatter of each kind of rating: its name, and the scatter as a fraction.
     pub parts: Vec<(&'static str, f64)>,
     /// Number of samples.
     pub samples: u32,
-    /// Seed of the samples.
+    /// Seed of the random numbers.
     pub seed: u64,
     /// Number of samples in which no design of the front meets the limits.
     pub without_design: u32,
-    /// Every design of the front, lightest first.
+    /// The results of every design of the front, lightest first.
     pub fates: Vec<Fate>,
 }
 

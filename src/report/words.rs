@@ -1,6 +1,6 @@
 //! Functions for sentences: breaking into lines, joining with "and", capital letters.
 
-/// Width of a terminal \[characters\].
+/// Width of a terminal for which text is wrapped \[characters\].
 pub(crate) const TERMINAL: usize = 80;
 
 /// Breaks text into lines of at most `width` characters. Each line begins with `lead`. A number and its unit stay

@@ -19,9 +19,9 @@ use crate::catalog::gear::{Gear, GearMass};
 pub(super) struct BearingLoad {
     /// Moment across the axis where the link attaches \[N m\].
     pub moment_nm: f64,
-    /// Force across the axis \[N\].
+    /// Force across the axis of the joint (radial) \[N\].
     pub radial_n: f64,
-    /// Force along the axis \[N\].
+    /// Force along the axis of the joint \[N\].
     pub axial_n: f64,
 }
 
@@ -39,7 +39,7 @@ pub(super) struct BearingDemand {
 /// The limits of one bearing in its joint. An infinite limit is not checked.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct BearingRatings {
-    /// Lever from the centre of the bearing to the face of its flange, R \[m\].
+    /// Distance R along the axis from the centre of the bearing to the face of its flange \[m\].
     centre_m: f64,
     /// Radial force at the pitch circle that stands for a moment of 1 N m, `2 / d_p` \[1/m\].
     per_moment_per_m: f64,

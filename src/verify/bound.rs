@@ -34,7 +34,8 @@ pub(super) struct Members<'w> {
 pub(super) struct IdealPoint {
     pub mass_kg: f64,
     pub tip_m: f64,
-    /// The judged case that bounds the deflection, and the direction of the tip's displacement there.
+    /// Index among the poses of the judged case that bounds the deflection, and the direction of the tip's
+    /// displacement there.
     pub worst: usize,
     pub direction: Vector3<f64>,
 }
@@ -259,7 +260,7 @@ pub(super) fn direction(pose: &Pose, members: &Members) -> Option<Vector3<f64>> 
     joints.chain(tubes).chain(tilts).chain(springs).sum::<Vector3<f64>>().try_normalize(0.0)
 }
 
-/// Least displacement of the tip along a direction over the members \[m\].
+/// Lower bound of the displacement of the tip along a direction, over the members \[m\].
 fn tip_along(pose: &Pose, members: &Members, direction: &Vector3<f64>) -> f64 {
     let loads = &members.loads[pose.water];
     let joints = members.drives.iter().zip(&pose.torques).zip(&pose.tip_m_per_rad).map(

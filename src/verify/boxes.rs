@@ -52,7 +52,7 @@ impl Boxes {
         }))
     }
 
-    /// The options that a box has at each level, tip first.
+    /// Indices of the options that a box has at each level, tip first.
     pub fn options(&self, parts: &PartsBox) -> Vec<Vec<u32>> {
         let levels = self.skeleton.levels.iter().zip(&parts.0);
         levels

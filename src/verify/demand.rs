@@ -18,7 +18,7 @@ pub(super) enum Quantity {
     MeanCubed,
 }
 
-/// Number of quantities.
+/// Number of torque quantities.
 pub(super) const QUANTITIES: usize = 4;
 
 /// The demand on one drive: a torque for each [`Quantity`], the loads on the output bearing, and the heat of the

@@ -80,7 +80,8 @@ impl DriveRange {
         }
     }
 
-    /// Greatest stiffness of an output bearing against a tilt \[N m/rad\]; infinite if one of them is rigid.
+    /// Greatest tilt stiffness of the output bearings of the drives \[N m/rad\]; infinite if one of the bearings is
+    /// rigid.
     pub(super) fn greatest_tilt_stiffness(&self) -> f64 {
         1.0 / self.tilt_rad_per_nm.least
     }
@@ -122,7 +123,7 @@ fn curve(a: &Windup, b: &Windup, slope: fn(f64, f64) -> f64, break_point: fn(f64
     }
 }
 
-/// Twist under a torque that is not negative \[rad\]; break points may be infinite.
+/// Twist of a torsion curve under a torque that is not negative \[rad\]. Break points may be infinite.
 pub(super) fn angle_rad(curve: &Windup, torque_nm: f64) -> f64 {
     let first = torque_nm.min(curve.t1_nm);
     let second = torque_nm.min(curve.t2_nm) - first;

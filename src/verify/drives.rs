@@ -18,7 +18,7 @@ pub(super) struct DriveOptions {
     pub level: Option<usize>,
     /// The motion of the joint; `None` for a given drive, on which nothing is checked.
     pub duty: Option<Duty>,
-    /// The drives, lightest first.
+    /// The options, lightest first.
     pub options: Vec<DriveOption>,
 }
 
@@ -123,7 +123,7 @@ impl Drives {
         Self { level, duty, tree, nodes, options }
     }
 
-    /// The options of a node.
+    /// The options below a node of the tree.
     pub(super) fn options(&self, node: u32) -> impl Iterator<Item = &DriveOption> {
         self.tree.options(node).iter().map(|&i| &self.options[i as usize])
     }
@@ -145,12 +145,12 @@ impl Drives {
         fits.map(|(_, option)| option.range).reduce(|a, b| a.with(&b))
     }
 
-    /// Range of all drives of a node.
+    /// Range of all drives below a node of the tree.
     pub(super) fn range(&self, node: u32) -> &DriveRange {
         &self.nodes[node as usize].0
     }
 
-    /// Whether there is no drive at all.
+    /// Whether the joint has no option at all.
     pub(super) fn is_empty(&self) -> bool {
         self.options.is_empty()
     }

@@ -15,13 +15,13 @@ use std::f64::consts::PI;
 /// The motion of one joint, on the output side of its gear.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Duty {
-    /// Largest speed \[rad/s\].
+    /// Largest speed of the joint \[rad/s\].
     pub speed_rad_s: f64,
-    /// Mean speed over the cycle, rests included \[rad/s\].
+    /// Mean speed of the joint over the cycle, rests included \[rad/s\].
     pub mean_speed_rad_s: f64,
-    /// Acceleration \[rad/s²\].
+    /// Acceleration of the joint in a ramp \[rad/s²\].
     pub acceleration_rad_s2: f64,
-    /// Required life \[h\].
+    /// Required life of the gear \[h\].
     pub life_h: f64,
     /// Torque of linear acceleration for each kg m² of inertia \[rad/s²\], and for each N m of static torque. One
     /// of the two is zero: Eq 8 can be read in either way, and the study states which one it takes.
@@ -32,7 +32,7 @@ pub(super) struct Duty {
     mean: MeanTorque,
     /// Duration of an emergency stop \[s\].
     pub stop_s: f64,
-    /// Number of emergency stops that are asked for.
+    /// Number of emergency stops that the gear must survive; `None` if the study asks for none.
     pub emergency_stops: Option<f64>,
     /// Whether a brake holds the joint at rest.
     pub has_brake: bool,
@@ -155,7 +155,7 @@ fn first_ramp_s(duty: &[AskedDutyPhase]) -> Option<f64> {
 }
 
 impl AskedMotion {
-    /// Acceleration of the tip \[m/s²\].
+    /// Acceleration of the tip in a ramp \[m/s²\].
     pub(super) fn tip_acceleration_m_s2(&self) -> f64 {
         self.tip_speed_m_s / self.ramp_time_s
     }

@@ -2,7 +2,7 @@
 
 use crate::pareto::objectives::Objectives;
 
-/// Objectives closer than this count as equal (relative).
+/// Relative difference up to which two objectives count as equal.
 const TIE: f64 = 1e-9;
 /// A design of the front discards a box only if it is better by this margin in at least one objective (relative).
 const BETTER: f64 = 1e-7;
@@ -17,7 +17,7 @@ pub(super) struct FrontIndex {
 }
 
 impl FrontIndex {
-    /// Sorts the designs of a front.
+    /// Builds the index of a front's designs.
     pub(super) fn new(front: &[Objectives]) -> Self {
         let mut rows = front.to_vec();
         rows.sort_by(|a, b| a.mass_kg.total_cmp(&b.mass_kg));

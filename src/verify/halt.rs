@@ -27,7 +27,7 @@ impl Found {
 pub(super) struct Halt<'s> {
     pub stop: &'s AtomicBool,
     pub deadline: Option<Instant>,
-    /// Single designs that no bound discarded, and their number.
+    /// Single designs that no bound discarded. `count` is their number, which can be read without a lock.
     pub designs: Mutex<BTreeSet<Design>>,
     pub count: AtomicUsize,
 }

@@ -51,7 +51,7 @@ pub struct Judge<'q> {
     pub(super) offers: Vec<JointOffers>,
 }
 
-/// The drive that a design has at a joint, with its range for the bounds.
+/// The drive that a joint of a design has, with its range of numbers for the bounds.
 struct Fitted {
     range: DriveRange,
     pick: Pick,
@@ -103,7 +103,8 @@ impl<'q> Judge<'q> {
         self.question.pieces.iter().zip(picks).map(first).collect()
     }
 
-    /// The tubes of a design, each as a range of one tube, base to tip; `None` if a tube is too slender.
+    /// The numbers of the tubes of a design, base to tip, each as a range of one tube. `None` if a tube is too
+    /// slender.
     fn tubes(&self, picks: &[Pick]) -> Option<Vec<TubeRange>> {
         let (question, waters): (_, &[Option<Water>]) = (self.question, &self.skeleton.waters);
         let mut tubes = Vec::new();

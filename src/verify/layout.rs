@@ -14,7 +14,7 @@ use crate::mechanics::beam::section_frame;
 use crate::mechanics::chain::across;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
-/// Rank of the springs of the base.
+/// Rank of the springs on which the arm stands. No piece has a lower rank.
 const BASE_RANK: usize = 0;
 
 /// Rank of the springs of a piece, and of masses inboard of these springs. Ranks grow from base to tip.
@@ -130,7 +130,7 @@ impl Layout {
                     layout.joints.push(PlacedJoint { rank, at_m, axis, across: across(&axis) });
                     let angle = entries.next().copied().unwrap_or_default().to_radians();
                     rotation *= Rotation3::from_axis_angle(&joint.axis, angle);
-                    // outboard of the joint, and inboard of whatever comes next
+                    // these bodies are outboard of the joint, and inboard of the next piece
                     layout.add_bodies(piece_rank(place) + 1, &joint.bodies.rotating, &rotation);
                 }
                 Piece::Prismatic(joint) => {
@@ -206,7 +206,7 @@ impl Layout {
         }
     }
 
-    /// Adds bodies whose element begins at the end of the chain so far.
+    /// Adds rigid bodies whose positions are given from the end of the chain so far.
     fn add_bodies(&mut self, rank: usize, bodies: &[RigidBody], rotation: &Rotation3<f64>) {
         for body in bodies {
             let carrier = Point { at_m: self.tip_m, rank, inside_m: None };

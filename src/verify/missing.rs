@@ -53,9 +53,10 @@ pub fn conditions(question: &Question) -> Result<(), String> {
 }
 
 impl Judge<'_> {
-    /// Looks for designs that belong on a front but are missing from it. The question must meet the [`conditions`].
+    /// Searches for designs that belong on a front but are missing from it. The question must meet the
+    /// [`conditions`].
     ///
-    /// The answer does not depend on the number of threads unless the search is stopped.
+    /// The result does not depend on the number of threads, unless the search is stopped.
     pub fn missing(
         &self,
         front: &[Objectives],

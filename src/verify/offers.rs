@@ -15,7 +15,7 @@ use crate::catalog::gear::Gear;
 use crate::catalog::motor::Motor;
 use std::collections::HashMap;
 
-/// A gear and a motor.
+/// A drive of the catalogs for one joint: a gear and a motor.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Offer {
     /// Index of the gear in the catalogs.
@@ -33,7 +33,7 @@ pub(super) struct Offer {
     pub bearing: Option<Bearing>,
     /// Torque-to-twist law of the joint with this gear, effects included.
     pub law: JointLaw,
-    /// Tilt of the bearing per moment across the axis, effects included \[rad/(N m)\].
+    /// Tilt of the output bearing per moment across the axis, effects included \[rad/(N m)\].
     pub tilt_rad_per_nm: f64,
     pub ratings: Ratings,
 }
@@ -101,7 +101,7 @@ impl JointOffers {
 }
 
 impl Offer {
-    /// The numbers of the drive as a range of one.
+    /// The numbers of the drive as a range that has only this drive.
     pub(super) fn range(&self) -> DriveRange {
         DriveRange::of(&self.law, self.tilt_rad_per_nm, self.mass_kg)
     }
@@ -123,7 +123,7 @@ fn offers(
     let mut offers = Vec::new();
     for (gear_place, gear) in catalogs.gears.iter().enumerate().filter(|(_, gear)| allowed.allows_gear(gear))
     {
-        // a gear whose torsion is not known cannot be judged
+        // the torsion of a gear without a torsion curve cannot be computed, so the gear is left out
         let Some(windup) = torsion_curve(gear, joint.connection_share) else { continue };
         let mut bearing = with_gear(&joint.bearing, gear, allowed.gear_mass);
         if joint.bearing == BearingSource::OfGear

@@ -1,11 +1,11 @@
-//! A set of designs: one set of options for each level.
+//! Boxes: sets of designs that have one set of options for each level.
 
-/// The piece whose part a level chooses. Joints and tubes are each counted from base to tip.
+/// The joint or link for which a level chooses the part. Joints and tubes are each counted from base to tip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Place {
-    /// A joint's drive.
+    /// The level chooses the drive of this joint.
     Joint(usize),
-    /// A link's tube.
+    /// The level chooses the tube of this link.
     Tube(usize),
 }
 

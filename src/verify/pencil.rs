@@ -7,14 +7,15 @@
 //! semidefinite differences), so no Rayleigh quotient is smaller, and by Courant and Fischer `λ_1` is no smaller
 //! either.
 
-/// Diagonal stiffness matrix `K` and inertia matrix `M` of an arm's coordinates in a pose.
+/// The matrix pencil of an arm in a pose: diagonal stiffness matrix `K` and inertia matrix `M` over its
+/// coordinates.
 pub(super) struct Pencil {
     stiffness: Vec<f64>,
     /// Lower triangle of the inertia matrix, row by row.
     inertia: Vec<f64>,
 }
 
-/// The Cholesky factor of `K - λ M`.
+/// The Cholesky factor of `K - λ M`, as a lower triangle row by row.
 pub(super) struct Factor {
     size: usize,
     lower: Vec<f64>,
@@ -23,13 +24,14 @@ pub(super) struct Factor {
 /// Number of steps of inverse iteration that lower the Rayleigh quotient of a motion further.
 const STEPS: usize = 5;
 
-/// Number of entries of a lower triangle before row `i`.
+/// Index of the first entry of row `i` in a lower triangle that is stored row by row.
 fn row(i: usize) -> usize {
     i * (i + 1) / 2
 }
 
 impl Pencil {
-    /// The pencil of these matrices. Coordinates of infinite stiffness are held at rest.
+    /// The pencil of these matrices. Coordinates of infinite stiffness cannot move, so their inertia is set to
+    /// zero.
     pub(super) fn new(mut stiffness: Vec<f64>, mut inertia: Vec<f64>) -> Self {
         let size = stiffness.len();
         for i in 0..size {

@@ -19,7 +19,7 @@ use crate::arm::load::{LoadCase, Water};
 use crate::arm::structure::Structure;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
-/// Gauss-Legendre points and weights on 0..1, exact to degree 7.
+/// Points and weights of Gauss-Legendre quadrature on 0..1, exact for polynomials up to degree 7.
 const GAUSS: [(f64, f64); 4] = [
     (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
     (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
@@ -43,7 +43,8 @@ pub(super) struct Pose {
     /// Displacement of the tip by the tilt of each joint's bearing, divided by the compliance of the bearing, as a
     /// linear function of the loads \[m N m/rad\].
     pub by_tilts: Vec<LinearVector>,
-    /// Displacement of the tip that each spring of an effect causes, as a linear function of the loads \[m\].
+    /// Displacement of the tip that each spring of an effect or prismatic joint causes, as a linear function of the
+    /// loads \[m\].
     pub by_springs_m: Vec<LinearVector>,
     /// For each tube and each of its stiffnesses, the displacement of the tip that deformation against this
     /// stiffness causes, times the stiffness.
@@ -71,13 +72,13 @@ pub(super) struct Carried {
     per_load: Vec<Wrench>,
 }
 
-/// The inputs from which the numbers of a case are computed.
+/// The inputs from which a [`Pose`] is computed.
 #[derive(Clone, Copy)]
 pub(super) struct Builder<'a> {
     pub layout: &'a Layout,
     gravity_m_s2: f64,
     down: Vector3<f64>,
-    /// Weight of the payload, and the tip force, each with the point where it acts \[m\].
+    /// Weight of the payload and tip force \[N\], each with the point where it acts \[m\].
     tip_loads: [(Vector3<f64>, Vector3<f64>); 2],
     tip_moment_nm: Vector3<f64>,
     coordinates: &'a [Coordinate],

@@ -21,7 +21,7 @@ use nalgebra::{Unit, Vector3};
 /// An arm with open choices, the motion and limits that it must meet, and the cases by which it is judged.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Question {
-    /// Gravity \[m/s²\].
+    /// Magnitude of gravity \[m/s²\].
     pub gravity_m_s2: f64,
     /// Direction of gravity in the world, a unit vector.
     pub down: Vector3<f64>,
@@ -48,7 +48,7 @@ pub struct Question {
 /// One piece of the chain.
 #[derive(Debug, Clone, PartialEq)]
 pub enum AskedPiece {
-    /// A joint.
+    /// A joint that turns.
     Joint(AskedJoint),
     /// A prismatic joint. The study gives all of its numbers.
     Prismatic(Prismatic),
@@ -90,7 +90,7 @@ pub struct AskedJoint {
 /// Limits on the sizes of a joint's gear and motor. By default there are none.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AskedFit {
-    /// Largest ratio of the gear's outer diameter to the width of the link that the joint carries.
+    /// Largest allowed ratio of the gear's outer diameter to the width of the link that follows the joint.
     pub gear_to_link_max: Option<f64>,
     /// Whether the motor must go into the hollow of that link.
     pub motor_in_link: bool,
@@ -130,10 +130,10 @@ pub enum AskedDrive {
     AllFits(AllowedParts),
 }
 
-/// Which parts of the catalogs a joint may use; `None` allows all.
+/// The parts of the catalogs that a joint may use. `None` in a field allows all.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AllowedParts {
-    /// Whether a gear counts with the mass of its housed unit or of its component set.
+    /// Which of the two catalog masses of a gear counts: that of its housed unit or that of its component set.
     pub gear_mass: GearMass,
     /// Allowed series of gears.
     pub gear_series: Option<Vec<String>>,
@@ -164,7 +164,7 @@ pub struct AskedLink {
     pub bodies: Vec<RigidBody>,
 }
 
-/// A tube that a link can be.
+/// A tube that the search may choose for a link.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AskedTube {
     /// Elastic properties of the material.
@@ -204,7 +204,7 @@ pub struct AskedMotion {
     pub emergency_stops: Option<f64>,
 }
 
-/// How Eq 8, the torque of linear acceleration, is read.
+/// The two ways in which Eq 8, the torque of linear acceleration, can be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LinearTorque {
     /// Inertia of everything outboard about the joint's axis, times the joint's acceleration.
@@ -216,7 +216,7 @@ pub enum LinearTorque {
 /// One phase of the duty cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AskedPhase {
-    /// Duration \[s\].
+    /// Duration of the phase \[s\].
     pub duration_s: f64,
     /// Motion of the joint in this phase.
     pub kind: AskedPhaseKind,
@@ -245,15 +245,15 @@ pub enum AskedPhaseKind {
 /// Limits that every design must meet; `None` means no limit.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Limits {
-    /// Largest tip deflection \[m\].
+    /// Largest allowed tip deflection \[m\].
     pub tip_deflection_max_m: Option<f64>,
-    /// Largest mass \[kg\].
+    /// Largest allowed mass of the arm \[kg\].
     pub mass_max_kg: Option<f64>,
     /// Lowest mode that is required at least \[Hz\].
     pub lowest_mode_min_hz: Option<f64>,
     /// Bandwidth of the servo \[Hz\], and the smallest allowed ratio of the lowest mode to this bandwidth.
     pub servo_hz_and_ratio: Option<[f64; 2]>,
-    /// Smallest ratio of strength to stress.
+    /// Smallest allowed ratio of strength to stress.
     pub stress_safety_factor_min: Option<f64>,
     /// Largest ratio of the flat width (or of the diameter) of a tube to its wall thickness.
     pub wall_slenderness_max: Option<f64>,
@@ -299,7 +299,7 @@ fn is_listed<T>(list: &Option<Vec<T>>, is_it: impl Fn(&T) -> bool) -> bool {
 }
 
 impl AskedDrive {
-    /// The parts that the catalogs may offer; `None` if the study gives the drive.
+    /// The parts from which the drive may be made; `None` if the study gives the drive.
     pub fn allowed(&self) -> Option<&AllowedParts> {
         match self {
             AskedDrive::Given { .. } => None,

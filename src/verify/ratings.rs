@@ -114,7 +114,7 @@ impl Ratings {
     }
 }
 
-/// Whether gear and motor may turn as fast as the motion needs; `None` if the catalog lacks a number.
+/// Whether gear and motor are allowed to turn as fast as the motion needs. `None` if the catalog lacks a number.
 fn turns_as_fast(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<bool> {
     let of_curve = motor.curve.last().map(|point| point.speed_rpm);
     let of_row = motor.max_speed_rpm.or(motor.rated_speed_rpm);

@@ -32,7 +32,7 @@ impl Search<'_> {
         here.with(a).with(b)
     }
 
-    /// The level to halve. `Some(None)` if the box is a single design, `None` if the box is discarded.
+    /// The level to halve. `None` if the box is discarded, and `Some(None)` if it is a single design.
     fn level_to_halve(&self, parts: &PartsBox) -> Option<Option<usize>> {
         let boxes = self.boxes;
         let members = boxes.members(parts)?;

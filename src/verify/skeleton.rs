@@ -51,7 +51,7 @@ pub(super) struct Parts {
 pub(super) enum Lever {
     /// The distance that the study states \[m\].
     Stated(f64),
-    /// Half the width of the tube with this index.
+    /// Half the width of the tube with this index (in the list of links with weight along their length).
     HalfOf(usize),
 }
 

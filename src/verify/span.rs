@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-/// An interval: all numbers from the least to the most.
+/// An interval: all numbers from `least` to `most`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Span {
     pub least: f64,
@@ -33,12 +33,12 @@ impl Span {
         if self.least == 0.0 { 0.0 } else { self.least * factor }
     }
 
-    /// Least magnitude of a number of the span.
+    /// Smallest magnitude of the numbers in the interval. Zero if the interval contains zero.
     pub(super) fn least_size(self) -> f64 {
         self.least.max(-self.most).max(0.0)
     }
 
-    /// Largest magnitude of a number of the span.
+    /// Largest magnitude of the numbers in the interval.
     pub(super) fn largest_size(self) -> f64 {
         self.most.max(-self.least)
     }
@@ -64,7 +64,7 @@ impl Linear {
     }
 }
 
-/// Three linear functions of the loads: the components of a vector.
+/// A vector whose three components are linear functions of the loads.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct LinearVector {
     pub fixed: Vector3<f64>,

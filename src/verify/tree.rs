@@ -48,7 +48,7 @@ impl Tree {
         self.nodes.len()
     }
 
-    /// The options of a node.
+    /// The options below a node.
     pub(super) fn options(&self, node: u32) -> &[u32] {
         let node = &self.nodes[node as usize];
         &self.order[node.first..node.end]

@@ -25,7 +25,7 @@ pub(super) const STRESSES: usize = 4;
 /// The numbers of one tube.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct TubeNumbers {
-    /// Mass \[kg\].
+    /// Mass of the tube \[kg\].
     pub mass_kg: f64,
     /// Stiffnesses (see [`STIFFNESSES`]); infinite where the link model has no such strain.
     pub stiffnesses: [f64; STIFFNESSES],
@@ -45,13 +45,13 @@ pub(super) struct TubeNumbers {
 /// Numbers of a tube that depend on the medium around it, air or water.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct TubeAround {
-    /// Weight less buoyancy, per length \[N/m\].
+    /// Weight per length, less buoyancy \[N/m\].
     pub weight_n_per_m: f64,
-    /// Inertias per length.
+    /// Inertias per length, in the order of [`DENSITIES`].
     pub densities: [f64; DENSITIES],
 }
 
-/// The tubes that a link may have.
+/// The tubes that a link may have, as a list.
 pub(super) struct TubeOptions {
     /// Index among the levels of the space; `None` if the tube is not chosen by the search.
     pub level: Option<usize>,

@@ -36,7 +36,7 @@ impl UpperBound {
         }
     }
 
-    /// Whether every design below this bound is also below another.
+    /// Whether every design below this bound is also below the other.
     pub(super) fn is_within(&self, other: &Self) -> bool {
         self.mass_kg <= other.mass_kg && self.tip_m <= other.tip_m && self.hz >= other.hz
     }

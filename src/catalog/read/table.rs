@@ -7,7 +7,8 @@ use crate::input::csv::{Csv, Record, is_repeated, other_separators};
 use crate::input::json::closest;
 use std::collections::BTreeMap;
 
-/// The rows of a catalog file that have the right number of fields.
+/// The rows of a catalog file. A row whose number of fields differs from that of the header is reported and left
+/// out.
 pub(crate) fn rows<'a>(file: CatalogFile, name: &'a str, bytes: &[u8], log: &'a Log) -> Vec<Row<'a>> {
     let mut records = records(name, bytes, log).into_iter();
     let Some(Record { line, cells: header }) = records.next() else {
@@ -42,7 +43,7 @@ pub(crate) fn rows<'a>(file: CatalogFile, name: &'a str, bytes: &[u8], log: &'a 
 /// every material with every section.
 const MOST_PARTS: usize = 100_000;
 
-/// The records of a CSV text.
+/// The records of a CSV text. Records that cannot be read are reported and left out.
 fn records(name: &str, bytes: &[u8], log: &Log) -> Vec<Record> {
     let csv = Csv::parse_up_to(MOST_PARTS, bytes, None);
     for (line, problem) in csv.unreadable {

@@ -54,7 +54,7 @@ impl BeamPoint {
         }
     }
 
-    /// Force over deflection at the end of the cantilever \[N/m\].
+    /// Force divided by deflection at the end of the cantilever \[N/m\].
     pub fn stiffness_n_per_m(&self) -> f64 {
         FORCE_N / self.deflection_m
     }

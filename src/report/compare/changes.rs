@@ -49,7 +49,7 @@ pub(crate) struct Changed {
 /// A pick, such as the lightest design, under both models.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct PickChange {
-    /// `lightest`, `stiffest`, `highest mode` or `knee`.
+    /// Name of the pick: `lightest`, `stiffest`, `highest mode` or `knee`.
     pub pick: &'static str,
     /// Whether the corrected model picks another design.
     pub changes: bool,
@@ -61,7 +61,7 @@ pub(crate) struct PickChange {
     pub nominal_under_corrected: Option<Values>,
     /// Name of the design that the corrected model picks.
     pub corrected_design_id: String,
-    /// The objectives of that design under the corrected model.
+    /// Objectives of that design under the corrected model.
     pub corrected: Option<Values>,
 }
 

@@ -47,11 +47,11 @@ pub struct Reach {
     pub reference: bool,
     /// Number of designs on the front.
     pub designs: usize,
-    /// The lightest design.
+    /// The lightest design of the front; `None` if the front is empty.
     pub lightest: Option<Design>,
-    /// The stiffest design.
+    /// The stiffest design of the front; `None` if the front is empty.
     pub stiffest: Option<Design>,
-    /// The design with the highest lowest mode.
+    /// The design of the front with the highest lowest mode; `None` if the front is empty.
     pub highest_mode: Option<Design>,
 }
 
@@ -62,7 +62,7 @@ pub struct Comparison {
     pub reach: Vec<Reach>,
     /// One row per question and limit.
     pub rows: Vec<Row>,
-    /// Changes from the first result to each other one, if all are runs of one study.
+    /// Changes from the first result to each other result; empty unless all are runs of one study.
     pub moved: Vec<Moved>,
 }
 

@@ -1,4 +1,4 @@
-//! A front that takes part in a comparison.
+//! Contenders: the fronts of a comparison.
 
 use crate::report::front_table::FrontTable;
 

@@ -47,7 +47,7 @@ pub fn moved(before: &Contender, after: &Contender) -> Moved {
     moved
 }
 
-/// The objectives of every design, keyed by its choices, or by its name if the table has no choices.
+/// The objectives of every design, addressed by its choices, or by its name if the table has no choices.
 fn by_choice(front: &FrontTable) -> HashMap<Vec<&str>, Vec<&str>> {
     let objectives: Vec<usize> = OBJECTIVE_COLUMNS.iter().filter_map(|c| front.column(c)).collect();
     let first = objectives.iter().copied().min().unwrap_or(0);

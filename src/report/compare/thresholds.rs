@@ -4,17 +4,17 @@ use super::question::Question;
 use crate::report::picks::{Design, Objective, best};
 use serde::Serialize;
 
-/// How many limits are chosen for a question.
+/// Number of limits that are chosen for each question.
 const CHOSEN: usize = 3;
 
 /// Limits at which fronts are compared. A question whose list is empty is not asked.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Thresholds {
-    /// Tip deflections \[mm\].
+    /// Limits on tip deflection \[mm\].
     pub deflection_mm: Vec<f64>,
-    /// Masses \[kg\].
+    /// Limits on mass \[kg\].
     pub mass_kg: Vec<f64>,
-    /// Lowest modes \[Hz\].
+    /// Limits on the lowest mode \[Hz\].
     pub mode_hz: Vec<f64>,
 }
 
@@ -28,7 +28,7 @@ impl Thresholds {
         }
     }
 
-    /// Whether no limit is given.
+    /// Whether there is no limit at all.
     pub fn is_empty(&self) -> bool {
         self.deflection_mm.is_empty() && self.mass_kg.is_empty() && self.mode_hz.is_empty()
     }

@@ -65,11 +65,11 @@ pub struct Reading {
 pub struct Ranged {
     /// Name of the quantity, with the unit in it.
     pub name: String,
-    /// Best value.
+    /// Best value of the quantity.
     pub value: f64,
-    /// Lower end.
+    /// Lower end of the 95 % interval.
     pub low: Option<f64>,
-    /// Upper end.
+    /// Upper end of the 95 % interval.
     pub high: Option<f64>,
 }
 
@@ -80,7 +80,7 @@ pub struct Found {
     pub label: String,
     /// Parameters of the effect, with intervals.
     pub parameters: Vec<Ranged>,
-    /// Effects that these readings cannot distinguish from it.
+    /// Effects that these readings cannot distinguish from this effect.
     pub like: Vec<String>,
 }
 
@@ -119,7 +119,7 @@ pub struct CampaignPage {
     pub reasons: Vec<String>,
     /// Whether the effects explain the difference between model and readings. Otherwise they are only suspected.
     pub explained: bool,
-    /// The driven joints.
+    /// The driven joints, base to tip.
     pub joints: Vec<DrivenJoint>,
     /// Difference by parts of the readings: channel, branch, load, mode, joint.
     pub parts: Vec<Compared>,
@@ -133,7 +133,7 @@ pub struct CampaignPage {
     pub found: Vec<Found>,
     /// Models that were compared, best first.
     pub weighed: Vec<Weighed>,
-    /// Calibrated factors.
+    /// Calibrated factors on nominal values.
     pub calibrated: Vec<Ranged>,
     /// Held-out readings: their number, and the root mean square of their residuals before and after.
     pub kept_out: Option<(usize, f64, f64)>,
@@ -147,7 +147,7 @@ pub struct CampaignPage {
     pub corrected_models: Option<PageSection>,
     /// How the optimum of the study changes with the corrected arm.
     pub optimum: Option<PageSection>,
-    /// Facts: names and values.
+    /// Further facts: pairs of name and value.
     pub facts: Vec<(String, String)>,
 }
 

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 /// The contents of such a page.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct DocumentPage {
-    /// Title.
+    /// Title of the page.
     pub title: String,
     /// The question that the study answers.
     pub question: String,
@@ -18,12 +18,12 @@ pub(crate) struct DocumentPage {
     pub figures: Vec<Figure>,
     /// Tables with their captions.
     pub tables: Vec<(String, Table)>,
-    /// Facts of the run: names and values.
+    /// Facts of the run: pairs of name and value.
     pub facts: Vec<(String, String)>,
 }
 
 impl DocumentPage {
-    /// The page and its pictures.
+    /// The page as HTML, with its pictures.
     pub(crate) fn page(&self) -> Page {
         let mut gallery = Gallery::default();
         let figures: Vec<Value> = self.figures.iter().map(|f| gallery.show(f)).collect();

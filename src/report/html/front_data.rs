@@ -48,14 +48,14 @@ pub(crate) struct Row<'a> {
     pub row: usize,
     /// Index of the design's group.
     pub group: usize,
-    /// Whether it is on the front of all designs.
+    /// Whether the design is on the front of all designs.
     pub on_front: bool,
 }
 
 /// One axis of the views: a choice or a result.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Axis {
-    /// Column in `front.csv`.
+    /// Name of the column in `front.csv`.
     pub column: String,
     /// Name of the axis, for people.
     pub label: String,
@@ -81,9 +81,10 @@ pub(crate) struct FrontData<'a> {
     /// Numbers of designs before some were left out: on the front of all designs, and only on the front of their
     /// group.
     pub rows_total: [usize; 2],
-    /// Choices that differ among the rows, base to tip, then mass, tip deflection and lowest mode.
+    /// Axes of the choices that differ among the designs, base to tip, then of mass, tip deflection and lowest
+    /// mode.
     pub axes: Vec<Axis>,
-    /// Choices that are equal in all rows, in words.
+    /// Choices that are equal in all designs, in words.
     pub constants: Vec<String>,
 }
 
@@ -219,7 +220,7 @@ fn choice_columns<'a>(rows: &[Row<'a>]) -> Vec<&'a str> {
         .collect()
 }
 
-/// Words and unit of a column: `upper_arm_wall_mm` is `upper_arm wall` in mm.
+/// Label and unit of a column: `upper_arm_wall_mm` gives `upper_arm wall` and mm.
 fn label(column: &str) -> (String, &'static str) {
     let objective = match column {
         "mass_kg" => Some(("mass", "kg")),

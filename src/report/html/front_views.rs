@@ -13,7 +13,7 @@ const STILL_LINES: usize = 400;
 
 /// The linked views of a page, with the words about them.
 pub(crate) struct FrontViews<'a> {
-    /// Designs, groups and axes.
+    /// Designs, groups and axes of the views.
     pub data: FrontData<'a>,
     /// The picks.
     pub picks: &'a [Pick],
@@ -68,7 +68,7 @@ impl FrontViews<'_> {
         })
     }
 
-    /// The data for the page's program.
+    /// The data of the views as JSON for the page's program.
     pub(crate) fn json(&self) -> Value {
         let mut out = self.data.to_json(&named(self.picks));
         out["colouredBy"] = self.coloured_by.into();

@@ -134,7 +134,7 @@ pub(crate) fn sizes_figure(positions: &[Position]) -> Option<Figure> {
     })
 }
 
-/// The errors along each axis of the instrument, row by row.
+/// A picture of the errors along each axis of the instrument, over the rows of the file.
 pub(crate) fn axes_figure(positions: &[Position]) -> Option<Figure> {
     let panel = |axis: usize| {
         let points =

@@ -21,7 +21,7 @@ const MOST_PAGE_BYTES: usize = 2_000_000;
 /// A catalog row from which numbers on the page come.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CatalogRow {
-    /// `gear`, `motor`, `material` or `profile`.
+    /// Kind of the part: `gear`, `motor`, `material` or `profile`.
     pub kind: &'static str,
     /// Name of the part.
     pub name: String,
@@ -50,7 +50,7 @@ pub struct StudyPage<'a> {
     pub beams: Option<Figure>,
     /// Catalog rows of the parts in the picks.
     pub parts: Vec<CatalogRow>,
-    /// Facts of the run: names and values.
+    /// Facts of the run: pairs of name and value.
     pub run: Vec<(String, String)>,
     /// Facts that differ between runs of the same study: time, threads, machine.
     pub timing: Vec<(String, String)>,
@@ -59,7 +59,7 @@ pub struct StudyPage<'a> {
 }
 
 impl StudyPage<'_> {
-    /// The page and its pictures. If the page would be too large, fewer designs of the front are drawn.
+    /// The page as HTML, with its pictures. If the page would be too large, fewer designs of the front are drawn.
     pub fn page(&self) -> Page {
         let page = self.page_with(MOST_BYTES);
         match page.html.len().saturating_sub(MOST_PAGE_BYTES) {

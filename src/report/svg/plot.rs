@@ -34,9 +34,9 @@ pub enum Stroke {
     /// The points are not joined.
     #[default]
     None,
-    /// A solid line.
+    /// The points are joined by a solid line.
     Solid,
-    /// A dashed line.
+    /// The points are joined by a dashed line.
     Dashed,
     /// A dash pattern that depends on the style, so that lines differ without colour.
     Patterned,
@@ -45,7 +45,7 @@ pub enum Stroke {
 /// A series of points.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Series {
-    /// Name in the legend.
+    /// Name in the legend; empty leaves the series out of the legend.
     pub name: String,
     /// Points, in the order in which they are joined.
     pub points: Vec<(f64, f64)>,
@@ -107,13 +107,13 @@ pub struct Note {
 pub struct Guide {
     /// Whether the value belongs to the x axis, so that the line is vertical.
     pub vertical: bool,
-    /// Value in data units.
+    /// Value on the axis, in data units.
     pub value: f64,
     /// Text next to the line.
     pub text: String,
 }
 
-/// A plot.
+/// A plot: data in a frame with two axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plot {
     /// Title of the plot.

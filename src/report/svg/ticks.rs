@@ -16,9 +16,9 @@ pub(crate) struct Tick {
 pub(crate) struct Ruling {
     /// Scale of the axis.
     pub scale: Scale,
-    /// Lower end in data units.
+    /// Lower end of the axis, in data units.
     pub low: f64,
-    /// Upper end in data units.
+    /// Upper end of the axis, in data units.
     pub high: f64,
     /// Ticks in ascending order.
     pub ticks: Vec<Tick>,

@@ -44,8 +44,8 @@ pub(super) enum Branching {
     },
 }
 
-/// Ways to branch, the most promising first. `curves` holds the twists and slopes of the torsion curves, by which
-/// drives are divided.
+/// Ways to branch, the most promising first. `curves` has the twists and slopes of the torsion curves, which are
+/// needed to divide drives by their values.
 #[derive(Default)]
 pub(super) struct Branchings {
     pub branchings: Vec<Branching>,

@@ -6,13 +6,13 @@
 //!
 //! The simplex method is not used, for three reasons. Weights near the optimum give bounds that are as good.
 //! Weights from the centre exclude more options than weights at a vertex. And the search already uses the simplex
-//! method, which this verifier must not repeat.
+//! method, so that the verifier uses another one.
 
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
-/// The barrier parameter `μ`: its first value, the factor by which it is reduced from stage to stage, and its last
-/// value (divided by the number of rows and columns together).
+/// The barrier parameter `μ`: its first value, the factor by which it is reduced from stage to stage, and the
+/// product of its last value with the number of rows and columns.
 const FIRST: f64 = 0.3;
 const STAGE: f64 = 0.2;
 const LAST: f64 = 3e-4;

@@ -51,7 +51,7 @@ pub(super) struct TubeTable {
 /// the largest widths of gear and motor.
 const BESIDE_STRESSES: usize = 4;
 
-/// Positions of the numbers in the list that describes a tube.
+/// Positions of a tube's numbers in its list.
 pub(super) mod place {
     use crate::verify::tubes::{DENSITIES, STIFFNESSES};
     pub(crate) const MASS: usize = 0;

@@ -85,7 +85,8 @@ pub(super) fn affordable(
     kept
 }
 
-/// An integer that grows with the price, in the order of [`f64::total_cmp`].
+/// An integer that is the larger the higher the price is, in the order of [`f64::total_cmp`]. Integers can be
+/// compared in a heap, floating-point numbers cannot.
 fn rank(price: f64) -> i64 {
     let bits = price.to_bits() as i64;
     bits ^ ((bits >> 63) as u64 >> 1) as i64

@@ -66,8 +66,8 @@ pub(super) struct Rows<'a> {
     /// Index of the first row of a mode. `modes` holds the case and the trial shape of each row of a mode.
     pub first_mode: usize,
     pub modes: Vec<(usize, Vec<f64>)>,
-    /// For each joint, the twists, slopes and bearings of its torsion curves; `None` for a curve that no drive of the
-    /// subproblem has.
+    /// For each joint, the twists, slopes and bearing numbers of its torsion curves. `None` for a curve that no
+    /// drive of the subproblem has.
     pub curves: Vec<Numbers>,
     /// Interval of the torque on each joint in each judged case \[N m\]. `per_torque` is the least increase of the
     /// twist per torque, from the end of the interval where the twist is least \[rad/(N m)\].
@@ -76,7 +76,8 @@ pub(super) struct Rows<'a> {
     /// For each row of a tip displacement: the index of the row, its judged case, and the direction of the
     /// displacement.
     pub tips: Vec<(usize, usize, Vector3<f64>)>,
-    /// For each judged case, whether a strain coordinate may be rigid in some member of the subproblem.
+    /// For each judged case and each strain coordinate, whether the coordinate may be rigid in some member of the
+    /// subproblem.
     rigid: Vec<Vec<bool>>,
 }
 

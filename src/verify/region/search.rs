@@ -47,7 +47,7 @@ enum Narrowed {
 }
 
 impl RegionSearch<'_> {
-    /// Looks for designs that belong on a front but are missing from it.
+    /// Searches for designs that belong on a front but are missing from it.
     pub(crate) fn explore_all(skeleton: Arc<Skeleton>, parts: Parts, work: &Work) -> Found {
         let limits = &skeleton.limits;
         let room = 1.0 + ROUNDING;

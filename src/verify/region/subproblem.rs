@@ -66,7 +66,7 @@ impl Subproblem {
         joints.chain(tubes).map(|count| count as f64).product()
     }
 
-    /// Limits a torque to an interval, in addition to any interval that it has already.
+    /// Limits a torque to an interval. If the torque has an interval already, the intersection is taken.
     pub(super) fn keep_torque(&mut self, new: TorqueInterval) {
         let known =
             self.torque_intervals.iter_mut().find(|known| known.case == new.case && known.joint == new.joint);

@@ -16,7 +16,8 @@ const BETTER: f64 = 2e-7;
 /// A binary tree over upper bounds; the root is node 0.
 pub(super) struct UpperBounds(Vec<Node>);
 
-/// The upper bound that covers all bounds below a node, and the two halves of the node.
+/// A node of the tree: the upper bound that covers all bounds below the node, and the indices of its two halves. A
+/// leaf has no halves.
 type Node = (UpperBound, Option<[usize; 2]>);
 
 impl UpperBounds {

@@ -18,7 +18,7 @@ const MOST_SHAPES: usize = 3;
 /// Number of further weightings after it is clear that no weighting refutes the subproblem. They are worth the time
 /// because better weights exclude more options.
 const TO_NARROW: usize = 4;
-/// A weighting is good enough if no other can raise the least weighted sum by more than this.
+/// The search for weights ends if no weighting can raise the least weighted sum by more than this.
 const SETTLED: f64 = 5e-4;
 /// Values of rows are limited to this magnitude, so that a row far from its limit does not outweigh the others.
 const FAR: f64 = 10.0;
