@@ -27,8 +27,8 @@
 //! `docs/library.md` says where to start. `docs/architecture.md` describes the source tree.
 //!
 //! Equation numbers are those of the paper from which the program grew, *Mechanical analysis of high precision
-//! manipulator*. All quantities are SI and have their units in their names. Other units appear only where files are read
-//! or written.
+//! manipulator*. All quantities are SI and have their units in their names. Other units appear only where files are
+//! read or written.
 #![doc = ""]
 #![doc = include_str!("../docs/model.md")]
 #![deny(unreachable_pub)]

@@ -168,13 +168,13 @@ pub struct Gear {
     pub k2_nm_per_rad: Option<f64>,
     /// Torsion curve: stiffness beyond T2 \[N m/rad\].
     pub k3_nm_per_rad: Option<f64>,
-    /// Hysteresis loss: width of the hysteresis of the output angle \[arcmin\].
+    /// Hysteresis loss, as the vendor states it \[arcmin\].
     pub hysteresis_loss_arcmin: Option<f64>,
     /// Backlash: play without torque \[arcmin\].
     pub backlash_arcmin: Option<f64>,
     /// Lost motion at a few percent of the rated torque \[arcmin\].
     pub lost_motion_arcmin: Option<f64>,
-    /// Transmission accuracy: error of the output angle over a turn \[arcmin\].
+    /// Transmission accuracy, as the vendor states it \[arcmin\].
     pub transmission_accuracy_arcmin: Option<f64>,
     /// Tilting stiffness of the output bearing (housed unit) \[N m/rad\].
     pub tilting_stiffness_nm_per_rad: Option<f64>,

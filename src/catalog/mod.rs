@@ -35,7 +35,7 @@ use std::fmt;
 /// The degree to which a catalog row can be trusted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Confidence {
-    /// The numbers were read in a document of a vendor or a standards library.
+    /// The numbers were read in a document of a vendor or from a library.
     Verified,
     /// The numbers were read in a third party's copy of such a document.
     ThirdParty,

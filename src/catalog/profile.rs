@@ -38,7 +38,7 @@ impl Profile {
         ["steel", "aluminium", "titanium", "composite", "stainless"];
 }
 
-/// One hollow profile. Corner radii are stored for information only; the mechanics uses sharp corners.
+/// One hollow profile. The mechanics takes its edges as sharp; the radii are stored for information only.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
     /// Designation, which is unique within a material family.

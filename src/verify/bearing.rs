@@ -6,7 +6,8 @@
 //! | static safety | `P₀ = F_r + 2 (M + R F_r) / d_p + 0.44 F_a` | `C₀ / 3` at rest (high precision), `C₀ / 2` in a stop (shocks) |
 //! | life | `10⁶ / (60 n) · (C / (f_w P_c))^(10/3)`, `P_c = X (F_r + 2 (M + R F_r) / d_p) + Y F_a` at rest | the study's hours |
 //!
-//! (Harmonic Drive LLC, FHA-C manual, pages 20 to 23; Harmonic Drive AG, engineering data 1021387, pages 23, 43 and 45.)
+//! (Harmonic Drive LLC, FHA-C manual, pages 20 to 23; Harmonic Drive AG, engineering data 1021387, pages 23, 43
+//! and 45.)
 //! A rating that the catalog leaves blank limits nothing. Without a pitch diameter only the moment is checked.
 //!
 //! Nothing of `sizing` is used, so that an error in a limit there is not repeated here.
@@ -78,7 +79,8 @@ impl BearingLoad {
         Self { moment_nm: moment_nm * factor, radial_n: radial_n * factor, axial_n: axial_n * factor }
     }
 
-    /// The load at a point further inboard by the lever \[m\]: the radial force adds to the moment.
+    /// The load if the same forces act further out along the axis by the lever \[m\]. The radial force then adds to
+    /// the moment.
     fn with_lever(self, lever_m: f64) -> Self {
         Self { moment_nm: self.moment_nm + lever_m * self.radial_n, ..self }
     }

@@ -39,7 +39,8 @@ impl BranchScore<'_> {
             + 0.5 * libm::log1p(slower)
     }
 
-    /// By how much an average drive instead of the best one raises mass \[kg\], deflection \[m\] and `λ` \[1/s²\].
+    /// By how much an average drive instead of the best one makes the ideal point worse: mass \[kg\], deflection
+    /// \[m\] and the squared angular frequency `λ` of the lowest mode \[1/s²\].
     fn of_joint(&self, joint: usize, node: u32) -> [f64; 3] {
         let (range, whole) = (&self.members.drives[joint], self.boxes.joints[joint].range(node));
         let mass_kg = 0.5 * (whole.most_kg.min(range.most_kg) - range.least_kg);
@@ -70,7 +71,8 @@ impl BranchScore<'_> {
         if strain.is_finite() { strain } else { 0.0 }
     }
 
-    /// By how much an average tube instead of the best one raises mass \[kg\], deflection \[m\] and `λ` \[1/s²\].
+    /// By how much an average tube instead of the best one makes the ideal point worse: mass \[kg\], deflection
+    /// \[m\] and the squared angular frequency `λ` of the lowest mode \[1/s²\].
     fn of_tube(&self, tube: usize) -> [f64; 3] {
         let range: &TubeRange = self.members.tubes[tube];
         let pose = &self.boxes.skeleton.poses[self.ideal.worst];

@@ -70,7 +70,7 @@ fn asked(limited: Objective, sought: Objective) -> bool {
     Question::ALL.into_iter().any(|q| q.limited() == limited && q.sought() == sought)
 }
 
-/// The smallest of the values that is not exceeded by at least this fraction of them.
+/// The smallest of the values such that at least this fraction of the values is not larger; NaN without values.
 fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     let index = (share * values.len() as f64).ceil() as usize;
