@@ -188,7 +188,7 @@ pub(crate) static I_BEAM: Shape = Shape::new(
 /// A section of stated stiffness.
 pub(crate) static STATED: Shape = Shape::new(
     "stated section",
-    "A section by its stiffnesses and its mass; it does not yield by shear.",
+    "A section by its stiffnesses and its mass; it is rigid in shear.",
     &[
         shape_key(&["stated"]),
         WIDTH,

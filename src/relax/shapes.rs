@@ -8,6 +8,7 @@
 
 use super::parts::Parts;
 use super::row::Row;
+use crate::arm::LinkModel;
 use crate::arm::body::RigidBody;
 use crate::arm::structure::{LinkPiece, Structure};
 use crate::mechanics::beam::{PreparedBeam, compliances, line_densities};
@@ -52,6 +53,39 @@ struct LinkShape {
     stiffness: Vec<Vec<f64>>,
 }
 
+impl LinkShape {
+    /// The tube of a slot whose first coordinate is `first`. `tubes`: its options.
+    fn new(
+        slot: usize,
+        first: usize,
+        fields: Vec<Matrix6xX<f64>>,
+        tubes: &[LinkPiece],
+        structure: &Structure,
+        links: LinkModel,
+    ) -> Self {
+        let densities = tubes.iter().map(|tube| line_densities(tube, structure, links)).collect();
+        let stiffness =
+            tubes.iter().map(|tube| compliances(tube, links).iter().map(|c| 1.0 / c).collect()).collect();
+        Self { slot, first, fields, densities, stiffness }
+    }
+}
+
+/// Writes the motion of everything outboard of a tube per unit of each of its coordinates into the columns of `twist` from
+/// `column` on.
+fn add_end_motions(
+    twist: &mut DMatrix<f64>,
+    beam: &PreparedBeam,
+    frame: &Matrix3<f64>,
+    end_m: &Vector3<f64>,
+    column: usize,
+) {
+    for (k, field) in beam.end_fields.column_iter().enumerate() {
+        let turn: Vector3<f64> = frame * field.fixed_rows::<3>(3);
+        let move_m = frame * field.fixed_rows::<3>(0) + end_m.cross(&turn);
+        twist.set_column(column + k, &stack(&move_m, &turn));
+    }
+}
+
 impl ShapeModel {
     /// Prepares the model of one case.
     pub(super) fn new(problem: &ArmProblem, case: usize) -> Self {
@@ -88,26 +122,19 @@ impl ShapeModel {
                 StationSlot::Link { place, .. } => {
                     let Some(beam) = beam(slot) else { continue };
                     let frame = rotation.matrix() * beam.frame;
-                    let stiffness =
-                        |l: &LinkPiece| compliances(l, space.links).iter().map(|c| 1.0 / c).collect();
-                    model.links.push(LinkShape {
+                    let fields = link_fields(&beam, &frame, &place.root_m, &twist, column);
+                    model.links.push(LinkShape::new(
                         slot,
-                        first: column,
-                        fields: link_fields(&beam, &frame, &place.root_m, &twist, column),
-                        densities: tubes[slot]
-                            .iter()
-                            .map(|l| line_densities(l, &structure, space.links))
-                            .collect(),
-                        stiffness: tubes[slot].iter().map(stiffness).collect(),
-                    });
+                        column,
+                        fields,
+                        &tubes[slot],
+                        &structure,
+                        space.links,
+                    ));
                     for body in &tubes[slot][0].bodies {
                         model.given += body_inertia_over(&beam, body, &frame, &place.root_m, &twist, column);
                     }
-                    for (k, field) in beam.end_fields.column_iter().enumerate() {
-                        let turn: Vector3<f64> = frame * field.fixed_rows::<3>(3);
-                        let move_m = frame * field.fixed_rows::<3>(0) + place.end_m.cross(&turn);
-                        twist.set_column(column + k, &stack(&move_m, &turn));
-                    }
+                    add_end_motions(&mut twist, &beam, &frame, &place.end_m, column);
                     column += beam.compliances.len();
                 }
             }

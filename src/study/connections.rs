@@ -1,4 +1,4 @@
-//! The yield of the connections between gears and links, as a share of that of the gears.
+//! The compliance of the connections between gears and links, as a share of that of the gears.
 //!
 //! Rivin counts the connections of motor to gear and of gear to arm among the sources of compliance of a robot; joined flanges
 //! yield about as much as the parts that they join. A share of the gear's own compliance is the least that can be said without
@@ -51,7 +51,7 @@ pub(super) fn connections_remark(space: &DesignSpace) -> Option<String> {
     let percent = |part: f64| significant(100.0 * part, 2);
     (share > 0.0).then(|| {
         format!(
-            "Connections yield by {} % of each gear and bearing (representative). With rigid ones the part of the joints in the \
+            "Connections add {} % to the compliance of each gear and bearing (representative). With rigid ones the part of the joints in the \
              deflection would be {} % smaller, and no mode more than {} % higher.",
             percent(share),
             percent(share / (1.0 + share)),
@@ -94,10 +94,10 @@ mod tests {
             assert!((soft.tip_deflection_m / rigid.tip_deflection_m - 1.25).abs() < 1e-9);
             assert!((soft.lowest_mode_hz * 1.25f64.sqrt() / rigid.lowest_mode_hz - 1.0).abs() < 1e-9);
             assert!(
-                said.contains("the yield of the connections")
-                    && !words.contains("the yield of the connections")
+                said.contains("the compliance of the connections")
+                    && !words.contains("the compliance of the connections")
             );
-            assert!(words.contains("Connections yield by 25 % of each gear"), "{words}");
+            assert!(words.contains("Connections add 25 % to the compliance of each gear"), "{words}");
         }
     }
 

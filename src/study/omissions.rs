@@ -20,8 +20,8 @@ pub(super) fn omissions(space: &DesignSpace) -> Vec<String> {
     };
     let rigid = named(|joint| joint.bearing == BearingSource::Stated(None)).map(|names| {
         format!(
-            "Rigid output bearing without mass in {names}: the study states none there, so that no bearing yields, is \
-             checked or is weighed."
+            "Rigid output bearing without mass in {names}: the study states none there, so that no bearing tilts, \
+             is checked or is weighed."
         )
     });
     let bare = named(|joint| joint.drive.is_sized() && joint.extras == ExtrasSource::NONE).map(|names| {
@@ -41,7 +41,7 @@ fn left_out_everywhere(space: &DesignSpace) -> String {
     let fits = joints_that_ask(space).next().is_some();
     let rigid = connection_share(space) == 0.0;
     let list = [
-        rigid.then_some("the yield of the connections between links and joints"),
+        rigid.then_some("the compliance of the connections between links and joints"),
         (!has_harness(space)).then_some("the cables along the links"),
         Some("temperature"),
         (!fits).then_some("whether the parts fit into each other"),

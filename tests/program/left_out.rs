@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 const RIGID: &str = "Rigid output bearing without mass in shoulder";
 const BARE: &str = "Nothing is weighed beyond gear, motor and bearing in shoulder";
 const HEAT: &str = "Motor heat not checked";
-const ALWAYS: &str = "Left out of every number: the yield of the connections";
+const ALWAYS: &str = "Left out of every number: the compliance of the connections";
 
 /// An arm of one joint and one open tube.
 fn study(joint: Value, motion: Value) -> Value {

@@ -1,4 +1,4 @@
-//! `travel_compliance`: the drive of a prismatic joint yields along its travel beyond its stated stiffness, like a spring in
+//! `travel_compliance`: the drive of a prismatic joint is more compliant along its travel than stated, like a spring in
 //! series: 1/k = 1/k_stated + 1/c.
 
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
@@ -10,7 +10,7 @@ const PARAMETERS: &[Parameter] =
 /// The effect.
 pub(crate) const KIND: Kind = Kind {
     name: "travel_compliance",
-    summary: "the drive of a prismatic joint yields along its travel beyond its stated stiffness",
+    summary: "the drive of a prismatic joint is more compliant along its travel than stated",
     scope: Scope::Product,
     places: &[Place::Prismatic],
     parameters: |_| PARAMETERS,
