@@ -1,4 +1,4 @@
-//! The keys of cases files: what the reader knows, and what `armwright schema cases` prints.
+//! The keys of cases files. The reader uses this list, and `armwright schema cases` prints it.
 
 use super::keys::{PAYLOAD, VECTOR, WATER};
 use super::{JointModel, LinkModel, Words};
@@ -12,10 +12,10 @@ pub const CASES_FILE: FileKind = FileKind {
     root: Kind::NonEmpty(&Kind::Object(&CASE)),
 };
 
-/// Words of the models of links.
+/// The words for the link models in files.
 pub(crate) const LINK_MODELS: Kind = Kind::Word(&words_of::<LinkModel, 3>(LinkModel::WORDS));
 
-/// Words of the models of joints.
+/// The words for the joint models in files.
 pub(crate) const JOINT_MODELS: Kind = Kind::Word(&words_of::<JointModel, 3>(JointModel::WORDS));
 
 /// A load case.
@@ -48,6 +48,6 @@ pub(crate) static CASE: Shape = Shape::new(
     &POSE_RULES,
 );
 
-/// What holds for the keys of a pose.
+/// Rules for the keys of a pose: one of the two must be given, but not both.
 pub(crate) const POSE_RULES: [Rule; 2] =
     [Rule::Any(&["pose_deg", "pose"]), Rule::Refuses("pose_deg", &["pose"])];

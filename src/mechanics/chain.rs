@@ -80,7 +80,7 @@ pub enum Yielding {
     /// Along the travel of a prismatic joint, in proportion to the force. The x axis of `frame`, the frame of its
     /// guide, points along the travel.
     Slide { m_per_n: f64, frame: Matrix3<f64> },
-    /// As feet that lift off, about each of two axes.
+    /// As the feet of a base that can lift off. It has two coordinates: rotation about world x and about world y.
     Lift(BaseLift),
 }
 
@@ -96,7 +96,7 @@ pub struct ElasticElement {
     pub twists: Vec<Twist>,
     /// How the strain coordinates follow from the generalized forces on them.
     pub yielding: Yielding,
-    /// Torque on the coordinate of a joint that comes neither from weight nor from the load, such as friction
+    /// Torque on the coordinate of a joint that comes neither from weight nor from the load, such as that of a counterbalance
     /// \[N m\]; 0 for other elements.
     pub torque_nm: f64,
     /// The distributed mass of the element, if it is a link with mass along it.

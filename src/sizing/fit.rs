@@ -2,7 +2,7 @@
 //!
 //! | asked | compared |
 //! |---|---|
-//! | gear at the link that the joint carries | outer diameter of the gear; factor times the link's width across the axis |
+//! | gear at the link that the joint carries | outer diameter of the gear; factor times width of the link |
 //! | motor in the hollow of that link | outer diameter of the motor; the smaller clear width of the hollow |
 //! | cables along the axis | bore of the gear, and of a motor behind it; the smallest bore that the study states |
 //! | space at the joint | length of the gear, plus that of a motor behind it; the largest length stated |

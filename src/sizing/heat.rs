@@ -8,7 +8,7 @@
 //! |---|---|---|
 //! | speeding up | T + T_lin | X / (N η) + J_in N α |
 //! | at speed | T | X / (N η) |
-//! | slowing down | T - T_lin | X / (N η) - J_in N α; if X is negative (the load drives the motor), X η / N - J_in N α |
+//! | slowing down | T - T_lin | X / (N η) - J_in N α; if X < 0 (the load drives the motor), X η / N - J_in N α |
 //! | at rest | T | X / (N η); 0 if a brake holds the joint |
 //!
 //! Losses of the gear add to the torque of the motor where the motor drives the load, and reduce it where the load
