@@ -96,8 +96,8 @@ pub struct ElasticElement {
     pub twists: Vec<Twist>,
     /// How the strain coordinates follow from the generalized forces on them.
     pub yielding: Yielding,
-    /// Torque on the coordinate of a joint that comes neither from weight nor from the load, such as that of a counterbalance
-    /// \[N m\]; 0 for other elements.
+    /// Torque on the coordinate of a joint that comes neither from weight nor from the load, such as that of a
+    /// counterbalance \[N m\]; 0 for other elements.
     pub torque_nm: f64,
     /// The distributed mass of the element, if it is a link with mass along it.
     pub own: Option<OwnMass>,

@@ -8,7 +8,7 @@ pub enum Channel {
     Static,
     /// Natural frequencies \[Hz\].
     Modal,
-    /// Torsion of one joint on a bench \[arcmin\].
+    /// Torsion of one joint under torque on a bench \[arcmin\].
     Windup,
     /// Absolute positions of points on the tool \[mm\].
     Positions,

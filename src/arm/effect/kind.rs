@@ -250,7 +250,7 @@ pub struct Traits {
     /// The sets of parameters that the search fits, each as a candidate of its own. Empty means a single set: every
     /// parameter without a default.
     pub variants: &'static [&'static [Freed]],
-    /// How likely the search takes it to be before any reading, compared with a usual effect at one place.
+    /// Prior probability of the effect, relative to a usual effect at one place, before any reading is considered.
     pub odds: f64,
     /// What the nominal model must be like for the search to try it.
     pub needs: Needs,
