@@ -97,7 +97,7 @@ impl Extras {
         Self {
             housing_kg: motor_housing_kg + gear_housing_kg,
             brake_kg: BRAKE_SHARE * (set_kg + motor_kg),
-            // the mass of a motor with a housing includes most of its encoder
+            // a motor with a housing has an encoder in its mass, so only the smallest mass is added
             encoder_kg: match frameless {
                 true => (ENCODER_SHARE * (set_kg + motor_kg)).max(LEAST_ENCODER_KG),
                 false => LEAST_ENCODER_KG,

@@ -192,7 +192,7 @@ struct Walk<'t> {
     name: String,
     /// Bodies of the present link of the arm, with positions from its begin.
     bodies: Vec<RigidBody>,
-    /// Names that are taken.
+    /// Names that elements of the arm already have.
     taken: BTreeSet<String>,
     chain: Vec<Element>,
     report: ImportReport,

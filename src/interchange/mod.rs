@@ -1,11 +1,12 @@
 //! Exchange with other tools: robots of URDF files become arms, and arms become models for finite elements,
 //! simulation and purchase.
 //!
-//! - Import: `import` makes an arm of the path from the root of a URDF file (`urdf_file`, read by the crate `urdf-rs`) to a
-//!   tip. `given` reads the stiffness of the joints, which a URDF does not have. `report` says what became of everything.
-//! - Export: `export` writes an arm in a load case. `snapshot` has its springs at their working points, and `tree` converts
-//!   it to a chain of rigid bodies for `mjcf` and `urdf_out`. `calculix` converts it to solids, `bill` and `design_table`
-//!   to tables. `left_out` lists what a file cannot represent, each with its part of the tip deflection.
+//! - Import: `import` makes an arm of the path from the root of a URDF file (`urdf_file`, read by the crate `urdf-rs`)
+//!   to a tip. `given` reads the stiffness of the joints, which a URDF does not have. `report` says what became of
+//!   everything.
+//! - Export: `export` writes an arm in a load case. `snapshot` has its springs at their working points, and `tree`
+//!   converts it to a chain of rigid bodies for `mjcf` and `urdf_out`. `calculix` converts it to solids, `bill` and
+//!   `design_table` to tables. `left_out` lists what a file cannot represent, each with its part of the tip deflection.
 
 pub(crate) mod bill;
 pub(crate) mod calculix;
@@ -34,8 +35,8 @@ use serde_json::Value;
 /// `file` is the name of the file in messages. `stiffness` is a stiffness file as described in docs/interchange.md.
 /// Joints that it does not name are rigid.
 ///
+/// # Errors
 /// All faults of the URDF file, or all faults of the stiffness file.
-/// All faults of the URDF, or all of the stiffness file.
 ///
 /// ```
 /// use armwright::catalog::Catalogs;
