@@ -32,8 +32,8 @@ pub(crate) const KEY: &str = "within";
 pub struct NearFront {
     /// Slack: the largest shortfall of a near design, as a fraction.
     pub slack: f64,
-    /// The near designs, nearest first, with every choice, objective and margin. Further columns have the shortfall, the
-    /// nearest design of the front, by how much each objective is worse, and the parts that may be exchanged.
+    /// The near designs, nearest first, with every choice, objective and margin. Further columns have the shortfall,
+    /// the nearest design of the front, by how much each objective is worse, and the parts that may be exchanged.
     pub table: FrontTable,
     /// Number of near designs, including those that the cap left out; `None` if they were not counted.
     pub total: Option<u64>,
