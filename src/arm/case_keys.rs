@@ -5,7 +5,7 @@ use super::{JointModel, LinkModel, Words};
 use crate::input::key::{Kind, Rule, Shape, optional, words_of};
 use crate::input::schema::FileKind;
 
-/// A cases file.
+/// The format of a cases file.
 pub const CASES_FILE: FileKind = FileKind {
     name: "cases",
     about: "Load cases of an arm, for `armwright analyze --cases`.",
@@ -18,7 +18,7 @@ pub(crate) const LINK_MODELS: Kind = Kind::Word(&words_of::<LinkModel, 3>(LinkMo
 /// The words for the joint models in files.
 pub(crate) const JOINT_MODELS: Kind = Kind::Word(&words_of::<JointModel, 3>(JointModel::WORDS));
 
-/// A load case.
+/// The keys of a load case.
 pub(crate) static CASE: Shape = Shape::new(
     "case",
     "A load case: a pose, a load and the models to use.",

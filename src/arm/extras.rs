@@ -17,15 +17,15 @@ use serde_json::{Value, json};
 /// Masses at the position of a joint, inboard of its springs \[kg\].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Extras {
-    /// Housing of the motor, or of gear and motor.
+    /// Mass of the housing of the motor, or of gear and motor \[kg\].
     pub housing_kg: f64,
-    /// Holding brake.
+    /// Mass of the holding brake \[kg\].
     pub brake_kg: f64,
-    /// Encoders.
+    /// Mass of the encoders \[kg\].
     pub encoder_kg: f64,
-    /// Flange that carries the next link.
+    /// Mass of the flange that carries the next link \[kg\].
     pub flange_kg: f64,
-    /// Cables and connectors within the joint.
+    /// Mass of cables and connectors within the joint \[kg\].
     pub cable_kg: f64,
 }
 

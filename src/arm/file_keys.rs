@@ -9,7 +9,7 @@ use super::prismatic_keys::PRISMATIC;
 use crate::input::key::{Kind, Rule, SCHEMA_ADDRESS, Shape, optional, required};
 use crate::input::schema::FileKind;
 
-/// An arm file.
+/// The format of an arm file.
 pub const ARM_FILE: FileKind =
     FileKind { name: "arm", about: "An arm from base to tip.", root: Kind::Object(&ARM) };
 

@@ -18,10 +18,10 @@ pub(crate) const GEAR_MASS: Kind = Kind::Word(&["component_set", "housed_unit"])
 /// A bearing: its numbers, the name of a housed gear, or `null`.
 pub(crate) const BEARING_VALUE: Kind = Kind::Either(&[Kind::Object(&BEARING), Kind::Text, Kind::Null]);
 
-/// Bodies of a link.
+/// A list of rigid bodies on a link.
 pub(crate) const LINK_BODIES: Kind = Kind::List(&Kind::Object(&LINK_BODY));
 
-/// Bodies of a joint.
+/// A list of rigid bodies on a joint.
 pub(crate) const JOINT_BODIES: Kind = Kind::List(&Kind::Object(&JOINT_BODY));
 
 /// The driving joints of a passive joint, with their factors.

@@ -113,7 +113,7 @@ fn find_material(
     })
 }
 
-/// Reads a section object.
+/// Reads a cross-section from its object in the file.
 pub(crate) fn read_section(node: &Node) -> Option<Section> {
     let shape = node.value().get("shape").and_then(|v| v.as_str());
     let section = match shape {

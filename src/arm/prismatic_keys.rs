@@ -35,7 +35,7 @@ pub(crate) const KEYS: [Key; 9] = [
     optional("bodies", PRISMATIC_BODIES, "-", "[]", "Rigid parts with centre and inertia."),
 ];
 
-/// A prismatic joint of an arm file.
+/// The keys of a prismatic joint of an arm file.
 pub(crate) static PRISMATIC: Shape =
     Shape::new("prismatic joint", "A joint that slides everything after it along its axis.", &KEYS, &[]);
 

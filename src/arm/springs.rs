@@ -129,7 +129,7 @@ pub enum Drawn {
         length_m: f64,
         /// Force that pulls the ends together \[N\]; negative if it pushes.
         force_n: f64,
-        /// The ends in the world \[m\].
+        /// Positions of the two ends in the world \[m\].
         ends_m: [Vector3<f64>; 2],
     },
     /// A torsion spring.

@@ -51,7 +51,7 @@ impl Words for Format {
 
 /// The input of an export.
 pub(crate) struct Asked<'a> {
-    /// The arm.
+    /// The arm to export.
     pub arm: &'a Arm,
     /// The load case that fixes the pose and, by its loads, the stiffness of nonlinear springs.
     pub case: &'a LoadCase,

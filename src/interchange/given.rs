@@ -31,7 +31,7 @@ pub(crate) struct GivenJoint {
 pub(crate) enum GivenSprings {
     /// A joint that turns.
     Hinge {
-        /// Torsion curve.
+        /// Torsion curve of the joint.
         curve: Curve,
         /// Output bearing; `None` if the joint does not tilt.
         bearing: Option<Bearing>,

@@ -18,7 +18,7 @@ pub(crate) trait Lanes:
 {
     /// The same number in every lane.
     fn splat(x: f64) -> Self;
-    /// Eight numbers from memory.
+    /// Reads eight numbers from memory.
     fn load(from: &Eight) -> Self;
     /// Writes the eight numbers to memory.
     fn store(self) -> Eight;

@@ -110,7 +110,7 @@ fn quick_root<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> Option<f6
     let (mut step_before, mut step_two_before) = (UNKNOWN_STEP * x, UNKNOWN_STEP * x);
     for _ in 0..QUICK_PASSES {
         let here = pass(steps, 1.0 / x);
-        // beyond a pole the last pivot belongs to another branch
+        // beyond a pole the last pivot belongs to another branch of the curve, so the secant would mislead
         if !here.inner_sound {
             return None;
         }

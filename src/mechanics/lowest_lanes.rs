@@ -288,7 +288,7 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
             own = own + momentum[i] * V::splat(twist[i]);
         }
         let yielding = self.lambda * compliance;
-        // 1 - λ c tᵀWt
+        // the pivot is 1 - λ c tᵀWt, with c the compliance of the joint
         let pivot = V::splat(1.0) - yielding * own;
         self.yield_by(pivot, &momentum, yielding / pivot);
     }
@@ -313,7 +313,7 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
     #[inline(always)]
     fn yielding_link<L: LinkNumbers<N>>(&mut self, link: &L) {
         let lambda = self.lambda;
-        // W t
+        // the product W t of the formula
         let mut moved = [[V::zero(); N]; N];
         for g in 0..N {
             for k in 0..N {

@@ -43,11 +43,11 @@ pub struct BearingLoad {
 /// ramps or stops of single joints; the numbers of one load may come from different cases, which is on the safe side.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BearingDemand {
-    /// Gravity and load alone.
+    /// Loads from gravity, payload and tip force alone, with all joints at rest.
     pub at_rest: BearingLoad,
-    /// With one joint in its ramp and the others at rest.
+    /// Loads while one joint is in its ramp and the others are at rest.
     pub running: BearingLoad,
-    /// With one joint in its emergency stop and the others at rest.
+    /// Loads while one joint is in its emergency stop and the others are at rest.
     pub in_stop: BearingLoad,
 }
 

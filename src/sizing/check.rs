@@ -3,7 +3,7 @@
 use super::drive::{MissingRating, Rating};
 use std::fmt;
 
-/// One limit of a gear or a motor.
+/// The limits of a drive that are checked: of its gear, output bearing and motor, and of their sizes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum CheckKind {
     /// Static plus linear torque is below the gear's limit for repeated peaks.
@@ -18,9 +18,9 @@ pub enum CheckKind {
     GearRatcheting,
     /// The largest moment across the axis while the joint turns is below what the output bearing permits.
     BearingMoment,
-    /// Static safety of the output bearing at rest.
+    /// Static safety of the output bearing at rest is at least the required one.
     BearingRest,
-    /// Static safety of the output bearing in an emergency stop.
+    /// Static safety of the output bearing in an emergency stop is at least the required one.
     BearingStop,
     /// L10 life of the output bearing is above the required life.
     BearingLife,
@@ -184,7 +184,7 @@ pub enum CheckState {
     NotChecked(MissingRating),
 }
 
-/// One limit of one part against one demand.
+/// The comparison of one limit of a part with one demand.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Check {
     /// Which limit is checked.
@@ -193,7 +193,7 @@ pub struct Check {
     pub needed: Option<f64>,
     /// The value that the part allows (or, for life, that it reaches); `None` if it is unknown.
     pub allowed: Option<f64>,
-    /// Outcome.
+    /// Result of the check.
     pub state: CheckState,
     /// Exponent p in "margin ∝ torque^-p": 1 for most checks, for lives the exponent of the life formula.
     pub torque_exponent: f64,
@@ -248,7 +248,7 @@ impl Check {
 }
 
 impl fmt::Display for Check {
-    /// `peak 568 N m needed, 523 allowed`, or `peak not checked: lacks peak_torque_nm`.
+    /// A message such as `peak 568 N m needed, 523 allowed` or `peak not checked: lacks peak_torque_nm`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = self.kind.name();
         match (self.state, self.needed, self.allowed) {

@@ -19,7 +19,7 @@ impl std::fmt::Display for MissingRating {
     }
 }
 
-/// A rating that may be blank.
+/// A rating, or its name if the catalog leaves it blank.
 pub(super) type Rating = Result<f64, MissingRating>;
 
 /// The rating, or an error with its name if it is blank.

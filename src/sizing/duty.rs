@@ -15,7 +15,7 @@ pub enum PhaseKind {
     Rest,
     /// A phase with stated fractions of the static torque and of the largest speed.
     Fraction {
-        /// Fraction of the static torque.
+        /// Fraction of the joint's static torque.
         of_static_torque: f64,
         /// Fraction of the joint's largest speed.
         of_speed: f64,

@@ -60,7 +60,7 @@ impl Rejection {
 }
 
 impl fmt::Display for Rejection {
-    /// `joint j2: HFUC-40-100 peak 568 N m needed, 523 allowed`.
+    /// A message such as `joint j2: HFUC-40-100 peak 568 N m needed, 523 allowed`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "joint {}: ", self.joint)?;
         match &self.part {
@@ -83,7 +83,7 @@ impl fmt::Display for Rejection {
 /// Which quantity a [`Relaxation`] reduces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RelaxationKind {
-    /// Every torque on the joint, by less payload, outboard mass or reach.
+    /// Every torque on the joint. It falls with less payload, outboard mass or reach.
     Torque,
     /// Speed and acceleration, with the same ramp time.
     Speed,

@@ -207,7 +207,7 @@ impl<'c> DriveTable<'c> {
         }
     }
 
-    /// Builds the ladder.
+    /// Builds the ladder from the legal drives: those that can be the lightest one for some demand.
     fn raise_ladder(&mut self) {
         for (index, limits) in self.limits.iter().enumerate() {
             // a drive is left out if a lighter one has all limits at least as large

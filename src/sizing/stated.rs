@@ -50,7 +50,7 @@ pub struct StatedDemand {
     pub heat: StatedHeat,
 }
 
-/// Relative difference up to which one speed is half of another.
+/// Relative tolerance within which the speed of a phase counts as half the speed of a neighbouring phase.
 const SAME_SPEED: f64 = 1e-6;
 
 impl StatedDuty {

@@ -14,7 +14,7 @@ use crate::catalog::gear::GearKind;
 use crate::input::key::{Key, Kind, Rule, SCHEMA_ADDRESS, Shape, optional, required, words_of};
 use crate::input::schema::FileKind;
 
-/// A study file.
+/// The format of a study file.
 pub const STUDY_FILE: FileKind = FileKind {
     name: "study",
     about: "A named question about an arm: what is fixed, what may be chosen, and what the arm must do.",

@@ -52,7 +52,7 @@ pub struct Tolerance {
 /// A scatter, with the number of samples and the seed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sampling {
-    /// The scatter.
+    /// Scatter of each catalog rating.
     pub tolerance: Tolerance,
     /// Number of samples to draw.
     pub samples: u32,

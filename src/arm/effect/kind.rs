@@ -184,7 +184,7 @@ impl Parameter {
 /// What the nominal model must be like at a place so that an effect can be there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Needs {
-    /// Nothing.
+    /// Nothing: the effect is possible at every place of its kind.
     Nothing,
     /// A joint that is rigid in the model: the effect adds the missing compliance.
     RigidJoint,
