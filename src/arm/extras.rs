@@ -32,9 +32,9 @@ pub struct Extras {
 /// Where the extras of a joint come from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ExtrasSource {
-    /// Estimated from the gear and motor that are chosen ([`Extras::usual`]).
+    /// The masses are estimated from the gear and motor that are chosen ([`Extras::usual`]).
     Usual,
-    /// Stated by the file.
+    /// The file states the masses.
     Stated(Extras),
 }
 

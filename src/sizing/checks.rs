@@ -55,7 +55,7 @@ fn gear_mean(gear: &Gear, demand: &JointDemand) -> Check {
     )
 }
 
-/// L10 = L_rated (T_rated / T_mean)^p (n_rated / n_mean), compared with the required life.
+/// L10 life of the gear, L_rated (T_rated / T_mean)^p (n_rated / n_mean), compared with the required life.
 fn gear_life(gear: &Gear, motion: &JointMotion, demand: &JointDemand) -> Check {
     let life_h = limit::gear_life_h(gear, motion, demand.mean_torque_cubed_nm3);
     let check = check(

@@ -226,7 +226,7 @@ impl JointDemand {
     }
 }
 
-/// Eq 8, torque of linear acceleration \[N m\].
+/// Torque of linear acceleration at the joint \[N m\] (Eq 8).
 ///
 /// - Exact reading: T_lin = Σ m a ρ² / r = I α, where I is the inertia of everything outboard about the axis.
 /// - The paper's reading: T_lin = (a / g) T, as if every mass accelerated like the tip. It is 0.5097 T, printed as T / 2.

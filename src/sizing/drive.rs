@@ -117,7 +117,7 @@ impl Drive<'_> {
         Ok((sum_kg * PER_KG).round() / PER_KG)
     }
 
-    /// Eq 9: J_in = rotor + input of the gear (wave generator), motor side \[kg m²\].
+    /// Inertia J_in of rotor and gear input (wave generator), on the motor's side \[kg m²\] (Eq 9).
     ///
     /// # Errors
     /// The name of the inertia that the catalog leaves blank.
@@ -143,7 +143,7 @@ impl Drive<'_> {
         Ok(self.ratio() * self.efficiency()?)
     }
 
-    /// Eq 11 for this drive, on the motor's side \[N m\].
+    /// Torque that accelerates rotor and gear input of this drive, on the motor's side \[N m\] (Eq 11).
     ///
     /// # Errors
     /// The name of the inertia that the catalog leaves blank.
@@ -152,8 +152,8 @@ impl Drive<'_> {
         Ok(rotary_torque_motor_nm(inertia, self.ratio(), motion.acceleration_rad_s2))
     }
 
-    /// Eq 12 on the motor's side \[N m\]: torque of the motor while the joint accelerates and the gear transmits
-    /// `peak_torque_nm`.
+    /// Torque of the motor while the joint accelerates and the gear transmits `peak_torque_nm`, on the motor's side \[N m\]
+    /// (Eq 12).
     ///
     /// # Errors
     /// The name of the rating that the catalog leaves blank.
@@ -166,7 +166,7 @@ impl Drive<'_> {
     }
 }
 
-/// Eqs 10-11 on the motor's side \[N m\]: T_rot = J_in N α.
+/// Torque that accelerates rotor and gear input, on the motor's side \[N m\]: T_rot = J_in N α (Eqs 10-11).
 ///
 /// The paper's n_j is the speed of the motor, so its θ̈ is N α. `acceleration_rad_s2` is α, the acceleration of the
 /// joint.
@@ -174,12 +174,14 @@ pub fn rotary_torque_motor_nm(input_inertia_kgm2: f64, ratio: f64, acceleration_
     input_inertia_kgm2 * ratio * acceleration_rad_s2
 }
 
-/// Eqs 10-11 referred to the joint \[N m\]: J_in N² α, which is N times the torque on the motor's side.
+/// Torque that accelerates rotor and gear input, referred to the joint \[N m\]: J_in N² α, which is N times the torque on
+/// the motor's side (Eqs 10-11).
 pub fn rotary_torque_output_nm(input_inertia_kgm2: f64, ratio: f64, acceleration_rad_s2: f64) -> f64 {
     ratio * rotary_torque_motor_nm(input_inertia_kgm2, ratio, acceleration_rad_s2)
 }
 
-/// Eq 12 on the motor's side \[N m\]: T / (N η) + T_rot, where `gain` is N η.
+/// Torque of the motor while the joint accelerates, on the motor's side \[N m\]: T / (N η) + T_rot, where `gain` is N η
+/// (Eq 12).
 pub fn motor_torque_nm(output_torque_nm: f64, gain: f64, rotary_torque_motor_nm: f64) -> f64 {
     output_torque_nm / gain + rotary_torque_motor_nm
 }

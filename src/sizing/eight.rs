@@ -147,7 +147,7 @@ struct Pair<V> {
 }
 
 impl<V: Lanes> Pair<V> {
-    /// Squared norms of the components `first` and `first + 1`.
+    /// Squared norms over the components `first` and `first + 1`: of the load at rest, of the ramp, and their mixed term.
     #[inline(always)]
     fn new(at_rest: &[V; 5], ramp: &[V; 5], first: usize) -> Self {
         let (s, d) = ([at_rest[first], at_rest[first + 1]], [ramp[first], ramp[first + 1]]);

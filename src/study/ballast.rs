@@ -142,7 +142,7 @@ impl BallastFlags {
         }
     }
 
-    /// The section of an HTML page, with the first five designs in words.
+    /// The section on ballast for the HTML page, with the first five designs in words.
     pub fn section(&self) -> PageSection {
         let words =
             std::iter::once(self.sentence()).chain(self.flagged.iter().take(5).map(|f| f.words.clone()));
@@ -154,7 +154,7 @@ impl BallastFlags {
         }
     }
 
-    /// The section of a Markdown summary, with the first five designs in words.
+    /// The section on ballast for the Markdown summary, with the first five designs in words.
     pub fn to_markdown(&self) -> String {
         let lines: Vec<String> = self.flagged.iter().take(5).map(|f| format!("- {}\n", f.words)).collect();
         format!("\n## Ballast\n\n{}\n\n{}", self.sentence(), lines.concat())

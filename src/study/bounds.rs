@@ -14,9 +14,9 @@ const MOST_TABULATED: usize = 10_000;
 
 /// From which options the bounds are computed.
 pub(super) enum MassBounds<'a> {
-    /// From all options of the space, tabulated once.
+    /// The bounds are computed from all options of the space, which are tabulated once.
     Tabulated(&'a ArmProblem<'a>, Relaxation<'a>),
-    /// For each pick, from the options that a design as good as this pick may have.
+    /// The bound of each pick is computed from the options that a design as good as this pick may have.
     InReach { space: &'a DesignSpace, catalogs: &'a Catalogs, reach: Option<DomainReduction<'a>> },
 }
 

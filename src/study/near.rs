@@ -35,9 +35,9 @@ pub struct NearFront {
     /// The near designs, nearest first, with every choice, objective and margin. Further columns have the shortfall,
     /// the nearest design of the front, by how much each objective is worse, and the parts that may be exchanged.
     pub table: FrontTable,
-    /// Number of near designs, including those that the cap left out; `None` if they were not counted.
+    /// Number of near designs, including those that are not listed; `None` if they were not counted.
     pub total: Option<u64>,
-    /// Whether the cap on the number of rows left some near designs out.
+    /// Whether near designs are missing from the table because the number of its rows is limited.
     pub capped: bool,
 }
 
@@ -208,7 +208,7 @@ impl NearFront {
         }
     }
 
-    /// The entry of `run.json`.
+    /// The entry on near designs in `run.json`.
     fn to_json(&self) -> Value {
         json!({
             "slack_percent": 100.0 * self.slack,
@@ -218,7 +218,7 @@ impl NearFront {
         })
     }
 
-    /// The section of an HTML page: sentences, and a table of the nearest designs.
+    /// The section on near designs for the HTML page: sentences, and a table of the nearest designs.
     pub fn section(&self) -> PageSection {
         let words = [("design_id", "design"), ("near_to", "near to")];
         let numbers = [
@@ -247,7 +247,7 @@ impl NearFront {
         }
     }
 
-    /// The section of a Markdown summary.
+    /// The section on near designs for the Markdown summary.
     pub fn to_markdown(&self) -> String {
         let lines: Vec<String> = self.sentences().iter().map(|s| format!("- {s}\n")).collect();
         format!("\n## Near the front\n\n{}", lines.concat())

@@ -36,7 +36,7 @@ pub(super) fn omissions(space: &DesignSpace) -> Vec<String> {
     [rigid, bare, heat, Some(left_out_everywhere(space))].into_iter().flatten().collect()
 }
 
-/// The omission that concerns every number of the study, as a sentence.
+/// Physics that no number of this study includes, such as temperature, as a sentence.
 fn left_out_everywhere(space: &DesignSpace) -> String {
     let fits = joints_that_ask(space).next().is_some();
     let rigid = connection_share(space) == 0.0;

@@ -154,7 +154,7 @@ impl PicksInPoses {
         self.picks.iter().filter_map(warning).collect()
     }
 
-    /// The driven joints.
+    /// The driven joints of the arm, base to tip.
     fn driven(&self) -> Vec<DrivenJoint> {
         self.ranges.iter().map(|(joint, _, _)| joint.clone()).collect()
     }
@@ -206,7 +206,7 @@ impl PicksInPoses {
         }
     }
 
-    /// The entry of `run.json`.
+    /// The entry on the worst poses in `run.json`.
     fn to_json(&self) -> Value {
         let range = |(joint, [low, high], is_stated): &(DrivenJoint, [f64; 2], bool)| {
             let unit = joint.motion.unit();
@@ -220,7 +220,7 @@ impl PicksInPoses {
         })
     }
 
-    /// The section of an HTML page.
+    /// The section on other poses for the HTML page.
     fn section(&self) -> PageSection {
         let words =
             self.warnings().into_iter().chain([self.lead()]).chain(self.worse()).chain([LEFT_OUT.into()]);
@@ -232,7 +232,7 @@ impl PicksInPoses {
         }
     }
 
-    /// The section of a Markdown summary.
+    /// The section on other poses for the Markdown summary.
     fn to_markdown(&self) -> String {
         let list = |words: Vec<String>| words.iter().map(|s| format!("- {s}\n")).collect::<String>();
         let (warnings, worse) = (list(self.warnings()), list(self.worse()));

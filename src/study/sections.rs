@@ -15,7 +15,7 @@ use std::collections::{BTreeSet, HashSet};
 const DEFAULT_POISSON: f64 = 0.3;
 /// Largest number of points of a grid. More are a sign of a mistake in the step.
 const MOST_POINTS: usize = 100_000;
-/// Largest number of sections of a family.
+/// Largest number of sections that one family of a study file may have, before walls that do not fit are left out.
 const MOST_SECTIONS: usize = 1_000_000;
 /// Largest number of options (pairs of material and section) of all links together. This many take about a gigabyte.
 pub(super) const MOST_OPTIONS: usize = 3_000_000;

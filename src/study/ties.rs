@@ -124,7 +124,7 @@ impl Ties {
         }
     }
 
-    /// The section of an HTML page.
+    /// The section on ties for the HTML page.
     pub fn section(&self) -> PageSection {
         PageSection {
             title: "Drives that may be exchanged".into(),
@@ -134,7 +134,7 @@ impl Ties {
         }
     }
 
-    /// The section of a Markdown summary.
+    /// The section on ties for the Markdown summary.
     pub fn to_markdown(&self) -> String {
         format!("\n## Drives that may be exchanged\n\n{}\n", self.sentence())
     }

@@ -49,7 +49,8 @@ pub fn worst_poses(arm: &Arm, cases: &[LoadCase], ranges: &[[f64; 2]]) -> Option
     })
 }
 
-/// The first case of each different load.
+/// One case for each different load. Cases with the same payload, tip force, tip moment, water and models have the same
+/// load; the first of them is taken.
 pub(super) fn loads(cases: &[LoadCase]) -> Vec<&LoadCase> {
     let same = |a: &LoadCase, b: &LoadCase| {
         a.payload == b.payload

@@ -53,7 +53,7 @@ pub(crate) struct HingeNode {
 pub(crate) struct Model {
     /// Positions of all nodes \[m\].
     pub nodes_m: Vec<Vector3<f64>>,
-    /// Meshed links.
+    /// Links that are meshed with bricks.
     pub solids: Vec<Solid>,
     /// Hinges of joints, bearings and frames.
     pub hinges: Vec<HingeNode>,
