@@ -149,7 +149,7 @@ pub(crate) const NO_TYPE: (&str, &str) = (
     "add \"type\": \"joint\" (it turns), \"prismatic\" (it slides) or \"link\"",
 );
 
-/// Reads an element of the chain. A link with several pieces becomes as many links.
+/// Reads an element of the chain of the file. A link with pieces becomes several elements, all others become one.
 fn read_element(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> Option<Vec<Element>> {
     let kind = node.value().get("type").and_then(|v| v.as_str());
     match kind {

@@ -20,14 +20,14 @@ pub struct Spring {
 /// Whether a spring acts between two points or about a joint, with its properties.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SpringKind {
-    /// Between two points.
+    /// A spring between two points.
     Line {
         /// The two points and what each is fixed to.
         ends: [SpringEnd; 2],
         /// Force as a function of length.
         law: SpringLaw,
     },
-    /// Between the two sides of a joint, as a torque.
+    /// A spring between the two sides of a joint, which acts as a torque.
     Torsion {
         /// Index of the joint in the chain, base to tip.
         joint: usize,

@@ -152,8 +152,8 @@ impl Drive<'_> {
         Ok(rotary_torque_motor_nm(inertia, self.ratio(), motion.acceleration_rad_s2))
     }
 
-    /// Torque of the motor while the joint accelerates and the gear transmits `peak_torque_nm`, on the motor's side \[N m\]
-    /// (Eq 12).
+    /// Torque of the motor while the joint accelerates and the gear transmits `peak_torque_nm`, on the motor's side
+    /// \[N m\] (Eq 12).
     ///
     /// # Errors
     /// The name of the rating that the catalog leaves blank.
@@ -174,8 +174,8 @@ pub fn rotary_torque_motor_nm(input_inertia_kgm2: f64, ratio: f64, acceleration_
     input_inertia_kgm2 * ratio * acceleration_rad_s2
 }
 
-/// Torque that accelerates rotor and gear input, referred to the joint \[N m\]: J_in N² α, which is N times the torque on
-/// the motor's side (Eqs 10-11).
+/// Torque that accelerates rotor and gear input, referred to the joint \[N m\]: J_in N² α, which is N times the torque
+/// on the motor's side (Eqs 10-11).
 pub fn rotary_torque_output_nm(input_inertia_kgm2: f64, ratio: f64, acceleration_rad_s2: f64) -> f64 {
     ratio * rotary_torque_motor_nm(input_inertia_kgm2, ratio, acceleration_rad_s2)
 }

@@ -147,7 +147,7 @@ struct Pair<V> {
 }
 
 impl<V: Lanes> Pair<V> {
-    /// Squared norms over the components `first` and `first + 1`: of the load at rest, of the ramp, and their mixed term.
+    /// Squared norms over the components `first` and `first + 1`: of the load at rest, of the ramp, and the mixed term.
     #[inline(always)]
     fn new(at_rest: &[V; 5], ramp: &[V; 5], first: usize) -> Self {
         let (s, d) = ([at_rest[first], at_rest[first + 1]], [ramp[first], ramp[first + 1]]);
@@ -155,7 +155,7 @@ impl<V: Lanes> Pair<V> {
         Self { rest: s[0] * s[0] + s[1] * s[1], ramp: d[0] * d[0] + d[1] * d[1], both: both + both }
     }
 
-    /// The same with d multiplied by a factor.
+    /// The same squared norms if the load d of the ramp is multiplied by a factor.
     #[inline(always)]
     fn times(self, factor: V) -> Self {
         Self { rest: self.rest, ramp: self.ramp * factor * factor, both: self.both * factor }

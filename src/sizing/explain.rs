@@ -19,15 +19,15 @@ pub enum RejectedPart {
         gear: String,
     },
     /// A gear that passes its own checks, but no motor passes behind it. The checks listed are those with the nearest
-    /// motor, which has the largest worst margin.
+    /// motor, whose smallest margin is the largest.
     GearWithoutMotor {
         /// Name of the gear.
         gear: String,
-        /// Name of the motor with the largest worst margin.
+        /// Name of the nearest motor, whose smallest margin is the largest.
         nearest_motor: String,
     },
-    /// A motor that fails behind some of the gears that pass. The checks listed are those behind the gear with the
-    /// largest worst margin.
+    /// A motor that fails behind some of the gears that pass. The checks listed are those behind the gear with
+    /// which its smallest margin is the largest.
     Motor {
         /// Name of the motor.
         motor: String,
@@ -209,7 +209,7 @@ impl<'c> DriveTable<'c> {
         checks
     }
 
-    /// The worst margin of the nearest drive, as a factor on torque, for a demand that no drive meets. 0 if no drive
+    /// The smallest margin of the nearest drive, as a factor on torque, for a demand that no drive meets. 0 if no drive
     /// could be checked.
     pub(crate) fn nearest_margin(&self, demand: &JointDemand) -> f64 {
         self.nearest(demand).and_then(|(_, check)| check.torque_margin()).unwrap_or(0.0)
@@ -316,7 +316,7 @@ impl<'c> DriveTable<'c> {
     }
 }
 
-/// The trial with the largest worst margin. Equal ones are ranked by the number of failed checks, then by their
+/// The trial whose smallest margin is the largest. Equal ones are ranked by the number of failed checks, then by their
 /// order.
 fn nearest_trial<'t, 'c: 't>(trials: impl Iterator<Item = &'t Trial<'c>>) -> Option<&'t Trial<'c>> {
     let nearness = |t: &Trial| (t.worst_margin, std::cmp::Reverse(t.failed.len()));

@@ -35,8 +35,8 @@ pub(super) fn with_connections(
     (drive, bearing)
 }
 
-/// The compliance of connections as a fraction of the gear's, for the joint of the study with the largest fraction. 0 if
-/// all connections are rigid.
+/// The compliance of connections as a fraction of the gear's, for the joint of the study with the largest fraction.
+/// 0 if all connections are rigid.
 pub(super) fn connection_share(space: &DesignSpace) -> f64 {
     let shares = space.pieces.iter().map(|piece| match piece {
         SpacePiece::Joint(joint) => joint.connection_share,

@@ -125,7 +125,7 @@ pub(crate) fn first_fit_at(problem: &ArmProblem, outboard: &[u32], piece: usize)
 /// Sections with which the arm gets further inward than at `stuck`. One link at a time is given each of its sections.
 ///
 /// # Errors
-/// If there are no such sections: the demand for which the worst margin of the nearest drive is largest.
+/// If there are no such sections: the demand for which the nearest drive has the largest margin.
 fn easier_sections(
     problem: &ArmProblem,
     sections: &[u32],

@@ -195,7 +195,8 @@ fn read_duty_of_only_joint(node: &Node, study: &Node) -> Option<StatedDuty> {
     }
 }
 
-/// Gives each material an index that is the same for all links of the study, in the order in which materials first appear.
+/// Gives each material an index that is the same for all links of the study, in the order in which materials first
+/// appear.
 fn number_materials(pieces: &mut [SpacePiece]) {
     let mut names: Vec<String> = Vec::new();
     let choices = pieces.iter_mut().filter_map(SpacePiece::as_choice_mut);
