@@ -116,8 +116,8 @@ impl DriveLimits {
             & (self.heat.share_squared(demand) <= 1.0)
     }
 
-    /// For each limit the weaker of two drives' values: the larger one, of heat and widths the smaller one. A demand that
-    /// one of the two drives meets is within these limits.
+    /// For each limit the weaker of two drives' values: the larger one, of heat and widths the smaller one. A demand
+    /// that one of the two drives meets is within these limits.
     pub(crate) fn max(&self, other: &Self) -> Self {
         Self {
             static_torque_nm: self.static_torque_nm.max(other.static_torque_nm),
@@ -130,8 +130,8 @@ impl DriveLimits {
         }
     }
 
-    /// For each limit the stricter of two drives' values: the smaller one, of heat and widths the larger one. Both drives
-    /// meet every demand that is within these limits.
+    /// For each limit the stricter of two drives' values: the smaller one, of heat and widths the larger one. Both
+    /// drives meet every demand that is within these limits.
     pub(crate) fn min(&self, other: &Self) -> Self {
         Self {
             static_torque_nm: self.static_torque_nm.min(other.static_torque_nm),
