@@ -6,8 +6,7 @@
 //!
 //! - [`Arm`] is an arm as its file describes it ([`read_arm`] reads it).
 //! - [`LoadCase`] is a pose with a load and the models to use.
-//! - [`Structure`] is the arm as the mechanics needs it: effects are applied, and names of catalog parts are left
-//! out.
+//! - [`Structure`] is the arm as the mechanics needs it: effects are applied, names of catalog parts are left out.
 //! - [`effect`] has the effects, one file each.
 
 pub(crate) mod base_lift;

@@ -19,8 +19,8 @@ pub struct Mode {
     /// `xz`, `xy` or `yz` if at least 99 % of the kinetic energy belongs to motion in this plane of the world, else
     /// `None`.
     pub plane: Option<&'static str>,
-    /// Fraction of the strain energy in each element, with the element's name, base to tip. The fractions add up to
-    /// 1.
+    /// Fraction of the strain energy in each element, with the element's name, base to tip. The sum of the
+    /// fractions is 1.
     pub strain_energy: Vec<(String, f64)>,
     /// Displacement of the tip \[m\], with the mode scaled to a strain energy of ½ J.
     pub tip_shape_m: Vector3<f64>,

@@ -13,8 +13,8 @@ use nalgebra::Vector3;
 /// The static state of an arm in a pose under a load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Statics {
-    /// Torque on each joint about its axis \[N m\], with the name of the joint: the torque of gravity and load (Eq
-    /// 7), plus any further torque that acts on the joint.
+    /// Torque on each joint about its axis \[N m\], with the name of the joint: the torque of gravity and load
+    /// (Eq 7), plus any further torque that acts on the joint.
     pub joint_torques_nm: Vec<(String, f64)>,
     /// Force of gravity and load on each prismatic joint along its travel \[N\], with the name of the joint. The
     /// joint deflects by force over stiffness.

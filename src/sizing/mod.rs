@@ -7,7 +7,7 @@
 //! - [`JointDemand`] has the torques on the joint, which follow from static torque and outboard inertia.
 //! - [`Drive`] is a gear and a motor, [`Check`] compares one limit of one part with one demand.
 //! - [`MotorHeat`] compares the motor's torque over the cycle with its continuous torque; [`StatedDuty`] is a duty
-//! cycle given in numbers.
+//!   cycle given in numbers.
 //! - [`DriveLimits`] has all checks of a drive under a fixed motion, reduced to thresholds.
 //! - [`DriveTable`] has every drive of a joint that the study allows, sorted by mass. It finds the lightest drive or
 //!   all drives that meet a demand, and says why a part was rejected.
