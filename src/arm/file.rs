@@ -81,7 +81,7 @@ pub(crate) fn arm(node: &Node, catalogs: &Catalogs) -> Option<Arm> {
     Some(arm)
 }
 
-/// Reads the springs of an arm, and hangs its counterweights on the elements that carry them.
+/// Reads the springs of an arm, and adds its counterweights as bodies to the elements that carry them.
 fn read_balance(root: &Object, chain: &mut [Element]) -> Option<Vec<Spring>> {
     let named: Vec<Named> = chain.iter().map(|e| (e.name(), matches!(e, Element::Joint(_)))).collect();
     let (springs, counterweights) = (read_springs(root, &named), read_counterweights(root, &named));
@@ -94,8 +94,8 @@ fn read_balance(root: &Object, chain: &mut [Element]) -> Option<Vec<Spring>> {
     springs
 }
 
-/// Reads the key `gravity_m_s2`: the acceleration along world -z, or a vector in the world; 0 is none. The result is the
-/// acceleration and its direction.
+/// Reads the key `gravity_m_s2`: the acceleration along world -z, or a vector in the world; 0 means no gravity.
+/// Returns the magnitude of the acceleration \[m/s²\] and its direction.
 pub(crate) fn read_gravity(object: &Object) -> Option<(f64, Vector3<f64>)> {
     let upright = -Vector3::z();
     object.or("gravity_m_s2", (DEFAULT_GRAVITY_M_S2, upright), |n| match n.value() {
@@ -143,13 +143,13 @@ fn read_chain(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> 
     Some(read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect())
 }
 
-/// What is wrong with an element of no known type, and what to try.
+/// The problem of an element without a known type, and the advice how to mend it.
 pub(crate) const NO_TYPE: (&str, &str) = (
     "has no \"type\" of \"joint\", \"prismatic\" or \"link\"",
     "add \"type\": \"joint\" (it turns), \"prismatic\" (it slides) or \"link\"",
 );
 
-/// Reads a joint, or a link with its pieces.
+/// Reads an element of the chain of the file. A link with pieces becomes several elements, all others become one.
 fn read_element(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> Option<Vec<Element>> {
     let kind = node.value().get("type").and_then(|v| v.as_str());
     match kind {
@@ -190,18 +190,19 @@ fn read_joint(object: &Object, catalogs: &Catalogs) -> Option<Joint> {
     })
 }
 
-/// The joint's output bearing: what the file states, else that of the gear it names, if the catalogs know it.
+/// The output bearing of a joint: the bearing that the file states, else the bearing of the named gear if the
+/// catalogs know this gear.
 pub(crate) fn read_joint_bearing(object: &Object, catalogs: &Catalogs) -> Option<Option<Bearing>> {
     if let Stated::Bearing(bearing) = read_bearing(object, catalogs)? {
         return Some(bearing);
     }
     let which = read_gear_mass(object)?;
-    // a name beside explicit numbers need not be a catalog's
+    // if numbers are stated, the name of the gear need not be in a catalog
     let gear = object.optional("gear").and_then(|n| catalogs.gear(n.value().as_str()?).ok());
     Some(gear.and_then(|gear| Bearing::of_gear(gear, which)))
 }
 
-/// The torsion curve of a joint: explicit numbers if there are any, else the curve of the gear in the catalog.
+/// The torsion curve of a joint: the numbers that the file states, else the curve of the named gear in the catalog.
 pub(crate) fn read_curve(object: &Object, catalogs: &Catalogs) -> Option<Curve> {
     match (object.optional("stiffness_nm_per_rad"), object.optional("windup"), object.optional("gear")) {
         (Some(stiffness), Some(_), _) => {
@@ -241,7 +242,7 @@ fn find_gear<'c>(node: &Node, catalogs: &'c Catalogs) -> Option<&'c Gear> {
         .ok()
 }
 
-/// The torsion curve of a gear in the catalog; `None` if a part of it is unknown.
+/// The torsion curve of a gear in the catalog; `None` if a slope or a break point is blank.
 pub(crate) fn windup_of(gear: &Gear) -> Option<Windup> {
     if let Some(stiffness_nm_per_rad) = gear.single_slope_nm_per_rad() {
         return Some(Windup::straight(stiffness_nm_per_rad));
@@ -268,7 +269,7 @@ fn gear_windup(gear: &Gear, node: &Node) -> Option<Windup> {
     })
 }
 
-/// The mass of a joint: the number if it is given, else gear plus motor from the catalog, else zero.
+/// The mass of a joint \[kg\]: the number that the file states, else gear plus motor from the catalog, else zero.
 pub(crate) fn read_joint_mass(object: &Object, catalogs: &Catalogs) -> Option<f64> {
     let which = read_gear_mass(object)?;
     if let Some(mass) = object.optional("mass_kg") {
@@ -285,7 +286,7 @@ pub(crate) fn read_joint_mass(object: &Object, catalogs: &Catalogs) -> Option<f6
     Some(gear + motor)
 }
 
-/// Whether a joint's gear is a component set or a housed unit, the default.
+/// Reads which mass of a joint's gear counts: component set, or housed unit, which is the default.
 fn read_gear_mass(object: &Object) -> Option<GearMass> {
     object.or("gear_mass", GearMass::HousedUnit, |n| match n.string()? {
         "component_set" => Some(GearMass::ComponentSet),
@@ -303,14 +304,14 @@ fn part_mass(node: &Node, mass_kg: Option<f64>) -> Option<f64> {
     mass_kg.or_else(|| node.fault("has no mass in the catalog", "give the joint's \"mass_kg\""))
 }
 
-/// Reads the drivers of a passive joint, each with its factor.
+/// Reads the driving joints of a passive joint, each with its factor.
 pub(crate) fn read_coupling(node: &Node) -> Option<Vec<(String, f64)>> {
     let read: Vec<_> =
         node.entries()?.iter().map(|(name, n)| n.number().map(|f| (name.to_string(), f))).collect();
     read.into_iter().collect()
 }
 
-/// Reads a list of effects. Whether each effect fits its arm is checked later.
+/// Reads a list of effects. Whether each effect is possible in its arm is checked later.
 pub(crate) fn read_effects(node: &Node) -> Option<Vec<Effect>> {
     let read: Vec<_> = node.array()?.iter().map(read_effect).collect();
     read.into_iter().collect()
@@ -341,7 +342,7 @@ fn read_parameters(node: &Node) -> Option<Vec<(String, Vec<f64>)>> {
     read.into_iter().collect()
 }
 
-/// The number of a channel that is given by its word.
+/// The number by which a channel is stored, read from the channel's word.
 fn read_channel(node: &Node) -> Option<f64> {
     let word = node.string()?;
     match Channel::from_word(word) {
@@ -353,7 +354,7 @@ fn read_channel(node: &Node) -> Option<f64> {
     }
 }
 
-/// Checks every effect of the arm against its kind.
+/// Checks the place and the parameters of every effect of the arm.
 fn check_effects(arm: &Arm, root: &Object) -> Option<()> {
     let Some(node) = root.optional("effects") else { return Some(()) };
     let structure = arm.nominal_structure(super::JointModel::default());

@@ -1,19 +1,19 @@
-//! Linkages: which joints drive a passive joint, and how far each of them turns it.
+//! Linkages: which driven joints turn a passive joint, and by which factor.
 
 use super::structure::{JointAngle, Piece, Structure};
 
-/// One driver of a passive joint.
+/// The connection of a passive joint to one of the joints that drive it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Linkage {
-    /// Name of the joint that drives.
+    /// Name of the driving joint.
     pub driver: String,
     /// Name of the passive joint.
     pub passive: String,
-    /// Rotation of the passive joint per rotation of the driver.
+    /// Rotation of the passive joint divided by rotation of the driving joint.
     pub factor: f64,
 }
 
-/// The linkages of an arm: every driver of every passive joint.
+/// The linkages of an arm, one for each pair of a passive joint and one of its driving joints.
 pub(crate) fn linkages(structure: &Structure) -> Vec<Linkage> {
     let driver = |index: usize| {
         structure.joints().find(|j| j.angle == JointAngle::Driven(index)).map(|j| j.name.clone())

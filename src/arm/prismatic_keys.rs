@@ -3,10 +3,10 @@
 use super::keys::{POSITIVE_OR_NULL, VECTOR};
 use crate::input::key::{Key, Kind, Shape, optional, required};
 
-/// Bodies of a prismatic joint.
+/// A list of bodies of a prismatic joint.
 const PRISMATIC_BODIES: Kind = Kind::List(&Kind::Object(&PRISMATIC_BODY));
 
-/// The keys of a prismatic joint in an arm file; a study has one more.
+/// The keys of a prismatic joint in an arm file. A study has one further key.
 pub(crate) const KEYS: [Key; 9] = [
     required("type", Kind::Word(&["prismatic"]), "-", "Says that this is a prismatic joint."),
     required("name", Kind::Name, "-", "Name, unique in the chain."),
@@ -35,11 +35,11 @@ pub(crate) const KEYS: [Key; 9] = [
     optional("bodies", PRISMATIC_BODIES, "-", "[]", "Rigid parts with centre and inertia."),
 ];
 
-/// A prismatic joint of an arm file.
+/// The keys of a prismatic joint of an arm file.
 pub(crate) static PRISMATIC: Shape =
     Shape::new("prismatic joint", "A joint that slides everything after it along its axis.", &KEYS, &[]);
 
-/// The guide of a prismatic joint.
+/// The keys of the guide of a prismatic joint.
 pub(crate) static GUIDE: Shape = Shape::new(
     "guide",
     "The guide of a prismatic joint, rigid about an axis that is left away.",
@@ -57,7 +57,7 @@ pub(crate) static GUIDE: Shape = Shape::new(
     &[],
 );
 
-/// A body of a prismatic joint.
+/// The keys of a body of a prismatic joint.
 pub(crate) static PRISMATIC_BODY: Shape = Shape::new(
     "body of a prismatic joint",
     "A rigid part of a prismatic joint.",

@@ -1,9 +1,10 @@
-//! MJCF, the files of MuJoCo.
+//! Export to MJCF, the model format of MuJoCo.
 //!
-//! A driven joint is two hinges in series: the motor's, with the inertia of rotor and gear (`armature`) and an actuator, and the
-//! gear's, with the spring and without armature. Both on one hinge would be another machine: its rotor would move with the
-//! output. The two tilts of a bearing are two more hinges. A torsion curve is its tangent at the load of the case; the spring's
-//! position of rest (`springref`) is such that it deflects at this load as much as the curve does.
+//! A driven joint becomes two hinges in series. The hinge of the motor has the inertia of rotor and gear (`armature`)
+//! and an actuator. The hinge of the gear has the spring and no armature. A single hinge with both would be wrong:
+//! its rotor would move with the output. The two tilts of a bearing become two more hinges. A torsion curve is
+//! replaced by its tangent at the load of the case. The rest position of the spring (`springref`) is chosen such that
+//! the spring deflects at this load as much as the curve does.
 
 use super::snapshot::Snapshot;
 use super::tree::{Hinge, Node, Role, TreeOptions, mass_properties, tree};
@@ -12,28 +13,28 @@ use crate::arm::structure::JointAngle;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeMap;
 
-/// Mass and moment of inertia of a body that has none, and the least moment of a body \[kg, kg m²\]. MuJoCo takes no moving
-/// body without both.
+/// Mass and moment of inertia that a body without any gets, and which is added to the moments of all bodies
+/// \[kg, kg m²\]. MuJoCo accepts no moving body without mass and inertia.
 const LEAST: f64 = 1e-9;
 
-/// Inertia that stands in for a rotor that nobody knows, at the joint \[kg m²\]. Without any, motor and gear would be two hinges of
-/// one axis with nothing between them, and the mass matrix singular. With motors held it changes nothing.
+/// Inertia at the joint that is used if the rotor inertia is unknown \[kg m²\]. With no inertia between them, the
+/// hinges of motor and gear would make the mass matrix singular. The value has no effect while the motors are held.
 pub(crate) const STAND_IN_KGM2: f64 = 0.1;
 
-/// What a motor adds to a joint.
+/// Inertia and torque of the motor of a joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Motor {
-    /// Inertia of rotor and gear, at the joint \[kg m²\].
+    /// Inertia of rotor and gear input, referred to the joint \[kg m²\].
     pub armature_kgm2: f64,
-    /// Peak torque of the motor, at the joint, without losses \[N m\].
+    /// Peak torque of the motor, referred to the joint without losses \[N m\]; `None` if it is unknown.
     pub peak_nm: Option<f64>,
 }
 
-/// The file and what is to be said of it.
+/// An MJCF file, with a remark.
 pub(crate) struct Mjcf {
-    /// The text.
+    /// The text of the file.
     pub text: String,
-    /// Whether an inertia is one that no solid has, so that MuJoCo must change it.
+    /// Whether some body has an inertia that no solid can have, so that MuJoCo must change it.
     pub balanced: bool,
 }
 
@@ -89,7 +90,7 @@ pub(crate) fn mjcf(
     Mjcf { text: xml.finish(), balanced }
 }
 
-/// Opens a body, which stays open for those that it carries.
+/// Opens the element of a body. It stays open, because the bodies outboard of it are nested inside.
 fn body(xml: &mut Xml, node: &Node, before_m: &Vector3<f64>, motors: &BTreeMap<String, Motor>) {
     xml.open("body", &[("name", node.name.clone()), ("pos", triple(&(node.origin_m - before_m)))]);
     for hinge in &node.hinges {
@@ -148,7 +149,8 @@ fn joint(
     out
 }
 
-/// A passive joint follows the motors and the gears of its drivers: a tendon that stays at zero.
+/// Writes the couplings of passive joints. Each is a tendon of fixed length, so that the joint follows the motor and
+/// the gear of its driving joints.
 fn couplings(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
     let driven: Vec<&str> = snapshot.case_joints();
     let has_gear =
@@ -192,7 +194,8 @@ fn actuators(xml: &mut Xml, snapshot: &Snapshot, motors: &BTreeMap<String, Motor
     xml.close();
 }
 
-/// The pose of the case: with all springs straight, in which frequencies and torques are compared, and deflected.
+/// Writes the pose of the case twice: with all springs undeflected, for the comparison of frequencies and torques,
+/// and deflected.
 fn keyframes(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
     let pose_rad: Vec<f64> = snapshot.case.pose_deg.iter().map(|deg| deg.to_radians()).collect();
     let angle = |name: &str| {
@@ -213,7 +216,7 @@ fn keyframes(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
     xml.close();
 }
 
-/// Whether a solid can have the inertia of a body: no principal moment exceeds the sum of the others.
+/// Whether a solid can have the inertia of this body: no principal moment exceeds the sum of the other two.
 fn is_solid(node: &Node) -> bool {
     let (_, _, inertia) = mass_properties(&node.inertia);
     let moments = (inertia + Matrix3::identity() * LEAST).symmetric_eigenvalues();

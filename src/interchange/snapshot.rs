@@ -1,7 +1,8 @@
-//! An arm in a load case, solved: the springs of its joints at their working points.
+//! An arm in a load case, with the springs of its joints at their working points.
 //!
-//! A curve has no single stiffness. At the load of a case it has a *secant* (deflection over load), with which a linear program
-//! finds the deflection, and a *tangent*, with which it finds the frequencies.
+//! A torsion curve has no single stiffness. At the load of a case it has a *secant* stiffness (load over deflection),
+//! with which a linear program computes the right deflection, and a *tangent* stiffness, with which it computes the
+//! right frequencies.
 
 use crate::arm::LinkModel;
 use crate::arm::load::LoadCase;
@@ -12,27 +13,27 @@ use serde_json::{Map, Value, json};
 
 /// Load below which a spring counts as unloaded \[N m\].
 const REST_NM: f64 = 1e-9;
-/// How many frequencies are said.
+/// Number of natural frequencies in the expected results.
 const MODES: usize = 6;
 
-/// A spring at the load of a case.
+/// The state of a spring at the load of a case.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Working {
     /// Generalized force on the coordinate \[N m\].
     pub load_nm: f64,
-    /// What the coordinate yields \[rad\].
+    /// Deflection of the coordinate under this force \[rad\].
     pub deflection_rad: f64,
-    /// Tangent compliance \[rad/(N m)\].
+    /// Tangent compliance at this force \[rad/(N m)\].
     pub tangent_rad_per_nm: f64,
 }
 
 impl Working {
-    /// Whether nothing yields.
+    /// Whether the spring does not deflect at all.
     pub(crate) fn is_rigid(&self) -> bool {
         self.tangent_rad_per_nm == 0.0 && self.deflection_rad == 0.0
     }
 
-    /// Tangent stiffness \[N m/rad\]; the secant where the tangent is vertical.
+    /// Tangent stiffness \[N m/rad\]; the secant stiffness if the tangent compliance is zero.
     pub(crate) fn tangent_nm_per_rad(&self) -> f64 {
         match self.tangent_rad_per_nm > 0.0 {
             true => 1.0 / self.tangent_rad_per_nm,
@@ -40,7 +41,7 @@ impl Working {
         }
     }
 
-    /// Secant stiffness \[N m/rad\]; the tangent where nothing loads the spring.
+    /// Secant stiffness \[N m/rad\]; the tangent stiffness if the spring is unloaded.
     pub(crate) fn secant_nm_per_rad(&self) -> f64 {
         let secant = self.load_nm / self.deflection_rad;
         match self.load_nm.abs() > REST_NM && secant.is_finite() && secant > 0.0 {
@@ -49,7 +50,8 @@ impl Working {
         }
     }
 
-    /// Where a straight spring of the tangent stiffness must be at rest to yield as much under the load \[rad\].
+    /// Rest position of a linear spring that has the tangent stiffness and the same deflection under the load
+    /// \[rad\].
     pub(crate) fn rest_rad(&self) -> f64 {
         self.deflection_rad - self.load_nm / self.tangent_nm_per_rad()
     }
@@ -58,15 +60,15 @@ impl Working {
 /// An arm in a load case.
 #[derive(Debug, Clone)]
 pub(crate) struct Snapshot {
-    /// The case.
+    /// The load case.
     pub case: LoadCase,
-    /// The arm.
+    /// The structure of the arm.
     pub structure: Structure,
     chain: Chain,
 }
 
 impl Snapshot {
-    /// An arm in a case, with a model of the links that need not be the case's.
+    /// An arm in a case. The model of the links may be another one than that of the case.
     pub(crate) fn new(structure: Structure, case: &LoadCase, links: LinkModel) -> Self {
         let chain = Chain::new(&structure, links);
         Self { case: LoadCase { links, ..case.clone() }, structure, chain }
@@ -77,17 +79,17 @@ impl Snapshot {
         self.chain.pose(&self.case)
     }
 
-    /// The arm with all angles zero, in which every frame is parallel to the world's.
+    /// The arm with all joint angles zero. Every frame is then parallel to the world's.
     pub(crate) fn at_zero(&self) -> Posed<'_> {
         self.chain.pose_rad(&vec![0.0; self.case.pose_deg.len()], &self.case.payload, Vector3::zeros())
     }
 
-    /// Displacement of the tip \[m\].
+    /// Displacement of the tip in the case, in world axes \[m\].
     pub(crate) fn tip_m(&self) -> Vector3<f64> {
         self.posed().statics().tip_displacement_m
     }
 
-    /// The link of a piece, by its number.
+    /// The link with this index among the pieces; `None` if the piece is no link.
     pub(crate) fn link(&self, piece: usize) -> Option<&LinkPiece> {
         match self.structure.pieces.get(piece)? {
             Piece::Link(link) => Some(link),
@@ -100,7 +102,7 @@ impl Snapshot {
         self.structure.joints().filter(|joint| joint.is_driven()).map(|joint| joint.name.as_str()).collect()
     }
 
-    /// The working point of each coordinate, element by element, base to tip.
+    /// The state of the spring of each coordinate, as one list for each element, base to tip.
     pub(crate) fn working_points(&self) -> Vec<Vec<Working>> {
         let posed = self.posed();
         let statics = posed.statics();
@@ -136,7 +138,8 @@ impl Snapshot {
         points.collect()
     }
 
-    /// What a program must find that is given this arm: torques, displacement of the tip, and lowest frequencies.
+    /// The results that another program should compute for this arm: torques, displacement of the tip, and lowest
+    /// natural frequencies.
     pub(crate) fn expected(&self) -> Value {
         let posed = self.posed();
         let statics = posed.statics();

@@ -1,7 +1,7 @@
-//! URDF: the rigid arm, and a side file for what a URDF does not know, the stiffness of its joints.
+//! Export to URDF: the rigid arm, and a separate file with the stiffness of its joints, which a URDF cannot state.
 //!
-//! The side file is the stiffness file that an import reads, so that an exported arm comes back with the same torques and, its links
-//! being rigid, the same modes.
+//! The separate file is the stiffness file that an import reads. An exported arm that is imported again has the same
+//! torques and, since its links are rigid, the same modes.
 
 use super::snapshot::Snapshot;
 use super::tree::{Node, TreeOptions, mass_properties, tree};
@@ -11,7 +11,7 @@ use crate::arm::{Arm, Joint};
 use nalgebra::Vector3;
 use serde_json::{Map, Value, json};
 
-/// Writes an arm as URDF. The payload of the case is no part of it.
+/// Writes an arm as URDF. The payload of the case is not included.
 pub(crate) fn urdf(arm: &Arm, snapshot: &Snapshot) -> String {
     let nodes = tree(snapshot, &TreeOptions::default());
     let comment = format!(
@@ -41,7 +41,7 @@ pub(crate) fn urdf(arm: &Arm, snapshot: &Snapshot) -> String {
     xml.finish()
 }
 
-/// Links and joints have names of their own in a URDF.
+/// Name of a link in the URDF, which must differ from the names of joints.
 fn link_name(number: usize, node: &Node) -> String {
     if number == 0 { "base".into() } else { format!("{}_link", node.name) }
 }
@@ -68,7 +68,7 @@ fn ends(xml: &mut Xml, parent: &str, child: &str, xyz_m: &Vector3<f64>) {
     xml.leaf("origin", &[("xyz", triple(xyz_m)), ("rpy", "0 0 0".into())]);
 }
 
-/// A joint. An arm has no ranges, so its joints are continuous.
+/// Writes a joint. An arm file states no ranges of joints, so the joint is continuous.
 fn joint(xml: &mut Xml, snapshot: &Snapshot, (from, parent): (&str, &Node), (to, node): (&str, &Node)) {
     xml.open("joint", &[("name", node.name.clone()), ("type", "continuous".into())]);
     ends(xml, from, to, &(node.origin_m - parent.origin_m));
@@ -85,12 +85,12 @@ fn joint(xml: &mut Xml, snapshot: &Snapshot, (from, parent): (&str, &Node), (to,
     xml.close();
 }
 
-/// Passive joints with several drivers, which no `<mimic>` can follow.
+/// Passive joints with several driving joints. A URDF cannot express them, because `<mimic>` follows a single joint.
 pub(crate) fn with_several_drivers(arm: &Arm) -> Vec<&Joint> {
     arm.joints().filter(|joint| joint.coupled.as_ref().is_some_and(|terms| terms.len() != 1)).collect()
 }
 
-/// The stiffness file of an arm.
+/// The stiffness file of an arm, for a later import.
 pub(crate) fn stiffness_file(arm: &Arm) -> Value {
     let joints: Map<String, Value> = arm
         .joints()

@@ -1,4 +1,4 @@
-//! A front as a table: every choice, objective and margin of every design.
+//! A front as a table, with every choice, objective and margin of every design.
 
 use super::outcome::Front;
 use crate::catalog::Catalogs;
@@ -47,7 +47,7 @@ fn columns(problem: &ArmProblem, catalogs: &Catalogs) -> Vec<String> {
     out
 }
 
-/// Columns of every joint with a gear and a motor.
+/// Columns of every joint that has a gear and a motor.
 const JOINT_COLUMNS: [&str; 6] =
     ["margin", "binds", "bearing_margin", "motor_rms_margin", "input_rpm", "critical_rpm"];
 
@@ -83,7 +83,7 @@ fn row(problem: &ArmProblem, catalogs: &Catalogs, judged: &super::outcome::Judge
         out.push(joint.bearing_margin.map_or(String::new(), number));
         out.push(joint.motor_rms_margin.map_or(String::new(), number));
         out.push(number(joint.motor_speed_rpm));
-        // only a wave generator passes with two waves in each turn
+        // only a strain-wave gear excites vibrations twice in each turn of its input
         let waves = catalogs.gears.iter().any(|g| g.id == joint.gear && g.kind == GearKind::StrainWave);
         out.push(if waves { number(critical_rpm(o.lowest_mode_hz)) } else { String::new() });
     }
@@ -106,32 +106,32 @@ fn link_cells(option: &LinkOption) -> [String; 6] {
     ]
 }
 
-/// A tube in words: `120 x 100 x 3 mm Aluminium 6061-T6`.
+/// Size and material of a tube in words: `120 x 100 x 3 mm Aluminium 6061-T6`.
 pub(super) fn link_words(option: &LinkOption) -> String {
     let [material, shape, width, height, wall, _] = link_cells(option);
     format!("{} {material}", tube_size(&shape, [&width, &height, &wall]))
 }
 
-/// A length as the millimetres it was given in: the shortest decimal that reads back the same.
+/// A length in millimetres, written as the user gave it: the shortest decimal that reads back to the same length.
 fn millimetres(length_m: f64) -> String {
     let near = (length_m * 1e3 * 1e9).round() / 1e9;
     number(if near / 1e3 == length_m { near } else { length_m * 1e3 })
 }
 
-/// The shortest decimal that reads back as the same number.
+/// The shortest decimal that reads back to the same number.
 fn number(x: f64) -> String {
     format!("{x}")
 }
 
-/// The sizing of every joint with a drive from the catalogs, chosen or given, tip first; or the slot at which
-/// no drive holds.
+/// The sizing of every joint with a drive from the catalogs, chosen or given, tip first. The error is the slot at
+/// which no drive meets the demand.
 pub(crate) fn sizing_rows(
     problem: &ArmProblem,
     catalogs: &Catalogs,
     chosen: &[u32],
 ) -> Result<Vec<JointSizingRow>, usize> {
     let mut rows = Vec::new();
-    // the drive of a sized joint is known once it is added: its row follows at the next slot
+    // the drive of a sized joint is known only after it is added, so its row is completed at the next slot
     let mut open: Option<(usize, JointDemand, f64)> = None;
     let complete = problem.walk(chosen, |slot, partial| {
         rows.extend(close(problem, catalogs, open.take(), partial));
@@ -157,7 +157,7 @@ fn joint_name<'p>(problem: &'p ArmProblem, piece: usize) -> &'p str {
     }
 }
 
-/// The row of a sized joint whose drive is now known.
+/// The sizing row of a joint whose drive is now known; `None` if no row is open.
 fn close(
     problem: &ArmProblem,
     catalogs: &Catalogs,
@@ -174,7 +174,7 @@ fn close(
     Some(at_cycle_efficiency(row, catalogs, &drive, table.motion(), &demand))
 }
 
-/// The row with the efficiency of the gear at the mean speed and torque of the cycle, where ratings allow it.
+/// Adds the efficiency of the gear at the mean speed and torque of the cycle to a row, if the ratings are known.
 fn at_cycle_efficiency(
     row: JointSizingRow,
     catalogs: &Catalogs,

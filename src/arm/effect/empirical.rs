@@ -1,22 +1,23 @@
-//! `empirical`: a law without a name, as it was found in readings. At a joint it is a further twist, a polynomial of the
-//! torque; at a channel it is a reading that bends or that has a gain of its own in each direction.
+//! `empirical`: a smooth function found in readings that no named effect explains. At a joint it is a further angle
+//! of torsion, a polynomial of the torque. At a channel it is a nonlinear reading, or a factor of its own in each
+//! direction.
 
 use super::channel::Channel;
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
 use super::subject::Subject;
 use crate::arm::joint_law::FurtherTwist;
 
-/// Coefficients of a joint's further twist that change sign with its torque.
+/// Parameter: coefficients of a joint's further angle of torsion that change sign with the torque.
 pub(crate) const ODD_TWIST: &str = "odd_twist_rad";
-/// Coefficients of a joint's further twist that do not.
+/// Parameter: coefficients of a joint's further angle of torsion that do not change sign with the torque.
 pub(crate) const EVEN_TWIST: &str = "even_twist_rad";
-/// Torque at which these coefficients are the twist.
+/// Parameter: reference torque of these coefficients, at which the angle is their sum.
 pub(crate) const TORQUE: &str = "torque_nm";
-/// How far readings bend.
+/// Parameter: coefficients of the nonlinearity of a channel.
 pub(crate) const BEND: &str = "bend";
-/// The reading at which that is the bend.
+/// Parameter: the reading at which these coefficients are the relative deviation from a straight line.
 pub(crate) const BEND_SCALE: &str = "bend_scale";
-/// Factor of each direction.
+/// Parameter: a factor on the reading for each direction.
 pub(crate) const GAIN: &str = "gain";
 
 const OF_JOINT: &[Parameter] = &[
@@ -31,13 +32,13 @@ const OF_CHANNEL: &[Parameter] = &[
     optional(GAIN, 3, 0.01, 100.0, 1.0),
 ];
 
-/// A parameter that changes nothing where it is left out.
+/// A parameter that may be left out. The default value changes nothing.
 const fn optional(name: &'static str, count: usize, low: f64, high: f64, default: f64) -> Parameter {
     let number = Parameter::number(name, low, high, default, Scale::Linear);
     Parameter { count, default: Some(default), ..number }
 }
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "empirical",
     summary: "a law without a name, as found in readings: a further twist of a joint, or a reading that bends",
@@ -60,7 +61,7 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
             Some(added(joint.law.further, FurtherTwist { odd_rad: [a, b], even_rad: [c, d], torque_nm }));
     } else if let Some(reading) = subject.channel_mut(at) {
         let [a, b, bend_scale, x, y, z] = numbers[..] else { return };
-        // one law bends, another has gains: where both stand, both act
+        // one empirical effect may be nonlinear and another may have gains; both act if both are given
         if [a, b] != [0.0; 2] {
             (reading.bend, reading.bend_scale) = ([a, b], bend_scale);
         }
@@ -68,7 +69,7 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
     }
 }
 
-/// The sum of two further twists, with the torque of the second.
+/// The sum of two further angles of torsion, written with the reference torque of the second one.
 fn added(before: Option<FurtherTwist>, twist: FurtherTwist) -> FurtherTwist {
     let Some(before) = before else { return twist };
     let ratio = twist.torque_nm / before.torque_nm;
@@ -107,7 +108,7 @@ mod tests {
         apply(&[0.1, 0.02, 2.0, 1.0, 1.0, 1.0], "static", &mut subject);
         apply(&[0.0, 0.0, 1.0, 1.0, 1.1, 0.9], "static", &mut subject);
         let reading = &subject.channels[Channel::Static as usize];
-        // at the scale of 2 mm a reading of 2 mm bends by 12 % of it
+        // the scale is 2 mm: a reading of 2 mm deviates from a straight line by 12 %
         assert!(
             (reading.of(2.0, 0, 0) - 2.24).abs() < 1e-12 && (reading.of(-2.0, 0, 0) + 2.24).abs() < 1e-12
         );
