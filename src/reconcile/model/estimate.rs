@@ -3,7 +3,8 @@
 use crate::arm::effect::entry::word_of;
 use serde_json::{Map, Value, json};
 
-/// An interval of a fitted parameter, in `u`. An end is `None` where the data do not bound it.
+/// The 95 % interval of a fitted parameter, in the scaled parameter `u`. An end is `None` where the data do not bound
+/// it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
     /// Lower end.
@@ -18,7 +19,8 @@ impl Interval {
         Self { low: self.low.map(|v| v.min(u)), high: self.high.map(|v| v.max(u)) }
     }
 
-    /// The interval with both ends moved out by `by`. An end that leaves the bounds becomes open.
+    /// The interval with both ends moved outwards by `by`. An end that then lies beyond the bounds of the parameter
+    /// becomes `None`.
     pub(crate) fn wider(self, by: f64, (low, high): (f64, f64)) -> Self {
         Self {
             low: self.low.map(|v| v - by).filter(|v| *v > low),
@@ -50,16 +52,16 @@ impl Estimate {
 pub struct Finding {
     /// Name of the effect.
     pub effect: String,
-    /// The place where it sits.
+    /// Place of the effect: the name of a joint or link, `base`, or a channel.
     pub at: String,
     /// Parameters; a vector parameter has several estimates.
     pub parameters: Vec<(String, Vec<Estimate>)>,
-    /// Name and place of effects that these readings cannot tell from it.
+    /// Name and place of effects that these readings cannot tell from this one.
     pub indistinguishable_from: Vec<(String, String)>,
 }
 
 impl Finding {
-    /// `effect@place`.
+    /// Label of the finding: `effect@place`.
     pub fn label(&self) -> String {
         format!("{}@{}", self.effect, self.at)
     }
