@@ -45,7 +45,7 @@ pub(crate) fn prepare(campaign: &Campaign, layout: &Layout, data: &mut Vec<Datum
 }
 
 impl Bench {
-    /// Sizes of the torques \[N m\].
+    /// Magnitudes of the torques \[N m\].
     pub(crate) fn sizes_nm(&self) -> impl Iterator<Item = f64> + '_ {
         self.torques_nm.iter().map(|t| t.abs())
     }
@@ -59,10 +59,10 @@ impl Bench {
     }
 }
 
-/// Twists of a joint on the bench \[rad\]. The cycle runs once unrecorded, so that the friction play has
-/// settled, and then once recorded.
+/// Twists (torsion angles) of a joint on the bench, one per torque \[rad\]. The cycle is computed twice, and the second
+/// round counts: after the first one the state of the friction play repeats itself.
 pub(crate) fn bench_twists_rad(law: &JointLaw, torques_nm: &[f64]) -> Vec<f64> {
-    // the first round only brings the play to where a closed cycle has it
+    // the first round brings the play to its state in a repeated cycle
     let mut state = 0.0;
     for &torque in torques_nm {
         law.play_angle_rad(torque, &mut state);

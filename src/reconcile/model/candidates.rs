@@ -276,7 +276,8 @@ fn middle_stiffness(forward: &Forward, at: &str) -> f64 {
     }
 }
 
-/// Largest torque on a joint in the campaign, including the bench, or largest moment on the base in static tests \[N m\].
+/// Largest torque on a joint in the campaign, bench included \[N m\]. For the base, it is the largest moment in static
+/// tests.
 pub(crate) fn largest_torque_nm(forward: &Forward, at: &str) -> f64 {
     if at == "base" {
         let nominal = forward.coefficients(&forward.nominal);

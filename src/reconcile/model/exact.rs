@@ -103,7 +103,7 @@ impl<'a> Exact<'a> {
         for (row, stand) in rows.iter().zip(placement.stands(rows)) {
             let tool_m = stand.point_m(&row.point);
             if !self.subject.warming.is_none() {
-                chains.clear(); // no chain serves another row
+                chains.clear(); // the temperature differs from row to row
             }
             if !chains.iter().any(|(at_m, _)| *at_m == tool_m) {
                 let structure = self.subject.structure_at(Channel::Positions, &row.moment());

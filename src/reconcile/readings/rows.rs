@@ -10,12 +10,12 @@ use crate::arm::pose::{DrivenJoint, Motion, any_slides};
 use nalgebra::Vector3;
 use std::collections::{HashMap, HashSet};
 
-/// A key under which equal poses are found. Zero and minus zero are one angle.
+/// Key by which equal poses are found. Zero and minus zero are the same angle.
 pub(crate) fn pose_key(pose_deg: &[f64]) -> Vec<u64> {
     pose_deg.iter().map(|angle| (angle + 0.0).to_bits()).collect()
 }
 
-/// A tip displacement under load.
+/// Displacement of the tip under load: one row of `static.csv`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StaticRow {
     /// Row of the file, from 0.
@@ -26,15 +26,15 @@ pub struct StaticRow {
     pub payload: Payload,
     /// Temperature of the arm \[°C\], if the file has the column `temperature_c`.
     pub temperature_c: Option<f64>,
-    /// Tip force, world \[N\].
+    /// Force at the tip, in the directions of the world \[N\].
     pub force_n: Vector3<f64>,
-    /// Branch of the loading cycle, as the operator labelled it.
+    /// Branch of the loading cycle, as the operator labelled it; may be empty.
     pub branch: String,
     /// Components of the displacement from the reference state, as far as they were measured.
     pub measured: Components,
 }
 
-/// A natural frequency.
+/// A natural frequency: one row of `modal.csv`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModalRow {
     /// Row of the file, from 0.
@@ -47,30 +47,30 @@ pub struct ModalRow {
     pub temperature_c: Option<f64>,
     /// Number of the mode in its list, from 1.
     pub mode: usize,
-    /// Frequency \[Hz\].
+    /// Measured natural frequency \[Hz\].
     pub frequency_hz: f64,
-    /// Standard deviation \[Hz\].
+    /// Standard deviation of the frequency \[Hz\].
     pub sigma_hz: f64,
 }
 
-/// The twist of one joint on a bench.
+/// The twist (torsion) of one joint on a bench: one row of `windup.csv`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WindupRow {
     /// Row of the file, from 0.
     pub row: usize,
     /// Name of the joint.
     pub joint: String,
-    /// Torque \[N m\].
+    /// Torque on the joint \[N m\].
     pub torque_nm: f64,
-    /// Branch of the cycle, as the operator labelled it.
+    /// Branch of the torque cycle, as the operator labelled it; may be empty.
     pub branch: String,
-    /// Twist \[arcmin\].
+    /// Twist of the joint \[arcmin\].
     pub windup_arcmin: f64,
-    /// Standard deviation \[arcmin\].
+    /// Standard deviation of the twist \[arcmin\].
     pub sigma_arcmin: f64,
 }
 
-/// An absolute position of a point on the tool.
+/// An absolute position of a point on the tool: one row of `positions.csv`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PositionRow {
     /// Row of the file, from 0.
@@ -83,7 +83,7 @@ pub struct PositionRow {
     pub payload: Payload,
     /// Temperature of the arm \[°C\], if the file has the column `temperature_c`.
     pub temperature_c: Option<f64>,
-    /// Index of the arm that the point is on, in the order of the campaign.
+    /// Index of the arm to which the point belongs, in the order of the campaign.
     pub arm: usize,
     /// Name of the point.
     pub point: String,
@@ -92,7 +92,7 @@ pub struct PositionRow {
 }
 
 impl PositionRow {
-    /// Standard deviation of a measured coordinate, on average \[mm\].
+    /// Mean standard deviation of the measured coordinates \[mm\].
     pub(crate) fn sigma_mm(&self) -> f64 {
         let own = || self.measured.iter().flatten().map(|read| read.sigma_mm);
         own().sum::<f64>() / own().count().max(1) as f64
@@ -120,7 +120,7 @@ impl PositionRow {
     }
 }
 
-/// The columns that state pose and payload.
+/// Indices of the columns of pose, payload and temperature.
 struct StateColumns {
     pose: Vec<usize>,
     motions: Vec<Motion>,
@@ -171,7 +171,7 @@ impl StateColumns {
         angles.into_iter().collect()
     }
 
-    /// The temperature; `None` where it is faulty.
+    /// Temperature of the arm \[°C\]: the outer `None` is a fault, the inner one an absent column.
     fn temperature_c(&self, table: &Table, row: usize) -> Option<Option<f64>> {
         let Some(column) = self.temperature else { return Some(None) };
         let is_sound = |c: f64| (-100.0..=200.0).contains(&c);
@@ -203,7 +203,7 @@ pub(crate) fn static_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Sta
     const FORCE: [&str; 3] = ["force_x_n", "force_y_n", "force_z_n"];
     table.check_family("force", &FORCE);
     let force = FORCE.map(|name| table.optional(name));
-    // an arm that is only pulled at has no payload
+    // if there is a force, a payload is not necessary
     let loads_needed = force.iter().all(Option::is_none);
     let state = StateColumns::find(table, &arm.driven_joints(), loads_needed);
     let components = VectorColumns::find(table, &DISPLACEMENT, purpose);
@@ -364,9 +364,9 @@ fn each_row<T>(table: &Table, read: impl Fn(usize) -> Option<T>) -> Vec<T> {
     rows.into_iter().flatten().collect()
 }
 
-/// Reports rows that repeat an earlier one in everything but the test's label. Such a row is a copying error,
-/// and its noise is not independent. In `coarse` rows not all components were measured: a gauge may well show the same
-/// digits again, so that the label tells a repeated test from a copy.
+/// Reports rows that repeat an earlier one in everything but the test's label. Such a row is a copying error: a
+/// repeated test would have noise of its own. In the rows `coarse` not all components were measured. A gauge may show
+/// the same digits twice, so there a different label counts as a repeated test.
 fn check_duplicates(table: &Table, coarse: &HashSet<usize>) {
     let label = table.optional("test");
     let mut seen: HashMap<Vec<&str>, usize> = HashMap::new();
@@ -387,7 +387,7 @@ fn check_duplicates(table: &Table, coarse: &HashSet<usize>) {
     }
 }
 
-/// Reports angles that are probably radians: those that lie within half a turn in radians in several poses.
+/// Reports angles that are probably radians: in five or more poses no angle exceeds half a turn in radians.
 fn check_angles<'a>(table: &Table, motions: &[Motion], poses: impl Iterator<Item = &'a [f64]>) {
     let mut distinct: Vec<&[f64]> = Vec::new();
     for pose in poses {

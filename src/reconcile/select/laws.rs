@@ -495,7 +495,7 @@ mod tests {
                 let p = nuisance.numbers.iter().position(|(c, _)| is_own(c)).expect("calibrated");
                 let largest = fit.jacobian.column(p).amax();
                 if largest < 1e-9 {
-                    continue; // its axis goes through the tip and the payload
+                    continue; // the axis goes through the tip and the payload, so nothing changes
                 }
                 moving += 1;
                 for (i, own) in column.iter().enumerate() {

@@ -247,7 +247,7 @@ impl Settling<'_> {
             }
             let noise = Noise { scale: [1.0; 3], outliers: round.judged.outliers.clone() };
             if round.selection.given_up {
-                return Round { noise, ..round }; // gross errors do not change a result that a law without a name has settled
+                return Round { noise, ..round }; // a law without a name has settled the result
             }
             round = self.run(noise, Before::Best(&round.selection.best));
         }
