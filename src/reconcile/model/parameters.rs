@@ -229,7 +229,7 @@ impl Candidate {
         self.kind.name == other.kind.name && self.at == other.at && self.words() == other.words()
     }
 
-    /// Adds starting points towards every corner of a vector's range. They are used for campaigns with few readings, in
+    /// Adds starting points towards every vertex of a vector's range. They are used for campaigns with few readings, in
     /// which a single start may miss the minimum.
     pub fn from_corners(mut self) -> Self {
         self.starts.extend(corners(&self.free_parameters));
@@ -274,7 +274,7 @@ impl Candidate {
     }
 }
 
-/// Starting points for the components of a vector: a fifth of the way from zero to each corner of their
+/// Starting points for the components of a vector: a fifth of the way from zero to each vertex of their
 /// range. With zero everywhere a descent may see no slope.
 fn corners(free_parameters: &[FreeParameter]) -> Vec<Vec<f64>> {
     if free_parameters.len() < 2 || free_parameters.iter().any(|k| k.name != free_parameters[0].name) {

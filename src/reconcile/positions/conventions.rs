@@ -260,8 +260,8 @@ impl Asked<'_> {
 }
 
 impl Positions {
-    /// A sentence on the convention by which the positions would fit far better, if calibration does not come near them
-    /// and there is one.
+    /// Sentence on a convention by which the positions would fit far better. `None` if calibration fits the positions
+    /// well enough, or if no convention is found.
     pub(super) fn other_convention(&self, campaign: &Campaign) -> Option<String> {
         let spec = &campaign.statement.positions;
         let declared_mm: f64 = campaign.positions.iter().map(|row| row.sigma_mm()).sum();

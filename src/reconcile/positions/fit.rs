@@ -52,7 +52,8 @@ impl Fitted {
     }
 }
 
-/// Fits geometry and the named compliances to the samples, starting from a model.
+/// Fits the numbers of the geometry and the compliances of the candidates `effects` to the samples, starting from the
+/// model `start`.
 pub(crate) fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], start: &Fitted) -> Fitted {
     let mut here = start.clone();
     here.compliances = effects
@@ -68,7 +69,8 @@ pub(crate) fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], st
     here.moved.resize(numbers.len(), 0.0);
     // kept for comparison: the start can be better than where a first bad step leads
     let begin = here.clone().judged(samples);
-    // The first step may make the fit worse, because the parabola is a poor model far from the best fit.
+    // The first step is taken even if it makes the fit worse, because the quadratic approximation is poor far from the
+    // best fit.
     let mut merit = f64::NEG_INFINITY;
     let mut last: Option<Best> = None;
     for _ in 0..MOST_STEPS {

@@ -158,7 +158,7 @@ impl Fitted {
     }
 }
 
-/// Errors of samples as a fit sees them.
+/// Errors of the samples, weighted by coordinate for the fit.
 pub(crate) fn misses(samples: &[&Sample], fitted: &Fitted) -> Vec<Miss> {
     let mut placer = fitted.geometry.placer();
     samples.iter().map(|s| s.miss(&s.error(fitted.predicted_by(&mut placer, s)))).collect()

@@ -20,8 +20,8 @@ pub(crate) enum Number {
     BasePosition(usize),
     /// Offset of a point on the last frame \[m\]: index of the point, component.
     Tool(usize, usize),
-    /// Rotation of everything behind a link of unknown mounting \[rad\]: index of the piece, and axis of the frame
-    /// inboard of the link.
+    /// Rotation of everything behind a link of unknown mounting \[rad\]: index of the piece (joint or link), and axis
+    /// of the frame inboard of the link.
     Mount(usize, usize),
     /// Vector of a link of unknown mounting \[m\]: index of the piece, component.
     MountVector(usize, usize),
@@ -39,10 +39,10 @@ pub(crate) enum Number {
     Ratio(usize, usize),
     /// Horizontal component of the unit vector of gravity \[-\]: index of the axis, x or y, of the level frame.
     Gravity(usize),
-    /// Rotation of all points of a later session against the first one, about the base's origin \[rad\]: session,
-    /// instrument axis.
+    /// Rotation of all points of a later session relative to the first session, about the base's origin \[rad\]:
+    /// session, instrument axis.
     SessionRotation(usize, usize),
-    /// Shift of all points of a later session against the first one \[m\]: session, instrument axis.
+    /// Shift of all points of a later session relative to the first session \[m\]: session, instrument axis.
     SessionPosition(usize, usize),
 }
 
@@ -149,8 +149,8 @@ pub(crate) struct Geometry {
     pub origin_m: Vector3<f64>,
     /// Points on the tools, each in the last frame of the point's arm \[m\].
     pub tools_m: Vec<Vector3<f64>>,
-    /// For each session, rotation of all points about the base's origin, and shift of all points \[m\], against the
-    /// first session.
+    /// For each session, relative to the first one: rotation of all points about the base's origin, and shift of all
+    /// points \[m\].
     pub stations: Vec<(Rotation3<f64>, Vector3<f64>)>,
     /// Rotation from the base frame to the level frame, whose z axis is opposite to gravity.
     pub level: Rotation3<f64>,
@@ -273,7 +273,7 @@ impl Geometry {
         }
     }
 
-    /// Turns the level frame so that gravity points along its -z again.
+    /// Turns the level frame so that gravity again points along its -z axis.
     pub(crate) fn relevel(&mut self) {
         if let Some(turn) = Rotation3::rotation_between(&self.gravity, &-Vector3::z()) {
             self.level = turn * self.level;

@@ -373,7 +373,7 @@ fn yielding_everywhere(structure: &Structure, known: &Chain, joints: usize) -> S
         if let Piece::Link(link) = &mut unit.pieces[own.piece]
             && structure.gravity_m_s2 > 0.0
         {
-            // the bodies are still there
+            // the bodies on the link stay in the model, so that their mass is subtracted
             link.point_mass_kg -= linear(&own.weight).z / structure.gravity_m_s2 + total_kg(&link.bodies);
         }
     }

@@ -96,7 +96,7 @@ pub(crate) fn normal(samples: &[&Sample], numbers: &[Number], here: &Fitted, fur
 
 /// Sums of products of rows, taken block by block.
 struct Products {
-    /// Rows of a block, as columns.
+    /// Rows of the equations of one block; each is a column of this matrix.
     rows: DMatrix<f64>,
     right: DVector<f64>,
     curvature: DMatrix<f64>,
@@ -122,7 +122,8 @@ impl Products {
         self.right.fixed_rows_mut::<3>(3 * k).copy_from(error);
     }
 
-    /// Adds the products of the block, which holds `samples` samples. Numbers that move none of these are left out.
+    /// Adds the products of the block, which holds `samples` samples. Columns that are zero in all of them are left
+    /// out.
     fn add(&mut self, samples: usize) {
         let rows = self.rows.columns(0, 3 * samples);
         let own: Vec<usize> = (0..rows.nrows()).filter(|i| rows.row(*i).iter().any(|x| *x != 0.0)).collect();

@@ -1,5 +1,6 @@
 //! Finds which candidates are compliant. Each candidate is screened with the linearized model, and the most promising
-//! are fitted in full. A candidate whose gain exceeds its price stays if held-out poses confirm it.
+//! are fitted in full. The price of a candidate is a charge, in ln of the likelihood, for its parameters and for the
+//! number of places examined. A candidate whose gain exceeds its price stays if held-out poses confirm it.
 
 use super::analysis::Positions;
 use super::fit::{fit, ln_likelihood, scale};
@@ -96,8 +97,7 @@ impl Positions {
         let numbers = self.fitted.compliances[position].iter().zip(&self.fitted.deviations[position]);
         // an effect that others can replace has large standard deviations
         let is_small = |(c, deviation): (&f64, &f64)| 0.5 * (c / deviation).powi(2) < 2.0 * price;
-        // the standard deviations are too small next to a compliance that is held at the limit of being a
-        // spring
+        // if some compliance is held at its constraint, the standard deviations of the others are too small
         let is_held = self.fitted.deviations.iter().flatten().any(|d| !d.is_finite());
         is_held || numbers.into_iter().all(is_small)
     }
@@ -106,7 +106,8 @@ impl Positions {
         format!("{}@{}", self.candidates[candidate].effect, self.candidates[candidate].at)
     }
 
-    /// ln of the likelihood minus the price of all effects and of the sessions that nobody declared.
+    /// Score of the model: ln of the likelihood less the prices of all effects, transmission errors and undeclared
+    /// sessions.
     pub(super) fn score(&self) -> f64 {
         let uneven = self.transmissions.len() as f64 * self.transmission_price();
         self.fitted.ln_likelihood - self.prices(&self.fitted.effects) - uneven - self.sessions_price()

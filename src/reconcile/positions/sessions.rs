@@ -4,11 +4,15 @@
 //! is tried as the first of a new session, by the gain of the linearized model. The earlier rows then have an offset or
 //! a placement of their own.
 //!
-//! With the curvature `A` of the model (its factor whitens: `A⁻¹ = WᵀW`), and sums over the earlier rows of products of
-//! the slopes `s` of the offset, of the model's slopes `m` and of the errors `e`, the gain is `½ bᵀ S⁻¹ b` with `S = Σ
-//! s sᵀ - Cᵀ C`, `b = Σ s e - Cᵀ W g`, `C = Σ W m sᵀ` and the gradient `g` of the model. All sums grow row by row, so
-//! one pass tries every row. The computing time is proportional to the number of rows, and the memory does not depend
-//! on it.
+//! The gain is `½ bᵀ S⁻¹ b` with
+//! - `S = Σ s sᵀ - Cᵀ C`,
+//! - `b = Σ s e - Cᵀ W g`,
+//! - `C = Σ W m sᵀ`.
+//!
+//! Here `A` is the curvature of the model, whose factor whitens (`A⁻¹ = WᵀW`), and `g` its gradient. The sums are over
+//! the earlier rows: of the slopes `s` of the offset, the slopes `m` of the model's numbers, and the errors `e`. All
+//! sums grow row by row, so one pass tries every row. The computing time is proportional to the number of rows, and the
+//! memory does not depend on it.
 
 use super::analysis::Positions;
 use super::fit::fit;

@@ -73,8 +73,9 @@ pub(crate) fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) ->
     let mut parabola = Parabola { curvature, gradient, numbers, now, ranges, blocks };
     loop {
         let mut best = parabola.best()?;
-        // the value at the start is zero, so a positive value is worse than no step; the descent from the projected
-        // compliances can end there, and then it is repeated from the present ones
+        // the value at the start is zero: if the descent from the projected compliances ends above it, it starts again
+        // from
+        // the present compliances
         if parabola.value(&best.step) > 0.0 {
             parabola.frames_from_now();
             best = parabola.best()?;
