@@ -435,7 +435,7 @@ impl Analysis<'_> {
         corrected_model::choose(self.with_laws, first_law, self.noise, baseline, named, chosen)
     }
 
-    /// The laws without a name of a model.
+    /// The laws without a name that a model contains, with their parameters.
     fn laws(&self, fit: &Fit, findings: &[Finding]) -> Vec<Law> {
         let each = fit.model.effects.iter().zip(findings);
         each.filter(|(effect, _)| effect.kind.name == KIND.name)

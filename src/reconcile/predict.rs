@@ -68,7 +68,7 @@ pub fn predict(arms: &[Placed], statement: &Statement, table: Table) -> Result<S
     if faults.is_empty() { Ok(text) } else { Err(Faults(faults)) }
 }
 
-/// The arm under test, with all effects of its file.
+/// The arm as it is tested (subject), with all effects of its file.
 pub(crate) fn subject(arm: &Arm, statement: &Statement) -> Subject {
     let mut nominal = Arm { effects: Vec::new(), ..arm.clone() }.subject(JointModel::ThreeSegment);
     if statement.rigid_links {
@@ -141,7 +141,7 @@ fn text(table: &Table, names: &[&str], columns: &[Vec<f64>]) -> String {
     out
 }
 
-/// Cells as a line of CSV.
+/// The cells as one line of CSV.
 fn joined(cells: &[String]) -> String {
     let quoted = |cell: &String| match cell.contains([',', '"', '\n']) {
         true => format!("\"{}\"", cell.replace('"', "\"\"")),

@@ -12,7 +12,7 @@ use crate::input::json::{Faults, InputError};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// The files of a prediction.
+/// The input files of a prediction.
 #[derive(Debug, Clone, Copy)]
 pub struct Files<'a> {
     /// Path of the arm file, corrected or not.
@@ -30,7 +30,7 @@ pub struct Prediction {
     pub csv: String,
     /// A remark on the prediction, if there is one, such as rows that belong to no known session.
     pub remark: Option<String>,
-    /// The other arms on the same trunk, whose files were read too.
+    /// Paths of the other arms on the same trunk, which were read too.
     pub other_arms: Vec<PathBuf>,
 }
 
@@ -63,7 +63,8 @@ fn placed(file: &Path, catalogs: &Catalogs) -> Result<Placed, InputError> {
     Ok(Placed { arm, placement: Placement::from_json(&json_of(file)) })
 }
 
-/// The other arms on the same trunk: those named in the corrected arm's provenance, or else in the campaign.
+/// Paths of the other arms on the same trunk. They are named in the provenance of the corrected arm or, if it has none,
+/// in the campaign.
 fn other_arms(files: &Files, statement: &Statement) -> Vec<PathBuf> {
     let folder = |file: &Path| file.parent().map(Path::to_path_buf).unwrap_or_default();
     let corrected = json_of(files.arm);

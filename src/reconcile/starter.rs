@@ -10,7 +10,7 @@ use crate::arm::effect::channel::Channel;
 use crate::arm::pose::DrivenJoint;
 use serde_json::{Value, json};
 
-/// Name of the page that says what to do.
+/// Name of the page that explains what to measure.
 pub(crate) const PAGE: &str = "STARTER.md";
 
 /// Names and contents of the files of a new campaign. The arm file is not among them.

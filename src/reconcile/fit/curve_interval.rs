@@ -24,17 +24,18 @@ const TAIL: f64 = 0.025;
 /// An end of the interval is `None` if the density at the limit of the range is more than this fraction of its maximum.
 /// The fraction corresponds to a rise of the objective by 3.84: exp(-3.84 / 2).
 const OPEN: f64 = 0.146;
-/// A node is ruled out where the objective exceeds that of the best fit by more than this.
+/// A node is ruled out if the objective there exceeds that of the best fit by more than this. Its probability density
+/// is then below a thousandth of the maximum: exp(-14 / 2).
 const RULED_OUT: f64 = 14.0;
-/// First step between nodes, in standard deviations of the break point.
+/// First step between nodes, as a multiple of the standard deviation of the break point.
 const STEP: f64 = 0.5;
 /// Smallest and largest first step \[ln of the torque\].
 const STEPS: (f64, f64) = (0.004, 0.08);
 /// Ratio of each step between nodes to the step before it, going outwards from the best fit.
 const GROWTH: f64 = 1.4;
-/// Every third node is always visited, so that no separate peak is missed.
+/// Every third node is always fitted, so that no separate peak is missed.
 const COARSE: usize = 3;
-/// Effort of a fit with both break points held.
+/// Limits on the effort of a fit with both break points held.
 const HELD: Effort = Effort { steps: 4, tolerance: 0.05 };
 
 /// The nodes of one break point, in ascending order \[ln of the torque\].
@@ -100,7 +101,7 @@ impl Axis {
     }
 }
 
-/// Index of the node on each of the two axes.
+/// Index of the node on each of the two axes, one axis per break point.
 type Nodes = [usize; 2];
 
 /// Fits the cells of a coarse grid over the nodes, and then the neighbours of every cell that is not ruled out.

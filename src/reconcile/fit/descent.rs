@@ -44,7 +44,7 @@ impl Weights {
 
 /// The predictions and the objective of a model at one parameter vector.
 pub struct Point {
-    /// Parameters.
+    /// The parameters: the calibrated ones first, then those of the effects.
     pub u: Vec<f64>,
     /// Compliances, joint laws and masses of the arm with these parameters.
     pub coefficients: Coefficients,
@@ -62,9 +62,9 @@ pub struct Point {
 
 /// A fitted model.
 pub struct Fit<'a> {
-    /// The model.
+    /// The model, with its effects and the parameters that are held.
     pub model: Model<'a>,
-    /// The point where the objective is smallest.
+    /// The point where the objective is smallest, with its predictions.
     pub point: Point,
     /// Derivative of every prediction (rows) with respect to every parameter (columns).
     pub jacobian: DMatrix<f64>,
@@ -179,9 +179,9 @@ fn changes_to(forward: &Forward, at: &Point, moved: &[Coefficients]) -> DMatrix<
 
 /// Gradient and curvature of half the objective.
 pub struct Normal {
-    /// Gradient.
+    /// Gradient of half the objective, one entry per parameter.
     pub gradient: DVector<f64>,
-    /// Curvature.
+    /// Curvature matrix of half the objective (Gauss-Newton).
     pub curvature: DMatrix<f64>,
 }
 
@@ -314,7 +314,7 @@ fn damped(normal: &Normal, free: &[usize], damping: f64) -> DVector<f64> {
 pub struct Effort {
     /// Largest number of steps.
     pub steps: usize,
-    /// The fit ends when a step lowers the objective by less than this.
+    /// The fit ends if a step lowers the objective by less than this.
     pub tolerance: f64,
 }
 

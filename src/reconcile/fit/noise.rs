@@ -12,7 +12,7 @@ use std::collections::{HashMap, HashSet};
 /// Quality of the readings, judged by the residuals of a fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Noise {
-    /// Factor on the declared standard deviations of static, modal and windup readings.
+    /// Factors on the declared standard deviations of static, modal and windup readings, in this order.
     pub scale: [f64; 3],
     /// Rows that are gross errors: channel, row counted from 0, and size of the residual in declared standard
     /// deviations.
@@ -198,13 +198,14 @@ impl Noise {
         self
     }
 
-    /// Whether two judgements leave out the same rows.
+    /// Whether two judgements of the readings leave out the same rows.
     pub fn same_rows(&self, other: &Self) -> bool {
         let rows = |n: &Self| n.outliers.iter().map(|(c, r, _)| (*c, *r)).collect::<Vec<_>>();
         rows(self) == rows(other)
     }
 
-    /// Whether two judgements lead to nearly the same weights.
+    /// Whether two judgements of the readings leave out the same rows and have nearly the same factors on the standard
+    /// deviations.
     pub fn agrees(&self, other: &Self) -> bool {
         self.same_rows(other) && self.scale.iter().zip(&other.scale).all(|(a, b)| (a / b - 1.0).abs() < 0.03)
     }
@@ -263,7 +264,7 @@ fn without_runs(data: &[Datum], residuals: &[f64], gross: Vec<(usize, f64)>) -> 
     gross.into_iter().filter(|(row, _)| !(in_order && follows(*row))).collect()
 }
 
-/// The largest size among the data of each row of a channel. Rows come in the order of their first datum.
+/// Number of each row of a channel, and the largest size among its data. Rows come in the order of their first datum.
 fn largest_of_rows<'a>(sizes: impl Iterator<Item = (&'a Datum, f64)>) -> Vec<(usize, f64)> {
     let mut out: Vec<(usize, f64)> = Vec::new();
     let mut known: HashMap<usize, usize> = HashMap::new();
@@ -292,7 +293,8 @@ fn declared_residuals(forward: &Forward, predicted: &[f64]) -> Vec<f64> {
     forward.data.iter().zip(predicted).map(|(d, p)| (d.value - p) / d.sigma).collect()
 }
 
-/// Robust standard deviation of the residuals: the few largest do not change it.
+/// Robust standard deviation of the residuals, from the median of their absolute values: a few large ones do not change
+/// it.
 fn spread(residuals: &[f64]) -> f64 {
     1.4826 * median(residuals.iter().map(|r| r.abs()).collect())
 }

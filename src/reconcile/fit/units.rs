@@ -17,8 +17,8 @@ use crate::reconcile::readings::components::{DISPLACEMENT, FEWEST_ALIKE};
 /// wide, because an effect that is still missing changes the ratio.
 const NEAR: f64 = 0.25;
 
-/// A suspicion that the declared standard deviations of a channel are too small by a factor, because a unit was
-/// confused.
+/// A suspicion that the declared standard deviations of a channel are too small by a factor, because its readings are
+/// in another unit than stated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stretch {
     channel: Channel,
@@ -33,7 +33,7 @@ impl Stretch {
             .any(|effect| effect.kind.name == wrong_unit::KIND.name && effect.at == self.channel.word())
     }
 
-    /// The assumed factor, in words.
+    /// Sentence on the factor that is assumed.
     pub(crate) fn sentence(&self) -> String {
         let Self { channel, factor } = self;
         let (channel, factor) = (channel.word(), crate::report::number::significant(*factor, 4));

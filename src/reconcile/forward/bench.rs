@@ -6,7 +6,7 @@ use crate::arm::effect::channel::Channel;
 use crate::arm::joint_law::JointLaw;
 use crate::reconcile::readings::campaign::Campaign;
 
-/// Arc minutes in a radian.
+/// Number of arc minutes in a radian.
 pub(crate) const ARCMIN_PER_RAD: f64 = 10800.0 / std::f64::consts::PI;
 
 /// One joint's rows on the bench, in the order of the file.
@@ -18,7 +18,7 @@ pub(crate) struct Bench {
     rows: Vec<usize>,
 }
 
-/// Gathers the bench rows of each joint and appends their data.
+/// Gathers the bench rows of each joint, and appends their readings to `data`.
 pub(crate) fn prepare(campaign: &Campaign, layout: &Layout, data: &mut Vec<Datum>) -> Vec<Bench> {
     let mut bench: Vec<Bench> = Vec::new();
     for (row_index, row) in campaign.windup.iter().enumerate() {
@@ -50,7 +50,7 @@ impl Bench {
         self.torques_nm.iter().map(|t| t.abs())
     }
 
-    /// Writes the twist at every row \[arcmin\].
+    /// Writes the predicted twist at every row of the joint to `out` \[arcmin\].
     pub(crate) fn predict(&self, law: &JointLaw, out: &mut [f64]) {
         let twists = bench_twists_rad(law, &self.torques_nm);
         for (&index, twist) in self.rows.iter().zip(twists) {

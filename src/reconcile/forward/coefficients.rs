@@ -39,11 +39,11 @@ pub struct LinkSlot {
 /// 1), each joint's two tilts and its twist, and each link's strains. An arm with compliant frames also has coordinates
 /// for these.
 pub struct Layout {
-    /// Number of coordinates.
+    /// Number of strain coordinates.
     pub n: usize,
-    /// Joints, base to tip.
+    /// Strain coordinates of the joints, base to tip.
     pub joints: Vec<JointSlot>,
-    /// Links, base to tip.
+    /// Strain coordinates of the links, base to tip.
     pub links: Vec<LinkSlot>,
     /// For each prismatic joint, base to tip, the first of its four coordinates: three of its guide, then its travel.
     slides: Vec<usize>,
@@ -89,7 +89,7 @@ impl TestNumbers {
     }
 }
 
-/// A subject, expressed as numbers on the coordinates.
+/// A subject (an arm under test), expressed as numbers on the coordinates.
 #[derive(Debug, Clone)]
 pub struct Coefficients {
     /// Compliance of each coordinate. It is 0 for a joint's twist, because the joint's law is in `laws`.
@@ -209,7 +209,7 @@ impl Layout {
 fn with_everything(structure: &Structure) -> Structure {
     let mut full = structure.clone();
     full.base_tilt_rad_per_nm = 1.0;
-    // feet that lift off move the coordinates of the base's tilts
+    // lift-off of the feet acts on the coordinates of the base's tilts
     full.base_lift = None;
     full.water = None;
     for piece in &mut full.pieces {

@@ -26,7 +26,7 @@ pub struct Datum {
 /// The poses by which data are grouped.
 #[derive(Debug, Default)]
 pub(crate) struct Groups {
-    /// Names of the groups: the angles of each pose.
+    /// Names of the groups: the angles of each pose, separated by commas.
     pub names: Vec<String>,
     known: HashMap<Vec<u64>, usize>,
 }

@@ -46,7 +46,7 @@ pub struct ModalTest {
     when: Moment,
     /// For each datum of the list: its index, and the number of its mode, from 0.
     pub modes: Vec<(usize, usize)>,
-    /// Mass matrix of the nominal arm without payload.
+    /// Mass matrix of the nominal arm without payload, arranged for products.
     mass: Panels,
     /// Factors of the mass matrix of each added mass. They have few columns, and only the rows of coordinates inboard
     /// of the mass.
@@ -56,9 +56,9 @@ pub struct ModalTest {
     forces: DMatrix<f64>,
 }
 
-/// A solved mode.
+/// One vibration mode as solved.
 pub struct Solved {
-    /// `1/ω²`.
+    /// Eigenvalue `μ = 1/ω²`, the reciprocal of the squared angular frequency \[s²\].
     pub mu: f64,
     /// Mode shape, scaled to a strain energy of 0.5 J.
     pub x: DVector<f64>,
@@ -66,7 +66,7 @@ pub struct Solved {
     pub y: DVector<f64>,
 }
 
-/// Prepares the modal tests and appends their data.
+/// Prepares the modal tests, and appends their readings to `data`.
 pub(crate) fn prepare(
     campaign: &Campaign,
     layout: &Layout,
@@ -157,12 +157,12 @@ impl ModalTest {
         self.forces = self.trial_forces(layout, coefficients, &compliances);
     }
 
-    /// Largest number of trial shapes.
+    /// Number of trial shapes that is used if there are enough compliant coordinates.
     fn wanted(&self) -> usize {
         self.mode_count() + SPARE_SHAPES
     }
 
-    /// The inertia forces of the lowest modes.
+    /// Inertia forces of the lowest modes with these compliances: the trial forces `F`.
     fn trial_forces(
         &self,
         layout: &Layout,
@@ -306,7 +306,7 @@ impl ModalTest {
             .collect()
     }
 
-    /// Whether the modes are the same with two sets of coefficients.
+    /// Whether the modes of this test are the same with two sets of coefficients.
     pub(crate) fn same_modes(&self, layout: &Layout, from: &Coefficients, to: &Coefficients) -> bool {
         from.masses == to.masses
             && from.payload_delta_kg == to.payload_delta_kg
@@ -390,14 +390,14 @@ impl ModalTest {
         self.write(&solved, out);
     }
 
-    /// Writes the frequencies of solved modes. A mode that the arm does not have becomes 0.
+    /// Writes the frequencies of solved modes to `out` \[Hz\]. A mode that the arm does not have becomes 0.
     pub fn write(&self, solved: &[Solved], out: &mut [f64]) {
         for &(datum, mode) in &self.modes {
             out[datum] = solved.get(mode).map_or(0.0, |s| 1.0 / (TAU * s.mu.sqrt()));
         }
     }
 
-    /// The product `xᵀ M x` for a unit of an added mass.
+    /// The product `xᵀ M x`, where `M` is the mass matrix of one unit of added mass number `mass`.
     fn energy(&self, mass: usize, shape: &DVector<f64>) -> f64 {
         let factor = &self.factors[mass].l;
         factor.tr_mul(&shape.rows(0, factor.nrows())).norm_squared()
@@ -427,7 +427,7 @@ impl ModalTest {
         let payloads = payload_moves.then(|| (self.payload_jacobian(from), self.payload_jacobian(to)));
         let tests = [from, to].map(|c| &c.tests[Channel::Modal as usize]);
         let hung = (tests[0] != tests[1]).then(|| (self.hung_jacobian(from), self.hung_jacobian(to)));
-        // twice the kinetic energy of a mass at unit frequency
+        // twice the kinetic energy of a mass at an angular frequency of 1 rad/s
         let swing = |(kg, jacobian): &(f64, Matrix3xX<f64>), x: &DVector<f64>| match *kg {
             0.0 => 0.0,
             kg => kg * (jacobian * x).norm_squared(),
@@ -496,7 +496,7 @@ fn unit_strains(strain: DMatrix<f64>, reduced_mass: &DMatrix<f64>) -> Option<(Un
 }
 
 impl UnitStrains {
-    /// Expresses a vector of that basis in the trial shapes.
+    /// Expresses a vector in this basis as a combination of the trial shapes.
     fn of(&self, combined: &DVector<f64>) -> Option<DVector<f64>> {
         match self {
             UnitStrains::Factor(l) => l.tr_solve_lower_triangular(combined),
@@ -530,7 +530,7 @@ fn tangent(law: &JointLaw, torque_nm: f64, width: f64) -> f64 {
     law.tangent_compliance_rad_per_nm(torque_nm) - sharp + smooth
 }
 
-/// Displacement of the tip and rotation of the last frame per unit of each coordinate.
+/// Displacement of the tip, and rotation of the last frame, per unit of each coordinate.
 fn tip_jacobians(posed: &Posed) -> (Matrix3xX<f64>, Matrix3xX<f64>) {
     let twists = posed.tip_twists();
     let tip: Vec<Vector3<f64>> = twists.iter().map(|t| displacement_at(t, &posed.tip_m)).collect();

@@ -41,7 +41,7 @@ pub struct Forward {
 }
 
 impl Forward {
-    /// Prepares a campaign.
+    /// Prepares a campaign for fitting.
     pub fn new(campaign: &Campaign) -> Self {
         let mut nominal = campaign.arm.subject(JointModel::ThreeSegment);
         if campaign.statement.rigid_links {
@@ -97,7 +97,7 @@ impl Forward {
             .collect()
     }
 
-    /// Renumbers frequency lists from which a mode is missing. Returns a sentence for each list.
+    /// Renumbers frequency lists from which a mode is missing. Returns a sentence for each list that was changed.
     pub fn find_missed_modes(&mut self, coefficients: &Coefficients) -> Vec<String> {
         let mut out = Vec::new();
         for (i, test) in self.modal.iter_mut().enumerate() {
@@ -190,7 +190,7 @@ impl Forward {
             let state = pose.state(&self.layout, coefficients);
             for load in 0..pose.count() {
                 let true_mm = pose.displacement_mm(&state, load);
-                // every component of a row is read at the same time
+                // all components of a row have the same row number
                 let row = pose.measured(load).next().map_or(0, |(_, datum)| self.data[datum].row);
                 out.push(std::array::from_fn(|c| reading.of(true_mm[c], c, row)));
             }

@@ -34,26 +34,26 @@ pub struct Mover {
 pub struct PoseGeometry {
     /// Position of the tip, world frame \[m\].
     pub tip_m: Vector3<f64>,
-    /// Rotation of the last frame.
+    /// Rotation of the last frame relative to the world.
     pub rotation: Rotation3<f64>,
     /// All coordinates except the twists of joints that move the tip.
     pub linear: Vec<Mover>,
     /// The coordinates of the joints' torsion, base to tip.
     pub joints: Vec<Mover>,
-    /// Angle of each joint \[rad\].
+    /// Angle of each joint in the pose, base to tip \[rad\].
     pub angles_rad: Vec<f64>,
     /// Torque on each joint by the template's dead weight and by springs \[N m\].
     pub dead_nm: Vec<f64>,
     /// For each mass, the torques on the joints by one unit of it \[N m\].
     pub dead_per_mass_nm: Vec<Vec<f64>>,
-    /// Tilts of the base about world x and y.
+    /// Coordinates of the base's tilts about world x and y.
     pub base: [Mover; 2],
     /// Moments of the template's dead weight about these axes \[N m\]; below, those of one unit of each mass.
     dead_base_nm: [f64; 2],
     dead_base_per_mass_nm: Vec<[f64; 2]>,
 }
 
-/// One load in a pose.
+/// One load in a pose: payload and tip force.
 #[derive(Debug, Clone)]
 struct Load {
     payload: Payload,
@@ -85,11 +85,11 @@ pub struct StaticState {
     /// Tilt of a base whose feet lift off under each load, relative to the unloaded arm \[rad\]; empty if the feet do
     /// not lift off.
     lifted_rad: Vec<[f64; 2]>,
-    /// Torque of the dead weight on each joint \[N m\].
+    /// Torque on each joint by the dead weight, which is there without load \[N m\].
     dead_nm: Vec<f64>,
     /// Memory for these torques with other weights \[N m\].
     moved_dead_nm: Vec<f64>,
-    /// The wrench of each load.
+    /// Wrench of each load, about the world's origin.
     wrenches: Vec<Wrench>,
     /// Torque on each joint by each load \[N m\]; joints are the slow index.
     loaded_nm: Vec<f64>,
@@ -111,7 +111,7 @@ impl StaticState {
     }
 }
 
-/// Prepares the poses of the static rows and appends their data.
+/// Prepares the poses of the static rows, and appends their readings to `data`.
 pub(crate) fn prepare(
     campaign: &Campaign,
     layout: &Layout,
@@ -284,7 +284,7 @@ fn follow(law: &JointLaw, dead_nm: f64, loaded_nm: &[f64], twists_rad: &mut [f64
     }
 }
 
-/// Torque of the dead weight on each joint, and its moments about world x and y on the base \[N m\].
+/// Torque on each joint by the dead weight, and the moments on the base about world x and y \[N m\].
 fn dead_torques(posed: &Posed) -> (Vec<f64>, [f64; 2]) {
     let mut wrench = Wrench::zeros();
     let mut torques = Vec::new();
@@ -373,7 +373,7 @@ impl StaticPose {
         }
     }
 
-    /// Displacement of the tip under a load, by its index \[mm\].
+    /// Displacement of the tip under load number `load` \[mm\].
     pub(crate) fn displacement_mm(&self, state: &StaticState, load: usize) -> Vector3<f64> {
         let wrench = state.wrenches[load];
         let mut tip = state.compliance * wrench;
@@ -389,7 +389,7 @@ impl StaticPose {
         1e3 * tip
     }
 
-    /// Number of loads.
+    /// Number of loads in the pose.
     pub(crate) fn count(&self) -> usize {
         self.loads.len()
     }
@@ -416,7 +416,7 @@ impl StaticPose {
         state.lifted_rad.extend(state.wrenches.iter().map(lifted));
     }
 
-    /// Writes the displacements of all loads \[mm\], as far as they were measured.
+    /// Writes the measured components of the displacements under all loads to `out` \[mm\].
     pub(crate) fn write(&self, state: &StaticState, out: &mut [f64]) {
         for load in 0..self.loads.len() {
             let moved = self.displacement_mm(state, load);

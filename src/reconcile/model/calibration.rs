@@ -11,11 +11,11 @@ use nalgebra::Vector3;
 /// A property that calibration adjusts within tolerance.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Calibration {
-    /// Factor on the stiffness of a joint.
+    /// Factor on the stiffness of the joint with this name.
     Stiffness(String),
-    /// Factor on E and G of a material, and the links made of it.
+    /// Factor on the moduli E and G of a material: name of the material, and names of the links made of it.
     Modulus(String, Vec<String>),
-    /// Factor on the mass of a joint.
+    /// Factor on the mass of the joint with this name.
     Mass(String),
     /// Factor on the tilting stiffness of a joint's nominal bearing.
     Bearing {

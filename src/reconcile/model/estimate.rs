@@ -7,9 +7,9 @@ use serde_json::{Map, Value, json};
 /// it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
-    /// Lower end.
+    /// Lower end, in `u`.
     pub low: Option<f64>,
-    /// Upper end.
+    /// Upper end, in `u`.
     pub high: Option<f64>,
 }
 
@@ -32,16 +32,16 @@ impl Interval {
 /// A value with its 95 % interval. An end is `None` where the data do not bound it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
-    /// Best value.
+    /// Best value, in the unit of the parameter.
     pub value: f64,
-    /// Lower end.
+    /// Lower end of the interval, in the unit of the parameter.
     pub low: Option<f64>,
-    /// Upper end.
+    /// Upper end of the interval, in the unit of the parameter.
     pub high: Option<f64>,
 }
 
 impl Estimate {
-    /// As JSON.
+    /// The value with the ends of its interval as JSON.
     pub(crate) fn json(&self) -> Value {
         json!({"value": self.value, "low": self.low, "high": self.high})
     }
@@ -54,7 +54,7 @@ pub struct Finding {
     pub effect: String,
     /// Place of the effect: the name of a joint or link, `base`, or a channel.
     pub at: String,
-    /// Parameters; a vector parameter has several estimates.
+    /// Name of each parameter and its estimate; a vector has several estimates, one per component.
     pub parameters: Vec<(String, Vec<Estimate>)>,
     /// Name and place of effects that these readings cannot tell from this one.
     pub indistinguishable_from: Vec<(String, String)>,
@@ -66,7 +66,7 @@ impl Finding {
         format!("{}@{}", self.effect, self.at)
     }
 
-    /// As JSON of `verdict.json`.
+    /// The entry of the finding in `verdict.json`.
     pub(crate) fn json(&self) -> Value {
         let parameters: Map<String, Value> = self
             .parameters

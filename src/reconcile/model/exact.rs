@@ -17,7 +17,7 @@ use crate::reconcile::readings::rows::{ModalRow, PositionRow, StaticRow, WindupR
 use nalgebra::Vector3;
 use std::borrow::Cow;
 
-/// A subject prepared for prediction.
+/// An arm under test (subject), prepared for prediction.
 pub struct Exact<'a> {
     subject: &'a Subject,
     chain: Chain,
@@ -26,7 +26,7 @@ pub struct Exact<'a> {
 }
 
 impl<'a> Exact<'a> {
-    /// Prepares a subject.
+    /// Prepares an arm under test.
     pub fn new(subject: &'a Subject) -> Self {
         let chain = |structure: &Structure| Chain::new(structure, LinkModel::Full);
         let special = Channel::ALL.map(|channel| {

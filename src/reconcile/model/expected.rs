@@ -18,7 +18,7 @@ pub(crate) struct Sizes {
 }
 
 impl Sizes {
-    /// Measures the nominal arm and the readings.
+    /// Determines the sizes of the nominal arm and of the readings.
     pub(crate) fn of(forward: &Forward) -> Self {
         let structure = &forward.nominal.structure;
         let largest = |channel| {

@@ -9,7 +9,7 @@ use crate::arm::effect::subject::Subject;
 use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::prepared::Forward;
 
-/// One fitted parameter of an effect. A fit moves `u`, which is of the order of 1.
+/// One fitted parameter of an effect. A fit changes the scaled parameter `u`, which is of the order of 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FreeParameter {
     /// Name of the parameter.
@@ -20,9 +20,9 @@ pub struct FreeParameter {
     /// Scale of `u`. For linear scales it is the value at `u = 1`. For stiffnesses it is the stiffness at `u = 1`,
     /// where `u` is proportional to the compliance.
     reference: f64,
-    /// Smallest `u`.
+    /// Smallest value of `u` in a fit.
     pub low: f64,
-    /// Largest `u`.
+    /// Largest value of `u` in a fit.
     pub high: f64,
     /// Name of another parameter of the effect below which this one cannot lie.
     not_below: Option<&'static str>,
@@ -147,7 +147,7 @@ impl FreeParameter {
         Some(ends.low.is_none_or(|low| low <= absent) && ends.high.is_none_or(|high| high >= absent))
     }
 
-    /// Whether the effect has reached the largest size that is searched for.
+    /// Whether the effect has reached the largest size that is sought.
     fn is_at_its_limit(&self, u: f64) -> bool {
         // the end where the effect is absent is no limit
         let near = 1e-6 * (self.high - self.low);
@@ -157,11 +157,11 @@ impl FreeParameter {
         ends.into_iter().any(|end| (u - end).abs() <= near)
     }
 
-    /// Width of the prior at a value: the reciprocal of its density there.
+    /// Width of the prior at a value of `u`: the reciprocal of the prior density there.
     ///
-    /// The size of an effect may be of any order of magnitude. So each decade of sizes is equally likely, up
-    /// to the largest a part can have. A parameter that only says how an effect acts is equally likely
-    /// anywhere in its expected range.
+    /// The size of an effect may be of any order of magnitude. So each decade of sizes is equally likely, up to the
+    /// largest size that a part can have. A parameter that only says how an effect acts is equally likely anywhere in
+    /// its expected range.
     pub fn width(&self, u: f64) -> f64 {
         let range = self.expected.1 - self.expected.0;
         let Some(absent) = self.absent else { return range };
@@ -307,7 +307,7 @@ impl<'a> Model<'a> {
         Self { nuisance, effects: Vec::new(), smoothing: 0.0, held: Vec::new() }
     }
 
-    /// A model of the candidates with these indices.
+    /// A model with the candidates that have these indices.
     pub fn of(nuisance: &'a Nuisance, candidates: &'a [Candidate], effects: &[usize]) -> Self {
         Self { effects: effects.iter().map(|&i| &candidates[i]).collect(), ..Self::baseline(nuisance) }
     }
@@ -399,14 +399,14 @@ impl<'a> Model<'a> {
         self.calibrated() + self.effects[..effect].iter().map(|e| e.free_parameters.len()).sum::<usize>()
     }
 
-    /// Whether an effect has reached the largest size that is searched for.
+    /// Whether some effect has reached the largest size that is sought.
     pub fn is_at_a_limit(&self, u: &[f64]) -> bool {
         self.free_parameters()
             .zip(&u[self.calibrated()..])
             .any(|(parameter, u)| parameter.is_at_its_limit(*u))
     }
 
-    /// Smallest and largest value of a parameter.
+    /// Smallest and largest value of a parameter, in `u`; both are equal for a parameter that is held.
     pub fn bounds(&self, index: usize) -> (f64, f64) {
         if let Some((_, value)) = self.held.iter().find(|(held, _)| *held == index) {
             return (*value, *value);

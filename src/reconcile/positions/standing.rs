@@ -45,7 +45,7 @@ impl Positions {
         let number_of = |i: usize| own.iter().position(|&o| o == i).map_or(f64::INFINITY, |k| numbers[k]);
         let ends = runs.iter().skip(1).map(|next| Some(next[0])).chain([None]);
         let sessions = runs.iter().zip(ends).map(|(run, next)| Session {
-            // a test between two sessions may belong to either
+            // the limit between two sessions lies halfway between the test numbers on its two sides
             before_test: next.map_or(f64::INFINITY, |next| {
                 0.5 * (number_of(next) + number_of(*run.last().unwrap_or(&next)))
             }),

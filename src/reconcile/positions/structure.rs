@@ -68,7 +68,7 @@ impl Positions {
                 });
             }
         }
-        // Bonferroni, as in the test of the other readings
+        // Bonferroni correction for the number of tests, as for the other readings
         let asked = libm::log((structures.len() as f64).max(1.0));
         structures.iter_mut().for_each(|s| s.ln_p = (s.ln_p + asked).min(0.0));
         structures.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
@@ -136,7 +136,7 @@ struct Asker<'a> {
     questions: Vec<Question>,
     /// For each joint the index of its candidate about its axis, and the largest torque on it \[N m\].
     joints: Vec<(usize, f64)>,
-    /// For each driven joint, the index of the candidate at this joint.
+    /// For each driven joint, the index of the candidate that is its compliance about the axis.
     driven: Vec<usize>,
     largest_payload_kg: f64,
     payloads_kg: Vec<f64>,

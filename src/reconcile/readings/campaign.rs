@@ -25,7 +25,7 @@ use std::path::{Path, PathBuf};
 pub struct Tolerance {
     /// Limit of the stiffness of each joint. The joints deviate independently.
     pub joint_stiffness: f64,
-    /// Limit of the common factor on E and G of a material.
+    /// Limit of the common factor on the moduli E and G of each material.
     pub modulus: f64,
     /// Limit of the mass of each joint. The joints deviate independently.
     pub joint_mass: f64,
@@ -343,7 +343,7 @@ impl Campaign {
         if faults.is_empty() { Ok(campaign) } else { Err(Faults(faults)) }
     }
 
-    /// How many elements all arms have in common from the base: the trunk.
+    /// Number of elements that all arms have in common, counted from the base: the trunk.
     pub fn trunk(&self) -> usize {
         let shared =
             |other: &Arm| self.arm.chain.iter().zip(&other.chain).take_while(|(a, b)| a == b).count();
@@ -420,7 +420,7 @@ impl Campaign {
         }
     }
 
-    /// The files that were read.
+    /// Paths of all files that were read.
     pub fn input_files(&self) -> Vec<PathBuf> {
         let others = self.statement.other_arm_files.iter();
         let named = ["campaign.json", &self.statement.arm_file].into_iter().chain(others.map(String::as_str));

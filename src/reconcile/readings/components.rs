@@ -12,9 +12,9 @@ use super::table::Table;
 /// One component of a vector, as an instrument read it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Component {
-    /// Value \[mm\].
+    /// Measured value \[mm\].
     pub value_mm: f64,
-    /// Standard deviation \[mm\].
+    /// Standard deviation of the value \[mm\].
     pub sigma_mm: f64,
 }
 
@@ -24,7 +24,7 @@ pub type Components = [Option<Component>; 3];
 /// Smallest number of rows from which equal readings are suspicious.
 pub(crate) const FEWEST_ALIKE: usize = 4;
 
-/// Names of the columns of the components.
+/// Names of the columns that hold the components of a vector.
 pub(crate) struct Names {
     /// Names of the columns of the values.
     pub values: [&'static str; 3],
@@ -60,7 +60,7 @@ impl<'a> VectorColumns<'a> {
         let values = names.values.map(|name| table.optional(name));
         let sigmas = names.sigmas.map(|name| table.optional(name));
         let missing = names.values.iter().zip(&values).filter(|(_, found)| found.is_none());
-        // a misspelt column must not pass for a component that was not measured
+        // a column with a misspelt name must not be taken for a component that was not measured
         let misspelt: Vec<bool> =
             missing.map(|(name, _)| table.check_spelling(name, &names.values)).collect();
         let mut common = table.optional(COMMON_SIGMA);

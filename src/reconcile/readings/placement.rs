@@ -17,14 +17,14 @@ pub struct Stand {
     pub rotation: Matrix3<f64>,
     /// Origin of the base frame in the instrument's frame \[m\].
     pub origin_m: Vector3<f64>,
-    /// Points by name, in the last frame \[m\].
+    /// Name and position of each point, in the last frame \[m\].
     pub points_m: Vec<(String, Vector3<f64>)>,
 }
 
 /// A session: a range of test numbers with one placement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Session {
-    /// The first test number after the session; infinite for the last session.
+    /// Test number that ends the session: its tests have smaller numbers. Infinite for the last session.
     pub before_test: f64,
     /// The placement during the session.
     pub stand: Stand,
@@ -73,7 +73,8 @@ impl Stand {
 }
 
 impl Placement {
-    /// Reads the `placement` in the provenance of a corrected arm; the identity if there is none.
+    /// Reads the `placement` in the provenance of a corrected arm. If there is none, the arm stands at the instrument's
+    /// origin.
     pub fn from_json(arm_file: &Value) -> Self {
         let placement = &arm_file["provenance"]["placement"];
         let session = |s: &Value| {
@@ -88,7 +89,7 @@ impl Placement {
         }
     }
 
-    /// As JSON for the provenance of a corrected arm.
+    /// The entry `placement` in the provenance of a corrected arm.
     pub fn to_json(&self) -> Value {
         let mut out = self.usual.to_json();
         if !self.sessions.is_empty() {
@@ -131,7 +132,7 @@ pub fn test_numbers(rows: &[PositionRow]) -> Option<Vec<f64>> {
     rows.iter().map(|row| row.test.trim().parse().ok().filter(|n: &f64| n.is_finite())).collect()
 }
 
-/// A short text for a pose. Equal angles give equal texts.
+/// A short text that identifies a pose. Equal angles give equal texts.
 pub fn pose_mark(pose_deg: &[f64]) -> String {
     // rounded, because a file may change the last digits of an angle
     let angles: String = pose_deg.iter().map(|angle| format!("{angle:.6},")).collect();

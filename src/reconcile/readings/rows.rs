@@ -18,11 +18,11 @@ pub(crate) fn pose_key(pose_deg: &[f64]) -> Vec<u64> {
 /// Displacement of the tip under load: one row of `static.csv`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StaticRow {
-    /// Row of the file, from 0.
+    /// Number of the row in the file, from 0, without the header.
     pub row: usize,
-    /// Joint angles \[deg\].
+    /// Angles of the driven joints \[deg\]; travels of prismatic joints \[mm\].
     pub pose_deg: Vec<f64>,
-    /// Stated payload.
+    /// Payload as stated in the file.
     pub payload: Payload,
     /// Temperature of the arm \[°C\], if the file has the column `temperature_c`.
     pub temperature_c: Option<f64>,
@@ -30,22 +30,22 @@ pub struct StaticRow {
     pub force_n: Vector3<f64>,
     /// Branch of the loading cycle, as the operator labelled it; may be empty.
     pub branch: String,
-    /// Components of the displacement from the reference state, as far as they were measured.
+    /// Components of the displacement from the reference state; `None` for those that were not measured.
     pub measured: Components,
 }
 
 /// A natural frequency: one row of `modal.csv`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModalRow {
-    /// Row of the file, from 0.
+    /// Number of the row in the file, from 0, without the header.
     pub row: usize,
-    /// Joint angles \[deg\].
+    /// Angles of the driven joints \[deg\]; travels of prismatic joints \[mm\].
     pub pose_deg: Vec<f64>,
-    /// Stated payload.
+    /// Payload as stated in the file.
     pub payload: Payload,
     /// Temperature of the arm \[°C\], if the file has the column `temperature_c`.
     pub temperature_c: Option<f64>,
-    /// Number of the mode in its list, from 1.
+    /// Number of the mode in its list, from 1 by rising frequency.
     pub mode: usize,
     /// Measured natural frequency \[Hz\].
     pub frequency_hz: f64,
@@ -56,7 +56,7 @@ pub struct ModalRow {
 /// The twist (torsion) of one joint on a bench: one row of `windup.csv`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WindupRow {
-    /// Row of the file, from 0.
+    /// Number of the row in the file, from 0, without the header.
     pub row: usize,
     /// Name of the joint.
     pub joint: String,
@@ -73,21 +73,21 @@ pub struct WindupRow {
 /// An absolute position of a point on the tool: one row of `positions.csv`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PositionRow {
-    /// Row of the file, from 0.
+    /// Number of the row in the file, from 0, without the header.
     pub row: usize,
     /// Name or number of the test; empty if it has none.
     pub test: String,
-    /// Joint angles \[deg\].
+    /// Angles of the driven joints of all arms \[deg\].
     pub pose_deg: Vec<f64>,
-    /// Stated payload.
+    /// Payload as stated in the file.
     pub payload: Payload,
     /// Temperature of the arm \[°C\], if the file has the column `temperature_c`.
     pub temperature_c: Option<f64>,
     /// Index of the arm to which the point belongs, in the order of the campaign.
     pub arm: usize,
-    /// Name of the point.
+    /// Name of the point; `tip` if the file has no such column.
     pub point: String,
-    /// Coordinates in the frame of the instrument, as far as they were measured.
+    /// Coordinates in the frame of the instrument; `None` for those that were not measured.
     pub measured: Components,
 }
 
@@ -100,21 +100,21 @@ impl PositionRow {
 }
 
 impl StaticRow {
-    /// When it was taken.
+    /// Row and temperature of the reading, for effects of warming.
     pub fn moment(&self) -> Moment {
         Moment { row: self.row, temperature_c: self.temperature_c }
     }
 }
 
 impl ModalRow {
-    /// When it was taken.
+    /// Row and temperature of the reading, for effects of warming.
     pub fn moment(&self) -> Moment {
         Moment { row: self.row, temperature_c: self.temperature_c }
     }
 }
 
 impl PositionRow {
-    /// When it was taken.
+    /// Row and temperature of the reading, for effects of warming.
     pub fn moment(&self) -> Moment {
         Moment { row: self.row, temperature_c: self.temperature_c }
     }
@@ -198,7 +198,7 @@ impl StateColumns {
     }
 }
 
-/// Reads static rows.
+/// Reads the rows of `static.csv`.
 pub(crate) fn static_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<StaticRow> {
     const FORCE: [&str; 3] = ["force_x_n", "force_y_n", "force_z_n"];
     table.check_family("force", &FORCE);
@@ -230,7 +230,7 @@ pub(crate) fn static_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Sta
     rows
 }
 
-/// Reads modal rows.
+/// Reads the rows of `modal.csv`.
 pub(crate) fn modal_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<ModalRow> {
     let state = StateColumns::find(table, &arm.driven_joints(), false);
     let mode = table.required("mode");
@@ -267,7 +267,7 @@ pub(crate) fn modal_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Moda
     rows
 }
 
-/// Reads bench rows.
+/// Reads the rows of `windup.csv`.
 pub(crate) fn windup_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<WindupRow> {
     let columns = ["joint", "torque_nm"].map(|n| table.required(n));
     let readings = ["windup_arcmin", "sigma_arcmin"].map(|name| reading_column(table, name, purpose));
@@ -298,7 +298,7 @@ pub(crate) fn windup_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Win
     rows
 }
 
-/// Reads absolute positions. `arms` holds the names of the arms, `driven` the joints that have a column.
+/// Reads the rows of `positions.csv`. `arms` holds the names of the arms, `driven` the joints that have a column.
 pub(crate) fn position_rows(
     table: &Table,
     arms: &[&str],

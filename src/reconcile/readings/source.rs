@@ -5,7 +5,7 @@ use crate::arm::effect::channel::Channel;
 use crate::arm::pose::DrivenJoint;
 use crate::input::json::{Node, Object, closest};
 
-/// The usual files of the channels, in the order of [`Channel::ALL`].
+/// Usual names of the channels' files, in the order of [`Channel::ALL`].
 pub(crate) const DEFAULT_FILES: [&str; 4] = ["static.csv", "modal.csv", "windup.csv", "positions.csv"];
 
 /// The columns of each channel, in the order of [`Channel::ALL`], without the angles `q_<joint>_deg`.
@@ -57,7 +57,8 @@ const COLUMNS: [&[&str]; 4] = [
     ],
 ];
 
-/// The columns of a channel's table for an arm with these joints, in the order in which people write them.
+/// The columns of a channel's table for an arm with these joints, in the usual order. Columns that few files need are
+/// left out.
 pub(crate) fn columns_for(channel: Channel, joints: &[DrivenJoint]) -> Vec<String> {
     let (label, others) = COLUMNS[channel as usize].split_at(1);
     let angles = joints.iter().map(|joint| format!("q_{}", joint.key()));
@@ -67,7 +68,7 @@ pub(crate) fn columns_for(channel: Channel, joints: &[DrivenJoint]) -> Vec<Strin
     label.iter().map(|name| name.to_string()).chain(angles).chain(others).collect()
 }
 
-/// Standard deviations of single components, which few files have.
+/// Columns with the standard deviation of a single component, which few files have.
 const OWN_SIGMAS: [&str; 6] =
     ["sigma_dx_mm", "sigma_dy_mm", "sigma_dz_mm", "sigma_x_mm", "sigma_y_mm", "sigma_z_mm"];
 

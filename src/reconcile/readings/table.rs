@@ -18,13 +18,13 @@ const NAMES: [&str; 3] = ["test", "joint", "point"];
 /// A CSV file or a sheet of a spreadsheet, whose first row names the columns.
 #[derive(Debug)]
 pub struct Table {
-    /// File name as given, with the sheet of a spreadsheet.
+    /// Path of the file as given; for a spreadsheet with the name of the sheet.
     pub file: String,
     /// Names of the columns, in the terms of this program.
     pub columns: Vec<String>,
     /// Cells of each row as text.
     pub rows: Vec<Vec<String>>,
-    /// Line of each row in the file.
+    /// Line number of each row in the file.
     pub lines: Vec<usize>,
     /// Line of the column names in the file.
     header_line: usize,
@@ -36,7 +36,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Reads a CSV file; rows of the wrong length are faults.
+    /// Reads a CSV file. Rows of the wrong length are recorded as faults.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -95,7 +95,7 @@ impl Table {
         }
     }
 
-    /// Parses CSV text. Rows of the wrong length are faults.
+    /// Parses CSV text. Rows of the wrong length are recorded as faults.
     pub fn parse(file: &str, text: &str) -> Self {
         let mut table = Self::empty(file);
         let csv = Csv::parse(text.as_bytes(), Some(COMMENT));
@@ -176,7 +176,7 @@ impl Table {
         }
     }
 
-    /// Whether the first row names columns. If it does not, further faults would only confuse.
+    /// Whether there is a header with more than one column. If not, further faults would only confuse.
     fn has_header(&self) -> bool {
         self.columns.len() > 1
     }
@@ -241,7 +241,7 @@ impl Table {
         self.fault(self.lines.get(row).copied(), column, problem, hint);
     }
 
-    /// All faults found.
+    /// All faults that were recorded.
     pub fn into_faults(self) -> Vec<Fault> {
         self.faults.into_inner()
     }
@@ -305,7 +305,7 @@ impl Table {
         self.text(row, column).is_empty()
     }
 
-    /// A cell's text.
+    /// Text of a cell.
     pub fn text(&self, row: usize, column: usize) -> &str {
         &self.rows[row][column]
     }

@@ -17,7 +17,7 @@ use crate::reconcile::model::parameters::Number::{Free, Stated};
 use crate::reconcile::model::parameters::{Candidate, FreeParameter};
 use rayon::prelude::*;
 
-/// Largest number of laws in one model.
+/// Largest number of laws without a name in one model.
 const MOST_LAWS: usize = 3;
 /// A law is accepted if ln of the evidence, less the price of its place, rises by more than this.
 const BETTER: f64 = 2.0;
@@ -26,7 +26,7 @@ const UNLOADED: f64 = 1e-3;
 /// Largest further twist that is sought, as a multiple of the joint's twist at its largest torque.
 const LARGEST: f64 = 3.0;
 
-/// Every law at every place where the readings could show it.
+/// All laws without a name at every place where the readings could show them, as candidates.
 pub(crate) fn laws(forward: &Forward) -> Vec<Candidate> {
     let nominal = forward.coefficients(&forward.nominal);
     let torques_nm: Vec<f64> =
@@ -62,7 +62,7 @@ pub(crate) fn may_be(candidate: &Candidate) -> &'static str {
     }
 }
 
-/// The law in words.
+/// Description of the law in words.
 pub(crate) fn in_words(candidate: &Candidate) -> String {
     let at = &candidate.at;
     match candidate.free_parameters.first().map(|free| free.name) {

@@ -23,7 +23,8 @@ use rayon::prelude::*;
 
 /// Smallest number of rows from which one model can be chosen.
 pub(crate) const FEWEST_ROWS: usize = 11;
-/// Largest number of fits for sets of one size. Beyond it only the most promising smaller sets are extended.
+/// Largest number of fits for sets of one size. If more would be needed, only the most promising smaller sets are
+/// extended.
 const MOST_FITS: usize = 6000;
 /// A set of effects does not explain the readings if chance gives a misfit as large as its own with less than this
 /// probability.
@@ -37,7 +38,7 @@ const MATERIAL: f64 = 0.02;
 const WIDE: f64 = 1.2;
 /// Factors by which a stiffness is multiplied, and then divided, to find its possible range.
 const FACTORS: [f64; 9] = [1.1, 1.2, 1.4, 1.7, 2.0, 3.0, 4.0, 6.0, 10.0];
-/// Number of sets whose stiffnesses are varied.
+/// Largest number of sets for which the stiffnesses are varied.
 const MOST_PROFILES: usize = 6;
 
 /// Fits every small set of effects. In the result, `others` holds the sets that explain the readings, the best first.
@@ -80,7 +81,7 @@ fn explains(search: &Search, scored: &Scored) -> bool {
     is_probable(search, scored, scored.objective)
 }
 
-/// Whether chance can leave a misfit as large as this.
+/// Whether chance leaves a misfit as large as this with a probability of at least [`IMPROBABLE`].
 fn is_probable(search: &Search, set: &Scored, misfit: f64) -> bool {
     let readings = search.forward.data.len();
     let free = free_parameters(search, &set.effects);

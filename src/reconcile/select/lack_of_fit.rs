@@ -67,7 +67,7 @@ pub(crate) fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, wei
             });
         }
     }
-    // Bonferroni: with many questions one of them looks improbable by chance
+    // Bonferroni correction: with many tests one of them looks improbable by chance
     let asked = libm::log((structures.len() as f64).max(1.0));
     structures.iter_mut().for_each(|s| s.ln_p = (s.ln_p + asked).min(0.0));
     structures.extend(unnamed::law_questions(campaign, forward, fit, weights));

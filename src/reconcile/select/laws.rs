@@ -22,7 +22,7 @@ use std::f64::consts::TAU;
 
 /// A law without a name: a way in which readings can differ from the model.
 pub(crate) struct Law {
-    /// The law in words.
+    /// Description of the law in words.
     pub what: String,
     /// Name of the effect of the library that is the same as this law; `None` if there is none.
     pub effect: Option<&'static str>,
@@ -95,7 +95,7 @@ impl Builder<'_> {
             column(&|s| (s.torque_nm.abs(), s.torque_nm.signum())),
             column(&|s| (s.torque_nm * part(s), 2.0 * part(s))),
         ];
-        // the angle of the joint on the bench is not known
+        // on the bench the angle of the joint is not known
         let wave = |k: usize| {
             column(&|s| {
                 let factor = if s.channel == Channel::Windup { 0.0 } else { waves(s.angle_deg)[k] };
@@ -279,8 +279,8 @@ impl Builder<'_> {
         self.read(&truth)
     }
 
-    /// Adds the change of the frequencies by a change `dC` of the compliances. `energy` gives `yᵀ dC y` for a datum
-    /// and the datum's mode `y`.
+    /// Adds to `truth` the change of the frequencies by a change `dC` of the compliances. `energy` gives `yᵀ dC y` for
+    /// a datum and the mode `y` of the datum.
     fn add_modal(&self, truth: &mut [f64], energy: impl Fn(usize, &DVector<f64>) -> f64) {
         for (test, solved) in self.forward.modal.iter().zip(&self.fit.point.solved) {
             for &(datum, mode) in &test.modes {
@@ -434,7 +434,7 @@ fn rows_in_pose<'a>(poses: impl Iterator<Item = &'a [f64]>) -> Vec<usize> {
         .collect()
 }
 
-/// Three laws: with the first column, with the second, and with both.
+/// Three laws with the same description: one with the first column, one with the second, and one with both.
 fn one_or_both(what: &str, columns: [Vec<f64>; 2]) -> Vec<Law> {
     let [a, b] = columns;
     let law = |columns| Law { what: what.to_string(), effect: None, columns };

@@ -24,11 +24,12 @@ const WORTH: f64 = 3.0;
 /// Smallest rise of the score for which the first effect is accepted. It is zero, because a missing effect is as
 /// probable as none.
 const FIRST_WORTH: f64 = 0.0;
-/// Alternatives to an effect are listed until the effect and its alternatives together have this probability.
+/// Alternatives to an effect are listed until the effect and its alternatives together have this probability of
+/// containing the right one.
 const CREDIBLE: f64 = 0.95;
 /// Models whose score after a few steps is below the best by more than this are not fitted further.
 const HOPELESS: f64 = 40.0;
-/// Models whose score is within this of the best of a stage are examined further.
+/// Models whose score is below the best of a stage by less than this are examined further.
 const PROMISING: f64 = 12.0;
 /// Largest number of effects in a model.
 pub(crate) const MOST_EFFECTS: usize = 3;
@@ -85,7 +86,7 @@ impl<'a> Search<'a> {
                 best = baseline.clone();
             }
         }
-        // the law is computed only if a first effect is found
+        // the law without a name is computed only if a first effect is found
         let mut law = OnceCell::new();
         let mut given_up = false;
         while best.effects.len() < MOST_EFFECTS {
@@ -296,7 +297,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The best fit over the grid of break points of one effect.
+    /// The best fit over the grid of break points of the effect number `position`.
     fn over_breaks(&self, from: &Scored, position: usize) -> Fit<'a> {
         let model = self.model(&from.effects);
         let first = model.first_parameter(position);

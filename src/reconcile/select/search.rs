@@ -34,11 +34,11 @@ pub(crate) struct Search<'a> {
 /// A model with its score.
 #[derive(Clone)]
 pub(crate) struct Scored {
-    /// Indices of the candidates in it.
+    /// Indices of the candidates that are effects of the model.
     pub effects: Vec<usize>,
     /// Fitted parameters of the model.
     pub u: Vec<f64>,
-    /// ln of the evidence minus ln of the number of places for each effect.
+    /// Score: ln of the evidence less the price of the effects, which is ln of the number of places for each.
     pub score: f64,
     /// The objective `Σ ρ(r) + Σ u²`.
     pub objective: f64,
@@ -95,7 +95,7 @@ impl<'a> Search<'a> {
             return fit(self.forward, &model, u, self.weights, Effort::default());
         }
         let mut best = self.descent(&model, u, Effort::default());
-        // large moves first, then finer ones about the best
+        // large changes first, then smaller ones about the best value
         for reach in [0.3, 0.12, 0.04] {
             for &p in &breaks {
                 let moves = [-1.0, -0.5, 0.5, 1.0].map(|m| best.u[p] + m * reach);
@@ -156,7 +156,7 @@ impl<'a> Search<'a> {
         (end.objective <= limit).then(|| self.descent(model, &end.u, effort))
     }
 
-    /// Scores a fit.
+    /// The score of a fitted model.
     pub(crate) fn scored(&self, effects: &[usize], fit: &Fit) -> Scored {
         Scored {
             effects: effects.to_vec(),

@@ -28,7 +28,7 @@ const SHAPES: usize = 2;
 /// Largest number of times that the worst readings are left out, to see whether calibration alone fits the others.
 const LOOKS: usize = 4;
 
-/// The result of the search for effects, and of the judgement of the readings.
+/// The result of the search for effects and of the judgement of the readings' quality.
 pub(crate) struct Settled {
     /// The models that were fitted, and the best one.
     pub selection: Selection,
@@ -94,7 +94,7 @@ struct Settling<'a> {
 
 /// One search, with the noise that it assumed and found.
 struct Round {
-    /// The noise that the search assumed.
+    /// The gross errors and standard deviations that the search assumed.
     noise: Noise,
     selection: Selection,
     coefficients: Coefficients,

@@ -26,24 +26,24 @@ const SETTLED: f64 = 0.01;
 /// named, a law that is better than calibration by this much is mentioned.
 const BETTER: f64 = 2.0;
 
-/// A competing model: the fitted model with a law in it.
+/// A competing model: the fitted model with a law without a name in it.
 struct Competitor {
     what: String,
     numbers: usize,
     objective: f64,
-    /// ln of the evidence.
+    /// Natural logarithm of the evidence.
     evidence: f64,
 }
 
 /// A law that explains the readings better than the model it competes with.
 pub(crate) struct Better {
-    /// The law in words.
+    /// Description of the law in words.
     pub what: String,
-    /// Number of its parameters.
+    /// Number of parameters of the law.
     pub numbers: usize,
     /// The objective `Σ ρ(r) + Σ u²` of the model with the law.
     pub objective: f64,
-    /// Rise of ln of the evidence.
+    /// Rise of ln of the evidence over the model with which the law competes.
     pub gain: f64,
 }
 
@@ -55,7 +55,7 @@ pub(crate) fn law_questions(
     weights: &Weights,
 ) -> Vec<Structure> {
     let competitors = of_every_law(campaign, forward, fit, |law| competitor(forward, fit, law, weights));
-    // Bonferroni: one of many laws fits better by chance
+    // Bonferroni correction: one of many laws fits better by chance
     let asked = libm::log((competitors.len() as f64).max(1.0));
     competitors
         .into_iter()
@@ -98,7 +98,7 @@ fn best_of(competitors: Vec<Competitor>, evidence: f64, places: f64) -> Option<B
     (better.gain > BETTER).then_some(better)
 }
 
-/// Fits each law that no effect of the search has together with the parameters of a fit.
+/// Fits each law together with the parameters of a fit. Laws that are the same as an effect of the search are left out.
 fn competitors(search: &Search, fit: &Fit) -> Vec<Competitor> {
     let is_sought = |effect: &str| search.candidates.iter().any(|c| c.kind.name == effect);
     let fitted = of_every_law(search.campaign, search.forward, fit, |law| {
@@ -157,8 +157,8 @@ fn competitor(forward: &Forward, fit: &Fit, law: &Law, weights: &Weights) -> Com
     Competitor { what: law.what.clone(), numbers: law.columns.len(), objective, evidence }
 }
 
-/// Width of the prior of a parameter: the parameter of an effect, or else that of a law, whose size may be of any
-/// order of magnitude.
+/// Width of the prior of parameter `p` at `u`. For a law the width is proportional to `u`, because its size may be of
+/// any order of magnitude.
 fn width(fit: &Fit, own: usize, p: usize, u: f64) -> f64 {
     match p < own {
         true => fit.model.free_parameters().nth(p - fit.model.calibrated()).map_or(1.0, |k| k.width(u)),

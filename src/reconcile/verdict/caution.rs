@@ -12,7 +12,7 @@ use crate::reconcile::model::parameters::{Candidate, FreeParameter};
 /// Two places are neighbours if they are at most this many elements of the chain apart, such as two joints with a link
 /// between them.
 const NEAR: usize = 2;
-/// The tolerance of a calibrated factor in standard deviations of its logarithm.
+/// Tolerance of a calibrated factor, as a multiple of the standard deviation of its logarithm.
 const TOLERANCE: f64 = 2.0;
 /// A calibrated factor is called improbable if fewer than one in this many faultless parts deviate so far.
 const RARE: f64 = 200.0;
@@ -57,8 +57,8 @@ fn distance(forward: &Forward, a: &Candidate, b: &Candidate) -> Option<usize> {
     Some(at(a)?.abs_diff(at(b)?))
 }
 
-/// The effects, by index, whose 95 % interval contains the size at which they are absent. `ends` holds the intervals of
-/// all parameters of all effects, in order.
+/// Indices of the effects whose 95 % interval contains the size at which the effect is absent. `ends` holds the
+/// intervals of all parameters of all effects, in order.
 pub(crate) fn may_be_absent(fit: &Fit, ends: &[Interval]) -> Vec<usize> {
     let mut at = 0;
     let mut out = Vec::new();

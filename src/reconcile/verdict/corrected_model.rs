@@ -19,7 +19,7 @@ const WORTHWHILE: f64 = 0.02;
 /// A model that the corrected arm could have, with its error on held-out poses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
-    /// The model in words.
+    /// Description of the model in words.
     pub model: String,
     /// Root mean square of the model's residuals on held-out poses \[standard deviations\].
     pub kept_out_rms_sigma: f64,
@@ -28,7 +28,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// As JSON of `verdict.json`.
+    /// The entry of the model in `verdict.json`.
     pub(crate) fn json(&self) -> Value {
         json!({
             "model": self.model, "kept_out_rms_sigma": self.kept_out_rms_sigma, "is_written": self.is_written,

@@ -18,15 +18,15 @@ use rayon::prelude::*;
 
 /// The models to separate, and the result so far.
 pub(crate) struct Question<'a> {
-    /// The campaign so far.
+    /// The campaign with the readings so far.
     pub campaign: &'a Campaign,
-    /// The best model.
+    /// The best model: name, and the arm under test.
     pub best: (String, Subject),
     /// The competing models: name, and the arm under test.
     pub competitors: Vec<(String, Subject)>,
     /// The pose in which the best model has its largest error \[deg, mm\]; `None` if there is none.
     pub residuals: Option<Vec<f64>>,
-    /// The verdict so far.
+    /// The verdict on the readings so far.
     pub verdict: Verdict,
 }
 
@@ -35,7 +35,7 @@ const MODAL_POSES: usize = 4;
 const PROPOSALS: usize = 4;
 /// Separation of two models that suffices to decide between them \[standard deviations\].
 pub(crate) const ENOUGH: f64 = 4.0;
-/// A test that separates by less than this is not worth any number of readings \[standard deviations\].
+/// A test that separates models by less than this would need too many readings \[standard deviations\].
 pub(crate) const WORTHLESS_SIGMAS: f64 = 0.1;
 /// Standard deviations that are assumed for a channel that was not measured: displacement \[mm\], relative for
 /// frequencies, twist on the bench \[arcmin\].
@@ -51,7 +51,7 @@ enum Test {
     Bench(Vec<WindupRow>),
 }
 
-/// The tests worth making, best first.
+/// The tests that separate the models best, the best first.
 pub(crate) fn propose(question: &Question) -> Vec<NextTest> {
     if question.verdict == Verdict::Unexplained {
         return question.residuals.iter().map(|pose| repeat(question.campaign, pose)).collect();

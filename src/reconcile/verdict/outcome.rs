@@ -16,13 +16,13 @@ use serde_json::{Value, json};
 /// Verdict on the readings of a campaign.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// Noise and calibration within tolerance explain all readings.
+    /// No gap: noise and calibration within tolerance explain all readings.
     NoGap,
     /// The effects that were found explain the readings.
     Explained,
     /// No effect of the library explains the readings.
     Unexplained,
-    /// The readings are insufficient to tell.
+    /// The readings are too few, or too ambiguous, to decide.
     InsufficientData,
 }
 
@@ -57,9 +57,9 @@ pub struct Located {
     pub part: String,
     /// Number of measured values in the part.
     pub count: usize,
-    /// Root mean square with the calibrated nominal model \[standard deviations\].
+    /// Root mean square of the residuals with the calibrated nominal model \[standard deviations\].
     pub rms_before: f64,
-    /// Value with the effects.
+    /// Root mean square of the residuals with the effects \[standard deviations\].
     pub rms_after: f64,
 }
 
@@ -74,9 +74,9 @@ pub struct NextTest {
     pub pose_deg: Option<Vec<f64>>,
     /// The driven joints, in the order of the entries of the pose.
     pub joints: Vec<DrivenJoint>,
-    /// Payload \[kg\].
+    /// Payload of the test \[kg\].
     pub payload_kg: f64,
-    /// Tip force \[N\].
+    /// Force at the tip in the test, in the directions of the world \[N\].
     pub force_n: [f64; 3],
     /// Name of the joint, for a test on the bench; `None` otherwise.
     pub joint: Option<String>,
@@ -107,11 +107,12 @@ pub struct ReadingResidual {
     pub sigma: f64,
     /// Prediction of the arm as given, calibrated within tolerance.
     pub before: f64,
-    /// Value with the effects.
+    /// Prediction of the model with the effects.
     pub after: f64,
-    /// Residual with the pose held out of the fit \[declared standard deviations\].
+    /// Residual with the pose held out of the fit \[declared standard deviations\]; `None` if the reading is never held
+    /// out.
     pub held_out: Option<f64>,
-    /// Whether the row was taken for a gross error.
+    /// Whether the row was taken as a gross error and left out of the fit.
     pub gross: bool,
 }
 
@@ -131,7 +132,7 @@ pub struct Evidence {
 pub struct Law {
     /// Place and parameters of the law, with their intervals.
     pub finding: Finding,
-    /// The law in words.
+    /// Description of the law in words.
     pub law: String,
     /// Possible physical causes, as a sentence.
     pub may_be: &'static str,

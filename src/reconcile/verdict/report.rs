@@ -15,7 +15,7 @@ use std::path::Path;
 const WORTH_SAYING: f64 = 1.05;
 
 impl Outcome {
-    /// A short verdict for the terminal.
+    /// A short text of the verdict for the terminal.
     pub fn to_text(&self) -> String {
         let mut out = String::new();
         let _ = writeln!(out, "{}: {}", self.campaign, self.headline());

@@ -20,7 +20,7 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// As JSON for `verdict.json`.
+    /// The entry of the stage in `verdict.json`.
     pub fn json(&self) -> Value {
         json!({
             "added": self.added, "dropped": self.dropped, "fitted_median_mm": self.fitted_median_mm, "kept_out_median_mm": self.median_mm,
