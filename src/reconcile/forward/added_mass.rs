@@ -27,7 +27,7 @@ fn leading(matrix: &DMatrix<f64>) -> usize {
 }
 
 /// Pivoted Cholesky factor of a positive semidefinite matrix. It has as many columns as the rank of the matrix, and
-/// only the leading rows that are not zero.
+/// only as many leading rows as are not zero.
 fn factor(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     let mut rest = matrix.clone();
     // the matrix is semidefinite, so smaller pivots are rounding error

@@ -103,8 +103,8 @@ struct Asked<'a> {
     channel: Option<Channel>,
 }
 
-/// The channels in which a compliance of the joint in this channel only can be told from one in all channels. Empty if
-/// only one channel shows how the joint twists.
+/// The channels for which a compliance of the joint in this channel only is sought. Empty if a single channel shows how
+/// the joint twists, because it could not be told from a compliance in all channels.
 fn channels_apart(forward: &Forward, kind: &Kind, joint: &str) -> Vec<Channel> {
     let shown = channels_of_joint(forward, joint);
     let sought = kind.traits.sought_in.iter().filter(|channel| shown.contains(channel));
@@ -170,7 +170,8 @@ fn candidate(forward: &Forward, sizes: &Sizes, asked: Asked) -> Candidate {
         }
     }
     if let Some(stiffness) = bearing {
-        // a bearing may be far stiffer than the joint: the same absolute compliance is sought as for a rigid bearing
+        // the upper limit is in terms of the bearing's stiffness here; it is raised to the same compliance as for a
+        // rigid bearing
         free_parameters[0].high *= (stiffness / joint_stiffness).max(1.0);
     }
     if let Some(least_kg) = lightest_kg(forward, kind, &at) {

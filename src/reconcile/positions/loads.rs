@@ -36,7 +36,7 @@ pub(crate) struct Yielding {
     /// Direction of the compliance: about a joint's axis, tilt about the two axes across it, or rotation of a frame
     /// about every axis.
     pub yields: Yields,
-    /// Name of the place.
+    /// Place of the effect: the name of a joint or link, or `base`.
     pub at: String,
     /// Torque scale `T_c` of play \[N m\], if the candidate is play and no spring. Its parameter is then the half width
     /// \[rad\] and not a compliance. `None` for a spring.

@@ -3,7 +3,8 @@
 use super::fitted::Sample;
 use super::kinematics::Number;
 
-/// What has another placement in one of the sessions. It labels the rows of this session.
+/// Label of a session's rows: the point on the tool, or the set-up of instrument and base, with its placement in this
+/// session.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Moved {
     /// A point on the tool, by its index.

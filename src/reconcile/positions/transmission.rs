@@ -10,7 +10,7 @@ use crate::arm::effect::waves::transmission_waves;
 use crate::reconcile::readings::campaign::Campaign;
 use rayon::prelude::*;
 
-/// Name of the effect.
+/// Name of the effect of a transmission error.
 pub(crate) const EFFECT: &str = transmission_error::KIND.name;
 
 /// The calibrated numbers of a driven joint's transmission error: sine and cosine, once and twice a turn.

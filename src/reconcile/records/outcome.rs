@@ -180,7 +180,8 @@ fn named(joint: &JointRecord) -> Vec<Finding> {
 }
 
 /// Compares the recorded stiffness of a joint with the nominal one. A joint that is more compliant than the tolerance
-/// allows gets an effect; within the tolerance its stiffness is calibrated.
+/// allows gets an effect; otherwise its stiffness is calibrated, with a remark if the joint is stiffer than the
+/// tolerance allows.
 fn stiffness(campaign: &Campaign, joint: &JointRecord) -> Stiffness {
     let nothing = Stiffness { finding: None, calibrated: None, factor: None, remark: None };
     // a torsion curve that was found replaces the single stiffness

@@ -27,7 +27,7 @@ use crate::arm::effect::{time_shift, transmission_error};
 const USUAL_ERROR_RAD: f64 = 1.5e-3;
 /// A term with one column is named if held-out blocks are better with it by more than this many standard errors.
 pub(crate) const CLEARLY: f64 = 2.0;
-/// The same threshold for a term with four columns.
+/// A term with four columns is named if held-out blocks are better with it by more than this many standard errors.
 const CLEARLY_MANY: f64 = 2.5;
 /// A transmission error of the output is named only if it lowers the error on held-out blocks below this fraction.
 const MATERIAL: f64 = 0.8;

@@ -100,7 +100,7 @@ pub(crate) fn beyond_tolerance(fit: &Fit, calibrated: &[Calibrated]) -> Option<S
     (!beyond.is_empty()).then(|| format!("calibration leaves the tolerance: {}{doubt}", beyond.join(", ")))
 }
 
-/// The number of faultless parts of which one deviates by at least this many standard deviations.
+/// The number n for which one in n faultless parts deviates by at least this many standard deviations.
 fn honest_parts_for_one(deviations: f64) -> f64 {
     1.0 / libm::erfc(deviations.abs() / std::f64::consts::SQRT_2)
 }
