@@ -1,8 +1,8 @@
 //! Reconciles all kinds of readings together.
 //!
-//! Absolute positions determine the geometry, which displacements, frequencies and bench readings take as
-//! given. These in turn determine what yields under loads of their own, while positions are loaded by gravity
-//! alone. So each kind is reconciled with the findings of the other. Records against time are judged by themselves.
+//! Absolute positions determine the geometry, which the analysis of displacements, frequencies and bench readings takes
+//! as given. These readings determine compliances under various loads, while positions are loaded by gravity alone. So
+//! each kind is reconciled with the findings of the other. Records against time are judged separately.
 
 use super::analysis;
 use super::fit::held_out::HeldOut;
@@ -22,8 +22,8 @@ use super::verdict::too_little::rows;
 use crate::arm::{Arm, Element};
 use serde_json::{Value, json};
 
-/// Reconciles a campaign with its arm. A campaign with absolute positions and other readings is reconciled in two parts,
-/// whose verdicts are then joined.
+/// Reconciles a campaign with its arm. If there are absolute positions and other readings, each is reconciled, and the
+/// verdicts are then joined.
 ///
 /// ```
 /// use armwright::catalog::Catalogs;
@@ -43,7 +43,7 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     outcome
 }
 
-/// Reconciles what there is of records and of the readings without time.
+/// Reconciles records against time and all other readings, as far as they are present.
 fn of_all(campaign: &Campaign) -> Outcome {
     let has_others = campaign.has_displacements() || !campaign.positions.is_empty();
     if campaign.records.is_empty() {
@@ -53,7 +53,7 @@ fn of_all(campaign: &Campaign) -> Outcome {
     if has_others { records::outcome::joined(of_readings(campaign), recorded) } else { recorded }
 }
 
-/// Reconciles the readings without time.
+/// Reconciles the readings that are not records against time.
 fn of_readings(campaign: &Campaign) -> Outcome {
     let (loaded, placed) = campaign.parted();
     let (rows, count) = (rows(&loaded), placed.positions.len());
@@ -78,8 +78,8 @@ fn of_readings(campaign: &Campaign) -> Outcome {
     of_both(campaign, loaded, placed)
 }
 
-/// Finds what yields from the loaded arm on calibrated geometry, and then what the positions still lack.
-/// Where the loaded arm does not settle it, the findings of the positions are tried on it.
+/// Finds effects from the readings other than positions, on calibrated geometry, and then effects that the positions
+/// still need. If the former readings are not explained in this way, the findings of the positions are tried on them.
 fn of_both(campaign: &Campaign, mut loaded: Campaign, placed: Campaign) -> Outcome {
     let calibrated = positions::analysis::calibrated(&placed);
     loaded.arm = calibrated.arms[0].clone();
@@ -102,31 +102,30 @@ fn of_both(campaign: &Campaign, mut loaded: Campaign, placed: Campaign) -> Outco
     loaded.arm = second.corrected.clone();
     let again = if second.effects.is_empty() { first } else { analysis::reconcile(&loaded) };
     let corrected = again.corrected.clone();
-    // laws without a name yield under gravity too, so the geometry is calibrated once more with them
+    // laws without a name also change the deflection under gravity, so the geometry is calibrated once more with them
     let with_laws = (!again.empirical.is_empty())
         .then(|| positions::analysis::calibrated(&with_what_yields(&placed, &again)));
     Both { campaign, calibrated, with_laws, loaded: again, placed: second, told: false, corrected }.outcome()
 }
 
-/// Where neither kind of readings explains the gap, a model whose error at held-out positions is larger than that of
-/// calibration alone by more than this factor is not written, however well it predicts the other readings.
+/// If the readings are not explained, a model is not written if its error at held-out positions exceeds that of
+/// calibration alone by more than this factor, no matter how well it predicts the other readings.
 const MOST_HARM: f64 = 1.1;
 
-/// The arms that are written where something remains unexplained, where they stand, and whether they have laws without a
-/// name.
+/// The corrected arms if something is not explained, their placements, and whether they have laws without a name.
 struct Unexplained {
     arms: Vec<Arm>,
     placements: Value,
     has_laws: bool,
 }
 
-/// Effects as words.
+/// Labels of effects, joined by `and`.
 fn labels(findings: &[Finding]) -> String {
     findings.iter().map(Finding::label).collect::<Vec<_>>().join(" and ")
 }
 
-/// The positions campaign with the stiffnesses, masses and effects that the loaded arm showed. The geometry
-/// stays nominal, and payloads weigh what that arm felt.
+/// The campaign of positions, with the stiffnesses, masses and effects that the other readings showed. The geometry
+/// stays nominal. Payloads have the mass that these readings showed.
 fn with_what_yields(placed: &Campaign, found: &Outcome) -> Campaign {
     let mut out = placed.clone();
     let known = out.arm.effects.len();
@@ -159,17 +158,17 @@ fn with_what_yields(placed: &Campaign, found: &Outcome) -> Campaign {
     out
 }
 
-/// The conclusion from both kinds of readings.
+/// Outcomes of both kinds of readings, from which the common outcome is made.
 struct Both<'a> {
     campaign: &'a Campaign,
     calibrated: Calibrated,
-    /// The geometry calibrated with the laws without a name that the loaded arm has; `None` if it has none.
+    /// The geometry, calibrated with the laws without a name that the other readings showed; `None` if there are none.
     with_laws: Option<Calibrated>,
     loaded: Outcome,
     placed: Outcome,
-    /// Whether the positions were given the findings of the loaded arm, or analysed first.
+    /// Whether the positions were analysed with the findings of the other readings. If not, they were analysed first.
     told: bool,
-    /// The arm with the findings of both.
+    /// The arm with the findings from both kinds of readings.
     corrected: Arm,
 }
 
@@ -236,8 +235,8 @@ impl Both<'_> {
         }
     }
 
-    /// The arms to write where something remains unexplained: those with the laws of the loaded arm or with what explains
-    /// that arm, unless the positions are predicted worse with them; else the calibrated ones.
+    /// The corrected arms if something is not explained. They have the laws without a name or the effects of the other
+    /// readings, unless positions are then predicted worse; otherwise they are calibrated only.
     fn unexplained(&self) -> Unexplained {
         let error_mm = |stage: Option<&Stage>| stage.map_or(f64::INFINITY, |s| s.median_mm);
         let most_mm = MOST_HARM * error_mm(self.calibrated.stages.last());
@@ -258,7 +257,7 @@ impl Both<'_> {
         of(&self.calibrated, false)
     }
 
-    /// The verdict on the arm as a whole: what one kind of readings leaves open or unexplained, remains so.
+    /// The verdict on the arm as a whole: if one kind of readings is not explained or not sufficient, the arm is not.
     fn verdict(&self) -> Verdict {
         Verdict::on_all(&[self.loaded.verdict, self.placed.verdict])
     }
@@ -274,13 +273,13 @@ impl Both<'_> {
         [of(&self.loaded, "the readings other than positions"), of(&self.placed, "the positions")].concat()
     }
 
-    /// The last stage of the positions before an effect was searched for.
+    /// Index of the last stage of the positions before the first effect was added.
     fn last_calibration(&self) -> Option<usize> {
         self.placed.stages.iter().rposition(|s| !s.added.contains('@'))
     }
 
-    /// The table of position errors: calibration alone, the effects that were given, and those that were
-    /// found.
+    /// The table of position errors: calibration alone, then with the findings of the other readings, then with the
+    /// effects found in positions.
     fn stages(&self) -> Vec<Stage> {
         let Some(last) = self.last_calibration() else { return Vec::new() };
         let mut out = self.calibrated.stages.clone();
@@ -292,7 +291,7 @@ impl Both<'_> {
         out
     }
 
-    /// Held-out residuals of both kinds of readings. Those before are by calibration alone.
+    /// Held-out residuals of both kinds of readings together. The values before are those with calibration alone.
     fn held_out(&self) -> Option<HeldOut> {
         let (Some(loaded), Some(placed)) = (self.loaded.held_out, self.placed.held_out) else {
             return self.loaded.held_out.or(self.placed.held_out);

@@ -1,13 +1,14 @@
-//! Computes 95 % intervals of the parameters of a gear's curve from their posterior distribution.
+//! Computes 95 % intervals of the parameters of a gear's torsion curve from their posterior distribution.
 //!
-//! A break point has no meaning where the slopes on its two sides are equal. Of the many places where it
-//! could be, one always suits the noise. The objective along a break point is therefore the largest of many
-//! chance gains, not a parabola, and the usual rise of 3.84 contains the true value too seldom.
+//! A break point has no meaning if the slopes on its two sides are equal. Among the many places where it could be,
+//! there is always one that fits the noise well. The lowest objective over the places of a break point is therefore the
+//! best of many chance results, and the usual limit, a rise of 3.84, gives an interval that contains the true value too
+//! rarely.
 //!
-//! So every place counts by its probability. With both break points held, the readings are nearly linear in
-//! all other parameters. A fit then gives the likelihood of the place, and the range of the slopes there
-//! (Laplace's approximation). The places are nodes around the best fit, close together near it. The search
-//! visits the neighbours of every node that the readings do not rule out.
+//! So every place counts by its probability. With both break points held, the readings are nearly linear in all other
+//! parameters. A fit then gives the likelihood of the place, and the distribution of the slopes there (Laplace's
+//! approximation). The places are nodes around the best fit, close together near it. The search visits the neighbours
+//! of every node that the readings do not rule out.
 
 use super::descent::data_curvature;
 use super::descent::{Effort, Fit, Weights, fit_below};
@@ -18,25 +19,26 @@ use nalgebra::{Cholesky, DMatrix};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// Probability beyond each end of an interval.
+/// Probability outside of the interval at each end.
 const TAIL: f64 = 0.025;
-/// The interval is open at an end of the range where the density is more than this part of its maximum. The limit
-/// equals a rise of the objective by 3.84.
+/// An end of the interval is `None` if the density at the limit of the range is more than this fraction of its maximum.
+/// The fraction corresponds to a rise of the objective by 3.84: exp(-3.84 / 2).
 const OPEN: f64 = 0.146;
-/// A node is ruled out where the objective exceeds that of the best fit by more than this.
+/// A node is ruled out if the objective there exceeds that of the best fit by more than this. Its probability density
+/// is then below a thousandth of the maximum: exp(-14 / 2).
 const RULED_OUT: f64 = 14.0;
-/// First step between nodes, in standard deviations of the break point.
+/// First step between nodes, as a multiple of the standard deviation of the break point.
 const STEP: f64 = 0.5;
 /// Smallest and largest first step \[ln of the torque\].
 const STEPS: (f64, f64) = (0.004, 0.08);
 /// Ratio of each step between nodes to the step before it, going outwards from the best fit.
 const GROWTH: f64 = 1.4;
-/// Every third node is always visited, so that no separate peak is missed.
+/// Every third node is always fitted, so that no separate peak is missed.
 const COARSE: usize = 3;
-/// Effort of a fit with both break points held.
+/// Limits on the effort of a fit with both break points held.
 const HELD: Effort = Effort { steps: 4, tolerance: 0.05 };
 
-/// The nodes of one break point, in ascending order.
+/// The nodes of one break point, in ascending order \[ln of the torque\].
 struct Axis {
     parameter: usize,
     nodes: Vec<f64>,
@@ -52,8 +54,8 @@ struct Cell {
     ln_density: f64,
 }
 
-/// Intervals of the parameters `own` of a gear's curve, in their order. `pair` holds the indices of its break
-/// points.
+/// Intervals of the parameters `own` of a gear's curve, in their order. `pair` holds the indices of its two break
+/// points, and `deviations` the standard deviation of every parameter.
 pub(crate) fn curve_intervals(
     forward: &Forward,
     best: &Fit,
@@ -91,7 +93,7 @@ impl Axis {
         Self { parameter, nodes }
     }
 
-    /// The part of the axis for which a node stands: it reaches halfway to both neighbouring nodes.
+    /// The interval of the axis that a node represents: it reaches halfway to both neighbouring nodes.
     fn span(&self, node: usize) -> (f64, f64) {
         let middle = |a: usize, b: usize| 0.5 * (self.nodes[a] + self.nodes[b]);
         let last = self.nodes.len() - 1;
@@ -99,11 +101,10 @@ impl Axis {
     }
 }
 
-/// Index of the node on each of the two axes.
+/// Index of the node on each of the two axes, one axis per break point.
 type Nodes = [usize; 2];
 
-/// All cells that matter: those of a coarse grid over the nodes, and the neighbours of every cell that is not ruled
-/// out.
+/// Fits the cells of a coarse grid over the nodes, and then the neighbours of every cell that is not ruled out.
 fn explore(forward: &Forward, best: &Fit, weights: &Weights, axes: &[Axis; 2]) -> BTreeMap<Nodes, Cell> {
     let centre = [0, 1].map(|k| {
         let (axis, at) = (&axes[k], best.point.u[axes[k].parameter]);
@@ -162,7 +163,7 @@ impl Cell {
         let fitted = fit_below(forward, &model, start, weights, HELD, limit);
         let held = axes.each_ref().map(|a| a.parameter);
         let of_rest = without(&fitted.curvature, held);
-        // the density at the nodes is the evidence divided by the width of the two break points
+        // the density at the nodes is the evidence of the fit without the factor for the two held parameters
         let ln_density =
             fitted.evidence + 0.5 * (ln_determinant(fitted.curvature.clone()) - ln_determinant(of_rest));
         // the two held parameters are not part of the covariance
@@ -202,7 +203,7 @@ impl Posterior {
             to - from
         };
         self.cells.iter().map(move |(nodes, cell)| {
-            // a node stands for its area, because nodes are not equally spaced
+            // a node represents its area, because the nodes are not equally spaced
             let area = width(0, nodes[0]) * width(1, nodes[1]);
             (nodes, cell, libm::exp(cell.ln_density - top) * area)
         })

@@ -9,41 +9,44 @@ use crate::reconcile::forward::modal::ModalTest;
 use crate::reconcile::forward::prepared::Forward;
 use std::collections::{HashMap, HashSet};
 
-/// The quality of the readings, as the residuals show it.
+/// Quality of the readings, judged by the residuals of a fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Noise {
-    /// Factor on the declared standard deviations of static, modal and windup readings.
+    /// Factors on the declared standard deviations of static, modal and windup readings, in this order.
     pub scale: [f64; 3],
-    /// Rows that are gross errors: channel, row from 0, size in declared standard deviations.
+    /// Rows that are gross errors: channel, row counted from 0, and size of the residual in declared standard
+    /// deviations.
     pub outliers: Vec<(Channel, usize, f64)>,
 }
 
 /// A reading is a gross error if its residual is at least this many standard deviations.
 const GROSS: f64 = 5.5;
-/// Before any effect is searched for, a reading is a gross error only from this many standard deviations on. Play or
-/// a break point can put a single reading ten standard deviations off.
+/// Threshold for gross errors before any effect is sought, in standard deviations. It is high, because play or a break
+/// point can shift a single reading by ten standard deviations.
 const UNMISTAKABLE: f64 = 16.0;
-/// Largest part of a channel's rows that can be gross errors. More are a structure that the model lacks.
+/// Largest fraction of a channel's rows that can be gross errors. If there are more, the cause is something that the
+/// model lacks.
 const FEW: f64 = 0.10;
-/// Largest part of a channel's rows that can be gross errors before any effect is searched for. It is smaller than
-/// [`FEW`], because an effect may move only a few frequencies, and these must stay.
+/// Largest fraction of a channel's rows that can be gross errors before any effect is sought. It is smaller than
+/// [`FEW`], because an effect may change only a few frequencies, and these must not be left out.
 const FEW_UNSEEN: f64 = 0.05;
-/// Largest part of the frequency lists that can have been numbered wrongly.
+/// Largest fraction of the frequency lists that can have been numbered wrongly.
 const FEW_LISTS: f64 = 0.34;
-/// Largest number of gross errors that may replace an effect. More of them have a common cause.
+/// Largest number of gross errors that may be assumed instead of an effect. More of them have a common cause.
 const MOST_SLIPS: usize = 2;
-/// The channels whose readings are judged.
+/// Channels whose readings are judged.
 const CHANNELS: [Channel; 3] = [Channel::Static, Channel::Modal, Channel::Windup];
-/// Largest factor on the declared standard deviations. Larger spreads are taken for missing physics, not for a
-/// wrongly declared standard deviation.
+/// Largest factor on the declared standard deviations. A larger scatter is ascribed to missing physics and not to a
+/// wrong declaration.
 const LARGEST_SCALE: f64 = 1.4;
-/// A model fits most readings if the robust spread of its residuals is at most one plus this \[declared standard
-/// deviations\].
+/// A model fits most readings if the robust standard deviation of its residuals exceeds the declared one by at most
+/// this fraction.
 const CLOSE: f64 = 0.5;
-/// Room for chance in the test of the spread: three standard deviations of the spread, times the root of the number
-/// of readings. (The standard deviation of the median of absolute values is 1.17 times the spread over that root.)
+/// Allowance for chance in the test of the robust standard deviation: three of its own standard deviations, times the
+/// root of the number of readings. (The standard deviation of the median of absolute values is 1.17 times the robust
+/// standard deviation over that root.)
 const BY_CHANCE: f64 = 3.5;
-/// Number of readings that the declared standard deviation counts for when the factor on it is estimated.
+/// Number of readings as which the declared standard deviation counts when the factor on it is estimated.
 const TRUST: f64 = 15.0;
 
 impl Default for Noise {
@@ -53,7 +56,7 @@ impl Default for Noise {
 }
 
 impl Noise {
-    /// The weights of the data under this judgement of the readings.
+    /// Weights of the data with this judgement of the readings.
     pub fn weights(&self, forward: &Forward) -> Weights {
         let outliers: HashSet<(usize, usize)> =
             self.outliers.iter().map(|(channel, row, _)| (*channel as usize, *row)).collect();
@@ -73,8 +76,8 @@ impl Noise {
         })
     }
 
-    /// Leaves out at most a few extreme outliers of each channel, by their misfit in a fit with these
-    /// weights. One slip among ten frequencies would spoil a calibration.
+    /// Leaves out at most a few extreme outliers of each channel, judged by their misfit in a fit with these weights. A
+    /// single slip among ten frequencies would spoil a calibration.
     pub fn without_worst(forward: &Forward, fit: &Fit, weights: &Weights) -> Self {
         let mut outliers = misses(forward, fit, weights);
         outliers.retain(|(_, _, size)| *size > UNMISTAKABLE);
@@ -88,8 +91,8 @@ impl Noise {
         Self { outliers, ..Self::default() }
     }
 
-    /// Leaves out one or two further rows that a fit shows as possible gross errors. `None` if there are no such
-    /// rows, or more than two.
+    /// Leaves out one or two more rows that are gross errors in a fit. `None` if there are no such rows, or more than
+    /// two.
     pub fn with_slips(&self, forward: &Forward, fit: &Fit) -> Option<Self> {
         let mut slips = misses(forward, fit, &self.weights(forward));
         slips.retain(|(_, _, size)| *size > GROSS);
@@ -113,15 +116,15 @@ impl Noise {
         Some(Self { outliers, ..self.clone() })
     }
 
-    /// The same judgement with all frequencies included; `None` if none of them is left out.
+    /// The same judgement with all frequencies kept; `None` if no frequency was left out.
     pub fn with_frequencies(&self) -> Option<Self> {
         let mut with = self.clone();
         with.outliers.retain(|(channel, _, _)| *channel != Channel::Modal);
         (with.outliers.len() < self.outliers.len()).then_some(with)
     }
 
-    /// Gross errors that show before any effect is searched for. They are sought only where calibration alone
-    /// fits most readings, because the trace of an effect must not be taken for an error.
+    /// Gross errors that are visible before any effect is sought. They are sought only if calibration alone fits most
+    /// readings, because the signal of an effect must not be taken for an error.
     pub fn first_look(forward: &Forward, baseline: &Fit, weights: &Weights) -> Self {
         if !Self::is_close(forward, baseline) {
             return Self::default();
@@ -146,12 +149,12 @@ impl Noise {
         for channel in CHANNELS {
             let range = forward.range(channel);
             let own = &residuals[range.clone()];
-            // where the model fits badly, only rows that stand out from the rest are gross
+            // if the model fits badly, only rows that differ from the other rows are gross errors
             let limit = GROSS * spread(own).clamp(1.0, 3.0);
             let data = &forward.data[range.clone()];
             let mut gross = largest_of_rows(data.iter().zip(own.iter().map(|r| r.abs())));
             gross.retain(|(_, size)| *size > limit);
-            // many large residuals are a structure and not errors
+            // many large residuals have a common cause and are no gross errors
             if gross.len() > at_most(FEW, rows(forward, channel)) {
                 continue;
             }
@@ -164,8 +167,8 @@ impl Noise {
         noise.with_whole_lists(forward, &residuals)
     }
 
-    /// Leaves out the few frequency lists that the model with these coefficients misses by far. `None` if there is no
-    /// such list, or if there are many.
+    /// Leaves out the few frequency lists in which the model with these coefficients has several very large errors.
+    /// `None` if there is no such list, or if there are many.
     pub fn uncertain_lists(forward: &Forward, coefficients: &Coefficients) -> Option<Self> {
         let residuals = declared_residuals(forward, &forward.predict(coefficients));
         let far = |datum: usize| residuals[datum].abs() > UNMISTAKABLE;
@@ -180,8 +183,8 @@ impl Noise {
         Some(Self { outliers, ..Self::default() })
     }
 
-    /// Leaves out every row of a frequency list that has several gross errors. Its pose, its payload or its
-    /// numbering is wrong, and the remaining rows would mislead.
+    /// Leaves out every row of a frequency list that has several gross errors. The pose, the payload or the numbering
+    /// of the list is wrong, and the remaining rows would mislead.
     fn with_whole_lists(mut self, forward: &Forward, residuals: &[f64]) -> Self {
         for list in gross_lists(forward, &self.weights(forward)) {
             for &(datum, _) in &forward.modal[list].modes {
@@ -195,19 +198,20 @@ impl Noise {
         self
     }
 
-    /// Whether two judgements leave out the same rows.
+    /// Whether two judgements of the readings leave out the same rows.
     pub fn same_rows(&self, other: &Self) -> bool {
         let rows = |n: &Self| n.outliers.iter().map(|(c, r, _)| (*c, *r)).collect::<Vec<_>>();
         rows(self) == rows(other)
     }
 
-    /// Whether two judgements lead to nearly the same weights.
+    /// Whether two judgements of the readings leave out the same rows and have nearly the same factors on the standard
+    /// deviations.
     pub fn agrees(&self, other: &Self) -> bool {
         self.same_rows(other) && self.scale.iter().zip(&other.scale).all(|(a, b)| (a / b - 1.0).abs() < 0.03)
     }
 }
 
-/// The frequency lists, numbered from 0, of which several rows are left out.
+/// Numbers, from 0, of the frequency lists of which more than one row is left out.
 pub fn gross_lists(forward: &Forward, weights: &Weights) -> Vec<usize> {
     let left_out = |list: usize| {
         let modes = forward.modal[list].modes.iter();
@@ -216,10 +220,10 @@ pub fn gross_lists(forward: &Forward, weights: &Weights) -> Vec<usize> {
     (0..forward.modal.len()).filter(|list| left_out(*list) > 1).collect()
 }
 
-/// The misfit of each row if the fit did not follow that row \[declared standard deviations\], the largest
+/// The misfit that each row would have if the fit did not follow it \[declared standard deviations\], the largest
 /// first.
 fn misses(forward: &Forward, fit: &Fit, weights: &Weights) -> Vec<(Channel, usize, f64)> {
-    // a row that the fit follows completely would otherwise divide by zero
+    // prevents a division by zero for a row that the fit follows completely
     const LARGEST_LEVERAGE: f64 = 0.9;
     let residuals = declared_residuals(forward, &fit.point.predicted);
     let sizes = residuals.iter().zip(fit.leverages(weights));
@@ -235,10 +239,10 @@ fn misses(forward: &Forward, fit: &Fit, weights: &Weights) -> Vec<(Channel, usiz
     out
 }
 
-/// The gross rows of a channel without those that follow each other in one pose, or on the bench, and err in the same
-/// sense. Slips do not come in a row. What does, is a structure: a clamp that gives way at the end of a load.
+/// The gross errors of a channel without runs: consecutive rows of one pose, or of the bench, with errors of the same
+/// sign. Slips are single. A run has a cause, such as a clamp that slips at the end of a load.
 fn without_runs(data: &[Datum], residuals: &[f64], gross: Vec<(usize, f64)>) -> Vec<(usize, f64)> {
-    // where and in which sense a row errs most
+    // component, value and pose of the largest error of each row
     let mut worst: HashMap<usize, (usize, f64, usize)> = HashMap::new();
     for (datum, residual) in data.iter().zip(residuals) {
         let own = worst.entry(datum.row).or_insert((datum.component, *residual, datum.group));
@@ -250,7 +254,7 @@ fn without_runs(data: &[Datum], residuals: &[f64], gross: Vec<(usize, f64)>) -> 
         (Some(a), Some(b)) => a.0 == b.0 && a.2 == b.2 && a.1.signum() == b.1.signum(),
         _ => false,
     };
-    // the modes of a list follow each other because they are numbered so
+    // the modes of a list are consecutive rows by their numbering, so a run among them means nothing
     let in_order = data.first().is_some_and(|datum| datum.channel != Channel::Modal);
     let rows: HashSet<usize> = gross.iter().map(|(row, _)| *row).collect();
     let follows = |row: usize| {
@@ -260,7 +264,7 @@ fn without_runs(data: &[Datum], residuals: &[f64], gross: Vec<(usize, f64)>) -> 
     gross.into_iter().filter(|(row, _)| !(in_order && follows(*row))).collect()
 }
 
-/// The largest size among the data of each row of a channel. Rows come in the order of their first datum.
+/// Number of each row of a channel, and the largest size among its data. Rows come in the order of their first datum.
 fn largest_of_rows<'a>(sizes: impl Iterator<Item = (&'a Datum, f64)>) -> Vec<(usize, f64)> {
     let mut out: Vec<(usize, f64)> = Vec::new();
     let mut known: HashMap<usize, usize> = HashMap::new();
@@ -279,7 +283,7 @@ fn rows(forward: &Forward, channel: Channel) -> usize {
     forward.data[forward.range(channel)].iter().map(|d| d.row).max().map_or(0, |r| r + 1)
 }
 
-/// Number of rows that make a part of a file, at least one.
+/// Number of rows in a fraction `part` of a file, at least one.
 fn at_most(part: f64, rows: usize) -> usize {
     ((part * rows as f64) as usize).max(1)
 }
@@ -289,15 +293,15 @@ fn declared_residuals(forward: &Forward, predicted: &[f64]) -> Vec<f64> {
     forward.data.iter().zip(predicted).map(|(d, p)| (d.value - p) / d.sigma).collect()
 }
 
-/// Robust standard deviation of the residuals: the few largest do not change it.
+/// Robust standard deviation of the residuals, from the median of their absolute values: a few large ones do not change
+/// it.
 fn spread(residuals: &[f64]) -> f64 {
     1.4826 * median(residuals.iter().map(|r| r.abs()).collect())
 }
 
-/// The factor on declared standard deviations that residuals and their leverages suggest. The square of a
-/// residual has the expectation `1 - leverage`, because the parameters take up the rest. A factor that could
-/// be chance counts too. To wait for significance would leave intervals too narrow wherever a channel has few
-/// readings.
+/// Factor on the declared standard deviations by the residuals and their leverages, at least 1. The square of a
+/// residual has the expectation `1 - leverage`, because the parameters absorb the rest. A factor that could be chance
+/// is applied too: waiting for significance would leave intervals too narrow in channels with few readings.
 fn scale(kept: impl Iterator<Item = (f64, f64)>) -> f64 {
     let (sum, count) =
         kept.fold((TRUST, TRUST), |(sum, count), (r, leverage)| (sum + r * r, count + 1.0 - leverage));

@@ -1,4 +1,4 @@
-//! Tail probabilities and medians.
+//! Tail probabilities of the chi-squared and normal distributions, and medians.
 
 /// Probability that a chi-squared variable of `dof` degrees exceeds `x`, as its natural logarithm.
 pub(crate) fn ln_chi_squared_tail(x: f64, dof: f64) -> f64 {

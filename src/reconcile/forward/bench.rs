@@ -6,7 +6,7 @@ use crate::arm::effect::channel::Channel;
 use crate::arm::joint_law::JointLaw;
 use crate::reconcile::readings::campaign::Campaign;
 
-/// Arc minutes in a radian.
+/// Number of arc minutes in a radian.
 pub(crate) const ARCMIN_PER_RAD: f64 = 10800.0 / std::f64::consts::PI;
 
 /// One joint's rows on the bench, in the order of the file.
@@ -18,7 +18,7 @@ pub(crate) struct Bench {
     rows: Vec<usize>,
 }
 
-/// Gathers the bench rows of each joint and appends their data.
+/// Gathers the bench rows of each joint, and appends their readings to `data`.
 pub(crate) fn prepare(campaign: &Campaign, layout: &Layout, data: &mut Vec<Datum>) -> Vec<Bench> {
     let mut bench: Vec<Bench> = Vec::new();
     for (row_index, row) in campaign.windup.iter().enumerate() {
@@ -45,12 +45,12 @@ pub(crate) fn prepare(campaign: &Campaign, layout: &Layout, data: &mut Vec<Datum
 }
 
 impl Bench {
-    /// Sizes of the torques \[N m\].
+    /// Magnitudes of the torques \[N m\].
     pub(crate) fn sizes_nm(&self) -> impl Iterator<Item = f64> + '_ {
         self.torques_nm.iter().map(|t| t.abs())
     }
 
-    /// Writes the twist at every row \[arcmin\].
+    /// Writes the predicted twist at every row of the joint to `out` \[arcmin\].
     pub(crate) fn predict(&self, law: &JointLaw, out: &mut [f64]) {
         let twists = bench_twists_rad(law, &self.torques_nm);
         for (&index, twist) in self.rows.iter().zip(twists) {
@@ -59,10 +59,10 @@ impl Bench {
     }
 }
 
-/// Twists of a joint on the bench \[rad\]. The cycle runs once unrecorded, so that the friction play has
-/// settled, and then once recorded.
+/// Twists (torsion angles) of a joint on the bench, one per torque \[rad\]. The cycle is computed twice, and the second
+/// round counts: after the first one the state of the friction play repeats itself.
 pub(crate) fn bench_twists_rad(law: &JointLaw, torques_nm: &[f64]) -> Vec<f64> {
-    // the first round only brings the play to where a closed cycle has it
+    // the first round brings the play to its state in a repeated cycle
     let mut state = 0.0;
     for &torque in torques_nm {
         law.play_angle_rad(torque, &mut state);

@@ -1,5 +1,5 @@
-//! Prepares a campaign for fitting: its data, and everything about its poses and tests that no parameter
-//! changes.
+//! Prepares a campaign for fitting: its data, and everything about its poses and tests that does not depend on
+//! parameters.
 
 use super::bench::{self, Bench};
 use super::coefficients::{Coefficients, Layout, StaticChanges};
@@ -15,33 +15,33 @@ use nalgebra::DMatrix;
 
 /// A campaign prepared for fitting.
 pub struct Forward {
-    /// The coordinates.
+    /// The strain coordinates of the arm.
     pub layout: Layout,
-    /// The nominal arm in a test that goes as described.
+    /// The nominal arm, tested as the campaign describes.
     pub nominal: Subject,
-    /// Every measured number: static, modal, bench.
+    /// All measured numbers, in the order static, modal, bench.
     pub data: Vec<Datum>,
     /// Poses of the static rows, each with its loads.
     pub statics: Vec<StaticPose>,
     /// Tests of the modal rows.
     pub modal: Vec<ModalTest>,
     bench: Vec<Bench>,
-    /// Index where each channel's data begin: static, modal, windup, and the end.
+    /// Index at which the data of each channel begin: static, modal, windup; then the number of data.
     pub starts: [usize; 4],
-    /// Names of the poses that can be held out.
+    /// Names of the poses, in the order of `Datum::group`.
     pub groups: Vec<String>,
     /// Density of the payloads \[kg/m³\].
     pub payload_density_kg_m3: f64,
-    /// The largest payload that was stated \[kg\].
+    /// The largest stated payload \[kg\].
     pub largest_payload_kg: f64,
-    /// The lightest payload that was stated and is not zero \[kg\].
+    /// The smallest stated payload above zero \[kg\]; infinite if there is none.
     pub lightest_payload_kg: f64,
-    /// Whether readings of the whole arm have temperatures.
+    /// Whether some static or modal reading has a temperature.
     pub has_temperatures: bool,
 }
 
 impl Forward {
-    /// Prepares a campaign.
+    /// Prepares a campaign for fitting.
     pub fn new(campaign: &Campaign) -> Self {
         let mut nominal = campaign.arm.subject(JointModel::ThreeSegment);
         if campaign.statement.rigid_links {
@@ -55,7 +55,7 @@ impl Forward {
         let modal = modal::prepare(campaign, &layout, &nominal, &mut groups, &mut data);
         let windup_start = data.len();
         let bench = bench::prepare(campaign, &layout, &mut data);
-        // the data lie channel by channel, so one index range selects a channel
+        // the data are sorted by channel, so one index range selects a channel
         let starts = [0, modal_start, windup_start, data.len()];
         let payloads_kg = campaign.statics.iter().map(|r| r.payload.mass_kg);
         let payloads_kg: Vec<f64> =
@@ -81,8 +81,8 @@ impl Forward {
         }
     }
 
-    /// Renumbers frequency lists that do not rise with the mode number, unless one wrong frequency is the
-    /// simpler cause. Frequencies are numbered as they rise. Returns a sentence for each list.
+    /// Renumbers frequency lists in which frequencies do not rise with the mode number, unless a single wrong frequency
+    /// is the simpler explanation. Returns a sentence for each list that was changed.
     pub fn put_modes_in_order(&mut self) -> Vec<String> {
         let nominal = self.coefficients(&self.nominal);
         let (layout, data) = (&self.layout, &self.data);
@@ -97,7 +97,7 @@ impl Forward {
             .collect()
     }
 
-    /// Renumbers frequency lists from which a mode is missing. Returns a sentence for each list.
+    /// Renumbers frequency lists from which a mode is missing. Returns a sentence for each list that was changed.
     pub fn find_missed_modes(&mut self, coefficients: &Coefficients) -> Vec<String> {
         let mut out = Vec::new();
         for (i, test) in self.modal.iter_mut().enumerate() {
@@ -108,13 +108,13 @@ impl Forward {
         out
     }
 
-    /// Takes the trial shapes of all modal tests from the modes with these coefficients.
+    /// Computes the trial shapes of all modal tests from the modes with these coefficients.
     pub fn refresh(&mut self, coefficients: &Coefficients) {
         let layout = &self.layout;
         self.modal.iter_mut().for_each(|test| test.refresh(layout, coefficients));
     }
 
-    /// Range of the channel's data.
+    /// Indices of the data of a channel.
     pub fn range(&self, channel: Channel) -> std::ops::Range<usize> {
         match channel {
             Channel::Static => self.starts[0]..self.starts[1],
@@ -129,12 +129,12 @@ impl Forward {
         self.statics.iter().map(StaticPose::count).sum()
     }
 
-    /// Sizes of a joint's torques on the bench \[N m\].
+    /// Magnitudes of a joint's torques on the bench \[N m\].
     pub fn bench_torques_nm(&self, joint: usize) -> impl Iterator<Item = f64> + '_ {
         self.bench.iter().filter(move |b| b.joint == joint).flat_map(Bench::sizes_nm)
     }
 
-    /// Torque on every joint at each static or modal datum \[N m\].
+    /// Torque on every joint at each static or modal datum \[N m\]: one list per datum, joints from base to tip.
     pub fn torques_nm(&self, coefficients: &Coefficients) -> Vec<Vec<f64>> {
         let mut out = vec![Vec::new(); self.starts[2]];
         for pose in &self.statics {
@@ -149,8 +149,8 @@ impl Forward {
         out
     }
 
-    /// Whether the torque of a modal test lies this close to a break point of a gear's curve \[ln of the torque\]. A small
-    /// change of a mass may then change the slope of the curve, and frequencies step.
+    /// Whether the torque on a joint in some modal test is this close to a break point of the joint's gear \[ln of the
+    /// torque\]. A small change of a mass may then change the slope of the curve, and frequencies jump.
     pub(crate) fn is_close_to_a_step(&self, coefficients: &Coefficients, close: f64) -> bool {
         let breaks = coefficients.laws.iter().map(|law| match law.curve {
             Curve::Windup(curve) => vec![curve.t1_nm, curve.t2_nm],
@@ -171,7 +171,7 @@ impl Forward {
         Coefficients::new(&self.layout, &self.nominal, subject)
     }
 
-    /// The model's value for every datum.
+    /// The predicted reading for every datum, in the unit of the file.
     pub fn predict(&self, coefficients: &Coefficients) -> Vec<f64> {
         let mut out = vec![0.0; self.data.len()];
         self.predict_smooth(coefficients, &mut out);
@@ -182,7 +182,7 @@ impl Forward {
         out
     }
 
-    /// Readings of the displacement in every static row, those of components that were not measured included \[mm\].
+    /// Predicted displacements in every static row \[mm\], including components that were not measured.
     pub fn displacements_mm(&self, coefficients: &Coefficients) -> Vec<[f64; 3]> {
         let reading = &coefficients.channels[Channel::Static as usize];
         let mut out = Vec::new();
@@ -190,7 +190,7 @@ impl Forward {
             let state = pose.state(&self.layout, coefficients);
             for load in 0..pose.count() {
                 let true_mm = pose.displacement_mm(&state, load);
-                // every component of a row is read at the same time
+                // all components of a row have the same row number
                 let row = pose.measured(load).next().map_or(0, |(_, datum)| self.data[datum].row);
                 out.push(std::array::from_fn(|c| reading.of(true_mm[c], c, row)));
             }
@@ -198,7 +198,8 @@ impl Forward {
         out
     }
 
-    /// Predicts statics and bench only. The modal entries stay as they are. Returns the state of each static pose.
+    /// Predicts static and bench readings only, before errors of the channels. Modal entries of `out` are not changed.
+    /// Returns the state of each static pose.
     pub fn predict_smooth(&self, coefficients: &Coefficients, out: &mut [f64]) -> Vec<StaticState> {
         for bench in &self.bench {
             bench.predict(&coefficients.law(bench.joint, Channel::Windup), out);
@@ -211,8 +212,9 @@ impl Forward {
         self.statics.iter().map(state).collect()
     }
 
-    /// Changes the values of statics and bench, which are those of coefficients `from` with these states of the poses, to
-    /// those of other coefficients, one column of `out` for each. What a change leaves alone is not computed again.
+    /// Changes predictions of static and bench readings from the coefficients `from` to each of the coefficients `to`.
+    /// `states` holds the static poses with `from`. On entry each column of `out` holds the predictions with `from`.
+    /// Parts that a change does not affect are not computed again.
     pub fn change_smooth(
         &self,
         states: &[StaticState],
@@ -239,7 +241,7 @@ impl Forward {
         }
     }
 
-    /// Turns true values into readings.
+    /// Converts values before the measuring channel to readings.
     pub fn read(&self, coefficients: &Coefficients, out: &mut [f64]) {
         for (value, datum) in out.iter_mut().zip(&self.data) {
             *value = coefficients.channels[datum.channel as usize].of(*value, datum.component, datum.row);

@@ -1,8 +1,9 @@
-//! Predicts static readings: the displacement of the tip from its reference state.
+//! Predicts static readings: the displacement of the tip from the reference state, which is the unloaded arm.
 //!
-//! The chain is statically determinate, so torques depend on masses only. All linear compliances together
-//! move the tip by `A w`, where `A` is a 3x6 matrix per pose and `w` the wrench of the load. A joint moves it
-//! by `θ(T) - θ(T0)` times its lever. Friction play follows the order of the rows.
+//! The chain is statically determinate, so torques depend on masses only. All linear compliances together move the tip
+//! by `A w`, where `A` is a 3x6 matrix per pose and `w` the wrench of the load. A joint moves it by `θ(T) - θ(T0)`
+//! times its lever, where `T` and `T0` are the torques with and without load. Friction play depends on the order of the
+//! rows.
 
 use super::coefficients::{Coefficients, Layout, StaticChanges};
 use super::datum::{Datum, Groups};
@@ -17,47 +18,47 @@ use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::components::Component;
 use nalgebra::{Matrix3x6, Rotation3, Vector3};
 
-/// A coordinate and how it moves the tip.
+/// A coordinate, and the displacement of the tip by it.
 #[derive(Debug, Clone)]
 pub struct Mover {
     /// Index of the coordinate.
     pub index: usize,
-    /// Twist of everything outboard per unit of the coordinate.
+    /// Kinematic twist of everything outboard per unit of the coordinate.
     pub twist: Twist,
-    /// Displacement of the tip per unit.
+    /// Displacement of the tip per unit of the coordinate.
     pub tip: Vector3<f64>,
 }
 
-/// Everything about a pose that no parameter changes.
+/// Everything about a pose that does not depend on parameters.
 #[derive(Debug, Clone)]
 pub struct PoseGeometry {
     /// Position of the tip, world frame \[m\].
     pub tip_m: Vector3<f64>,
-    /// Rotation of the last frame.
+    /// Rotation of the last frame relative to the world.
     pub rotation: Rotation3<f64>,
-    /// Linear coordinates that move the tip.
+    /// All coordinates except the twists of joints that move the tip.
     pub linear: Vec<Mover>,
-    /// Twists of the joints, base to tip.
+    /// The coordinates of the joints' torsion, base to tip.
     pub joints: Vec<Mover>,
-    /// Angle of each joint \[rad\].
+    /// Angle of each joint in the pose, base to tip \[rad\].
     pub angles_rad: Vec<f64>,
-    /// Torque of the template's dead weight on each joint \[N m\], with the torque that acts on the joint beside it.
+    /// Torque on each joint by the template's dead weight and by springs \[N m\].
     pub dead_nm: Vec<f64>,
-    /// The same torques for a unit of each mass.
+    /// For each mass, the torques on the joints by one unit of it \[N m\].
     pub dead_per_mass_nm: Vec<Vec<f64>>,
-    /// Tilts of the base about world x and y.
+    /// Coordinates of the base's tilts about world x and y.
     pub base: [Mover; 2],
-    /// Moments of the template's dead weight about these axes \[N m\], and those of a unit of each mass.
+    /// Moments of the template's dead weight about these axes \[N m\]; below, those of one unit of each mass.
     dead_base_nm: [f64; 2],
     dead_base_per_mass_nm: Vec<[f64; 2]>,
 }
 
-/// One load in a pose.
+/// One load in a pose: payload and tip force.
 #[derive(Debug, Clone)]
 struct Load {
     payload: Payload,
     force_n: Vector3<f64>,
-    /// Index of the datum of each component that was measured.
+    /// Index of the datum of each component; `None` if it was not measured.
     data: [Option<usize>; 3],
     when: Moment,
 }
@@ -65,38 +66,39 @@ struct Load {
 /// A pose with its loads in the order of the file.
 #[derive(Debug, Clone)]
 pub struct StaticPose {
-    /// Geometry.
+    /// Geometry of the pose.
     pub geometry: PoseGeometry,
     loads: Vec<Load>,
 }
 
-/// What the loads in a pose are, and how an arm with some coefficients yields to them. It is kept with a fit, so that a
-/// change of few coefficients, as for a derivative, costs little.
+/// The loads in a pose, and the deflections of an arm with given coefficients under them. The state is kept with a fit,
+/// so that a change of few coefficients, as for a derivative, is computed fast.
 #[derive(Debug, Clone, Default)]
 pub struct StaticState {
-    /// Displacement of the tip per wrench by all linear compliances together; without those of the links if their moduli
-    /// change.
+    /// Displacement of the tip per wrench by all linear compliances together. If the moduli of the links change, the
+    /// links are not included.
     compliance: Matrix3x6<f64>,
-    /// Displacement per wrench by the links alone, if their moduli change.
+    /// Displacement of the tip per wrench by the links alone, if their moduli change.
     bending: Matrix3x6<f64>,
-    /// Factor on the compliance of the links under each load; empty if their moduli stay.
+    /// Factor on the compliance of the links under each load; empty if their moduli do not change.
     softness: Vec<f64>,
-    /// Tilt of a base whose feet lift off under each load \[rad\], from that of the unloaded arm; empty if none lift off.
+    /// Tilt of a base whose feet lift off under each load, relative to the unloaded arm \[rad\]; empty if the feet do
+    /// not lift off.
     lifted_rad: Vec<[f64; 2]>,
-    /// Torque of the dead weight on each joint \[N m\].
+    /// Torque on each joint by the dead weight, which is there without load \[N m\].
     dead_nm: Vec<f64>,
-    /// Room for these torques under other weights \[N m\].
+    /// Memory for these torques with other weights \[N m\].
     moved_dead_nm: Vec<f64>,
-    /// The wrench of each load.
+    /// Wrench of each load, about the world's origin.
     wrenches: Vec<Wrench>,
-    /// Torque on each joint (first index) by each load \[N m\].
+    /// Torque on each joint by each load \[N m\]; joints are the slow index.
     loaded_nm: Vec<f64>,
-    /// The twist of each joint (first index) under each load \[rad\], from that of the unloaded arm.
+    /// Twist of each joint under each load, relative to the unloaded arm \[rad\]; joints are the slow index.
     twists_rad: Vec<f64>,
 }
 
 impl StaticState {
-    /// Becomes a copy of another state, in the same memory.
+    /// Copies another state into the memory of this one.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.compliance = other.compliance;
         self.bending = other.bending;
@@ -109,7 +111,7 @@ impl StaticState {
     }
 }
 
-/// Prepares the poses of the static rows and appends their data.
+/// Prepares the poses of the static rows, and appends their readings to `data`.
 pub(crate) fn prepare(
     campaign: &Campaign,
     layout: &Layout,
@@ -121,7 +123,7 @@ pub(crate) fn prepare(
     let mut last: Option<&[f64]> = None;
     for (index, row) in campaign.statics.iter().enumerate() {
         let group = groups.of(&row.pose_deg);
-        // loads in one pose share a history, so only a change of pose starts a new one
+        // loads in one pose share a history of friction; it starts again when the pose changes
         if last != Some(&row.pose_deg) {
             let geometry = PoseGeometry::new(layout, nominal, &row.pose_deg);
             poses.push(StaticPose { geometry, loads: Vec::new() });
@@ -189,7 +191,7 @@ impl PoseGeometry {
         }
     }
 
-    /// Moments about world x and y on the base of what hangs on it in every test of a channel \[N m\].
+    /// Moments on the base about world x and y by all dead weight in a test of a channel \[N m\].
     pub fn dead_base_nm(&self, coefficients: &Coefficients, layout: &Layout, channel: Channel) -> [f64; 2] {
         let masses = self.dead_base_per_mass_nm.iter().zip(&coefficients.weights);
         let test =
@@ -200,7 +202,7 @@ impl PoseGeometry {
         })
     }
 
-    /// Displacement of the tip per wrench by the linear compliances whose coordinates are chosen.
+    /// Displacement of the tip per wrench by those linear compliances for which `is_chosen` is true.
     fn compliance(&self, coefficients: &Coefficients, is_chosen: impl Fn(usize) -> bool) -> Matrix3x6<f64> {
         let mut out = Matrix3x6::zeros();
         for mover in self.linear.iter().filter(|mover| is_chosen(mover.index)) {
@@ -212,7 +214,7 @@ impl PoseGeometry {
         out
     }
 
-    /// Torque on each joint of what hangs on it in every test of a channel \[N m\].
+    /// Torque on each joint by all dead weight in a test of a channel \[N m\].
     pub fn dead_torques_nm(
         &self,
         coefficients: &Coefficients,
@@ -224,7 +226,7 @@ impl PoseGeometry {
         torques_nm
     }
 
-    /// Replaces `torques_nm` by the torques of what hangs on the joints in every test of a channel \[N m\].
+    /// Replaces `torques_nm` by the torques on the joints by all dead weight in a test of a channel \[N m\].
     fn add_up_dead_torques(
         &self,
         coefficients: &Coefficients,
@@ -252,7 +254,7 @@ impl PoseGeometry {
         }
     }
 
-    /// The load as a wrench about the world origin.
+    /// Payload and tip force as a wrench about the world's origin.
     pub fn wrench(
         &self,
         payload: &Payload,
@@ -271,8 +273,9 @@ impl PoseGeometry {
     }
 }
 
-/// Twists of a joint under loads that follow each other, each from the twist of the unloaded arm, which comes to rest
-/// before each pose and whose reading is the reference. The loads' torques come on top of that of the dead weight.
+/// Twists of a joint under successive loads, relative to the twist of the unloaded arm \[rad\]. The unloaded arm is the
+/// reference and comes to rest before each pose. `loaded_nm` holds the torques of the loads, in addition to that of the
+/// dead weight.
 fn follow(law: &JointLaw, dead_nm: f64, loaded_nm: &[f64], twists_rad: &mut [f64]) {
     let mut play_nm = law.play_at_rest_nm(dead_nm);
     let reference_rad = law.play_angle_rad(dead_nm, &mut play_nm);
@@ -281,7 +284,7 @@ fn follow(law: &JointLaw, dead_nm: f64, loaded_nm: &[f64], twists_rad: &mut [f64
     }
 }
 
-/// Torque of the dead weight on each joint, and its moments about world x and y on the base \[N m\].
+/// Torque on each joint by the dead weight, and the moments on the base about world x and y \[N m\].
 fn dead_torques(posed: &Posed) -> (Vec<f64>, [f64; 2]) {
     let mut wrench = Wrench::zeros();
     let mut torques = Vec::new();
@@ -315,7 +318,7 @@ impl StaticPose {
         out
     }
 
-    /// Changes a state of other coefficients, from which these differ by `changes`, to theirs.
+    /// Changes a state from other coefficients to `coefficients`. `changes` says which of them differ.
     pub(crate) fn update(
         &self,
         layout: &Layout,
@@ -357,7 +360,7 @@ impl StaticPose {
         }
         state.twists_rad.resize(joints * count, 0.0);
         for j in 0..joints {
-            // a weight loads the joints inboard of it only
+            // a weight changes the torque only on joints inboard of it
             let is_loaded_otherwise = changes.weights && state.moved_dead_nm[j] != state.dead_nm[j];
             if is_loaded_otherwise {
                 state.dead_nm[j] = state.moved_dead_nm[j];
@@ -370,7 +373,7 @@ impl StaticPose {
         }
     }
 
-    /// Displacement of the tip under a load, by its index \[mm\].
+    /// Displacement of the tip under load number `load` \[mm\].
     pub(crate) fn displacement_mm(&self, state: &StaticState, load: usize) -> Vector3<f64> {
         let wrench = state.wrenches[load];
         let mut tip = state.compliance * wrench;
@@ -386,12 +389,12 @@ impl StaticPose {
         1e3 * tip
     }
 
-    /// Number of loads.
+    /// Number of loads in the pose.
     pub(crate) fn count(&self) -> usize {
         self.loads.len()
     }
 
-    /// The measured components of the displacement under a load, by its index, each with the index of its datum.
+    /// The measured components of the displacement under a load: number of the component, and index of its datum.
     pub(crate) fn measured(&self, load: usize) -> impl Iterator<Item = (usize, usize)> {
         self.loads[load]
             .data
@@ -400,7 +403,7 @@ impl StaticPose {
             .filter_map(|(component, datum)| Some((component, datum?)))
     }
 
-    /// Brings the tilts of a base whose feet lift off up to date.
+    /// Computes the tilts of a base whose feet lift off.
     fn lift(&self, layout: &Layout, coefficients: &Coefficients, state: &mut StaticState) {
         state.lifted_rad.clear();
         let Some(lift) = coefficients.lift else { return };
@@ -413,7 +416,7 @@ impl StaticPose {
         state.lifted_rad.extend(state.wrenches.iter().map(lifted));
     }
 
-    /// Writes the displacements of all loads \[mm\], as far as they were measured.
+    /// Writes the measured components of the displacements under all loads to `out` \[mm\].
     pub(crate) fn write(&self, state: &StaticState, out: &mut [f64]) {
         for load in 0..self.loads.len() {
             let moved = self.displacement_mm(state, load);
@@ -421,7 +424,8 @@ impl StaticPose {
         }
     }
 
-    /// Adds the displacement of the tip \[mm\] by further compliances, given as coordinate and compliance.
+    /// Adds the displacement of the tip \[mm\] by additional compliances to `out`. `further` holds pairs of coordinate
+    /// and compliance.
     pub fn add_yielding(
         &self,
         layout: &Layout,
@@ -443,7 +447,7 @@ impl StaticPose {
         }
     }
 
-    /// Largest moment on the base about world x or y, under the dead weight or in a load \[N m\].
+    /// Largest moment on the base about world x or y \[N m\], without load and under all loads of the pose.
     pub fn largest_base_nm(&self, layout: &Layout, coefficients: &Coefficients) -> f64 {
         let dead = self.geometry.dead_base_nm(coefficients, layout, Channel::Static);
         let loads = self.loads.iter().map(|load| {
@@ -454,7 +458,7 @@ impl StaticPose {
         loaded.flatten().chain(dead.map(f64::abs)).fold(0.0, f64::max)
     }
 
-    /// Torque on each joint \[N m\]: first under the dead weight alone, then in every load.
+    /// Torque on each joint \[N m\]: first without load, then under each load.
     pub fn torques_nm(&self, layout: &Layout, coefficients: &Coefficients) -> Vec<Vec<f64>> {
         let dead = self.geometry.dead_torques_nm(coefficients, layout, Channel::Static);
         let mut out = vec![dead.clone()];

@@ -17,16 +17,16 @@ use crate::reconcile::readings::rows::{ModalRow, PositionRow, StaticRow, WindupR
 use nalgebra::Vector3;
 use std::borrow::Cow;
 
-/// A subject prepared for prediction.
+/// An arm under test (subject), prepared for prediction.
 pub struct Exact<'a> {
     subject: &'a Subject,
     chain: Chain,
-    /// The arm as it is in the tests of each channel, where that is special.
+    /// For each channel, the arm with the special set-up of its tests; `None` where there is none.
     special: [Option<Chain>; 4],
 }
 
 impl<'a> Exact<'a> {
-    /// Prepares a subject.
+    /// Prepares an arm under test.
     pub fn new(subject: &'a Subject) -> Self {
         let chain = |structure: &Structure| Chain::new(structure, LinkModel::Full);
         let special = Channel::ALL.map(|channel| {
@@ -44,7 +44,7 @@ impl<'a> Exact<'a> {
         let (mut play, mut lag) = (Vec::new(), Vector3::zeros());
         for row in rows {
             let chain = self.chain_at(Channel::Static, &row.moment());
-            // the reference is as warm as the reading
+            // the unloaded arm, from which displacements are measured, has the same temperature as the reading
             let unloaded = self.posed(&chain, &row.pose_deg, &Payload::default(), Vector3::zeros());
             let unloaded_m = unloaded.statics().tip_displacement_m;
             if row.pose_deg != pose || out.is_empty() {
@@ -59,7 +59,7 @@ impl<'a> Exact<'a> {
         out
     }
 
-    /// Frequency readings \[Hz\]; `None` where the arm has no such mode.
+    /// Frequency readings \[Hz\], one per row; `None` where the arm has no mode of this number.
     pub fn frequencies_hz(&self, rows: &[ModalRow]) -> Vec<Option<f64>> {
         let reading = &self.subject.channels[Channel::Modal as usize];
         let mut last: Option<(&ModalRow, Vec<f64>)> = None;
@@ -80,7 +80,7 @@ impl<'a> Exact<'a> {
             .collect()
     }
 
-    /// Bench readings \[arcmin\].
+    /// Bench readings \[arcmin\], one per row.
     pub fn windups_arcmin(&self, rows: &[WindupRow]) -> Vec<f64> {
         let reading = &self.subject.channels[Channel::Windup as usize];
         let mut out = vec![0.0; rows.len()];
@@ -95,8 +95,7 @@ impl<'a> Exact<'a> {
         out
     }
 
-    /// Positions of the points on the last frame, in the instrument's frame, under gravity and payload
-    /// \[mm\].
+    /// Positions of the measured points under gravity and payload, in the instrument's frame \[mm\].
     pub fn positions_mm(&self, rows: &[PositionRow], placement: &Placement) -> Vec<[f64; 3]> {
         let reading = &self.subject.channels[Channel::Positions as usize];
         let mut chains: Vec<(Vector3<f64>, Chain)> = Vec::new();
@@ -104,7 +103,7 @@ impl<'a> Exact<'a> {
         for (row, stand) in rows.iter().zip(placement.stands(rows)) {
             let tool_m = stand.point_m(&row.point);
             if !self.subject.warming.is_none() {
-                chains.clear(); // no chain serves another row
+                chains.clear(); // the temperature differs from row to row
             }
             if !chains.iter().any(|(at_m, _)| *at_m == tool_m) {
                 let structure = self.subject.structure_at(Channel::Positions, &row.moment());
@@ -124,7 +123,7 @@ impl<'a> Exact<'a> {
         out
     }
 
-    /// Torque on every joint, with the joint's name \[N m\].
+    /// Name of every joint, and the torque on it in the pose and with the loads of a row \[N m\].
     pub fn torques_nm(&self, row: &StaticRow) -> Vec<(String, f64)> {
         let chain = self.chain_at(Channel::Static, &row.moment());
         let posed = self.posed(&chain, &row.pose_deg, &row.payload, row.force_n);
@@ -166,17 +165,17 @@ pub fn with_tool(structure: &Structure, tool_m: Vector3<f64>) -> Structure {
     out
 }
 
-/// A payload that is stated from the tip, as seen from a point in the last frame.
+/// A payload whose centre of gravity is stated from the tip, with the centre stated from a point in the last frame.
 pub fn seen_from_tool(payload: &Payload, tool_m: &Vector3<f64>) -> Payload {
     Payload { cg_m: payload.cg_m - tool_m, ..*payload }
 }
 
-/// Law, twist and torque of each joint, base to tip.
+/// Torsion law, kinematic twist and torque \[N m\] of each joint, from base to tip.
 fn joints(posed: &Posed) -> Vec<(JointLaw, Twist, f64)> {
     let torques = posed.statics().joint_torques_nm;
     let mut twists = posed.tip_twists().into_iter();
     let laws = posed.elements().filter_map(|element| {
-        // a rigid link has no twist of its own
+        // elements without strain coordinates have no twist
         let own: Vec<Twist> = twists.by_ref().take(element.twists.len()).collect();
         match element.yielding {
             Yielding::Joint(law) => Some((law, own[0])),
@@ -186,12 +185,12 @@ fn joints(posed: &Posed) -> Vec<(JointLaw, Twist, f64)> {
     laws.zip(torques).map(|((law, twist), (_, torque))| (law, twist, torque)).collect()
 }
 
-/// State of each joint's friction play when the arm has come to rest \[N m\].
+/// State of each joint's friction play when the arm has come to rest \[N m\], from base to tip.
 fn rest(posed: &Posed) -> Vec<f64> {
     joints(posed).iter().map(|(law, _, torque)| law.play_at_rest_nm(*torque)).collect()
 }
 
-/// Displacement of the tip from that of the weightless arm \[m\]. The friction play moves along.
+/// Displacement of the tip relative to the weightless arm \[m\]. The states of the friction play follow the torques.
 fn tip_m(posed: &Posed, play: &mut [f64]) -> Vector3<f64> {
     let joints = joints(posed);
     let statics = posed.statics();

@@ -9,46 +9,47 @@ use crate::arm::effect::subject::Subject;
 use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::prepared::Forward;
 
-/// One fitted parameter of an effect. A fit moves `u`, which is of the order of 1.
+/// One fitted parameter of an effect. A fit changes the scaled parameter `u`, which is of the order of 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FreeParameter {
     /// Name of the parameter.
     pub name: &'static str,
-    /// Which component, for a vector parameter.
+    /// Index of the component, if the parameter is a vector; otherwise 0.
     pub component: usize,
     scale: Scale,
-    /// For linear scales the value at `u = 1`. For stiffnesses the stiffness whose compliance is `u = 1`.
+    /// Scale of `u`. For linear scales it is the value at `u = 1`. For stiffnesses it is the stiffness at `u = 1`,
+    /// where `u` is proportional to the compliance.
     reference: f64,
-    /// Smallest `u`.
+    /// Smallest value of `u` in a fit.
     pub low: f64,
-    /// Largest `u`.
+    /// Largest value of `u` in a fit.
     pub high: f64,
-    /// Another parameter of the effect that this one is not below.
+    /// Name of another parameter of the effect below which this one cannot lie.
     not_below: Option<&'static str>,
-    /// The `u` at which the effect is absent; `None` where the parameter says how the effect acts and not how
+    /// The value of `u` at which the effect is absent; `None` if the parameter says how the effect acts and not how
     /// large it is.
     absent: Option<f64>,
     /// The range in which `u` is expected.
     expected: (f64, f64),
 }
 
-/// Sizes below this part of the prior's width are equally likely.
+/// Sizes below this fraction of the prior's width are equally likely.
 const SMALL: f64 = 0.01;
 
-/// Largest compliance that is searched for in a connection, bearing or base, as a multiple of the joint's.
+/// Largest compliance that is sought in a connection, bearing or base, as a multiple of the joint's.
 const SOFTEST: f64 = 100.0;
 
-/// A stiffness that no reading can tell from rigid \[N m/rad\].
+/// Stiffness that stands for a rigid part: no reading can tell it from rigid \[N m/rad\].
 const RIGID_NM_PER_RAD: f64 = 1e15;
 
 impl FreeParameter {
-    /// A component of a parameter. Compliances are expressed in that of a joint of this stiffness \[N
-    /// m/rad\]; for a torque it is the largest torque on the joint \[N m\].
+    /// A component of a parameter. `joint_stiffness` is the reference of `u`: the stiffness of a joint \[N m/rad\] for
+    /// compliances, the largest torque on the joint \[N m\] for a torque.
     pub(crate) fn new(parameter: &Parameter, component: usize, joint_stiffness: f64) -> Self {
         let expected = parameter.prior;
         let (low, high) = (parameter.low, parameter.high);
         let (reference, (low, high), expected, absent) = match parameter.scale {
-            // the reference of a torque is the largest on its joint; a torque is looked for up to twice what is expected
+            // a torque is sought up to twice its expected size
             Scale::Torque => (joint_stiffness, (2.0 * expected.0, 2.0 * expected.1), expected, Some(0.0)),
             Scale::Linear => {
                 let size = parameter.typical.abs().max(1e-12);
@@ -73,7 +74,7 @@ impl FreeParameter {
         Self { name: parameter.name, component, scale, reference, low, high, not_below, absent, expected }
     }
 
-    /// The same parameter within these limits of `u`, all of which are expected.
+    /// The same parameter limited to this range of `u`. Every value in the range is expected.
     pub(crate) fn within(self, low: f64, high: f64) -> Self {
         Self { low, high, expected: (low, high), ..self }
     }
@@ -84,7 +85,7 @@ impl FreeParameter {
         (u - high).max(low - u).max(0.0) / (high - low)
     }
 
-    /// The parameter's value.
+    /// Value of the parameter, in its unit, at `u`.
     pub fn value(&self, u: f64) -> f64 {
         match self.scale {
             Scale::Linear | Scale::Torque => u * self.reference,
@@ -95,7 +96,7 @@ impl FreeParameter {
         }
     }
 
-    /// The `u` of a value.
+    /// The `u` at which the parameter has this value.
     pub fn u(&self, value: f64) -> f64 {
         match self.scale {
             Scale::Linear | Scale::Torque => value / self.reference,
@@ -105,7 +106,7 @@ impl FreeParameter {
         }
     }
 
-    /// A fitted value with the interval of its `u`.
+    /// A fitted value with its interval, converted from the interval of `u`.
     pub fn estimate(&self, value: f64, interval: &Interval) -> Estimate {
         let (low, high) = match self.reversed() {
             true => (interval.high, interval.low),
@@ -119,34 +120,34 @@ impl FreeParameter {
         matches!(self.scale, Scale::Stiffness | Scale::Reciprocal)
     }
 
-    /// Whether it says how large the effect is, and not only how it acts.
+    /// Whether the parameter says how large the effect is, and not only how it acts.
     pub(crate) fn is_size(&self) -> bool {
         self.absent.is_some()
     }
 
-    /// Whether `u` means an absent effect, so that this end of an interval is no bound.
+    /// Whether the effect is absent at `u`. An end of an interval there is no bound of the stiffness.
     pub fn unbounded(&self, u: f64) -> bool {
         self.scale == Scale::Stiffness && u <= 1e-6
     }
 
-    /// Difference of `u` from the value at which the effect is absent; `None` where the parameter is no size.
+    /// Difference of `u` from the value at which the effect is absent; `None` if the parameter is no size.
     pub(crate) fn departure(&self, u: f64) -> Option<f64> {
         self.absent.map(|absent| u - absent)
     }
 
-    /// A value `u` whose difference from that of an absent effect is multiplied by `part`; the same value where the parameter
-    /// is no size.
+    /// The value `u` with its difference from that of an absent effect multiplied by `part`; `u` itself if the
+    /// parameter is no size.
     pub(crate) fn scaled(&self, u: f64, part: f64) -> f64 {
         self.absent.map_or(u, |absent| absent + part * (u - absent))
     }
 
-    /// Whether an interval contains the size at which the effect is absent; `None` where the parameter is no size.
+    /// Whether an interval contains the size at which the effect is absent; `None` if the parameter is no size.
     pub(crate) fn may_be_absent(&self, ends: &Interval) -> Option<bool> {
         let absent = self.absent?;
         Some(ends.low.is_none_or(|low| low <= absent) && ends.high.is_none_or(|high| high >= absent))
     }
 
-    /// Whether the effect has reached the largest size that is searched for.
+    /// Whether the effect has reached the largest size that is sought.
     fn is_at_its_limit(&self, u: f64) -> bool {
         // the end where the effect is absent is no limit
         let near = 1e-6 * (self.high - self.low);
@@ -156,11 +157,11 @@ impl FreeParameter {
         ends.into_iter().any(|end| (u - end).abs() <= near)
     }
 
-    /// Width of the prior at a value: the reciprocal of its density there.
+    /// Width of the prior at a value of `u`: the reciprocal of the prior density there.
     ///
-    /// The size of an effect may be of any order of magnitude. So each decade of sizes is equally likely, up
-    /// to the largest a part can have. A parameter that only says how an effect acts is equally likely
-    /// anywhere in its expected range.
+    /// The size of an effect may be of any order of magnitude. So each decade of sizes is equally likely, up to the
+    /// largest size that a part can have. A parameter that only says how an effect acts is equally likely anywhere in
+    /// its expected range.
     pub fn width(&self, u: f64) -> f64 {
         let range = self.expected.1 - self.expected.0;
         let Some(absent) = self.absent else { return range };
@@ -171,12 +172,12 @@ impl FreeParameter {
     }
 }
 
-/// A number of a candidate.
+/// A number of a candidate: one component of one parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Number {
-    /// It is fitted: the next of the candidate's free parameters.
+    /// The number is fitted: it is the next of the candidate's free parameters.
     Free,
-    /// It is stated.
+    /// The number has this stated value.
     Stated(f64),
 }
 
@@ -185,20 +186,20 @@ pub(crate) enum Number {
 pub struct Candidate {
     /// The kind of effect.
     pub kind: &'static Kind,
-    /// The place where it sits.
+    /// Place of the effect: the name of a joint or link, `base`, or a channel.
     pub at: String,
-    /// Its fitted parameters.
+    /// Parameters of the effect that are fitted.
     pub free_parameters: Vec<FreeParameter>,
-    /// Every number of the kind, in its order.
+    /// All numbers of the effect, in the order of its kind.
     pub(crate) numbers: Vec<Number>,
-    /// Starting points of fits, each a list of `u`.
+    /// Starting points of fits, each a list of `u`, one per free parameter.
     pub starts: Vec<Vec<f64>>,
     /// Name and place of effects that are the same thing in this arm by construction.
     pub twins: Vec<(String, String)>,
 }
 
 impl Candidate {
-    /// Its label in reports: `effect@place`, and the channel if it is of one.
+    /// Label of the candidate in reports: `effect@place`, and the channel if the effect is limited to one.
     pub fn label(&self) -> String {
         let label = format!("{}@{}", self.kind.name, self.at);
         self.words().into_iter().fold(label, |label, (_, _, word)| format!("{label} ({word})"))
@@ -214,7 +215,7 @@ impl Candidate {
         names.zip(self.numbers.iter().copied()).collect()
     }
 
-    /// Stated parameters that files have as words: name, number and word.
+    /// Stated parameters that files write as words: name of the parameter, number and word.
     pub(crate) fn words(&self) -> Vec<(&'static str, f64, &'static str)> {
         let word = |(name, number): (&'static str, Number)| match number {
             Number::Stated(number) => Some((name, number, word_of(self.kind.name, name, number)?)),
@@ -223,12 +224,13 @@ impl Candidate {
         self.named_numbers().into_iter().filter_map(word).collect()
     }
 
-    /// Whether another candidate is the same effect at the same place, of which other parameters are fitted.
+    /// Whether another candidate is the same effect at the same place, with other parameters fitted.
     pub(crate) fn is_variant_of(&self, other: &Self) -> bool {
         self.kind.name == other.kind.name && self.at == other.at && self.words() == other.words()
     }
 
-    /// Adds starting points in every corner of a vector's range, for campaigns with few readings.
+    /// Adds starting points towards every vertex of a vector's range. They are used for campaigns with few readings, in
+    /// which a single start may miss the minimum.
     pub fn from_corners(mut self) -> Self {
         self.starts.extend(corners(&self.free_parameters));
         self
@@ -256,7 +258,7 @@ impl Candidate {
         out
     }
 
-    /// The effect as an arm file has it.
+    /// The effect in the form of an arm file.
     pub fn effect(&self, u: &[f64], place: Place) -> Effect {
         let numbers = self.numbers(u);
         let mut rest = numbers.as_slice();
@@ -272,7 +274,7 @@ impl Candidate {
     }
 }
 
-/// Starting points for the components of a vector: a fifth of the way from zero to each corner of their
+/// Starting points for the components of a vector: a fifth of the way from zero to each vertex of their
 /// range. With zero everywhere a descent may see no slope.
 fn corners(free_parameters: &[FreeParameter]) -> Vec<Vec<f64>> {
     if free_parameters.len() < 2 || free_parameters.iter().any(|k| k.name != free_parameters[0].name) {
@@ -288,13 +290,14 @@ fn corners(free_parameters: &[FreeParameter]) -> Vec<Vec<f64>> {
 /// each effect.
 #[derive(Clone)]
 pub struct Model<'a> {
-    /// Calibration.
+    /// Calibrated parameters.
     pub nuisance: &'a Nuisance,
-    /// Effects.
+    /// Effects of the model.
     pub effects: Vec<&'a Candidate>,
-    /// Width over which break points are smoothed in the frequencies \[ln of the torque\].
+    /// Width over which break points of gear curves are smoothed when frequencies are computed \[ln of the torque\]; 0
+    /// for none.
     pub smoothing: f64,
-    /// Indices and values of the parameters that are held.
+    /// Index and value of each parameter that is held fixed.
     pub held: Vec<(usize, f64)>,
 }
 
@@ -304,7 +307,7 @@ impl<'a> Model<'a> {
         Self { nuisance, effects: Vec::new(), smoothing: 0.0, held: Vec::new() }
     }
 
-    /// A model of the candidates with these indices.
+    /// A model with the candidates that have these indices.
     pub fn of(nuisance: &'a Nuisance, candidates: &'a [Candidate], effects: &[usize]) -> Self {
         Self { effects: effects.iter().map(|&i| &candidates[i]).collect(), ..Self::baseline(nuisance) }
     }
@@ -333,7 +336,7 @@ impl<'a> Model<'a> {
             .collect()
     }
 
-    /// Index of the parameter that a parameter must not be below, if there is one.
+    /// Index of the parameter below which a parameter cannot lie; `None` if there is none.
     fn floor(&self, index: usize) -> Option<usize> {
         let mut first = self.calibrated();
         for effect in &self.effects {
@@ -348,14 +351,14 @@ impl<'a> Model<'a> {
         None
     }
 
-    /// Whether a parameter has reached the one that it must not be below. Further down it would have no
+    /// Whether a parameter is equal to or below the one below which it cannot lie. Lowering it further would have no
     /// effect.
     pub fn rests(&self, index: usize, u: &[f64]) -> bool {
         self.floor(index).is_some_and(|least| u[index] <= u[least])
     }
 
-    /// Puts ordered parameters in order. A parameter below its limit acts on nothing, and a descent that left
-    /// it there would never find it again.
+    /// Raises parameters to those below which they cannot lie. A parameter below its limit has no effect on the
+    /// predictions, so a descent would see no slope and leave it there.
     pub fn put_in_order(&self, u: &mut [f64]) {
         for index in self.calibrated()..u.len() {
             let Some(least) = self.floor(index).filter(|least| u[index] < u[*least]) else { continue };
@@ -376,7 +379,7 @@ impl<'a> Model<'a> {
         self.calibrated() + self.free_parameters().count()
     }
 
-    /// Whether no parameter is free.
+    /// Whether the model has no parameters.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -396,26 +399,26 @@ impl<'a> Model<'a> {
         self.calibrated() + self.effects[..effect].iter().map(|e| e.free_parameters.len()).sum::<usize>()
     }
 
-    /// Whether an effect has reached the largest size that is searched for.
+    /// Whether some effect has reached the largest size that is sought.
     pub fn is_at_a_limit(&self, u: &[f64]) -> bool {
         self.free_parameters()
             .zip(&u[self.calibrated()..])
             .any(|(parameter, u)| parameter.is_at_its_limit(*u))
     }
 
-    /// Smallest and largest value of a parameter.
+    /// Smallest and largest value of a parameter, in `u`; both are equal for a parameter that is held.
     pub fn bounds(&self, index: usize) -> (f64, f64) {
         if let Some((_, value)) = self.held.iter().find(|(held, _)| *held == index) {
             return (*value, *value);
         }
         match index.checked_sub(self.calibrated()) {
-            // eight standard deviations of tolerance: beyond what any honest part has
+            // eight standard deviations of the tolerance: beyond any real part
             None => (-8.0, 8.0),
             Some(i) => self.free_parameters().nth(i).map_or((0.0, 0.0), |k| (k.low, k.high)),
         }
     }
 
-    /// The arm under test with these parameters.
+    /// The arm and its tests with these parameters.
     pub fn subject(&self, forward: &Forward, u: &[f64]) -> Subject {
         let mut subject = forward.nominal.clone();
         self.nuisance.apply(u, &mut subject);
@@ -435,7 +438,7 @@ impl<'a> Model<'a> {
         out
     }
 
-    /// The model's label: those of its effects joined by `+`.
+    /// Label of the model: the labels of its effects joined by `+`.
     pub fn label(&self) -> String {
         self.effects.iter().map(|e| e.label()).collect::<Vec<_>>().join(" + ")
     }

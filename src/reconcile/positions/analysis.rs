@@ -1,5 +1,5 @@
-//! Analyses absolute positions: calibrates the geometry stage by stage, and then adds what yields and what
-//! turns unevenly, effect by effect.
+//! Analyses absolute positions: calibrates the geometry stage by stage, and then adds compliances and transmission
+//! errors, effect by effect.
 
 use super::align;
 use super::fit::fit;
@@ -24,59 +24,59 @@ use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Number of folds that the poses are dealt into. One fold is held out at a time.
+/// Number of folds among which the poses are divided. One fold is held out at a time.
 const HANDS: usize = 5;
 /// A position is a gross error if its residual is more than this many times the scale of the errors.
 const GROSS: f64 = 8.0;
 /// Scale of the errors before anything is fitted \[m\].
 const ROUGH_M: f64 = 0.01;
-/// Step of the direction of gravity for numerical derivatives \[rad\].
+/// Angle by which gravity is tilted for numerical derivatives \[rad\].
 const LEAN: f64 = 1e-3;
 
-/// The classes of effects, in the order in which the search takes them.
+/// Classes of compliances, in the order in which the search takes them.
 const CLASSES: [Yields; 3] = [Yields::AboutAxis, Yields::Tilt, Yields::Frame];
 
-/// Everything that a campaign of positions shows.
+/// Result of the analysis of a campaign of positions.
 #[derive(Clone)]
 pub(crate) struct Positions {
     /// The table of position errors, stage by stage.
     pub stages: Vec<Stage>,
-    /// All candidates.
+    /// All candidates: the effects that may be added at each place.
     pub candidates: Vec<Yielding>,
     /// For each candidate, whether it may be named as an effect.
     pub(super) considered: Vec<bool>,
     /// The final fit.
     pub fitted: Fitted,
-    /// A fit of the same geometry in which nothing yields.
+    /// A fit of the same geometry in which no compliance is added.
     pub rigid: Fitted,
-    /// Rows that are gross errors, counted from 0, with their error \[mm\].
+    /// Rows that are gross errors, counted from 0, each with the length of its error \[mm\].
     pub gross: Vec<(usize, f64)>,
     pub(super) samples: Vec<Sample>,
     pub(super) numbers: Vec<Number>,
-    /// Driven joints with a transmission error, by their index in a pose.
+    /// Indices of the driven joints for which a transmission error was found, counted as in a pose.
     pub(super) transmissions: Vec<usize>,
     pub(super) tree: Tree,
-    /// The points on the tools. A point that sat elsewhere in another session counts as a separate point.
+    /// The points on the tools. A point that was moved on the tool between two sessions counts as two points.
     pub(super) points: Vec<Point>,
     /// The boundaries between sessions.
     pub(super) sessions: Vec<Boundary>,
-    /// Held-out errors of the last stage, by row \[m\].
+    /// Error of each row in the last stage, predicted by a fit without the row's fold \[m\].
     pub(super) held_out: Vec<Vector3<f64>>,
 }
 
-/// Arms of which only the geometry is calibrated.
+/// Arms whose geometry alone is calibrated, without a search for effects.
 pub(crate) struct Calibrated {
     /// The arms with calibrated geometry. Everything else about them is unchanged.
     pub arms: Vec<Arm>,
     /// The table of position errors.
     pub stages: Vec<Stage>,
-    /// Predicted positions \[mm\], by row.
+    /// Predicted positions \[mm\], one per row.
     pub predicted_mm: Vec<[f64; 3]>,
-    /// Where the arms stand, as in `provenance` of a corrected arm.
+    /// Placements of the arms, as in `provenance` of a corrected arm.
     pub placements: Value,
 }
 
-/// Calibrates the geometry without a search for effects.
+/// Calibrates the geometry alone, without a search for effects.
 pub(crate) fn calibrated(campaign: &Campaign) -> Calibrated {
     let found = Positions::on_its_geometry(campaign);
     let mut placements = json!({});
@@ -89,11 +89,13 @@ pub(crate) fn calibrated(campaign: &Campaign) -> Calibrated {
     }
 }
 
-/// Calibrates the geometry, tells sessions apart, and finds what yields and which joints have a transmission error.
+/// Calibrates the geometry, finds sessions, and finds compliances and transmission errors.
 ///
-/// What yields can look like a session where the rows were taken configuration by configuration. So sessions are asked
-/// again once the effects are in the model. Where one no longer pays, or begins where something else changes in the rows,
-/// everything is done once more with the sessions that are needed beside effects that were found without any.
+/// A compliance can look like a change of session if the rows were taken configuration by configuration. So each
+/// session is examined again once the effects are in the model. If a session is no longer worth its price, or begins at
+/// a row where something else changes, the analysis is repeated with two other sets of sessions: those that remain, and
+/// those that are needed in addition to effects that were found without sessions. The model with the best score is
+/// kept.
 pub(crate) fn analyze(campaign: &Campaign) -> Positions {
     let calibrated = Positions::in_declared_sessions(campaign);
     let mut found = calibrated.clone();
@@ -152,7 +154,7 @@ impl Positions {
         }
     }
 
-    /// Fits all that is unknown in the geometry, in the sessions that campaign.json declares.
+    /// Calibrates the geometry, with the sessions that campaign.json declares.
     fn in_declared_sessions(campaign: &Campaign) -> Self {
         let mut found = Self::new(campaign);
         found.calibrate(campaign);
@@ -164,7 +166,7 @@ impl Positions {
         found
     }
 
-    /// Fits all that is unknown in the geometry, and tells sessions apart.
+    /// Calibrates the geometry, and finds sessions.
     fn on_its_geometry(campaign: &Campaign) -> Self {
         let mut found = Self::in_declared_sessions(campaign);
         found.tell_sessions(campaign);
@@ -172,7 +174,7 @@ impl Positions {
         found
     }
 
-    /// The sessions that campaign.json declares: what was moved, and the first row after.
+    /// The sessions that campaign.json declares: what was moved, and the first row after that, counted from 0.
     fn declared(&self, campaign: &Campaign) -> Vec<(Kind, usize)> {
         let declared = campaign.statement.positions.sessions.iter();
         let boundaries = declared.flat_map(|session| {
@@ -187,7 +189,7 @@ impl Positions {
         boundaries.collect()
     }
 
-    /// Looks for sessions that nobody declared.
+    /// Finds sessions that campaign.json does not declare.
     fn tell_sessions(&mut self, campaign: &Campaign) {
         let spec = &campaign.statement.positions;
         if self.find_sessions(spec.tool_offset, spec.base_placement) > 0 {
@@ -195,7 +197,7 @@ impl Positions {
         }
     }
 
-    /// The calibrated arm in given sessions, with the effects that it then has.
+    /// The calibrated model with the sessions that begin at `boundaries`, and with the effects that are then found.
     fn with_sessions(&self, campaign: &Campaign, boundaries: &[(Kind, usize)]) -> Self {
         let mut out = self.clone();
         out.divide(boundaries, false);
@@ -207,9 +209,9 @@ impl Positions {
         out
     }
 
-    /// Finds what yields and which joints have a transmission error.
+    /// Finds compliances and transmission errors.
     fn find_effects(&mut self, campaign: &Campaign) {
-        // An uneven joint can hide what yields, so the search begins again after each.
+        // A transmission error can hide a compliance, so the search starts again after each one that is found.
         loop {
             for class in CLASSES {
                 while self.add(campaign, class) {}
@@ -220,7 +222,7 @@ impl Positions {
         }
     }
 
-    /// Places the arm, and frees one group of numbers after the other.
+    /// Places the arm, and then frees one group of numbers after the other.
     fn calibrate(&mut self, campaign: &Campaign) {
         let spec = &campaign.statement.positions;
         align::align(&self.tree, spec, &self.samples, &mut self.fitted.geometry);
@@ -301,15 +303,17 @@ impl Positions {
     }
 }
 
-/// How much an error of each coordinate counts in a fit. A coordinate with a larger standard deviation than the best one
-/// of its row counts less, but not below a tenth: what a model misses is often larger than what an instrument does.
+/// Weight of each coordinate's error in a fit, from 0.1 to 1; 0 if the coordinate was not measured. A coordinate with a
+/// larger standard deviation than the best one of its row counts less. It does not count less than a tenth, because the
+/// error of the model is often larger than that of the instrument.
 fn precision(measured: &Components) -> Vector3<f64> {
     const LEAST: f64 = 0.1;
     let best_mm = measured.iter().flatten().map(|read| read.sigma_mm).fold(f64::INFINITY, f64::min);
     Vector3::from(measured.map(|read| read.map_or(0.0, |read| (best_mm / read.sigma_mm).max(LEAST))))
 }
 
-/// The measured positions, each with the deflection of its point under gravity.
+/// The measured positions, each with the deflection of its point under gravity. `points` lists the points of the
+/// readings.
 pub(super) fn samples(
     campaign: &Campaign,
     tree: &Tree,

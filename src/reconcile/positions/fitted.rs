@@ -1,11 +1,11 @@
-//! A measured position with what gravity does to it, and a fitted model of geometry and compliances.
+//! A measured position with the effect of gravity on it, and a fitted model of geometry and compliances.
 
 use super::kinematics::{Geometry, Placer, Placing, Pose};
 use super::loads::Deflection;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
-/// Degrees of freedom of the Student distribution.
+/// Degrees of freedom ν of the Student distribution of the errors.
 pub(crate) const NU: f64 = 4.0;
 
 /// One measured position.
@@ -13,26 +13,27 @@ pub(crate) const NU: f64 = 4.0;
 pub(crate) struct Sample {
     /// Angles of the driven joints.
     pub pose: Arc<Pose>,
-    /// Index of the arm that carries the point.
+    /// Index of the arm to which the point belongs.
     pub arm: usize,
-    /// Index of its point on the tool.
+    /// Index of the measured point among all points on tools.
     pub point: usize,
     /// Index of the instrument's session.
     pub station: usize,
     /// Index of this sample among the samples.
     pub index: usize,
-    /// Index of its pose. Samples of one pose are held out together.
+    /// Number of the pose, counted over different poses. Samples of one pose are held out together.
     pub group: usize,
     /// Measured position in the instrument's frame \[m\]; zero where a coordinate was not measured.
     pub measured_m: Vector3<f64>,
-    /// How much an error of each coordinate counts: 0 if it was not measured, 1 if none of the row is known better.
+    /// Weight of each coordinate's error: 0 if the coordinate was not measured, 1 if it has the smallest standard
+    /// deviation of its row.
     pub precision: Vector3<f64>,
     /// The effect of gravity on this position.
     pub deflection: Arc<Deflection>,
 }
 
 impl Sample {
-    /// The arguments that the geometry needs.
+    /// The arm, pose, point and session of the sample, for the computation of its nominal position.
     pub(crate) fn placing(&self) -> Placing<'_> {
         Placing { arm: self.arm, pose: &self.pose, point: self.point, station: self.station }
     }
@@ -48,13 +49,13 @@ impl Sample {
         (self.measured_m - predicted_m).zip_map(&self.precision, |e, p| if p > 0.0 { e } else { 0.0 })
     }
 
-    /// An error of this sample as a fit sees it.
+    /// The error of this sample, weighted by coordinate for the fit.
     pub(crate) fn miss(&self, error_m: &Vector3<f64>) -> Miss {
         Miss { scaled_m: error_m.component_mul(&self.precision), readings: self.readings() as f64 }
     }
 }
 
-/// An error as a fit sees it.
+/// The error of a sample, weighted by coordinate for the fit.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Miss {
     /// Measured minus predicted, times the precision of each coordinate \[m\].
@@ -63,19 +64,19 @@ pub(crate) struct Miss {
     pub readings: f64,
 }
 
-/// Number of coordinates that were measured.
+/// Number of measured coordinates of all samples.
 pub(crate) fn readings(samples: &[Sample]) -> usize {
     samples.iter().map(Sample::readings).sum()
 }
 
-/// A fitted model.
+/// A fitted model of geometry and compliances.
 #[derive(Debug, Clone)]
 pub(crate) struct Fitted {
-    /// Geometry.
+    /// The calibrated geometry.
     pub geometry: Geometry,
-    /// Change of each number of the geometry from its nominal value.
+    /// Change of each number of the geometry from its nominal value, in the number's unit.
     pub moved: Vec<f64>,
-    /// Standard deviations of the numbers of the geometry.
+    /// Standard deviations of the numbers of the geometry, in their units.
     pub number_deviations: Vec<f64>,
     /// Indices of the candidates that the model contains as effects.
     pub effects: Vec<usize>,
@@ -83,16 +84,16 @@ pub(crate) struct Fitted {
     pub compliances: Vec<Vec<f64>>,
     /// Standard deviations of the compliances \[rad/(N m)\].
     pub deviations: Vec<Vec<f64>>,
-    /// What the standard deviations are by robust weights over what the curvature alone gives.
+    /// Sandwich factor: ratio of the standard deviations of the robust fit to those of the weighted curvature alone.
     pub robust_factor: f64,
     /// Scale of the errors \[m\].
     pub scale_m: f64,
-    /// ln of the likelihood.
+    /// Natural logarithm of the likelihood.
     pub ln_likelihood: f64,
 }
 
 impl Fitted {
-    /// A model of a geometry without effects.
+    /// A model of a geometry without effects, with errors of this scale \[m\].
     pub(crate) fn rigid(geometry: Geometry, scale_m: f64) -> Self {
         Self {
             geometry,
@@ -107,12 +108,13 @@ impl Fitted {
         }
     }
 
-    /// Predicted position \[m\].
+    /// Predicted position of a sample, in the instrument's frame \[m\].
     pub(crate) fn predicted_m(&self, sample: &Sample) -> Vector3<f64> {
         self.predicted_by(&mut self.geometry.placer(), sample)
     }
 
-    /// Predicted position by a placer of the model's geometry \[m\].
+    /// The same predicted position \[m\], with a given placer of the model's geometry, which is faster for many
+    /// samples.
     pub(crate) fn predicted_by(&self, placer: &mut Placer, sample: &Sample) -> Vector3<f64> {
         let rigid = placer.place_m(sample.placing());
         rigid + self.geometry.level_to_instrument() * self.displacement(sample)
@@ -140,8 +142,8 @@ impl Fitted {
         })
     }
 
-    /// Change of the displacement by the springs of the model as gravity leans along an axis \[m/rad\]. Play is left out: it
-    /// is closed in most poses, and does not follow.
+    /// Derivative of the displacement by the springs of the model with respect to a tilt of gravity along an axis
+    /// \[m/rad\]. Play is left out: it is closed in most poses, where its displacement does not change with the tilt.
     pub(crate) fn leaning(&self, sample: &Sample, axis: usize) -> Vector3<f64> {
         let effects = self.effects.iter().zip(&self.compliances);
         let springs = effects.filter(|(effect, _)| !sample.deflection.is_play(**effect));
@@ -150,19 +152,20 @@ impl Fitted {
         })
     }
 
-    /// Weight of a sample with this error \[1/m²\].
+    /// Weight of a sample with this error in the normal equations \[1/m²\].
     pub(crate) fn weight(&self, miss: &Miss) -> f64 {
         weight(miss, self.scale_m) / (self.scale_m * self.scale_m)
     }
 }
 
-/// Errors of samples as a fit sees them.
+/// Errors of the samples, weighted by coordinate for the fit.
 pub(crate) fn misses(samples: &[&Sample], fitted: &Fitted) -> Vec<Miss> {
     let mut placer = fitted.geometry.placer();
     samples.iter().map(|s| s.miss(&s.error(fitted.predicted_by(&mut placer, s)))).collect()
 }
 
-/// Weight of a sample with this error, in units of the scale.
+/// Weight of a sample with this error, without unit: more than 1 for small errors, and falling for errors above the
+/// scale.
 pub(crate) fn weight(miss: &Miss, scale_m: f64) -> f64 {
     (NU + miss.readings) / (NU + miss.scaled_m.norm_squared() / (scale_m * scale_m))
 }

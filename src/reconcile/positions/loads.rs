@@ -1,9 +1,9 @@
-//! Computes what gravity does to the arm in each measured pose, by mechanics: the displacement that the model
-//! already has, and that of each candidate per unit of its compliance.
+//! Computes the deflection of the arm under gravity in each measured pose: the displacement by compliances that the arm
+//! file already has, and the displacement by each candidate per unit of its compliance.
 //!
-//! A joint that yields by `c` about an axis `u` through `p` moves a point `x` by `c g (u x (x - p)) (u x (S -
-//! m p))ᵀ ĝ`. Here `m` and `S` are mass and first moment of everything outboard, `g` the strength and `ĝ` the
-//! direction of gravity. Other arms on the same trunk count too.
+//! A joint of compliance `c` about an axis `u` through `p` moves a point `x` by `c g (u x (x - p)) (u x (S - m p))ᵀ ĝ`.
+//! Here `m` and `S` are mass and first moment of everything outboard, `g` the strength and `ĝ` the direction of
+//! gravity. Other arms on the same trunk count too.
 
 use super::kinematics::Geometry;
 use super::tree::Tree;
@@ -28,53 +28,56 @@ use std::sync::Arc;
 /// Row and column of each entry of a frame's compliance matrix, in the order in which the entries are fitted.
 pub(crate) const FRAME_ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (0, 1), (0, 2), (1, 2), (2, 2)];
 
-/// A candidate: an effect at a place, by which something yields there.
+/// A candidate: an effect at a place, which makes the arm compliant there.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Yielding {
     /// Name of the effect.
     pub effect: &'static str,
-    /// How the place yields: about a joint's axis, by tilting, or as a frame about every axis.
+    /// Direction of the compliance: about a joint's axis, tilt about the two axes across it, or rotation of a frame
+    /// about every axis.
     pub yields: Yields,
-    /// Name of the place.
+    /// Place of the effect: the name of a joint or link, or `base`.
     pub at: String,
-    /// The torque scale of play, if the joint has play and is no spring: its one number is then the half width \[rad\] and
-    /// not a compliance \[N m\].
+    /// Torque scale `T_c` of play \[N m\], if the candidate is play and no spring. Its parameter is then the half width
+    /// \[rad\] and not a compliance. `None` for a spring.
     pub play_nm: Option<f64>,
 }
 
 /// The effect of gravity on one measured position, in the level frame.
 #[derive(Debug, Clone)]
 pub(crate) struct Deflection {
-    /// Displacement that the model already has \[m\].
+    /// Displacement by the compliances that the arm file already has \[m\].
     pub known_m: Vector3<f64>,
-    /// Derivatives of the known displacement by the two components of gravity across the vertical \[m\].
+    /// Derivatives of the known displacement with respect to the two horizontal components of the unit vector of
+    /// gravity \[m\].
     pub known_slopes_m: [Vector3<f64>; 2],
-    /// The swings of all candidates, one after the other.
+    /// Rotations of all candidates, one after the other.
     swings: Vec<Swing>,
     slots: Arc<[Slot]>,
 }
 
-/// What a rotation by which a candidate may yield does.
+/// Effect of one rotation by which a candidate may deflect.
 #[derive(Debug, Clone, Copy, Default)]
 struct Swing {
-    /// Displacement of the point per rotation \[m\].
+    /// Displacement of the point per angle of the rotation \[m/rad\].
     motion_m: Vector3<f64>,
-    /// Torque about the axis of rotation under gravity along each axis \[N m\].
+    /// Torque about the axis of rotation for gravity along each axis of the level frame \[N m\].
     pull_nm: Vector3<f64>,
 }
 
-/// Where the swings of a candidate are among those of all candidates, and the number of its compliances.
+/// Index of the first rotation of a candidate among those of all candidates, the number of its rotations, and the
+/// number of its compliances.
 #[derive(Debug, Clone, Copy)]
 struct Slot {
     first: usize,
     swings: usize,
     compliances: usize,
-    /// The torque scale of play \[N m\].
+    /// Torque scale of play \[N m\]; `None` for a spring.
     play_nm: Option<f64>,
 }
 
 impl Deflection {
-    /// A known displacement, without candidates \[m\].
+    /// A deflection of a known displacement \[m\], without candidates.
     pub(crate) fn known(known_m: Vector3<f64>) -> Self {
         Self { known_m, known_slopes_m: [Vector3::zeros(); 2], swings: Vec::new(), slots: Arc::new([]) }
     }
@@ -84,7 +87,7 @@ impl Deflection {
         self.slots[candidate].compliances
     }
 
-    /// Whether a candidate is play, whose motion is not in proportion to the weight.
+    /// Whether a candidate is play. Its displacement is not proportional to the weight.
     pub(crate) fn is_play(&self, candidate: usize) -> bool {
         self.slots[candidate].play_nm.is_some()
     }
@@ -94,8 +97,8 @@ impl Deflection {
         &self.swings[slot.first..slot.first + slot.swings]
     }
 
-    /// Gives `each` the displacement of the point per compliance of a candidate, compliance by compliance, under gravity
-    /// along `gravity` \[m per rad/(N m)\].
+    /// Calls `each` with the displacement of the point per compliance of a candidate, for one compliance after the
+    /// other, under gravity along `gravity` \[m per rad/(N m)\].
     pub(crate) fn per_compliance(
         &self,
         candidate: usize,
@@ -133,14 +136,15 @@ impl Deflection {
         out
     }
 
-    /// The motion of the point per rotation about the first axis of a candidate \[m\], and the torque about this axis
-    /// under gravity along -z \[N m\]. Errors of a joint's angle show along this motion.
+    /// Displacement of the point per rotation about the first axis of a candidate \[m/rad\], and the torque about this
+    /// axis under gravity along -z \[N m\]. An error of a joint's angle moves the point in the same direction.
     pub(crate) fn lever(&self, candidate: usize) -> (Vector3<f64>, f64) {
         self.swings(candidate).first().map_or_else(Default::default, |s| (s.motion_m, -s.pull_nm.z))
     }
 }
 
-/// All candidates: every joint about its axis and across its axis, the base, and the structures behind the joints.
+/// All candidates: compliance about the axis and tilt across the axis of every joint, compliance of the base, and
+/// compliance of the link behind every joint.
 pub(crate) fn candidates(tree: &Tree) -> Vec<Yielding> {
     let mut out = Vec::new();
     for piece in &tree.pieces {
@@ -180,13 +184,13 @@ impl Tree {
 }
 
 impl Yielding {
-    /// The candidate of an effect at a place; `None` if positions do not show that the effect yields.
+    /// The candidate of an effect at a place; `None` if the effect adds no compliance that positions can show.
     fn new(kind: &'static Kind, at: &str) -> Option<Self> {
         kind.traits.yields.map(|yields| Self { effect: kind.name, yields, at: at.into(), play_nm: None })
     }
 
-    /// Number of compliances of the candidate. A frame has xx, yy, xy, xz, yz, and zz where weights can turn it about
-    /// z.
+    /// Number of compliances of the candidate. A frame has xx, yy, xy, xz and yz, and also zz if weights can turn it
+    /// about z.
     pub(crate) fn count(&self) -> usize {
         match (self.yields, self.at.as_str()) {
             (Yields::Frame, "base") => 5,
@@ -195,7 +199,7 @@ impl Yielding {
         }
     }
 
-    /// Number of axes about which the candidate yields.
+    /// Number of axes about which the candidate rotates under load.
     fn axes(&self) -> usize {
         match self.yields {
             Yields::AboutAxis => 1,
@@ -224,12 +228,13 @@ struct Ready {
     structure: Structure,
     unit_structure: Structure,
     point_m: Vector3<f64>,
-    /// For each candidate, where its elements are among the elastic elements, tip to base.
+    /// For each candidate, the index of its element among the elastic elements, counted from the tip to the base.
     places: Vec<Place>,
 }
 
-/// Where a candidate's element is among the elastic elements of an arm, tip to base; `None` on other arms. A passive joint
-/// turns with its driver, so its compliance acts through the driver: the passive joints' places, and their factors.
+/// Index of a candidate's element among the elastic elements of an arm, counted from the tip to the base; `None` if the
+/// candidate is on another arm. A passive joint turns with its driving joint, so the candidate at the driving joint
+/// also includes the elements of the passive joints: their indices, and the factors of their angles.
 struct Place {
     own: Option<usize>,
     passive: Vec<(usize, f64)>,
@@ -238,7 +243,7 @@ struct Place {
 /// The effect of gravity on the positions of a campaign, with one geometry.
 pub(crate) struct Loads<'a> {
     tree: &'a Tree,
-    /// For each arm, the arm with each of the points.
+    /// For each arm and each point on a tool, the arm that ends at this point.
     ready: Vec<Vec<Ready>>,
     /// How many items of a posed arm belong to the trunk: in the arm with unit compliances, and in the arm as it is.
     trunk: [usize; 2],
@@ -275,7 +280,7 @@ impl<'a> Loads<'a> {
         Self { tree, trunk: trunk_items(campaign, tree, &ready), ready, slots }
     }
 
-    /// The effect of gravity on a position: all but the derivatives by the direction of gravity.
+    /// The effect of gravity on a position, without the derivatives with respect to the direction of gravity.
     pub(crate) fn deflection(&self, row: &PositionRow, point: usize) -> Deflection {
         let pose_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
         let own = &self.ready[row.arm][point];
@@ -289,7 +294,7 @@ impl<'a> Loads<'a> {
         }
     }
 
-    /// Displacement that the model already has \[m\].
+    /// Displacement of a point by the compliances that the arm file already has \[m\].
     pub(crate) fn known_m(&self, row: &PositionRow, point: usize) -> Vector3<f64> {
         let pose_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
         let own = &self.ready[row.arm][point];
@@ -298,7 +303,8 @@ impl<'a> Loads<'a> {
         known.statics().tip_displacement_m
     }
 
-    /// Hangs the other arms on the trunk, which ends after `items` items: their weight moves the point too.
+    /// Adds the bodies of the other arms to the trunk, which ends after `items` items: their weight deflects the trunk
+    /// and so moves the point too.
     fn load_trunk(&self, posed: &mut Posed, items: usize, row: &PositionRow, pose_rad: &[f64]) {
         for other in (0..self.ready.len()).filter(|&other| other != row.arm) {
             let neighbour = &self.ready[other][0];
@@ -341,8 +347,8 @@ impl Ready {
     }
 }
 
-/// The structure in which every joint, about and across its axis, the base and every frame have unit compliance, and links
-/// are rigid with their masses at their middles.
+/// The structure in which every joint (about and across its axis), the base and every frame have unit compliance. Its
+/// links are rigid with their masses at their middles.
 fn yielding_everywhere(structure: &Structure, known: &Chain, joints: usize) -> Structure {
     let mut unit = structure.clone();
     unit.base_tilt_rad_per_nm = 1.0;
@@ -361,13 +367,13 @@ fn yielding_everywhere(structure: &Structure, known: &Chain, joints: usize) -> S
             }
         }
     }
-    // what of its weight buoyancy leaves is the same in every pose
+    // weight less buoyancy is the same in every pose, so the zero pose is enough to find it
     let rest = known.pose_rad(&vec![0.0; joints], &Payload::default(), Vector3::zeros());
     for own in rest.elements().filter_map(|element| element.own.as_ref()) {
         if let Piece::Link(link) = &mut unit.pieces[own.piece]
             && structure.gravity_m_s2 > 0.0
         {
-            // the bodies are still there
+            // the bodies on the link stay in the model, so that their mass is subtracted
             link.point_mass_kg -= linear(&own.weight).z / structure.gravity_m_s2 + total_kg(&link.bodies);
         }
     }
@@ -389,7 +395,7 @@ fn trunk_items(campaign: &Campaign, tree: &Tree, ready: &[Vec<Ready>]) -> [usize
     [of(&first.unit_structure), of(&first.structure)]
 }
 
-/// Where the elements of each candidate are. The elements of an arm are the same in every pose.
+/// Index of the element of each candidate. The elements of an arm are the same in every pose.
 fn places(unit: &Chain, arm: &Arm, candidates: &[Yielding]) -> Vec<Place> {
     let rest = vec![0.0; arm.driven_joint_names().len()];
     let posed = unit.pose_rad(&rest, &Payload::default(), Vector3::zeros());
@@ -405,7 +411,7 @@ fn places(unit: &Chain, arm: &Arm, candidates: &[Yielding]) -> Vec<Place> {
 }
 
 impl Ready {
-    /// The swings of all candidates, in a pose.
+    /// Rotations of all candidates in a pose.
     fn swings(&self, unit: &Posed, slots: &[Slot]) -> Vec<Swing> {
         let (elements, swings) = self.swings_of_elements(unit);
         let mut out = Vec::with_capacity(slots.last().map_or(0, |s| s.first + s.swings));
@@ -422,7 +428,8 @@ impl Ready {
         out
     }
 
-    /// The swings of every elastic element, tip to base, and for each element the index of its first.
+    /// Rotations of every elastic element, from the tip to the base, and for each element the index of its first
+    /// rotation.
     fn swings_of_elements(&self, unit: &Posed) -> (Vec<usize>, Vec<Swing>) {
         let (mut elements, mut swings) = (Vec::new(), Vec::new());
         // weight and its first moment of everything outboard so far
@@ -449,7 +456,8 @@ impl Ready {
     }
 }
 
-/// Generalized force on a twist, for gravity along each axis.
+/// Generalized force on a kinematic twist \[N m\], for gravity along each axis. `moment_nm` is weight times centre of
+/// gravity of everything outboard.
 fn pull(twist: &Twist, weight_n: f64, moment_nm: &Vector3<f64>) -> Vector3<f64> {
     linear(twist) * weight_n + angular(twist).cross(moment_nm)
 }

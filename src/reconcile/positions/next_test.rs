@@ -18,7 +18,7 @@ const WORTHLESS_SIGMAS: f64 = 0.1 * ENOUGH;
 const PROPOSED_POSES: usize = 60;
 
 impl Positions {
-    /// The best test against each competing model, the most telling first.
+    /// The best test against each competing model, the one that separates best first.
     pub(crate) fn next_tests(
         &self,
         campaign: &Campaign,
@@ -104,8 +104,9 @@ impl Positions {
         out
     }
 
-    /// Proposes a test if no effect of the library fits, so that no pose can separate models. What the errors follow
-    /// says which kind of test is worth making; it is made in the pose that the best model misses most.
+    /// Proposes a test if no effect of the library fits, so that no pose can separate models. The kind of test depends
+    /// on the quantity that the errors follow. The test is made in the pose in which the best model has its largest
+    /// error.
     fn after_unexplained(&self, campaign: &Campaign, left: &LackOfFit) -> Option<NextTest> {
         let gross: HashSet<usize> = self.gross.iter().map(|(row, _)| *row).collect();
         let errors = self.samples.iter().map(|s| self.fitted.error(s).norm()).enumerate();

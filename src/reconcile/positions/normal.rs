@@ -2,12 +2,13 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// Weighted normal equations of a model. There is one column for each parameter of the geometry, then one for each
-/// compliance, then those that the caller adds, which belong to no parameter of the model.
+/// Weighted normal equations of a model. There is one column for each number of the geometry, then one for each
+/// compliance, then one for each column that the caller adds. The added columns belong to no parameter of the model.
 pub(crate) struct Normal {
-    /// Curvature, with the priors included.
+    /// Curvature matrix of half of chi-squared, with the priors included.
     pub curvature: DMatrix<f64>,
-    /// Gradient towards the readings. The Gauss-Newton step is the inverse of the curvature times this gradient.
+    /// Negative gradient of half of chi-squared. The Gauss-Newton step is the inverse of the curvature times this
+    /// vector.
     pub gradient: DVector<f64>,
     /// Number of columns that belong to the model.
     pub own: usize,

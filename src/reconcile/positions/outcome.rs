@@ -1,4 +1,4 @@
-//! Draws the conclusion from a campaign of absolute positions.
+//! Reaches the verdict on a campaign of absolute positions.
 
 use super::analysis::{Positions, analyze};
 use super::fitted::Fitted;
@@ -34,12 +34,12 @@ pub(crate) const FEWEST: usize = 20;
 const HOPELESS_VARIANCE: f64 = 25.0;
 /// Largest ratio of the errors of held-out poses to those in the fit.
 const UNSTABLE: f64 = 8.0;
-/// Effects are written into the corrected arm, even if they do not explain everything, if they lower the error of
-/// held-out poses to this part or less.
+/// Effects that do not explain everything are still written into the corrected arm if they lower the median error of
+/// held-out poses below this fraction.
 const HELPFUL: f64 = 0.8;
-/// What a session is called among the alternatives of an effect.
+/// Name of a session among the alternatives of an effect.
 const SESSION: &str = "session";
-/// Number of poses that are listed.
+/// Number of poses that are listed, those with the largest errors first.
 const WORST_POSES: usize = 3;
 
 /// Reconciles a campaign of absolute positions.
@@ -56,7 +56,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     reasons.extend(found.session_sentences(campaign));
     reasons.extend(found.other_convention(campaign));
     let next_tests = found.next_tests(campaign, verdict, &lack_of_fit, &competitors);
-    // a model that predicts held-out poses far better serves a user even if something else is missing
+    // a model that predicts held-out poses far better is useful even if something else is missing
     let [before, after] = found.before_and_after();
     let helps = verdict == Verdict::Unexplained && after.median_mm < HELPFUL * before.median_mm;
     if helps {
@@ -159,14 +159,14 @@ impl Positions {
         (Verdict::Explained, reasons)
     }
 
-    /// A finding with the session that would explain as much, if there is one, among its alternatives.
+    /// Adds the session that would explain as much, if there is one, to the alternatives of a finding.
     fn with_session_instead(&self, campaign: &Campaign, i: usize, mut finding: Finding) -> Finding {
         let row = self.session_instead(campaign, self.fitted.effects[i], TIE);
         finding.indistinguishable_from.extend(row.map(|row| (SESSION.into(), format!("before row {row}"))));
         finding
     }
 
-    /// Says in words which structure is left in the errors, without naming an effect.
+    /// Sentences on the structure that is left in the errors. They name no effect.
     fn left_over(&self, left: &LackOfFit) -> Vec<String> {
         let mut out = vec![format!(
             "the best model leaves {:.2} times the declared standard deviation",
@@ -182,7 +182,7 @@ impl Positions {
         out
     }
 
-    /// The row of the position-error table without effects, and the row with all effects.
+    /// The last row of the table of stages without effects, and its last row with all effects.
     fn before_and_after(&self) -> [&Stage; 2] {
         let calibration = self.stages.iter().rposition(|s| !s.added.contains('@')).unwrap_or_default();
         [&self.stages[calibration], &self.stages[self.stages.len() - 1]]
@@ -371,13 +371,14 @@ pub(crate) fn located(campaign: &Campaign, residuals: &[ReadingResidual]) -> Vec
     rest
 }
 
-/// A value with its 95 % interval.
+/// A value with its 95 % interval; an end is `None` if the standard deviation is infinite.
 fn within(value: f64, deviation: f64) -> Estimate {
     let end = |by: f64| Some(value + by * deviation).filter(|e| e.is_finite());
     Estimate { value, low: end(-1.96), high: end(1.96) }
 }
 
-/// The reciprocal of a compliance, as a stiffness with its 95 % interval.
+/// Stiffness with its 95 % interval, as the reciprocal of a compliance. An end is `None` where the compliance may be
+/// zero.
 fn stiffness(compliance: f64, deviation: f64) -> Estimate {
     let end = |c: f64| (c > 0.0).then(|| 1.0 / c);
     Estimate {
@@ -387,7 +388,8 @@ fn stiffness(compliance: f64, deviation: f64) -> Estimate {
     }
 }
 
-/// The compliances of a frame as parameters of the effect. A compliance that no weight loads has no bounds.
+/// The compliances of a frame as parameters of the effect \[rad/(N m)\]. A compliance that no weight loads has no
+/// bounds.
 fn frame_parameters(compliances: &[f64], deviations: &[f64]) -> Vec<(String, Vec<Estimate>)> {
     let matrix = frame_matrix(compliances);
     let entry = |at: (usize, usize)| {

@@ -1,4 +1,4 @@
-//! The points on the tools of the arms. A point of a separate session is a separate point.
+//! The points on the tools of the arms. A point that was moved between two sessions counts as two points.
 
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::rows::PositionRow;
@@ -10,7 +10,8 @@ pub(crate) struct Point {
     pub arm: usize,
     /// Name of the point in the readings.
     pub name: String,
-    /// If the point belongs to an earlier session: the row, counted from 1, that begins the next session.
+    /// If the point belongs to an earlier session: the row, counted from 1, that begins the next session. `None` in the
+    /// last session.
     pub before_row: Option<usize>,
 }
 
@@ -29,7 +30,7 @@ impl Point {
     }
 }
 
-/// Every point that the readings name, in the order of its first row.
+/// All points that the readings name, in the order in which they first appear.
 pub(crate) fn points(campaign: &Campaign) -> Vec<Point> {
     let mut out: Vec<Point> = Vec::new();
     for point in campaign.positions.iter().map(Point::of) {

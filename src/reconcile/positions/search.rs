@@ -1,5 +1,6 @@
-//! Finds which candidates yield. Each is screened with the linearized model, and the most promising are
-//! fitted in full. A candidate that is worth its price stays if held-out poses confirm it.
+//! Finds which candidates are compliant. Each candidate is screened with the linearized model, and the most promising
+//! are fitted in full. The price of a candidate is a charge, in ln of the likelihood, for its parameters and for the
+//! number of places examined. A candidate whose gain exceeds its price stays if held-out poses confirm it.
 
 use super::analysis::Positions;
 use super::fit::{fit, ln_likelihood, scale};
@@ -56,7 +57,8 @@ impl Positions {
         ln_likelihood(&misses, scale(&misses, self.fitted.scale_m))
     }
 
-    /// Repeats fits, each with gravity's effect on the geometry fitted before, until no effect is unnecessary.
+    /// Repeats the fit, with the deflection under gravity recomputed for the geometry of the fit before, until no
+    /// effect is unnecessary.
     fn settle(&mut self, campaign: &Campaign) {
         loop {
             self.refresh(campaign);
@@ -88,15 +90,14 @@ impl Positions {
         }
     }
 
-    /// Whether an effect may not be worth its price. The test is generous: it takes the effect's compliances over
-    /// their standard deviations.
+    /// Whether an effect may not be worth its price, judged by its compliances over their standard deviations. The test
+    /// lets too many effects through rather than too few: each is then examined by a full fit.
     fn is_doubtful(&self, position: usize) -> bool {
         let price = self.price_of(self.fitted.effects[position]);
         let numbers = self.fitted.compliances[position].iter().zip(&self.fitted.deviations[position]);
         // an effect that others can replace has large standard deviations
         let is_small = |(c, deviation): (&f64, &f64)| 0.5 * (c / deviation).powi(2) < 2.0 * price;
-        // the standard deviations are too small next to a compliance that is held at the limit of being a
-        // spring
+        // if some compliance is held at its constraint, the standard deviations of the others are too small
         let is_held = self.fitted.deviations.iter().flatten().any(|d| !d.is_finite());
         is_held || numbers.into_iter().all(is_small)
     }
@@ -105,7 +106,8 @@ impl Positions {
         format!("{}@{}", self.candidates[candidate].effect, self.candidates[candidate].at)
     }
 
-    /// ln of the likelihood minus the price of all effects and of the sessions that nobody declared.
+    /// Score of the model: ln of the likelihood less the prices of all effects, transmission errors and undeclared
+    /// sessions.
     pub(super) fn score(&self) -> f64 {
         let uneven = self.transmissions.len() as f64 * self.transmission_price();
         self.fitted.ln_likelihood - self.prices(&self.fitted.effects) - uneven - self.sessions_price()
@@ -148,7 +150,7 @@ impl Positions {
         let is_open = |c: usize| self.considered[c] && allowed(c) && !is_in(c);
         gains.retain(|(c, gain)| is_open(*c) && *gain > 0.0);
         gains.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-        // of all torque scales of a joint's play the best
+        // of all torque scales of play in one joint only the best is kept
         let mut seen: Vec<usize> = Vec::new();
         gains.retain(|(c, _)| {
             let is_first = !seen.iter().any(|s| self.is_same(*s, *c));
@@ -161,8 +163,8 @@ impl Positions {
         models.into_par_iter().map(|(c, effects)| (c, fit(&all, &self.numbers, &effects, base))).collect()
     }
 
-    /// Two sets of effects to fit. One holds the model's effects and the added one; the other leaves out those that
-    /// the added one can imitate, because next to these the added effect would have hardly any size.
+    /// Sets of effects to fit. The first holds the model's effects and the added one. The second leaves out those that
+    /// the added one contains, because in their presence the added effect would be close to zero.
     fn with(&self, base: &Fitted, added: usize) -> Vec<Vec<usize>> {
         let contains =
             |effect: &usize| self.tree.contains(&self.candidates[added], &self.candidates[*effect]);
@@ -212,7 +214,8 @@ impl Positions {
         counts.iter().map(gain).collect()
     }
 
-    /// Candidates that compete with one of the effects: they have as many parameters and fit as well in its place.
+    /// Candidates that compete with effect number `position`: they have no more parameters and fit as well in its
+    /// place.
     pub(crate) fn competitors(&self, position: usize) -> Vec<(usize, Fitted)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let own = self.fitted.effects[position];

@@ -1,14 +1,18 @@
-//! Tells sessions apart: until some row of the file a point sat elsewhere on the tool, or the instrument
-//! stood elsewhere.
+//! Finds sessions: before some row of the file, a point was elsewhere on the tool, or the instrument stood elsewhere.
 //!
-//! Between two sessions a reflector is put back slightly differently, or the instrument or the base is moved.
-//! Every row is tried as the first of a new session, by the gain of the linearized model. The earlier rows
-//! then have an offset or a placement of their own.
+//! Between two sessions a reflector is put back slightly differently, or the instrument or the base is moved. Every row
+//! is tried as the first of a new session, by the gain of the linearized model. The earlier rows then have an offset or
+//! a placement of their own.
 //!
-//! With the curvature `A` of the model (its factor whitens: `A⁻¹ = WᵀW`), and sums over the earlier rows of products of
-//! the slopes `s` of the offset, of the model's slopes `m` and of the errors `e`, the gain is `½ bᵀ S⁻¹ b` with
-//! `S = Σ s sᵀ - Cᵀ C`, `b = Σ s e - Cᵀ W g`, `C = Σ W m sᵀ` and the gradient `g` of the model. All sums grow row by row,
-//! so one pass tries every row: its cost grows as the rows, its memory not at all.
+//! The gain is `½ bᵀ S⁻¹ b` with
+//! - `S = Σ s sᵀ - Cᵀ C`,
+//! - `b = Σ s e - Cᵀ W g`,
+//! - `C = Σ W m sᵀ`.
+//!
+//! Here `A` is the curvature of the model, whose factor whitens (`A⁻¹ = WᵀW`), and `g` its gradient. The sums are over
+//! the earlier rows: of the slopes `s` of the offset, the slopes `m` of the model's numbers, and the errors `e`. All
+//! sums grow row by row, so one pass tries every row. The computing time is proportional to the number of rows, and the
+//! memory does not depend on it.
 
 use super::analysis::Positions;
 use super::fit::fit;
@@ -37,7 +41,7 @@ pub(super) struct Split {
     gain: f64,
 }
 
-/// The model that is divided, factorized.
+/// Factorized normal equations of the model that is to be divided.
 pub(super) struct Whole {
     factor: Factor,
     gradient: DVector<f64>,
@@ -63,7 +67,8 @@ impl Positions {
         found
     }
 
-    /// Divides the rows at given boundaries, whatever that gains. `declared` says whether campaign.json states them.
+    /// Starts a new session at each of the given rows, whether or not the fit gets better by it. `declared` says
+    /// whether campaign.json states the boundaries.
     pub(crate) fn divide(&mut self, at: &[(Kind, usize)], declared: bool) {
         for &(kind, first) in at {
             let of_kind = |s: &&Sample| s.index >= first && self.is_of(s, kind);
@@ -75,7 +80,7 @@ impl Positions {
         }
     }
 
-    /// Whether a sample can show that something of this kind was moved.
+    /// Whether a sample belongs to the point that was moved. Every sample shows that the station was moved.
     pub(super) fn is_of(&self, sample: &Sample, kind: Kind) -> bool {
         let same = |a: &Point, b: &Point| (a.arm, &a.name) == (b.arm, &b.name);
         match kind {
@@ -84,15 +89,16 @@ impl Positions {
         }
     }
 
-    /// What may have been moved.
+    /// Everything that may have been moved: all points if tool offsets are free, all stations if the base placement is
+    /// free.
     pub(super) fn kinds(&self, tools_free: bool, base_free: bool) -> Vec<Moved> {
         let points = (0..self.points.len()).filter(|_| tools_free).map(Moved::Point);
         let stations = (0..self.fitted.geometry.stations.len()).filter(|_| base_free).map(Moved::Station);
         points.chain(stations).collect()
     }
 
-    /// Price of a session in ln of the likelihood, where so many kinds of sessions could be found: for the numbers of its
-    /// placement and for having looked at every row.
+    /// Price of a session with `numbers` parameters in ln of the likelihood. It charges for the parameters of the
+    /// placement, and for having examined every row and `kinds` kinds of sessions.
     pub(super) fn session_price(&self, numbers: usize, kinds: usize) -> f64 {
         let readings = readings(&self.samples) as f64;
         0.5 * numbers as f64 * libm::log(readings) + libm::log(readings * kinds as f64) + 3.0
@@ -105,8 +111,8 @@ impl Positions {
         Some(Whole { factor: Factor::new(&normal.curvature, &own)?, gradient: normal.gradient })
     }
 
-    /// The row that is best as the first of a new session, with the linearized gain in ln of the likelihood, if there are
-    /// enough rows before and after it.
+    /// The best row for the beginning of a new session, counted from 0, with the gain in ln of the likelihood by the
+    /// linearized model. `None` if there are not enough rows before and after any row.
     pub(super) fn best_first(&self, moved: Moved, whole: &Whole) -> Option<(usize, f64)> {
         let rows = self.samples.iter().filter(|s| moved.has(s)).count();
         let inside = FEWEST..rows.saturating_sub(FEWEST);
@@ -129,7 +135,8 @@ impl Positions {
         best
     }
 
-    /// The model in which the rows before `first` have their own placement. Its gain is charged with its price.
+    /// The model in which the rows before `first` have their own placement. The gain is the rise of ln of the
+    /// likelihood less the price of the session.
     pub(super) fn split(&self, moved: Moved, first: usize, kinds: usize) -> Split {
         let mut start = self.fitted.clone();
         let geometry = &mut start.geometry;
@@ -167,12 +174,13 @@ impl Positions {
     }
 }
 
-/// Sums over the rows before a row: what an offset of their own would gain.
+/// Sums over the rows before a row. They give the gain if these rows have an offset of their own.
 struct Earlier<'a> {
     factor: &'a Factor,
     /// The model's gradient, whitened.
     gradient: DVector<f64>,
-    /// The model's slopes of a row, whitened, and the offset's.
+    /// Derivatives of a row with respect to the model's numbers, whitened. `offset` holds those with respect to the
+    /// offset.
     model: DMatrix<f64>,
     offset: DMatrix<f64>,
     cross: DMatrix<f64>,
@@ -181,7 +189,7 @@ struct Earlier<'a> {
 }
 
 impl<'a> Earlier<'a> {
-    /// No rows yet. The offset has `width` numbers.
+    /// Sums over no rows. The offset has `width` numbers.
     fn new(whole: &'a Whole, width: usize) -> Self {
         let numbers = whole.gradient.len();
         let mut gradient = DMatrix::from_columns(std::slice::from_ref(&whole.gradient));

@@ -1,8 +1,9 @@
-//! Finds the best compliances that are springs: none is negative, and no moment turns a frame against itself.
+//! Finds the best compliances that are physically possible: none is negative, and the compliance matrix of a frame is
+//! positive semidefinite.
 //!
-//! The normal equations of a fit describe a parabola, which is minimized over springs. A compliance that
-//! would be negative is held at zero. The matrix of a frame is written as `L Lᵀ`, which is a spring for every
-//! `L`, and the parabola is minimized over the entries of `L` and all other numbers.
+//! The normal equations of a fit describe a quadratic function, which is minimized under these constraints. A
+//! compliance that would be negative is held at zero. The matrix of a frame is written as `L Lᵀ`, which is positive
+//! semidefinite for every `L`, and the quadratic function is minimized over the entries of `L` and all other numbers.
 
 use super::loads::FRAME_ENTRIES;
 use super::normal::{Factor, Normal};
@@ -15,24 +16,24 @@ const MOST_STEPS: usize = 30;
 const MOST_HALVINGS: i32 = 8;
 /// The Newton steps end when the next one would lower half of chi-squared by less than this.
 const SETTLED: f64 = 1e-6;
-/// `L Lᵀ` starts with this part of the frame's largest compliance added in every direction. With a zero in `L`, half
-/// of chi-squared would have no slope there.
+/// Fraction of the frame's largest compliance that is added to its diagonal before `L` is computed. If an entry of `L`
+/// were zero, half of chi-squared could have zero slope there and the iteration would not leave it.
 const ROOM: f64 = 1e-3;
 /// Row and column of each entry of `L`. The base lacks the last entry: its zz follows from the couplings.
 const LOWER: [(usize, usize); FRAME_ENTRIES.len()] = [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2)];
 
-/// The step to the least value of half of chi-squared, which is quadratic in the numbers (a parabola).
+/// The step to the minimum of half of chi-squared, which is a quadratic function of the numbers.
 pub(crate) struct Best {
     /// Change of each number. The numbers of the geometry come first, then the compliances.
     pub step: Vec<f64>,
-    /// Derivatives of every number (rows) by every free variable (columns).
+    /// Derivatives of every number (rows) with respect to every free variable (columns).
     slopes: DMatrix<f64>,
     /// The factorized curvature over the free variables.
     factor: Factor,
 }
 
 impl Best {
-    /// Standard deviations of the numbers; infinite for a number that is held.
+    /// Standard deviations of the numbers; infinite for a number that is held at its constraint.
     pub(crate) fn deviations(&self) -> Vec<f64> {
         let variance = |row: usize| {
             let row = self.slopes.row(row).transpose();
@@ -48,14 +49,14 @@ impl Best {
 #[derive(Clone)]
 enum Block {
     Free,
-    /// The compliances change by these amounts.
+    /// The compliances change by these amounts and stay at their constraint.
     Held(Vec<f64>),
     /// The compliances are the entries of `L Lᵀ`.
     Frame(Matrix3<f64>),
 }
 
-/// The best step that leaves every compliance possible for a spring. The compliances, which are `now` before the
-/// step, come after `numbers` other numbers. `None` if the equations are singular.
+/// The best step after which every compliance is physically possible. `now` holds the compliances before the step;
+/// among all numbers they follow `numbers` numbers of the geometry. `None` if the equations are singular.
 pub(crate) fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) -> Option<Best> {
     let mut first = numbers;
     let ranges: Vec<Range<usize>> = (now.iter())
@@ -72,8 +73,9 @@ pub(crate) fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) ->
     let mut parabola = Parabola { curvature, gradient, numbers, now, ranges, blocks };
     loop {
         let mut best = parabola.best()?;
-        // from the nearest springs the descent may end above its start
-        // zero is the value at the start, so a positive one is worse than no step
+        // the value at the start is zero: if the descent from the projected compliances ends above it, it starts again
+        // from
+        // the present compliances
         if parabola.value(&best.step) > 0.0 {
             parabola.frames_from_now();
             best = parabola.best()?;
@@ -86,7 +88,7 @@ pub(crate) fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) ->
             let step = &best.step[parabola.ranges[k].clone()];
             let wanted: Vec<f64> = own.iter().zip(step).map(|(c, by)| c + by).collect();
             let spring = nearest_spring(&wanted);
-            // this block leaves the springs: hold it there and solve the rest again
+            // the step would leave the constraint: hold this block there and solve for the others again
             if spring != wanted {
                 is_settled = false;
                 parabola.blocks[k] = match own.len() {
@@ -154,7 +156,7 @@ impl Parabola<'_> {
         Some(Best { step, slopes, factor })
     }
 
-    /// Starts every frame again from its present compliance.
+    /// Restarts the entries `L` of every frame from its present compliance.
     fn frames_from_now(&mut self) {
         for (block, now) in self.blocks.iter_mut().zip(self.now) {
             if let Block::Frame(l) = block {
@@ -205,8 +207,8 @@ impl Parabola<'_> {
         step
     }
 
-    /// Derivatives of every number (rows) by every free variable (columns). A variable is a free number, or an entry
-    /// of `L`.
+    /// Derivatives of every number (rows) with respect to every free variable (columns). A variable is a free number,
+    /// or an entry of `L`.
     fn slopes(&self) -> DMatrix<f64> {
         let mut columns: Vec<DVector<f64>> = Vec::new();
         let unit = |at: usize| {
@@ -247,8 +249,8 @@ impl Parabola<'_> {
     }
 }
 
-/// Projects compliances onto values that springs can have: none is negative, and no moment turns a frame the opposite
-/// way.
+/// Projects compliances onto physically possible values: none is negative, and a frame's matrix is positive
+/// semidefinite.
 fn nearest_spring(compliances: &[f64]) -> Vec<f64> {
     match compliances.len() {
         1 => vec![compliances[0].max(0.0)],
@@ -257,8 +259,9 @@ fn nearest_spring(compliances: &[f64]) -> Vec<f64> {
     }
 }
 
-/// Projects the compliance of a base onto the positive semidefinite cone. Rotation about z cannot be
-/// observed: zz is as large as the couplings need, and without tilts there are no couplings.
+/// Projects the compliance of a base onto the positive semidefinite cone. Rotation about z cannot be observed, so zz is
+/// the smallest value that the couplings xz and yz need. If the projection makes the matrix singular, the couplings are
+/// set to zero.
 fn nearest_base(compliances: &[f64]) -> Vec<f64> {
     let level: Matrix2<f64> = frame_matrix(compliances).fixed_view::<2, 2>(0, 0).into_owned();
     let mut eigen = level.symmetric_eigen();
@@ -282,7 +285,8 @@ fn nearest_frame(compliances: &[f64]) -> Vec<f64> {
     FRAME_ENTRIES.iter().map(|&at| c[at]).collect()
 }
 
-/// The compliance matrix of a frame. If zz is not among the numbers, it is as large as the couplings need.
+/// The compliance matrix of a frame. If zz is not among the numbers, it is the smallest value with which the matrix is
+/// positive semidefinite.
 pub(crate) fn frame_matrix(compliances: &[f64]) -> Matrix3<f64> {
     let mut out = Matrix3::zeros();
     for (&(i, j), c) in FRAME_ENTRIES.iter().zip(compliances) {

@@ -1,4 +1,4 @@
-//! Finds joints that turn unevenly: the error of a gear or of its sensor, once and twice a turn.
+//! Finds joints with a transmission error: an error of the angle by the gear or its sensor, once and twice a turn.
 
 use super::analysis::Positions;
 use super::fit::fit;
@@ -10,10 +10,10 @@ use crate::arm::effect::waves::transmission_waves;
 use crate::reconcile::readings::campaign::Campaign;
 use rayon::prelude::*;
 
-/// Name of the effect.
+/// Name of the effect of a transmission error.
 pub(crate) const EFFECT: &str = transmission_error::KIND.name;
 
-/// The numbers of a driven joint's transmission error.
+/// The calibrated numbers of a driven joint's transmission error: sine and cosine, once and twice a turn.
 pub(crate) fn numbers(joint: usize) -> impl Iterator<Item = Number> {
     (0..transmission_waves(0.0).len()).map(move |k| Number::Transmission(joint, k))
 }
@@ -36,12 +36,13 @@ impl Positions {
         self.take_if_confirmed(campaign, next, format!("{EFFECT}@{}", self.tree.driven[joint]))
     }
 
-    /// Price of one uneven joint, in ln of the likelihood.
+    /// Price of the transmission error of one joint, in ln of the likelihood.
     pub(crate) fn transmission_price(&self) -> f64 {
         self.price(numbers(0).count(), self.tree.driven.len())
     }
 
-    /// Models in which one more joint has a transmission error. The most promising are fitted in full.
+    /// Models in which one more joint has a transmission error. The gain is screened with the linearized model, and the
+    /// most promising are fitted in full.
     fn best_transmissions(&self) -> Vec<(usize, Fitted)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let open: Vec<usize> =

@@ -1,8 +1,10 @@
 //! Reads the three components of a displacement or a position, each with its standard deviation.
 //!
-//! An instrument may read fewer than three: a dial gauge one, a level one, a theodolite two. A component that is blank,
-//! or whose column is absent, was not measured. Some programs write zeros there. A column that has one value in all
-//! rows is no reading of an instrument with noise, and neither are zeros in rows that each have a single other value.
+//! An instrument may read fewer than three components: a dial gauge reads one, a level one, a theodolite two. A
+//! component is not measured if its cell is blank or its column is absent. Some programs write zeros instead. Two cases
+//! are recognized. A column with the same value in all rows is no reading of an instrument with noise. Zeros are no
+//! readings if each row has a single component that is not zero, as from a gauge that is moved from one direction to
+//! the next.
 
 use super::cells::{Purpose, measured, sigma};
 use super::table::Table;
@@ -10,38 +12,38 @@ use super::table::Table;
 /// One component of a vector, as an instrument read it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Component {
-    /// Value \[mm\].
+    /// Measured value \[mm\].
     pub value_mm: f64,
-    /// Standard deviation \[mm\].
+    /// Standard deviation of the value \[mm\].
     pub sigma_mm: f64,
 }
 
-/// The components of a vector that were measured: x, y and z, or along them.
+/// The components x, y and z of a vector; `None` for a component that was not measured.
 pub type Components = [Option<Component>; 3];
 
-/// Equal readings are suspicious from this many rows on.
+/// Smallest number of rows from which equal readings are suspicious.
 pub(crate) const FEWEST_ALIKE: usize = 4;
 
-/// Names of the columns of the components.
+/// Names of the columns that hold the components of a vector.
 pub(crate) struct Names {
-    /// The values.
+    /// Names of the columns of the values.
     pub values: [&'static str; 3],
-    /// Their standard deviations.
+    /// Names of the columns of the standard deviations.
     pub sigmas: [&'static str; 3],
 }
 
-/// Displacements.
+/// Columns of displacements.
 pub(crate) const DISPLACEMENT: Names =
     Names { values: ["dx_mm", "dy_mm", "dz_mm"], sigmas: ["sigma_dx_mm", "sigma_dy_mm", "sigma_dz_mm"] };
 
-/// Positions.
+/// Columns of positions.
 pub(crate) const POSITION: Names =
     Names { values: ["x_mm", "y_mm", "z_mm"], sigmas: ["sigma_x_mm", "sigma_y_mm", "sigma_z_mm"] };
 
-/// The standard deviation of all components of a row.
+/// Name of the column with one standard deviation for all components of a row.
 const COMMON_SIGMA: &str = "sigma_mm";
 
-/// The columns of a vector.
+/// Indices of the columns of a vector in a table.
 pub(crate) struct VectorColumns<'a> {
     table: &'a Table,
     names: &'a Names,
@@ -52,13 +54,13 @@ pub(crate) struct VectorColumns<'a> {
 }
 
 impl<'a> VectorColumns<'a> {
-    /// Finds the columns. `None` if one that is needed is missing, which is a fault.
+    /// Finds the columns. `None` if a necessary one is missing, which is a fault.
     pub(crate) fn find(table: &'a Table, names: &'a Names, purpose: Purpose) -> Option<Self> {
         table.check_family("sigma", &[names.sigmas.as_slice(), &[COMMON_SIGMA]].concat());
         let values = names.values.map(|name| table.optional(name));
         let sigmas = names.sigmas.map(|name| table.optional(name));
         let missing = names.values.iter().zip(&values).filter(|(_, found)| found.is_none());
-        // a misspelt column must not pass for a component that was not measured
+        // a column with a misspelt name must not be taken for a component that was not measured
         let misspelt: Vec<bool> =
             missing.map(|(name, _)| table.check_spelling(name, &names.values)).collect();
         let mut common = table.optional(COMMON_SIGMA);
@@ -111,17 +113,17 @@ impl<'a> VectorColumns<'a> {
         let sigma_mm = match (own, self.purpose) {
             (Some(column), Purpose::Fit) => sigma(self.table, row, column),
             (None, Purpose::Fit) => None,
-            // a prediction needs neither
+            // a prediction needs no standard deviation
             (_, Purpose::Predict) => Some(1.0),
         };
         Some(Some(Component { value_mm: value_mm?, sigma_mm: sigma_mm? }))
     }
 }
 
-/// Signs that people write where nothing was read.
+/// Texts that people write into a cell if nothing was read.
 const NOTHING: [&str; 9] = ["-", "--", "\u{2013}", "\u{2014}", "/", "?", "n/a", "na", "none"];
 
-/// Takes away what is written as a reading and is none, and returns a sentence for each.
+/// Removes readings that are written but were not measured, and returns a sentence for each kind.
 pub(crate) fn leave_out_idle(file: &str, names: &Names, rows: &mut [&mut Components]) -> Vec<String> {
     if rows.len() < FEWEST_ALIKE {
         return Vec::new();
@@ -131,7 +133,7 @@ pub(crate) fn leave_out_idle(file: &str, names: &Names, rows: &mut [&mut Compone
     }
     let constants = [0, 1, 2].map(|component| constant(component, rows));
     let is_read = |component: usize| rows.iter().any(|row| row[component].is_some());
-    // where no component varies, the instrument is dead, and the verdict says so
+    // if no component varies, the instrument did not work, and the verdict says so
     if (0..3).all(|component| constants[component].is_some() || !is_read(component)) {
         return Vec::new();
     }
@@ -147,7 +149,8 @@ pub(crate) fn leave_out_idle(file: &str, names: &Names, rows: &mut [&mut Compone
     .collect()
 }
 
-/// The value that a component has in all rows that have it, and their number, if there are enough of them.
+/// The common value of a component and the number of rows that have it, if all readings are equal and there are at
+/// least [`FEWEST_ALIKE`]; otherwise `None`.
 fn constant(component: usize, rows: &[&mut Components]) -> Option<(f64, usize)> {
     let mut values = rows.iter().filter_map(|row| row[component]).map(|read| read.value_mm);
     let first = values.next()?;
@@ -156,8 +159,8 @@ fn constant(component: usize, rows: &[&mut Components]) -> Option<(f64, usize)> 
     (count >= FEWEST_ALIKE && others.iter().all(|value| *value == first)).then_some((first, count))
 }
 
-/// Takes away the zeros of a gauge that was turned from one direction to the next: every row has three components, at
-/// least two of which are exactly zero.
+/// Removes the zeros of a gauge that was moved from one direction to the next: every row has three components, of which
+/// at least two are exactly zero.
 fn leave_out_other_directions(file: &str, names: &Names, rows: &mut [&mut Components]) -> Option<String> {
     let is_zero = |read: &Option<Component>| read.is_some_and(|read| read.value_mm == 0.0);
     let has_one =

@@ -1,4 +1,5 @@
-//! A CSV file or a sheet of a spreadsheet as named columns. Every fault is recorded with file, line, column, value and hint.
+//! A CSV file or a sheet of a spreadsheet as named columns. Every fault is recorded with file, line, column, value and
+//! hint.
 
 use super::source::Source;
 use super::spreadsheet::{is_spreadsheet, read_sheet};
@@ -17,25 +18,25 @@ const NAMES: [&str; 3] = ["test", "joint", "point"];
 /// A CSV file or a sheet of a spreadsheet, whose first row names the columns.
 #[derive(Debug)]
 pub struct Table {
-    /// File name as given, with the sheet of a spreadsheet.
+    /// Path of the file as given; for a spreadsheet with the name of the sheet.
     pub file: String,
-    /// Column names of this program.
+    /// Names of the columns, in the terms of this program.
     pub columns: Vec<String>,
-    /// Rows of text.
+    /// Cells of each row as text.
     pub rows: Vec<Vec<String>>,
-    /// Line of each row in the file.
+    /// Line number of each row in the file.
     pub lines: Vec<usize>,
-    /// Line of the column names.
+    /// Line of the column names in the file.
     header_line: usize,
-    /// Column names as the file has them.
+    /// Names of the columns as they are in the file.
     shown: Vec<String>,
-    /// Letters of the columns of a spreadsheet.
+    /// Letters of the columns of a spreadsheet; empty for a CSV file.
     letters: Vec<String>,
     faults: RefCell<Vec<Fault>>,
 }
 
 impl Table {
-    /// Reads a CSV file; rows of the wrong length are faults.
+    /// Reads a CSV file. Rows of the wrong length are recorded as faults.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -59,7 +60,7 @@ impl Table {
         Ok(table)
     }
 
-    /// Reads a sheet of a spreadsheet. What is wrong with the file as a whole is a fault.
+    /// Reads a sheet of a spreadsheet. A problem with the file as a whole is recorded as a fault.
     fn of_spreadsheet(path: &Path, source: &Source) -> Result<Self, InputError> {
         let file = path.display().to_string();
         std::fs::metadata(path).map_err(|source| InputError::Unreadable { file: file.clone(), source })?;
@@ -94,7 +95,7 @@ impl Table {
         }
     }
 
-    /// Parses CSV text. Rows of the wrong length are faults.
+    /// Parses CSV text. Rows of the wrong length are recorded as faults.
     pub fn parse(file: &str, text: &str) -> Self {
         let mut table = Self::empty(file);
         let csv = Csv::parse(text.as_bytes(), Some(COMMENT));
@@ -106,7 +107,7 @@ impl Table {
         table
     }
 
-    /// Checks what must be true of a whole table.
+    /// Checks the header, and that the table is not empty.
     fn finish(&mut self) {
         self.shown = self.columns.clone();
         self.check_header();
@@ -116,7 +117,7 @@ impl Table {
         }
     }
 
-    /// Gives columns the names of this program: pairs of that name and the one in the file.
+    /// Renames columns. Each pair holds the name in this program and the name in the file.
     fn rename(&mut self, names: &[(String, String)]) {
         for (name, shown) in names {
             match self.shown.iter().position(|column| column == shown) {
@@ -138,7 +139,7 @@ impl Table {
         }
     }
 
-    /// Reports a row of units below the names of the columns.
+    /// Reports a row of units below the column names and removes it.
     fn check_units(&mut self) {
         let is_number = |cell: &String| cell.replace(',', ".").parse::<f64>().is_ok();
         let [first, second, ..] = self.rows.as_slice() else { return };
@@ -175,12 +176,12 @@ impl Table {
         }
     }
 
-    /// Whether the first row names columns. If it does not, further faults would only confuse.
+    /// Whether there is a header with more than one column. If not, further faults would only confuse.
     fn has_header(&self) -> bool {
         self.columns.len() > 1
     }
 
-    /// A fault if there are more rows than this; the others are left out.
+    /// Records a fault if there are more rows than this, and removes the surplus.
     pub fn refuse_more_than(&mut self, most: usize) {
         if self.rows.len() > most {
             let problem = format!("has {} rows, and the limit is {most}", self.rows.len());
@@ -219,7 +220,7 @@ impl Table {
         });
     }
 
-    /// A column as the file shows it: with the name it has there, and with the cell of a spreadsheet.
+    /// Name of a column for a message: the name in the file, and the cell or column of a spreadsheet.
     fn place(&self, line: Option<usize>, column: &str) -> String {
         let known = self.columns.iter().position(|c| c == column).or_else(|| {
             let shown = self.shown.iter().position(|c| c == column);
@@ -240,7 +241,7 @@ impl Table {
         self.fault(self.lines.get(row).copied(), column, problem, hint);
     }
 
-    /// All faults found.
+    /// All faults that were recorded.
     pub fn into_faults(self) -> Vec<Fault> {
         self.faults.into_inner()
     }
@@ -266,7 +267,8 @@ impl Table {
         self.columns.iter().position(|c| c == name)
     }
 
-    /// Reports columns that begin like those of a family and are none of them.
+    /// Reports columns whose name begins like a family of names without being one of them, such as a misspelt
+    /// `sigma_...`.
     pub(crate) fn check_family(&self, beginning: &str, family: &[&str]) {
         let begins = |column: &&String| column.starts_with(beginning) && column.contains('_');
         for column in self.columns.iter().filter(begins).filter(|column| !family.contains(&column.as_str())) {
@@ -275,8 +277,8 @@ impl Table {
         }
     }
 
-    /// Reports a column whose name is nearly that of one that may be absent. `known` are names that are right.
-    /// Returns whether there is one.
+    /// Reports a column whose name is close to `name`, an absent column that is optional: it is probably misspelt. The
+    /// names in `known` are not suspected. Returns whether there is such a column.
     pub(crate) fn check_spelling(&self, name: &str, known: &[&str]) -> bool {
         let others: Vec<&str> =
             self.columns.iter().map(String::as_str).filter(|column| !known.contains(column)).collect();
@@ -303,7 +305,7 @@ impl Table {
         self.text(row, column).is_empty()
     }
 
-    /// A cell's text.
+    /// Text of a cell.
     pub fn text(&self, row: usize, column: usize) -> &str {
         &self.rows[row][column]
     }

@@ -1,8 +1,10 @@
-//! Laws without a name as pieces of a model: found one after the other, each fitted in full together with all others.
+//! Laws without a name as effects of a model. They are found one after the other, each fitted in full together with all
+//! others.
 //!
-//! [`unnamed`](super::unnamed) asks whether a law competes with named effects, with the model made linear. Here a law
-//! becomes an effect of the arm, so that a corrected arm can have it: a further twist of a joint as a polynomial of its
-//! torque, or readings that bend or have a gain in each direction.
+//! [`unnamed`](super::unnamed) asks, with a linearized model, whether a law competes with named effects. Here a law
+//! becomes an effect of the arm, so that a corrected arm can contain it. It is a further twist of a joint as a
+//! polynomial of its torque, or a nonlinear characteristic or a separate gain in each direction of the readings of a
+//! channel.
 
 use super::search::{Scored, Search};
 use crate::arm::effect::channel::Channel;
@@ -15,16 +17,16 @@ use crate::reconcile::model::parameters::Number::{Free, Stated};
 use crate::reconcile::model::parameters::{Candidate, FreeParameter};
 use rayon::prelude::*;
 
-/// Largest number of laws in one model.
+/// Largest number of laws without a name in one model.
 const MOST_LAWS: usize = 3;
-/// A law is taken if ln of the evidence, less the price of its place, rises by more than this.
+/// A law is accepted if ln of the evidence, less the price of its place, rises by more than this.
 const BETTER: f64 = 2.0;
-/// A joint with less of the largest torque on any joint is not tried.
+/// A joint is not tried if its largest torque is less than this fraction of the largest torque on any joint.
 const UNLOADED: f64 = 1e-3;
-/// Largest further twist that is looked for, as a multiple of the twist of the joint at the largest torque.
+/// Largest further twist that is sought, as a multiple of the joint's twist at its largest torque.
 const LARGEST: f64 = 3.0;
 
-/// Every law at every place where the readings could show it.
+/// All laws without a name at every place where the readings could show them, as candidates.
 pub(crate) fn laws(forward: &Forward) -> Vec<Candidate> {
     let nominal = forward.coefficients(&forward.nominal);
     let torques_nm: Vec<f64> =
@@ -46,7 +48,7 @@ pub(crate) fn laws(forward: &Forward) -> Vec<Candidate> {
     out
 }
 
-/// What a law may be, in a sentence.
+/// Possible physical causes of a law, as a sentence.
 pub(crate) fn may_be(candidate: &Candidate) -> &'static str {
     match candidate.free_parameters.first().map(|free| free.name) {
         Some(ODD_TWIST) => "it may be a gear or a connection that stiffens or softens as it is loaded",
@@ -60,7 +62,7 @@ pub(crate) fn may_be(candidate: &Candidate) -> &'static str {
     }
 }
 
-/// The law in words.
+/// Description of the law in words.
 pub(crate) fn in_words(candidate: &Candidate) -> String {
     let at = &candidate.at;
     match candidate.free_parameters.first().map(|free| free.name) {
@@ -71,8 +73,8 @@ pub(crate) fn in_words(candidate: &Candidate) -> String {
     }
 }
 
-/// A fit, and the laws that earn their place in it, added one after the other. `search` has the laws among its candidates,
-/// from `first` on. `None` if no law does.
+/// Adds laws to the fit `from`, one after the other, as long as each raises the score enough. The laws are the
+/// candidates of `search` from index `first` on. `None` if no law does.
 pub(crate) fn with_laws<'a>(search: &Search<'a>, first: usize, from: &Scored) -> Option<(Scored, Fit<'a>)> {
     let mut best: Option<(Scored, Fit)> = None;
     for _ in 0..MOST_LAWS {
@@ -83,7 +85,7 @@ pub(crate) fn with_laws<'a>(search: &Search<'a>, first: usize, from: &Scored) ->
     best
 }
 
-/// The law that raises the evidence most, in the model fitted to the end.
+/// The fit with the law that raises the score most; `None` if the rise is not more than [`BETTER`].
 fn next_law<'a>(search: &Search<'a>, first: usize, from: &Scored) -> Option<(Scored, Fit<'a>)> {
     let laws: Vec<usize> =
         (first..search.candidates.len()).filter(|law| !from.effects.contains(law)).collect();
@@ -101,7 +103,7 @@ fn next_law<'a>(search: &Search<'a>, first: usize, from: &Scored) -> Option<(Sco
     (scored.score > from.score + BETTER).then_some((scored, fit))
 }
 
-/// The further twists of a joint, odd and even in its torque.
+/// Two laws of a joint: a further twist that is odd in its torque, and one that is even.
 fn twists(joint: &str, torque_nm: f64, twist_rad: f64) -> [Candidate; 2] {
     let most = LARGEST * twist_rad;
     let sized =
@@ -114,7 +116,8 @@ fn twists(joint: &str, torque_nm: f64, twist_rad: f64) -> [Candidate; 2] {
     ]
 }
 
-/// The laws of a channel's readings: they bend, or have a gain in each direction.
+/// The laws of a channel's readings: a nonlinear characteristic, and a gain for each direction if the channel has three
+/// components.
 fn readings(channel: Channel, largest: f64) -> Vec<Candidate> {
     let bend = Parameter { count: 2, ..Parameter::number(BEND, -1.0, 1.0, 0.1, Scale::Linear) };
     let bent = law(channel.word(), bend, 0.0);
@@ -133,7 +136,8 @@ fn readings(channel: Channel, largest: f64) -> Vec<Candidate> {
     out
 }
 
-/// A law with one free parameter, whose fits start where it changes nothing. Its numbers are still to be given.
+/// A law with one free parameter, which may be a vector. Its fits start where it changes nothing. The caller sets
+/// `numbers`.
 fn law(at: &str, parameter: Parameter, absent: f64) -> Candidate {
     let free = (0..parameter.count).map(|component| FreeParameter::new(&parameter, component, 1.0));
     let free_parameters: Vec<FreeParameter> = free.collect();

@@ -1,7 +1,7 @@
-//! Finds the effects and the quality of the readings together, because they depend on each other.
+//! Finds the effects and the quality of the readings together, because each depends on the other.
 //!
-//! Gross errors, the size of the noise and modes missing from a list show only with the right effects in the
-//! model. The right effects show only without the wrong rows.
+//! Gross errors, the size of the noise and modes missing from a list can be seen only if the model has the right
+//! effects. The right effects can be found only if the wrong rows are left out.
 
 use super::few_rows;
 use super::screening::Selection;
@@ -15,24 +15,22 @@ use crate::reconcile::model::calibration::Nuisance;
 use crate::reconcile::model::parameters::{Candidate, Model};
 use crate::reconcile::readings::campaign::Campaign;
 
-/// Cost of a gross error, in ln of the evidence, where it replaces an effect. About one row in a thousand is a gross
-/// error.
+/// Charge for a gross error that is assumed instead of an effect, in ln of the evidence. About one row in a thousand is
+/// a gross error, and ln 1000 is about 7.
 const SLIP: f64 = 7.0;
 
-/// Largest tolerable error of a frequency that comes from computing it with fixed trial shapes \[standard
-/// deviations\].
+/// Largest tolerable error of a frequency from computing it with fixed trial shapes \[standard deviations\].
 const INEXACT: f64 = 0.5;
 
 /// Largest number of times that the trial shapes are replaced by those of the best model.
 const SHAPES: usize = 2;
 
-/// Largest number of times that the worst readings are left out to see whether calibration alone fits the
-/// others.
+/// Largest number of times that the worst readings are left out, to see whether calibration alone fits the others.
 const LOOKS: usize = 4;
 
-/// The result of the search for effects, and of the judgement of the readings.
+/// The result of the search for effects and of the judgement of the readings' quality.
 pub(crate) struct Settled {
-    /// The models that were weighed.
+    /// The models that were fitted, and the best one.
     pub selection: Selection,
     /// Quality of the readings.
     pub noise: Noise,
@@ -41,7 +39,7 @@ pub(crate) struct Settled {
 }
 
 impl Settled {
-    /// Handles few readings: they are taken as declared, and every small set of effects is weighed.
+    /// Analyses few readings: they are taken as declared, and every small set of effects is fitted.
     pub(crate) fn of_few(
         campaign: &Campaign,
         forward: &Forward,
@@ -54,12 +52,12 @@ impl Settled {
         Self { selection: few_rows::weigh(&search), noise, remarks: Vec::new() }
     }
 
-    /// Handles many readings, in this order.
+    /// Analyses many readings, in these steps.
     ///
-    /// Missing modes are found first. A search follows with the declared standard deviations and without obvious
-    /// gross errors. Then further gross errors are removed and the search is repeated. At last the best model shows
-    /// whether the declared standard deviations were right. If not, the models are weighed again with the standard
-    /// deviations that it suggests.
+    /// Missing modes are found first. A search follows with the declared standard deviations and without obvious gross
+    /// errors. Then further gross errors are removed and the search is repeated. Finally the best model shows whether
+    /// the declared standard deviations were right. If not, the models are compared again with the standard deviations
+    /// that it suggests.
     pub(crate) fn of_many(
         campaign: &Campaign,
         forward: &mut Forward,
@@ -86,7 +84,7 @@ impl Settled {
     }
 }
 
-/// A campaign while its effects and its noise are being settled.
+/// A campaign during the search for its effects and its noise.
 struct Settling<'a> {
     campaign: &'a Campaign,
     forward: &'a mut Forward,
@@ -96,18 +94,18 @@ struct Settling<'a> {
 
 /// One search, with the noise that it assumed and found.
 struct Round {
-    /// The noise that the search assumed.
+    /// The gross errors and standard deviations that the search assumed.
     noise: Noise,
     selection: Selection,
     coefficients: Coefficients,
-    /// The noise that the best model of the search shows.
+    /// The noise according to the residuals of the best model.
     judged: Noise,
-    /// Whether the best model of the search may become the explanation.
+    /// Whether the best model fits well enough that it may become the explanation.
     hopeful: bool,
 }
 
 impl Round {
-    /// The score of the best model, which is charged for each row that it leaves out.
+    /// The score of the best model, less a charge for each row that is left out.
     fn score(&self) -> f64 {
         self.selection.best.score - SLIP * self.noise.outliers.len() as f64
     }
@@ -157,8 +155,9 @@ impl Settling<'_> {
         (with_all, declared)
     }
 
-    /// Searches without the gross errors that show before any effect is known. An effect may show in a single
-    /// frequency, so a search that includes those frequencies replaces the first if it is more probable.
+    /// Searches without the gross errors that are visible before any effect is known. An effect may show in a single
+    /// frequency. So the search is repeated with the frequencies that were left out, and this result is taken if it is
+    /// more probable.
     fn first(&self) -> Round {
         let (baseline, weights) = self.baseline();
         let noise = Noise::first_look(self.forward, &baseline, &weights);
@@ -168,8 +167,8 @@ impl Settling<'_> {
         with.filter(|with| with.hopeful && with.score() > without.score()).unwrap_or(without)
     }
 
-    /// Renumbers lists from which a mode is missing. Lists are judged by calibration alone where it fits most
-    /// readings, then by the first effects, and last by effects that were found without the suspect lists.
+    /// Renumbers frequency lists from which a mode is missing. Lists are judged first by calibration alone, if it fits
+    /// most readings, then by the first effects found, and last by effects that were found without the suspect lists.
     fn count_missed_modes(&mut self, remarks: &mut Vec<String>) -> Round {
         let (baseline, _) = self.baseline();
         if Noise::is_close(self.forward, &baseline) {
@@ -181,7 +180,7 @@ impl Settling<'_> {
         if let Some(without) = Noise::uncertain_lists(self.forward, &round.coefficients)
             && missed.is_empty()
         {
-            // a model that the suspect lists have shaped says nothing about them
+            // the model must not be fitted to the suspect lists, because they would then seem right
             let coefficients = self.run(without, Before::Nothing).coefficients;
             missed = self.forward.find_missed_modes(&coefficients);
         }
@@ -190,9 +189,9 @@ impl Settling<'_> {
         round
     }
 
-    /// Weighs again with trial shapes of the model that was found. The shapes of the nominal arm are inexact far from
-    /// this arm, and a further effect or a law without a name would make up for the error. If the difference shows in
-    /// the readings, the whole search is repeated.
+    /// Compares the models again with trial shapes of the model that was found. The shapes of the nominal arm are
+    /// inexact for a very different arm, and a further effect or a law without a name would compensate for the error.
+    /// If the change of shapes changes the readings noticeably, the whole search is repeated.
     fn with_exact_modes(&mut self, mut round: Round) -> Round {
         for _ in 0..SHAPES {
             if round.selection.best.effects.is_empty() {
@@ -204,7 +203,7 @@ impl Settling<'_> {
             let pairs = self.forward.data.iter().zip(before.iter().zip(&after));
             let moved =
                 pairs.map(|(d, (before, after))| ((after - before) / d.sigma).abs()).fold(0.0, f64::max);
-            // the trial shapes were good enough: only the weighing is repeated
+            // the trial shapes were good enough: only the comparison is repeated
             if moved < INEXACT {
                 if round.hopeful {
                     round = self.run(round.noise, Before::Weights(&round.selection));
@@ -216,9 +215,8 @@ impl Settling<'_> {
         round
     }
 
-    /// Searches without one or two rows that may be gross errors according to the best model, or to the best model
-    /// with one effect fewer. The new search counts if such errors are more probable than the effects that they
-    /// replace.
+    /// Searches without one or two rows that are gross errors according to the best model, or to the best model with
+    /// one effect fewer. The new result is taken if such errors are more probable than the effects that they replace.
     fn with_slips(&self, round: Round) -> Round {
         let best = &round.selection.best;
         if !round.hopeful {
@@ -226,7 +224,7 @@ impl Settling<'_> {
         }
         let weights = round.noise.weights(self.forward);
         let search = self.search(&weights);
-        // an effect may stand for a slip, so the model without it judges the rows too
+        // an effect may describe a gross error, so the model without it judges the rows too
         let fewer = (0..best.effects.len()).map(|effect| {
             let (effects, u) = search.without(best, effect);
             search.fit(&effects, &u, Effort::default())
@@ -249,7 +247,7 @@ impl Settling<'_> {
             }
             let noise = Noise { scale: [1.0; 3], outliers: round.judged.outliers.clone() };
             if round.selection.given_up {
-                return Round { noise, ..round }; // what a law without a name has settled no slips decide
+                return Round { noise, ..round }; // a law without a name has settled the result
             }
             round = self.run(noise, Before::Best(&round.selection.best));
         }
@@ -259,7 +257,7 @@ impl Settling<'_> {
     /// Searches again with the standard deviations that the best model suggests.
     fn with_scaled_deviations(&self, mut round: Round) -> Round {
         for _ in 0..2 {
-            // no scale of the noise makes a model right that is far off
+            // larger standard deviations do not make a model right that is far off
             if round.judged.agrees(&round.noise) || !round.hopeful {
                 break;
             }
@@ -275,8 +273,8 @@ impl Settling<'_> {
 /// An earlier result from which a search can start.
 enum Before<'a> {
     Nothing,
-    /// The best model so far, if other rows count now.
+    /// The best model so far, if the set of rows has changed.
     Best(&'a Scored),
-    /// A whole selection, if only the scale of the standard deviations has changed.
+    /// All models so far, if only the standard deviations have changed.
     Weights(&'a Selection),
 }

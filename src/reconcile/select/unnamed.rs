@@ -1,9 +1,9 @@
-//! Competing models: smooth laws that no effect of the library has.
+//! Competing models: smooth laws that are not effects of the library.
 //!
-//! An effect of the library can imitate physics that the library lacks. A joint that stiffens under load
-//! looks like lost motion, and a non-linear sensor looks like a gain. So every named effect must compete with
-//! general [`laws`](super::laws), which are fitted together with the calibration. A law is added to the named
-//! effects, or replaces them.
+//! An effect of the library can imitate physics that the library lacks. A joint that stiffens under load looks like
+//! lost motion, and a nonlinear sensor looks like a gain. So every named effect must compete with general
+//! [`laws`](super::laws), which are fitted together with the calibration. A law is added to the named effects, or
+//! replaces them.
 
 use super::laws::{Law, of_every_law};
 use super::search::{Scored, Search};
@@ -15,39 +15,39 @@ use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::f64::consts::TAU;
 
-/// Sizes of a law below this part of its full size are equally likely. At full size a stiffness or a reading changes
-/// by 100 %.
+/// Sizes of a law below this fraction of its full size are equally probable. At full size a stiffness or a reading
+/// changes by 100 %.
 const SMALL: f64 = 0.02;
 /// Largest number of reweighted steps of the linear fit.
 const STEPS: usize = 6;
 /// The linear fit ends when a step lowers the objective by less than this.
 const SETTLED: f64 = 0.01;
-/// A law without a name is preferred to named effects if ln of the evidence is higher by this much. If no effect is
-/// named, a law that is better by this much is mentioned.
+/// A law without a name is preferred to named effects if ln of its evidence is higher by this much. If no effect is
+/// named, a law that is better than calibration by this much is mentioned.
 const BETTER: f64 = 2.0;
 
-/// A competing model: the fitted model with a law in it.
+/// A competing model: the fitted model with a law without a name in it.
 struct Competitor {
     what: String,
     numbers: usize,
     objective: f64,
-    /// ln of the evidence.
+    /// Natural logarithm of the evidence.
     evidence: f64,
 }
 
 /// A law that explains the readings better than the model it competes with.
 pub(crate) struct Better {
-    /// The law in words.
+    /// Description of the law in words.
     pub what: String,
-    /// Number of its parameters.
+    /// Number of parameters of the law.
     pub numbers: usize,
     /// The objective `Σ ρ(r) + Σ u²` of the model with the law.
     pub objective: f64,
-    /// Rise of ln of the evidence.
+    /// Rise of ln of the evidence over the model with which the law competes.
     pub gain: f64,
 }
 
-/// The misfit that each law would remove from a model's residuals, as questions for the lack-of-fit test.
+/// The reduction of the misfit by each law, as tests for lack of fit.
 pub(crate) fn law_questions(
     campaign: &Campaign,
     forward: &Forward,
@@ -55,7 +55,7 @@ pub(crate) fn law_questions(
     weights: &Weights,
 ) -> Vec<Structure> {
     let competitors = of_every_law(campaign, forward, fit, |law| competitor(forward, fit, law, weights));
-    // Bonferroni: one of many laws fits better by chance
+    // Bonferroni correction: one of many laws fits better by chance
     let asked = libm::log((competitors.len() as f64).max(1.0));
     competitors
         .into_iter()
@@ -67,13 +67,14 @@ pub(crate) fn law_questions(
         .collect()
 }
 
-/// The law that, added to calibration alone, explains the readings better than calibration does.
+/// The law that, added to calibration alone, explains the readings better than calibration does; `None` if there is
+/// none.
 pub(crate) fn better_than_calibration(search: &Search, baseline: &Fit) -> Option<Better> {
     let places = search.places();
     best_of(competitors(search, baseline), baseline.evidence, places)
 }
 
-/// The law that explains the readings better in place of one named effect, or of all of them.
+/// The law that explains the readings better in place of one named effect, or of all of them; `None` if there is none.
 pub(crate) fn instead(search: &Search, best: &Scored, baseline: &Fit) -> Option<Better> {
     let (named, places) = (best.effects.len(), search.places());
     // with one effect, the model without it is the baseline, which is tried anyway
@@ -97,18 +98,18 @@ fn best_of(competitors: Vec<Competitor>, evidence: f64, places: f64) -> Option<B
     (better.gain > BETTER).then_some(better)
 }
 
-/// Fits each law that no effect of the search has together with the parameters of a fit.
+/// Fits each law together with the parameters of a fit. Laws that are the same as an effect of the search are left out.
 fn competitors(search: &Search, fit: &Fit) -> Vec<Competitor> {
     let is_sought = |effect: &str| search.candidates.iter().any(|c| c.kind.name == effect);
     let fitted = of_every_law(search.campaign, search.forward, fit, |law| {
-        // the effect competes by itself, under its name
+        // the effect of the library competes itself, under its name
         let has_no_name = !law.effect.is_some_and(is_sought);
         has_no_name.then(|| competitor(search.forward, fit, law, search.weights))
     });
     fitted.into_iter().flatten().collect()
 }
 
-/// Fits a model and a law, linearized.
+/// Fits a model together with a law, linearized about the fit of the model.
 fn competitor(forward: &Forward, fit: &Fit, law: &Law, weights: &Weights) -> Competitor {
     let own = fit.point.u.len();
     let n = own + law.columns.len();
@@ -156,8 +157,8 @@ fn competitor(forward: &Forward, fit: &Fit, law: &Law, weights: &Weights) -> Com
     Competitor { what: law.what.clone(), numbers: law.columns.len(), objective, evidence }
 }
 
-/// Width of the prior of a parameter: the parameter of an effect, or else that of a law, whose size may be of any
-/// order of magnitude.
+/// Width of the prior of parameter `p` at `u`. For a law the width is proportional to `u`, because its size may be of
+/// any order of magnitude.
 fn width(fit: &Fit, own: usize, p: usize, u: f64) -> f64 {
     match p < own {
         true => fit.model.free_parameters().nth(p - fit.model.calibrated()).map_or(1.0, |k| k.width(u)),

@@ -1,5 +1,4 @@
-//! Writes the corrected arm: calibrated values replace nominal ones and effects are added, each with its
-//! source.
+//! Builds the corrected arm: calibrated values replace nominal ones and effects are added, each with its source.
 
 use super::outcome::{Calibrated, Verdict};
 use crate::arm::effect::kind::Place;
@@ -11,7 +10,7 @@ use crate::reconcile::model::estimate::Finding;
 use crate::reconcile::readings::campaign::Campaign;
 use serde_json::{Value, json};
 
-/// The corrected arm, and the provenance of its values. Without a fit the arm stays as it was.
+/// The corrected arm, and the provenance of its values. Without a fit the arm stays as it was given.
 pub(crate) fn corrected(
     campaign: &Campaign,
     forward: &Forward,

@@ -1,9 +1,9 @@
 //! Proposes the test that best separates models that the readings cannot yet tell apart.
 //!
-//! Poses come from a low-discrepancy sequence over the range of the campaign. Each has the largest payload
-//! and tip force that the campaign used, and its frequencies; each joint can also go on the bench. For every
-//! test, the predictions of the competing models are compared, all fitted to the readings so far. The
-//! difference is in expected standard deviations.
+//! Poses come from a low-discrepancy sequence over the range of the campaign. In each pose, displacements are proposed
+//! with the largest payload and with the largest tip force of the campaign, and frequencies with and without payload.
+//! Each joint can also be tested on the bench. For every test, the predictions of the competing models are compared,
+//! all fitted to the readings so far. The difference is given in expected standard deviations.
 
 use super::outcome::{NextTest, Verdict};
 use crate::arm::effect::subject::Subject;
@@ -16,41 +16,42 @@ use crate::reconcile::readings::rows::{ModalRow, StaticRow, WindupRow};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-/// The models to separate, and what is known so far.
+/// The models to separate, and the result so far.
 pub(crate) struct Question<'a> {
-    /// The campaign so far.
+    /// The campaign with the readings so far.
     pub campaign: &'a Campaign,
-    /// The best model.
+    /// The best model: name, and the arm under test.
     pub best: (String, Subject),
-    /// The competing models, with their names.
+    /// The competing models: name, and the arm under test.
     pub competitors: Vec<(String, Subject)>,
-    /// The pose that the best model explains worst \[deg\].
+    /// The pose in which the best model has its largest error \[deg, mm\]; `None` if there is none.
     pub residuals: Option<Vec<f64>>,
-    /// The verdict so far.
+    /// The verdict on the readings so far.
     pub verdict: Verdict,
 }
 
 const STATIC_POSES: usize = 24;
 const MODAL_POSES: usize = 4;
 const PROPOSALS: usize = 4;
-/// Separation that settles a question \[standard deviations\].
+/// Separation of two models that suffices to decide between them \[standard deviations\].
 pub(crate) const ENOUGH: f64 = 4.0;
-/// A test that separates by less than this is not worth any number of readings \[standard deviations\].
+/// A test that separates models by less than this would need too many readings \[standard deviations\].
 pub(crate) const WORTHLESS_SIGMAS: f64 = 0.1;
-/// Standard deviations that are assumed where a channel was not measured.
+/// Standard deviations that are assumed for a channel that was not measured: displacement \[mm\], relative for
+/// frequencies, twist on the bench \[arcmin\].
 const DEFAULT_SIGMA_MM: f64 = 0.01;
 const DEFAULT_SIGMA_PART: f64 = 0.003;
 const DEFAULT_SIGMA_ARCMIN: f64 = 0.05;
 const MODES: usize = 4;
 
-/// A test as rows of the three files.
+/// A test, as rows of the file in which its readings would be.
 enum Test {
     Static(Vec<StaticRow>),
     Modal(Vec<ModalRow>),
     Bench(Vec<WindupRow>),
 }
 
-/// The tests worth making, best first.
+/// The tests that separate the models best, the best first.
 pub(crate) fn propose(question: &Question) -> Vec<NextTest> {
     if question.verdict == Verdict::Unexplained {
         return question.residuals.iter().map(|pose| repeat(question.campaign, pose)).collect();
@@ -70,7 +71,7 @@ pub(crate) fn propose(question: &Question) -> Vec<NextTest> {
                 .collect()
         })
         .collect();
-    // a competing model that no test separates cannot be decided by measuring more
+    // a competing model that no test separates cannot be ruled out by more readings
     let most = |competitor: usize| gaps.iter().map(|list| list[competitor]).fold(0.0, f64::max);
     let (open, twins): (Vec<usize>, Vec<usize>) =
         (0..question.competitors.len()).partition(|&competitor| most(competitor) >= WORTHLESS_SIGMAS);
@@ -104,7 +105,7 @@ pub(crate) fn propose(question: &Question) -> Vec<NextTest> {
     out
 }
 
-/// Says that no reading of the arm tells the models apart.
+/// States that no reading of the arm tells the models apart.
 fn nothing_tells(best: &str, competitors: &[&str]) -> NextTest {
     NextTest::of_another_kind(format!(
         "no displacement, frequency or bench reading separates {best} from {}: weigh the parts in question, or take them apart",
@@ -138,7 +139,7 @@ fn largest_payload(campaign: &Campaign) -> Payload {
         .unwrap_or(Payload { mass_kg: 5.0, cg_m: Vector3::new(0.05, 0.0, 0.0), ..Payload::default() })
 }
 
-/// Smallest and largest entry of each joint in the poses of the campaign \[deg, mm\].
+/// Smallest and largest angle or travel of each joint in the poses of the campaign \[deg, mm\].
 fn ranges(campaign: &Campaign) -> Vec<(f64, f64)> {
     let joints = campaign.arm.driven_joints();
     let poses =
@@ -152,7 +153,7 @@ fn ranges(campaign: &Campaign) -> Vec<(f64, f64)> {
             match joint.motion {
                 _ if low < high => (low, high),
                 Motion::Turns => (-90.0, 90.0),
-                // how far a travel goes is not known
+                // the limits of a travel are not known
                 Motion::Slides if low.is_finite() => (low, low),
                 Motion::Slides => (0.0, 0.0),
             }
@@ -160,7 +161,7 @@ fn ranges(campaign: &Campaign) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// A pose of Halton's sequence within ranges of angles and travels, in whole degrees and millimetres.
+/// Pose number `index` of Halton's sequence within ranges of angles and travels, in whole degrees and millimetres.
 pub(crate) fn spread_pose(ranges: &[(f64, f64)], index: usize) -> Vec<f64> {
     ranges
         .iter()
@@ -169,7 +170,7 @@ pub(crate) fn spread_pose(ranges: &[(f64, f64)], index: usize) -> Vec<f64> {
         .collect()
 }
 
-/// A number of Halton's low-discrepancy sequence, from 0 to 1.
+/// Number `index` of Halton's low-discrepancy sequence to a prime base, from 0 to 1.
 fn halton(mut index: usize, base: usize) -> f64 {
     let (mut f, mut r) = (1.0, 0.0);
     while index > 0 {
@@ -225,7 +226,7 @@ fn tests(campaign: &Campaign, best: &Exact) -> Vec<Test> {
     out
 }
 
-/// The components that the campaign's instrument reads, each with the standard deviation that it has first.
+/// The components that the campaign's instrument reads, each with the standard deviation of its first reading.
 fn instrument(campaign: &Campaign) -> Components {
     let first = |c: usize| campaign.statics.iter().find_map(|row| row.measured[c]);
     let read = |sigma_mm: f64| Some(Component { value_mm: 0.0, sigma_mm });
@@ -235,8 +236,8 @@ fn instrument(campaign: &Campaign) -> Components {
     }
 }
 
-/// A bench cycle for each joint that has not been on the bench, up to its largest torque in the static tests.
-/// A joint that has been there is known as well as its readings say.
+/// A bench cycle for each joint that has not been on the bench, up to the joint's largest torque in the proposed static
+/// tests. A joint that was on the bench is not proposed again, because the models were already fitted to its readings.
 fn benches(campaign: &Campaign, best: &Exact, statics: &[Test]) -> Vec<Test> {
     let mut largest: Vec<(String, f64)> = Vec::new();
     for row in statics.iter().filter_map(|t| if let Test::Static(rows) = t { rows.first() } else { None }) {

@@ -1,4 +1,4 @@
-//! Writes the verdict in words, and the files of the outcome.
+//! The verdict in words, and the files of the result.
 
 use super::files::{CORRECTED_FILE, corrected_files};
 use super::outcome::{Outcome, Verdict};
@@ -15,7 +15,7 @@ use std::path::Path;
 const WORTH_SAYING: f64 = 1.05;
 
 impl Outcome {
-    /// A short verdict for the terminal.
+    /// A short text of the verdict for the terminal.
     pub fn to_text(&self) -> String {
         let mut out = String::new();
         let _ = writeln!(out, "{}: {}", self.campaign, self.headline());
@@ -77,7 +77,8 @@ impl Outcome {
         }
     }
 
-    /// How well each model that the corrected arm could have predicts held-out poses, and the laws in it.
+    /// Table of the models that the corrected arm could have, with their errors on held-out poses, and the laws in the
+    /// chosen one.
     fn models_table(&self, out: &mut String) {
         if self.models.is_empty() {
             return;
@@ -128,7 +129,7 @@ impl Outcome {
         }
     }
 
-    /// The files of the outcome with their names.
+    /// Names and contents of the files of the result.
     pub fn files(&self) -> Vec<(String, String)> {
         let json = |value: &serde_json::Value| format!("{value:#}\n");
         let mut out = vec![
