@@ -35,6 +35,7 @@ pub(super) struct Branching {
     gain: f64,
     /// The quantity that is divided.
     by: BranchOn,
+    /// Value of the key's coordinate or of the force \[N or N m\] at which the region is divided.
     at: f64,
 }
 
