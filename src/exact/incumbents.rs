@@ -22,7 +22,9 @@ const STEPS: f64 = 64.0;
 /// Designs that meet every constraint.
 pub(super) struct Incumbents {
     table: Archive,
+    /// Incumbents by the grid step of their mass.
     rows: HashMap<i32, Vec<Objectives>>,
+    /// Incumbents by the grid step of their deflection.
     columns: HashMap<i32, Vec<Objectives>>,
     /// All incumbents in the order in which they were added.
     all: Vec<Objectives>,
