@@ -272,7 +272,8 @@ mod tests {
     use serde_json::json;
     use std::collections::BTreeSet;
 
-    /// An arm with three sized joints, the middle one with an offset to its side, in two poses.
+    /// A study of an arm with three joints whose drives are sized, in two poses. The upper arm, between the second and
+    /// the third joint, has an offset to the side.
     fn study(pose_deg: [f64; 3], side_m: f64, tip_n: f64, catalogs: &Catalogs) -> Study {
         let drives =
             json!({"gear_series": ["CSG"], "ratios": [100], "motor_models": ["ILM70x18", "ILM85x26"]});
@@ -300,7 +301,7 @@ mod tests {
         std::array::from_fn(|k| all[k / 3][k % 3])
     }
 
-    /// Whether each number of a demand is within a relative tolerance of lying between those of two others.
+    /// Whether each number of a demand lies between those of two other demands, up to a relative tolerance.
     fn is_between(demand: &BearingDemand, ends: &[BearingDemand; 2], tolerance: f64) -> bool {
         let [low, high] = ends.each_ref().map(numbers);
         let slack = |x: f64| tolerance * (1.0 + x);
@@ -373,7 +374,8 @@ mod tests {
             prop_assume!(held > 0);
         }
 
-        /// If the loads on a bearing are said to grow with the mass of a drive, they do, whatever the other parts weigh.
+        /// If `grow_with_mass` returns true, every load on the bearing grows with the mass of every drive, whatever the
+        /// other parts weigh.
         #[test]
         fn loads_that_are_said_to_grow_with_a_drive_do(
             pose_deg in prop::array::uniform3(-60.0f64..60.0), side_m in prop::sample::select(vec![0.0, 0.1]),
@@ -385,7 +387,7 @@ mod tests {
                 let problem = Problem::new(&study.space, &catalogs, &|_| true, Ties::Separate).expect("options");
                 let is_drive = |piece: usize| matches!(problem.parts[piece], Part::Drives { .. });
                 for rows in problem.poses.iter().flat_map(|pose| pose.bearings.iter().flatten()) {
-                    // at a right angle everywhere, as in the pose at rest, the answer must be yes
+                    // With all joint angles zero and no offset to the side, the answer must be yes.
                     let grows = rows.grow_with_mass(&is_drive);
                     prop_assert!(grows || pose_deg != [0.0; 3] || side_m != 0.0);
                     if !grows {

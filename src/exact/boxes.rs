@@ -138,7 +138,8 @@ pub(super) struct Search<'s, 'p> {
 }
 
 impl Search<'_, '_> {
-    /// Bounds a box and returns its halves. If the box is one design, the design is judged and nothing is returned.
+    /// Bounds a box and returns its halves. If the box is one design, the design is evaluated and nothing is returned.
+    /// Nothing is returned either if the box is pruned.
     pub(super) fn open(&self, mut here: OpenBox, work: &mut Work, findings: &mut Findings) -> Vec<OpenBox> {
         self.budget.count_box();
         let verdict = self.problem.bound(

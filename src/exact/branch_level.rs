@@ -73,8 +73,8 @@ impl Problem<'_> {
 
     /// For each piece, a relative change of a trial shape's Rayleigh quotient that is due to the uncertain weight of
     /// the piece. A heavier piece may press a gear inboard into a stiffer segment of its torsion curve, and the bound
-    /// assumes this segment. With torques of middle size the quotient would be lower. Each piece gets the fraction of
-    /// this change that its weight has in the width of the torque's interval.
+    /// assumes this segment. With a torque of middle size the quotient would be lower. This change is divided among the
+    /// pieces in proportion to the width that the weight of each adds to the interval of the torque.
     fn softened_by_torque(&self, case: usize, shape: &Shape, strain: f64, work: &Work) -> Vec<f64> {
         let mut softened = vec![0.0; self.parts.len()];
         let pose = &self.poses[case];

@@ -30,8 +30,8 @@ const SAME: f64 = 1e-3;
 /// A way to divide a region into two: the quantity that is divided, and the value at which it is divided.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Branching {
-    /// The expected benefit: an estimate of how much of the weighted sum of scaled rows (without unit) the division
-    /// recovers.
+    /// Estimated benefit of the division: the underestimate and the spread in the weighted sum of rows that the
+    /// division reduces. The rows are scaled, so it has no unit.
     gain: f64,
     /// The quantity that is divided.
     by: BranchOn,

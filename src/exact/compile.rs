@@ -140,7 +140,7 @@ impl<'c> Problem<'c> {
                 }
                 Layer::Tilt(tilt) => Part::Given { mass_kg: 0.0, curve: CurveBox::of(&tilt.law()) },
                 Layer::Guide(spring) => Part::Given { mass_kg: 0.0, curve: CurveBox::of(&spring.law()) },
-                // A given mass beyond the parts loads the arm, but a design's mass does not count it.
+                // A given mass that belongs to no part loads the arm, but is not counted in the mass of a design.
                 Layer::Mass(_) | Layer::Travelling(_) | Layer::Springs(_) => Part::Offset { mass_kg: 0.0 },
                 Layer::Extra(mass_kg) => Part::Offset { mass_kg },
                 Layer::Bodies(carried) => Part::Offset { mass_kg: carried.mass_kg() },
@@ -153,15 +153,15 @@ impl<'c> Problem<'c> {
             let room = joints.rooms[place].as_ref().filter(|_| is_joint);
             problem.rooms.push(room.map(|room| problem.room_at(room)));
             problem.parts.push(part);
-            // Play belongs to the joint, whichever drive it has.
+            // Play (lost motion and friction) belongs to the joint and is the same for every drive.
             problem.joint_plays.push(match layer {
                 Layer::Piece(SpacePiece::Joint(joint)) => {
                     JointPlay::of(&space.joint_piece(joint, Curve::Linear(1.0), None).law)
                 }
                 _ => None,
             });
-            // A harness moves and weighs with its link, so the link's inertia has it. The mass of a design
-            // does not count it; a negative offset takes it out of the sum of masses.
+            // A harness moves and weighs with its link, so the inertia of the link includes it. The mass of a design
+            // does not include it, so a negative offset subtracts it from the sum of masses.
             if let Layer::Piece(piece) = layer
                 && let Some(harness_kg) = harness_kg(space, piece)
             {

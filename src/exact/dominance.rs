@@ -35,7 +35,8 @@ struct DominatingDrive<'a> {
     lighter_than_kg: f64,
     /// Greatest demand on the joint, which the drive must carry.
     demand: &'a JointDemand,
-    /// Torsion curves of the box, than which the drive must nowhere be softer; `None` if the drive must be rigid.
+    /// Torsion curves of the drives of the box. The drive must nowhere be softer than any of them. `None` if the drive
+    /// must be rigid.
     curve: Option<CurveBox>,
     /// Greatest torque up to which the curves are compared \[N m\].
     most_torque_nm: f64,

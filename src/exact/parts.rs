@@ -189,7 +189,7 @@ impl Rays {
         Self { demands: loads.map(|(static_nm, inertia)| motion.demand(static_nm, inertia)), loads }
     }
 
-    /// For each ray, the greatest multiple of its demand that a drive can carry.
+    /// For each ray, the greatest multiple of its demand that a drive with these limits carries.
     pub(super) fn capacity(&self, limits: &DriveLimits) -> [f64; RAYS] {
         self.demands.each_ref().map(|demand| limits.multiple_of(demand))
     }
@@ -247,7 +247,7 @@ pub(super) struct DriveBox {
     pub limits: DriveLimits,
     /// The least of each limit over the members.
     pub least_limits: DriveLimits,
-    /// For each ray, the greatest multiple of its demand that any member carries.
+    /// For each ray, the greatest multiple of its demand that a single member carries.
     pub multiples: [f64; RAYS],
     /// Envelopes of the torsion curves of the members; `None` if one of them is rigid.
     pub curve: Option<CurveBox>,

@@ -36,8 +36,8 @@ const FEW: f64 = 1e6;
 /// Number of probes per squared decade of designs: a space of `10^n` designs gets `0.12 n²` probes. More probes pay
 /// only in a large space.
 const PROBES: f64 = 0.12;
-/// Number of probes per squared decade of designs if the genetic algorithm ([`evolve`]) follows. It is smaller than
-/// [`PROBES`], because that algorithm improves the designs that the probes find.
+/// Number of probes per squared decade of designs if the genetic algorithm ([`evolve`]) follows. It is a third of
+/// [`PROBES`].
 const PROBES_TO_EVOLVE: f64 = 0.04;
 /// Default of the greatest number of designs that are listed with all their ties. A tie is a design that differs only
 /// in drives of equal mass, torsion curve and bearing stiffness.
@@ -200,7 +200,7 @@ impl<'p> Exact<'p> {
         // Tied kinds may stand for the same design.
         front.dedup_by_key(|c| c.number);
         let outcome = ExactOutcome {
-            // The number of designs counts even if no problem was compiled, because no option of some level can meet
+            // This is the size of the space even if no problem was compiled, because no option of some level can meet
             // the limits.
             designs_total: self.space.designs(self.catalogs).unwrap_or(u128::MAX),
             designs_evaluated,
