@@ -25,8 +25,8 @@ const AXIAL: [usize; 1] = [4];
 pub(super) struct BearingRows {
     /// Components of gravity and load, as sums over the weight of each piece \[N\].
     at_rest: Components,
-    /// Components of the ramp of each joint, as sums over the line inertias of each piece. Each piece has [`INERTIAS`]
-    /// places.
+    /// Components of the ramp of each joint, as sums over the line inertias (inertias per metre of a tube) of each
+    /// piece. Each piece has [`INERTIAS`] places.
     ramps: Vec<Components>,
 }
 
@@ -243,7 +243,7 @@ fn squared_lengths(components: &[[f64; 2]; COMPONENTS]) -> [Squares; 2] {
     squares.map(|of| [of[MOMENT[0]] + of[MOMENT[1]], of[RADIAL[0]] + of[RADIAL[1]], of[AXIAL[0]]])
 }
 
-/// Replaces the least and the greatest load by the larger of two each.
+/// Raises the least and the greatest load to those of `other` where these are larger.
 fn widen(load: &mut [Squares; 2], other: [Squares; 2]) {
     for (load, other) in load.iter_mut().flatten().zip(other.iter().flatten()) {
         *load = load.max(*other);

@@ -15,8 +15,8 @@ use super::problem::{Part, Problem};
 use super::rows::{RelaxedDesign, Rows};
 use super::tree::Key;
 
-/// For drives and for tubes: the index of the key's coordinate for mass and of that for stiffness, each with the factor
-/// by which the coordinate multiplies the logarithm ([`Bounds::key`](super::tree::Bounds::key)).
+/// For drives and for tubes: which coordinate of an option's key ([`Key`]) stands for mass and which for stiffness.
+/// Each has the factor by which the coordinate multiplies the logarithm.
 const DRIVE: [(usize, f64); 2] = [(3, 1.0), (0, 4.0)];
 const TUBE: [(usize, f64); 2] = [(0, 2.0), (1, 1.0)];
 /// A benefit of a branching below this is due to rounding.
@@ -35,14 +35,15 @@ pub(super) struct Branching {
     gain: f64,
     /// The quantity that is divided.
     by: BranchOn,
-    /// Value of the key's coordinate or of the force \[N or N m\] at which the region is divided.
+    /// Value at which the region is divided: of the coordinate by which the tree separates options (a scaled
+    /// logarithm), or of the force \[N or N m\].
     at: f64,
 }
 
 /// The quantity by which a region is divided.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum BranchOn {
-    /// The options of a level, by one coordinate of their key.
+    /// The options of a level, by one coordinate of their keys.
     Options { level: usize, axis: usize },
     /// The generalized force of one row of a case, such as the torque on a joint.
     Force { case: usize, row: usize },
@@ -92,8 +93,8 @@ impl Rows<'_> {
         branchings
     }
 
-    /// For mass and for stiffness of a piece: the index of the key's coordinate, and the best value of this coordinate
-    /// in the box.
+    /// For the mass and for the stiffness of a piece: the index of the coordinate that stands for it in the key of an
+    /// option, and the best value of this coordinate in the box.
     fn best_of(&self, piece: usize) -> [(usize, f64); 2] {
         let (light, stiff) = (self.work.light[piece][inertia::MASS], self.work.stiff[piece][0]);
         let (places, stiff) = match &self.work.curves[piece] {

@@ -25,7 +25,7 @@ const BOXES: usize = 1024;
 pub(super) struct Early<'l> {
     /// Receives the gap and the counts for other threads to read.
     live: &'l Live,
-    /// Bounds of boxes that hold every design, except those that a design in `findings` dominates.
+    /// Bounds of boxes that contain every design of the space, except designs that a design in `findings` dominates.
     cover: Vec<BoxBound>,
     /// The designs that the dives found.
     findings: Findings,

@@ -6,7 +6,7 @@
 //! dominates it. Of designs that differ by little, one is kept for each cell of a grid
 //! ([`thinned`](super::grid::thinned)), so that they do not crowd out the others.
 //!
-//! The result proves nothing. Its designs are judged and listed like every other design.
+//! The result proves nothing. Its designs are evaluated and listed like all others.
 
 use super::bound::{DesignBox, Verdict};
 use super::budget::Budget;

@@ -1,4 +1,4 @@
-//! Tests of the bounds on forces.
+//! Tests of the bounds on a force: they tighten the intervals of other forces and exclude no possible value.
 
 use super::*;
 use crate::exact::interval::interval;

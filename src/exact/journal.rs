@@ -30,7 +30,7 @@ pub(super) struct Journal<'s> {
 
 #[derive(Default, Serialize, Deserialize)]
 struct State {
-    /// The results of the parts that are finished.
+    /// Results of the finished parts of the search: the front of all designs, and the front of each material.
     finished: Vec<ExactOutcome>,
     /// Number of these results that this process has taken over or added.
     #[serde(skip)]

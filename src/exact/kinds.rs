@@ -14,9 +14,9 @@ use crate::space::slot::SizedJoint;
 /// Whether the drives of one kind (tied drives) are a single option of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Ties {
-    /// One option for each kind.
+    /// All drives of a kind are one option.
     Merged,
-    /// One option for each drive.
+    /// Every drive is an option, whatever its kind is.
     Separate,
 }
 

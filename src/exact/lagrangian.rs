@@ -132,7 +132,7 @@ impl Rows<'_> {
                 Part::Drives { tree, .. } => {
                     let price = price();
                     let cheapest = self.drives[level].as_ref().and_then(|drives| drives.cheapest(&price));
-                    // If no drive is feasible the sum is infinite, and any local upper bound is refuted.
+                    // If no drive is feasible, the sum is infinite, and no member lies below any local upper bound.
                     let (least, at) = cheapest.unwrap_or((f64::INFINITY, design_box[level]));
                     member.design_box[level] = at;
                     levels.push(least);

@@ -99,7 +99,8 @@ pub(super) struct PosedTube {
     pub frame: Matrix3<f64>,
     /// Motion of everything outboard (a kinematic twist) per unit of each of the coordinates [`ENDS`].
     pub ends: [Twist; 8],
-    /// Inertia matrices over the motion of the root and the coordinates, per unit of each line inertia.
+    /// Inertia matrices of the tube over the motion of its root and its strain coordinates, per unit of each line
+    /// inertia.
     pub forms: TubeForms,
     /// Added mass of the water across the tube, per outer area and length \[kg/m³\].
     pub added_kg_m3: f64,
@@ -113,9 +114,10 @@ pub(super) struct PosedTube {
 
 /// Given bodies on a tube. Each of them moves with a point of the tube's axis.
 pub(super) struct PosedBodies {
-    /// Inertia matrix over the motion of the root and the coordinates, in the section frame.
+    /// Inertia matrix of the bodies over the six motions of the tube's root and all its strain coordinates, in the
+    /// section frame.
     pub inertia: DMatrix<f64>,
-    /// Inertia about the world's origin if the tube is taken as rigid.
+    /// Inertia of the bodies about the world's origin, for the tube taken as rigid.
     pub rigid: Matrix6<f64>,
     /// Wrench of the weight of all bodies.
     pub weight: Wrench,

@@ -14,7 +14,8 @@ use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, in_lanes};
 
 /// Approximate number of tree nodes by which the remaining options of a level are described.
 const BOXES: usize = 256;
-/// Number of dual points that are used to exclude options. Those that allow the least are taken first.
+/// Number of dual points that are used to exclude options. Those with the smallest difference between the allowed and
+/// the least weighted sum are taken.
 const STRICTEST: usize = 32;
 
 /// The dual prices of a level at one dual point, and the greatest price that an option may have there if it belongs to
@@ -40,8 +41,8 @@ impl Rows<'_> {
                 (room, multipliers, &point.levels[..])
             })
             .collect();
-        // The dual points that allow the least exclude most options. Beyond some dozens, another one hardly excludes
-        // enough to pay for its time.
+        // The dual points that allow the lowest prices exclude most options. Beyond some dozens, another one hardly
+        // excludes enough to pay for its time.
         strict.sort_by(|a, b| a.0.total_cmp(&b.0));
         strict.truncate(STRICTEST);
         let levels = self.problem.level_pieces.iter().enumerate();

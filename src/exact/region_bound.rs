@@ -32,8 +32,8 @@ pub(super) struct Survivors {
 }
 
 impl Problem<'_> {
-    /// Bounds those designs of a box that lie below a local upper bound. The numbers of the box are in `work`. `None`
-    /// if the bound proves that no member lies below the local upper bound.
+    /// Tests whether a box has designs below a local upper bound. The numbers of the box are in `work`. `None` if the
+    /// bound proves that there are none; otherwise the options and designs that remain possible.
     pub(super) fn bound_below(
         &self,
         design_box: &[u32],

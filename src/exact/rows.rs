@@ -25,8 +25,9 @@ use super::shape::Shape;
 use super::tip_row::TipRow;
 use super::work::Work;
 
-/// Relative amount by which an incumbent must be better to dominate. It is larger than the relative difference below
-/// which objectives count as equal.
+/// Relative margin by which incumbents are made worse before a region is bounded by them. It is larger than the
+/// relative amount by which an incumbent must be better to dominate, and than the difference below which objectives
+/// count as equal.
 pub(super) const DOMINANCE_MARGIN: f64 = 2e-7;
 /// Margin for the rounding of sums whose terms are about 1.
 pub(super) const ROUNDING: f64 = 1e-9;

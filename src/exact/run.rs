@@ -27,9 +27,9 @@ use std::time::Instant;
 /// workers this much.
 pub const WORKER_STACK_BYTES: usize = 64 << 20;
 
-/// Number of designs above which a space is searched in passes.
+/// Number of designs above which a space is searched in passes with less and less slack.
 const LARGE: f64 = 1e9;
-/// Number of designs above which a space is searched region by region.
+/// Number of designs above which a space is searched region by region and not box by box.
 pub const VAST: f64 = 1e14;
 /// Number of designs below which a region is searched box by box.
 const FEW: f64 = 1e6;

@@ -51,7 +51,7 @@ pub(super) struct Findings {
 }
 
 impl Findings {
-    /// Adds the findings of another task.
+    /// Appends the findings of another task to these findings.
     pub(super) fn append(&mut self, mut other: Self) {
         self.kept.append(&mut other.kept);
         self.undecided.append(&mut other.undecided);

@@ -25,8 +25,8 @@ pub(super) struct Shape {
     x: Vec<f64>,
     /// Coefficients of `xᵀKx` (twice the strain energy): one for each stiffness of each piece.
     pub strain: Vec<[f64; STIFFNESSES]>,
-    /// Coefficients of `xᵀMx` (twice the kinetic energy per squared angular frequency): one for each inertia of each
-    /// piece.
+    /// Coefficients of `xᵀMx` (twice the kinetic energy per squared angular frequency): one for each line inertia of
+    /// each piece.
     pub kinetic: Vec<[f64; INERTIAS]>,
     /// Constant term of `xᵀMx`, from the payload and given bodies.
     pub kinetic_fixed: f64,

@@ -44,7 +44,7 @@ pub(super) struct Node<B> {
     pub kind: NodeKind,
 }
 
-/// What is below a node.
+/// The two halves of a node or its single option.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum NodeKind {
     /// Numbers of the two nodes into which the options are halved.
@@ -195,8 +195,8 @@ impl<B: Bounds> Tree<B> {
         }
     }
 
-    /// The smallest node below `node` that contains every option for which `holds` is true. `None` if `holds` is true
-    /// for no box that is tried.
+    /// The smallest node at or below `node` that contains every option for which `holds` is true. `holds` must be true
+    /// for a box if it is true for an option in the box. `None` if no option is left.
     pub(super) fn smallest_node(&self, mut node: u32, holds: impl Fn(&B) -> bool) -> Option<u32> {
         if !holds(&self.node(node).bounds) {
             return None;

@@ -17,8 +17,8 @@ pub(super) struct Work {
     pub(super) stiff: Vec<[f64; STIFFNESSES]>,
     /// Least stiffnesses of each piece over the box.
     pub(super) soft: Vec<[f64; STIFFNESSES]>,
-    /// Least line inertias of each piece over the box, as in [`Line::inertias`](super::parts::Line). For a joint the
-    /// first place is its mass \[kg\].
+    /// Least line inertias (inertias per metre of a tube) of each piece over the box, as in
+    /// [`Line::inertias`](super::parts::Line). For a joint the first place is its mass \[kg\].
     pub(super) light: Vec<[f64; INERTIAS]>,
     /// Greatest line inertias of each piece over the box.
     pub(super) heavy: Vec<[f64; INERTIAS]>,
