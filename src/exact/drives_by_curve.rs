@@ -1,8 +1,8 @@
 //! The feasible drives below a node, grouped by torsion curve and bearing.
 //!
 //! A joint has hundreds of drives but only some dozens of curves, and gears of one curve mostly have one bearing. The
-//! price of a drive is the price of its mass plus the prices of its curve and its bearing. Among the drives of one group
-//! only the lightest or the heaviest can therefore be the cheapest, whatever the prices are.
+//! price of a drive is the price of its mass plus the prices of its curve and its bearing. Among the drives of one
+//! group only the lightest or the heaviest can therefore be the cheapest, whatever the prices are.
 
 use super::dual_price::DualPrice;
 use super::parts::{DriveBox, LeastDemand};
