@@ -1,4 +1,4 @@
-//! The bound of a box: the best that any of its members could be, objective by objective.
+//! The bound of a box: for each objective, the best value that any of its members could have.
 //!
 //! | objective | bound of the box |
 //! |---|---|
@@ -20,15 +20,17 @@ use std::sync::Arc;
 
 /// Refinement of the trial shapes stops when the bound improves by less than this (relative).
 const SETTLED: f64 = 1e-10;
-/// Accelerations of the base from which the trial shapes start: vertical, and sideways with a little forward.
+/// Accelerations of the base \[m/s²\] whose inertia forces deform the arm into the first trial shapes: one vertical,
+/// and one sideways with a little forward.
 pub(super) const STARTS: [[f64; 3]; 2] = [[0.0, 0.0, 1.0], [0.3, 1.0, 0.0]];
-/// Greatest number of refinement steps on one box.
+/// Greatest number of refinement steps of the trial shapes on a box of one design.
 const MOST_STEPS: usize = 30;
 
-/// A box of designs: one node of each level's tree, tip first.
+/// A box of designs: the number of one node of each level's tree, tip first.
 pub(super) type DesignBox = Vec<u32>;
 
-/// The ideal point of a box: the best objectives that a member could have. No member is better in any of them.
+/// The ideal point of a box: the least mass \[kg\], the least tip deflection \[m\] and the highest lowest mode \[Hz\]
+/// that a member could have. No member is better in any of them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) struct BoxBound {
     pub mass_kg: f64,
@@ -53,7 +55,7 @@ impl From<BoxBound> for Objectives {
     }
 }
 
-/// The result of bounding a box.
+/// The result of the computation of a box's bound.
 pub(super) enum Verdict {
     /// No member meets the constraints, or an incumbent dominates the bound.
     Pruned,
@@ -67,8 +69,8 @@ impl<'c> Problem<'c> {
         vec![0; self.level_pieces.len()]
     }
 
-    /// The objectives of the design in a box of one design. Mass and deflection are exact in the bound; the mode is
-    /// computed anew, because a trial shape gives only an upper bound of its frequency.
+    /// The objectives of the design in a box of one design. Mass and deflection of the bound are exact for it. The
+    /// lowest mode is computed again, because a trial shape gives only an upper bound of its frequency.
     pub(super) fn objectives(&self, box_bound: &BoxBound, work: &Work) -> Objectives {
         let quotient = (box_bound.hz * std::f64::consts::TAU).powi(2);
         let lowest =
@@ -121,15 +123,16 @@ impl<'c> Problem<'c> {
         let Some(mut box_bound) = self.first_bound(design_box, shapes, work, &fails) else {
             return Verdict::Pruned;
         };
-        // A step of inverse iteration costs about as much as the rest of the bound, so it is made only where
-        // it can prune the box. A single design is refined in any case, for its mode is reported.
+        // A step of inverse iteration costs about as much as the rest of the bound, so it is made only where it can
+        // prune the box. A single design is refined in any case, because its mode is reported.
         if !work.is_point() && !worth_refining(&box_bound) {
             return Verdict::Open(box_bound);
         }
         self.refine(&mut box_bound, Arc::make_mut(shapes).as_mut_slice(), work, fails)
     }
 
-    /// The bound of a box with the trial shapes of its parent. `None` if no member can be on the front.
+    /// The bound of a box with the trial shapes of its parent box. `fails` tells whether a bound prunes the box. `None`
+    /// if no member can meet the limits and be on the front.
     fn first_bound(
         &self,
         design_box: &mut [u32],
@@ -167,7 +170,8 @@ impl<'c> Problem<'c> {
         Some(box_bound)
     }
 
-    /// Improves the trial shapes until the box is pruned or the bound no longer changes.
+    /// Improves the trial shapes until the box is pruned or the bound no longer falls. A box of several designs gets a
+    /// single step.
     fn refine(
         &self,
         box_bound: &mut BoxBound,
@@ -180,8 +184,8 @@ impl<'c> Problem<'c> {
             let before = box_bound.hz;
             for (judged, case) in self.judged_cases().enumerate() {
                 for start in 0..STARTS.len() {
-                    // The second shape is kept orthogonal to the first. Without that both would converge to
-                    // the same mode and the bound would miss a soft plane.
+                    // The second shape is kept orthogonal to the first. Without that both would converge to the same
+                    // mode. The bound would then miss a lower mode of the arm in the other plane.
                     let (others, rest) = shapes[judged * STARTS.len()..].split_at_mut(start);
                     let shape = &mut rest[0];
                     let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };
@@ -203,8 +207,9 @@ impl<'c> Problem<'c> {
         Verdict::Open(*box_bound)
     }
 
-    /// Least deflection of the tip in the worst judged case \[m\]. `None` if no member's forces lie in the intervals
-    /// to which the problem's force bounds restrict them.
+    /// Least deflection of the tip in the judged case where it is greatest \[m\]. It also computes the forces, torques,
+    /// slopes and tip directions in `work`. `None` if no member's forces lie in the intervals to which the force bounds
+    /// of the problem restrict them.
     pub(super) fn least_tip_m(&self, work: &mut Work) -> Option<f64> {
         let mut worst = 0.0f64;
         work.worst_tip = None;
@@ -254,11 +259,12 @@ impl<'c> Problem<'c> {
         Some(worst)
     }
 
+    /// Indices of the cases that count for deflection and lowest mode.
     pub(super) fn judged_cases(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.poses.len()).filter(|&case| self.poses[case].judged)
     }
 
-    /// The options of a box of one design, tip first. `None` if the box has several designs.
+    /// The option of each level of a box of one design, tip first. `None` if the box has several designs.
     pub(super) fn options(&self, design_box: &[u32]) -> Option<Vec<u32>> {
         self.level_pieces
             .iter()
@@ -272,12 +278,13 @@ impl<'c> Problem<'c> {
     }
 }
 
+/// Frequency \[Hz\] of an eigenvalue \[1/s²\], raised by the rounding margin so that it remains an upper bound.
 fn hertz(lambda: f64) -> f64 {
     lambda.sqrt() / std::f64::consts::TAU * (1.0 + ROUNDING)
 }
 
-/// The strain coordinate of a linear spring (of a tube, or of a bearing), as an interval, for a force in an interval. The
-/// stiffness of the piece is an interval too, and the coordinate is the product of force and compliance.
+/// The interval of the strain coordinate of a linear spring (of a tube or of a bearing) under a force in an interval.
+/// The coordinate is force times compliance, and the compliance lies in an interval over the box too.
 pub(super) fn linear_strain(pose: &Pose, row: &Row, [low, high]: [f64; 2], work: &Work) -> [f64; 2] {
     let (resisted, factor) = pose.pieces[row.piece].resisted(row.coordinate);
     let (stiff, soft) = (work.stiff[row.piece][resisted], work.soft[row.piece][resisted]);

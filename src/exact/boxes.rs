@@ -12,10 +12,10 @@ use super::shape::Shape;
 use super::work::Work;
 use std::sync::Arc;
 
-/// Number of boxes that one task bounds.
+/// Greatest number of boxes that one task bounds before it returns the open ones.
 const BOXES: usize = 32;
 
-/// A box that waits to be bounded, with the trial shapes and the bound of its parent box.
+/// A box that waits to be bounded, with the trial shapes and the bound of the box from which it was halved.
 pub(super) struct OpenBox {
     pub design_box: DesignBox,
     pub shapes: Arc<Vec<Shape>>,
@@ -29,8 +29,9 @@ impl OpenBox {
         Some(Self { design_box: problem.root(), shapes, box_bound: BoxBound::OPEN })
     }
 
-    /// The two halves of a box along a level. The half to bound first stands last, because the stack is emptied from
-    /// its end.
+    /// The two halves of the box along a level; empty if the level has a single option. `box_bound` is the bound of the
+    /// whole box, which is valid for both halves. The half to bound first stands last, because the stack is emptied
+    /// from its end.
     pub(super) fn halves(&self, problem: &Problem, level: usize, box_bound: BoxBound) -> Vec<Self> {
         let half = |node: u32| {
             let mut design_box = self.design_box.clone();
@@ -41,9 +42,9 @@ impl OpenBox {
     }
 }
 
-/// Bounds the box of all designs and all boxes into which it is divided. Findings are learned at the end of each
-/// round, after which `see` is shown what is known and which boxes are open. Returns the boxes that are still open when
-/// the search is stopped.
+/// Bounds the box of all designs and all boxes into which it is divided. `open` bounds one box and returns the boxes
+/// into which it is divided. At the end of each round, `learn` adds the findings to the state, and `see` is shown the
+/// state and the open boxes. Returns the boxes that are still open when the search is stopped.
 pub(super) fn open_all_boxes<K: Sync, F: Send + Default>(
     budget: &Budget,
     problem: &Problem,
@@ -56,7 +57,7 @@ pub(super) fn open_all_boxes<K: Sync, F: Send + Default>(
     go_through_boxes(budget, state, vec![root], open, learn, see)
 }
 
-/// Bounds boxes that are open and all boxes into which they are divided, as [`open_all_boxes`] does.
+/// Bounds the boxes in `first` and all boxes into which they are divided, in the same way as [`open_all_boxes`].
 fn go_through_boxes<K: Sync, F: Send + Default>(
     budget: &Budget,
     state: &mut K,
@@ -71,8 +72,8 @@ fn go_through_boxes<K: Sync, F: Send + Default>(
     in_rounds(state, first, || budget.stopped(), task, learn, see)
 }
 
-/// Bounds a box and then some of the boxes into which it is divided, depth first. Returns the open boxes and the
-/// findings.
+/// Bounds a box and then boxes into which it is divided, depth first, until [`BOXES`] boxes are bounded. Returns the
+/// boxes that are still open and the findings.
 pub(super) fn open_boxes<F: Default>(
     budget: &Budget,
     first: OpenBox,
@@ -89,8 +90,9 @@ pub(super) fn open_boxes<F: Default>(
     Done { tasks: stack, findings }
 }
 
-/// One pass over all boxes, or over those that an earlier process left open. `keep` is shown the state and the open boxes
-/// after each round. Returns the bounds of the boxes that are still open when the search is stopped.
+/// One pass over all boxes, or over the boxes that an earlier process left open. After each round, `keep` is shown the
+/// state and the open boxes. Returns the bounds of the boxes that are still open when the search is stopped; empty if
+/// the pass is complete.
 pub(super) fn pass_by_boxes(
     budget: &Budget,
     problem: &Problem,
@@ -123,20 +125,21 @@ pub(super) fn pass_by_boxes(
     bounds(&left)
 }
 
-/// A search of a problem, with the state that was shared when its round began.
+/// The search for designs of a problem, with the state that was shared when the present round began.
 pub(super) struct Search<'s, 'p> {
     pub budget: &'s Budget<'p>,
     pub problem: &'s Problem<'p>,
     pub state: &'s SearchState,
-    /// The slack of the pass: a box is pruned if an incumbent dominates its bound made worse by this (relative, 0 for
-    /// none).
+    /// The slack of the pass (relative; 0 for none). A box is pruned if an incumbent dominates its bound after the
+    /// bound was made worse by the factor `1 + slack`.
     pub slack: f64,
-    /// The local upper bound below which designs are looked for; `None` for the whole space.
+    /// The local upper bound below which the search looks for designs; `None` for the whole space.
     pub below: Option<LocalUpperBound>,
 }
 
 impl Search<'_, '_> {
-    /// Bounds a box and returns its halves. If the box is one design, the design is judged and nothing is returned.
+    /// Bounds a box and returns its halves. If the box is one design, the design is evaluated and nothing is returned.
+    /// Nothing is returned either if the box is pruned.
     pub(super) fn open(&self, mut here: OpenBox, work: &mut Work, findings: &mut Findings) -> Vec<OpenBox> {
         self.budget.count_box();
         let verdict = self.problem.bound(
@@ -153,7 +156,7 @@ impl Search<'_, '_> {
             },
         );
         let Verdict::Open(box_bound) = verdict else { return Vec::new() };
-        // The box may have lost drives. Then its numbers in `work` are out of date, and it is bounded anew.
+        // The box may have lost drives. Then its numbers in `work` are out of date, and it has to be bounded again.
         match self.problem.prune_dominated_drives(&mut here.design_box, box_bound.tip_m, work) {
             None => return Vec::new(),
             Some(true) => return vec![here],
@@ -166,7 +169,8 @@ impl Search<'_, '_> {
         here.halves(self.problem, level, box_bound)
     }
 
-    /// Whether a design of the shared state or of the findings dominates the bound, made worse by the slack.
+    /// Whether a design of the shared state or of the task's own findings dominates the bound after it was made worse
+    /// by the slack.
     pub(super) fn dominates(&self, box_bound: &BoxBound, findings: &Findings) -> bool {
         let slackened = box_bound.slackened(self.slack);
         self.state.incumbents.dominates(&slackened) || findings.dominates(&slackened)

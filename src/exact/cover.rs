@@ -1,7 +1,8 @@
-//! A cover of the space by boxes: the boxes with the greatest gap are halved first.
+//! A cover of the space by boxes. It is refined by halving the boxes with the greatest gap first.
 //!
-//! The boxes hold every design that no design found dominates, and each has a bound. So they say how near the designs found
-//! come to every design of the space ([`gap`](super::gap)). That gap is as large as that of the worst box.
+//! The boxes contain every design that no design found dominates, and each has a bound. The bounds therefore tell how
+//! near the designs found come to every design of the space ([`gap`](super::gap)). The gap of the cover is that of its
+//! worst box.
 
 use super::bound::{BoxBound, Verdict};
 use super::boxes::OpenBox;
@@ -14,7 +15,7 @@ use crate::pareto::objectives::Objectives;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Number of boxes that are halved at once.
+/// Number of boxes that are halved in one step, in parallel.
 const AT_ONCE: usize = 32;
 
 /// Boxes that cover the space.
@@ -28,14 +29,15 @@ struct Piece {
 }
 
 impl Cover {
-    /// A cover of at least so many boxes, unless fewer are left or the search is stopped.
+    /// Makes a cover of at least this many boxes. There are fewer if the remaining boxes cannot be halved or the search
+    /// is stopped.
     pub(super) fn new(budget: &Budget, problem: &Problem, found: &[Objectives], boxes: usize) -> Self {
         let Some(shapes) = problem.first_shapes(&mut Work::default()) else { return Self(Vec::new()) };
         let root =
             OpenBox { design_box: problem.root(), shapes: Arc::new(shapes), box_bound: BoxBound::OPEN };
         let mut cover = Vec::from_iter(Piece::bounded(problem, root, found));
         while cover.len() < boxes && !budget.stopped() {
-            // The worst boxes stand last. A box of one design cannot be halved and stands first.
+            // The boxes with the greatest gap stand last. A box of one design cannot be halved and stands first.
             cover.sort_by(|a, b| a.level.is_some().cmp(&b.level.is_some()).then(a.gap.total_cmp(&b.gap)));
             let divisible = cover.iter().filter(|piece| piece.level.is_some()).count();
             if divisible == 0 {
@@ -56,7 +58,8 @@ impl Cover {
 }
 
 impl Piece {
-    /// Bounds a box. `None` if no member meets the constraints, or if a design dominates all members.
+    /// Bounds a box and computes its gap. `None` if no member meets the constraints, or if a design found dominates all
+    /// members.
     fn bounded(problem: &Problem, mut open: OpenBox, found: &[Objectives]) -> Option<Self> {
         let mut work = Work::default();
         let is_dominated = |bound: &BoxBound| {
@@ -71,7 +74,7 @@ impl Piece {
         Some(Self { gap: gap_of(&box_bound, found), open, level })
     }
 
-    /// The halves of the box that may have members.
+    /// The bounded halves of the box. A half without members that may be on the front is left out.
     fn halves(self, problem: &Problem, found: &[Objectives]) -> Vec<Self> {
         let level = self.level.unwrap_or_default();
         let halves = self.open.halves(problem, level, self.open.box_bound);

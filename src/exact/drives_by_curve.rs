@@ -1,8 +1,8 @@
 //! The feasible drives below a node, grouped by torsion curve and bearing.
 //!
 //! A joint has hundreds of drives but only some dozens of curves, and gears of one curve mostly have one bearing. The
-//! price of a drive is the price of its mass plus the prices of its curve and its bearing. Among the drives of one group
-//! only the lightest or the heaviest can therefore be the cheapest, whatever the prices are.
+//! price of a drive is the price of its mass plus the prices of its curve and its bearing. Among the drives of one
+//! group only the lightest or the heaviest can therefore be the cheapest, whatever the prices are.
 
 use super::dual_price::DualPrice;
 use super::parts::{DriveBox, LeastDemand};
@@ -10,7 +10,8 @@ use super::torsion::CurveBox;
 use super::tree::Tree;
 use std::sync::Arc;
 
-/// The drives of one curve and one bearing: mass \[kg\] and node of the lightest and of the heaviest.
+/// The drives with the same torsion curve and the same bearing: mass \[kg\] and node of the lightest and of the
+/// heaviest. `curve` is `None` for a rigid drive.
 struct CurveGroup {
     curve: Option<CurveBox>,
     tilt_rad_per_nm: [f64; 2],
@@ -19,8 +20,8 @@ struct CurveGroup {
 }
 
 impl CurveGroup {
-    /// Adds a drive. Among equal masses the lower node counts, so that the result does not depend on the order of the
-    /// drives.
+    /// Adds a drive, given by its mass \[kg\] and its node. Among equal masses the lower node is taken, so that the
+    /// result does not depend on the order of the drives.
     fn add(&mut self, drive: (f64, u32)) {
         if drive < self.lightest {
             self.lightest = drive;
@@ -35,7 +36,7 @@ impl CurveGroup {
 struct DrivesByCurve(Vec<CurveGroup>);
 
 impl DrivesByCurve {
-    /// The drives below a node that can carry the least demand.
+    /// The drives below a node that carry the least demand on the joint; all drives below it if no demand is given.
     fn new(tree: &Tree<DriveBox>, node: u32, asked: Option<&LeastDemand>) -> Self {
         let mut curves: Vec<CurveGroup> = Vec::new();
         let (mut open, mut last) = (vec![node], 0);
@@ -68,6 +69,7 @@ impl DrivesByCurve {
         Self(curves)
     }
 
+    /// The least price of a drive and the node of this drive. `None` if no drive is feasible.
     fn cheapest(&self, price: &DualPrice) -> Option<(f64, u32)> {
         let of = |of: &CurveGroup| {
             let (mass_kg, node) = if price.of_mass([0.0, 1.0]) < 0.0 { of.heaviest } else { of.lightest };
@@ -77,7 +79,8 @@ impl DrivesByCurve {
     }
 }
 
-/// The feasible drives of a level, kept as long as neither the drives nor the demand on them change.
+/// The feasible drives of a level. They are reused from one box to the next as long as neither the drives nor the
+/// demand on them change.
 #[derive(Clone)]
 pub(super) struct FeasibleDrives {
     tree: Arc<Tree<DriveBox>>,
@@ -87,7 +90,8 @@ pub(super) struct FeasibleDrives {
 }
 
 impl FeasibleDrives {
-    /// The drives below a node that can carry the least demand. They are those of `before` if it was made of the same.
+    /// The drives below a node that carry the least demand `asked`. They are taken from `before` if it was made of the
+    /// same tree, node and demand.
     pub(super) fn new(
         tree: &Arc<Tree<DriveBox>>,
         node: u32,
