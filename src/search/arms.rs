@@ -34,8 +34,8 @@ pub(crate) struct EightArms {
 
 /// Eight arms in one case.
 #[derive(Clone)]
-/// Displacement of the tip \[m\] in x, y and z, caused by the slots added so far.
 pub(crate) struct CaseArms {
+    /// Displacement of the tip \[m\] in x, y and z, caused by the slots added so far.
     pub tip_m: [Eight; 3],
     /// Torque \[N m\] on each hinge. It stays zero at hinges that no load turns.
     pub torque_at: Vec<Eight>,

@@ -151,14 +151,14 @@ pub(crate) struct Chunk {
 /// Ratio of stress to strength, per unit of force or moment, for eight link options. It is 0 if the strength is not
 /// known.
 #[derive(Default)]
-/// Per newton of axial force.
 pub(crate) struct StressEight {
-    /// Per newton metre of bending moment about the section's y axis.
+    /// Per newton of axial force.
     pub per_axial_n: Eight,
-    /// Per newton metre of bending moment about the section's z axis.
+    /// Per newton metre of bending moment about the section's y axis.
     pub per_moment_y: Eight,
-    /// Per newton metre of torsion.
+    /// Per newton metre of bending moment about the section's z axis.
     pub per_moment_z: Eight,
+    /// Per newton metre of torsion.
     pub per_torsion: Eight,
     /// Bit mask, one bit per option: the options of round section, in which both bending moments add as vectors.
     pub round: u8,

@@ -26,8 +26,8 @@ use std::f64::consts::TAU;
 /// Rows whose designs are to be evaluated.
 pub(crate) struct RowsWork<'a, 'c, K> {
     pub problem: &'a ArmProblem<'c>,
-    /// The rows of one batch.
     pub row: &'a Row,
+    /// The rows of one batch.
     pub rows: &'a [DesignRow<Partial>],
     /// Number of designs in each row.
     pub options: u32,
