@@ -1,4 +1,4 @@
-//! `armwright capacity`: the largest payload of a study's arm.
+//! `armwright capacity`: finds the largest payload of a study's arm or of an arm file.
 
 use super::failure::Failure;
 use crate::arm::file::read_arm;

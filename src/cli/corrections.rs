@@ -1,4 +1,5 @@
-//! The corrections of a measured arm: read from an arm file, applied to a study, and reported.
+//! Applies the corrections of a measured arm to a study, and reports which of them apply. They come from an arm file
+//! or from a verdict.
 
 use super::asked::Asked;
 use super::failure::Failure;

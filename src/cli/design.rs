@@ -1,4 +1,5 @@
-//! `armwright design`: writes a design of a result as an arm file and its cases.
+//! `armwright design`: writes a design of a result as an arm file, with a cases file of the cases in which it was
+//! judged.
 
 use super::failure::Failure;
 use super::finished::{catalogs_hash, pretty};

@@ -21,13 +21,13 @@ pub enum Exit {
     File,
     /// The user stopped the run, whether or not results were written before.
     Interrupted,
-    /// A check found a difference.
+    /// A check failed: a result is wrong, or two results differ.
     CheckFailed,
     /// A time limit ended the run before the result was proved.
     Partial,
     /// A check could not decide whether the result is right.
     Unsettled,
-    /// Another process is writing the results.
+    /// Another process is writing the folder of results.
     Locked,
 }
 

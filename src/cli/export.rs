@@ -1,4 +1,4 @@
-//! `armwright export`: an arm or a design as files of other programs.
+//! `armwright export`: writes an arm or a design as files for other programs.
 
 use super::design::resolve_design;
 use super::failure::Failure;

@@ -32,10 +32,10 @@ pub enum Failure {
     /// The user stopped the run.
     #[error("{0}")]
     Interrupted(String),
-    /// A check found a difference.
+    /// A check failed: a result is wrong, or two results differ.
     #[error("{0}")]
     Check(String),
-    /// Another process is writing the same results.
+    /// Another process is writing the folder of results.
     #[error("{0}")]
     Locked(String),
     /// A time limit ended the run before any design was found.

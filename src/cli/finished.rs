@@ -54,7 +54,7 @@ pub(super) struct Written {
     pub files: Files,
     /// Text for the terminal.
     pub terminal: String,
-    /// The front of all designs.
+    /// Table of the front of all designs.
     pub front: FrontTable,
     /// How the search ended.
     pub status: Status,

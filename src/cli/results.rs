@@ -15,7 +15,7 @@ use std::time::Duration;
 /// result is being replaced.
 const AGAIN: (u32, Duration) = (3, Duration::from_millis(200));
 
-/// The result of a study.
+/// The result of a study, as it is in a folder.
 pub(super) struct Results {
     folder: PathBuf,
     /// Contents of `run.json`.

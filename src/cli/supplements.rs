@@ -20,7 +20,7 @@ use clap::Args;
 use serde_json::Value;
 use std::sync::atomic::AtomicBool;
 
-/// Names of the files of supplements; not every run has them.
+/// Names of all files that supplements may write. Which of them a run has depends on its options and its front.
 pub(super) const FILES: [&str; 4] = [ballast::FILE, ties::FILE, tolerance::FILE, near::FILE];
 
 /// What may be asked for in addition to a front.

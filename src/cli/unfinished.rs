@@ -106,7 +106,7 @@ impl Unfinished {
         self.due.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The folder of results, for messages.
+    /// Path of the folder of results, for messages.
     fn folder(&self) -> std::path::Display<'_> {
         self.path.ancestors().nth(2).unwrap_or(&self.path).display()
     }

@@ -32,7 +32,7 @@ pub(crate) struct EightArms {
     pub lowest_mode_hz: Eight,
 }
 
-/// Eight arms in one case.
+/// Eight arms in one case: the numbers that change as slots are added.
 #[derive(Clone)]
 pub(crate) struct CaseArms {
     /// Displacement of the tip \[m\] in x, y and z, caused by the slots added so far.
@@ -41,7 +41,7 @@ pub(crate) struct CaseArms {
     pub torque_at: Vec<Eight>,
     /// Inertia \[kg m²\] of everything outboard of each hinge, about the axis of this hinge.
     pub inertia_at: Vec<Eight>,
-    /// Tangent compliance of each inner joint \[rad/(N m)\].
+    /// Tangent compliance of each inner joint or bearing spring \[rad/(N m)\], in the order of the inner slots.
     pub compliance: Vec<Eight>,
     /// Dunkerley's sum \[s²\] of each block of the eigenvalue problem. A planar pose has two blocks, a spatial pose
     /// only one.
@@ -49,7 +49,7 @@ pub(crate) struct CaseArms {
 }
 
 impl EightArms {
-    /// Working space for eight arms of a problem.
+    /// Memory for eight arms of a problem. All numbers are zero, except for the masses of given drives.
     pub(crate) fn new(problem: &ArmProblem) -> Self {
         let zeros = [0.0; LANES];
         let inner = &problem.slots()[problem.row_slot().unwrap_or(0)..];
@@ -73,7 +73,7 @@ impl EightArms {
         }
     }
 
-    /// Objectives of one of the eight.
+    /// Objectives of the arm in one lane.
     pub(crate) fn objectives(&self, lane: usize) -> Objectives {
         Objectives {
             tip_deflection_m: self.tip_deflection_m[lane],

@@ -23,7 +23,7 @@ use crate::space::station::{Station, StationSlot};
 /// arithmetic.
 const ROUNDING: f64 = 1e-9;
 
-/// A part that a design has for its weight.
+/// A part that a design has only for its weight, with the lighter design that shows it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ballast {
     /// Number of the piece that is ballast, counted from the base to the tip.
@@ -40,7 +40,7 @@ pub struct Ballast {
     pub case: usize,
 }
 
-/// A joint that becomes softer when the torque on it falls.
+/// A joint that becomes softer when less weight loads it, and the case in which this happens.
 struct Relieved {
     slot: usize,
     case: usize,
@@ -58,7 +58,8 @@ struct Weighed<'p, 'c> {
 }
 
 impl ArmProblem<'_> {
-    /// The ballast of a design, if it has any. Of several parts it is the one whose replacement gives the lightest design.
+    /// The ballast of a design; `None` if it has none or if no design has this number. If several parts are ballast,
+    /// it is the one whose replacement gives the lightest design.
     pub fn ballast(&self, design: u128) -> Option<Ballast> {
         let weighed = Weighed::new(self, options(self.level_sizes(), design)?)?;
         let found = (0..weighed.options.len()).flat_map(|level| weighed.at(level));
@@ -97,7 +98,8 @@ impl<'p, 'c> Weighed<'p, 'c> {
         better.filter_map(|option| self.without_weight(level, slot, option)).collect()
     }
 
-    /// Whether an option weighs less than the present one and is at least as stiff in every way.
+    /// Whether an option weighs less than the present one, and is at least as stiff: at every torque if it is a
+    /// drive, in every deformation if it is a tube.
     fn lighter_and_as_stiff(&self, slot: usize, option: u32, now: u32) -> bool {
         match (&self.problem.slots()[slot], self.problem.piece_in_slot(slot)) {
             (Slot::Sized(sized), _) => {

@@ -21,7 +21,7 @@ pub trait FinishRows: OutwardIn {
     /// Computes the numbers that are the same in all rows.
     fn compile(&self) -> Self::Compiled;
 
-    /// Working space for one worker.
+    /// Allocates the working space of one worker.
     fn scratch(&self) -> Self::Scratch;
 
     /// Completes and evaluates all designs of some rows and reports them to `keep`.

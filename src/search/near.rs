@@ -40,7 +40,7 @@ pub struct Shortfall {
 }
 
 impl Shortfall {
-    /// Takes the designs of a front, in any order.
+    /// Prepares the designs of a front, which may be in any order.
     pub fn of(front: impl IntoIterator<Item = Objectives>) -> Self {
         let mut front: Vec<Objectives> = front.into_iter().collect();
         front.sort_by(|a, b| a.mass_kg.total_cmp(&b.mass_kg));
@@ -56,7 +56,7 @@ impl Shortfall {
         self.front[first..].iter().map(worst).reduce(f64::min).filter(|shortfall| *shortfall <= most)
     }
 
-    /// Whether the shortfall of a design is at most `most`.
+    /// Whether some design of the front is better by at most the fraction `most` in every objective.
     pub fn is_within(&self, most: f64, design: &Objectives) -> bool {
         let worse = 1.0 + most;
         let first = self.front.partition_point(|f| design.mass_kg > f.mass_kg * worse);
@@ -78,16 +78,16 @@ pub fn worse_by(design: &Objectives, other: &Objectives) -> [f64; 3] {
     ]
 }
 
-/// A design near the front.
+/// A design that is not on the front, but within the slack of a design on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NearDesign {
-    /// The design and its objectives by the fast model.
+    /// Number of the design, and its objectives by the fast model.
     pub candidate: Candidate,
-    /// Shortfall of the design, as a fraction.
+    /// Shortfall of the design, as a fraction (0.02 for 2 %).
     pub shortfall: f64,
 }
 
-/// Designs near a front.
+/// The result of a search for near designs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NearDesigns {
     /// The near designs, smallest shortfall first. Of designs with an equal shortfall, the one with the smaller

@@ -42,7 +42,7 @@ impl Done {
         self.0.insert(start, end);
     }
 
-    /// Whether a task is in the set.
+    /// Whether the task with this number is in the set.
     pub(super) fn has(&self, task: u64) -> bool {
         self.0.range(..=task).next_back().is_some_and(|(_, &end)| end > task)
     }

@@ -38,7 +38,7 @@ pub(crate) struct Row {
     /// For each inner slot: the position of its level among the levels inboard of the row level, if the search
     /// chooses its drive; otherwise `None`.
     pub chosen: Vec<Option<usize>>,
-    /// The link options, eight in a chunk; empty if the level is the drive of a joint.
+    /// The options of the row's link, eight in a chunk; empty if the row level is the drive of a joint.
     pub chunks: Vec<Chunk>,
     /// What depends on the case but not on the option of the row level, one entry per case.
     pub cases: Vec<RowCase>,
@@ -46,13 +46,13 @@ pub(crate) struct Row {
     pub drives: Vec<DriveAttributes>,
     /// Inner slots with elastic coordinates, without the link of the row level.
     pub yielding: Vec<usize>,
-    /// The hinges of these slots.
+    /// The hinges of all inner slots, without the link of the row level.
     pub hinges: Vec<Hinge>,
     /// Mass of the given drives, tubes and offsets among the inner slots \[kg\].
     pub fixed_kg: f64,
     /// How the drives of each inner slot are computed: which form their torsion curves have.
     pub twisting: Vec<Twisting>,
-    /// The checked bearings of the joints inboard of the row level.
+    /// The checked output bearings of the joints inboard of the row level.
     pub bearings: Vec<RowBearing>,
     /// The room for gear and motor at the joints inboard of the row level.
     pub rooms: Vec<RowRoom>,
@@ -61,7 +61,7 @@ pub(crate) struct Row {
 /// A hinge: one elastic coordinate of an inner slot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Hinge {
-    /// Number of the hinge.
+    /// Number of the hinge, its index in lists with an entry per hinge.
     pub number: usize,
     /// Inner slot that has this coordinate.
     pub slot: usize,
@@ -75,11 +75,11 @@ pub(crate) struct Hinge {
 pub(crate) enum Twisting {
     /// No load turns the joint. The angle stays zero, and modes use the first slope of the curve.
     AtRest,
-    /// Every drive has a single slope.
+    /// The curve of every drive has a single slope.
     Line,
-    /// The drives have three segments.
+    /// The curves of the drives have three segments.
     Segments,
-    /// The joint has play or friction. Each drive is computed by itself.
+    /// The joint has play or friction. Each of the eight drives is computed alone.
     Play,
 }
 
@@ -195,7 +195,7 @@ pub(crate) struct RowChunk<'a, 'c> {
     pub row: &'a Row,
     /// The arm outboard of the row.
     pub from: &'a Partial,
-    /// Option of each level inboard of the row level.
+    /// Option of each level inboard of the row level, in order towards the base.
     pub inner: &'a [u32],
     /// Number of the chunk.
     pub chunk: usize,
@@ -337,10 +337,12 @@ impl RowCase {
                 }
                 StationSlot::Link { .. } => continue,
             };
-            // the mass of a drive is inboard of its own joint, so a piece loads only the hinges inboard of it
+            // the mass of a drive is inboard of its own joint, so a piece loads only hinges that are inboard of the
+            // piece
             for hinge in hinges.iter().filter(|hinge| hinge.slot > k) {
                 let own = AtJoint::new(&hinge.twist(slots), inertia, weight);
-                // known masses are added up once; the mass of a sized drive is known only in each lane
+                // masses that are known are added once for all rows; the mass of a sized drive differs from design to
+                // design
                 match fixed_times {
                     Some(times) => fixed[hinge.number].add(own, times),
                     None => per_kg[k][hinge.number] = own,
@@ -351,7 +353,8 @@ impl RowCase {
             StationSlot::Link { options, .. } => options,
             _ => &[],
         };
-        // the options of a link differ in weight but not in its line of action, so any of them gives the unit wrench
+        // the weights of the options differ in size but not in line of action, so any option gives the wrench per
+        // newton
         let down = &station.down;
         let link_weight = links
             .iter()
@@ -367,7 +370,7 @@ impl RowCase {
             Modal::Spatial(block) => [last_yielding(block, first, links_yield), 0],
         };
         let spread_entries = if links_yield { spread_entries(&station.modal) } else { Vec::new() };
-        // the entries are in the order of their blocks
+        // the entries of block 0 come first
         let of_first = spread_entries.partition_point(|(block, ..)| *block == 0);
         let (turned, link_torque) = turning(station, slots, hinges, numbers, &link_weight);
         Self {
@@ -389,7 +392,8 @@ impl RowCase {
 }
 
 impl AtJoint {
-    /// Torque and inertia about the axis of a joint.
+    /// Torque and inertia about an axis. `twist` is the motion per radian about it, `inertia` and `wrench` belong to
+    /// what moves.
     pub(super) fn new(twist: &Twist, inertia: &Matrix6<f64>, wrench: &Wrench) -> Self {
         Self { torque_nm: twist.dot(wrench), inertia_kgm2: twist.dot(&(inertia * twist)) }
     }

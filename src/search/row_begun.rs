@@ -41,7 +41,8 @@ pub(crate) struct CaseBegun {
     /// Torque and inertia about each hinge, caused by everything outboard of the row and by the inner pieces of known
     /// mass.
     pub at: AtJoints,
-    /// The entries of the outboard inertia that the ends of the links move ([`RowCase::spread_entries`](super::row::RowCase::spread_entries)).
+    /// The entries of the outboard inertia matrix that count in Dunkerley's sum. Entries off the diagonal are
+    /// doubled, in the order of [`RowCase::spread_entries`](super::row::RowCase::spread_entries).
     pub spread: Vec<f64>,
     /// Axial force \[N\], torsion and both bending moments \[N m\] at the end of the row's link, caused by everything
     /// outboard.
@@ -58,7 +59,7 @@ pub(crate) enum CaseOutboard {
 }
 
 impl RowScratch {
-    /// Working space for the rows of a problem.
+    /// Allocates the working space for the rows of a problem.
     pub(crate) fn new(problem: &ArmProblem) -> Self {
         Self { rows: Vec::new(), arms: EightArms::new(problem), spare: problem.empty() }
     }
@@ -79,7 +80,7 @@ impl RowScratch {
 }
 
 impl Begun {
-    /// Working space for one row of a problem.
+    /// Allocates the numbers of one row of a problem.
     fn new(problem: &ArmProblem) -> Self {
         let inner = &problem.slots()[problem.row_slot().unwrap_or(0)..];
         let numbers = hinge_numbers(inner);
@@ -124,11 +125,12 @@ impl Begun {
             }
             begun.spread.clear();
             begun.spread.extend(case.spread_entries.iter().map(|&(_, i, j)| {
-                // the inertia is symmetric: an entry of the lower triangle stands for its mirror image too
+                // the matrix is symmetric, and only its lower triangle is listed: an entry off the diagonal counts
+                // twice
                 let both = if i == j { 1.0 } else { 2.0 };
                 both * state.inertia[(i, j)]
             }));
-            // a case that only sizes drives has no modes to find
+            // a case that is not judged needs no modes
             if !case.judged {
                 continue;
             }

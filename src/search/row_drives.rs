@@ -20,7 +20,7 @@ pub(crate) struct DriveAttributes {
 }
 
 impl DriveAttributes {
-    /// Adds a drive. A rigid or linear joint becomes a curve whose segments are equal.
+    /// Adds a drive. A rigid or linear joint gets a curve of three equal segments.
     fn push(&mut self, mass_kg: f64, law: &JointLaw) {
         let (stiffness, ends_nm) = match law.curve.as_windup().map(|windup| windup.segments()) {
             None => ([f64::INFINITY; 3], [f64::INFINITY; 2]),

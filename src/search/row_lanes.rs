@@ -29,7 +29,7 @@ pub(crate) struct RowsWork<'a, 'c, K> {
     pub row: &'a Row,
     /// The rows of one batch.
     pub rows: &'a [DesignRow<Partial>],
-    /// Number of designs in each row.
+    /// Number of designs in each row: the options of the row level.
     pub options: u32,
     pub scratch: &'a mut RowScratch,
     /// Takes the designs that are of interest, and counts the others.
@@ -157,7 +157,7 @@ impl RowChunk<'_, '_> {
         let slots = &self.problem.slots()[self.row.first..];
         let mut largest_s2 = V::zero();
         let mut indices = [0; LANES];
-        // the row level is a link or a drive, and no other inner slot is a link
+        // the row level is either a link or a drive, and the other inner slots are no links with options
         match self.row.chunks.get(self.chunk) {
             Some(chunk) => self.start_with_link::<V>(chunk, begun, arms),
             None => self.start::<V>(begun, arms),
@@ -232,7 +232,7 @@ impl RowChunk<'_, '_> {
                 let mut tip = V::splat(state.tip_m[i]);
                 if case.bends[i] {
                     tip = tip + V::load(&own.own_weight_deflection_m[i]);
-                    // in a planar pose half of the wrench is zero
+                    // in a planar pose half of the components of the wrench are zero
                     for j in (0..6).filter(|&j| state.wrench[j] != 0.0) {
                         tip = tip + V::load(&own.flexibility[i][j]) * V::splat(state.wrench[j]);
                     }
@@ -259,7 +259,7 @@ impl RowChunk<'_, '_> {
             }
             let at_end: V = stress_squared(&chunk.stress, splat_all(begun.cases[k].at_end));
             let largest = at_end.max(stress_squared(&chunk.stress, at_root));
-            // in a sizing case the arm accelerates; in the other cases it stands still
+            // in a sizing case the arm accelerates; in the other cases it is at rest
             match case.sizing {
                 true => moving = moving.max(largest),
                 false => standing = standing.max(largest),
@@ -442,7 +442,7 @@ impl RowChunk<'_, '_> {
                         (StationSlot::Joint(joint), _) if joint.block == b => {
                             sum = sum + V::load(&lanes.compliance[hinge.slot]) * inertia;
                         }
-                        // an end coordinate has unit stiffness
+                        // an end coordinate has unit stiffness, so its compliance is 1
                         (StationSlot::Link { options, .. }, Some(end)) if options[0].block[end] == b => {
                             sum = sum + inertia;
                         }
@@ -474,7 +474,7 @@ impl RowChunk<'_, '_> {
         &self.problem.stations()[case]
     }
 
-    /// The joint in inner slot `k`, if there is one.
+    /// The joint in inner slot `k` in a case; `None` if the slot is not a joint.
     #[inline(always)]
     fn joint(&self, case: usize, k: usize) -> Option<&StationJoint> {
         match &self.station(case).slots[self.row.first + k] {

@@ -65,14 +65,14 @@ impl ArmProblem<'_> {
         others.min_by(|a, b| a.mass_kg.total_cmp(&b.mass_kg))
     }
 
-    /// Pieces at which two arms have different parts, base to tip.
+    /// Numbers of the pieces (base to tip) at which two arms have different parts.
     fn pieces_where(&self, a: &Partial, b: &Partial) -> Vec<usize> {
         let pieces = self.options(a).zip(self.options(b)).enumerate();
         pieces.filter(|(_, (a, b))| a != b).map(|(piece, _)| piece).collect()
     }
 }
 
-/// Whether an arm is no worse than another in deflection and lowest mode.
+/// Whether the objectives `arm` are no worse than `than` in deflection and lowest mode.
 fn no_worse(arm: &Objectives, than: &Objectives) -> bool {
     arm.tip_deflection_m <= than.tip_deflection_m && arm.lowest_mode_hz >= than.lowest_mode_hz
 }

@@ -82,12 +82,12 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
         Some(Self { problem, designs, used, tilting })
     }
 
-    /// Number of designs.
+    /// Number of designs whose parts are varied.
     pub fn len(&self) -> usize {
         self.designs.len()
     }
 
-    /// Whether there is no design.
+    /// Whether there is no design whose parts are varied.
     pub fn is_empty(&self) -> bool {
         self.designs.is_empty()
     }

@@ -32,16 +32,16 @@ pub enum Status {
     Certified,
     /// Every design was visited.
     Complete,
-    /// The search stopped early; the result states how much it may lack.
+    /// The search stopped before the proof was complete. The result states how much may be missing.
     Partial,
-    /// Every design was visited and none meets the constraints.
+    /// Every design was visited, and none meets the limits.
     Infeasible,
     /// The sweep was stopped before every design was visited.
     Interrupted,
 }
 
 impl Status {
-    /// The word for the status in files.
+    /// The word for this status in files.
     pub fn word(self) -> &'static str {
         match self {
             Status::Certified => "certified",
@@ -56,7 +56,7 @@ impl Status {
 /// A design that no other design found so far clearly dominates.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Candidate {
-    /// Number of the design in its space.
+    /// Number of the design in its design space.
     pub number: u128,
     /// Objectives of the design by the fast model.
     pub objectives: Objectives,
@@ -222,9 +222,9 @@ impl Pool {
     fn candidates(&self) -> Vec<Candidate> {
         let mut all = lock(&self.candidates).0.clone();
         clear_dominated(&mut all);
-        // tasks end in any order; the result must not depend on it
+        // tasks end in any order; sorting makes the result independent of it
         all.sort_unstable_by_key(|c| c.number);
-        // a task that an earlier process left unfinished finds the same designs again
+        // a design is here twice if an earlier process found it in a task that it did not complete
         all.dedup_by_key(|c| c.number);
         all
     }
@@ -297,12 +297,12 @@ impl<'p, P: FinishRows> Sweep<'p, P> {
         before(number - 1)..before(number)
     }
 
-    /// Number of designs visited or excluded so far.
+    /// Number of designs visited or excluded so far, by this process and by those that it continues.
     pub fn visited(&self) -> u64 {
         self.visited.load(Ordering::Relaxed)
     }
 
-    /// Number of designs in the space.
+    /// Number of designs in the whole space, even if only a shard is visited.
     pub fn total(&self) -> u128 {
         self.problem.level_sizes().iter().map(|&s| u128::from(s)).product()
     }
@@ -422,7 +422,7 @@ impl Keep for Worker<'_> {
             return;
         }
         let candidate = Candidate { number, objectives };
-        // a design that one of its own group dominates is dominated in the whole front too
+        // a design that another of its own group dominates is dominated in the front of all designs too
         let dominated =
             group.is_some_and(|group| !self.groups[group].offer(candidate, &mut self.group_buffers[group]));
         if !dominated {

@@ -130,7 +130,7 @@ fn product(sizes: &[u32]) -> u128 {
     sizes.iter().map(|&size| u128::from(size)).product()
 }
 
-/// The state of one task.
+/// A worker's progress through the rows of one task.
 struct Walker<'v, 'p, P: FinishRows, K> {
     visit: &'v Visit<'p, P>,
     keeper: K,

@@ -146,7 +146,7 @@ pub(crate) struct PosedBearing {
 }
 
 impl PosedBearing {
-    /// The bearing of a joint.
+    /// The output bearing of a joint in a pose.
     pub(crate) fn new(joint: &StationJoint) -> Self {
         let axis = angular(&joint.twist);
         let [u, v] = across(&axis);

@@ -2,14 +2,14 @@
 
 use crate::pareto::objectives::Objectives;
 
-/// Limits on a design; `None` is no limit.
+/// Limits that every design must meet. `None` stands for no limit.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Constraints {
-    /// Largest tip deflection \[m\].
+    /// Largest allowed tip deflection \[m\].
     pub tip_deflection_max_m: Option<f64>,
-    /// Largest mass \[kg\].
+    /// Largest allowed mass \[kg\].
     pub mass_max_kg: Option<f64>,
-    /// Smallest lowest mode \[Hz\].
+    /// Smallest allowed lowest mode \[Hz\].
     pub lowest_mode_min_hz: Option<f64>,
     /// Servo loop with whose bandwidth the lowest mode is compared.
     pub servo: Option<Servo>,
@@ -27,7 +27,7 @@ pub struct Constraints {
 pub struct Servo {
     /// Bandwidth of the servo loop \[Hz\].
     pub bandwidth_hz: f64,
-    /// Smallest ratio of the lowest mode to the bandwidth.
+    /// Smallest allowed ratio of the lowest mode to the bandwidth.
     pub ratio: f64,
 }
 

@@ -1,4 +1,4 @@
-//! One complete design: its number, its parts, its arm, and its objectives by the full model.
+//! One complete design: its number and name, its parts, its arm, and its objectives by the full model.
 
 use super::bearing_loads::resolved;
 use super::design_space::{DriveChoice, LinkOption, SpaceJoint, SpacePiece};
@@ -10,21 +10,21 @@ use crate::arm::{Arm, Element, Joint};
 use crate::pareto::objectives::Objectives;
 use crate::sizing::drive::Drive;
 
-/// The part chosen for one piece of the arm.
+/// The part that a design has at one piece of the arm.
 #[derive(Debug, Clone)]
 pub enum Part<'a> {
     /// A drive from the catalogs.
     Drive(Drive<'a>),
     /// A material and a cross-section.
     Link(&'a LinkOption),
-    /// The study gives this piece; nothing was chosen.
+    /// The study gives this piece, so no part is chosen for it.
     Given,
 }
 
 /// A design that was evaluated by the full model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evaluated {
-    /// Number of the design in its space.
+    /// Number of the design in its design space.
     pub number: u128,
     /// Objectives of the design by the full model.
     pub objectives: Objectives,
@@ -70,7 +70,8 @@ pub fn number_of(id: &str) -> Option<u128> {
     number_of_earlier(id.strip_prefix(ID_PREFIX).unwrap_or(id))
 }
 
-/// Number of the design with this name in a result of an earlier version: a number in base 36.
+/// Number of the design with this name in a result of an earlier version, where a name is only a number in base 36.
+/// `None` if it is not such a number.
 pub fn number_of_earlier(id: &str) -> Option<u128> {
     if id.is_empty() {
         return None;
@@ -84,7 +85,7 @@ impl<'c> ArmProblem<'c> {
         Some(self.parts_of(&self.walk(options, |_, _| {}).ok()?))
     }
 
-    /// The parts of a complete arm, base to tip.
+    /// The parts of a complete arm, one for each piece, base to tip.
     pub(crate) fn parts_of(&self, complete: &Partial) -> Vec<Part<'c>> {
         self.space()
             .pieces

@@ -119,7 +119,7 @@ pub struct DesignSpace {
     pub gravity_m_s2: f64,
     /// Direction of gravity in the world, a unit vector: -z for an arm that stands upright.
     pub down: Vector3<f64>,
-    /// Joints and links from base to tip.
+    /// Joints and links of the arm, from base to tip.
     pub pieces: Vec<SpacePiece>,
     /// Every case of the study: those in which the arm is judged and those in which it is sized.
     pub cases: Vec<Case>,
@@ -213,7 +213,7 @@ pub struct SpaceJoint {
     pub extras: ExtrasSource,
     /// Rigid bodies at the joint, in addition to drive, bearing and extras.
     pub bodies: JointBodies,
-    /// How the drive of the joint is found.
+    /// How the drive of the joint is found: given, by first fit, or chosen by the search.
     pub drive: DriveChoice,
     /// Largest speed that the study asks of the joint \[rad/s\]; `None` if the speed follows from the speed of the
     /// tip.
@@ -335,7 +335,7 @@ impl SpaceJoint {
 }
 
 impl DriveChoice {
-    /// Whether the search chooses the drive.
+    /// Whether the search chooses the drive. With first fit it does not.
     pub fn is_open(&self) -> bool {
         matches!(self, DriveChoice::AllFits(_))
     }
@@ -374,7 +374,7 @@ impl LinkOption {
         Some(self.compressive_strength_pa.map_or(tensile_pa, |pa| pa.min(tensile_pa)))
     }
 
-    /// Mass per length \[kg/m\].
+    /// Mass of the link per length \[kg/m\].
     pub fn mass_kg_per_m(&self) -> f64 {
         self.material.density_kg_m3 * self.section.properties(self.material.poisson).area_m2
     }
@@ -442,7 +442,7 @@ impl DesignSpace {
         }
     }
 
-    /// Whether a spring pulls on a tube.
+    /// Whether a balancing spring pulls on a tube.
     pub(crate) fn pulls_on_tubes(&self) -> bool {
         let on_tube = |side| matches!(side, Side::Moving(piece) if self.is_tube(piece));
         self.springs.iter().flat_map(Spring::sides).any(on_tube)
@@ -483,7 +483,7 @@ impl DesignSpace {
         entries.map(|(joint, entry)| (joint.clone(), joint.motion.si(*entry))).collect()
     }
 
-    /// Travel of every prismatic joint in a case, base to tip \[m\].
+    /// Travel of every prismatic joint in the pose of a case, base to tip \[m\].
     pub(crate) fn travels_m(&self, case: &Case) -> Vec<f64> {
         let entries = self.entries_si(case).into_iter();
         entries.filter(|(joint, _)| joint.motion == Motion::Slides).map(|(_, travel_m)| travel_m).collect()

@@ -23,7 +23,7 @@ use nalgebra::{Rotation3, Vector3};
 /// What the search adds to an arm in one step.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Layer<'s> {
-    /// A piece of the chain.
+    /// A joint, link or prismatic joint of the chain.
     Piece(&'s SpacePiece),
     /// A spring that lets a joint tilt about an axis at right angles to the joint's axis.
     Tilt(Tilt<'s>),
@@ -56,7 +56,7 @@ pub(crate) struct Carried<'s> {
 /// What the bodies of a piece are attached to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Carrier {
-    /// The frame in which the piece begins.
+    /// The frame in which the piece begins, inboard of any rotation of the piece itself.
     Frame,
     /// The frame after the rotation or travel of the joint.
     RotatedFrame,
@@ -76,7 +76,7 @@ fn carried(bodies: &[RigidBody], by: Carrier) -> Option<Layer<'_>> {
     (!bodies.is_empty()).then_some(Layer::Bodies(Carried { bodies, by }))
 }
 
-/// The axis about which a spring turns.
+/// The axis about which a rotational spring turns.
 #[derive(Debug, Clone, Copy)]
 enum About<'s> {
     /// One of the two axes at right angles to the axis of a joint; the number (0 or 1) says which.

@@ -34,7 +34,7 @@ impl DesignSpace {
         sizes
     }
 
-    /// Number of designs; `None` if it does not fit into 128 bits.
+    /// Number of designs in the space; `None` if it does not fit into 128 bits.
     pub fn designs(&self, catalogs: &Catalogs) -> Option<u128> {
         self.level_sizes(catalogs).into_iter().try_fold(1u128, |n, size| n.checked_mul(u128::from(size)))
     }

@@ -16,7 +16,7 @@ const ROLLS: f64 = 0.99;
 
 /// The room that the link of one joint leaves for gear and motor.
 pub(crate) struct RoomAtJoint {
-    /// Slot of the link.
+    /// Slot of the link that leaves the room.
     pub link_slot: usize,
     /// The room for each option of the link; a single entry if the study gives the link.
     pub rooms: Vec<LinkRoom>,

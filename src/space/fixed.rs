@@ -16,14 +16,15 @@ use crate::sizing::drive::Drive;
 pub struct FixedDrive<'c> {
     /// Gear and motor of the drive.
     pub drive: Drive<'c>,
-    /// Mass of the drive as the study gives it \[kg\].
+    /// Mass of the drive that the study states \[kg\]. The catalog may have another.
     pub mass_kg: f64,
     /// The motion that the study asks of the joint.
     pub motion: JointMotion,
 }
 
 impl ArmProblem<'_> {
-    /// The given drive of a piece (base to tip), if its gear and motor are in the catalogs.
+    /// The given drive of piece number `piece` (base to tip); `None` unless the study names a gear and a motor that
+    /// are both in the catalogs.
     pub fn fixed_drive<'c>(&self, piece: usize, catalogs: &'c Catalogs) -> Option<FixedDrive<'c>> {
         let space = self.space();
         let SpacePiece::Joint(joint) = &space.pieces[piece] else { return None };

@@ -1,4 +1,4 @@
-//! The objectives of one arm by the full model.
+//! The objectives of an arm by the full model.
 
 use crate::arm::Arm;
 use crate::arm::load::LoadCase;

@@ -36,7 +36,7 @@ pub trait Keep {
     }
 }
 
-/// A row of designs.
+/// A row: designs that differ in one level alone.
 #[derive(Debug, Clone)]
 pub struct DesignRow<P> {
     /// The arm outboard of the row level.

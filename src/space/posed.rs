@@ -262,7 +262,7 @@ impl Builder<'_> {
         })
     }
 
-    /// A point mass.
+    /// The slot of a point mass \[kg\] at a point.
     fn body(&self, mass_kg: f64, centre_m: &Vector3<f64>) -> StationSlot {
         StationSlot::Body {
             inertia: body_inertia(mass_kg, centre_m, &Matrix3::zeros()),
@@ -450,7 +450,7 @@ fn block<const N: usize>(slots: &[StationSlot], payload: &Matrix6<f64>, motions:
 }
 
 impl<const N: usize> Block<N> {
-    /// Adds options to the link in a slot.
+    /// Adds options of the link in a slot, restricted to the given motions.
     fn add(&mut self, slot: usize, placed: &[PlacedLink], motions: [usize; N]) {
         if let BlockSlot::Links(options) = &mut self.slots[slot] {
             options.par_extend(placed.par_iter().map(|placed| block_link(placed, motions)));

@@ -168,7 +168,7 @@ impl<'c> ArmProblem<'c> {
         known.then_some(partial.cost_eur)
     }
 
-    /// Largest wall slenderness of the chosen links of a complete arm.
+    /// Largest wall slenderness over the chosen links of a complete arm; 0 if it has none.
     pub fn wall_slenderness(&self, complete: &Partial) -> f64 {
         let chosen = self.space.pieces.iter().zip(self.options(complete));
         chosen

@@ -183,7 +183,7 @@ pub(crate) fn joint_slot<'c>(
     Slot::Sized(SizedJoint { table, laws, tilts_rad_per_nm, all_fits })
 }
 
-/// The slot of a link that the study gives.
+/// The slot of a link that the study gives: a tube with one option, or a rigid offset.
 pub(crate) fn link_slot<'c>(space: &DesignSpace, link: &Link) -> Slot<'c> {
     match &link.body {
         LinkBody::Offset { mass_kg } => Slot::Offset { mass_kg: *mass_kg },
@@ -196,7 +196,7 @@ pub(crate) fn link_slot<'c>(space: &DesignSpace, link: &Link) -> Slot<'c> {
     }
 }
 
-/// The slot of a link whose material and section are chosen.
+/// The slot of a link whose material and section the search chooses.
 pub(crate) fn choice_slot<'c>(space: &DesignSpace, choice: &LinkChoice) -> Slot<'c> {
     let length_m = choice.vector_m.norm();
     Slot::Link {

@@ -35,9 +35,10 @@ pub(crate) struct Station {
 pub(crate) enum StationSlot {
     /// A joint or a spring.
     Joint(StationJoint),
-    /// A rigid body: a point mass, or a rigid offset with the harness along it.
+    /// A rigid body with its inertia matrix and its weight (both about the world's origin): a point mass, a body of a
+    /// piece, a spring force, or a rigid offset with the harness along it.
     Body { inertia: Matrix6<f64>, weight: Wrench },
-    /// A tube, with one entry for each option.
+    /// A tube: the data of each option, the position of the tube, and the loads of bodies and springs on it.
     Link { options: Vec<StationLink>, place: Place, carried: OnTube },
 }
 
