@@ -1,4 +1,4 @@
-//! The kind and all faults of files and folders.
+//! Finds out of which kind files and folders are, and finds all their faults.
 
 use super::exit::{Answer, Exit};
 use super::failure::Failure;

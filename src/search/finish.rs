@@ -49,8 +49,8 @@ pub(crate) fn finish_one_by_one<P: OutwardIn>(
     }
 }
 
-/// The row level of an arm, compiled. It holds `None` if eight designs at once are not possible; then the designs are
-/// evaluated one by one.
+/// The row level of an arm, with every number that is the same in all rows. It holds `None` if eight designs at once
+/// are not possible; then the designs are evaluated one by one.
 pub struct CompiledArm(Option<Row>);
 
 impl FinishRows for ArmProblem<'_> {

@@ -5,8 +5,9 @@
 //! - [`near`] finds the near designs: those that a design of the front beats by at most a stated percentage.
 //! - [`resume`] saves the state of a sweep, so that another process can continue it.
 //! - [`scatter`] computes designs whose parts differ a little from the catalog.
-//! - `ballast` finds designs that are on a front only because extra weight loads a gear into a stiffer part of its curve.
-//! - `same_drives` finds the lightest arm on the drives that first fit gave a design.
+//! - `ballast` finds designs that are on a front only because extra weight loads a gear into a stiffer part of its
+//!   torsion curve.
+//! - `same_drives` finds a lighter arm with the drives that first fit gave a design.
 
 pub(crate) mod arms;
 pub(crate) mod ballast;

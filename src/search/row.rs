@@ -9,8 +9,9 @@
 //!   each row.
 //! - [`row_lanes`](super::row_lanes) computes the designs from both.
 //!
-//! A chunk takes some tens of kilobytes. Rows are finished in batches, so that a chunk stays in the nearest cache while
-//! it is used for all rows of a batch.
+//! Each of the eight designs has a *lane*: its place in every list of eight numbers. A chunk takes some tens of
+//! kilobytes. The designs of several rows are evaluated in a batch, so that a chunk stays in the nearest cache while
+//! it is used for all these rows.
 //!
 //! An *inner* slot is one from the row level to the base. Inner slots are numbered from 0. A *hinge* is one elastic
 //! coordinate of an inner slot: a joint or bearing spring has one hinge, and a given tube has six, one for each end
@@ -40,7 +41,7 @@ pub(crate) struct Row {
     pub chosen: Vec<Option<usize>>,
     /// The options of the row's link, eight in a chunk; empty if the row level is the drive of a joint.
     pub chunks: Vec<Chunk>,
-    /// What depends on the case but not on the option of the row level, one entry per case.
+    /// For each case, the numbers that do not depend on the option of the row level.
     pub cases: Vec<RowCase>,
     /// The drives that each inner slot can have; without entries for links and offsets.
     pub drives: Vec<DriveAttributes>,

@@ -10,7 +10,7 @@ use crate::space::slot::Slot;
 pub(crate) struct DriveAttributes {
     /// Mass of each drive \[kg\].
     pub mass_kg: Vec<f64>,
-    /// Compliance \[rad/(N m)\] in each of the three segments: a list of the drives for each segment.
+    /// Compliance \[rad/(N m)\] of each drive, in one list for each of the three segments.
     pub compliance: [Vec<f64>; 3],
     /// Whether a mode uses the compliance of the first segment at every torque (`Curve::WindupK1`), and not the
     /// tangent compliance.

@@ -5,11 +5,14 @@
 //! below its bar is dominated. The tests, from the cheapest to the most expensive:
 //!
 //! 1. The compliance of a single joint gives an upper bound of the lowest mode. Most often this bound is below the
-//! bar, and a single bar decides for all eight designs.
+//!    bar, and a single bar decides for all eight designs.
 //! 2. Otherwise one factorization of a block at the frequency of the bar shows whether an eigenvalue is below it.
 //! 3. For designs above the bar, the block with the largest Dunkerley sum is solved first. Another block matters only
-//! if its lower bound is below the eigenvalue just found. It is then factorized once at this eigenvalue, and solved
-//! only if a pivot is negative there.
+//!    if its lower bound is below the eigenvalue just found. It is then factorized once at this eigenvalue, and solved
+//!    only if a pivot is negative there.
+//!
+//! Dunkerley's sum of a block is the sum of `1/λ` over all its eigenvalues λ. It is found without solving for them, and
+//! its reciprocal is a lower bound of the lowest eigenvalue.
 
 use super::arms::EightArms;
 use super::row::{ChunkModal, RowCase, RowChunk};

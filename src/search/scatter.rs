@@ -63,7 +63,7 @@ struct BuiltJoint {
 /// The parts of [`ChosenParts`] with one set of sampled values.
 pub struct BuiltParts<'p, 'c> {
     chosen: &'p ChosenParts<'p, 'c>,
-    /// The cases, compiled with the sampled moduli; `None` if no modulus differs from the catalog.
+    /// The stations of the cases with the sampled moduli; `None` if no modulus is sampled.
     stations: Option<Vec<Station>>,
     /// For each slot, the joints by option; empty for links.
     joints: Vec<BTreeMap<u32, BuiltJoint>>,

@@ -58,7 +58,7 @@ impl Status {
 pub struct Candidate {
     /// Number of the design in its design space.
     pub number: u128,
-    /// Objectives of the design by the fast model.
+    /// Objectives of the design by the fast model of the search, which condenses links.
     pub objectives: Objectives,
 }
 
@@ -234,7 +234,8 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// `all * shards / of`, computed without an overflow.
+/// How many of `all` blocks the first `shards` of `of` shards have together: `all * shards / of`, rounded down. The
+/// result is exact even where the product would overflow.
 fn share(all: u128, shards: u32, of: u32) -> u128 {
     let (shards, of) = (u128::from(shards), u128::from(of));
     all / of * shards + all % of * shards / of

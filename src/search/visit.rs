@@ -33,7 +33,7 @@ pub(crate) struct Visit<'p, P: FinishRows> {
     pub compiled: P::Compiled,
     /// Number of designs visited or excluded so far.
     pub visited: &'p AtomicU64,
-    /// Another thread sets it to stop the visit.
+    /// Set by another thread to stop the visit.
     pub stop: &'p AtomicBool,
 }
 

@@ -170,7 +170,7 @@ impl<'c> ArmProblem<'c> {
     }
 }
 
-/// The chain with the lever of every output bearing as a number.
+/// The chain after the lever of every output bearing was computed from the link next to it.
 fn with_levers(mut chain: Vec<Element>) -> Vec<Element> {
     for index in 0..chain.len() {
         let (inboard, outboard) = chain.split_at_mut(index + 1);

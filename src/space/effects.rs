@@ -1,4 +1,4 @@
-//! The effects of a study, as slots that the search adds to the arm.
+//! The arm of a study and its effects, as *layers*: what the search adds to the arm, step by step from the tip inward.
 //!
 //! An effect changes the joint law of a joint (its angle as a function of torque) or the tube of a link, or it adds
 //! an element to the chain: a spring that tilts, or a mass. The code that applies an effect to an arm file applies it
@@ -20,7 +20,7 @@ use crate::mechanics::beam::section_frame;
 use crate::mechanics::chain::across;
 use nalgebra::{Rotation3, Vector3};
 
-/// What the search adds to an arm in one step.
+/// A layer: what the search adds to an arm in one step. Each layer becomes one slot.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Layer<'s> {
     /// A joint, link or prismatic joint of the chain.

@@ -103,7 +103,7 @@ pub(crate) struct StationJoint {
     pub angle_rad: f64,
     /// Torque that acts on the joint in addition to weight and load \[N m\].
     pub own_nm: f64,
-    /// Inertia matrix of a mass of one kilogram at the joint.
+    /// Inertia matrix of a mass of one kilogram at the joint, about the world's origin.
     pub inertia_per_kg: Matrix6<f64>,
     /// Weight of a mass of one kilogram at the joint, as a wrench.
     pub weight_per_kg: Wrench,
@@ -200,7 +200,7 @@ pub(crate) enum Modal {
     Spatial(Box<Block<6>>),
 }
 
-/// The slots, restricted to `N` of the six motions.
+/// The slots, restricted to `N` of the six motions: those that do not couple with the others.
 pub(crate) struct Block<const N: usize> {
     /// Inertia matrix of the payload.
     pub payload: SMatrix<f64, N, N>,
