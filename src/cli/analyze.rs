@@ -91,7 +91,7 @@ fn pose_entries(text: &str) -> Result<PoseEntries, String> {
     entries(text).map(PoseEntries)
 }
 
-/// Three moments of inertia, none negative.
+/// Reads three moments of inertia \[kg m²\], none of which is negative.
 fn moments(text: &str) -> Result<[f64; 3], String> {
     let moments = numbers::<3>(text)?;
     match moments.iter().all(|&i| i >= 0.0) {
@@ -100,7 +100,7 @@ fn moments(text: &str) -> Result<[f64; 3], String> {
     }
 }
 
-/// Frequencies of a response \[Hz\].
+/// Frequencies at which the response is computed \[Hz\].
 #[derive(Debug, Clone)]
 struct Frequencies(Vec<f64>);
 
@@ -124,14 +124,14 @@ fn non_negative(text: &str) -> Result<f64, String> {
 }
 
 impl AnalyzeArgs {
-    /// The harmonic force whose response is asked for.
+    /// The harmonic force whose response is to be computed; `None` if the user asks for no response.
     fn harmonic(&self) -> Option<Harmonic> {
         let force_n = Vector3::from(self.response_n?);
         Some(Harmonic { force_n, damping: self.damping, frequencies_hz: self.response_hz.0.clone() })
     }
 }
 
-/// Executes the verb.
+/// Runs `armwright analyze` and returns the text to print.
 pub(super) fn run(args: &AnalyzeArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let arm = read_arm(&args.arm, catalogs)?;
     let cases = match &args.cases {
@@ -152,7 +152,7 @@ pub(super) fn run(args: &AnalyzeArgs, catalogs: &Catalogs) -> Result<String, Fai
     })
 }
 
-/// Names the effects that an analysis ignores because they describe a test and not the arm.
+/// One line with the effects that the analysis ignores, because they describe a test and not the arm.
 fn ignored_text(ignored: &[String]) -> String {
     match ignored {
         [] => String::new(),
@@ -162,7 +162,7 @@ fn ignored_text(ignored: &[String]) -> String {
     }
 }
 
-/// What is said of the arm's materials that creep, and of links with stated factors.
+/// Remarks on materials that creep, and on links whose stiffness and mass are multiplied by stated factors.
 fn creep_text(arm: &Arm, catalogs: &Catalogs) -> String {
     let tubes = arm.chain.iter().filter_map(|element| match element {
         Element::Link(Link { name, body: LinkBody::Tube { material_name, .. }, .. }) => {
@@ -199,7 +199,8 @@ fn case_of_flags(args: &AnalyzeArgs, arm: &Arm) -> Result<LoadCase, Failure> {
     })
 }
 
-/// The pose that the options give, every joint at 0 by default.
+/// The pose that the options give, one entry per driven joint, base to tip \[deg or mm\]. Without options every entry
+/// is 0.
 fn pose_of_flags(args: &AnalyzeArgs, driven: &[DrivenJoint]) -> Result<Vec<f64>, Failure> {
     if let Some(PoseEntries(given)) = &args.pose {
         let given = given.iter().map(|(key, entry)| (key.as_str(), *entry));

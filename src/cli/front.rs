@@ -47,7 +47,7 @@ struct CheckArgs {
     time_limit: Option<Duration>,
 }
 
-/// Executes the verb.
+/// Runs `armwright front check` and returns the text to print.
 pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<Answer, Failure> {
     let FrontVerb::Check(args) = &args.verb;
     let results = open_results(&args.results, catalogs)?;
@@ -82,7 +82,7 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<Answer, Failu
     let ties_listed = run["ties_listed"].as_bool().unwrap_or(true);
     let stop = stopped_by_signal();
     let deadline = args.time_limit.map(|limit| Instant::now() + limit);
-    // a file that is not there has none
+    // a result without this file has no ties
     let ties_csv = match results.is_there(ties::FILE) {
         true => results.with_todays_ids(ties::FILE)?,
         false => Vec::new(),

@@ -1,4 +1,5 @@
-//! `armwright merge` and `armwright status`: the shards of a search, whether they cover it, and their front.
+//! `armwright merge` and `armwright status`: join the shards of a search into its front, and list the shards that are
+//! there.
 
 use super::asked::Asked;
 use super::exit::{Answer, Exit};
@@ -52,22 +53,29 @@ pub(crate) struct StatusArgs {
     shards: Vec<PathBuf>,
 }
 
-/// A shard that was found.
+/// A shard that was found in a folder.
 struct Found {
+    /// Folder of the shard.
     dir: PathBuf,
+    /// Contents of `shard.json`.
     manifest: Value,
+    /// Number of the shard, and number of all shards.
     shard: Shard,
+    /// Numbers of the designs of the shard.
     range: Range<u128>,
 }
 
-/// All shards of one search, by their numbers.
+/// All shards of one search that were found.
 struct Shards {
+    /// The shards by their numbers, counted from 1.
     by_number: BTreeMap<u32, Found>,
+    /// Number of shards into which the search is divided.
     of: u32,
+    /// Number of designs in the space.
     designs_total: u128,
 }
 
-/// Executes `merge`.
+/// Runs `armwright merge`: writes the result, and returns the text to print.
 pub(super) fn merge(
     args: &MergeArgs,
     catalogs: &Catalogs,
@@ -106,7 +114,7 @@ pub(super) fn merge(
     Ok(Answer { text, exit: Exit::Done })
 }
 
-/// Executes `status`.
+/// Runs `armwright status` and returns the text to print.
 pub(super) fn status(args: &StatusArgs) -> Result<String, Failure> {
     let shards = Shards::read(&args.shards)?;
     let mut out =
@@ -130,10 +138,10 @@ pub(super) fn status(args: &StatusArgs) -> Result<String, Failure> {
 }
 
 impl Shards {
-    /// Finds the shards in some folders and checks that they belong together.
+    /// Finds the shards in some folders, and checks that they belong to one search.
     ///
     /// # Errors
-    /// There are none, one is damaged, or they are of different searches.
+    /// There are no shards, one is damaged, or they belong to different searches.
     fn read(folders: &[PathBuf]) -> Result<Self, Failure> {
         let mut all = Vec::new();
         for folder in folders {
@@ -157,19 +165,19 @@ impl Shards {
         }
         let designs_total = first.manifest["designs_total"].as_u64().unwrap_or_default().into();
         let of = first.shard.of;
-        // the same shard twice is one; whether both are the same was checked
+        // if two folders have the same shard, one of them is used; they were compared above
         let by_number = all.into_iter().map(|found| (found.shard.number, found)).collect();
         Ok(Self { by_number, of, designs_total })
     }
 
-    /// The commands that make the shards that are missing.
+    /// The commands that compute the missing shards.
     fn missing(&self) -> Vec<String> {
         let Some(like) = self.by_number.values().next() else { return Vec::new() };
         let numbers = (1..=self.of).filter(|number| !self.by_number.contains_key(number));
         numbers.map(|number| like.command_of(number)).collect()
     }
 
-    /// Checks that the ranges cover every design once.
+    /// Fails unless the shards cover every design exactly once.
     fn refuse_gaps(&self) -> Result<(), Failure> {
         let ranges = self.by_number.values().map(|found| found.range.clone()).collect();
         match gaps(ranges, self.designs_total) {
@@ -181,7 +189,7 @@ impl Shards {
         }
     }
 
-    /// The study, what each shard found, and the time of all \[s\].
+    /// The study, the candidates of each shard, and the sum of the times of all shards \[s\].
     fn contents(&self, catalogs: &Catalogs) -> Result<(Asked, Vec<Swept>, f64), Failure> {
         let mut asked: Option<Asked> = None;
         let (mut swept, mut elapsed_s) = (Vec::new(), 0.0);
@@ -198,10 +206,10 @@ impl Shards {
     }
 }
 
-/// Folders are searched for shards to this depth.
+/// Depth down to which folders are searched for shards.
 const DEEPEST: usize = 3;
 
-/// The folders of shards in a folder, itself among them, in the order of their names.
+/// The folders of shards in a folder, in the order of their names. If the folder is itself one, it is the only entry.
 fn shards_in(folder: &Path, depth: usize) -> Result<Vec<PathBuf>, Failure> {
     if folder.join(SHARD).is_file() {
         return Ok(vec![folder.to_path_buf()]);
@@ -233,7 +241,8 @@ impl Found {
         Ok(Self { dir, manifest, shard, range })
     }
 
-    /// What tells another shard from one of the same search, in words.
+    /// The differences that show that another shard is of another search, in words; empty if both are of the same
+    /// search.
     fn unlike(&self, other: &Self) -> Vec<String> {
         let (here, there) = (self.dir.display(), other.dir.display());
         let differs = |key: &&&str| self.manifest[**key] != other.manifest[**key];
@@ -253,7 +262,7 @@ impl Found {
         out
     }
 
-    /// The command that makes another shard of the search.
+    /// The command that computes another shard of the same search.
     fn command_of(&self, number: u32) -> String {
         let words = self.manifest["command"].as_array().into_iter().flatten().filter_map(Value::as_str);
         let words: Vec<String> = words.map(shell_word).collect();
@@ -286,7 +295,7 @@ impl Found {
     }
 }
 
-/// A word as a POSIX shell reads it.
+/// A word in the form that a POSIX shell reads as this word: in quotes if needed.
 pub(super) fn shell_word(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+%@".contains(c);
     match !word.is_empty() && word.chars().all(is_plain) {

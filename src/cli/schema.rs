@@ -1,4 +1,4 @@
-//! `armwright schema`: what a kind of file may hold, for editors and other programs.
+//! `armwright schema`: the keys and columns that a kind of file can have, for editors and other programs.
 
 use super::failure::Failure;
 use crate::arm::{ARM_FILE, CASES_FILE};
@@ -25,18 +25,18 @@ pub(crate) struct SchemaArgs {
     markdown: bool,
 }
 
-/// The kinds of JSON files that people write.
+/// The kinds of JSON files that users write.
 pub(super) const FILES: [FileKind; 4] = [ARM_FILE, CASES_FILE, STUDY_FILE, CAMPAIGN_FILE];
 
-/// Head of the page with all keys.
+/// Beginning of the page with all keys.
 const PAGE_HEAD: &str = "# Keys of all files\n\nEvery key that the readers know, printed by `armwright schema --markdown`. \
     A key that is not here is a fault in a file. [arm-format.md](arm-format.md), [study-format.md](study-format.md) and \
     [reconcile.md](reconcile.md) explain how the keys work together. `armwright schema KIND` prints the same as a JSON Schema.\n";
 
-/// Executes the verb.
+/// Runs `armwright schema` and returns the text to print.
 ///
 /// # Errors
-/// There is no such kind.
+/// There is no kind of file with this name.
 pub(super) fn run(args: &SchemaArgs) -> Result<String, Failure> {
     let file = |name: &str| FILES.iter().find(|file| file.name == name);
     match (args.kind.as_deref(), args.markdown) {
@@ -54,7 +54,7 @@ fn catalog_schema(name: &str) -> Option<Value> {
     CatalogFile::ALL.into_iter().find(|file| stem(*file) == name).map(CatalogFile::table_schema)
 }
 
-/// Name of a catalog file without its ending.
+/// Name of a catalog file without `.csv`.
 fn stem(file: CatalogFile) -> &'static str {
     file.file_name().trim_end_matches(".csv")
 }

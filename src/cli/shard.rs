@@ -1,5 +1,5 @@
-//! `armwright run STUDY --shard M/N`: visits one part of a study's designs and writes what it found with a manifest, for
-//! `armwright merge`.
+//! `armwright run STUDY --shard M/N`: visits one part of a study's designs. It writes the candidates that it found,
+//! with a manifest, for `armwright merge`.
 
 use super::asked::Asked;
 use super::exit::{Answer, Exit};
@@ -15,15 +15,16 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-/// Names of the other files of a shard.
+/// Name of the file with the candidates of a shard.
 pub(super) const CANDIDATES: &str = "candidates.csv";
+/// Name of the file with the study of a shard.
 pub(super) const STUDY: &str = "study.json";
 
-/// Keys in which all shards of one search agree.
+/// Keys of `shard.json` that must be equal in all shards of one search.
 pub(super) const COMMON: [&str; 5] =
     ["tool_version", "study_hash", "catalogs_hash", "flags", "designs_total"];
 
-/// Reads `M/N`.
+/// Reads the number of a shard and the number of all shards, as `M/N`.
 pub(super) fn shard_of(text: &str) -> Result<Shard, String> {
     let fault = || "a part and the number of parts, such as 2/16, with 1 for the first part".to_string();
     let (number, of) = text.split_once('/').ok_or_else(fault)?;
@@ -34,18 +35,19 @@ pub(super) fn shard_of(text: &str) -> Result<Shard, String> {
     }
 }
 
-/// More shards than this would be more files than work.
+/// Largest number of shards. With more of them there would be more files than work.
 pub(super) const MOST_SHARDS: u32 = 100_000;
 
-/// The folder of a shard, next to those of the others.
+/// The folder of a shard inside the folder of all shards.
 pub(super) fn folder_of(shards: &Path, shard: Shard) -> PathBuf {
     shards.join(format!("{}-of-{}", shard.number, shard.of))
 }
 
-/// Visits the designs of a shard. `words` are those of the command line that tell which study, limits and catalogs.
+/// Visits the designs of a shard. `words` are the words of the command line that give the study, its limits and the
+/// catalogs.
 ///
 /// # Errors
-/// The shard cannot be swept or written, or the user stops it.
+/// The shard cannot be visited or written, or the user stops the program.
 pub(super) fn run_shard(
     asked: &Asked,
     shard: Shard,
@@ -98,7 +100,8 @@ pub(super) fn run_shard(
     }
     let mut written: Vec<(String, Vec<u8>)> =
         files.into_iter().map(|(name, text)| (name.to_string(), text.into_bytes())).collect();
-    // it lists the others with their hashes and is written last: where it is, the rest is complete
+    // the manifest lists the other files with their hashes and is written last, so that its presence shows that the
+    // shard is complete
     written.push((SHARD.into(), pretty(&manifest)));
     (with.keep)(&written)?;
     let text = format!(
@@ -113,7 +116,8 @@ pub(super) fn run_shard(
     Ok(Answer { text, exit: Exit::Done })
 }
 
-/// Says so if the folder has this shard already, whole and from the same inputs.
+/// A sentence for the user if the folder has the same shard already, complete and from the same inputs; otherwise
+/// `None`.
 fn already_done(dir: &Path, manifest: &Value) -> Option<String> {
     let done = read_manifest(dir).ok()?;
     let same = |key: &str| done[key] == manifest[key];
@@ -126,10 +130,10 @@ pub(super) fn hash_of(bytes: &[u8]) -> String {
     blake3::hash(bytes).to_hex().to_string()
 }
 
-/// Reads the manifest of a shard and checks that its files are those that it names.
+/// Reads the manifest of a shard, and checks that its files are unchanged.
 ///
 /// # Errors
-/// A file is missing, is no manifest, or has other bytes.
+/// A file is missing, the manifest is not one, or a file has changed.
 pub(super) fn read_manifest(dir: &Path) -> Result<Value, Failure> {
     let path = dir.join(SHARD);
     let text = fs_err::read_to_string(&path).map_err(|e| Failure::File(e.to_string()))?;

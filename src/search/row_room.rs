@@ -1,27 +1,28 @@
-//! The room that links leave to the parts of inner joints, eight designs at once.
+//! The room that links leave for the gears and motors of inner joints, for eight designs at once.
 
 use crate::mechanics::lanes::{Eight, LANES, Lanes};
 use crate::space::fit::RoomAtJoint;
 use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::Slot;
 
-/// The room at a joint inboard of the row level.
+/// The room for gear and motor at a joint inboard of the row level.
 pub(crate) struct RowRoom {
     /// Inner slot of the joint.
     pub k: usize,
+    /// Where the room comes from.
     of: RoomOf,
 }
 
-/// The link that leaves the room.
+/// Which link determines the room.
 enum RoomOf {
-    /// The link is outboard of the row, or given; the slot of the joint.
+    /// A link that is given or outboard of the row. The number is the slot of the joint.
     Slot(usize),
-    /// The link is that of the row: the room for gear and motor in each lane of each chunk \[m\].
+    /// The link of the row: the room \[m\] for gear and for motor, for each chunk of its options.
     Chunk(Vec<[Eight; 2]>),
 }
 
 impl RowRoom {
-    /// The rooms at the joints inboard of the row level, which is in slot `first`.
+    /// The rooms at the joints inboard of the row level; `first` is the slot of the row level.
     pub(crate) fn all(problem: &ArmProblem, first: usize) -> Vec<Self> {
         let slots = problem.slots();
         let is_inboard =
@@ -35,7 +36,7 @@ impl RowRoom {
         rooms.filter_map(room).collect()
     }
 
-    /// The room for gear and motor \[m\] in eight designs of a chunk, beyond the arm `from`.
+    /// The room for gear and for motor \[m\] in eight designs of a chunk. `from` is the arm outboard of the row.
     #[inline(always)]
     pub(crate) fn room<V: Lanes>(
         &self,
@@ -52,7 +53,8 @@ impl RowRoom {
     }
 }
 
-/// The rooms by the option of a link, eight in a chunk.
+/// The room \[m\] for gear and for motor by option of the link, eight in a chunk. The last chunk repeats the last
+/// option.
 fn chunks(room: &RoomAtJoint) -> Vec<[Eight; 2]> {
     let of = |option: usize| room.rooms[option.min(room.rooms.len() - 1)];
     let eight = |chunk: usize| {

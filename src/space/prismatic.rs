@@ -1,31 +1,31 @@
-//! A prismatic joint of a study: its stiffness, guide and masses are given.
+//! A prismatic joint of a study. The study gives its stiffness, its guide and its masses.
 
 use crate::arm::body::RigidBody;
 use crate::arm::prismatic::Prismatic;
 use nalgebra::{Matrix3, Vector3};
 
-/// A prismatic joint whose numbers the study gives.
+/// A prismatic joint whose numbers are given by the study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpacePrismatic {
-    /// The joint.
+    /// Stiffness, guide, masses and axis of the joint.
     pub joint: Prismatic,
-    /// Smallest and largest travel \[mm\]; `None`: not stated.
+    /// Smallest and largest travel \[mm\]; `None` if the study does not state them.
     pub range_mm: Option<[f64; 2]>,
-    /// All that stays where the joint begins.
+    /// All masses that stay at the beginning of the joint.
     pub(crate) staying: Vec<RigidBody>,
-    /// All that travels, measured from the moved point.
+    /// All masses that travel. Their positions are measured from the moving point.
     pub(crate) travelling: Vec<RigidBody>,
 }
 
 impl SpacePrismatic {
-    /// A joint with a range of travel \[mm\].
+    /// A prismatic joint. `range_mm` is its smallest and largest travel \[mm\].
     pub fn new(joint: Prismatic, range_mm: Option<[f64; 2]>) -> Self {
         let mut out = Self { joint, range_mm, staying: Vec::new(), travelling: Vec::new() };
         out.collect_bodies();
         out
     }
 
-    /// Collects what stays and what travels from the masses and bodies of the joint.
+    /// Fills `staying` and `travelling` from the masses and bodies of the joint.
     pub(crate) fn collect_bodies(&mut self) {
         let with_point = |mass_kg: f64, bodies: &[RigidBody]| {
             let point = RigidBody { mass_kg, cg_m: Vector3::zeros(), inertia_kgm2: Matrix3::zeros() };
