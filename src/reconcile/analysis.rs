@@ -36,13 +36,14 @@ use crate::arm::effect::empirical::KIND;
 use serde_json::Value;
 use std::cell::OnceCell;
 
-/// If ln of the evidence rises by less than this, an effect is only suspected: the evidence is not yet strong (Kass and
-/// Raftery 1995, table of Bayes factors).
+/// An effect is only suspected if it raises the natural logarithm of the evidence by less than this. Such evidence is
+/// not yet strong (Kass and Raftery 1995, table of Bayes factors).
 const WEAK: f64 = 3.0;
-/// Reason for the verdict if no effect is needed.
+/// Reason that is written for the verdict `no_gap`.
 const NOTHING_MISSING: &str = "noise and calibration within tolerance explain every reading";
 
-/// Reconciles the displacements, frequencies and bench readings of a campaign with its arm.
+/// Reconciles the displacements, frequencies and bench readings of a campaign with its arm. Absolute positions and
+/// records are not used here.
 pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let mut forward = Forward::new(campaign);
     let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
@@ -100,7 +101,8 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     analysis.conclude()
 }
 
-/// The candidates that are sought: every effect that the campaign admits and the readings could show.
+/// The candidates (effects at places) that the search tries: every effect that the campaign admits and the readings
+/// could show. `few`: there are only a handful of rows, and rare effects are left out.
 fn sought(campaign: &Campaign, forward: &Forward, nuisance: &Nuisance, few: bool) -> Vec<Candidate> {
     let mut candidates = candidates(forward);
     candidates.retain(|c| campaign.statement.considers(c.kind.name));
@@ -113,13 +115,14 @@ fn sought(campaign: &Campaign, forward: &Forward, nuisance: &Nuisance, few: bool
     candidates
 }
 
-/// Whether the evidence for the best effects is weak.
+/// Whether the best effects raise the logarithm of the evidence by less than [`WEAK`] above the baseline.
 fn is_weak(selection: &Selection) -> bool {
     !selection.best.effects.is_empty() && selection.best.score - selection.baseline.score < WEAK
 }
 
-/// Finds the effects and the noise. If the noise of a channel shows that its readings are in another unit than stated,
-/// the search is repeated with larger standard deviations of this channel, and `forward` keeps them.
+/// Finds the effects and the noise. If the noise of a channel shows that its readings are in another unit than
+/// stated, the search is repeated with larger standard deviations of this channel. The repetition counts, and
+/// `forward` gets these standard deviations, only if the wrong unit is then found as an effect.
 fn settled(
     campaign: &Campaign,
     forward: &mut Forward,
@@ -154,7 +157,7 @@ struct Analysis<'a> {
     campaign: &'a Campaign,
     forward: &'a Forward,
     search: &'a Search<'a>,
-    /// The same search, with laws without a name appended to its candidates.
+    /// The search `search` once more, with laws without a name appended to its candidates.
     with_laws: &'a Search<'a>,
     selection: &'a Selection,
     noise: &'a Noise,
@@ -163,15 +166,16 @@ struct Analysis<'a> {
     best: Fit<'a>,
     baseline: Fit<'a>,
     lack_of_fit: LackOfFit,
-    /// A law without a name that explains the readings better than the named effects or, if the model fails the test
-    /// for lack of fit, better than calibration alone.
+    /// A law without a name that the named effects do not match: it explains the readings better than they do. If the
+    /// model fails the test for lack of fit, the law is instead compared with calibration alone. `None` if there is
+    /// no such law.
     unnamed: Option<Better>,
     alternatives: Vec<Vec<Scored>>,
-    /// All sets of effects that explain the readings, if there are few rows; otherwise `None`.
+    /// All sets of effects that explain the readings, if the campaign has only a few rows; otherwise `None`.
     explaining: Option<Vec<Scored>>,
-    /// Lack of fit of calibration alone, if the evidence for the effects is weak; otherwise `None`.
+    /// Test for lack of fit of calibration alone, if the evidence for the effects is weak; otherwise `None`.
     without: Option<LackOfFit>,
-    /// Intervals of the parameters of the best model's effects.
+    /// 95 % intervals of the parameters of the best model's effects. They are computed when they are first asked for.
     ends: OnceCell<Vec<Interval>>,
     left_out: [Vec<Option<f64>>; 2],
 }
@@ -230,7 +234,8 @@ impl Analysis<'_> {
         }
     }
 
-    /// The corrections of the arm, by the verdict and the effects that are named.
+    /// The corrections of the arm. They depend on `verdict`: without an explanation, a model for the corrected arm is
+    /// chosen first. `named` are the effects that the verdict names.
     fn corrections(&self, verdict: Verdict, named: &[Finding]) -> Corrections {
         let choice = (verdict == Verdict::Unexplained).then(|| self.model_without_explanation());
         let written = match (&choice, verdict) {
@@ -296,8 +301,9 @@ impl Analysis<'_> {
         (Verdict::Explained, vec![self.gap_sentence()])
     }
 
-    /// The verdict if the evidence for the best effects is weak: they are only suspected. It is `no_gap` if calibration
-    /// alone leaves only noise.
+    /// Verdict and reasons if the evidence for the best effects is weak. These effects are only suspected. The
+    /// verdict is `no_gap` if calibration alone leaves only noise (`without` passes the test for lack of fit),
+    /// otherwise `insufficient_data`.
     fn weak(&self, without: &LackOfFit) -> (Verdict, Vec<String>) {
         let gain = self.selection.best.score - self.selection.baseline.score;
         let suspected = format!(
@@ -330,14 +336,14 @@ impl Analysis<'_> {
         self.ends.get_or_init(|| intervals(self.forward, &self.best, self.weights))
     }
 
-    /// Sentence that an effect has reached the largest size that is sought; `None` if none has. It names no effect,
-    /// because the effect may not be the right one.
+    /// Sentence that one of the best effects has reached the largest size that is sought; `None` if none has. The
+    /// sentence does not name the effect, because it may not be the right one.
     fn at_a_limit(&self) -> Option<String> {
         let text = "the size of one of the best effects is the largest that is looked for: is arm.json the arm that was measured?";
         self.best.model.is_at_a_limit(&self.best.point.u).then(|| text.to_string())
     }
 
-    /// Sentences on the structure that is left in the residuals. They name no effect.
+    /// Sentences on the structure that the best model leaves in the residuals. They name no effect of the library.
     fn left_over(&self) -> Vec<String> {
         let mut out = units::other_signs(self.forward);
         out.extend(self.lack_of_fit.sentences());
@@ -354,7 +360,8 @@ impl Analysis<'_> {
         out
     }
 
-    /// Sentence that a law without a name is better than the effects of the library. It names none of these.
+    /// Sentence that the law without a name `law` explains the readings better than the effects of the library. The
+    /// sentence names none of these effects.
     fn beaten(&self, law: &Better) -> String {
         format!(
             "the library lacks this law, and it explains the readings better than any effect of the library: {} \
@@ -368,7 +375,8 @@ impl Analysis<'_> {
         )
     }
 
-    /// Sentence on stiffnesses about which the readings say nothing; empty if there are none.
+    /// Sentence that lists the stiffnesses about which the readings say nothing: the fit leaves more than 90 % of
+    /// their tolerance. Empty if there are none.
     fn unidentified(&self) -> Vec<String> {
         let blind: Vec<String> = self
             .calibrated(&self.best)
@@ -404,8 +412,9 @@ impl Analysis<'_> {
         self.found_in(&self.best, self.ends(), &competitors)
     }
 
-    /// The effects of a model with their intervals. `competitors` holds, for each effect, name and place of those that
-    /// could replace it.
+    /// The effects of the model `fit` with their parameters. `ends` has the 95 % intervals of all parameters of
+    /// effects, in the order of the model. `competitors` has one list for each effect: names and places of the
+    /// effects that could replace it.
     fn found_in(&self, fit: &Fit, ends: &[Interval], competitors: &[Vec<(String, String)>]) -> Vec<Finding> {
         let mut parameter = 0;
         let effects = fit.model.effects.iter().enumerate();
@@ -425,7 +434,7 @@ impl Analysis<'_> {
             .collect()
     }
 
-    /// The model of the corrected arm if no effect explains the readings.
+    /// Chooses the model for the corrected arm if no effect explains the readings.
     fn model_without_explanation(&self) -> Choice<'_> {
         let first_law = self.search.candidates.len();
         let again =
@@ -435,7 +444,8 @@ impl Analysis<'_> {
         corrected_model::choose(self.with_laws, first_law, self.noise, baseline, named, chosen)
     }
 
-    /// The laws without a name that a model contains, with their parameters.
+    /// The laws without a name among the effects of the model `fit`, with their parameters. `findings` has one entry
+    /// for each effect of the model.
     fn laws(&self, fit: &Fit, findings: &[Finding]) -> Vec<Law> {
         let each = fit.model.effects.iter().zip(findings);
         each.filter(|(effect, _)| effect.kind.name == KIND.name)
@@ -558,9 +568,10 @@ impl Analysis<'_> {
         }
     }
 
-    /// The same arm without each of the named effects in turn. A test that separates an effect from its absence
-    /// confirms it, if nothing else could be the cause. The model without the effect is not fitted again, because a fit
-    /// would change stiffnesses that are not in question.
+    /// The arms that the next test could compare with the best model: the same arm without each of the named effects
+    /// in turn. A test that separates an effect from its absence confirms the effect, if nothing else could be the
+    /// cause. The model without the effect is not fitted again, because a fit would change stiffnesses that are not
+    /// in question.
     fn without_each(&self) -> Vec<(String, crate::arm::effect::subject::Subject)> {
         let best = &self.best;
         (0..best.model.effects.len())
@@ -574,7 +585,8 @@ impl Analysis<'_> {
             .collect()
     }
 
-    /// The pose in which the best model has the largest errors \[deg, mm\].
+    /// The pose in which the residuals of the best model have the largest root mean square, as joint positions \[deg,
+    /// mm\]. `None` if there are no poses.
     fn worst_pose(&self) -> Option<Vec<f64>> {
         let residuals = self.best.residuals(self.forward, self.weights);
         let mut of_groups: Vec<Vec<f64>> = vec![Vec::new(); self.forward.groups.len()];

@@ -63,8 +63,8 @@ fn placed(file: &Path, catalogs: &Catalogs) -> Result<Placed, InputError> {
     Ok(Placed { arm, placement: Placement::from_json(&json_of(file)) })
 }
 
-/// Paths of the other arms on the same trunk. They are named in the provenance of the corrected arm or, if it has none,
-/// in the campaign.
+/// Paths of the other arms on the same trunk. They are named in the provenance of the corrected arm. If it names
+/// none, they are those that `campaign.json` names.
 fn other_arms(files: &Files, statement: &Statement) -> Vec<PathBuf> {
     let folder = |file: &Path| file.parent().map(Path::to_path_buf).unwrap_or_default();
     let corrected = json_of(files.arm);
@@ -76,8 +76,9 @@ fn other_arms(files: &Files, statement: &Statement) -> Vec<PathBuf> {
     }
 }
 
-/// Reads the readings. The names of columns are those that `campaign.json` states for a file of this name, or else for
-/// a file with these columns.
+/// Reads the table of readings from `file`. Users may have columns with names of their own. These names come from the
+/// channel for which `campaign.json` names this file, or else from the channel all of whose stated columns the file
+/// has.
 fn table(file: &Path, statement: &Statement) -> Result<Table, InputError> {
     let sources = Channel::ALL.map(|channel| statement.source(channel));
     let is_named = |source: &&Source| source.file.as_ref().is_some_and(|named| file.ends_with(named));

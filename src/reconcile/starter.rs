@@ -72,7 +72,7 @@ fn campaign_json(name: &str) -> Value {
     })
 }
 
-/// Texts on one kind of readings.
+/// Texts of the starter page on one kind of readings.
 struct Kind {
     channel: Channel,
     title: &'static str,
@@ -145,7 +145,7 @@ fn page(arm: &Arm, name: &str, joints: &[DrivenJoint]) -> String {
     out
 }
 
-/// Unit and meaning of a column.
+/// Unit and meaning of the column `column` of the channel's file.
 fn meaning(channel: Channel, column: &str) -> (&'static str, &'static str) {
     match column {
         "test" => ("-", "your label of the row; may be blank"),

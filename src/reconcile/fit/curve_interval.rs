@@ -19,26 +19,27 @@ use nalgebra::{Cholesky, DMatrix};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// Probability outside of the interval at each end.
+/// Probability that the parameter lies beyond the interval, at each of its two ends.
 const TAIL: f64 = 0.025;
-/// An end of the interval is `None` if the density at the limit of the range is more than this fraction of its maximum.
-/// The fraction corresponds to a rise of the objective by 3.84: exp(-3.84 / 2).
+/// An end of the interval is `None` if the probability density at that limit of the parameter's range is more than
+/// this fraction of its maximum. The fraction corresponds to a rise of the objective by 3.84: exp(-3.84 / 2).
 const OPEN: f64 = 0.146;
-/// A node is ruled out if the objective there exceeds that of the best fit by more than this. Its probability density
-/// is then below a thousandth of the maximum: exp(-14 / 2).
+/// A pair of nodes is ruled out if the objective there exceeds the smallest objective found by more than this. The
+/// probability density there is then below a thousandth of the maximum: exp(-14 / 2).
 const RULED_OUT: f64 = 14.0;
-/// First step between nodes, as a multiple of the standard deviation of the break point.
+/// First step from the best fit to the next node, as a multiple of the standard deviation of the break point.
 const STEP: f64 = 0.5;
 /// Smallest and largest first step \[ln of the torque\].
 const STEPS: (f64, f64) = (0.004, 0.08);
 /// Ratio of each step between nodes to the step before it, going outwards from the best fit.
 const GROWTH: f64 = 1.4;
-/// Every third node is always fitted, so that no separate peak is missed.
+/// Each node whose distance from the best fit, counted in nodes, is a multiple of this number is always fitted, so
+/// that no separate peak of the density is missed.
 const COARSE: usize = 3;
 /// Limits on the effort of a fit with both break points held.
 const HELD: Effort = Effort { steps: 4, tolerance: 0.05 };
 
-/// The nodes of one break point, in ascending order \[ln of the torque\].
+/// The nodes of one break point: the torques at which it is held, in ascending order \[ln of the torque\].
 struct Axis {
     parameter: usize,
     nodes: Vec<f64>,
@@ -50,12 +51,13 @@ struct Cell {
     /// Standard deviations of all parameters except the two break points.
     deviations: Vec<f64>,
     objective: f64,
-    /// Natural logarithm of the probability density at the nodes.
+    /// Natural logarithm of the probability density of the two break points at the nodes, up to a common constant.
     ln_density: f64,
 }
 
-/// Intervals of the parameters `own` of a gear's curve, in their order. `pair` holds the indices of its two break
-/// points, and `deviations` the standard deviation of every parameter.
+/// 95 % intervals of the parameters of one gear's curve. `own` is the range of their indices and gives the order of
+/// the result. `pair` holds the indices of the two break points, and `deviations` the standard deviation of every
+/// parameter of the model.
 pub(crate) fn curve_intervals(
     forward: &Forward,
     best: &Fit,
@@ -93,7 +95,8 @@ impl Axis {
         Self { parameter, nodes }
     }
 
-    /// The interval of the axis that a node represents: it reaches halfway to both neighbouring nodes.
+    /// The part of the axis for which a node stands: it reaches halfway to both neighbouring nodes \[ln of the
+    /// torque\].
     fn span(&self, node: usize) -> (f64, f64) {
         let middle = |a: usize, b: usize| 0.5 * (self.nodes[a] + self.nodes[b]);
         let last = self.nodes.len() - 1;
@@ -104,7 +107,8 @@ impl Axis {
 /// Index of the node on each of the two axes, one axis per break point.
 type Nodes = [usize; 2];
 
-/// Fits the cells of a coarse grid over the nodes, and then the neighbours of every cell that is not ruled out.
+/// Fits the model at a coarse grid of node pairs, and then at the neighbours of every pair that is not ruled out.
+/// Returns one cell for each pair that was fitted.
 fn explore(forward: &Forward, best: &Fit, weights: &Weights, axes: &[Axis; 2]) -> BTreeMap<Nodes, Cell> {
     let centre = [0, 1].map(|k| {
         let (axis, at) = (&axes[k], best.point.u[axes[k].parameter]);
@@ -177,7 +181,7 @@ impl Cell {
     }
 }
 
-/// Removes two rows and the same two columns from a matrix.
+/// Removes the rows and the columns with the two indices `held` from a matrix.
 fn without(matrix: &DMatrix<f64>, mut held: [usize; 2]) -> DMatrix<f64> {
     held.sort_unstable();
     matrix.clone().remove_rows_at(&held).remove_columns_at(&held)
@@ -188,14 +192,14 @@ fn ln_determinant(matrix: DMatrix<f64>) -> f64 {
         .map_or(f64::INFINITY, |c| 2.0 * c.l().diagonal().iter().map(|d| libm::log(*d)).sum::<f64>())
 }
 
-/// The posterior distribution over the nodes.
+/// The posterior distribution of the two break points, as cells over the pairs of nodes.
 struct Posterior {
     axes: [Axis; 2],
     cells: BTreeMap<Nodes, Cell>,
 }
 
 impl Posterior {
-    /// Probability of each cell, up to a common factor.
+    /// Probability of each cell, up to a common factor: its density times the area for which the node pair stands.
     fn masses(&self) -> impl Iterator<Item = (&Nodes, &Cell, f64)> {
         let top = self.cells.values().map(|c| c.ln_density).fold(f64::NEG_INFINITY, f64::max);
         let width = |axis: usize, node: usize| {
@@ -234,8 +238,8 @@ impl Posterior {
         }
     }
 
-    /// The interval of one slope of the gear's curve. The slope's distribution is a mixture of normal distributions,
-    /// one per cell, each cut off at the ends of the range.
+    /// The 95 % interval of the slope with parameter index `p`, whose range is `low` to `high`. The distribution of
+    /// the slope is a mixture of normal distributions, one per cell, each cut off at the ends of the range.
     fn slope(&self, p: usize, (low, high): (f64, f64)) -> Interval {
         let parts: Vec<(f64, f64, f64)> = self
             .masses()

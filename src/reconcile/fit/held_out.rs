@@ -27,7 +27,8 @@ pub struct HeldOut {
     pub count: usize,
 }
 
-/// Residual of every datum with its pose held out \[declared standard deviations\]; `None` for data that are
+/// Residual of every datum, predicted with its pose held out, measured minus predicted \[declared standard
+/// deviations\]. `u` holds the parameters of the full fit, from which each refit starts. `None` for data that are
 /// never held out.
 pub(crate) fn residuals(forward: &Forward, model: &Model, u: &[f64], weights: &Weights) -> Vec<Option<f64>> {
     // A frequency jumps where a torque passes a break point. If the break points were free, a held-out test close to a
@@ -60,7 +61,7 @@ pub(crate) fn residuals(forward: &Forward, model: &Model, u: &[f64], weights: &W
     all
 }
 
-/// Root mean square; 0 for an empty list.
+/// Root mean square of the residuals, in their unit; 0 for an empty list.
 pub(crate) fn rms(residuals: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = residuals.fold((0.0, 0.0), |(s, n), r| (s + r * r, n + 1.0));
     if count == 0.0 { 0.0 } else { f64::sqrt(sum / count) }

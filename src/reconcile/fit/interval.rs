@@ -28,7 +28,7 @@ pub(crate) fn deviations(fit: &Fit) -> Vec<f64> {
     (0..n).map(|p| covariance[(p, p)].abs().sqrt()).collect()
 }
 
-/// Intervals of the parameters of all effects, in the order of the parameters.
+/// 95 % intervals of the parameters of all effects of the fit `best`, in the order of the parameters.
 pub(crate) fn intervals(forward: &Forward, best: &Fit, weights: &Weights) -> Vec<Interval> {
     let deviations = deviations(best);
     let breaks = best.model.break_points();
@@ -56,7 +56,8 @@ pub(crate) fn intervals(forward: &Forward, best: &Fit, weights: &Weights) -> Vec
         .collect()
 }
 
-/// The interval of parameter `p`, which belongs to an effect and has the standard deviation `sd`.
+/// The 95 % interval of the parameter with index `p`, which belongs to the effect with index `effect` and has the
+/// standard deviation `sd`.
 fn interval(forward: &Forward, best: &Fit, weights: &Weights, effect: usize, p: usize, sd: f64) -> Interval {
     let crooked = best.model.effects[effect].kind.traits.is_nonlinear;
     let (low, high) = best.model.bounds(p);
@@ -71,17 +72,18 @@ fn interval(forward: &Forward, best: &Fit, weights: &Weights, effect: usize, p: 
     Interval { low: end(-1.0), high: end(1.0) }
 }
 
-/// Standard deviation of the logarithm of a joint's torque, caused by the tolerance of masses. At a break point the
-/// frequencies jump, and the torque of the jump is not known better than this. A refit does not show this uncertainty,
-/// because it cannot move a test across the jump.
+/// Relative standard deviation of a joint's torque that the tolerance of masses causes. At a break point of a gear's
+/// curve the frequencies jump, and the torque of the jump is not known better than this. A refit does not show this
+/// uncertainty, because it cannot move a test across the jump.
 fn torque_deviation(best: &Fit) -> f64 {
     let numbers = best.model.nuisance.numbers.iter();
     let masses = numbers.filter(|(calibration, _)| matches!(calibration, Calibration::Mass(_)));
     masses.map(|(_, sd)| *sd).fold(0.0, f64::max)
 }
 
-/// The lowest objective that a descent from `u` finds. Break points of a gear's curve make the frequencies jump, and a
-/// descent stops at a jump. Unless the first result is below `enough`, a second descent starts from a smoothed curve.
+/// The lowest objective that a descent from the parameters `u` finds. Break points of a gear's curve make the
+/// frequencies jump, and a descent stops at a jump. Unless the first descent ends below `enough`, a second one starts
+/// where a descent with a smoothed curve ends.
 fn refit(forward: &Forward, mut model: Model, u: &[f64], weights: &Weights, enough: f64) -> f64 {
     let effort = Effort { steps: 5, tolerance: 0.02 };
     let end = |model: &Model, u: &[f64], effort| descent(forward, model, u, weights, effort, f64::INFINITY);
@@ -96,9 +98,10 @@ fn refit(forward: &Forward, mut model: Model, u: &[f64], weights: &Weights, enou
     straight.min(end(&model, &start, effort).objective)
 }
 
-/// One end of a parameter's 95 % interval: the value at which the objective, refitted with the parameter held, has
-/// risen by [`RISE`]. `side` is -1 for the lower end and 1 for the upper end. `None` if the objective does not rise so
-/// much within the range of the parameter.
+/// One end of the 95 % interval of the parameter with index `p`: the value at which the objective, with all other
+/// parameters refitted, has risen by [`RISE`]. `side` is -1 for the lower end and 1 for the upper end; `sd` is the
+/// standard deviation from which the first guess comes. `None` if the objective does not rise so much within the
+/// range of the parameter.
 fn profile(forward: &Forward, best: &Fit, weights: &Weights, p: usize, side: f64, sd: f64) -> Option<f64> {
     let (low, high) = best.model.bounds(p);
     let u = best.point.u[p];

@@ -39,14 +39,15 @@ const CHANNELS: [Channel; 3] = [Channel::Static, Channel::Modal, Channel::Windup
 /// Largest factor on the declared standard deviations. A larger scatter is ascribed to missing physics and not to a
 /// wrong declaration.
 const LARGEST_SCALE: f64 = 1.4;
-/// A model fits most readings if the robust standard deviation of its residuals exceeds the declared one by at most
-/// this fraction.
+/// A model fits most readings of a channel if the robust standard deviation of its residuals exceeds the declared one
+/// by at most this fraction. For a channel with few readings, [`BY_CHANCE`] allows more.
 const CLOSE: f64 = 0.5;
-/// Allowance for chance in the test of the robust standard deviation: three of its own standard deviations, times the
-/// root of the number of readings. (The standard deviation of the median of absolute values is 1.17 times the robust
-/// standard deviation over that root.)
+/// Allowance for chance in the test of the robust standard deviation, times the root of the number of readings: three
+/// standard deviations of the robust standard deviation itself. (Its standard deviation is 1.17 times the declared
+/// one over that root, because it comes from the median of absolute values.)
 const BY_CHANCE: f64 = 3.5;
-/// Number of readings as which the declared standard deviation counts when the factor on it is estimated.
+/// Weight of the declared standard deviation when its factor is estimated from the residuals, as a number of
+/// readings.
 const TRUST: f64 = 15.0;
 
 impl Default for Noise {
@@ -56,7 +57,8 @@ impl Default for Noise {
 }
 
 impl Noise {
-    /// Weights of the data with this judgement of the readings.
+    /// Weights of the data: gross errors get 0, and all other data the reciprocal of their standard deviation times
+    /// the factor of the channel.
     pub fn weights(&self, forward: &Forward) -> Weights {
         let outliers: HashSet<(usize, usize)> =
             self.outliers.iter().map(|(channel, row, _)| (*channel as usize, *row)).collect();
@@ -67,7 +69,8 @@ impl Noise {
         Weights { inverse: inverse.collect(), smooth_only: false }
     }
 
-    /// Whether a model fits most readings of every channel.
+    /// Whether the model of `fit` fits most readings of every channel, by the robust standard deviation of its
+    /// residuals.
     pub fn is_close(forward: &Forward, fit: &Fit) -> bool {
         let residuals = declared_residuals(forward, &fit.point.predicted);
         CHANNELS.into_iter().all(|channel| {
@@ -76,8 +79,8 @@ impl Noise {
         })
     }
 
-    /// Leaves out at most a few extreme outliers of each channel, judged by their misfit in a fit with these weights. A
-    /// single slip among ten frequencies would spoil a calibration.
+    /// Judges the readings before an effect is sought: leaves out at most a few extreme outliers of each channel, by
+    /// their misfit in a fit with these weights. A single wrong frequency among ten would spoil a calibration.
     pub fn without_worst(forward: &Forward, fit: &Fit, weights: &Weights) -> Self {
         let mut outliers = misses(forward, fit, weights);
         outliers.retain(|(_, _, size)| *size > UNMISTAKABLE);
@@ -91,8 +94,8 @@ impl Noise {
         Self { outliers, ..Self::default() }
     }
 
-    /// Leaves out one or two more rows that are gross errors in a fit. `None` if there are no such rows, or more than
-    /// two.
+    /// This judgement with one or two more rows left out, which are gross errors in `fit`. `None` if there are no
+    /// such rows, or more than two.
     pub fn with_slips(&self, forward: &Forward, fit: &Fit) -> Option<Self> {
         let mut slips = misses(forward, fit, &self.weights(forward));
         slips.retain(|(_, _, size)| *size > GROSS);
@@ -116,15 +119,16 @@ impl Noise {
         Some(Self { outliers, ..self.clone() })
     }
 
-    /// The same judgement with all frequencies kept; `None` if no frequency was left out.
+    /// This judgement with all frequencies kept as good readings; `None` if it leaves out no frequency.
     pub fn with_frequencies(&self) -> Option<Self> {
         let mut with = self.clone();
         with.outliers.retain(|(channel, _, _)| *channel != Channel::Modal);
         (with.outliers.len() < self.outliers.len()).then_some(with)
     }
 
-    /// Gross errors that are visible before any effect is sought. They are sought only if calibration alone fits most
-    /// readings, because the signal of an effect must not be taken for an error.
+    /// Gross errors that are visible before any effect is sought, by the residuals of the baseline (calibration
+    /// alone). They are sought only if the baseline fits most readings, because the signal of an effect must not be
+    /// taken for an error.
     pub fn first_look(forward: &Forward, baseline: &Fit, weights: &Weights) -> Self {
         if !Self::is_close(forward, baseline) {
             return Self::default();
@@ -141,7 +145,8 @@ impl Noise {
         Self { outliers, ..Self::default() }.with_whole_lists(forward, &residuals)
     }
 
-    /// Judges the readings by the residuals of a fit that had these weights.
+    /// Judges the readings by the residuals of `fit`, which was fitted with `weights`: finds gross errors, and a
+    /// factor on the declared standard deviations of each channel.
     pub fn from_fit(forward: &Forward, fit: &Fit, weights: &Weights) -> Self {
         let mut noise = Self::default();
         let residuals = declared_residuals(forward, &fit.point.predicted);
@@ -167,8 +172,9 @@ impl Noise {
         noise.with_whole_lists(forward, &residuals)
     }
 
-    /// Leaves out the few frequency lists in which the model with these coefficients has several very large errors.
-    /// `None` if there is no such list, or if there are many.
+    /// Leaves out the few frequency lists (modes of one pose and payload) in which the model with these coefficients
+    /// misses several frequencies by more than 16 standard deviations. `None` if there is no such list, or if more
+    /// than a third of the lists are so.
     pub fn uncertain_lists(forward: &Forward, coefficients: &Coefficients) -> Option<Self> {
         let residuals = declared_residuals(forward, &forward.predict(coefficients));
         let far = |datum: usize| residuals[datum].abs() > UNMISTAKABLE;
@@ -183,8 +189,8 @@ impl Noise {
         Some(Self { outliers, ..Self::default() })
     }
 
-    /// Leaves out every row of a frequency list that has several gross errors. The pose, the payload or the numbering
-    /// of the list is wrong, and the remaining rows would mislead.
+    /// This judgement without any row of a frequency list that has several gross errors. The pose, the payload or the
+    /// numbering of such a list is wrong, and its remaining rows would mislead.
     fn with_whole_lists(mut self, forward: &Forward, residuals: &[f64]) -> Self {
         for list in gross_lists(forward, &self.weights(forward)) {
             for &(datum, _) in &forward.modal[list].modes {
@@ -198,20 +204,20 @@ impl Noise {
         self
     }
 
-    /// Whether two judgements of the readings leave out the same rows.
+    /// Whether this judgement and `other` leave out the same rows.
     pub fn same_rows(&self, other: &Self) -> bool {
         let rows = |n: &Self| n.outliers.iter().map(|(c, r, _)| (*c, *r)).collect::<Vec<_>>();
         rows(self) == rows(other)
     }
 
-    /// Whether two judgements of the readings leave out the same rows and have nearly the same factors on the standard
-    /// deviations.
+    /// Whether this judgement and `other` leave out the same rows and have factors on the standard deviations that
+    /// differ by less than 3 %.
     pub fn agrees(&self, other: &Self) -> bool {
         self.same_rows(other) && self.scale.iter().zip(&other.scale).all(|(a, b)| (a / b - 1.0).abs() < 0.03)
     }
 }
 
-/// Numbers, from 0, of the frequency lists of which more than one row is left out.
+/// Indices of the frequency lists (modes of one pose and payload) of which `weights` leave out more than one row.
 pub fn gross_lists(forward: &Forward, weights: &Weights) -> Vec<usize> {
     let left_out = |list: usize| {
         let modes = forward.modal[list].modes.iter();
@@ -220,8 +226,8 @@ pub fn gross_lists(forward: &Forward, weights: &Weights) -> Vec<usize> {
     (0..forward.modal.len()).filter(|list| left_out(*list) > 1).collect()
 }
 
-/// The misfit that each row would have if the fit did not follow it \[declared standard deviations\], the largest
-/// first.
+/// The misfit of each row of each channel if the fit did not follow this row \[declared standard deviations\]: the
+/// residual divided by the root of one minus the leverage. Returns channel, row and misfit, the largest misfit first.
 fn misses(forward: &Forward, fit: &Fit, weights: &Weights) -> Vec<(Channel, usize, f64)> {
     // prevents a division by zero for a row that the fit follows completely
     const LARGEST_LEVERAGE: f64 = 0.9;
@@ -239,8 +245,9 @@ fn misses(forward: &Forward, fit: &Fit, weights: &Weights) -> Vec<(Channel, usiz
     out
 }
 
-/// The gross errors of a channel without runs: consecutive rows of one pose, or of the bench, with errors of the same
-/// sign. Slips are single. A run has a cause, such as a clamp that slips at the end of a load.
+/// The gross errors `gross` of a channel (row and size), without those that form a run. A run is consecutive rows of
+/// one pose, or of the bench, with errors of the same sign. Slips are single, whereas a run has a cause, such as a
+/// clamp that slips at the end of a load.
 fn without_runs(data: &[Datum], residuals: &[f64], gross: Vec<(usize, f64)>) -> Vec<(usize, f64)> {
     // component, value and pose of the largest error of each row
     let mut worst: HashMap<usize, (usize, f64, usize)> = HashMap::new();
@@ -264,7 +271,8 @@ fn without_runs(data: &[Datum], residuals: &[f64], gross: Vec<(usize, f64)>) -> 
     gross.into_iter().filter(|(row, _)| !(in_order && follows(*row))).collect()
 }
 
-/// Number of each row of a channel, and the largest size among its data. Rows come in the order of their first datum.
+/// The rows of a channel, each with the largest of the `sizes` of its data. The rows come in the order of their first
+/// datum.
 fn largest_of_rows<'a>(sizes: impl Iterator<Item = (&'a Datum, f64)>) -> Vec<(usize, f64)> {
     let mut out: Vec<(usize, f64)> = Vec::new();
     let mut known: HashMap<usize, usize> = HashMap::new();
@@ -278,17 +286,17 @@ fn largest_of_rows<'a>(sizes: impl Iterator<Item = (&'a Datum, f64)>) -> Vec<(us
     out
 }
 
-/// Number of rows of a channel's file.
+/// Number of rows of a channel's file, up to the last one that has a datum.
 fn rows(forward: &Forward, channel: Channel) -> usize {
     forward.data[forward.range(channel)].iter().map(|d| d.row).max().map_or(0, |r| r + 1)
 }
 
-/// Number of rows in a fraction `part` of a file, at least one.
+/// Number of rows that make up the fraction `part` of a file with `rows` rows, at least one.
 fn at_most(part: f64, rows: usize) -> usize {
     ((part * rows as f64) as usize).max(1)
 }
 
-/// Residuals, measured minus predicted, in declared standard deviations.
+/// Residuals of the readings `predicted`, measured minus predicted \[declared standard deviations\].
 fn declared_residuals(forward: &Forward, predicted: &[f64]) -> Vec<f64> {
     forward.data.iter().zip(predicted).map(|(d, p)| (d.value - p) / d.sigma).collect()
 }
@@ -299,9 +307,10 @@ fn spread(residuals: &[f64]) -> f64 {
     1.4826 * median(residuals.iter().map(|r| r.abs()).collect())
 }
 
-/// Factor on the declared standard deviations by the residuals and their leverages, at least 1. The square of a
-/// residual has the expectation `1 - leverage`, because the parameters absorb the rest. A factor that could be chance
-/// is applied too: waiting for significance would leave intervals too narrow in channels with few readings.
+/// Factor on the declared standard deviations of a channel, at least 1, from the residuals and leverages of its rows
+/// `kept`. The square of a residual has the expectation `1 - leverage`, because the parameters absorb the rest. A
+/// factor that could be chance is applied too: waiting for significance would leave intervals too narrow in channels
+/// with few readings.
 fn scale(kept: impl Iterator<Item = (f64, f64)>) -> f64 {
     let (sum, count) =
         kept.fold((TRUST, TRUST), |(sum, count), (r, leverage)| (sum + r * r, count + 1.0 - leverage));

@@ -9,8 +9,9 @@ use super::descent::{Effort, Fit, Weights, descent, fit};
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::Model;
 
-/// Widths of smoothing of a gear's curve \[ln of the torque\], in the order of the descents. The wide one lets a
-/// descent pass the jumps of the frequencies. With the narrow one the jumps are nearly sharp.
+/// Widths over which the jumps of slope of a gear's curve are smoothed \[ln of the torque\], in the order of the
+/// descents. The wide one lets a descent pass the jumps of the frequencies. With the narrow one the jumps are nearly
+/// sharp.
 pub(crate) const WIDE: f64 = 0.1;
 pub(crate) const NARROW: f64 = 0.01;
 const WIDTHS: [f64; 3] = [WIDE, 0.03, NARROW];
@@ -19,7 +20,8 @@ const WIDTHS: [f64; 3] = [WIDE, 0.03, NARROW];
 /// with a tolerance of 4 %.
 const CLOSE: f64 = 0.1;
 
-/// Starting point for a fit with the exact curve, after descents with the curve smoothed.
+/// Starting parameters for a fit with the exact torsion curve: the end of three descents from `start`, in which the
+/// curve is smoothed less and less.
 pub(crate) fn smoothed_start(forward: &Forward, model: &Model, start: &[f64], weights: &Weights) -> Vec<f64> {
     let mut model = model.clone();
     let few = Effort { steps: 8, tolerance: 0.05 };
@@ -29,8 +31,8 @@ pub(crate) fn smoothed_start(forward: &Forward, model: &Model, start: &[f64], we
     })
 }
 
-/// Fits a model from each of the starts, and returns the best fit. If a test is close to a break point of a gear's
-/// curve, each start is also tried with the curve smoothed at first.
+/// Fits a model from each of the `starts` and returns the fit with the lowest objective. If the torque of a test is
+/// close to a break point of a gear's curve, each start is also tried with the curve smoothed at first.
 pub(crate) fn best_fit<'a>(
     forward: &Forward,
     model: &Model<'a>,

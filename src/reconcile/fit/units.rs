@@ -13,8 +13,8 @@ use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::Candidate;
 use crate::reconcile::readings::components::{DISPLACEMENT, FEWEST_ALIKE};
 
-/// Largest distance of the ratio of readings to nominal predictions from the factor between two units \[ln\]. It is
-/// wide, because an effect that is still missing changes the ratio.
+/// Largest difference between the logarithm of the ratio of readings to nominal predictions and the logarithm of the
+/// factor between two units. It is wide, because an effect that is still missing changes the ratio.
 const NEAR: f64 = 0.25;
 
 /// A suspicion that the declared standard deviations of a channel are too small by a factor, because its readings are
@@ -26,14 +26,14 @@ pub(crate) struct Stretch {
 }
 
 impl Stretch {
-    /// Whether one of the effects is this confusion of units.
+    /// Whether one of the `effects` is the confusion of units that this suspicion is about.
     pub(crate) fn is_among(&self, effects: &[&Candidate]) -> bool {
         effects
             .iter()
             .any(|effect| effect.kind.name == wrong_unit::KIND.name && effect.at == self.channel.word())
     }
 
-    /// Sentence on the factor that is assumed.
+    /// Sentence that states the factor by which the standard deviations of the channel are enlarged.
     pub(crate) fn sentence(&self) -> String {
         let Self { channel, factor } = self;
         let (channel, factor) = (channel.word(), crate::report::number::significant(*factor, 4));
@@ -43,9 +43,9 @@ impl Stretch {
     }
 }
 
-/// The channels in which a confusion of units is likely. Two conditions are needed. The readings are about the factor
-/// between two units times those of the nominal arm. The typical residual of the best model exceeds the declared
-/// standard deviation by more than the root of this factor.
+/// The channels in which a confusion of units is likely. Two conditions are needed. The ratio of the readings to the
+/// predictions of the nominal arm is about the factor between two units. The median residual of the best model, whose
+/// coefficients are `best`, is larger than the declared standard deviation times the root of this factor.
 pub(crate) fn stretches(forward: &Forward, best: &Coefficients) -> Vec<Stretch> {
     let nominal = forward.predict(&forward.coefficients(&forward.nominal));
     let predicted = forward.predict(best);
@@ -70,9 +70,11 @@ pub(crate) fn stretches(forward: &Forward, best: &Coefficients) -> Vec<Stretch> 
     [Channel::Static, Channel::Modal, Channel::Windup].into_iter().filter_map(of_channel).collect()
 }
 
-/// Reversed signs are suspected if the cosine of the angle between readings and predictions, as vectors, is below this.
+/// Reversed signs are suspected if the cosine of the angle between the vector of all readings of one component and
+/// the vector of their predictions is below this.
 const OPPOSITE: f64 = -0.9;
-/// Reversed signs are reported if the readings with the sign reversed are nearer to the nominal arm by this factor.
+/// Reversed signs are reported only if reversing them divides the root mean square difference between the readings
+/// and the nominal arm by at least this factor.
 const NEARER: f64 = 3.0;
 
 /// Sentences on components of the displacement that seem to have the opposite sign, such as those of a dial gauge that
@@ -98,7 +100,7 @@ pub(crate) fn other_signs(forward: &Forward) -> Vec<String> {
     (0..3).filter_map(of_component).collect()
 }
 
-/// Multiplies the declared standard deviations of these channels by their factors.
+/// Multiplies the declared standard deviations of the channels named in `stretches` by their factors.
 pub(crate) fn stretch(forward: &mut Forward, stretches: &[Stretch]) {
     for Stretch { channel, factor } in stretches {
         let range = forward.range(*channel);

@@ -4,7 +4,8 @@
 use crate::mechanics::product::Panels;
 use nalgebra::DMatrix;
 
-/// The factor `L` of the matrix `L Lᵀ` that one unit of an added mass contributes, in the forms that products need.
+/// The factor `L` of the matrix `L Lᵀ`, which is the mass matrix of one unit of an added mass. It is stored in each
+/// arrangement that matrix products need.
 pub(super) struct Factor {
     pub(super) l: DMatrix<f64>,
     /// `L`, arranged as a left factor of products.
@@ -20,7 +21,7 @@ impl Factor {
     }
 }
 
-/// Number of leading coordinates that are not zero: beyond them the rows and columns of the symmetric matrix are zero.
+/// Number of leading coordinates of a symmetric matrix that matter: all rows and columns after them are zero.
 fn leading(matrix: &DMatrix<f64>) -> usize {
     let floor = 1e-14 * matrix.amax();
     (0..matrix.nrows()).rev().find(|&i| matrix.row(i).amax() > floor).map_or(0, |i| i + 1)

@@ -50,7 +50,7 @@ impl Bench {
         self.torques_nm.iter().map(|t| t.abs())
     }
 
-    /// Writes the predicted twist at every row of the joint to `out` \[arcmin\].
+    /// Writes the predicted twist (torsion angle) at every row of the joint to its place in `out` \[arcmin\].
     pub(crate) fn predict(&self, law: &JointLaw, out: &mut [f64]) {
         let twists = bench_twists_rad(law, &self.torques_nm);
         for (&index, twist) in self.rows.iter().zip(twists) {
@@ -59,8 +59,9 @@ impl Bench {
     }
 }
 
-/// Twists (torsion angles) of a joint on the bench, one per torque \[rad\]. The cycle is computed twice, and the second
-/// round counts: after the first one the state of the friction play repeats itself.
+/// Twists (torsion angles) of a joint on the bench, one per torque \[rad\]. The cycle of torques is computed twice,
+/// and the twists of the second time are returned: only then has the friction play reached the state that a repeated
+/// cycle has.
 pub(crate) fn bench_twists_rad(law: &JointLaw, torques_nm: &[f64]) -> Vec<f64> {
     // the first round brings the play to its state in a repeated cycle
     let mut state = 0.0;

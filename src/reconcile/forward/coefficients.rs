@@ -49,23 +49,23 @@ pub struct Layout {
     slides: Vec<usize>,
     /// Index and compliance of each coordinate of compliant frames. No fit changes them.
     frames: Vec<(usize, f64)>,
-    /// Compliance of each coordinate of a link as drawn, for arms whose links are rigid in the nominal model. It is 0
-    /// for all other coordinates.
+    /// Compliance of each strain coordinate of the links as drawn, for arms whose links are rigid in the nominal
+    /// model. It is 0 for all other coordinates.
     pub lacking: Vec<f64>,
     /// The arm with every elastic element present, so that mechanics lists all coordinates.
     pub template: Chain,
-    /// For each of the masses, the template with one unit of this mass added.
+    /// For each of the masses that a fit can change, the template with one unit of this mass added.
     pub with_mass: Vec<Chain>,
     /// Acceleration of gravity \[m/s²\].
     pub gravity_m_s2: f64,
 }
 
-/// The special set-up of the tests of a channel, as numbers.
+/// The special set-up of the tests of one channel, as numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TestNumbers {
     /// Additional mass at the tip in these tests \[kg\].
     pub mass_kg: f64,
-    /// Centre of gravity of the additional mass from the tip, in the last frame \[m\].
+    /// Vector from the tip to the centre of gravity of the additional mass, in the last frame \[m\].
     pub cg_m: Vector3<f64>,
     /// Additional compliance of each joint in these tests, base to tip \[rad/(N m)\]; empty if there is none.
     pub servo_rad_per_nm: Vec<f64>,
@@ -89,7 +89,8 @@ impl TestNumbers {
     }
 }
 
-/// A subject (an arm under test), expressed as numbers on the coordinates.
+/// A subject (an arm under test), expressed as compliances, joint laws and masses on the strain coordinates of a
+/// [`Layout`].
 #[derive(Debug, Clone)]
 pub struct Coefficients {
     /// Compliance of each coordinate. It is 0 for a joint's twist, because the joint's law is in `laws`.
@@ -100,16 +101,18 @@ pub struct Coefficients {
     pub laws: Vec<JointLaw>,
     /// Torques on the joints by springs and the like, in addition to weight, load and the torques of the template.
     pub torques: Vec<JointTorque>,
-    /// Masses in addition to the template: of each joint \[kg\], of each link's harness \[kg/m\], of each prismatic
-    /// joint \[kg\], and water density times added-mass coefficient \[kg/m³\].
+    /// Masses in addition to the template, one per entry of the layout's `with_mass`: of each joint \[kg\], of each
+    /// link's harness \[kg/m\], of each prismatic joint \[kg\], and water density times added-mass coefficient
+    /// \[kg/m³\].
     pub masses: Vec<f64>,
-    /// Masses that have weight, in the same order and units, except that water counts with its density alone.
+    /// The part of `masses` that has weight, in the same order and units. The last entry is the water's density alone
+    /// \[kg/m³\], without the added-mass coefficient.
     pub weights: Vec<f64>,
     /// Actual minus stated payload mass \[kg\].
     pub payload_delta_kg: f64,
     /// Actual minus stated centre of gravity of the payload, in the last frame \[m\].
     pub payload_offset_m: Vector3<f64>,
-    /// Fraction of the payload's weight that remains with buoyancy.
+    /// Fraction of the payload's weight that remains after buoyancy; 1 in air.
     pub payload_weight: f64,
     /// Errors of the measuring channels.
     pub channels: [Reading; 4],
@@ -121,7 +124,7 @@ pub struct Coefficients {
     pub smoothing: f64,
 }
 
-/// Differences between two subjects that change static readings.
+/// Which of the numbers that static readings depend on differ between two subjects.
 #[derive(Debug)]
 pub(crate) struct StaticChanges {
     /// Whether the linear compliances differ.
@@ -137,19 +140,19 @@ pub(crate) struct StaticChanges {
 }
 
 impl StaticChanges {
-    /// All differences are present.
+    /// States that all numbers differ, for an arm with this number of joints.
     pub(crate) fn all(joints: usize) -> Self {
         Self { linear: true, weights: true, payload: true, lift: true, laws: vec![true; joints] }
     }
 
-    /// Whether nothing differs, so that all static readings are the same.
+    /// Whether no number differs, so that all static readings are the same.
     pub(crate) fn is_none(&self) -> bool {
         !(self.linear || self.weights || self.payload || self.lift || self.laws.contains(&true))
     }
 }
 
 impl Layout {
-    /// Whether a coordinate is a strain of a link.
+    /// Whether the strain coordinate with this index belongs to a link.
     pub(crate) fn is_of_link(&self, coordinate: usize) -> bool {
         self.links.iter().any(|link| (link.first..link.first + link.strains.len()).contains(&coordinate))
     }
@@ -205,7 +208,8 @@ impl Layout {
     }
 }
 
-/// The structure with every elastic element present, each with an arbitrary compliance, and nothing else changed.
+/// The structure with every elastic element present, each with an arbitrary compliance. Lift-off of the feet and
+/// water are left out.
 fn with_everything(structure: &Structure) -> Structure {
     let mut full = structure.clone();
     full.base_tilt_rad_per_nm = 1.0;
@@ -226,7 +230,8 @@ fn with_everything(structure: &Structure) -> Structure {
     full
 }
 
-/// For each mass, the structure with one unit of this mass added: joints, harnesses, travelling parts, water.
+/// For each mass that a fit can change, the structure with one unit of this mass added: the joints first, then
+/// harnesses, travelling parts and water.
 fn unit_masses(full: &Structure) -> Vec<Structure> {
     let joints = full.joints().map(|joint| {
         let mut with = full.clone();
@@ -256,7 +261,8 @@ fn unit_masses(full: &Structure) -> Vec<Structure> {
 }
 
 impl Coefficients {
-    /// Expresses a subject on the coordinates of `layout`. Masses are differences from those of `nominal`.
+    /// Expresses `subject` as numbers on the coordinates of `layout`. Its masses are given as differences from those
+    /// of `nominal`.
     pub fn new(layout: &Layout, nominal: &Subject, subject: &Subject) -> Self {
         let structure = &subject.structure;
         let mut linear = vec![0.0; layout.n];
@@ -310,12 +316,12 @@ impl Coefficients {
         }
     }
 
-    /// Torsion law of a joint at an angle of the joint, in a test of a channel.
+    /// Torsion law of a joint at the joint angle `angle_rad`, in a test of the channel `channel`.
     pub(crate) fn law_at(&self, joint: usize, channel: Channel, angle_rad: f64) -> JointLaw {
         self.law(joint, channel).at_angle(angle_rad)
     }
 
-    /// Torsion law of a joint in a test of a channel, as its mean over all joint angles.
+    /// Torsion law of a joint in a test of the channel `channel`, averaged over all joint angles.
     pub(crate) fn law(&self, joint: usize, channel: Channel) -> JointLaw {
         let mut law = self.laws[joint];
         if let Some(servo) = self.tests[channel as usize].servo_rad_per_nm.get(joint) {
@@ -324,7 +330,7 @@ impl Coefficients {
         law
     }
 
-    /// Differences between two subjects that change static readings.
+    /// Which numbers that static readings depend on differ between this subject and `other`.
     pub(crate) fn static_changes(&self, other: &Self) -> StaticChanges {
         let in_test = |c: &Self, joint: usize| c.law(joint, Channel::Static);
         let laws: Vec<bool> = (0..self.laws.len()).map(|j| in_test(self, j) != in_test(other, j)).collect();
@@ -346,7 +352,7 @@ impl Coefficients {
         StaticChanges { linear, weights, payload, lift, laws }
     }
 
-    /// Whether two subjects have the same natural frequencies and the same errors of the modal channel.
+    /// Whether this subject and `other` have the same natural frequencies and the same errors of the modal channel.
     pub fn same_modes(&self, other: &Self) -> bool {
         self.linear == other.linear
             && self.lift == other.lift

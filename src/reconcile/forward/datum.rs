@@ -32,7 +32,8 @@ pub(crate) struct Groups {
 }
 
 impl Groups {
-    /// The group of a pose. A pose that was not seen before starts a new group.
+    /// Index of the group of a pose, which is given by its joint positions. A pose that was not seen before starts a
+    /// new group.
     pub(crate) fn of(&mut self, pose_deg: &[f64]) -> usize {
         *self.known.entry(pose_key(pose_deg)).or_insert_with(|| {
             self.names.push(pose_deg.iter().map(|a| format!("{a}")).collect::<Vec<_>>().join(","));

@@ -24,18 +24,20 @@ use crate::reconcile::readings::rows::ModalRow;
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix3xX, SymmetricEigen, Vector3};
 use std::f64::consts::TAU;
 
-/// Number of trial shapes in addition to the measured modes.
+/// Number of trial shapes that are used in addition to the number of measured modes.
 const SPARE_SHAPES: usize = 12;
 
-/// Largest cost of one frequency when two numberings of a list are compared \[squared standard deviations\].
+/// Upper limit of the cost of one frequency (its squared residual) when two numberings of a list are compared
+/// \[squared standard deviations\].
 const MISS: f64 = 400.0;
 
-/// Largest distance that one frequency can add when the order of a list is questioned \[ln\]. It is more than the
-/// change of frequencies within tolerance.
+/// Upper limit of what one frequency adds to the misfit when the order of a list is questioned: the logarithm of
+/// measured over predicted frequency. The limit is more than a change of stiffnesses and masses within tolerance
+/// causes.
 const OFF: f64 = 0.05;
 
-/// A list is out of order if the frequency falls from a mode to a higher one by more than this \[standard deviations of
-/// the difference\]. Noise does not produce such a fall.
+/// A list is out of order if a mode has a frequency lower than that of a mode with a smaller number, by more than
+/// this \[standard deviations of the difference\]. Noise does not produce such a fall.
 const UNMISTAKABLE: f64 = 5.0;
 
 /// The list of modes of one pose and payload.
@@ -48,8 +50,8 @@ pub struct ModalTest {
     pub modes: Vec<(usize, usize)>,
     /// Mass matrix of the nominal arm without payload, arranged for products.
     mass: Panels,
-    /// Factors of the mass matrix of each added mass. They have few columns, and only the rows of coordinates inboard
-    /// of the mass.
+    /// For each added mass, the factor `L` of its mass matrix `L Lᵀ`. A factor has few columns, and only the rows of
+    /// coordinates inboard of the mass.
     factors: Vec<Factor>,
     tip: Matrix3xX<f64>,
     spin: Matrix3xX<f64>,
@@ -133,7 +135,8 @@ impl ModalTest {
         self.modes.iter().map(|(_, mode)| mode + 1).max().unwrap_or(0)
     }
 
-    /// Computes the trial forces from the full solution with these coefficients.
+    /// Computes the trial forces `F` (inertia forces of the lowest modes) from the full eigenvalue problem with these
+    /// coefficients.
     ///
     /// If few coordinates are compliant, as in an arm with rigid links, there may be too few trial forces. They then
     /// come from an arm whose links have their compliance as drawn, and whose rigid joints have that of the softest
@@ -162,7 +165,8 @@ impl ModalTest {
         self.mode_count() + SPARE_SHAPES
     }
 
-    /// Inertia forces of the lowest modes with these compliances: the trial forces `F`.
+    /// The trial forces `F`: the inertia forces of the lowest modes of an arm with these `compliances`, one column
+    /// per mode.
     fn trial_forces(
         &self,
         layout: &Layout,
@@ -194,8 +198,8 @@ impl ModalTest {
         }
     }
 
-    /// The mass matrix times the given shapes. The parts that parameters change have a low rank, so the matrix itself
-    /// need not be assembled.
+    /// The mass matrix times the given `shapes`. The parts of the matrix that parameters change have a low rank, so
+    /// the matrix itself need not be assembled.
     fn momenta(&self, coefficients: &Coefficients, shapes: &DMatrix<f64>) -> DMatrix<f64> {
         let mut out = self.mass.times(shapes.as_view());
         for (factor, amount) in self.factors.iter().zip(&coefficients.masses) {
@@ -222,7 +226,7 @@ impl ModalTest {
         out
     }
 
-    /// Payload mass \[kg\], and the displacement of its centre of gravity per unit of each coordinate.
+    /// Mass of the payload \[kg\], and the displacement of its centre of gravity per unit of each strain coordinate.
     fn payload_jacobian(&self, coefficients: &Coefficients) -> (f64, Matrix3xX<f64>) {
         if self.payload.mass_kg == 0.0 {
             return (0.0, Matrix3xX::zeros(0));
@@ -231,8 +235,8 @@ impl ModalTest {
         (self.payload.mass_kg + coefficients.payload_delta_kg, &self.tip - arm.cross_matrix() * &self.spin)
     }
 
-    /// The additional mass at the tip in modal tests \[kg\], and the displacement of its centre of gravity per unit of
-    /// each coordinate.
+    /// The additional mass at the tip in modal tests \[kg\], and the displacement of its centre of gravity per unit
+    /// of each strain coordinate.
     fn hung_jacobian(&self, coefficients: &Coefficients) -> (f64, Matrix3xX<f64>) {
         let test = &coefficients.tests[Channel::Modal as usize];
         match test.mass_kg {
@@ -241,7 +245,8 @@ impl ModalTest {
         }
     }
 
-    /// Compliance of every coordinate. For a joint it is the slope of the torsion law at the torque of this test.
+    /// Compliance of every strain coordinate in this test. For a joint's torsion it is the slope of its torsion law
+    /// at the static torque of this test.
     fn compliances(&self, layout: &Layout, coefficients: &Coefficients) -> Vec<f64> {
         let mut out = coefficients.linear.clone();
         if !coefficients.warming.is_none() {
@@ -264,7 +269,7 @@ impl ModalTest {
         out
     }
 
-    /// Moments on the base about world x and y in this test \[N m\]. `wrench` is that of the payload.
+    /// Static moments on the base about world x and y in this test \[N m\]. `wrench` is the weight of the payload.
     fn base_moments_nm(&self, layout: &Layout, coefficients: &Coefficients, wrench: &Wrench) -> [f64; 2] {
         let dead = self.geometry.dead_base_nm(coefficients, layout, Channel::Modal);
         [0, 1].map(|i| dead[i] + self.geometry.base[i].twist.dot(wrench))
@@ -306,7 +311,7 @@ impl ModalTest {
             .collect()
     }
 
-    /// Whether the modes of this test are the same with two sets of coefficients.
+    /// Whether the modes of this test are the same for two arms, given by their coefficients `from` and `to`.
     pub(crate) fn same_modes(&self, layout: &Layout, from: &Coefficients, to: &Coefficients) -> bool {
         from.masses == to.masses
             && from.payload_delta_kg == to.payload_delta_kg
@@ -315,7 +320,8 @@ impl ModalTest {
             && self.compliances(layout, from) == self.compliances(layout, to)
     }
 
-    /// Whether some frequency is lower than that of a lower mode by more than noise.
+    /// Whether some measured frequency is lower than the frequency of a mode with a smaller number, by more than
+    /// noise explains.
     fn falls(&self, data: &[Datum]) -> bool {
         self.modes.iter().any(|(a, low)| {
             self.modes.iter().any(|(b, high)| {
@@ -325,8 +331,9 @@ impl ModalTest {
         })
     }
 
-    /// Renumbers the modes by rising frequency if the list is out of order by more than noise, and returns whether it
-    /// did. The list is not changed if, with these coefficients, a single wrong frequency is the simpler explanation.
+    /// Renumbers the modes by rising frequency if the list is out of order by more than noise explains, and returns
+    /// whether it did. The list is not changed if its present numbering fits the frequencies predicted with these
+    /// coefficients better: then a single frequency is wrong.
     pub fn put_in_order(&mut self, layout: &Layout, coefficients: &Coefficients, data: &[Datum]) -> bool {
         if !self.falls(data) {
             return false;
@@ -355,8 +362,9 @@ impl ModalTest {
         self.solve(layout, coefficients, count).iter().map(|s| 1.0 / (TAU * s.mu.sqrt())).collect()
     }
 
-    /// Finds a mode that is missing from the measured list. If the list fits far better with all later modes numbered
-    /// one higher, they are renumbered. Returns the number of the missing mode, from 1.
+    /// Finds a mode that is missing from the measured list. If the list fits the predicted frequencies far better
+    /// with all later modes numbered one higher, they are renumbered. Returns the number of the missing mode, counted
+    /// from 1, or `None`.
     pub fn find_missed_mode(
         &mut self,
         layout: &Layout,
@@ -390,21 +398,23 @@ impl ModalTest {
         self.write(&solved, out);
     }
 
-    /// Writes the frequencies of solved modes to `out` \[Hz\]. A mode that the arm does not have becomes 0.
+    /// Writes the frequencies of the modes `solved` to the data of this test in `out` \[Hz\]. A measured mode that
+    /// the arm does not have gets 0.
     pub fn write(&self, solved: &[Solved], out: &mut [f64]) {
         for &(datum, mode) in &self.modes {
             out[datum] = solved.get(mode).map_or(0.0, |s| 1.0 / (TAU * s.mu.sqrt()));
         }
     }
 
-    /// The product `xᵀ M x`, where `M` is the mass matrix of one unit of added mass number `mass`.
+    /// The product `xᵀ M x` of a mode shape `x` with `M`, the mass matrix of one unit of the added mass with index
+    /// `mass`.
     fn energy(&self, mass: usize, shape: &DVector<f64>) -> f64 {
         let factor = &self.factors[mass].l;
         factor.tr_mul(&shape.rows(0, factor.nrows())).norm_squared()
     }
 
-    /// Writes the change of the frequencies between two neighbouring sets of coefficients to `out`, to first order
-    /// \[Hz\].
+    /// Writes to `out` the linearized change of the frequencies of this test if the coefficients change a little,
+    /// from `from` to `to` \[Hz\]. `solved` are the modes with `from`.
     pub fn change(
         &self,
         layout: &Layout,
@@ -455,23 +465,24 @@ impl ModalTest {
     }
 }
 
-/// A basis of the trial shapes in which the strain energy is the unit matrix.
+/// A basis of the trial shapes in which the matrix of strain energies is the unit matrix.
 enum UnitStrains {
-    /// The Cholesky factor of the strain energy.
+    /// The Cholesky factor of the matrix of strain energies, whose inverse transpose is the basis.
     Factor(DMatrix<f64>),
     /// The basis itself, with fewer columns than trial shapes. It is needed if some shapes are linear combinations of
     /// others, as where few coordinates are compliant.
     Columns(DMatrix<f64>),
 }
 
-/// Combinations of shapes whose strain energy is less than this fraction of the largest are rounding errors.
+/// A combination of trial shapes counts as a rounding error, and is dropped, if its strain energy is less than this
+/// fraction of the largest.
 const RANK: f64 = 1e-10;
 
 /// A Cholesky factor is taken as singular if the ratio of its smallest to its largest pivot is below this.
 const SINGULAR: f64 = 1e-6;
 
-/// The basis in which the strain energy is the unit matrix, and the reduced mass matrix in this basis. `None` if there
-/// is no strain energy.
+/// The basis in which the strain energy matrix `strain` becomes the unit matrix, and the reduced mass matrix in this
+/// basis. `None` if there is no strain energy.
 fn unit_strains(strain: DMatrix<f64>, reduced_mass: &DMatrix<f64>) -> Option<(UnitStrains, DMatrix<f64>)> {
     if let Some(cholesky) = Cholesky::new(strain.clone()) {
         let l = cholesky.l();
@@ -496,7 +507,7 @@ fn unit_strains(strain: DMatrix<f64>, reduced_mass: &DMatrix<f64>) -> Option<(Un
 }
 
 impl UnitStrains {
-    /// Expresses a vector in this basis as a combination of the trial shapes.
+    /// Converts a vector of amounts in this basis into amounts of the trial shapes. `None` if the factor is singular.
     fn of(&self, combined: &DVector<f64>) -> Option<DVector<f64>> {
         match self {
             UnitStrains::Factor(l) => l.tr_solve_lower_triangular(combined),
@@ -505,8 +516,8 @@ impl UnitStrains {
     }
 }
 
-/// Slope of the tilt of a base whose feet lift off \[rad/(N m)\]. The jump of the slope is smoothed over `width` \[ln
-/// of the moment\].
+/// Slope of the tilt of a base whose feet lift off, at the moment `moment_nm` \[rad/(N m)\]. The slope jumps at
+/// lift-off, and the jump is smoothed over `width` \[ln of the moment\]; 0 leaves it sharp.
 fn lifted_tangent(lift: &BaseLift, moment_nm: f64, width: f64) -> f64 {
     if width == 0.0 {
         return lift.tangent_compliance_rad_per_nm(moment_nm);
@@ -515,8 +526,8 @@ fn lifted_tangent(lift: &BaseLift, moment_nm: f64, width: f64) -> f64 {
     0.5 * (1.0 + libm::tanh(beyond)) / lift.stiffness_nm_per_rad
 }
 
-/// Slope of a joint's torsion law \[rad/(N m)\]. The jumps of the slope of a gear's curve are smoothed over `width`
-/// \[ln of the torque\].
+/// Slope of a joint's torsion law at the torque `torque_nm` \[rad/(N m)\]. The jumps of slope of a gear's curve are
+/// smoothed over `width` \[ln of the torque\]; 0 leaves them sharp.
 fn tangent(law: &JointLaw, torque_nm: f64, width: f64) -> f64 {
     let Curve::Windup(w) = law.curve else { return law.tangent_compliance_rad_per_nm(torque_nm) };
     if width == 0.0 {
@@ -530,7 +541,7 @@ fn tangent(law: &JointLaw, torque_nm: f64, width: f64) -> f64 {
     law.tangent_compliance_rad_per_nm(torque_nm) - sharp + smooth
 }
 
-/// Displacement of the tip, and rotation of the last frame, per unit of each coordinate.
+/// Displacement of the tip (first) and rotation of the last frame (second), per unit of each strain coordinate.
 fn tip_jacobians(posed: &Posed) -> (Matrix3xX<f64>, Matrix3xX<f64>) {
     let twists = posed.tip_twists();
     let tip: Vec<Vector3<f64>> = twists.iter().map(|t| displacement_at(t, &posed.tip_m)).collect();

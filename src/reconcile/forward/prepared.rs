@@ -26,7 +26,7 @@ pub struct Forward {
     /// Tests of the modal rows.
     pub modal: Vec<ModalTest>,
     bench: Vec<Bench>,
-    /// Index at which the data of each channel begin: static, modal, windup; then the number of data.
+    /// Index in `data` at which the data of each channel begin: static, modal, bench; then the number of all data.
     pub starts: [usize; 4],
     /// Names of the poses, in the order of `Datum::group`.
     pub groups: Vec<String>,
@@ -81,8 +81,8 @@ impl Forward {
         }
     }
 
-    /// Renumbers frequency lists in which frequencies do not rise with the mode number, unless a single wrong frequency
-    /// is the simpler explanation. Returns a sentence for each list that was changed.
+    /// Renumbers the modes of frequency lists in which frequencies do not rise with the mode number, unless a single
+    /// wrong frequency is the simpler explanation. Returns a sentence for each list that was changed.
     pub fn put_modes_in_order(&mut self) -> Vec<String> {
         let nominal = self.coefficients(&self.nominal);
         let (layout, data) = (&self.layout, &self.data);
@@ -97,7 +97,8 @@ impl Forward {
             .collect()
     }
 
-    /// Renumbers frequency lists from which a mode is missing. Returns a sentence for each list that was changed.
+    /// Renumbers the modes of frequency lists from which a mode is missing, by comparison with the frequencies of an
+    /// arm with these coefficients. Returns a sentence for each list that was changed.
     pub fn find_missed_modes(&mut self, coefficients: &Coefficients) -> Vec<String> {
         let mut out = Vec::new();
         for (i, test) in self.modal.iter_mut().enumerate() {
@@ -108,13 +109,13 @@ impl Forward {
         out
     }
 
-    /// Computes the trial shapes of all modal tests from the modes with these coefficients.
+    /// Computes the trial shapes of all modal tests again, from the modes of an arm with these coefficients.
     pub fn refresh(&mut self, coefficients: &Coefficients) {
         let layout = &self.layout;
         self.modal.iter_mut().for_each(|test| test.refresh(layout, coefficients));
     }
 
-    /// Indices of the data of a channel.
+    /// Indices in `data` of the data of a channel.
     pub fn range(&self, channel: Channel) -> std::ops::Range<usize> {
         match channel {
             Channel::Static => self.starts[0]..self.starts[1],
@@ -124,12 +125,13 @@ impl Forward {
         }
     }
 
-    /// Number of static rows.
+    /// Number of static rows, which is the number of loads over all poses.
     pub fn static_rows(&self) -> usize {
         self.statics.iter().map(StaticPose::count).sum()
     }
 
-    /// Magnitudes of a joint's torques on the bench \[N m\].
+    /// Magnitudes of the torques that a joint bears on the bench \[N m\]; none if the joint is not on the bench.
+    /// `joint` is the joint's index in the layout.
     pub fn bench_torques_nm(&self, joint: usize) -> impl Iterator<Item = f64> + '_ {
         self.bench.iter().filter(move |b| b.joint == joint).flat_map(Bench::sizes_nm)
     }
@@ -149,8 +151,9 @@ impl Forward {
         out
     }
 
-    /// Whether the torque on a joint in some modal test is this close to a break point of the joint's gear \[ln of the
-    /// torque\]. A small change of a mass may then change the slope of the curve, and frequencies jump.
+    /// Whether the torque on a joint in some modal test is so near a break point of the joint's gear that the
+    /// logarithm of their ratio is less than `close`. A small change of a mass may then change the slope of the
+    /// curve, and frequencies jump.
     pub(crate) fn is_close_to_a_step(&self, coefficients: &Coefficients, close: f64) -> bool {
         let breaks = coefficients.laws.iter().map(|law| match law.curve {
             Curve::Windup(curve) => vec![curve.t1_nm, curve.t2_nm],
@@ -166,12 +169,13 @@ impl Forward {
             })
     }
 
-    /// Expresses a subject as compliances, joint laws and masses.
+    /// Expresses a subject (an arm under test) as compliances, joint laws and masses, the last relative to the
+    /// nominal arm.
     pub fn coefficients(&self, subject: &Subject) -> Coefficients {
         Coefficients::new(&self.layout, &self.nominal, subject)
     }
 
-    /// The predicted reading for every datum, in the unit of the file.
+    /// The predicted reading of an arm with these coefficients for every datum, in the unit of the datum's file.
     pub fn predict(&self, coefficients: &Coefficients) -> Vec<f64> {
         let mut out = vec![0.0; self.data.len()];
         self.predict_smooth(coefficients, &mut out);
@@ -198,8 +202,8 @@ impl Forward {
         out
     }
 
-    /// Predicts static and bench readings only, before errors of the channels. Modal entries of `out` are not changed.
-    /// Returns the state of each static pose.
+    /// Writes the predictions of static and bench readings, before errors of the measuring channels, to `out`. The
+    /// entries of modal data are not changed. Returns the loads and deflections in each static pose.
     pub fn predict_smooth(&self, coefficients: &Coefficients, out: &mut [f64]) -> Vec<StaticState> {
         for bench in &self.bench {
             bench.predict(&coefficients.law(bench.joint, Channel::Windup), out);
@@ -212,9 +216,10 @@ impl Forward {
         self.statics.iter().map(state).collect()
     }
 
-    /// Changes predictions of static and bench readings from the coefficients `from` to each of the coefficients `to`.
-    /// `states` holds the static poses with `from`. On entry each column of `out` holds the predictions with `from`.
-    /// Parts that a change does not affect are not computed again.
+    /// Predicts static and bench readings for each of the coefficient sets `to`, starting from the predictions with
+    /// `from`. `states` holds the loads and deflections in the static poses with `from`. On entry each column of
+    /// `out`, one per entry of `to`, holds the predictions with `from`. Parts that do not differ are not computed
+    /// again.
     pub fn change_smooth(
         &self,
         states: &[StaticState],
@@ -241,7 +246,8 @@ impl Forward {
         }
     }
 
-    /// Converts values before the measuring channel to readings.
+    /// Adds the errors of the measuring channels: turns the value of each datum in `out` into the reading that the
+    /// channel shows.
     pub fn read(&self, coefficients: &Coefficients, out: &mut [f64]) {
         for (value, datum) in out.iter_mut().zip(&self.data) {
             *value = coefficients.channels[datum.channel as usize].of(*value, datum.component, datum.row);
@@ -249,7 +255,7 @@ impl Forward {
     }
 }
 
-/// Makes all links of a nominal model rigid.
+/// Makes all links of the subject rigid.
 pub(crate) fn make_links_rigid(subject: &mut Subject) {
     let names: Vec<String> = subject.structure.links().map(|l| l.name.clone()).collect();
     for name in names {

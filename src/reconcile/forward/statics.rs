@@ -18,10 +18,10 @@ use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::components::Component;
 use nalgebra::{Matrix3x6, Rotation3, Vector3};
 
-/// A coordinate, and the displacement of the tip by it.
+/// A strain coordinate, and how everything outboard of it and the tip move with it.
 #[derive(Debug, Clone)]
 pub struct Mover {
-    /// Index of the coordinate.
+    /// Index of the strain coordinate.
     pub index: usize,
     /// Kinematic twist of everything outboard per unit of the coordinate.
     pub twist: Twist,
@@ -29,26 +29,27 @@ pub struct Mover {
     pub tip: Vector3<f64>,
 }
 
-/// Everything about a pose that does not depend on parameters.
+/// Everything about a pose that does not depend on fitted parameters.
 #[derive(Debug, Clone)]
 pub struct PoseGeometry {
     /// Position of the tip, world frame \[m\].
     pub tip_m: Vector3<f64>,
     /// Rotation of the last frame relative to the world.
     pub rotation: Rotation3<f64>,
-    /// All coordinates except the twists of joints that move the tip.
+    /// The strain coordinates that move the tip, except those of the joints' torsion.
     pub linear: Vec<Mover>,
     /// The coordinates of the joints' torsion, base to tip.
     pub joints: Vec<Mover>,
     /// Angle of each joint in the pose, base to tip \[rad\].
     pub angles_rad: Vec<f64>,
-    /// Torque on each joint by the template's dead weight and by springs \[N m\].
+    /// Torque on each joint by the weight of the template (the nominal arm, no payload) and by springs \[N m\].
     pub dead_nm: Vec<f64>,
-    /// For each mass, the torques on the joints by one unit of it \[N m\].
+    /// For each mass that a fit can change, the torques on the joints by one unit of it \[N m\].
     pub dead_per_mass_nm: Vec<Vec<f64>>,
-    /// Coordinates of the base's tilts about world x and y.
+    /// The two coordinates of the base's tilt, about world x and y.
     pub base: [Mover; 2],
-    /// Moments of the template's dead weight about these axes \[N m\]; below, those of one unit of each mass.
+    /// Moments of the template's weight about world x and y of the base \[N m\]. The next field has those of one unit
+    /// of each mass.
     dead_base_nm: [f64; 2],
     dead_base_per_mass_nm: Vec<[f64; 2]>,
 }
@@ -58,7 +59,7 @@ pub struct PoseGeometry {
 struct Load {
     payload: Payload,
     force_n: Vector3<f64>,
-    /// Index of the datum of each component; `None` if it was not measured.
+    /// For each component x, y, z, the index of its datum; `None` if it was not measured.
     data: [Option<usize>; 3],
     when: Moment,
 }
@@ -71,29 +72,31 @@ pub struct StaticPose {
     loads: Vec<Load>,
 }
 
-/// The loads in a pose, and the deflections of an arm with given coefficients under them. The state is kept with a fit,
-/// so that a change of few coefficients, as for a derivative, is computed fast.
+/// The loads in a pose, and the deflections of an arm with given coefficients under them. A fit keeps this state. A
+/// change of few coefficients, as for a derivative, then needs only a part of the computation.
 #[derive(Debug, Clone, Default)]
 pub struct StaticState {
-    /// Displacement of the tip per wrench by all linear compliances together. If the moduli of the links change, the
-    /// links are not included.
+    /// Displacement of the tip per unit of the load's wrench, by all linear compliances together. If the moduli of
+    /// the links change between loads, the links are not included.
     compliance: Matrix3x6<f64>,
-    /// Displacement of the tip per wrench by the links alone, if their moduli change.
+    /// Displacement of the tip per unit of the load's wrench, by the links alone; used only if their moduli change.
     bending: Matrix3x6<f64>,
     /// Factor on the compliance of the links under each load; empty if their moduli do not change.
     softness: Vec<f64>,
     /// Tilt of a base whose feet lift off under each load, relative to the unloaded arm \[rad\]; empty if the feet do
     /// not lift off.
     lifted_rad: Vec<[f64; 2]>,
-    /// Torque on each joint by the dead weight, which is there without load \[N m\].
+    /// Torque on each joint by weight and springs without load \[N m\].
     dead_nm: Vec<f64>,
-    /// Memory for these torques with other weights \[N m\].
+    /// Memory for the torques `dead_nm` that other masses give \[N m\].
     moved_dead_nm: Vec<f64>,
     /// Wrench of each load, about the world's origin.
     wrenches: Vec<Wrench>,
-    /// Torque on each joint by each load \[N m\]; joints are the slow index.
+    /// Torque on each joint by each load, in addition to `dead_nm` \[N m\]: all loads of the first joint, then those
+    /// of the second.
     loaded_nm: Vec<f64>,
-    /// Twist of each joint under each load, relative to the unloaded arm \[rad\]; joints are the slow index.
+    /// Twist (torsion angle) of each joint under each load, relative to the unloaded arm \[rad\], in the order of
+    /// `loaded_nm`.
     twists_rad: Vec<f64>,
 }
 
@@ -151,7 +154,7 @@ pub(crate) fn prepare(
 }
 
 impl PoseGeometry {
-    /// Computes the geometry of a pose by mechanics.
+    /// Computes the geometry of a pose with the mechanics of the full model.
     pub fn new(layout: &Layout, nominal: &Subject, pose_deg: &[f64]) -> Self {
         let pose_rad = layout.template.pose_si(pose_deg);
         let empty = Payload::default();
@@ -191,7 +194,8 @@ impl PoseGeometry {
         }
     }
 
-    /// Moments on the base about world x and y by all dead weight in a test of a channel \[N m\].
+    /// Moments on the base about world x and y by all weight except the payload, in a test of the channel `channel`
+    /// \[N m\].
     pub fn dead_base_nm(&self, coefficients: &Coefficients, layout: &Layout, channel: Channel) -> [f64; 2] {
         let masses = self.dead_base_per_mass_nm.iter().zip(&coefficients.weights);
         let test =
@@ -202,7 +206,8 @@ impl PoseGeometry {
         })
     }
 
-    /// Displacement of the tip per wrench by those linear compliances for which `is_chosen` is true.
+    /// Displacement of the tip per unit of the load's wrench, by those linear compliances for whose coordinate
+    /// `is_chosen` is true.
     fn compliance(&self, coefficients: &Coefficients, is_chosen: impl Fn(usize) -> bool) -> Matrix3x6<f64> {
         let mut out = Matrix3x6::zeros();
         for mover in self.linear.iter().filter(|mover| is_chosen(mover.index)) {
@@ -214,7 +219,8 @@ impl PoseGeometry {
         out
     }
 
-    /// Torque on each joint by all dead weight in a test of a channel \[N m\].
+    /// Torque on each joint by all weight except the payload, and by springs, in a test of the channel `channel` \[N
+    /// m\].
     pub fn dead_torques_nm(
         &self,
         coefficients: &Coefficients,
@@ -226,7 +232,7 @@ impl PoseGeometry {
         torques_nm
     }
 
-    /// Replaces `torques_nm` by the torques on the joints by all dead weight in a test of a channel \[N m\].
+    /// Replaces the content of `torques_nm` by the result of `dead_torques_nm`, so that no memory is allocated.
     fn add_up_dead_torques(
         &self,
         coefficients: &Coefficients,
@@ -254,7 +260,8 @@ impl PoseGeometry {
         }
     }
 
-    /// Payload and tip force as a wrench about the world's origin.
+    /// Weight of the payload, corrected by the coefficients, and tip force, together as a wrench about the world's
+    /// origin.
     pub fn wrench(
         &self,
         payload: &Payload,
@@ -273,9 +280,10 @@ impl PoseGeometry {
     }
 }
 
-/// Twists of a joint under successive loads, relative to the twist of the unloaded arm \[rad\]. The unloaded arm is the
-/// reference and comes to rest before each pose. `loaded_nm` holds the torques of the loads, in addition to that of the
-/// dead weight.
+/// Computes the twists (torsion angles) of a joint under successive loads, relative to the twist of the unloaded arm
+/// \[rad\]. `dead_nm` is the torque without load, and `loaded_nm` holds the additional torque of each load. The
+/// unloaded arm is the reference. It is taken to come to rest before each pose, so the friction play starts from
+/// rest.
 fn follow(law: &JointLaw, dead_nm: f64, loaded_nm: &[f64], twists_rad: &mut [f64]) {
     let mut play_nm = law.play_at_rest_nm(dead_nm);
     let reference_rad = law.play_angle_rad(dead_nm, &mut play_nm);
@@ -284,7 +292,7 @@ fn follow(law: &JointLaw, dead_nm: f64, loaded_nm: &[f64], twists_rad: &mut [f64
     }
 }
 
-/// Torque on each joint by the dead weight, and the moments on the base about world x and y \[N m\].
+/// Torque on each joint by weight and springs, and the moments of the weight on the base about world x and y \[N m\].
 fn dead_torques(posed: &Posed) -> (Vec<f64>, [f64; 2]) {
     let mut wrench = Wrench::zeros();
     let mut torques = Vec::new();
@@ -311,14 +319,15 @@ fn dead_torques(posed: &Posed) -> (Vec<f64>, [f64; 2]) {
 }
 
 impl StaticPose {
-    /// The state of the arm with these coefficients in this pose.
+    /// The loads and deflections in this pose of an arm with these coefficients.
     pub(crate) fn state(&self, layout: &Layout, coefficients: &Coefficients) -> StaticState {
         let mut out = StaticState::default();
         self.update(layout, coefficients, &StaticChanges::all(coefficients.laws.len()), &mut out);
         out
     }
 
-    /// Changes a state from other coefficients to `coefficients`. `changes` says which of them differ.
+    /// Brings `state`, which belongs to other coefficients, to `coefficients`. `changes` says which numbers differ,
+    /// and only what depends on these is computed again.
     pub(crate) fn update(
         &self,
         layout: &Layout,
@@ -373,7 +382,7 @@ impl StaticPose {
         }
     }
 
-    /// Displacement of the tip under load number `load` \[mm\].
+    /// Displacement of the tip from the unloaded arm under the load with index `load` \[mm\].
     pub(crate) fn displacement_mm(&self, state: &StaticState, load: usize) -> Vector3<f64> {
         let wrench = state.wrenches[load];
         let mut tip = state.compliance * wrench;
@@ -394,7 +403,8 @@ impl StaticPose {
         self.loads.len()
     }
 
-    /// The measured components of the displacement under a load: number of the component, and index of its datum.
+    /// The measured components of the tip displacement under the load with index `load`. Each is a pair: number of
+    /// the component (0 to 2), and index of its datum.
     pub(crate) fn measured(&self, load: usize) -> impl Iterator<Item = (usize, usize)> {
         self.loads[load]
             .data
@@ -403,7 +413,7 @@ impl StaticPose {
             .filter_map(|(component, datum)| Some((component, datum?)))
     }
 
-    /// Computes the tilts of a base whose feet lift off.
+    /// Computes the tilts of a base whose feet lift off, under each load of the pose, and stores them in `state`.
     fn lift(&self, layout: &Layout, coefficients: &Coefficients, state: &mut StaticState) {
         state.lifted_rad.clear();
         let Some(lift) = coefficients.lift else { return };
@@ -424,8 +434,8 @@ impl StaticPose {
         }
     }
 
-    /// Adds the displacement of the tip \[mm\] by additional compliances to `out`. `further` holds pairs of coordinate
-    /// and compliance.
+    /// Adds to `out` the displacement of the tip under each load by compliances in addition to those of the
+    /// coefficients \[mm\]. `further` holds pairs of strain coordinate and additional compliance.
     pub fn add_yielding(
         &self,
         layout: &Layout,

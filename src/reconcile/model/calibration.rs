@@ -62,8 +62,8 @@ pub struct Nuisance {
 }
 
 impl Nuisance {
-    /// The parameters for which the tolerance is above zero. A tolerance is a 95 % limit, so half of it is the standard
-    /// deviation.
+    /// The calibrated parameters whose tolerance is above zero. A tolerance is a 95 % limit, so half of it is the
+    /// standard deviation.
     pub fn new(arm: &Arm, tolerance: &Tolerance) -> Self {
         let mut numbers = Vec::new();
         let joints = || arm.joints();
@@ -91,7 +91,7 @@ impl Nuisance {
         Self { numbers }
     }
 
-    /// Factor on the property number `index` if its parameter is `u`, a standard normal deviate.
+    /// Factor on the property with index `index` if its parameter is `u`, in standard deviations of the tolerance.
     pub fn factor(&self, index: usize, u: f64) -> f64 {
         libm::exp(u * self.numbers[index].1)
     }
@@ -146,7 +146,8 @@ impl Nuisance {
     }
 }
 
-/// The nominal bearings that are compliant, each with its standard deviation. Empty if the tolerance is zero.
+/// The bearings of an arm that are compliant in the nominal model, each with the standard deviation of the logarithm
+/// of its stiffness. Empty if the tolerance is zero.
 fn bearings(arm: &Arm, tolerance: f64) -> impl Iterator<Item = (Calibration, f64)> + '_ {
     let joints = arm.joints().filter(move |_| tolerance > 0.0);
     joints.filter_map(move |joint| {
@@ -156,8 +157,9 @@ fn bearings(arm: &Arm, tolerance: f64) -> impl Iterator<Item = (Calibration, f64
     })
 }
 
-/// Calibrated properties of prismatic joints, each with its standard deviation. The stiffness of the drive and the
-/// travelling mass have the tolerances of joints, the guide that of bearings.
+/// The properties of prismatic joints that are calibrated, each with the standard deviation of the logarithm of its
+/// factor. The stiffness of the drive and the travelling mass have the tolerances of joints, and the guide has the
+/// tolerance of bearings.
 fn prismatics<'a>(arm: &'a Arm, tolerance: &'a Tolerance) -> impl Iterator<Item = (Calibration, f64)> + 'a {
     let of_joint = |joint: &Prismatic| {
         let (name, m_per_n, rad_per_nm) = (&joint.name, joint.piece(0).m_per_n, joint.guide.rad_per_nm());

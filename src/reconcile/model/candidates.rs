@@ -35,8 +35,8 @@ pub fn candidates(forward: &Forward) -> Vec<Candidate> {
     out
 }
 
-/// Merges candidates that are the same thing in this arm. If the first joint is vertical and at the origin, the tilt of
-/// its bearing is the tilt of the base.
+/// Merges candidates that stand for the same compliance in this arm. If the first joint is vertical and at the
+/// origin, the tilt of its bearing is the same as the tilt of the base.
 fn merge_twins(forward: &Forward, candidates: &mut Vec<Candidate>) {
     let Some(Piece::Joint(first)) = forward.nominal.structure.pieces.first() else { return };
     if first.axis.z.abs() < 1.0 - 1e-12 {
@@ -50,8 +50,8 @@ fn merge_twins(forward: &Forward, candidates: &mut Vec<Candidate>) {
     }
 }
 
-/// Lists the compliance of a servo as a twin of the compliance of a joint, where only one channel shows how the joint
-/// twists. The readings then cannot tell whether the joint is softer in this channel only.
+/// Lists the compliance of a servo as a twin of a joint's connection compliance if only one channel shows how the
+/// joint twists. The readings then cannot tell whether the joint is softer in this channel only.
 fn name_servos(forward: &Forward, candidates: &mut [Candidate]) {
     for candidate in candidates.iter_mut().filter(|c| c.kind.name == connection_compliance::KIND.name) {
         let shown = channels_of_joint(forward, &candidate.at);
@@ -69,7 +69,8 @@ fn channel_is_sought(forward: &Forward, kind: &Kind, place: Place) -> bool {
     }
 }
 
-/// The candidates of a kind of effect at a place: one for each set of parameters that may be fitted.
+/// The candidates of a kind of effect at the place named `at`: one for each set of parameters that may be fitted
+/// (variant), or one for each channel if the effect acts in one channel.
 fn variants(forward: &Forward, sizes: &Sizes, kind: &'static Kind, place: Place, at: &str) -> Vec<Candidate> {
     let asked = Asked { kind, place, at, freed: None, channel: None };
     let candidate = |asked: Asked| candidate(forward, sizes, asked);
@@ -86,25 +87,27 @@ fn variants(forward: &Forward, sizes: &Sizes, kind: &'static Kind, place: Place,
     }
 }
 
-/// Whether the readings contain the quantity to which a set of parameters refers, such as temperatures.
+/// Whether the readings contain the quantity to which the fitted parameters `freed` refer, such as temperatures.
 fn is_measured(forward: &Forward, freed: &[Freed]) -> bool {
     forward.has_temperatures || freed.iter().all(|(name, _)| *name != thermal_modulus::PER_K)
 }
 
-/// An effect at a place, and the parameters of it that are fitted.
+/// An effect at a place, and which of its parameters are fitted.
 #[derive(Clone, Copy)]
 struct Asked<'a> {
     kind: &'static Kind,
     place: Place,
     at: &'a str,
-    /// The parameters that are fitted in a variant of the effect. `None`: those without a default value.
+    /// The parameters that are fitted in a variant of the effect. `None` means that all parameters without a default
+    /// value are fitted.
     freed: Option<&'static [Freed]>,
     /// The channel, if the effect has a channel as a parameter.
     channel: Option<Channel>,
 }
 
-/// The channels for which a compliance of the joint in this channel only is sought. Empty if a single channel shows how
-/// the joint twists, because it could not be told from a compliance in all channels.
+/// The channels in each of which a compliance of the joint that acts in this channel only is sought. Empty if a
+/// single channel shows how the joint twists, because the compliance could then not be told from one that acts in all
+/// channels.
 fn channels_apart(forward: &Forward, kind: &Kind, joint: &str) -> Vec<Channel> {
     let shown = channels_of_joint(forward, joint);
     let sought = kind.traits.sought_in.iter().filter(|channel| shown.contains(channel));
@@ -122,15 +125,16 @@ fn channels_of_joint(forward: &Forward, joint: &str) -> Vec<Channel> {
     Channel::ALL.into_iter().filter(is_shown).collect()
 }
 
-/// Whether a component of a parameter is fitted. `freed` holds the fitted parameters of a variant; `None` fits those
-/// without a default value.
+/// Whether the component with index `component` of a parameter is fitted. `freed` holds the fitted parameters of a
+/// variant; with `None`, the parameters without a default value are fitted.
 fn is_free(parameter: &Parameter, component: usize, freed: Option<&[Freed]>) -> bool {
     let Some(freed) = freed else { return parameter.default.is_none() && !parameter.is_channel };
     let is_own = |(name, one): &Freed| *name == parameter.name && one.is_none_or(|one| one == component);
     freed.iter().any(is_own)
 }
 
-/// The value of a parameter that is not fitted.
+/// The value of a parameter that is not fitted, in the parameter's unit. `channel` is the value of a parameter that
+/// names a channel.
 fn stated(forward: &Forward, parameter: &Parameter, channel: Option<Channel>) -> f64 {
     match parameter.name {
         _ if parameter.is_channel => channel.map_or(0.0, |channel| channel as usize as f64),
@@ -187,8 +191,9 @@ fn candidate(forward: &Forward, sizes: &Sizes, asked: Asked) -> Candidate {
     Candidate { kind, at, free_parameters, numbers, starts, twins: Vec::new() }
 }
 
-/// Limits a torque parameter to parts of the largest torque of the campaign. A torsion law that changes only beyond the
-/// torques of the campaign cannot be told from another.
+/// Limits the range of a torque parameter to fractions of `torque_nm`, the largest torque of the campaign. A torsion
+/// law that changes only beyond the torques of the campaign cannot be told from one that does not change. Other
+/// parameters are returned as they are.
 fn within_torque(free: FreeParameter, parameter: &Parameter, torque_nm: f64) -> FreeParameter {
     match parameter.torque_parts {
         Some((low, high)) => free.within(libm::log(low * torque_nm), libm::log(high * torque_nm)),
@@ -201,8 +206,9 @@ fn rows_of_campaign(forward: &Forward) -> f64 {
     forward.static_rows().max(forward.range(Channel::Modal).len()) as f64
 }
 
-/// Limits a time constant in rows to parts of the campaign. A change that is over within the first rows, or that has
-/// hardly begun at the last, does not depend on the order of the rows.
+/// Limits the range of a time constant, counted in rows, to fractions of the campaign's number of rows. A change that
+/// is over within the first rows, or has hardly begun at the last, does not depend on the order of the rows. Other
+/// parameters are returned as they are.
 fn within_rows(free: FreeParameter, rows: f64) -> FreeParameter {
     match free.name == thermal_modulus::ROWS && rows > 0.0 {
         true => free.within(libm::log(0.02 * rows), libm::log(3.0 * rows)),
@@ -210,8 +216,8 @@ fn within_rows(free: FreeParameter, rows: f64) -> FreeParameter {
     }
 }
 
-/// The mass that an effect may reduce: that of the joint, or of the lightest payload \[kg\]. `None` if the effect
-/// reduces no mass.
+/// The largest mass that an effect can take away \[kg\]: the mass of the joint, or of the lightest payload. `None` if
+/// the effect reduces no mass.
 fn lightest_kg(forward: &Forward, kind: &Kind, at: &str) -> Option<f64> {
     match kind.traits.removes? {
         Removes::JointMass => {
@@ -223,7 +229,8 @@ fn lightest_kg(forward: &Forward, kind: &Kind, at: &str) -> Option<f64> {
     }
 }
 
-/// Widens the range of a parameter in proportion to the size of the arm or of its readings.
+/// The parameter with its range and prior widened, if its expected size grows with the size of the arm or of its
+/// readings.
 fn of_size(parameter: &Parameter, sizes: &Sizes) -> Parameter {
     let parameter = &Parameter { high: parameter.sought_up_to.unwrap_or(parameter.high), ..*parameter };
     let Some((measure, part)) = parameter.grows_with else { return *parameter };
@@ -233,16 +240,16 @@ fn of_size(parameter: &Parameter, sizes: &Sizes) -> Parameter {
     Parameter { prior, low: parameter.low * wider, high: parameter.high * wider, ..*parameter }
 }
 
-/// Tilting stiffness of the nominal bearing of a joint \[N m/rad\], to which the effect adds a tilt. `None` if the
-/// effect is no tilt or the bearing is rigid.
+/// Tilting stiffness of the nominal bearing of the joint named `at` \[N m/rad\], to which a tilt effect of this kind
+/// adds compliance. `None` if the kind of effect is no tilt or the bearing is rigid.
 fn nominal_bearing_nm_per_rad(forward: &Forward, kind: &Kind, at: &str) -> Option<f64> {
     let joint = forward.nominal.structure.joints().find(|j| j.name == at)?;
     let tilts = kind.traits.yields == Some(Yields::Tilt) && joint.tilt_rad_per_nm > 0.0;
     tilts.then(|| 1.0 / joint.tilt_rad_per_nm)
 }
 
-/// Reference stiffness in which compliances are expressed \[N m/rad\]: that of the joint itself, or of the first joint
-/// that is not rigid.
+/// Stiffness in which compliances at the place `at` are expressed \[N m/rad\]: the stiffness of the joint there or,
+/// if there is no joint or it is rigid, of the first joint that is not rigid.
 fn reference_stiffness(forward: &Forward, at: &str) -> f64 {
     let joints: Vec<_> = forward.nominal.structure.joints().collect();
     let own = joints.iter().find(|j| j.name == at);
@@ -252,8 +259,8 @@ fn reference_stiffness(forward: &Forward, at: &str) -> f64 {
         .map_or(1e5, |j| 1.0 / j.law.tangent_compliance_rad_per_nm(0.0))
 }
 
-/// Reference stiffness in which compliances at a prismatic joint are expressed: that of its drive \[N/m\], or that of
-/// its guide about its most compliant axis \[N m/rad\].
+/// Stiffness in which compliances at the prismatic joint `at` are expressed: of its drive along the travel \[N/m\] if
+/// the effect is a compliance along the travel, otherwise of its guide about the most compliant axis \[N m/rad\].
 fn reference_of_prismatic(forward: &Forward, kind: &Kind, at: &str) -> f64 {
     let joint = forward.nominal.structure.prismatics().find(|joint| joint.name == at);
     let [along, about] = joint.map_or([0.0; 2], |joint| [joint.m_per_n, joint.guide_rad_per_nm.max()]);
@@ -277,8 +284,8 @@ fn middle_stiffness(forward: &Forward, at: &str) -> f64 {
     }
 }
 
-/// Largest torque on a joint in the campaign, bench included \[N m\]. For the base, it is the largest moment in static
-/// tests.
+/// Largest torque on the joint `at` over all tests of the campaign, bench included \[N m\]. For the base, it is the
+/// largest moment in static tests.
 pub(crate) fn largest_torque_nm(forward: &Forward, at: &str) -> f64 {
     if at == "base" {
         let nominal = forward.coefficients(&forward.nominal);

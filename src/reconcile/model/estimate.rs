@@ -3,8 +3,8 @@
 use crate::arm::effect::entry::word_of;
 use serde_json::{Map, Value, json};
 
-/// The 95 % interval of a fitted parameter, in the scaled parameter `u`. An end is `None` where the data do not bound
-/// it.
+/// The 95 % interval of a fitted parameter, in the scaled parameter `u` (of the order of 1). An end is `None` where
+/// the data do not bound it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
     /// Lower end, in `u`.
@@ -14,13 +14,13 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// The interval, widened to contain the best value `u`.
+    /// This interval, widened to contain the best value `u`.
     pub(crate) fn with(self, u: f64) -> Self {
         Self { low: self.low.map(|v| v.min(u)), high: self.high.map(|v| v.max(u)) }
     }
 
-    /// The interval with both ends moved outwards by `by`. An end that then lies beyond the bounds of the parameter
-    /// becomes `None`.
+    /// This interval with both ends moved outwards by `by`. An end that then lies beyond the bounds `low` and `high`
+    /// of the parameter becomes `None`.
     pub(crate) fn wider(self, by: f64, (low, high): (f64, f64)) -> Self {
         Self {
             low: self.low.map(|v| v - by).filter(|v| *v > low),

@@ -6,7 +6,7 @@ use crate::arm::effect::kind::Measure;
 use crate::reconcile::forward::bench::ARCMIN_PER_RAD;
 use crate::reconcile::forward::prepared::Forward;
 
-/// Sizes of an arm and of its readings, by which the expected size of an effect is scaled.
+/// Sizes of an arm and of its readings. The expected size of an effect is a fraction of one of them.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Sizes {
     arm_kg: f64,
@@ -36,8 +36,8 @@ impl Sizes {
         }
     }
 
-    /// The largest expected size of a parameter that grows with a measure, in the parameter's unit: `part` times the
-    /// measure.
+    /// The largest expected size of a parameter whose size grows with `measure` (such as the mass of the arm), in the
+    /// parameter's unit: `part` times the measure.
     pub(crate) fn expected(&self, measure: Measure, part: f64) -> f64 {
         match measure {
             Measure::ArmMass => part * self.arm_kg,

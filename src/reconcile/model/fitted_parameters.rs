@@ -3,8 +3,8 @@
 use super::estimate::{Estimate, Interval};
 use super::parameters::{Candidate, Number};
 
-/// The parameters of a fitted effect with their intervals. A component of a vector that was not fitted has its stated
-/// value and no ends.
+/// The parameters of the effect `effect`, fitted to `u`, with their intervals `ends`, one per fitted number. A
+/// component of a vector that was not fitted has its stated value and no ends of an interval.
 pub(crate) fn fitted_parameters(
     effect: &Candidate,
     u: &[f64],

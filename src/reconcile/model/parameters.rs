@@ -17,8 +17,8 @@ pub struct FreeParameter {
     /// Index of the component, if the parameter is a vector; otherwise 0.
     pub component: usize,
     scale: Scale,
-    /// Scale of `u`. For linear scales it is the value at `u = 1`. For stiffnesses it is the stiffness at `u = 1`,
-    /// where `u` is proportional to the compliance.
+    /// Reference from which `u` is scaled. For linear scales it is the value of the parameter at `u = 1`. For
+    /// stiffnesses it is the stiffness at `u = 1`, and `u` is proportional to the compliance.
     reference: f64,
     /// Smallest value of `u` in a fit.
     pub low: f64,
@@ -26,25 +26,25 @@ pub struct FreeParameter {
     pub high: f64,
     /// Name of another parameter of the effect below which this one cannot lie.
     not_below: Option<&'static str>,
-    /// The value of `u` at which the effect is absent; `None` if the parameter says how the effect acts and not how
-    /// large it is.
+    /// The value of `u` at which the effect is absent; `None` if the parameter does not say how large the effect is,
+    /// but only how it acts.
     absent: Option<f64>,
     /// The range in which `u` is expected.
     expected: (f64, f64),
 }
 
-/// Sizes below this fraction of the prior's width are equally likely.
+/// All sizes below this fraction of the width of the expected range have equal prior probability.
 const SMALL: f64 = 0.01;
 
-/// Largest compliance that is sought in a connection, bearing or base, as a multiple of the joint's.
+/// Largest compliance that is sought in a connection, bearing or base, as a multiple of the joint's compliance.
 const SOFTEST: f64 = 100.0;
 
 /// Stiffness that stands for a rigid part: no reading can tell it from rigid \[N m/rad\].
 const RIGID_NM_PER_RAD: f64 = 1e15;
 
 impl FreeParameter {
-    /// A component of a parameter. `joint_stiffness` is the reference of `u`: the stiffness of a joint \[N m/rad\] for
-    /// compliances, the largest torque on the joint \[N m\] for a torque.
+    /// The fitted parameter for one component of `parameter`. `joint_stiffness` is the reference of `u`: the
+    /// stiffness of a joint \[N m/rad\] for compliances, the largest torque on the joint \[N m\] for a torque.
     pub(crate) fn new(parameter: &Parameter, component: usize, joint_stiffness: f64) -> Self {
         let expected = parameter.prior;
         let (low, high) = (parameter.low, parameter.high);
@@ -74,7 +74,7 @@ impl FreeParameter {
         Self { name: parameter.name, component, scale, reference, low, high, not_below, absent, expected }
     }
 
-    /// The same parameter limited to this range of `u`. Every value in the range is expected.
+    /// This parameter, limited to values of `u` from `low` to `high`. Every value in the range is equally expected.
     pub(crate) fn within(self, low: f64, high: f64) -> Self {
         Self { low, high, expected: (low, high), ..self }
     }
@@ -106,7 +106,8 @@ impl FreeParameter {
         }
     }
 
-    /// A fitted value with its interval, converted from the interval of `u`.
+    /// The fitted value `value` with its interval in the unit of the parameter, converted from `interval`, which is
+    /// in `u`.
     pub fn estimate(&self, value: f64, interval: &Interval) -> Estimate {
         let (low, high) = match self.reversed() {
             true => (interval.high, interval.low),
@@ -120,12 +121,12 @@ impl FreeParameter {
         matches!(self.scale, Scale::Stiffness | Scale::Reciprocal)
     }
 
-    /// Whether the parameter says how large the effect is, and not only how it acts.
+    /// Whether the parameter says how large the effect is. If not, it only says how the effect acts.
     pub(crate) fn is_size(&self) -> bool {
         self.absent.is_some()
     }
 
-    /// Whether the effect is absent at `u`. An end of an interval there is no bound of the stiffness.
+    /// Whether the effect is absent at `u`, so that an end of an interval there is no bound of the stiffness.
     pub fn unbounded(&self, u: f64) -> bool {
         self.scale == Scale::Stiffness && u <= 1e-6
     }
@@ -135,19 +136,20 @@ impl FreeParameter {
         self.absent.map(|absent| u - absent)
     }
 
-    /// The value `u` with its difference from that of an absent effect multiplied by `part`; `u` itself if the
-    /// parameter is no size.
+    /// The value of `u` for an effect whose size is multiplied by `part`: the difference of `u` from its value for an
+    /// absent effect is multiplied. It is `u` itself if the parameter is no size.
     pub(crate) fn scaled(&self, u: f64, part: f64) -> f64 {
         self.absent.map_or(u, |absent| absent + part * (u - absent))
     }
 
-    /// Whether an interval contains the size at which the effect is absent; `None` if the parameter is no size.
+    /// Whether the interval `ends` of `u` contains the value at which the effect is absent; `None` if the parameter
+    /// is no size.
     pub(crate) fn may_be_absent(&self, ends: &Interval) -> Option<bool> {
         let absent = self.absent?;
         Some(ends.low.is_none_or(|low| low <= absent) && ends.high.is_none_or(|high| high >= absent))
     }
 
-    /// Whether the effect has reached the largest size that is sought.
+    /// Whether `u` is at an end of its range where the effect has the largest size that is sought.
     fn is_at_its_limit(&self, u: f64) -> bool {
         // the end where the effect is absent is no limit
         let near = 1e-6 * (self.high - self.low);
@@ -190,7 +192,7 @@ pub struct Candidate {
     pub at: String,
     /// Parameters of the effect that are fitted.
     pub free_parameters: Vec<FreeParameter>,
-    /// All numbers of the effect, in the order of its kind.
+    /// All numbers of the effect, fitted or stated, in the order of its kind's parameters.
     pub(crate) numbers: Vec<Number>,
     /// Starting points of fits, each a list of `u`, one per free parameter.
     pub starts: Vec<Vec<f64>>,
@@ -215,7 +217,8 @@ impl Candidate {
         names.zip(self.numbers.iter().copied()).collect()
     }
 
-    /// Stated parameters that files write as words: name of the parameter, number and word.
+    /// The stated parameters that files write as words and not as numbers: for each, name of the parameter, number
+    /// and word.
     pub(crate) fn words(&self) -> Vec<(&'static str, f64, &'static str)> {
         let word = |(name, number): (&'static str, Number)| match number {
             Number::Stated(number) => Some((name, number, word_of(self.kind.name, name, number)?)),
@@ -224,19 +227,20 @@ impl Candidate {
         self.named_numbers().into_iter().filter_map(word).collect()
     }
 
-    /// Whether another candidate is the same effect at the same place, with other parameters fitted.
+    /// Whether this candidate and `other` are the same effect at the same place, with different parameters fitted.
     pub(crate) fn is_variant_of(&self, other: &Self) -> bool {
         self.kind.name == other.kind.name && self.at == other.at && self.words() == other.words()
     }
 
-    /// Adds starting points towards every vertex of a vector's range. They are used for campaigns with few readings, in
-    /// which a single start may miss the minimum.
+    /// This candidate with additional starting points, towards every vertex of the range of a vector parameter. They
+    /// are used for campaigns with few readings, in which a single start may miss the minimum.
     pub fn from_corners(mut self) -> Self {
         self.starts.extend(corners(&self.free_parameters));
         self
     }
 
-    /// Values of all parameters in the order of the kind.
+    /// Values of all parameters of the effect, in their units and in the order of its kind, with the fitted ones at
+    /// `u`.
     pub fn numbers(&self, u: &[f64]) -> Vec<f64> {
         let mut free = self.free_values(u).into_iter();
         let number = |number: &Number| match number {
@@ -246,7 +250,8 @@ impl Candidate {
         self.numbers.iter().map(number).collect()
     }
 
-    /// Values of the fitted parameters. A parameter that must not be below another is raised to it.
+    /// Values of the fitted parameters at `u`, in their units. A parameter that must not be below another is raised
+    /// to it.
     pub fn free_values(&self, u: &[f64]) -> Vec<f64> {
         let mut out: Vec<f64> = self.free_parameters.iter().zip(u).map(|(k, u)| k.value(*u)).collect();
         for (i, parameter) in self.free_parameters.iter().enumerate() {
@@ -258,7 +263,8 @@ impl Candidate {
         out
     }
 
-    /// The effect in the form of an arm file.
+    /// The effect with the fitted parameters at `u`, in the form of an arm file. `place` is the kind of place and
+    /// selects the list of parameters.
     pub fn effect(&self, u: &[f64], place: Place) -> Effect {
         let numbers = self.numbers(u);
         let mut rest = numbers.as_slice();
@@ -274,8 +280,9 @@ impl Candidate {
     }
 }
 
-/// Starting points for the components of a vector: a fifth of the way from zero to each vertex of their
-/// range. With zero everywhere a descent may see no slope.
+/// Starting points for the components of a vector, each a list of `u`: a fifth of the way from zero to each vertex of
+/// the vector's range. They are needed because at zero a descent may see no slope. Empty if the parameters are not
+/// components of one vector.
 fn corners(free_parameters: &[FreeParameter]) -> Vec<Vec<f64>> {
     if free_parameters.len() < 2 || free_parameters.iter().any(|k| k.name != free_parameters[0].name) {
         return Vec::new();
@@ -286,16 +293,16 @@ fn corners(free_parameters: &[FreeParameter]) -> Vec<Vec<f64>> {
     (0..1 << free_parameters.len()).map(corner).collect()
 }
 
-/// A model: calibration and effects. Its parameter vector holds the calibration first, then the parameters of
-/// each effect.
+/// A model to fit: the calibration and a list of effects. Its parameter vector holds the calibrated parameters first,
+/// then the fitted parameters of each effect.
 #[derive(Clone)]
 pub struct Model<'a> {
     /// Calibrated parameters.
     pub nuisance: &'a Nuisance,
     /// Effects of the model.
     pub effects: Vec<&'a Candidate>,
-    /// Width over which break points of gear curves are smoothed when frequencies are computed \[ln of the torque\]; 0
-    /// for none.
+    /// Width over which the jumps of slope of gear curves are smoothed when frequencies are computed \[ln of the
+    /// torque\]; 0 for no smoothing.
     pub smoothing: f64,
     /// Index and value of each parameter that is held fixed.
     pub held: Vec<(usize, f64)>,
@@ -307,26 +314,26 @@ impl<'a> Model<'a> {
         Self { nuisance, effects: Vec::new(), smoothing: 0.0, held: Vec::new() }
     }
 
-    /// A model with the candidates that have these indices.
+    /// A model with the effects that have the indices `effects` in `candidates`.
     pub fn of(nuisance: &'a Nuisance, candidates: &'a [Candidate], effects: &[usize]) -> Self {
         Self { effects: effects.iter().map(|&i| &candidates[i]).collect(), ..Self::baseline(nuisance) }
     }
 
-    /// The same model with one more effect.
+    /// This model with the effect `effect` added.
     pub fn with(&self, effect: &'a Candidate) -> Self {
         let mut out = self.clone();
         out.effects.push(effect);
         out
     }
 
-    /// The same model without one effect.
+    /// This model without the effect that has the index `index`.
     pub fn without(&self, index: usize) -> Self {
         let mut out = self.clone();
         out.effects.remove(index);
         out
     }
 
-    /// Indices of the break points of gear curves in the parameter vector.
+    /// Indices, in the parameter vector, of the break points (T1, T2) of gear curves.
     pub fn break_points(&self) -> Vec<usize> {
         let first = self.calibrated();
         let free_parameters = self.free_parameters().enumerate();
@@ -336,7 +343,8 @@ impl<'a> Model<'a> {
             .collect()
     }
 
-    /// Index of the parameter below which a parameter cannot lie; `None` if there is none.
+    /// Index of the parameter below which the parameter with index `index` cannot lie; `None` if there is no such
+    /// limit.
     fn floor(&self, index: usize) -> Option<usize> {
         let mut first = self.calibrated();
         for effect in &self.effects {
@@ -351,14 +359,15 @@ impl<'a> Model<'a> {
         None
     }
 
-    /// Whether a parameter is equal to or below the one below which it cannot lie. Lowering it further would have no
-    /// effect.
+    /// Whether the parameter with index `index` is equal to or below the other parameter below which it cannot lie.
+    /// Lowering it further would have no effect.
     pub fn rests(&self, index: usize, u: &[f64]) -> bool {
         self.floor(index).is_some_and(|least| u[index] <= u[least])
     }
 
-    /// Raises parameters to those below which they cannot lie. A parameter below its limit has no effect on the
-    /// predictions, so a descent would see no slope and leave it there.
+    /// Raises each parameter that lies below the other parameter that is its lower limit to this limit. Below the
+    /// limit a parameter has no effect on the predictions, so a descent would see no slope and leave it there. A held
+    /// parameter is not raised; its limit is then lowered to it.
     pub fn put_in_order(&self, u: &mut [f64]) {
         for index in self.calibrated()..u.len() {
             let Some(least) = self.floor(index).filter(|least| u[index] < u[*least]) else { continue };
@@ -374,7 +383,7 @@ impl<'a> Model<'a> {
         self.held.iter().any(|(held, _)| *held == index)
     }
 
-    /// Number of parameters.
+    /// Number of parameters: calibrated ones and those of effects.
     pub fn len(&self) -> usize {
         self.calibrated() + self.free_parameters().count()
     }
@@ -389,12 +398,12 @@ impl<'a> Model<'a> {
         self.nuisance.numbers.len()
     }
 
-    /// The parameters of all effects, in order.
+    /// The fitted parameters of all effects, in the order of the parameter vector.
     pub fn free_parameters(&self) -> impl Iterator<Item = &'a FreeParameter> + '_ {
         self.effects.iter().flat_map(|e| e.free_parameters.iter())
     }
 
-    /// Index of an effect's first parameter in the parameter vector.
+    /// Index, in the parameter vector, of the first parameter of the effect with index `effect`.
     pub fn first_parameter(&self, effect: usize) -> usize {
         self.calibrated() + self.effects[..effect].iter().map(|e| e.free_parameters.len()).sum::<usize>()
     }
@@ -406,7 +415,8 @@ impl<'a> Model<'a> {
             .any(|(parameter, u)| parameter.is_at_its_limit(*u))
     }
 
-    /// Smallest and largest value of a parameter, in `u`; both are equal for a parameter that is held.
+    /// Smallest and largest value of `u` for the parameter with index `index`. Both are equal for a parameter that is
+    /// held.
     pub fn bounds(&self, index: usize) -> (f64, f64) {
         if let Some((_, value)) = self.held.iter().find(|(held, _)| *held == index) {
             return (*value, *value);
@@ -418,7 +428,8 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// The arm and its tests with these parameters.
+    /// The arm under test (subject) with the parameters `u`: the nominal arm, calibrated and with the model's
+    /// effects.
     pub fn subject(&self, forward: &Forward, u: &[f64]) -> Subject {
         let mut subject = forward.nominal.clone();
         self.nuisance.apply(u, &mut subject);
@@ -431,7 +442,7 @@ impl<'a> Model<'a> {
         subject
     }
 
-    /// The compliances, joint laws and masses of the arm with these parameters.
+    /// The coefficients (compliances, joint laws and masses) of the arm with the parameters `u`.
     pub fn coefficients(&self, forward: &Forward, u: &[f64]) -> Coefficients {
         let mut out = forward.coefficients(&self.subject(forward, u));
         out.smoothing = self.smoothing;

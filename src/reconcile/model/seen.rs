@@ -6,14 +6,15 @@ use crate::reconcile::fit::descent::{Weights, change, evaluate};
 use crate::reconcile::forward::prepared::Forward;
 
 /// An effect of its usual size is left out if it changes no reading by more than this \[standard deviations\]. The
-/// largest size that is sought is at most a thousand times the usual one, so it would not be seen either.
+/// largest size that is sought is at most a thousand times the usual one. So even such an effect would not be seen.
 const UNSEEN: f64 = 1e-6;
 
-/// Fraction of its range by which a parameter is changed to see its effect.
+/// Fraction of its range by which a parameter is changed to find out whether readings change.
 const STEP: f64 = 0.01;
 
-/// The candidates that change at least one reading. A bench, for example, shows no payload, base or mass. An effect
-/// that changes no reading fits as well as calibration alone, and would be listed as an alternative of every finding.
+/// Those of the `candidates` that change at least one reading. A bench, for example, shows no payload, base or mass.
+/// An effect that changes no reading fits as well as calibration alone, and would be listed as an alternative of
+/// every finding.
 pub(crate) fn seen(forward: &Forward, nuisance: &Nuisance, mut candidates: Vec<Candidate>) -> Vec<Candidate> {
     let inverse = forward.data.iter().map(|d| 1.0 / d.sigma).collect();
     let weights = Weights { inverse, smooth_only: false };
@@ -36,8 +37,8 @@ pub(crate) fn seen(forward: &Forward, nuisance: &Nuisance, mut candidates: Vec<C
     candidates
 }
 
-/// Parameter vectors at which an effect would change readings: the starts of its fits, and each start with one
-/// parameter changed, because some fits start where the effect is absent.
+/// The values of `u` at which a candidate is tried for a change of readings. They are the starts of its fits, and
+/// each start with one parameter changed, because some fits start where the effect is absent.
 fn sizes(candidate: &Candidate) -> Vec<Vec<f64>> {
     let further = |start: &Vec<f64>, p: usize| {
         let parameter = &candidate.free_parameters[p];

@@ -26,14 +26,14 @@ use std::sync::Arc;
 
 /// Number of folds among which the poses are divided. One fold is held out at a time.
 const HANDS: usize = 5;
-/// A position is a gross error if its residual is more than this many times the scale of the errors.
+/// A position is a gross error if its residual is more than this many times the fitted scale of the position errors.
 const GROSS: f64 = 8.0;
-/// Scale of the errors before anything is fitted \[m\].
+/// Scale of the position errors that is assumed before anything is fitted \[m\].
 const ROUGH_M: f64 = 0.01;
 /// Angle by which gravity is tilted for numerical derivatives \[rad\].
 const LEAN: f64 = 1e-3;
 
-/// Classes of compliances, in the order in which the search takes them.
+/// Classes of compliances, in the order in which the search for effects tries them.
 const CLASSES: [Yields; 3] = [Yields::AboutAxis, Yields::Tilt, Yields::Frame];
 
 /// Result of the analysis of a campaign of positions.
@@ -41,13 +41,13 @@ const CLASSES: [Yields; 3] = [Yields::AboutAxis, Yields::Tilt, Yields::Frame];
 pub(crate) struct Positions {
     /// The table of position errors, stage by stage.
     pub stages: Vec<Stage>,
-    /// All candidates: the effects that may be added at each place.
+    /// All candidates: one for each effect at each place where it may be added to the model.
     pub candidates: Vec<Yielding>,
     /// For each candidate, whether it may be named as an effect.
     pub(super) considered: Vec<bool>,
     /// The final fit.
     pub fitted: Fitted,
-    /// A fit of the same geometry in which no compliance is added.
+    /// A fit with the same freed numbers of the geometry and no added compliance.
     pub rigid: Fitted,
     /// Rows that are gross errors, counted from 0, each with the length of its error \[mm\].
     pub gross: Vec<(usize, f64)>,
@@ -60,7 +60,7 @@ pub(crate) struct Positions {
     pub(super) points: Vec<Point>,
     /// The boundaries between sessions.
     pub(super) sessions: Vec<Boundary>,
-    /// Error of each row in the last stage, predicted by a fit without the row's fold \[m\].
+    /// Error of each row's position after the last stage, as predicted by a fit without the row's fold \[m\].
     pub(super) held_out: Vec<Vector3<f64>>,
 }
 
@@ -72,11 +72,11 @@ pub(crate) struct Calibrated {
     pub stages: Vec<Stage>,
     /// Predicted positions \[mm\], one per row.
     pub predicted_mm: Vec<[f64; 3]>,
-    /// Placements of the arms, as in `provenance` of a corrected arm.
+    /// Placements of the arms in the instrument's frame, as in `provenance` of a corrected arm.
     pub placements: Value,
 }
 
-/// Calibrates the geometry alone, without a search for effects.
+/// Calibrates the geometry of the campaign's arms, with declared and found sessions, and does not search for effects.
 pub(crate) fn calibrated(campaign: &Campaign) -> Calibrated {
     let found = Positions::on_its_geometry(campaign);
     let mut placements = json!({});
@@ -89,13 +89,14 @@ pub(crate) fn calibrated(campaign: &Campaign) -> Calibrated {
     }
 }
 
-/// Calibrates the geometry, finds sessions, and finds compliances and transmission errors.
+/// Analyses the positions of a campaign: calibrates the geometry, finds sessions, and finds compliances and
+/// transmission errors.
 ///
 /// A compliance can look like a change of session if the rows were taken configuration by configuration. So each
-/// session is examined again once the effects are in the model. If a session is no longer worth its price, or begins at
-/// a row where something else changes, the analysis is repeated with two other sets of sessions: those that remain, and
-/// those that are needed in addition to effects that were found without sessions. The model with the best score is
-/// kept.
+/// session is examined again once the effects are in the model. It is suspect if it is no longer worth its price, or
+/// if it begins at a row where something else changes. The analysis is then repeated with two other sets of sessions:
+/// those that remain, and those that are needed in addition to effects that were found without sessions. The model
+/// with the best score is kept.
 pub(crate) fn analyze(campaign: &Campaign) -> Positions {
     let calibrated = Positions::in_declared_sessions(campaign);
     let mut found = calibrated.clone();
@@ -166,7 +167,7 @@ impl Positions {
         found
     }
 
-    /// Calibrates the geometry, and finds sessions.
+    /// Calibrates the geometry with the declared sessions and with those that the positions show.
     fn on_its_geometry(campaign: &Campaign) -> Self {
         let mut found = Self::in_declared_sessions(campaign);
         found.tell_sessions(campaign);
@@ -189,7 +190,7 @@ impl Positions {
         boundaries.collect()
     }
 
-    /// Finds sessions that campaign.json does not declare.
+    /// Finds sessions that campaign.json does not declare, and adds them to the model.
     fn tell_sessions(&mut self, campaign: &Campaign) {
         let spec = &campaign.statement.positions;
         if self.find_sessions(spec.tool_offset, spec.base_placement) > 0 {
@@ -197,7 +198,8 @@ impl Positions {
         }
     }
 
-    /// The calibrated model with the sessions that begin at `boundaries`, and with the effects that are then found.
+    /// A copy of this calibrated model with the sessions that begin at `boundaries` (what was moved, and the first
+    /// row of the later session), and with the effects that are then found.
     fn with_sessions(&self, campaign: &Campaign, boundaries: &[(Kind, usize)]) -> Self {
         let mut out = self.clone();
         out.divide(boundaries, false);
@@ -209,7 +211,7 @@ impl Positions {
         out
     }
 
-    /// Finds compliances and transmission errors.
+    /// Adds compliances and transmission errors to the model, one by one, as long as one is worth its price.
     fn find_effects(&mut self, campaign: &Campaign) {
         // A transmission error can hide a compliance, so the search starts again after each one that is found.
         loop {
@@ -222,7 +224,7 @@ impl Positions {
         }
     }
 
-    /// Places the arm, and then frees one group of numbers after the other.
+    /// Places the arm, and then frees one group of the geometry's numbers after the other, with a fit after each.
     fn calibrate(&mut self, campaign: &Campaign) {
         let spec = &campaign.statement.positions;
         align::align(&self.tree, spec, &self.samples, &mut self.fitted.geometry);
@@ -238,13 +240,13 @@ impl Positions {
         }
     }
 
-    /// Fits the current model again.
+    /// Fits the current model again to all samples (measured positions), starting from its present values.
     pub(super) fn refit(&mut self) {
         let all: Vec<&Sample> = self.samples.iter().collect();
         self.fitted = fit(&all, &self.numbers, &self.fitted.effects, &self.fitted);
     }
 
-    /// Computes the effect of gravity again for the fitted geometry.
+    /// Computes the deflection of each sample under gravity again, for the fitted geometry.
     pub(super) fn refresh(&mut self, campaign: &Campaign) {
         self.fitted.geometry.relevel();
         let upright = &self.fitted.geometry;
@@ -270,7 +272,8 @@ impl Positions {
         });
     }
 
-    /// Adds a row for the current model to the table of position errors.
+    /// Adds a row for the current model to the table of position errors. `added` and `dropped` name the effects or
+    /// numbers that changed since the last row.
     pub(super) fn stage(&mut self, added: String, dropped: Vec<String>) {
         self.held_out = self.held_out_errors_m(&self.fitted);
         let mm: Vec<f64> = self.held_out.iter().map(|e| 1e3 * e.norm()).collect();
@@ -285,7 +288,8 @@ impl Positions {
         });
     }
 
-    /// Error of every position, predicted by a fit without the fold of the position's pose \[m\].
+    /// Error of every position \[m\], as predicted by a fit of the model `fitted` to all positions but those of its
+    /// fold of poses.
     fn held_out_errors_m(&self, fitted: &Fitted) -> Vec<Vector3<f64>> {
         let mut out = vec![Vector3::zeros(); self.samples.len()];
         let hands: Vec<Vec<(usize, Vector3<f64>)>> = (0..HANDS)
@@ -303,17 +307,17 @@ impl Positions {
     }
 }
 
-/// Weight of each coordinate's error in a fit, from 0.1 to 1; 0 if the coordinate was not measured. A coordinate with a
-/// larger standard deviation than the best one of its row counts less. It does not count less than a tenth, because the
-/// error of the model is often larger than that of the instrument.
+/// Weight of each coordinate's error in a fit, from 0.1 to 1; 0 if the coordinate was not measured. The weight is the
+/// smallest standard deviation of the row over that of the coordinate. It is at least a tenth, because the error of
+/// the model is often larger than that of the instrument.
 fn precision(measured: &Components) -> Vector3<f64> {
     const LEAST: f64 = 0.1;
     let best_mm = measured.iter().flatten().map(|read| read.sigma_mm).fold(f64::INFINITY, f64::min);
     Vector3::from(measured.map(|read| read.map_or(0.0, |read| (best_mm / read.sigma_mm).max(LEAST))))
 }
 
-/// The measured positions, each with the deflection of its point under gravity. `points` lists the points of the
-/// readings.
+/// The measured positions as samples: each with the deflection of its point under gravity and with what each of the
+/// `candidates` would add. `points` lists the measured points on the tools.
 pub(super) fn samples(
     campaign: &Campaign,
     tree: &Tree,

@@ -21,9 +21,11 @@ use std::sync::Arc;
 
 /// Conventions are tested if the errors after calibration exceed the declared ones by this factor.
 const FAR: f64 = 5.0;
-/// A convention is reported if the errors after its calibration are smaller by this factor.
+/// A convention is reported if the errors after calibration with it are smaller than with the file as it is by at
+/// least this factor.
 const TELLING: f64 = 5.0;
-/// A change is kept in the search if it lowers the errors of the quick fit to less than this fraction.
+/// A change of convention is kept in the search if it lowers the errors of the quick fit to less than this fraction
+/// of those without it.
 const HELPS: f64 = 0.9;
 /// Conventions whose errors differ by less than this factor cannot be told apart.
 const TIE: f64 = 1.2;
@@ -31,11 +33,11 @@ const TIE: f64 = 1.2;
 const MOST_EQUALS: usize = 3;
 /// A fit is far off if its errors are larger than this fraction of the spread of the positions.
 const FAR_OFF: f64 = 0.01;
-/// Largest number of changes that are made together.
+/// Largest number of changes of convention that are made together.
 const MOST_CHANGES: usize = 8;
-/// Number of positions of a quick fit.
+/// Largest number of positions that a quick fit uses.
 const QUICK: usize = 60;
-/// Scale of the errors with which each fit starts: about what another convention leaves \[m\].
+/// Scale of the position errors with which each fit starts \[m\]: about what another convention leaves.
 const ROUGH_M: f64 = 0.3;
 /// Units other than the millimetre, each with its length \[mm\].
 const UNITS: [(&str, f64); 4] =
@@ -59,7 +61,7 @@ enum Change {
 const COORDINATES: [&str; 3] = ["x_mm", "y_mm", "z_mm"];
 
 impl Change {
-    /// Whether both changes concern the same unit, axes or joint, so that one replaces the other.
+    /// Whether this change and `other` concern the same unit, axes or joint, so that one replaces the other.
     fn replaces(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Unit(_), Self::Unit(_)) | (Self::Axes(_), Self::Axes(_)) => true,
@@ -68,7 +70,7 @@ impl Change {
         }
     }
 
-    /// The sample as it would be if the file had been written by this convention.
+    /// The sample (a measured position) as it would be if the file had been written by this convention.
     fn applied(&self, mut sample: Sample) -> Sample {
         let turned = |sample: &mut Sample, j: usize, of: &dyn Fn(f64) -> f64| {
             let mut angles_rad = sample.pose.angles_rad.clone();
@@ -111,8 +113,8 @@ impl Change {
     }
 }
 
-/// The changes that are tried. If the base placement is free, a turned frame is no change, and only its handedness
-/// counts.
+/// The changes of convention that are tried, for an arm with `joints` driven joints. If the base placement is free, a
+/// turned frame is no change, and only the frame's handedness counts.
 fn changes(spec: &PositionsSpec, joints: usize) -> Vec<Change> {
     let mut out: Vec<Change> = (0..UNITS.len()).map(Change::Unit).collect();
     match spec.base_placement {
@@ -124,7 +126,7 @@ fn changes(spec: &PositionsSpec, joints: usize) -> Vec<Change> {
     out
 }
 
-/// All pairs of changes of the angles of two different joints.
+/// All pairs of the changes `all` that concern the angles of two different joints.
 fn pairs(all: &[Change]) -> Vec<Vec<Change>> {
     let joint = |change: &Change| match change {
         Change::Sign(j) | Change::Zero(j, _) => Some(*j),
@@ -144,7 +146,7 @@ fn other_axes() -> Vec<Change> {
     signed.skip(1).collect()
 }
 
-/// Fits positions as if they had been written by other conventions.
+/// Fits the positions of a file as if they had been written by another convention.
 struct Asked<'a> {
     spec: &'a PositionsSpec,
     samples: Vec<Sample>,
@@ -153,8 +155,8 @@ struct Asked<'a> {
 }
 
 impl Asked<'_> {
-    /// Scale of the errors after a fit \[m\]. The first `groups` groups of numbers are free, and about `most` samples
-    /// are used.
+    /// Scale of the position errors after a fit with the `changes` of convention made \[m\]. The first `groups`
+    /// groups of the geometry's numbers are free, and about `most` samples (measured positions) are used.
     fn scale_m(&self, changes: &[Change], groups: usize, most: usize) -> f64 {
         let step = self.samples.len().div_ceil(most).max(1);
         let written = self.samples.iter().step_by(step).cloned();
@@ -183,9 +185,9 @@ impl Asked<'_> {
         self.scale_m(changes, self.groups.len(), usize::MAX)
     }
 
-    /// Greedy search from the changes `made`: returns the changes that lower the errors of the quick fit. If no single
-    /// change helps and the fit is still far off, pairs are tried. They are needed where two parallel joints both turn
-    /// the other way: either change alone is no better.
+    /// Greedy search: adds to the changes `made` those of `all` that lower the errors of the quick fit, and returns
+    /// the set. If no single change helps and the fit is still far off, pairs are tried. Pairs are needed where two
+    /// parallel joints both turn the other way, because either change alone is no better.
     fn search(&self, all: &[Change], mut made: Vec<Change>) -> Vec<Change> {
         let singles: Vec<Vec<Change>> = all.iter().map(|change| vec![*change]).collect();
         let pairs = pairs(all);
@@ -201,8 +203,8 @@ impl Asked<'_> {
         self.pruned(made)
     }
 
-    /// The best set of changes, out of those that join `made` with one entry of `added`, and the scale of the errors of
-    /// its quick fit \[m\]. `None` if there is nothing to add.
+    /// Joins `made` with each entry of `added` in turn, and returns the best set of changes with the scale of the
+    /// errors of its quick fit \[m\]. `None` if there is nothing to add.
     fn best_with(&self, made: &[Change], added: &[Vec<Change>]) -> Option<(f64, Vec<Change>)> {
         let with = |new: &Vec<Change>| {
             let is_kept = |old: &&Change| !new.iter().any(|change| change.replaces(old));
@@ -215,7 +217,7 @@ impl Asked<'_> {
         tried.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// Root mean square distance of the positions from their centre \[m\].
+    /// Root mean square distance of the positions, with these changes made, from their centre \[m\].
     fn spread_m(&self, changes: &[Change]) -> f64 {
         let at_m = |sample: &Sample| {
             changes.iter().fold(sample.clone(), |sample, change| change.applied(sample)).measured_m
@@ -226,7 +228,8 @@ impl Asked<'_> {
         (all.iter().map(|at| (at - centre).norm_squared()).sum::<f64>() / count).sqrt()
     }
 
-    /// Removes changes that a later change has made unnecessary.
+    /// The changes `made` without those that another change has made unnecessary: the quick fit is about as good
+    /// without them.
     fn pruned(&self, mut made: Vec<Change>) -> Vec<Change> {
         let mut at = 0;
         while at < made.len() {
@@ -240,8 +243,8 @@ impl Asked<'_> {
         made
     }
 
-    /// Sets of changes that differ from `made` in one change and leave errors about as small. `scale_m` is the scale of
-    /// the errors with `made` \[m\].
+    /// Sets of changes that differ from `made` in one change, for one of `all`, and leave errors about as small.
+    /// `scale_m` is the scale of the errors with `made` \[m\].
     fn equals(&self, all: &[Change], made: &[Change], scale_m: f64) -> Vec<Vec<Change>> {
         let quick_m = self.quick_m(made);
         let others = || all.iter().filter(|change| !made.iter().any(|m| m.replaces(change)));
@@ -260,8 +263,8 @@ impl Asked<'_> {
 }
 
 impl Positions {
-    /// Sentence on a convention by which the positions would fit far better. `None` if calibration fits the positions
-    /// well enough, or if no convention is found.
+    /// Sentence on a convention by which the positions of the file would fit far better. `None` if calibration fits
+    /// the positions well enough, if a mounting is unknown (too many combinations), or if no convention is found.
     pub(super) fn other_convention(&self, campaign: &Campaign) -> Option<String> {
         let spec = &campaign.statement.positions;
         let declared_mm: f64 = campaign.positions.iter().map(|row| row.sigma_mm()).sum();

@@ -18,8 +18,8 @@ const MOST_HALVINGS: i32 = 10;
 const MOST_TURN_RAD: f64 = 0.3;
 
 impl Fitted {
-    /// The model after a fraction `part` of a step: the numbers of the geometry change by this fraction of `step`, and
-    /// the compliances go this fraction of the way to those of `goal`.
+    /// The model after the fraction `part` of a step from this model to `goal`: the geometry's `numbers` change by
+    /// this fraction of `step`, and the compliances go this fraction of the way to those of `goal`.
     fn towards(&self, goal: &Self, part: f64, numbers: &[Number], step: &[f64], samples: &[&Sample]) -> Self {
         let mut out = goal.clone();
         let step: Vec<f64> = step.iter().map(|s| part * s).collect();
@@ -30,7 +30,7 @@ impl Fitted {
         out.judged(samples)
     }
 
-    /// The same model with the scale of its errors and its likelihood computed.
+    /// This model with the scale of its position errors and its likelihood computed for the samples.
     fn judged(mut self, samples: &[&Sample]) -> Self {
         let misses = misses(samples, &self);
         self.scale_m = scale(&misses, self.scale_m);
@@ -38,22 +38,23 @@ impl Fitted {
         self
     }
 
-    /// Sets the standard deviations of the geometry's `numbers` and, after them, of the compliances.
+    /// Stores standard deviations. In `deviations` come first those of the geometry's numbers, of which there are
+    /// `numbers`, and then those of the compliances.
     fn set_deviations(&mut self, numbers: usize, deviations: &[f64]) {
         self.number_deviations = deviations[..numbers].to_vec();
         let own = self.deviations.iter_mut().flatten();
         own.zip(&deviations[numbers..]).for_each(|(own, deviation)| *own = *deviation);
     }
 
-    /// ln of the likelihood and of the prior of the numbers together.
+    /// Natural logarithm of the likelihood of the model times the prior probability of the geometry's `numbers`.
     fn merit(&self, numbers: &[Number]) -> f64 {
         let prior = numbers.iter().zip(&self.moved).map(|(n, moved)| 0.5 * (moved / n.prior()).powi(2));
         self.ln_likelihood - prior.sum::<f64>()
     }
 }
 
-/// Fits the numbers of the geometry and the compliances of the candidates `effects` to the samples, starting from the
-/// model `start`.
+/// Fits the geometry's `numbers` and the compliances of the candidates with the indices `effects` to the samples
+/// (measured positions). The fit starts from the model `start`.
 pub(crate) fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], start: &Fitted) -> Fitted {
     let mut here = start.clone();
     here.compliances = effects
@@ -109,7 +110,8 @@ pub(crate) fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], st
 
 /// Sandwich factor: square root of the variance factor of the M-estimator (Huber, Robust Statistics, ch. 7). Standard
 /// deviations from the weighted curvature take the weights as known and are too small by this factor. It is the root
-/// mean square of the weighted errors over their mean slope, corrected for the number of free parameters.
+/// mean square of the weighted errors `misses`, divided by their mean slope and corrected for `free`, the number of
+/// free parameters.
 fn sandwich_factor(misses: &[Miss], scale_m: f64, free: usize) -> f64 {
     let count: f64 = misses.iter().map(|miss| miss.readings).sum();
     let (mut weights, mut squares, mut slopes) = (0.0, 0.0, 0.0);
@@ -124,14 +126,16 @@ fn sandwich_factor(misses: &[Miss], scale_m: f64, free: usize) -> f64 {
     (weights * squares * count / left).sqrt() / slopes
 }
 
-/// Shortens a step that would turn a frame too far for a linearization.
+/// Shortens the step of the geometry's `numbers` if it would turn a frame by more than [`MOST_TURN_RAD`], too far for
+/// a linearization.
 fn shortened(numbers: &[Number], step: Vec<f64>) -> Vec<f64> {
     let turns = numbers.iter().zip(&step).filter(|(n, _)| n.turns()).map(|(_, s)| s.abs());
     let part = (MOST_TURN_RAD / turns.fold(0.0, f64::max)).min(1.0);
     step.into_iter().map(|s| s * part).collect()
 }
 
-/// Scale `s` of the errors \[m\], by fixed-point iteration that starts at `near_m`.
+/// Scale `s` of the Student distribution of the errors `misses` \[m\], by fixed-point iteration that starts at
+/// `near_m`.
 pub(crate) fn scale(misses: &[Miss], near_m: f64) -> f64 {
     let count: f64 = misses.iter().map(|miss| miss.readings).sum();
     let mut scale_m = near_m;
@@ -142,7 +146,8 @@ pub(crate) fn scale(misses: &[Miss], near_m: f64) -> f64 {
     scale_m
 }
 
-/// ln of the likelihood of errors with this scale.
+/// Natural logarithm of the likelihood of the errors `misses` if they follow a Student distribution with the scale
+/// `scale_m`.
 pub(crate) fn ln_likelihood(misses: &[Miss], scale_m: f64) -> f64 {
     let s2 = scale_m * scale_m;
     let one = |m: &Miss| {
@@ -152,8 +157,8 @@ pub(crate) fn ln_likelihood(misses: &[Miss], scale_m: f64) -> f64 {
     misses.iter().map(one).sum()
 }
 
-/// Takes one weighted Gauss-Newton step. Sets the compliances to the best values that are physically possible, and
-/// returns the step of all numbers; `None` if the equations are singular.
+/// Takes one weighted Gauss-Newton step from the model `here`. Sets its compliances to the best values that are
+/// physically possible, and returns the step of all numbers and compliances; `None` if the equations are singular.
 fn step(samples: &[&Sample], numbers: &[Number], here: &mut Fitted) -> Option<Best> {
     let normal = normal(samples, numbers, here, &mut |_, _, _| {});
     let best = best_springs(&normal, numbers.len(), &here.compliances)?;

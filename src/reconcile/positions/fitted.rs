@@ -17,7 +17,7 @@ pub(crate) struct Sample {
     pub arm: usize,
     /// Index of the measured point among all points on tools.
     pub point: usize,
-    /// Index of the instrument's session.
+    /// Index of the session that sets the arm's place in the instrument's frame (station).
     pub station: usize,
     /// Index of this sample among the samples.
     pub index: usize,
@@ -25,10 +25,10 @@ pub(crate) struct Sample {
     pub group: usize,
     /// Measured position in the instrument's frame \[m\]; zero where a coordinate was not measured.
     pub measured_m: Vector3<f64>,
-    /// Weight of each coordinate's error: 0 if the coordinate was not measured, 1 if it has the smallest standard
-    /// deviation of its row.
+    /// Weight of each coordinate's error, from 0.1 to 1: 0 if the coordinate was not measured, 1 if it has the
+    /// smallest standard deviation of its row.
     pub precision: Vector3<f64>,
-    /// The effect of gravity on this position.
+    /// How this position deflects under gravity: the known deflection, and what each candidate would add.
     pub deflection: Arc<Deflection>,
 }
 
@@ -49,16 +49,16 @@ impl Sample {
         (self.measured_m - predicted_m).zip_map(&self.precision, |e, p| if p > 0.0 { e } else { 0.0 })
     }
 
-    /// The error of this sample, weighted by coordinate for the fit.
+    /// The error `error_m` of this sample, with each coordinate multiplied by its weight for the fit.
     pub(crate) fn miss(&self, error_m: &Vector3<f64>) -> Miss {
         Miss { scaled_m: error_m.component_mul(&self.precision), readings: self.readings() as f64 }
     }
 }
 
-/// The error of a sample, weighted by coordinate for the fit.
+/// The error of a sample (a measured position), with each coordinate multiplied by its weight for the fit.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Miss {
-    /// Measured minus predicted, times the precision of each coordinate \[m\].
+    /// Measured minus predicted position, times the weight of each coordinate \[m\].
     pub scaled_m: Vector3<f64>,
     /// Number of coordinates that were measured.
     pub readings: f64,
@@ -86,14 +86,14 @@ pub(crate) struct Fitted {
     pub deviations: Vec<Vec<f64>>,
     /// Sandwich factor: ratio of the standard deviations of the robust fit to those of the weighted curvature alone.
     pub robust_factor: f64,
-    /// Scale of the errors \[m\].
+    /// Scale of the Student distribution of the position errors \[m\].
     pub scale_m: f64,
-    /// Natural logarithm of the likelihood.
+    /// Natural logarithm of the likelihood of all measured positions.
     pub ln_likelihood: f64,
 }
 
 impl Fitted {
-    /// A model of a geometry without effects, with errors of this scale \[m\].
+    /// A model of `geometry` without effects, whose position errors have the scale `scale_m`.
     pub(crate) fn rigid(geometry: Geometry, scale_m: f64) -> Self {
         Self {
             geometry,
@@ -113,8 +113,8 @@ impl Fitted {
         self.predicted_by(&mut self.geometry.placer(), sample)
     }
 
-    /// The same predicted position \[m\], with a given placer of the model's geometry, which is faster for many
-    /// samples.
+    /// Predicted position of a sample, in the instrument's frame \[m\]. `placer` must belong to this model's
+    /// geometry; it is passed in because that is faster for many samples.
     pub(crate) fn predicted_by(&self, placer: &mut Placer, sample: &Sample) -> Vector3<f64> {
         let rigid = placer.place_m(sample.placing());
         rigid + self.geometry.level_to_instrument() * self.displacement(sample)
@@ -125,16 +125,16 @@ impl Fitted {
         sample.error(self.predicted_m(sample))
     }
 
-    /// Displacement of a sample's point by gravity: known deflection, and the effects of the model, in the level
-    /// frame \[m\].
+    /// Displacement of the measured point of a sample by gravity, in the level frame \[m\]: the known deflection,
+    /// plus the deflection by the effects of the model.
     pub(crate) fn displacement(&self, sample: &Sample) -> Vector3<f64> {
         let gravity = &self.geometry.gravity;
         let [by_x, by_y] = &sample.deflection.known_slopes_m;
         sample.deflection.known_m + by_x * gravity.x + by_y * gravity.y + self.yielded(sample, gravity)
     }
 
-    /// Displacement of a sample's point by the effects of the model under gravity along a direction, in the level
-    /// frame \[m\].
+    /// How far the effects of the model let the measured point of a sample move under gravity along the direction
+    /// `gravity`, in the level frame \[m\]. The effects deflect elastically or close their play.
     pub(crate) fn yielded(&self, sample: &Sample, gravity: &Vector3<f64>) -> Vector3<f64> {
         let effects = self.effects.iter().zip(&self.compliances);
         effects.fold(Vector3::zeros(), |sum, (&effect, compliances)| {
@@ -142,8 +142,9 @@ impl Fitted {
         })
     }
 
-    /// Derivative of the displacement by the springs of the model with respect to a tilt of gravity along an axis
-    /// \[m/rad\]. Play is left out: it is closed in most poses, where its displacement does not change with the tilt.
+    /// Derivative of the elastic displacement by the effects of the model with respect to a tilt of gravity along the
+    /// axis with index `axis` \[m/rad\]. Play is left out: it is closed in most poses, and its displacement then does
+    /// not change with the tilt.
     pub(crate) fn leaning(&self, sample: &Sample, axis: usize) -> Vector3<f64> {
         let effects = self.effects.iter().zip(&self.compliances);
         let springs = effects.filter(|(effect, _)| !sample.deflection.is_play(**effect));
@@ -152,20 +153,20 @@ impl Fitted {
         })
     }
 
-    /// Weight of a sample with this error in the normal equations \[1/m²\].
+    /// Weight of a sample with the error `miss` in the normal equations \[1/m²\].
     pub(crate) fn weight(&self, miss: &Miss) -> f64 {
         weight(miss, self.scale_m) / (self.scale_m * self.scale_m)
     }
 }
 
-/// Errors of the samples, weighted by coordinate for the fit.
+/// Errors of the samples with the model `fitted`, each coordinate multiplied by its weight for the fit.
 pub(crate) fn misses(samples: &[&Sample], fitted: &Fitted) -> Vec<Miss> {
     let mut placer = fitted.geometry.placer();
     samples.iter().map(|s| s.miss(&s.error(fitted.predicted_by(&mut placer, s)))).collect()
 }
 
-/// Weight of a sample with this error, without unit: more than 1 for small errors, and falling for errors above the
-/// scale.
+/// Weight of a sample with the error `miss` in the fit, without unit. It is more than 1 for errors well below the
+/// scale `scale_m`, and falls as the error grows.
 pub(crate) fn weight(miss: &Miss, scale_m: f64) -> f64 {
     (NU + miss.readings) / (NU + miss.scaled_m.norm_squared() / (scale_m * scale_m))
 }

@@ -8,7 +8,7 @@ use crate::arm::{Arm, Element};
 use crate::reconcile::readings::campaign::PositionsSpec;
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
-/// Amplitudes of the transmission error of a joint without transmission error.
+/// The amplitudes of a joint's transmission error if the joint has none.
 const EVEN: [f64; 4] = [0.0; 4];
 
 /// One calibrated number of the geometry.
@@ -47,8 +47,8 @@ pub(crate) enum Number {
 }
 
 impl Number {
-    /// Prior standard deviation of the number, in its unit. For placements it is far larger than any real value, so
-    /// that the readings alone decide.
+    /// Prior standard deviation of the number's change from nominal, in the number's unit. For placements it is far
+    /// larger than any change that occurs, so that the readings alone decide.
     pub(crate) fn prior(&self) -> f64 {
         match self {
             Number::BaseRotation(_) | Number::Mount(..) => 10.0,
@@ -62,14 +62,15 @@ impl Number {
         }
     }
 
-    /// Whether the number is a rotation whose angle may have any size.
+    /// Whether the number is a rotation that may be large, as for a placement. The fit shortens its steps.
     pub(crate) fn turns(&self) -> bool {
         matches!(self, Number::BaseRotation(_) | Number::Mount(..))
     }
 }
 
-/// The numbers that a campaign leaves free, in groups. The groups are freed one after the other: placement of arm and
-/// points, joint zeros, geometry, direction of gravity.
+/// The numbers of the geometry that a campaign leaves free, in named groups. The groups are freed one after the
+/// other: placement of arm and points, joint zeros, geometry, direction of gravity. `points` is the number of
+/// measured points.
 pub(crate) fn number_groups(
     tree: &Tree,
     spec: &PositionsSpec,
@@ -97,7 +98,7 @@ pub(crate) fn number_groups(
     out
 }
 
-/// The numbers of attitude and position behind each link of unknown mounting.
+/// The numbers of attitude and position behind each link of unknown mounting, three of each.
 pub(crate) fn mount_numbers(tree: &Tree, spec: &PositionsSpec) -> Vec<Number> {
     let mounts = (0..tree.pieces.len()).filter(|&i| is_mount(&tree.pieces[i], spec));
     mounts
@@ -111,9 +112,9 @@ fn is_mount(piece: &Piece, spec: &PositionsSpec) -> bool {
     matches!(piece, Piece::Link(link) if spec.mounts.contains(&link.name))
 }
 
-/// Numbers of the geometry between the joints. Of consecutive links only the last vector is free, because the readings
-/// depend on their sum only. Links before the first joint and after the last are covered by base placement and tool
-/// offsets.
+/// The numbers of axes and link vectors between the first and the last joint. Of consecutive links only the last
+/// vector is free, because the readings depend on their sum only. Links before the first joint and after the last are
+/// covered by base placement and tool offsets.
 fn geometry_numbers(tree: &Tree, spec: &PositionsSpec) -> Vec<Number> {
     let is_joint = |i: usize| matches!(tree.pieces[i], Piece::Joint(_));
     let between = |i: usize| {
@@ -149,8 +150,8 @@ pub(crate) struct Geometry {
     pub origin_m: Vector3<f64>,
     /// Points on the tools, each in the last frame of the point's arm \[m\].
     pub tools_m: Vec<Vector3<f64>>,
-    /// For each session, relative to the first one: rotation of all points about the base's origin, and shift of all
-    /// points \[m\].
+    /// For each session, relative to the first one: how all points turn about the base's origin, and how they shift
+    /// \[m\].
     pub stations: Vec<(Rotation3<f64>, Vector3<f64>)>,
     /// Rotation from the base frame to the level frame, whose z axis is opposite to gravity.
     pub level: Rotation3<f64>,
@@ -183,7 +184,7 @@ impl Pose {
     }
 }
 
-/// The point whose position is asked for: its arm, pose and session.
+/// States which point's position is asked for, and in which arm, pose and session.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Placing<'a> {
     /// Index of the arm.
@@ -241,7 +242,7 @@ impl Geometry {
         self.mounts[piece] = rotation;
     }
 
-    /// Changes the numbers by the amounts in `step`.
+    /// Changes each of the geometry's `numbers` by its amount in `step`, in the number's unit.
     pub(crate) fn step(&mut self, numbers: &[Number], step: &[f64]) {
         let about =
             |c: usize, by: f64| Rotation3::from_axis_angle(&Unit::new_unchecked(Vector3::ith(c, 1.0)), by);
@@ -281,15 +282,16 @@ impl Geometry {
         }
     }
 
-    /// Rotation from the level frame to the instrument's.
+    /// Rotation from the level frame to the instrument's frame.
     pub(crate) fn level_to_instrument(&self) -> Rotation3<f64> {
         self.base * self.level.inverse()
     }
 
-    /// Writes the calibrated axes and vectors into one of the arms, in the level frame.
+    /// Writes the calibrated axes and vectors into `arm`, which has the index `index` in the tree, in the level
+    /// frame.
     ///
     /// A joint's zero and a mounting turn everything outboard, so later axes and vectors turn with them. Returns the
-    /// rotation of the arm's last frame.
+    /// rotation of the arm's last frame that results from this.
     pub(crate) fn write_into(&self, index: usize, arm: &mut Arm) -> Rotation3<f64> {
         let mut turned = self.level;
         for (&i, element) in self.arms[index].iter().zip(&mut arm.chain) {
@@ -316,7 +318,8 @@ impl Geometry {
         turned
     }
 
-    /// Prepares the computation of many positions with this geometry.
+    /// Prepares the computation of many positions with this geometry. Numbers that do not depend on the pose are
+    /// computed here once.
     pub(crate) fn placer(&self) -> Placer<'_> {
         let along = |chain: &Vec<usize>| {
             let mut out = vec![None; self.axes.len()];
@@ -341,17 +344,18 @@ impl Geometry {
         }
     }
 
-    /// Position of a point \[m\]. For many points, a [`placer`](Self::placer) is faster.
+    /// Position of the point `asked`, in the instrument's frame \[m\]. For many points, a [`placer`](Self::placer) is
+    /// faster.
     pub(crate) fn place_m(&self, asked: Placing) -> Vector3<f64> {
         self.placer().place_m(asked)
     }
 }
 
-/// Computes positions of points for one geometry. The memory for the frames of a pose is used again for the next pose,
-/// so that nothing is allocated for each point.
+/// Computes positions of points for one geometry. The memory for the frames of a pose is used again for each pose, so
+/// that nothing is allocated for each point.
 pub(crate) struct Placer<'a> {
     geometry: &'a Geometry,
-    /// For each piece, the two axes across its axis.
+    /// For each piece, the two unit axes perpendicular to the joint's axis.
     across: Vec<[Vector3<f64>; 2]>,
     /// For each driven joint, the joints whose angle depends on it: the joint itself and its passive joints.
     turned_by: Vec<Vec<usize>>,
@@ -368,7 +372,8 @@ pub(crate) struct Placer<'a> {
 }
 
 impl Placer<'_> {
-    /// Position of a point \[m\]. The [slopes](Self::slopes) refer to the point that was placed last.
+    /// Position of the point `asked`, in the instrument's frame \[m\]. The [slopes](Self::slopes) refer to the point
+    /// that was placed last.
     pub(crate) fn place_m(&mut self, asked: Placing) -> Vector3<f64> {
         let own = self.geometry;
         self.turned_rad.clear();
@@ -410,7 +415,8 @@ impl Placer<'_> {
         }
     }
 
-    /// Appends the derivatives of the position of the point placed last, one per number, to `out` \[m per unit\].
+    /// Appends to `out` the derivatives of the position of the point that was placed last with respect to the
+    /// `numbers` of the geometry, one vector per number \[m per unit of the number\]. `asked` must be this point.
     pub(crate) fn slopes(&self, asked: Placing, numbers: &[Number], out: &mut Vec<Vector3<f64>>) {
         // the rotation of a session is small, so its derivatives are those of the first session
         out.extend(numbers.iter().map(|number| self.slope(number, asked)));
@@ -454,8 +460,8 @@ impl Placer<'_> {
         }
     }
 
-    /// Derivative of the point's position with respect to the angle of a driven joint \[m/rad\]. `along` holds the
-    /// index of each piece in the arm's chain.
+    /// Derivative of the placed point's position with respect to the angle of the driven joint with index `driven`
+    /// \[m/rad\]. `along` holds, for each piece, its index in the arm's chain, or `None`.
     fn turning(&self, driven: usize, along: &[Option<usize>]) -> Vector3<f64> {
         let pieces = self.turned_by[driven].iter();
         pieces
@@ -464,16 +470,16 @@ impl Placer<'_> {
             .sum()
     }
 
-    /// Derivative of the point's position with respect to the angle of the joint `piece`, whose index in the chain is
-    /// `k` \[m/rad\].
+    /// Derivative of the placed point's position with respect to the angle of the joint with the piece index `piece`
+    /// \[m/rad\]. The index of this joint in the arm's chain is `k`.
     fn lever(&self, piece: usize, k: usize) -> Vector3<f64> {
         let before = &self.frames[k];
         (before.rotation * self.geometry.axes[piece].into_inner()).cross(&(self.at_m - before.at_m))
     }
 }
 
-/// Derivative of a joint's angle with respect to the angle of a driven joint: 1 for the driven joint itself, the factor
-/// for a passive joint, otherwise 0.
+/// Derivative of a joint's angle with respect to the angle of the driven joint with index `driven`: 1 for the driven
+/// joint itself, the coupling factor for a passive joint, otherwise 0.
 fn rate(angle: &JointAngle, driven: usize) -> f64 {
     match angle {
         JointAngle::Driven(index) => f64::from(u8::from(*index == driven)),
@@ -481,7 +487,7 @@ fn rate(angle: &JointAngle, driven: usize) -> f64 {
     }
 }
 
-/// Rotation about an axis by an angle that is given by its sine and cosine (Rodrigues).
+/// Rotation about the axis `axis` by an angle that is given by its sine and cosine (Rodrigues' formula).
 fn turn(axis: &Unit<Vector3<f64>>, (sin, cos): (f64, f64)) -> Rotation3<f64> {
     let (x, y, z) = (axis.x, axis.y, axis.z);
     let rest = 1.0 - cos;

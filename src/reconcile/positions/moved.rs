@@ -3,8 +3,8 @@
 use super::fitted::Sample;
 use super::kinematics::Number;
 
-/// Label of a session's rows: the point on the tool, or the set-up of instrument and base, with its placement in this
-/// session.
+/// Label of the rows of a session: which point on the tool, or which set-up of instrument and base, has a placement
+/// of its own in these rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Moved {
     /// A point on the tool, by its index.
@@ -21,7 +21,7 @@ impl Moved {
         }
     }
 
-    /// Labels the rows before `first` that have this label with `new`.
+    /// Gives the label `new` to those samples before the row `first` that have this label.
     pub(super) fn relabel(self, samples: &mut [Sample], first: usize, new: Moved) {
         for sample in samples[..first].iter_mut().filter(|s| self.has(s)) {
             match new {
@@ -45,14 +45,15 @@ impl Moved {
 /// What was moved between two sessions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Kind {
-    /// A point on the tool, by one of its indices among the points: it has one for each of its sessions.
+    /// A point on the tool, by its index among the points. A point has one index for each of its sessions; any of
+    /// them stands for it.
     Point(usize),
     /// The instrument or the base.
     Station,
 }
 
 impl Kind {
-    /// Label of the session to which a sample belongs.
+    /// Label of the session to which a sample belongs, as far as this kind of move is concerned.
     pub(super) fn label(self, sample: &Sample) -> Moved {
         match self {
             Kind::Point(_) => Moved::Point(sample.point),

@@ -9,10 +9,10 @@ use super::loads::Yielding;
 use crate::arm::effect::kind::Yields;
 use crate::arm::effect::lost_motion;
 
-/// Torque scales that are tried, as fractions of the largest torque on the joint.
+/// Torque scales `T_c` that are tried, as fractions of the largest torque on the joint.
 const PARTS: [f64; 5] = [0.01, 0.03, 0.08, 0.2, 0.5];
-/// Adds candidates for play to the given ones: one for each torque scale in each joint that has a candidate about its
-/// axis.
+/// Adds candidates for play to the given `candidates`: five, one for each torque scale that is tried, in each joint
+/// that has a candidate about its axis.
 pub(crate) fn with_play(mut candidates: Vec<Yielding>, samples: &[Sample]) -> Vec<Yielding> {
     let is_joint = |c: &usize| candidates[*c].yields == Yields::AboutAxis;
     let largest_nm = |c: usize| samples.iter().map(|s| s.deflection.lever(c).1.abs()).fold(0.0, f64::max);

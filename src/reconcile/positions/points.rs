@@ -3,7 +3,8 @@
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::rows::PositionRow;
 
-/// A point on the tool of an arm, as the fit sees it. In another session it may be a separate point.
+/// A measured point on the tool of an arm, as the fit sees it. If the point was moved on the tool, each of its
+/// sessions has a `Point` of its own.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Point {
     /// Index of the arm in the campaign.
@@ -16,7 +17,7 @@ pub(crate) struct Point {
 }
 
 impl Point {
-    /// The point of a row.
+    /// The point that a row of readings names, in its last session.
     pub(crate) fn of(row: &PositionRow) -> Self {
         Self { arm: row.arm, name: row.point.clone(), before_row: None }
     }

@@ -30,7 +30,7 @@ const FEWEST: usize = 5;
 /// Largest number of sessions beyond the first.
 const MOST: usize = 6;
 
-/// A model with one more session.
+/// The model after the rows before some row have got a placement of their own, as a session.
 pub(super) struct Split {
     samples: Vec<Sample>,
     numbers: Vec<Number>,
@@ -41,14 +41,15 @@ pub(super) struct Split {
     gain: f64,
 }
 
-/// Factorized normal equations of the model that is to be divided.
+/// Factorized normal equations and gradient of a model before its rows are divided into sessions.
 pub(super) struct Whole {
     factor: Factor,
     gradient: DVector<f64>,
 }
 
 impl Positions {
-    /// Finds sessions, as long as another session is worth its price. Returns how many were found.
+    /// Adds sessions to the model, as long as another session is worth its price, and returns how many were added.
+    /// `tools_free` and `base_free` say whether points on the tool, and instrument or base, can have been moved.
     pub(crate) fn find_sessions(&mut self, tools_free: bool, base_free: bool) -> usize {
         let mut found = 0;
         while found < MOST {
@@ -67,8 +68,8 @@ impl Positions {
         found
     }
 
-    /// Starts a new session at each of the given rows, whether or not the fit gets better by it. `declared` says
-    /// whether campaign.json states the boundaries.
+    /// Starts a new session at each of the places `at` (what was moved, and the first row), whether or not the fit
+    /// gets better by it. `declared` says whether campaign.json states these boundaries.
     pub(crate) fn divide(&mut self, at: &[(Kind, usize)], declared: bool) {
         for &(kind, first) in at {
             let of_kind = |s: &&Sample| s.index >= first && self.is_of(s, kind);
@@ -80,7 +81,8 @@ impl Positions {
         }
     }
 
-    /// Whether a sample belongs to the point that was moved. Every sample shows that the station was moved.
+    /// Whether a sample is affected by a move of `kind`. A sample is affected by a move of its point on the tool, and
+    /// every sample by a move of the instrument or base.
     pub(super) fn is_of(&self, sample: &Sample, kind: Kind) -> bool {
         let same = |a: &Point, b: &Point| (a.arm, &a.name) == (b.arm, &b.name);
         match kind {
@@ -89,16 +91,16 @@ impl Positions {
         }
     }
 
-    /// Everything that may have been moved: all points if tool offsets are free, all stations if the base placement is
-    /// free.
+    /// Everything that may have been moved: all points if tool offsets are free (`tools_free`), all set-ups of
+    /// instrument and base if the base placement is free (`base_free`).
     pub(super) fn kinds(&self, tools_free: bool, base_free: bool) -> Vec<Moved> {
         let points = (0..self.points.len()).filter(|_| tools_free).map(Moved::Point);
         let stations = (0..self.fitted.geometry.stations.len()).filter(|_| base_free).map(Moved::Station);
         points.chain(stations).collect()
     }
 
-    /// Price of a session with `numbers` parameters in ln of the likelihood. It charges for the parameters of the
-    /// placement, and for having examined every row and `kinds` kinds of sessions.
+    /// Price of a session whose placement has `numbers` parameters \[ln of the likelihood\]. It charges for these
+    /// parameters, and for having examined every row for `kinds` things that may have been moved.
     pub(super) fn session_price(&self, numbers: usize, kinds: usize) -> f64 {
         let readings = readings(&self.samples) as f64;
         0.5 * numbers as f64 * libm::log(readings) + libm::log(readings * kinds as f64) + 3.0
@@ -111,8 +113,9 @@ impl Positions {
         Some(Whole { factor: Factor::new(&normal.curvature, &own)?, gradient: normal.gradient })
     }
 
-    /// The best row for the beginning of a new session, counted from 0, with the gain in ln of the likelihood by the
-    /// linearized model. `None` if there are not enough rows before and after any row.
+    /// The best first row for a new session in which `moved` was moved, counted from 0, with the rise of the
+    /// logarithm of the likelihood that the linearized model expects. `None` if no row has enough rows before and
+    /// after it.
     pub(super) fn best_first(&self, moved: Moved, whole: &Whole) -> Option<(usize, f64)> {
         let rows = self.samples.iter().filter(|s| moved.has(s)).count();
         let inside = FEWEST..rows.saturating_sub(FEWEST);
@@ -135,8 +138,9 @@ impl Positions {
         best
     }
 
-    /// The model in which the rows before `first` have their own placement. The gain is the rise of ln of the
-    /// likelihood less the price of the session.
+    /// Divides a session: fits the model in which those rows before `first` that have the label `moved` get a
+    /// placement of their own. The gain of the result is the rise of the logarithm of the likelihood, less the price
+    /// of the session.
     pub(super) fn split(&self, moved: Moved, first: usize, kinds: usize) -> Split {
         let mut start = self.fitted.clone();
         let geometry = &mut start.geometry;
@@ -174,13 +178,13 @@ impl Positions {
     }
 }
 
-/// Sums over the rows before a row. They give the gain if these rows have an offset of their own.
+/// Sums over the rows before some row. They give the gain if these rows had an offset (a placement) of their own.
 struct Earlier<'a> {
     factor: &'a Factor,
-    /// The model's gradient, whitened.
+    /// The model's gradient, multiplied by the whitening factor `W`.
     gradient: DVector<f64>,
-    /// Derivatives of a row with respect to the model's numbers, whitened. `offset` holds those with respect to the
-    /// offset.
+    /// Derivatives of a row's position with respect to the model's numbers, multiplied by `W`. The next field,
+    /// `offset`, holds the derivatives with respect to the offset.
     model: DMatrix<f64>,
     offset: DMatrix<f64>,
     cross: DMatrix<f64>,
@@ -189,7 +193,7 @@ struct Earlier<'a> {
 }
 
 impl<'a> Earlier<'a> {
-    /// Sums over no rows. The offset has `width` numbers.
+    /// Sums over no rows, for an offset that has `width` numbers.
     fn new(whole: &'a Whole, width: usize) -> Self {
         let numbers = whole.gradient.len();
         let mut gradient = DMatrix::from_columns(std::slice::from_ref(&whole.gradient));
@@ -205,7 +209,8 @@ impl<'a> Earlier<'a> {
         }
     }
 
-    /// Adds a row: the columns of the model's numbers, then those of the offset, and the error.
+    /// Adds the equations of one row to the sums. `columns` are the derivatives of its position: first with respect
+    /// to the model's numbers, then to the offset.
     fn add(&mut self, columns: &[Vector3<f64>], error: &Vector3<f64>) {
         let (model, offset) = columns.split_at(self.model.nrows());
         for c in 0..3 {
@@ -218,7 +223,8 @@ impl<'a> Earlier<'a> {
         self.slope.gemv_tr(1.0, &self.offset, error, 1.0);
     }
 
-    /// Gain in ln of the likelihood if the rows so far had an offset of their own.
+    /// Rise of the logarithm of the likelihood, by the linearized model, if the rows added so far had an offset of
+    /// their own.
     fn gain(&self) -> f64 {
         let left = &self.curvature - self.cross.tr_mul(&self.cross);
         let gradient = &self.slope - self.cross.tr_mul(&self.gradient);

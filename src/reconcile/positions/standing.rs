@@ -13,7 +13,8 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 impl Positions {
-    /// The placement of one of the arms. `turned` is the rotation of the arm's last frame.
+    /// The placement of the arm with the index `arm` in the instrument's frame, by the fit `shown`: in each session,
+    /// and one for all. `turned` is the rotation of the arm's last frame by the calibrated zeros and mountings.
     pub(crate) fn placement(
         &self,
         campaign: &Campaign,
@@ -58,7 +59,8 @@ impl Positions {
         }
     }
 
-    /// The samples of an arm, divided into runs within which neither the instrument nor a point was moved.
+    /// Divides the samples with the indices `own` (those of one arm) into runs, within each of which neither the
+    /// instrument nor a point was moved.
     fn runs(&self, campaign: &Campaign, own: &[usize]) -> Vec<Vec<usize>> {
         let mut out: Vec<Vec<usize>> = Vec::new();
         // for each name of a point, the index of the point in the present run
@@ -81,7 +83,8 @@ impl Positions {
         out
     }
 
-    /// Placement of the arm, and of the points on its tool, during a run.
+    /// Placement of the arm, and of the points on its tool, during the samples `run`. `own_points` lists the arm's
+    /// points by name, with the index that each has if it does not occur in the run.
     fn stand(
         &self,
         geometry: &Geometry,
@@ -103,8 +106,8 @@ impl Positions {
         }
     }
 
-    /// The geometry with one placement of base and points that fits all sessions together. All other numbers stay as
-    /// they are.
+    /// The geometry of the fit `shown`, with one placement of base and points that fits all sessions together. All
+    /// other numbers stay as they are.
     fn merged(&self, campaign: &Campaign, shown: &Fitted) -> Geometry {
         let named = points(campaign);
         let together: Vec<Sample> = self

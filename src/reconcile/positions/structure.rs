@@ -19,17 +19,18 @@ use crate::reconcile::select::structure::Structure;
 use crate::reconcile::select::waves::{order_functions, waves};
 use nalgebra::{DMatrix, SymmetricEigen, Vector3};
 
-/// A structure in the errors counts if it explains at least this fraction of their sum of squares.
+/// A structure in the errors is material if it explains at least this fraction of their sum of squares.
 pub(crate) const MATERIAL_PART: f64 = 0.1;
-/// If the variance of the errors is below this multiple of the declared one, the declaration is taken to be too small
-/// and the model is not blamed.
+/// If the variance of the errors is below this multiple of the declared variance, the declared standard deviations
+/// are taken to be too small, and the model is not blamed.
 pub(crate) const MATERIAL_VARIANCE: f64 = 1.75;
 /// A structure is real if its probability by chance is less than this.
 const IMPROBABLE: f64 = 1e-6;
-/// Median length of a vector of one, two and three standard normal deviates.
+/// Median length of a vector whose one, two or three components are standard normal deviates.
 const MEDIAN_LENGTHS: [f64; 3] = [0.6745, 1.1774, 1.538];
 
-/// One test of the errors: the quantity that they would follow, in words, and the number of columns.
+/// One test of the errors: the quantity that they would follow, in words, and the number of columns with which this
+/// is tested.
 type Question = (String, usize);
 
 impl Positions {
@@ -76,7 +77,7 @@ impl Positions {
         LackOfFit { structures, chi2_per_dof: self.variance_ratio(campaign), fails }
     }
 
-    /// Fraction of the errors' sum of squares that a structure explains.
+    /// Fraction of the errors' sum of squares that the structure `structure` explains.
     pub(crate) fn part(&self, structure: &Structure) -> f64 {
         structure.statistic / readings(&self.samples) as f64
     }
@@ -86,8 +87,8 @@ impl Positions {
         structure.ln_p < libm::log(IMPROBABLE) && self.part(structure) > MATERIAL_PART
     }
 
-    /// Variance of the errors over the declared variance. It is estimated from the median length of an error, so that
-    /// gross errors do not count.
+    /// Ratio of the variance of the errors to the declared variance. It is estimated from the median length of an
+    /// error, so that gross errors do not count.
     fn variance_ratio(&self, campaign: &Campaign) -> f64 {
         let rows = campaign.positions.iter().zip(&self.samples);
         let lengths = rows.map(|(row, s)| declared_length(row, &self.fitted.error(s)) / median_length(s));
@@ -97,25 +98,27 @@ impl Positions {
     }
 }
 
-/// Length of an error, in declared standard deviations of its coordinates.
+/// Length of the error of one position, with each measured coordinate divided by its declared standard deviation.
 fn declared_length(row: &PositionRow, error_m: &Vector3<f64>) -> f64 {
     let parts = row.measured.iter().zip(error_m.iter());
     let squares = parts.filter_map(|(read, e)| Some((1e3 * e / (*read)?.sigma_mm).powi(2)));
     squares.sum::<f64>().sqrt()
 }
 
-/// Median length of the error of a sample whose measured coordinates each have the standard deviation 1.
+/// Median length of a sample's error if each of its measured coordinates has the standard deviation 1 and no
+/// systematic error.
 fn median_length(sample: &Sample) -> f64 {
     MEDIAN_LENGTHS[sample.readings().clamp(1, 3) - 1]
 }
 
-/// Mean of these median lengths over samples with different numbers of coordinates.
+/// Mean over the samples of the median length that `median_length` gives for each. It depends on how many coordinates
+/// were measured.
 pub(crate) fn mean_median_length(samples: &[Sample]) -> f64 {
     samples.iter().map(median_length).sum::<f64>() / samples.len().max(1) as f64
 }
 
-/// The statistic `zᵀ S⁻¹ z` over the directions in which `S` is not singular, and the number of these
-/// directions.
+/// The statistic `zᵀ S⁻¹ z`, restricted to the directions in which the matrix `S` is not singular, and the number of
+/// these directions.
 pub(crate) fn squares(s: &DMatrix<f64>, z: &nalgebra::DVector<f64>) -> (f64, f64) {
     let eigen = SymmetricEigen::new((s + s.transpose()) * 0.5);
     let largest = eigen.eigenvalues.max();
@@ -130,7 +133,8 @@ pub(crate) fn squares(s: &DMatrix<f64>, z: &nalgebra::DVector<f64>) -> (f64, f64
     (statistic, dof)
 }
 
-/// Computes the columns of every test for a sample \[m per unit\].
+/// Computes, for one sample at a time, the columns of every test \[m per unit\]: functions of the quantities that the
+/// errors could follow.
 struct Asker<'a> {
     found: &'a Positions,
     questions: Vec<Question>,

@@ -56,14 +56,15 @@ impl Tree {
         self.poses.push(own);
     }
 
-    /// The pose of all arms, with the angles of one arm replaced.
+    /// The pose `pose` of all arms, in which the angles of the arm with index `arm` are replaced by `own`.
     pub(crate) fn with_pose_of(&self, arm: usize, own: &[f64], pose: &[f64]) -> Vec<f64> {
         let mut out = pose.to_vec();
         self.poses[arm].iter().zip(own).for_each(|(&i, angle)| out[i] = *angle);
         out
     }
 
-    /// The angles of one arm's driven joints, taken from the pose of the whole campaign.
+    /// The angles of the driven joints of the arm with index `arm`, taken from `pose`, the pose of the whole
+    /// campaign.
     pub(crate) fn pose_of(&self, arm: usize, pose: &[f64]) -> Vec<f64> {
         self.poses[arm].iter().map(|&i| pose[i]).collect()
     }

@@ -17,7 +17,8 @@ use crate::reconcile::readings::declared::BASE;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 impl Positions {
-    /// Widens the standard deviations of the model by the uncertainty from compliances outside the model.
+    /// Widens the standard deviations of the model's numbers by the uncertainty that comes from compliances outside
+    /// the model.
     pub(super) fn widen(&mut self) {
         let unnamed = self.unnamed_springs();
         let Some(usual) = self.stiffest_named().filter(|_| !unnamed.is_empty()) else { return };
@@ -27,7 +28,8 @@ impl Positions {
         own.zip(&further).for_each(|(own, more)| *own = (own.powi(2) + more).sqrt());
     }
 
-    /// Candidates with a single compliance that are neither in the model nor contained in a frame of the model.
+    /// Indices of the candidates with a single compliance that are neither in the model nor contained in a frame of
+    /// the model.
     fn unnamed_springs(&self) -> Vec<usize> {
         // tilt of the base and tilt of a first joint have the same effect
         let place = |c: &Yielding| match (c.yields, self.tree.pieces.first()) {
@@ -49,16 +51,17 @@ impl Positions {
         (0..self.candidates.len()).filter(is_spring).filter(|c| !is_named(*c)).collect()
     }
 
-    /// The smallest compliance among the springs in the model that have a single one \[rad/(N m)\]; `None` if there is
-    /// none.
+    /// The smallest compliance \[rad/(N m)\] among those effects of the model that are springs with a single
+    /// compliance; `None` if there are none.
     fn stiffest_named(&self) -> Option<f64> {
         let named = self.fitted.effects.iter().zip(&self.fitted.compliances);
         let springs = named.filter(|(e, own)| self.candidates[**e].play_nm.is_none() && own.len() == 1);
         springs.map(|(_, own)| own[0]).filter(|c| *c > 0.0).reduce(f64::min)
     }
 
-    /// Variance that the compliances outside the model add to every number, those of the geometry first. `usual` is the
-    /// prior standard deviation of these compliances \[rad/(N m)\]. `None` if the equations are singular.
+    /// Variance that the compliances outside the model add to every number of the model, those of the geometry first.
+    /// `unnamed` are the indices of the candidates outside the model, and `usual` is the prior standard deviation of
+    /// their compliances \[rad/(N m)\]. `None` if the equations are singular.
     fn further_variances(&self, unnamed: &[usize], usual: f64) -> Option<Vec<f64>> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let from_level = self.fitted.geometry.level_to_instrument();

@@ -23,13 +23,13 @@ use std::path::{Path, PathBuf};
 /// Tolerance of parts: limits within which 95 % of faultless parts lie, as fractions of the nominal value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance {
-    /// Limit of the stiffness of each joint. The joints deviate independently.
+    /// Limit of the deviation of each joint's stiffness. The joints deviate independently.
     pub joint_stiffness: f64,
     /// Limit of the common factor on the moduli E and G of each material.
     pub modulus: f64,
-    /// Limit of the mass of each joint. The joints deviate independently.
+    /// Limit of the deviation of each joint's mass. The joints deviate independently.
     pub joint_mass: f64,
-    /// Limit of the tilting stiffness of each joint's bearing. The bearings deviate independently.
+    /// Limit of the deviation of the tilting stiffness of each joint's bearing. The bearings deviate independently.
     pub bearing_stiffness: f64,
 }
 
@@ -213,12 +213,13 @@ fn read_names(node: &Node) -> Option<Vec<String>> {
 }
 
 impl Statement {
-    /// File and columns of a channel; the usual ones if nothing is stated.
+    /// File and columns of a channel, as `campaign.json` states them; empty if it states nothing, and the usual names
+    /// then apply.
     pub(crate) fn source(&self, channel: Channel) -> Source {
         self.sources[channel as usize].clone().unwrap_or_default()
     }
 
-    /// Whether the campaign allows an effect to be named.
+    /// Whether the campaign allows the effect with this name to be named as a cause.
     pub fn considers(&self, effect: &str) -> bool {
         self.effects.as_ref().is_none_or(|list| list.iter().any(|name| name == effect))
     }
@@ -350,7 +351,7 @@ impl Campaign {
         self.other_arms.iter().map(shared).min().unwrap_or(self.arm.chain.len())
     }
 
-    /// Checks the arms together, and the names in `campaign.json`.
+    /// Faults that show when the arms are compared with one another, and names in `campaign.json` that no arm has.
     fn faults(&self) -> Vec<Fault> {
         let mut out = Vec::new();
         let trunk: Vec<&str> = self.arm.chain[..self.trunk()].iter().map(Element::name).collect();
@@ -386,8 +387,8 @@ impl Campaign {
         out
     }
 
-    /// Splits the campaign in two: the readings other than absolute positions, and the positions. Records are in
-    /// neither.
+    /// Splits the campaign in two. The first has the readings other than absolute positions, and the second has the
+    /// positions. Records are in neither.
     pub fn parted(&self) -> (Self, Self) {
         let loaded =
             Self { positions: Vec::new(), records: Vec::new(), other_arms: Vec::new(), ..self.clone() };
@@ -438,7 +439,7 @@ impl Campaign {
         hasher.finalize().to_hex().to_string()
     }
 
-    /// Joins further campaigns of the same arm to this one.
+    /// Appends the readings of further campaigns of the same arm to this one.
     ///
     /// # Errors
     /// The arms or what is stated of them differ.

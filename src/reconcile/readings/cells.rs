@@ -2,7 +2,7 @@
 
 use super::table::Table;
 
-/// Upper limit of readings and loads in their units. A larger number is a fault in the file.
+/// Upper limit of the magnitude of readings and loads, in their units. A larger number is a fault in the file.
 pub(crate) const ABSURD: f64 = 1e9;
 
 /// Purpose for which the rows of a file are read.
@@ -14,12 +14,12 @@ pub(crate) enum Purpose {
     Predict,
 }
 
-/// Reads a cell as a number below [`ABSURD`]. `None` is a fault.
+/// Reads a cell as a number whose magnitude is below [`ABSURD`]. `None` if it is not; this is recorded as a fault.
 pub(crate) fn measured(table: &Table, row: usize, column: usize) -> Option<f64> {
     table.number_that(row, column, |x| x.abs() < ABSURD, "too large for any unit: is it a slip?")
 }
 
-/// Reads a cell as a standard deviation, which is above zero. `None` is a fault.
+/// Reads a cell as a standard deviation, which must be above zero. `None` if it is not; this is recorded as a fault.
 pub(crate) fn sigma(table: &Table, row: usize, column: usize) -> Option<f64> {
     const SIGMA: &str = "a standard deviation is greater than 0";
     let value = table.number_that(row, column, |s| s > 0.0, SIGMA)?;
@@ -31,7 +31,8 @@ pub(crate) fn sigma(table: &Table, row: usize, column: usize) -> Option<f64> {
     None
 }
 
-/// Reads a cell, or takes zero if the cell is blank or its column is absent. `None` is a fault.
+/// Reads a cell with `read`, or takes zero if the cell is blank or its column is absent. `None` if the cell has a
+/// fault, which is recorded.
 pub(crate) fn or_zero(
     table: &Table,
     row: usize,
@@ -44,8 +45,8 @@ pub(crate) fn or_zero(
     }
 }
 
-/// Reads a cell that a fit needs and a prediction does not. In a prediction it is zero if the cell is blank or its
-/// column is absent. `None` is a fault.
+/// Reads a cell that a fit needs and a prediction does not. If `purpose` is a prediction, a blank cell or an absent
+/// column gives zero. `None` if there is a fault, which is recorded.
 pub(crate) fn needed(
     table: &Table,
     row: usize,
@@ -60,7 +61,7 @@ pub(crate) fn needed(
 }
 
 /// Index of a column of readings. For a prediction the column may be absent, and the inner value is then `None`. The
-/// outer `None` is a fault.
+/// outer value is `None` if a fit needs the column and it is missing, which is recorded as a fault.
 pub(crate) fn reading_column(table: &Table, name: &str, purpose: Purpose) -> Option<Option<usize>> {
     match purpose {
         Purpose::Predict => Some(table.optional(name)),

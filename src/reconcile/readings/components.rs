@@ -54,7 +54,8 @@ pub(crate) struct VectorColumns<'a> {
 }
 
 impl<'a> VectorColumns<'a> {
-    /// Finds the columns. `None` if a necessary one is missing, which is a fault.
+    /// Finds the columns with these names in the table. `None` if a necessary one is missing, which is recorded as a
+    /// fault.
     pub(crate) fn find(table: &'a Table, names: &'a Names, purpose: Purpose) -> Option<Self> {
         table.check_family("sigma", &[names.sigmas.as_slice(), &[COMMON_SIGMA]].concat());
         let values = names.values.map(|name| table.optional(name));
@@ -79,7 +80,7 @@ impl<'a> VectorColumns<'a> {
         Some(Self { table, names, values, sigmas, common, purpose })
     }
 
-    /// Reads the components of a row. `None` is a fault.
+    /// Reads the components of the row with index `row`. `None` if there is a fault, which is recorded.
     pub(crate) fn read(&self, row: usize) -> Option<Components> {
         let read = [0, 1, 2].map(|component| self.component(row, component));
         let [Some(x), Some(y), Some(z)] = read else { return None };
@@ -92,7 +93,8 @@ impl<'a> VectorColumns<'a> {
         Some(out)
     }
 
-    /// Reads the value of a component. `None` is a fault.
+    /// Reads the value of a component from the cell at `row` and `column`. `None` if there is a fault, which is
+    /// recorded.
     fn value(&self, row: usize, column: usize) -> Option<f64> {
         let text = self.table.text(row, column);
         if NOTHING.contains(&text.to_lowercase().as_str()) {
@@ -104,7 +106,8 @@ impl<'a> VectorColumns<'a> {
         measured(self.table, row, column)
     }
 
-    /// Reads a component. The outer `None` is a fault, the inner one a component that was not measured.
+    /// Reads the component with index `component` and its standard deviation. The outer value is `None` if there is a
+    /// fault, the inner one if the component was not measured.
     fn component(&self, row: usize, component: usize) -> Option<Option<Component>> {
         let is_given = |c: &usize| !self.table.is_blank(row, *c);
         let Some(value) = self.values[component].filter(is_given) else { return Some(None) };
@@ -123,7 +126,8 @@ impl<'a> VectorColumns<'a> {
 /// Texts that people write into a cell if nothing was read.
 const NOTHING: [&str; 9] = ["-", "--", "\u{2013}", "\u{2014}", "/", "?", "n/a", "na", "none"];
 
-/// Removes readings that are written but were not measured, and returns a sentence for each kind.
+/// Removes readings that stand in the file but were not measured (constant columns, zeros of other directions), and
+/// returns a sentence for each kind. `file` is the file's name, for the sentence.
 pub(crate) fn leave_out_idle(file: &str, names: &Names, rows: &mut [&mut Components]) -> Vec<String> {
     if rows.len() < FEWEST_ALIKE {
         return Vec::new();
@@ -149,8 +153,8 @@ pub(crate) fn leave_out_idle(file: &str, names: &Names, rows: &mut [&mut Compone
     .collect()
 }
 
-/// The common value of a component and the number of rows that have it, if all readings are equal and there are at
-/// least [`FEWEST_ALIKE`]; otherwise `None`.
+/// The value that a component has in all rows with a reading of it, and the number of these rows. `None` if the
+/// readings differ or are fewer than [`FEWEST_ALIKE`].
 fn constant(component: usize, rows: &[&mut Components]) -> Option<(f64, usize)> {
     let mut values = rows.iter().filter_map(|row| row[component]).map(|read| read.value_mm);
     let first = values.next()?;
@@ -159,8 +163,9 @@ fn constant(component: usize, rows: &[&mut Components]) -> Option<(f64, usize)> 
     (count >= FEWEST_ALIKE && others.iter().all(|value| *value == first)).then_some((first, count))
 }
 
-/// Removes the zeros of a gauge that was moved from one direction to the next: every row has three components, of which
-/// at least two are exactly zero.
+/// Removes the zeros of a gauge that was moved from one direction to the next, and returns a sentence on it. They are
+/// recognized by this: every row has three components, at least two of which are exactly zero, and more than one
+/// direction occurs. `None` if that is not so.
 fn leave_out_other_directions(file: &str, names: &Names, rows: &mut [&mut Components]) -> Option<String> {
     let is_zero = |read: &Option<Component>| read.is_some_and(|read| read.value_mm == 0.0);
     let has_one =

@@ -18,7 +18,7 @@ pub struct DeclaredSession {
 }
 
 impl DeclaredSession {
-    /// The same session after its rows were appended to `rows` others.
+    /// This session with its row number changed for a file in which its rows follow `rows` other rows.
     pub(super) fn after(self, rows: usize) -> Self {
         Self { from_row: self.from_row + rows, ..self }
     }
@@ -40,7 +40,8 @@ pub(super) fn read(node: &Node) -> Option<Vec<DeclaredSession>> {
     sessions.into_iter().collect()
 }
 
-/// Faults of declared sessions that show when they are compared with the rows. Each has a hint.
+/// Faults of declared sessions that show when they are compared with the rows of positions: a row that does not
+/// exist, or a point that is not measured. Each problem comes with a hint.
 pub(super) fn problems(sessions: &[DeclaredSession], rows: &[PositionRow]) -> Vec<(String, String)> {
     let mut points: Vec<&str> = rows.iter().map(|row| row.point.as_str()).collect();
     points.sort_unstable();

@@ -232,7 +232,7 @@ pub(super) static SESSION: Shape = Shape::new(
 
 const FILE: Kind = Kind::Either(&[Kind::Text, Kind::Object(&SHEET)]);
 
-/// Keys of `files`: the files of the channels.
+/// Keys of `files`: for each channel, the file in which its readings are.
 pub(super) static FILES: Shape = Shape::new(
     "files",
     "Where the readings of the channels are.",
@@ -246,7 +246,7 @@ pub(super) static FILES: Shape = Shape::new(
     &[],
 );
 
-/// Keys of an entry of `files`: a file, or a sheet of a spreadsheet.
+/// Keys of an entry of `files`: name of a file and, for a spreadsheet, the sheet and the row with the column names.
 pub(super) static SHEET: Shape = Shape::new(
     "sheet",
     "A file, or a sheet of a spreadsheet.",
@@ -275,7 +275,7 @@ static COLUMN_NAMES: Shape = Shape {
     others: Some(&Kind::Text),
 };
 
-/// Keys of `columns`: the names of columns in the files.
+/// Keys of `columns`: for each channel, the names that its columns have in the file.
 pub(super) static COLUMNS: Shape = Shape::new(
     "columns",
     "What columns are called in the files.",

@@ -21,7 +21,7 @@ pub struct Stand {
     pub points_m: Vec<(String, Vector3<f64>)>,
 }
 
-/// A session: a range of test numbers with one placement.
+/// A session: the tests with numbers in one range, during which the placement stayed the same.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Session {
     /// Test number that ends the session: its tests have smaller numbers. Infinite for the last session.
@@ -30,10 +30,10 @@ pub struct Session {
     pub stand: Stand,
 }
 
-/// All placements of an arm.
+/// The placement of an arm in the instrument's frame: for all sessions together, and for each session.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Placement {
-    /// The placement that fits all sessions best.
+    /// The one placement that fits all sessions best.
     pub usual: Stand,
     /// The sessions in the order of their tests; empty if there is only one.
     pub sessions: Vec<Session>,
@@ -49,7 +49,7 @@ impl Default for Stand {
 }
 
 impl Stand {
-    /// Position of the point in the last frame \[m\]; the tip if the point is not known.
+    /// Position of the point `name` in the last frame \[m\]; the tip (zero) if the point is not known.
     pub fn point_m(&self, name: &str) -> Vector3<f64> {
         self.points_m.iter().find(|(n, _)| n == name).map_or(Vector3::zeros(), |(_, at)| *at)
     }
@@ -73,8 +73,8 @@ impl Stand {
 }
 
 impl Placement {
-    /// Reads the `placement` in the provenance of a corrected arm. If there is none, the arm stands at the instrument's
-    /// origin.
+    /// Reads the `placement` in the provenance of a corrected arm, from the JSON of its arm file. If there is none,
+    /// the arm stands at the instrument's origin.
     pub fn from_json(arm_file: &Value) -> Self {
         let placement = &arm_file["provenance"]["placement"];
         let session = |s: &Value| {
@@ -104,7 +104,8 @@ impl Placement {
         out
     }
 
-    /// The placement for each row.
+    /// The placement for each row of positions: that of the row's session if the rows are numbered as in the
+    /// campaign, otherwise the usual one.
     pub fn stands<'a>(&'a self, rows: &[PositionRow]) -> Vec<&'a Stand> {
         let numbered = test_numbers(rows).filter(|_| rows.iter().all(|row| self.agrees(row)));
         let Some(numbers) = numbered else { return vec![&self.usual; rows.len()] };
@@ -112,22 +113,22 @@ impl Placement {
         numbers.into_iter().map(|number| of(number).unwrap_or(&self.usual)).collect()
     }
 
-    /// Indices of the rows that belong to no known session, although there are sessions: their tests have no number, or
-    /// are numbered differently.
+    /// Indices of the rows that belong to no known session although there are sessions, because their tests have no
+    /// number or are numbered differently from the campaign.
     pub(crate) fn strangers(&self, rows: &[PositionRow]) -> Vec<usize> {
         let is_usual = |stand: &Stand| !self.sessions.is_empty() && std::ptr::eq(stand, &self.usual);
         let stands = self.stands(rows).into_iter().enumerate();
         stands.filter(|(_, stand)| is_usual(stand)).map(|(i, _)| i).collect()
     }
 
-    /// Whether a row agrees with the test of the same name in the campaign: the poses must be equal. True if there is
-    /// no such test.
+    /// Whether a row has the same pose as the test of the same name in the campaign. True if there is no such test.
     fn agrees(&self, row: &PositionRow) -> bool {
         self.tests.get(&row.test).is_none_or(|mark| *mark == pose_mark(&row.pose_deg))
     }
 }
 
-/// The numbers of the tests; `None` if one of their names is not a number.
+/// The number of each row's test, which is the name of the test read as a number; `None` if one of the names is not a
+/// number.
 pub fn test_numbers(rows: &[PositionRow]) -> Option<Vec<f64>> {
     rows.iter().map(|row| row.test.trim().parse().ok().filter(|n: &f64| n.is_finite())).collect()
 }

@@ -10,7 +10,7 @@ use crate::arm::pose::{DrivenJoint, Motion, any_slides};
 use nalgebra::Vector3;
 use std::collections::{HashMap, HashSet};
 
-/// Key by which equal poses are found. Zero and minus zero are the same angle.
+/// Key by which equal poses are found in a map: the bits of each angle. Zero and minus zero are the same angle.
 pub(crate) fn pose_key(pose_deg: &[f64]) -> Vec<u64> {
     pose_deg.iter().map(|angle| (angle + 0.0).to_bits()).collect()
 }
@@ -45,7 +45,7 @@ pub struct ModalRow {
     pub payload: Payload,
     /// Temperature of the arm \[°C\], if the file has the column `temperature_c`.
     pub temperature_c: Option<f64>,
-    /// Number of the mode in its list, from 1 by rising frequency.
+    /// Number of the mode in its list (the modes of one pose and payload), from 1 by rising frequency.
     pub mode: usize,
     /// Measured natural frequency \[Hz\].
     pub frequency_hz: f64,
@@ -120,7 +120,7 @@ impl PositionRow {
     }
 }
 
-/// Indices of the columns of pose, payload and temperature.
+/// Indices of the columns of pose, payload and temperature in a table of readings.
 struct StateColumns {
     pose: Vec<usize>,
     motions: Vec<Motion>,
@@ -171,7 +171,8 @@ impl StateColumns {
         angles.into_iter().collect()
     }
 
-    /// Temperature of the arm \[°C\]: the outer `None` is a fault, the inner one an absent column.
+    /// Temperature of the arm in the row with index `row` \[°C\]. The outer value is `None` if there is a fault, the
+    /// inner one if there is no such column.
     fn temperature_c(&self, table: &Table, row: usize) -> Option<Option<f64>> {
         let Some(column) = self.temperature else { return Some(None) };
         let is_sound = |c: f64| (-100.0..=200.0).contains(&c);
@@ -298,7 +299,8 @@ pub(crate) fn windup_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Win
     rows
 }
 
-/// Reads the rows of `positions.csv`. `arms` holds the names of the arms, `driven` the joints that have a column.
+/// Reads the rows of `positions.csv`. `arms` holds the names of the arms, and `driven` the driven joints, each of
+/// which has a column.
 pub(crate) fn position_rows(
     table: &Table,
     arms: &[&str],
@@ -364,9 +366,10 @@ fn each_row<T>(table: &Table, read: impl Fn(usize) -> Option<T>) -> Vec<T> {
     rows.into_iter().flatten().collect()
 }
 
-/// Reports rows that repeat an earlier one in everything but the test's label. Such a row is a copying error: a
-/// repeated test would have noise of its own. In the rows `coarse` not all components were measured. A gauge may show
-/// the same digits twice, so there a different label counts as a repeated test.
+/// Reports each row that repeats an earlier row in everything but the label of the test. Such a row is a copying
+/// error, because a repeated test would have noise of its own. The rows `coarse`, in which not all components were
+/// measured, are an exception: a gauge may show the same digits twice, so rows with different labels count as
+/// repeated tests there.
 fn check_duplicates(table: &Table, coarse: &HashSet<usize>) {
     let label = table.optional("test");
     let mut seen: HashMap<Vec<&str>, usize> = HashMap::new();
@@ -387,7 +390,8 @@ fn check_duplicates(table: &Table, coarse: &HashSet<usize>) {
     }
 }
 
-/// Reports angles that are probably radians: in five or more poses no angle exceeds half a turn in radians.
+/// Reports angles that are probably in radians: in five or more different poses, no angle exceeds 3.2 (half a turn in
+/// radians).
 fn check_angles<'a>(table: &Table, motions: &[Motion], poses: impl Iterator<Item = &'a [f64]>) {
     let mut distinct: Vec<&[f64]> = Vec::new();
     for pose in poses {

@@ -57,8 +57,8 @@ const COLUMNS: [&[&str]; 4] = [
     ],
 ];
 
-/// The columns of a channel's table for an arm with these joints, in the usual order. Columns that few files need are
-/// left out.
+/// Names of the columns of a channel's table for an arm with the driven joints `joints`, in the usual order. Columns
+/// that few files need are left out.
 pub(crate) fn columns_for(channel: Channel, joints: &[DrivenJoint]) -> Vec<String> {
     let (label, others) = COLUMNS[channel as usize].split_at(1);
     let angles = joints.iter().map(|joint| format!("q_{}", joint.key()));
@@ -68,11 +68,11 @@ pub(crate) fn columns_for(channel: Channel, joints: &[DrivenJoint]) -> Vec<Strin
     label.iter().map(|name| name.to_string()).chain(angles).chain(others).collect()
 }
 
-/// Columns with the standard deviation of a single component, which few files have.
+/// Columns with the standard deviation of a single component. Few files have them.
 const OWN_SIGMAS: [&str; 6] =
     ["sigma_dx_mm", "sigma_dy_mm", "sigma_dz_mm", "sigma_x_mm", "sigma_y_mm", "sigma_z_mm"];
 
-/// Source of the readings of a channel.
+/// Where the readings of a channel are: file, sheet and names of columns.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Source {
     /// Name of the file, in the folder of `campaign.json`; `None` for the usual one.
@@ -85,7 +85,8 @@ pub struct Source {
     pub columns: Vec<(String, String)>,
 }
 
-/// Reads the sources of the channels from `campaign.json`. `None` for a channel about which it says nothing.
+/// Reads from `campaign.json` where the readings of each channel are. `None` for a channel about which it says
+/// nothing.
 pub(crate) fn read_sources(root: &Object) -> [Option<Source>; 4] {
     let files = root.optional("files").and_then(|n| n.shaped(&FILES));
     let columns = root.optional("columns").and_then(|n| n.shaped(&COLUMN_NAMES));
@@ -107,13 +108,13 @@ pub(crate) fn read_sources(root: &Object) -> [Option<Source>; 4] {
     })
 }
 
-/// Name of the file in the block of a channel; everything else in a block is text for people.
+/// Reads the name of the file from the block of a channel. Everything else in a block is text for people.
 fn read_block(node: &Node) -> Option<String> {
     let (_, file) = node.entries()?.into_iter().find(|(key, _)| *key == "file")?;
     file.string().map(String::from)
 }
 
-/// Reads the source of a channel: `"m.xlsx"`, or `{"file": "m.xlsx", "sheet": "S1", "header_row": 3}`.
+/// Reads where the readings of a channel are: `"m.xlsx"`, or `{"file": "m.xlsx", "sheet": "S1", "header_row": 3}`.
 fn read_file(node: &Node) -> Option<Source> {
     if node.value().is_string() {
         return Some(Source { file: Some(node.string()?.into()), ..Source::default() });
@@ -128,7 +129,7 @@ fn read_file(node: &Node) -> Option<Source> {
     Some(Source { file: Some(file?), sheet: sheet?, header_row: header_row?, columns: Vec::new() })
 }
 
-/// Reads the names of columns, such as `{"dz_mm": "Gauge 1"}`.
+/// Reads pairs of column names, such as `{"dz_mm": "Gauge 1"}`: the name in this program, and the name in the file.
 fn read_columns(node: &Node, channel: Channel) -> Option<Vec<(String, String)>> {
     let known = COLUMNS[channel as usize];
     let mut out = Vec::new();

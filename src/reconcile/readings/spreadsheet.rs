@@ -23,7 +23,7 @@ pub(crate) fn is_spreadsheet(path: &Path) -> bool {
     EXTENSIONS.contains(&extension.as_str())
 }
 
-/// Reads a sheet; without a name, the only one of the file.
+/// Reads the sheet with the name `sheet`; without a name, the only sheet of the file.
 ///
 /// # Errors
 /// The problem, and a hint what to try.
@@ -66,7 +66,7 @@ fn text(cell: &Data) -> String {
     }
 }
 
-/// The letters of a column, counted from 0: A, B, ..., Z, AA, AB ...
+/// The letters by which a spreadsheet shows a column, counted from 0: A, B, ..., Z, AA, AB ...
 fn letters(mut column: usize) -> String {
     let mut out = Vec::new();
     loop {

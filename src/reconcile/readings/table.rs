@@ -117,7 +117,8 @@ impl Table {
         }
     }
 
-    /// Renames columns. Each pair holds the name in this program and the name in the file.
+    /// Renames columns. Each pair in `names` holds the name in this program and the name in the file. A name that the
+    /// file lacks is a fault.
     fn rename(&mut self, names: &[(String, String)]) {
         for (name, shown) in names {
             match self.shown.iter().position(|column| column == shown) {
@@ -176,12 +177,13 @@ impl Table {
         }
     }
 
-    /// Whether there is a header with more than one column. If not, further faults would only confuse.
+    /// Whether there is a header with more than one column. If not, the table was not read as one, and further faults
+    /// would only confuse.
     fn has_header(&self) -> bool {
         self.columns.len() > 1
     }
 
-    /// Records a fault if there are more rows than this, and removes the surplus.
+    /// Records a fault if there are more than `most` rows, and removes the rows beyond.
     pub fn refuse_more_than(&mut self, most: usize) {
         if self.rows.len() > most {
             let problem = format!("has {} rows, and the limit is {most}", self.rows.len());
@@ -209,7 +211,8 @@ impl Table {
         }
     }
 
-    /// Records a fault.
+    /// Records a fault of the file. `line` is the line number in the file, and `column` the name of a column, or
+    /// empty.
     pub fn fault(&self, line: Option<usize>, column: &str, problem: String, hint: &str) {
         self.faults.borrow_mut().push(Fault {
             file: self.file.clone(),
@@ -220,7 +223,8 @@ impl Table {
         });
     }
 
-    /// Name of a column for a message: the name in the file, and the cell or column of a spreadsheet.
+    /// Name of the column `column` for a message: its names in this program and in the file and, for a spreadsheet,
+    /// the cell or the column's letters.
     fn place(&self, line: Option<usize>, column: &str) -> String {
         let known = self.columns.iter().position(|c| c == column).or_else(|| {
             let shown = self.shown.iter().position(|c| c == column);
@@ -236,7 +240,7 @@ impl Table {
         }
     }
 
-    /// Records a fault of a row.
+    /// Records a fault of the row with index `row`, in the column named `column`.
     pub fn row_fault(&self, row: usize, column: &str, problem: String, hint: &str) {
         self.fault(self.lines.get(row).copied(), column, problem, hint);
     }
@@ -246,7 +250,7 @@ impl Table {
         self.faults.into_inner()
     }
 
-    /// Index of a column that must exist; its absence is a fault.
+    /// Index of the column `name`, which must exist. If it does not, a fault is recorded and the result is `None`.
     pub fn required(&self, name: &str) -> Option<usize> {
         self.optional(name).or_else(|| {
             if !self.has_header() && !self.faults.borrow().is_empty() {
@@ -262,12 +266,12 @@ impl Table {
         })
     }
 
-    /// Index of a column, if it exists.
+    /// Index of the column `name`; `None` if there is no such column.
     pub fn optional(&self, name: &str) -> Option<usize> {
         self.columns.iter().position(|c| c == name)
     }
 
-    /// Reports columns whose name begins like a family of names without being one of them, such as a misspelt
+    /// Reports columns whose name begins with `beginning` and is not among the names in `family`, such as a misspelt
     /// `sigma_...`.
     pub(crate) fn check_family(&self, beginning: &str, family: &[&str]) {
         let begins = |column: &&String| column.starts_with(beginning) && column.contains('_');
@@ -277,8 +281,8 @@ impl Table {
         }
     }
 
-    /// Reports a column whose name is close to `name`, an absent column that is optional: it is probably misspelt. The
-    /// names in `known` are not suspected. Returns whether there is such a column.
+    /// Reports a column that is probably a misspelt `name`. `name` is an optional column that the table lacks.
+    /// Columns whose names are in `known` are not suspected. Returns whether such a column was found.
     pub(crate) fn check_spelling(&self, name: &str, known: &[&str]) -> bool {
         let others: Vec<&str> =
             self.columns.iter().map(String::as_str).filter(|column| !known.contains(column)).collect();
@@ -310,7 +314,7 @@ impl Table {
         &self.rows[row][column]
     }
 
-    /// Reads a cell as a finite number; anything else is a fault.
+    /// Reads a cell as a finite number. If it is not one, a fault is recorded and the result is `None`.
     pub fn number(&self, row: usize, column: usize) -> Option<f64> {
         let text = self.text(row, column);
         match text.parse::<f64>() {
@@ -326,7 +330,8 @@ impl Table {
         }
     }
 
-    /// Reads a cell as a number that satisfies a condition; anything else is a fault.
+    /// Reads a cell as a number for which `condition` is true. If it is not one, a fault with the text `hint` is
+    /// recorded and the result is `None`.
     pub fn number_that(
         &self,
         row: usize,

@@ -20,18 +20,18 @@ const BREAKS: [f64; 11] = [0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0
 const CLOSING: [f64; 6] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.4];
 /// Half widths of the hysteresis in torque that are tried, as fractions of the largest spring torque.
 const PLAYS: [f64; 8] = [0.005, 0.01, 0.02, 0.04, 0.07, 0.12, 0.2, 0.3];
-/// Standard errors by which held-out blocks must be better with a law than without. It is more than for one given
-/// column, because the law is the best of a whole grid.
+/// A law is accepted only if it predicts held-out blocks better by this many standard errors. More is asked than for
+/// a single given column, because the law is the best of a whole grid.
 const CLEARLY_OF_GRID: f64 = 3.0;
-/// A law is kept only if it changes the twist by more than this fraction of the twist's root mean square. A smaller
-/// change may come from the simple model of friction.
+/// A law is accepted only if it changes the twist by more than this fraction of the twist's root mean square. A
+/// smaller change may come from the simplicity of the model of friction.
 const MATERIAL: f64 = 0.02;
 /// Number of Gauss-Newton steps by which the torques of the laws are improved.
 const ROUNDS: usize = 5;
 /// Largest change of a law's torque in one step, as a fraction of this torque.
 const LARGEST_STEP: f64 = 0.3;
 
-/// A torsion law with its own torques \[N m\].
+/// A torsion law, with the torques at which it changes \[N m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Law {
     /// Three segments with the break points T1 and T2, `T1 < T2`.
@@ -42,7 +42,7 @@ pub(crate) enum Law {
     Play(f64),
 }
 
-/// The torsion laws that the twist of a joint needs, and the fit that contains them.
+/// The torsion laws that the twist of a joint needs, and the fit of the twist that contains them.
 pub(crate) struct Curve {
     /// The laws in the order in which they were found.
     pub laws: Vec<Law>,
@@ -77,9 +77,10 @@ impl Law {
         if matches!(self, Law::Segments(..)) { 2 } else { 1 }
     }
 
-    /// The four columns of the law at the spring torque `t`: two shapes, then the derivatives with respect to the two
-    /// torques of the law; 0 where the law has fewer. `drag` is the state `s` of the hysteresis, for the law's width
-    /// and for a width larger by [`WIDER`]; other laws do not use it.
+    /// The four columns of the law at the spring torque `t` \[N m\]. The first two are shapes, and the others are
+    /// their derivatives with respect to the torques of the law; 0 where the law has fewer than two. `drag` is the
+    /// state `s` of the hysteresis, for the law's half width and for one that is larger by [`WIDER`]; other laws do
+    /// not use it.
     fn columns(self, t: f64, drag: [f64; 2]) -> [f64; 4] {
         let beyond = |edge: f64| if t.abs() > edge { t.signum() } else { 0.0 };
         match self {
@@ -108,8 +109,9 @@ impl Law {
 /// Relative change of the half width of a hysteresis by which its derivative is computed.
 const WIDER: f64 = 0.01;
 
-/// State `s` of a hysteresis of half width `width` at each row: the value nearest to the state before that lies within
-/// `width` of the spring torque. It starts at the spring torque of the first row of every record.
+/// State `s` of a hysteresis with the half width `width` at each row \[N m\]: the value nearest to the state of the
+/// row before that lies within `width` of the spring torque. `record` gives the record of a row. In every record the
+/// state starts at the spring torque of the first row.
 fn dragged(spring_nm: &[f64], record: impl Fn(usize) -> usize, width: f64) -> Vec<f64> {
     let mut state = f64::NAN;
     let mut of = usize::MAX;
@@ -123,8 +125,9 @@ fn dragged(spring_nm: &[f64], record: impl Fn(usize) -> usize, width: f64) -> Ve
     spring_nm.iter().enumerate().map(drag).collect()
 }
 
-/// Torque of the spring at each row \[N m\]: the motor's torque less friction and rotor inertia, with the coefficients
-/// of the fitted twist.
+/// Torque of the spring at each row \[N m\]: the motor's torque without friction and rotor inertia, computed with the
+/// coefficients of the fitted twist. `viscous_nms_per_rad` is the viscous friction, which these coefficients do not
+/// contain.
 pub(crate) fn spring_torque(model: &TwistModel, viscous_nms_per_rad: f64) -> Vec<f64> {
     let p = model.places;
     let compliance = model.fitted.value(p.torque());
@@ -140,7 +143,8 @@ pub(crate) fn spring_torque(model: &TwistModel, viscous_nms_per_rad: f64) -> Vec
         .collect()
 }
 
-/// Finds up to two torsion laws beyond a single compliance, one after the other. `None` if a fit is impossible.
+/// Finds up to two torsion laws beyond a single compliance, one after the other, that predict held-out blocks clearly
+/// better. `None` if a fit is impossible.
 pub(crate) fn curve(model: &TwistModel, viscous_nms_per_rad: f64) -> Option<Curve> {
     let spring_nm = spring_torque(model, viscous_nms_per_rad);
     let first = model.places.further();
@@ -177,8 +181,8 @@ pub(crate) fn curve(model: &TwistModel, viscous_nms_per_rad: f64) -> Option<Curv
     Some(out)
 }
 
-/// Whether a law changes the twist by more than [`MATERIAL`] of its root mean square. `at` is the first column of the
-/// law, `torque` the column of the compliance.
+/// Whether a law changes the twist by more than [`MATERIAL`] of the twist's root mean square. `at` is the first
+/// column of the law, and `torque` the column whose coefficient is the compliance.
 fn is_material(fit: &Fitted, law: Law, at: usize, spring_nm: &[f64], torque: usize) -> bool {
     let squares: f64 = spring_nm.iter().map(|t| t * t).sum();
     let twist_rad = fit.value(torque).abs() * (squares / spring_nm.len() as f64).sqrt();
@@ -190,8 +194,9 @@ fn is_material(fit: &Fitted, law: Law, at: usize, spring_nm: &[f64], torque: usi
     size_rad > MATERIAL * twist_rad
 }
 
-/// Reason why the fitted coefficients of a law are physically impossible; `None` if they are possible. `before` is the
-/// number of laws found earlier.
+/// Reason why the fitted coefficients of a law are physically impossible; `None` if they are possible. `first` is the
+/// column at which the laws begin, and `before` the number of laws that stand before this one. `torque` is the column
+/// whose coefficient is the compliance.
 fn impossible(fit: &Fitted, law: Law, first: usize, before: usize, torque: usize) -> Option<&'static str> {
     let size = fit.value(first + 4 * before);
     let second = fit.value(first + 4 * before + 1);
@@ -211,8 +216,9 @@ fn impossible(fit: &Fitted, law: Law, first: usize, before: usize, torque: usize
 }
 
 impl Curve {
-    /// Best grid point of each kind of law that is still missing, fitted together with the laws found before. The kinds
-    /// are sorted by their error on held-out blocks, the smallest first.
+    /// For each kind of law that was not found yet, the law of its grid that predicts held-out blocks best, fitted
+    /// together with the laws found before. `own` are the columns of the linear model, and `largest_nm` is the
+    /// largest spring torque. The results are sorted by the error on held-out blocks, the smallest first.
     fn best_of_grids(
         &self,
         model: &TwistModel,
@@ -257,7 +263,8 @@ impl Curve {
         Some(out)
     }
 
-    /// The laws of a grid with each torque once: pairs of break points share the columns of their single torques.
+    /// The laws of a grid, with every torque once. A pair of break points is replaced by a law for each of them, so
+    /// that pairs share the columns of their single torques.
     fn singles(&self, grid: &[Law]) -> Vec<Law> {
         let mut out: Vec<Law> = Vec::new();
         for law in grid {
@@ -274,7 +281,8 @@ impl Curve {
         out
     }
 
-    /// Columns of the shapes of `law` in the table that holds the laws `singles` behind `known` earlier laws.
+    /// Columns of the shapes of `law` in a table in which the columns of the laws `singles` follow those of `known`
+    /// earlier laws.
     fn shapes_of(&self, law: Law, known: usize, singles: &[Law]) -> Vec<usize> {
         let place = |law: Law| singles.iter().position(|s| *s == law).map(|i| self.first + 4 * (known + i));
         match law {
@@ -285,15 +293,15 @@ impl Curve {
         }
     }
 
-    /// Columns of `law` if it is number `place` among the laws: shapes first, then derivatives.
+    /// Columns of `law` if it has the index `place` among the laws: its shapes first, then the derivatives.
     fn law_columns(&self, place: usize, law: Law) -> Vec<usize> {
         let at = self.first + 4 * place;
         let n = law.torques();
         (at..at + n).chain(at + 2..at + 2 + n).collect()
     }
 
-    /// Sums of products of all columns, with four columns for each law. The second value is the index of the target,
-    /// the twist.
+    /// Sums of the products of all columns, block by block, with four columns for each of the `laws`. The second
+    /// value is the index of the target column, the twist.
     fn sums(&self, model: &TwistModel, laws: &[Law]) -> (Blocks, usize) {
         let record = |i: usize| model.rows.samples[i].record;
         let plays: Vec<Option<[Vec<f64>; 2]>> = laws
@@ -318,8 +326,9 @@ impl Curve {
         (sums, target)
     }
 
-    /// Improves the torques of all laws by [`ROUNDS`] Gauss-Newton steps. Returns the laws with the smallest sum of
-    /// squares, and their fit with the columns of the derivatives.
+    /// Improves the torques of all `laws` together by [`ROUNDS`] Gauss-Newton steps. Returns the laws with the
+    /// smallest sum of squared errors, and their fit, which contains the columns of the derivatives. `own` are the
+    /// columns of the linear model.
     fn improved(&self, model: &TwistModel, own: &[usize], mut laws: Vec<Law>) -> Option<(Vec<Law>, Fitted)> {
         let mut best: Option<(Vec<Law>, Fitted)> = None;
         for _ in 0..ROUNDS {
@@ -367,8 +376,8 @@ impl Curve {
         }
     }
 
-    /// Twist of the spring, one per row \[rad\]: the compliance times the spring torque, and the shapes of all laws
-    /// without the derivatives.
+    /// Twist of the spring according to the model, one per row \[rad\]: the compliance times the spring torque, plus
+    /// the shapes of all laws without the derivatives. `records` gives the record of a row.
     pub(crate) fn spring_twist_rad(&self, places: Places, records: impl Fn(usize) -> usize) -> Vec<f64> {
         let compliance = self.fitted.value(places.torque());
         let mut out: Vec<f64> = self.spring_nm.iter().map(|t| compliance * t).collect();
@@ -386,7 +395,7 @@ impl Curve {
         out
     }
 
-    /// Whether the model of the twist contains a compliance. Torsion laws are sought only then.
+    /// Whether the model of the twist contains a compliance. Torsion laws are sought only in such a model.
     pub(crate) fn applies(model: &TwistModel) -> bool {
         model.groups.contains(&Group::Compliance)
     }

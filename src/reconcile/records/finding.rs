@@ -42,13 +42,13 @@ pub struct Stated {
 }
 
 impl Stated {
-    /// An effect with a single parameter `name`.
+    /// The result for an effect with a single parameter, which has the name `name`.
     pub(crate) fn one(what: &'static str, state: State, name: &str, value: Estimate, words: &str) -> Self {
         let parameters = vec![(name.to_string(), vec![value])];
         Self { what, state, parameters, words: words.into() }
     }
 
-    /// An effect without parameters.
+    /// The result for an effect without parameters.
     pub(crate) fn none(what: &'static str, state: State, words: impl Into<String>) -> Self {
         Self { what, state, parameters: Vec::new(), words: words.into() }
     }
@@ -71,7 +71,8 @@ impl Stated {
     }
 }
 
-/// One step of the fit of the twist: what was added to the model, and the error on held-out blocks with it.
+/// One step of the fit of the twist (the angle of the motor less that of the link): what was added to the model, and
+/// the error on held-out blocks with it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
     /// What was added to the model.
@@ -85,7 +86,7 @@ pub struct Step {
 pub struct Traced {
     /// Torque of the spring if a torsion law was found, otherwise of the motor, at the output \[N m\].
     pub torque_nm: f64,
-    /// Recorded twist, the motor's angle less the link's, without the offset of the record \[rad\].
+    /// Recorded twist (the motor's angle less the link's), without the constant offset of the record \[rad\].
     pub before_rad: f64,
     /// Recorded twist without time shift, offset and transmission error: the deflection of the spring with its friction
     /// loop \[rad\].
@@ -94,15 +95,15 @@ pub struct Traced {
     pub model_rad: f64,
 }
 
-/// Result of all records for one joint.
+/// What all records together say about one joint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointRecord {
     /// Name of the joint.
     pub joint: String,
     /// Number of rows that enter the fit.
     pub rows: usize,
-    /// Number of independent readings that these rows are worth. It is smaller than `rows` because errors are
-    /// autocorrelated.
+    /// Number of independent readings that carry as much information as these rows. It is smaller than `rows` because
+    /// errors are autocorrelated.
     pub effective_rows: f64,
     /// Number of blocks of time that were held out in turn.
     pub blocks: usize,

@@ -13,16 +13,17 @@ use super::smooth::{half_width, smooth};
 use super::twist::CLEARLY;
 use crate::reconcile::model::estimate::Estimate;
 
-/// Number of columns of the joint's own load, which follow the offsets of the records: accelerations of motor and link,
-/// sine and cosine of the link's angle once and twice a turn.
+/// Number of columns of the joint's own load, which stand behind the offsets of the records: accelerations of motor
+/// and link, sine and cosine of the link's angle, and of twice this angle.
 const OWN_LOAD: usize = 6;
-/// Number of columns of friction: sign of the speed, speed, and sign of the speed times the size of the load.
+/// Number of columns of friction: sign of the speed, speed, and sign of the speed times the magnitude of the load.
 const FRICTION: usize = 3;
-/// Standard errors by which held-out blocks must be better with the link's acceleration. It is less than for other
-/// columns, because the inertia of the link surely exists and is one column only.
+/// The link's acceleration is added to the balance of torques if it makes held-out blocks better by this many
+/// standard errors. Less is asked than for other columns, because the inertia of the link surely exists and is one
+/// column only.
 const SLIGHTLY: f64 = 1.0;
-/// A row enters the balance only if the magnitude of the smoothed sign of the speed differs from one by less than this.
-/// Near a reversal the friction is not known.
+/// A row enters the balance of torques only if the magnitude of the smoothed sign of the speed differs from one by at
+/// most this. Near a reversal the friction is not known.
 const TURNING: f64 = 0.5;
 /// Number of columns that the motion of one other joint adds.
 const OTHER: usize = 8;
@@ -36,16 +37,17 @@ pub(crate) struct Friction {
     pub viscous_nms_per_rad: Estimate,
     /// Friction for each newton metre of load \[-\]; `None` if held-out blocks are not better with it.
     pub load_part: Option<Estimate>,
-    /// Whether held-out blocks are clearly better with Coulomb friction, and with viscous friction.
+    /// Whether the model predicts held-out blocks clearly better with Coulomb friction (first) and with viscous
+    /// friction (second).
     pub clearly: [bool; 2],
-    /// Whether the viscous friction at the largest speed stays below the largest torque of the motor. If not, a load
-    /// was taken for friction.
+    /// Whether the viscous friction at the largest speed is below the largest torque of the motor. If it is not, a
+    /// part of the load was taken for friction.
     pub is_possible: bool,
     /// Fraction of the torque's variance that neither load nor friction explains.
     pub left_share: f64,
 }
 
-/// Sine and cosine - 1 of an angle. Both are zero at zero angle so that they do not compete with the offset.
+/// Sine of the angle, and cosine minus 1. Both are zero at zero angle so that they do not compete with the offset.
 fn wave(angle_rad: f64) -> [f64; 2] {
     let (sin, cos) = libm::sincos(angle_rad);
     [sin, cos - 1.0]
@@ -72,7 +74,7 @@ impl Balance<'_> {
         (first..first + OTHER).collect()
     }
 
-    /// Column of the link's acceleration.
+    /// Index of the column of the link's acceleration.
     fn link(&self) -> usize {
         self.rows.record_count() + 1
     }
@@ -81,8 +83,8 @@ impl Balance<'_> {
         (0..self.rows.record_count() + OWN_LOAD).filter(|c| *c != self.link()).collect()
     }
 
-    /// Groups of columns that may be added to the load if held-out blocks become better with them: the link's own
-    /// acceleration, and the motion of each other joint.
+    /// Groups of columns that may be added to the load if the model predicts held-out blocks better with them: first
+    /// the link's own acceleration alone, then one group for the motion of each other joint.
     fn candidates(&self) -> Vec<Vec<usize>> {
         let others = (0..self.others.len()).map(|k| self.other(k));
         std::iter::once(vec![self.link()]).chain(others).collect()
@@ -121,7 +123,7 @@ impl Balance<'_> {
         true
     }
 
-    /// Torque of the load at each row according to a fit \[N m\]: all terms except friction.
+    /// Torque of the load at each row according to the fit `fitted` \[N m\]: the sum of all terms except friction.
     fn load_of(&self, fitted: &Fitted) -> Vec<f64> {
         let friction = self.friction();
         let mut row = vec![0.0; self.target() + 1];
@@ -136,7 +138,8 @@ impl Balance<'_> {
     }
 }
 
-/// Motion of the other joints at the rows of this one. Only joints that are in all records of this joint count.
+/// Motion (angle, speed, acceleration) of each other joint at the rows of this joint. Only joints that are in all
+/// records of this joint count.
 fn motions(rows: &JointRows, records: &[Record]) -> Vec<Motion> {
     let own: Vec<&Record> = records
         .iter()
@@ -160,8 +163,8 @@ fn motions(rows: &JointRows, records: &[Record]) -> Vec<Motion> {
         .collect()
 }
 
-/// Finds the friction of a joint. `None` if its torque is not recorded or a fit is impossible. `shift_s` is the delay
-/// of the link's readings \[s\].
+/// Finds the friction of a joint from the balance of its torques. `shift_s` is the delay of the link's readings
+/// \[s\]. `None` if the torque is not recorded or a fit is impossible.
 pub(crate) fn friction(rows: &JointRows, records: &[Record], shift_s: f64) -> Option<Friction> {
     if !rows.has_torque {
         return None;
@@ -210,7 +213,7 @@ pub(crate) fn friction(rows: &JointRows, records: &[Record], shift_s: f64) -> Op
     })
 }
 
-/// Whether the whole interval lies above zero.
+/// Whether the whole interval of the estimate lies above zero.
 pub(crate) fn is_positive(estimate: &Estimate) -> bool {
     estimate.low.is_some_and(|low| low > 0.0)
 }

@@ -14,17 +14,18 @@ use crate::reconcile::model::estimate::Estimate;
 
 /// Number of blocks of time into which the records of a joint are divided, if they are long enough.
 const BLOCKS: usize = 30;
-/// Smallest number of blocks.
+/// Smallest number of blocks of time into which the records are divided.
 const FEWEST_BLOCKS: usize = 10;
 /// A block lasts at least this many times the correlation time of the errors.
 const LONG_BLOCK: f64 = 3.0;
-/// The compliance is identified if the joint's own motion leaves at least this fraction of the torque's variance
-/// unexplained. The remainder tells the compliance from rotor inertia and friction. See also [`WELL_BALANCED`].
+/// The compliance is identified if at least this fraction of the torque's variance is not explained by the joint's
+/// own acceleration and friction. This remainder is what tells the compliance from rotor inertia and friction. See
+/// also [`WELL_BALANCED`].
 const OWN_SHARE: f64 = 0.1;
-/// A fraction below [`OWN_SHARE`] is also enough if it is at least this many times the fraction that the balance of
-/// torques leaves unexplained: friction then follows its formula closely.
+/// A fraction below [`OWN_SHARE`] is also enough if it is at least this many times the fraction of the torque's
+/// variance that the balance of torques leaves unexplained. Friction then follows its formula closely.
 const WELL_BALANCED: f64 = 20.0;
-/// A compliance is not identified if the ends of its interval differ by more than this factor.
+/// A compliance is not identified if the upper end of its interval is more than this many times the lower end.
 const WIDE: f64 = 5.0;
 /// Smallest half width of an interval, as a fraction of the value: the scale factors of sensors are not known better.
 const LEAST_PART: f64 = 5e-3;
@@ -36,12 +37,13 @@ const LEAST_FRICTION_PART: f64 = 0.01;
 const LEAST_LAW_PART: f64 = 0.05;
 /// Smallest half width of the interval of a time shift, as a fraction of the time between rows.
 const LEAST_STEP_PART: f64 = 0.01;
-/// Number of points of a picture, about.
+/// Approximate number of points of a picture.
 const POINTS: usize = 600;
 /// Range of the joint's angle below which errors once and twice a turn cannot be told apart \[rad\].
 const TELLING_RANGE_RAD: f64 = 2.0;
 
-/// Judges a joint. `None` if no record has both its angles, or a fit is impossible.
+/// Judges one joint from all records. `None` if no record has the angles on both sides of its gear, or a fit is
+/// impossible.
 pub(crate) fn judge(records: &[Record], joint: &str) -> Option<JointRecord> {
     let wave = Wave::find(records, joint);
     let rows = JointRows::gather(records, joint, BLOCKS, &wave)?;
@@ -76,14 +78,14 @@ impl<'a> Judged<'a> {
         Self { rows, model, records, friction, compliance, curve }
     }
 
-    /// The last fit of the twist: with the torsion laws, if any was found, and otherwise the linear one.
+    /// The last fit of the twist: the one with torsion laws if any was found, otherwise the linear one.
     fn fitted(&self) -> &Fitted {
         self.curve.as_ref().map_or(&self.model.fitted, |c| &c.fitted)
     }
 
-    /// The compliance in the fit that includes hysteresis or lost motion. A fit without them adds a part of them to the
-    /// compliance. A torsion curve has stiffnesses of its own; the compliance is then the mean over the record, from
-    /// the linear fit.
+    /// Result for the compliance, with hysteresis or lost motion in the fit if one was found. A fit without them
+    /// would add a part of them to the compliance. A torsion curve, in contrast, has stiffnesses of its own. If it
+    /// was found, the compliance is the mean over the record, from the linear fit.
     fn compliance_beside_laws(&self) -> Stated {
         let laws = self.curve.iter().flat_map(|c| &c.laws);
         let is_changed = !laws.clone().any(|l| matches!(l, Law::Segments(..))) && laws.count() > 0;
@@ -124,9 +126,9 @@ impl<'a> Judged<'a> {
         }
     }
 
-    /// Lower and upper limit of the fraction of Coulomb friction that acts on the motor's side of the spring. The width
-    /// of the loop of twist against torque shows it: the fraction is 1 if the loop is as wide as all of the friction
-    /// makes it.
+    /// Lower and upper limit of the fraction of Coulomb friction that acts on the motor's side of the spring, from 0
+    /// to 1. The width of the loop of twist against torque shows it: the fraction is 1 if the loop is as wide as all
+    /// of the friction makes it.
     fn motor_part(&self) -> (f64, f64) {
         let p = self.model.places;
         let Some(f) = self.friction.filter(|f| f.clearly[0] && is_positive(&f.coulomb_nm)) else {
@@ -162,8 +164,9 @@ impl<'a> Judged<'a> {
         Stated::one(Group::Shift.what(), state, "seconds", shift, if is_clear { &words } else { absent })
     }
 
-    /// The time shift after the effect of viscous friction has been added back, and a sentence on it. If the compliance
-    /// is not identified, the interval includes the effect for every compliance that is possible.
+    /// The time shift \[s\] corrected for viscous friction, and a sentence on the correction. `plain` is the time
+    /// shift of the fit, which is too small by the effect of friction. If the compliance is not identified, the
+    /// interval covers the correction for every compliance that is possible.
     fn with_friction(&self, plain: Estimate) -> (Estimate, String) {
         let Some(f) = self.friction.filter(|f| f.is_possible && is_positive(&f.viscous_nms_per_rad)) else {
             return (plain, String::new());
@@ -249,8 +252,8 @@ impl<'a> Judged<'a> {
         ]
     }
 
-    /// Result for the transmission error of the output. The parameters of the effect are defined as the link's angle
-    /// less the motor's; the twist is the opposite, so the sign changes.
+    /// Result for the transmission error of the output. The parameters of this effect are defined by the link's angle
+    /// less the motor's. The twist is the opposite, so the sign of the coefficients is changed.
     fn output_error(&self) -> Stated {
         let what = Group::Output.what();
         if !self.model.groups.contains(&Group::Output) {
@@ -290,7 +293,8 @@ impl<'a> Judged<'a> {
         Stated { what, state: State::Found, parameters, words: String::new() }
     }
 
-    /// Transmission error from peak to peak over the angles from `low` to `high` \[rad\].
+    /// Transmission error from peak to peak \[rad\], over the angles of the output from `low` to `high` \[rad\].
+    /// `columns` are those of sine and cosine, once and twice per turn, of `ratio` times the angle.
     fn error_size(&self, columns: [usize; 4], low: f64, high: f64, ratio: f64) -> Estimate {
         const STEPS: usize = 60;
         self.model.fitted.estimate(|c| {
@@ -339,7 +343,8 @@ impl<'a> Judged<'a> {
         out
     }
 
-    /// Twist against torque for the picture, thinned: as recorded, and corrected so that only the spring is left.
+    /// Twist against torque of about [`POINTS`] rows, for the picture: as recorded, and corrected so that only the
+    /// spring is left.
     fn trace(&self) -> Vec<Traced> {
         let model = self.model;
         let p = model.places;
@@ -370,8 +375,8 @@ impl<'a> Judged<'a> {
     }
 }
 
-/// Friction from the balance of torques, with the link's readings at the right time. The shift in the fit of the twist
-/// is too small by the effect of viscous friction, so both are improved in turn.
+/// Friction of a joint from the balance of torques, with the delay of the link's readings removed. The delay that the
+/// fit of the twist gives is too small by the effect of viscous friction, so friction and delay are improved in turn.
 fn balanced(rows: &JointRows, model: &TwistModel, records: &[Record]) -> Option<Friction> {
     const ROUNDS: usize = 5;
     let compliance = model.fitted.value(model.places.torque()).max(0.0);
@@ -388,7 +393,7 @@ fn half(estimate: &Estimate) -> f64 {
     estimate.high.zip(estimate.low).map_or(0.0, |(high, low)| 0.5 * (high - low))
 }
 
-/// The estimate with its interval widened to at least `least` on either side of the value.
+/// The estimate with its interval widened so that each end is at least `least` away from the value.
 fn widened(estimate: Estimate, least: f64) -> Estimate {
     Estimate {
         low: estimate.low.map(|low| low.min(estimate.value - least)),
@@ -448,9 +453,9 @@ fn compliance(model: &TwistModel, left_share: f64) -> Stated {
     Stated::one(WHAT, State::Found, NAME, stiffness, &words.join("; "))
 }
 
-/// Limits of the compliance \[rad/(N m)\], widened so that they include the values with and without a transmission
-/// error, and a sentence on it. Gravity and a transmission error both vary with the joint's angle and are hard to tell
-/// apart.
+/// The limits `low` and `high` of the compliance \[rad/(N m)\], widened so that they include the value without a
+/// transmission error in the model, and a sentence on it. Gravity and a transmission error both vary with the joint's
+/// angle and are hard to tell apart.
 fn with_gear_error(model: &TwistModel, low: f64, high: f64) -> (f64, f64, Vec<String>) {
     if !model.groups.contains(&Group::Output) {
         return (low, high, Vec::new());
@@ -465,8 +470,8 @@ fn with_gear_error(model: &TwistModel, low: f64, high: f64) -> (f64, f64, Vec<St
     (low.min(c.low.unwrap_or(low)), high.max(c.high.unwrap_or(high)), vec![words])
 }
 
-/// Stiffness of a compliance that is not identified, with its interval. An end is `None` where the compliance may be
-/// zero. Empty if nothing can be said.
+/// Stiffness with its interval \[N m/rad\], as a parameter, for a compliance `c` that is not identified. The upper
+/// end is `None` where the compliance may be zero. Empty if the best compliance or its upper end is not positive.
 fn open(c: &Estimate) -> Vec<(String, Vec<Estimate>)> {
     let stiffness = |c: Option<f64>| c.filter(|c| *c > 0.0).map(|c| 1.0 / c);
     let Some(low) = stiffness(c.high) else { return Vec::new() };

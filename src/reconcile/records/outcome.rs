@@ -21,12 +21,14 @@ use crate::reconcile::verdict::files::CORRECTED_FILE;
 use crate::reconcile::verdict::outcome::{Calibrated, Located, NextTest, Outcome, Verdict};
 use serde_json::json;
 
-/// A joint is explained if the error of its twist on held-out blocks is at most this fraction of the error with an
-/// offset alone: 2.5 % of the sum of squares.
+/// A joint is explained if the root mean square error of its twist on held-out blocks is at most this fraction of the
+/// error with an offset alone. The sum of squares is then 2.5 % of that with an offset alone.
 const LEFT: f64 = 0.158;
-/// A joint is also explained if the error of its twist is at most this many times the noise from row to row.
+/// A joint is also explained if the root mean square error of its twist on held-out blocks is at most this many times
+/// the noise of the twist from row to row.
 const NOISY: f64 = 1.5;
-/// Effects that change how far a joint twists. If other readings name one of them at a joint, records add none there.
+/// Effects that change how far a joint twists under torque. If other readings name one of them at a joint, the
+/// records add none of them there.
 const OF_TWIST: [&str; 5] = [
     joint_compliance::KIND.name,
     connection_compliance::KIND.name,
@@ -35,17 +37,18 @@ const OF_TWIST: [&str; 5] = [
     hysteresis::KIND.name,
 ];
 
-/// Comparison of the recorded stiffness of a joint with the nominal one. At most one of `finding` and `calibrated` is
-/// present.
+/// How the recorded stiffness of a joint compares with the nominal stiffness. At most one of `finding` and
+/// `calibrated` is present.
 struct Stiffness {
     finding: Option<Finding>,
     calibrated: Option<Calibrated>,
-    /// Factor by which the nominal stiffness is multiplied in the corrected arm; `None` if it stays.
+    /// Factor by which the nominal stiffness is multiplied in the corrected arm; `None` if the nominal stiffness
+    /// stays.
     factor: Option<f64>,
     remark: Option<String>,
 }
 
-/// Compares the records of a campaign with its arm. Other readings are not used.
+/// Reconciles the records of a campaign with its arm, and reaches the verdict. Other readings are not used.
 pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let joints: Vec<JointRecord> =
         campaign.driven_joint_names().iter().filter_map(|joint| judge(&campaign.records, joint)).collect();
@@ -89,13 +92,13 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     }
 }
 
-/// Whether the remaining error of a joint's twist is noise, or a small part of the twist.
+/// Whether the error of a joint's twist on held-out blocks is noise, or a small part of the twist.
 fn is_explained(joint: &JointRecord) -> bool {
     joint.after_rad <= (LEFT * joint.before_rad).max(NOISY * joint.noise_rad)
 }
 
-/// Ending of a sentence for a joint that counts as explained although its remaining error is more than noise; empty
-/// otherwise.
+/// Ending of a sentence on a joint whose error of the twist, although small, is more than noise; empty if it is
+/// noise.
 fn left_beyond_noise(joint: &JointRecord) -> String {
     match joint.after_rad > NOISY * joint.noise_rad {
         true => format!(
@@ -147,7 +150,7 @@ fn verdict(
     (Verdict::NoGap, vec!["noise and the tolerance of the joints explain the records".into()])
 }
 
-/// Effects of the library that were found at a joint, except its compliance.
+/// Effects of the library that the records show at a joint, as findings. Its single compliance is not among them.
 fn named(joint: &JointRecord) -> Vec<Finding> {
     let like = |what: &str| -> Vec<(String, String)> {
         // a transmission error once a turn and gravity give the same twist if no other joint changes the torque
@@ -179,9 +182,9 @@ fn named(joint: &JointRecord) -> Vec<Finding> {
     .collect()
 }
 
-/// Compares the recorded stiffness of a joint with the nominal one. A joint that is more compliant than the tolerance
-/// allows gets an effect; otherwise its stiffness is calibrated, with a remark if the joint is stiffer than the
-/// tolerance allows.
+/// Compares the recorded stiffness of a joint with the nominal stiffness. A joint that is more compliant than the
+/// tolerance allows gets an effect. Otherwise its stiffness is calibrated, with a remark if the joint is stiffer than
+/// the tolerance allows.
 fn stiffness(campaign: &Campaign, joint: &JointRecord) -> Stiffness {
     let nothing = Stiffness { finding: None, calibrated: None, factor: None, remark: None };
     // a torsion curve that was found replaces the single stiffness
@@ -238,7 +241,8 @@ fn stiffness(campaign: &Campaign, joint: &JointRecord) -> Stiffness {
     Stiffness { calibrated: Some(calibrated), factor: Some(own.value), remark, finding: None }
 }
 
-/// Secant compliance of the nominal joint at `torque_nm`, with its known effects \[rad/(N m)\].
+/// Compliance of the nominal joint, with the effects of its arm file, as twist over torque (secant) at `torque_nm`
+/// \[rad/(N m)\].
 fn nominal_compliance(campaign: &Campaign, joint: &str, torque_nm: f64) -> f64 {
     let mut subject = subject(&campaign.arm, &campaign.statement);
     let law = subject.structure.joint_mut(joint).map(|j| j.law);
@@ -269,8 +273,8 @@ fn corrected(
     arm
 }
 
-/// A finding as an entry of the arm file. `None` for an effect that cannot be at a joint, such as the shift of a
-/// sensor's clock: it belongs to the record and not to the arm.
+/// The finding as an entry of the arm file. `None` for an effect that cannot be at a joint, such as the shift of a
+/// sensor's clock, because it belongs to the record and not to the arm.
 fn as_effect(campaign: &Campaign, finding: &Finding) -> Option<Effect> {
     let kind = crate::arm::effect::catalogue::kind(&finding.effect)?;
     if !kind.places.contains(&Place::Joint) {
@@ -282,7 +286,9 @@ fn as_effect(campaign: &Campaign, finding: &Finding) -> Option<Effect> {
     Some(Effect { effect: finding.effect.clone(), at: finding.at.clone(), parameters, source: Some(source) })
 }
 
-/// Error of the twist before and after, in units of the noise of a row, over all joints.
+/// Root mean square error of the twist on held-out blocks, with an offset alone (before) and with everything that was
+/// found (after). The errors of each joint are divided by the noise of its twist, and joints count by their number of
+/// rows.
 fn held_out(joints: &[JointRecord]) -> Option<HeldOut> {
     let count: usize = joints.iter().map(|j| j.rows).sum();
     let mean = |of: fn(&JointRecord) -> f64| {
@@ -314,7 +320,8 @@ fn located(joints: &[JointRecord]) -> Vec<Located> {
     all.into_iter().chain(each).collect()
 }
 
-/// Recommends a test for joints whose compliance the records do not show.
+/// Recommends one test for all joints whose compliance the records do not show, because the torque hardly varies by
+/// itself.
 fn next_tests(joints: &[JointRecord]) -> Vec<NextTest> {
     let blind = joints.iter().filter(|j| {
         j.of("compliance").is_some_and(|s: &Stated| s.words.starts_with("insufficient excitation"))
@@ -329,8 +336,8 @@ fn next_tests(joints: &[JointRecord]) -> Vec<NextTest> {
     ))]
 }
 
-/// Joins the outcome of the records with that of the other readings. Each is judged by itself, and the verdict is the
-/// less favourable one.
+/// Joins the outcome of the records, `records`, with the outcome of the other readings, `other`. Each is judged by
+/// itself, and the verdict is the less favourable of the two.
 pub(crate) fn joined(mut other: Outcome, records: Outcome) -> Outcome {
     let verdict = Verdict::on_all(&[other.verdict, records.verdict]);
     let words = |what: &str, outcome: &Outcome| -> Vec<String> {

@@ -9,7 +9,7 @@ use crate::input::json::{Fault, InputError, closest};
 use csv::{ReaderBuilder, Trim};
 use std::path::Path;
 
-/// Number of faults of one file that are listed. Further ones are counted only.
+/// Number of faults of one file that are listed. Further faults are only counted.
 const MOST_FAULTS: usize = 10;
 /// Smallest number of rows of a record. A shorter record is a fault.
 pub(crate) const FEWEST_ROWS: usize = 200;
@@ -42,7 +42,8 @@ pub struct Record {
     pub joints: Vec<JointSignals>,
 }
 
-/// Columns of a file that hold the signals of a joint, each with the factor that converts it to SI units at the output.
+/// Indices of the columns of a file that hold the signals of a joint. Motor angle and torque come with the factor
+/// that refers them to the output of the gear.
 struct Columns {
     joint: String,
     motor: (usize, f64),
@@ -155,7 +156,7 @@ impl Reader<'_> {
         });
     }
 
-    /// Name that the file gives to a column of this format.
+    /// Name that the file gives to the column `column` of this program.
     fn name_of(&self, column: &str) -> String {
         let mapped = self.spec.columns.iter().find(|(ours, _)| ours == column);
         mapped.map_or(column, |(_, theirs)| theirs).to_string()
@@ -177,8 +178,8 @@ impl Reader<'_> {
         })
     }
 
-    /// Adds a fault for each column that `campaign.json` names and the file lacks, and for each joint that it names and
-    /// the arm lacks.
+    /// Adds a fault for each column that `campaign.json` names and the file lacks. Adds another for each joint that
+    /// `campaign.json` names and the arm lacks.
     fn check_names(&mut self, joints: &[String]) {
         for (ours, theirs) in self.spec.columns.clone() {
             if !self.header.contains(&theirs) {
@@ -316,7 +317,7 @@ impl Reader<'_> {
     }
 }
 
-/// Removes jumps of a whole turn, where a single-turn encoder passes zero.
+/// Removes jumps of a whole turn, which occur where a single-turn encoder passes zero.
 fn unwrap(angles_rad: &mut [f64]) {
     let mut turns = 0.0;
     for i in 1..angles_rad.len() {

@@ -11,7 +11,7 @@ use crate::report::svg::sheet::Sheet;
 use crate::report::table::{Column, Table};
 use std::fmt::Write as _;
 
-/// Unit in which a parameter is printed, and the factor from SI to this unit.
+/// Unit in which the parameter `name` of an effect is printed, and the factor from the SI unit to this unit.
 fn shown_as(name: &str) -> (&'static str, f64) {
     match name {
         "seconds" => ("ms", 1e3),
@@ -127,7 +127,8 @@ fn section(joint: &JointRecord) -> PageSection {
     }
 }
 
-/// Two diagrams of twist against torque: above as recorded, below corrected so that only the spring is left.
+/// The picture of a joint: two diagrams of twist against torque. The upper one shows them as recorded, the lower one
+/// corrected so that only the spring is left.
 fn figure(joint: &JointRecord) -> Figure {
     let points = |of: fn(&Traced) -> f64| -> Vec<(f64, f64)> {
         joint.trace.iter().map(|t| (t.torque_nm, 1e3 * of(t))).collect()

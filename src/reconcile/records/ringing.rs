@@ -13,19 +13,19 @@ use std::f64::consts::TAU;
 
 /// The motor counts as standing still if its speed is below this fraction of its largest speed in the record.
 const AT_REST: f64 = 0.02;
-/// Smallest number of rows of a stretch.
+/// Smallest number of rows of a stretch (rows in which the motor stands still) that is fitted.
 const FEWEST_ROWS: usize = 60;
-/// Number of rows after a stop that are used. The vibration has decayed by then.
+/// Largest number of rows after a stop that are used. The vibration has decayed by then.
 const MOST_ROWS: usize = 4000;
-/// Smallest number of periods in a stretch.
+/// Smallest number of periods of the vibration in a stretch.
 const FEWEST_PERIODS: f64 = 4.0;
 /// Highest frequency that is sought, as a fraction of the sampling rate.
 const HIGHEST_PART: f64 = 0.2;
-/// Fraction of the sum of squares about the line that the oscillation must explain.
+/// The oscillation must explain at least this fraction of the sum of squares that the straight line leaves.
 const TELLING: f64 = 0.6;
 /// Smallest amplitude of the oscillation, as a multiple of the noise of a row.
 const LOUD: f64 = 4.0;
-/// Largest number of Gauss-Newton steps.
+/// Largest number of Gauss-Newton steps over frequency and decay rate.
 const ROUNDS: usize = 30;
 
 /// Frequency and damping of the free vibration of a joint.
@@ -35,7 +35,7 @@ pub(crate) struct Ringing {
     pub frequency_hz: Estimate,
     /// Damping ratio: the damping as a fraction of critical damping.
     pub damping: f64,
-    /// Number of stretches in which the vibration was found.
+    /// Number of stretches (times in which the motor stands still) in which the vibration was found.
     pub stretches: usize,
 }
 
@@ -46,8 +46,9 @@ struct Swing {
     deviation_hz: f64,
 }
 
-/// Finds free vibrations in one record of one joint. Each result is the frequency \[Hz\], the decay rate \[1/s\] and
-/// the standard deviation of the frequency \[Hz\] of one stretch.
+/// Finds free vibrations in one record of one joint, from the angles of motor and link. Each result belongs to one
+/// stretch in which the motor stands still. It holds the frequency \[Hz\], the decay rate \[1/s\] and the standard
+/// deviation of the frequency \[Hz\].
 pub(crate) fn swings(t_s: &[f64], motor_rad: &[f64], link_rad: &[f64]) -> Vec<(f64, f64, f64)> {
     let half = half_width(t_s, motor_rad);
     let speed = smooth(t_s, motor_rad, half).slope;
@@ -70,8 +71,9 @@ pub(crate) fn swings(t_s: &[f64], motor_rad: &[f64], link_rad: &[f64]) -> Vec<(f
     out.into_iter().map(|s| (s.frequency_hz, s.decay_per_s, s.deviation_hz)).collect()
 }
 
-/// Joins the vibrations of all stretches into one frequency and damping. `None` if the stretches do not agree on a
-/// frequency. If there are several stretches, the interval is at least as wide as their scatter asks for.
+/// Joins the vibrations of all stretches (frequency, decay rate, standard deviation of the frequency) into one
+/// frequency and damping. `None` if fewer than half of the stretches agree on a frequency. If there are several
+/// stretches, the interval is at least as wide as their scatter asks for.
 pub(crate) fn joined(swings: &[(f64, f64, f64)]) -> Option<Ringing> {
     let median = crate::reconcile::fit::stats::median(swings.iter().map(|s| s.0).collect());
     let alike: Vec<_> = swings.iter().filter(|s| (s.0 / median - 1.0).abs() < 0.2).collect();
@@ -95,7 +97,8 @@ pub(crate) fn joined(swings: &[(f64, f64, f64)]) -> Option<Ringing> {
     })
 }
 
-/// Vibration of one stretch; `None` if the oscillation is too short, too small, or explains too little.
+/// Fits the vibration of one stretch; `None` if the oscillation is too short, too small, or explains too little.
+/// `noise_rad` is the noise of the twist from row to row \[rad\].
 fn swing(t_s: &[f64], twist_rad: &[f64], noise_rad: f64) -> Option<Swing> {
     let step = usual_step_s(t_s);
     let t: Vec<f64> = t_s.iter().map(|t| t - t_s[0]).collect();
@@ -126,7 +129,8 @@ fn swing(t_s: &[f64], twist_rad: &[f64], noise_rad: f64) -> Option<Swing> {
     })
 }
 
-/// Frequency at the peak of the spectrum \[Hz\], after the straight line was removed; `None` if there is no power.
+/// Frequency between `low_hz` and `high_hz` at which the spectrum of the signal `x` is highest \[Hz\], after a
+/// straight line was removed from it; `None` if the spectrum is zero.
 fn peak(t: &[f64], x: &[f64], low_hz: f64, high_hz: f64) -> Option<f64> {
     let (_, errors) = squares_of(t, x, &[]);
     let duration = t[t.len() - 1];
@@ -150,13 +154,15 @@ fn peak(t: &[f64], x: &[f64], low_hz: f64, high_hz: f64) -> Option<f64> {
     best.1
 }
 
-/// Sum of squared errors of the fit by a line and the given columns, and the errors.
+/// Sum of squared errors of a least-squares fit of `x` by a straight line and the given columns, and the errors
+/// themselves.
 fn squares_of(t: &[f64], x: &[f64], columns: &[Vec<f64>]) -> (f64, Vec<f64>) {
     let (errors, _) = solved(t, x, columns);
     (errors.iter().map(|e| e * e).sum(), errors)
 }
 
-/// Errors of the fit by a line and the given columns, and the coefficients of the given columns.
+/// Errors of a least-squares fit of `x` by a straight line and the given columns, and the coefficients of these
+/// columns.
 fn solved(t: &[f64], x: &[f64], columns: &[Vec<f64>]) -> (Vec<f64>, Vec<f64>) {
     let n = t.len();
     let p = 2 + columns.len();
@@ -183,8 +189,9 @@ fn swing_columns(t: &[f64], [f, d]: [f64; 2]) -> [Vec<f64>; 2] {
     [column(libm::cos), column(libm::sin)]
 }
 
-/// Gauss-Newton iteration from a guess of frequency and decay rate. The amplitudes are solved for at each step. Returns
-/// the sum of squares and the best frequency and decay rate.
+/// Gauss-Newton iteration that starts at the frequency \[Hz\] and decay rate \[1/s\] in `at`. The amplitudes are
+/// solved for at each step. Returns the smallest sum of squared errors, and the frequency and decay rate that give
+/// it.
 fn descend(t: &[f64], x: &[f64], mut at: [f64; 2]) -> (f64, [f64; 2]) {
     let squares = |at: [f64; 2]| squares_of(t, x, &swing_columns(t, at)).0;
     let mut now = squares(at);
@@ -209,7 +216,8 @@ fn descend(t: &[f64], x: &[f64], mut at: [f64; 2]) -> (f64, [f64; 2]) {
     (now, at)
 }
 
-/// Columns of cosine and sine, and their derivatives with respect to frequency and decay rate at the best amplitudes.
+/// The columns of the damped cosine and sine with the frequency and decay rate `at`, then the derivatives of the
+/// oscillation with respect to frequency and decay rate at the best amplitudes.
 fn tangents(t: &[f64], x: &[f64], at: [f64; 2]) -> [Vec<f64>; 4] {
     let [cos, sin] = swing_columns(t, at);
     let (_, c) = solved(t, x, &[cos.clone(), sin.clone()]);
@@ -219,7 +227,8 @@ fn tangents(t: &[f64], x: &[f64], at: [f64; 2]) -> [Vec<f64>; 4] {
     [cos, sin, by_frequency, by_decay]
 }
 
-/// Standard deviation of the frequency \[Hz\]. It takes the autocorrelation of the errors into account.
+/// Standard deviation of the fitted frequency \[Hz\]. It is larger than that for independent errors, because the
+/// errors are autocorrelated.
 fn deviation_hz(t: &[f64], x: &[f64], at: [f64; 2]) -> f64 {
     let columns = tangents(t, x, at);
     let (errors, _) = solved(t, x, &columns);

@@ -5,10 +5,11 @@ use super::reading::{JointSignals, Record};
 use super::smooth::{Smooth, half_width, noise, slope_noise, smooth, usual_step_s};
 use super::wave::Wave;
 
-/// The sign of the speed is smoothed below this fraction of the largest speed, because friction does not jump either.
+/// Fraction of the largest speed below which the sign of the speed is smoothed, because friction does not jump
+/// either.
 const SLOW_PART: f64 = 0.002;
-/// If the acceleration on one side of the gear is more than this many times that of the other side, it is not a motion
-/// of the joint but an error of the gear or its sensor.
+/// Largest ratio of the root mean square accelerations on the two sides of a gear. Above it, the larger one is not a
+/// motion of the joint but an error of the gear or its sensor.
 const RESTLESS: f64 = 1.2;
 /// Smallest number of blocks of a record, so that the result for a record does not depend on one block.
 const FEWEST_BLOCKS: usize = 4;
@@ -30,11 +31,12 @@ pub(crate) struct Sample {
     pub acceleration_rad_s2: f64,
     /// Sign of the motor's speed, from -1 to 1, smoothed with the same window as the torque.
     pub sense: f64,
-    /// Sign of the motor's speed times the magnitude of the torque, smoothed with the same window \[N m\].
+    /// Sign of the motor's speed times the magnitude of the torque, smoothed with the same window as the torque \[N
+    /// m\].
     pub load_sense_nm: f64,
     /// Torque of the motor at the output \[N m\]; 0 if it is not recorded.
     pub torque_nm: f64,
-    /// Rate of change of this torque \[N m/s\].
+    /// Rate of change of the motor's torque at the output \[N m/s\].
     pub torque_rate_nm_s: f64,
 }
 
@@ -67,7 +69,8 @@ pub(crate) struct JointRows {
     records: Vec<Signals>,
 }
 
-/// Twist at a row if the link's signal is read later, and its derivative with respect to this delay.
+/// Twist at a row if the link's signal is late by some time, and the derivative of the twist with respect to this
+/// delay.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Twist {
     /// Angle of the motor less angle of the link \[rad\].
@@ -77,9 +80,9 @@ pub(crate) struct Twist {
 }
 
 impl JointRows {
-    /// Gathers the rows of a joint from all records that have the angles on both sides of its gear. They are divided
-    /// into about `blocks` blocks of time, and the error `wave` of the gear is removed before smoothing. `None` if
-    /// there is no such record.
+    /// Gathers the rows of a joint from all records that have the angles on both sides of its gear. The rows are
+    /// divided into about `blocks` blocks of time. The error `wave` of the gear within a turn of the motor is removed
+    /// before smoothing. `None` if there is no such record.
     pub(crate) fn gather(records: &[Record], joint: &str, blocks: usize, wave: &Wave) -> Option<Self> {
         let whole = |j: &&JointSignals| j.joint == joint && !j.link_rad.is_empty();
         let own: Vec<(&Record, &JointSignals)> =
@@ -115,8 +118,10 @@ impl JointRows {
         [mean(&|s| s.acceleration_rad_s2), mean(&of_link)]
     }
 
-    /// Accelerations of motor and link \[rad/s²\]. A transmission error within a turn of the motor adds a large false
-    /// acceleration on one side. The side with the smaller acceleration then stands for both.
+    /// Accelerations of motor and link at the row `sample` \[rad/s²\], if the link's signal is late by `shift_s`
+    /// \[s\]. A transmission error within a turn of the motor adds a large false acceleration on one side of the
+    /// gear. The side with the smaller acceleration then stands for both. `None` beyond the ends of the record and at
+    /// gaps.
     pub(crate) fn accelerations(&self, sample: &Sample, shift_s: f64) -> Option<[f64; 2]> {
         let both = [sample.acceleration_rad_s2, self.link(sample, shift_s)?[1]];
         let [motor, link] = self.accelerations_rad_s2;
@@ -179,9 +184,9 @@ impl JointRows {
         self.records.len()
     }
 
-    /// Twist at a row if the link's signal is late by `shift_s` \[s\]: the link's angle is taken from the nearest row
-    /// to that later time, with a second-order Taylor series about this row. `None` beyond the ends of the record and
-    /// across gaps.
+    /// Twist at the row `sample` if the link's signal is late by `shift_s` \[s\]. The link's angle belongs to a later
+    /// time. It is taken from the row nearest to this time, with a second-order Taylor series about that row. `None`
+    /// beyond the ends of the record and across gaps.
     pub(crate) fn twist(&self, sample: &Sample, shift_s: f64) -> Option<Twist> {
         let signals = &self.records[sample.record];
         let steps = (shift_s / signals.step_s).round() as isize;
@@ -197,9 +202,9 @@ impl JointRows {
         Some(Twist { twist_rad, link_speed_rad_s: slope + rest_s * curvature })
     }
 
-    /// Angle \[rad\] and acceleration \[rad/s²\] of the link at a row if its signal is late by `shift_s` \[s\],
-    /// interpolated between rows. The nearest row would not do: an error of half a row would be taken for viscous
-    /// friction.
+    /// Angle \[rad\] and acceleration \[rad/s²\] of the link at the row `sample` if the link's signal is late by
+    /// `shift_s` \[s\]. Both are interpolated between rows, because an error of half a row would be taken for viscous
+    /// friction. `None` beyond the ends of the record and at gaps.
     pub(crate) fn link(&self, sample: &Sample, shift_s: f64) -> Option<[f64; 2]> {
         let signals = &self.records[sample.record];
         let place = sample.row as f64 + shift_s / signals.step_s;
@@ -225,8 +230,8 @@ impl JointRows {
         self.samples.iter().fold(ends, |(low, high), s| (low.min(s.angle_rad), high.max(s.angle_rad)))
     }
 
-    /// Sums of products of columns over all rows, one matrix per block. `fill` writes the columns of a row and returns
-    /// whether the row counts.
+    /// Sums of the products of every two of `width` columns over all rows, one matrix per block. `fill` writes the
+    /// columns of a row and returns whether the row counts.
     pub(crate) fn sums(&self, width: usize, fill: impl Fn(usize, &Sample, &mut [f64]) -> bool) -> Blocks {
         // a row that cannot be filled counts as zeros
         Blocks::new(

@@ -8,8 +8,8 @@ use nalgebra::{Matrix4, Vector4};
 
 /// Half widths of the window that are tried \[rows\].
 const HALF_WIDTHS: [usize; 9] = [3, 4, 6, 8, 12, 16, 24, 32, 48];
-/// Largest misfit of a window as a multiple of the noise. At this value the distortion by the window is a third of the
-/// noise.
+/// Largest misfit of a window (root mean square), as a multiple of the signal's noise. At this value the distortion
+/// by the window is a third of the noise.
 const STILL_NOISE: f64 = 1.05;
 /// Two rows are separated by a gap if their times differ by more than this many usual steps.
 const GAP_STEPS: f64 = 2.5;
@@ -32,7 +32,8 @@ pub(crate) fn usual_step_s(t_s: &[f64]) -> f64 {
     crate::reconcile::fit::stats::median(t_s.windows(2).map(|w| w[1] - w[0]).collect())
 }
 
-/// Standard deviation of the noise of a signal from row to row, from its fourth differences.
+/// Standard deviation of the noise of a signal from row to row, from its fourth differences, in the unit of the
+/// signal.
 pub(crate) fn noise(x: &[f64]) -> f64 {
     let squares: f64 =
         x.windows(5).map(|w| (w[0] - 4.0 * w[1] + 6.0 * w[2] - 4.0 * w[3] + w[4]).powi(2)).sum();
@@ -45,7 +46,7 @@ pub(crate) fn slope_noise(x: &[f64], half: usize, step_s: f64) -> f64 {
     2.5 * noise(x) * (12.0 / ((2 * half + 1) as f64).powi(3)).sqrt() / step_s
 }
 
-/// The widest half width of the window whose misfit is still noise \[rows\].
+/// Half width of the widest window whose misfit is still the signal's own noise \[rows\].
 pub(crate) fn half_width(t_s: &[f64], x: &[f64]) -> usize {
     let noise = noise(x);
     let fits = |half: &&usize| {
@@ -64,7 +65,8 @@ pub(crate) fn half_width(t_s: &[f64], x: &[f64]) -> usize {
         .unwrap_or(HALF_WIDTHS[0])
 }
 
-/// Fits a cubic to the rows from `half` before to `half` after each row.
+/// Fits, at each row, a cubic to the rows from `half` before to `half` after it, and returns its value and
+/// derivatives there.
 pub(crate) fn smooth(t_s: &[f64], x: &[f64], half: usize) -> Smooth {
     let n = x.len();
     let step = usual_step_s(t_s);

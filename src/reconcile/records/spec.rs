@@ -11,7 +11,7 @@ pub(crate) const DEFAULT_FILE: &str = "record.csv";
 pub struct PerJoint(Vec<(Option<String>, f64)>);
 
 impl PerJoint {
-    /// The constant of a joint; `None` where nothing is stated.
+    /// The constant of the joint with the name `joint`; `None` where nothing is stated.
     pub fn of(&self, joint: &str) -> Option<f64> {
         let own = self.0.iter().find(|(name, _)| name.as_deref() == Some(joint));
         own.or_else(|| self.0.iter().find(|(name, _)| name.is_none())).map(|(_, value)| *value)
@@ -30,7 +30,7 @@ pub struct RecordSpec {
     pub file: String,
     /// Whether `campaign.json` names the file. If not, the file need not exist.
     pub is_named: bool,
-    /// Pairs of names: the column of this format, and the column of the file that holds it.
+    /// Pairs of names: the column of this program, and the column of the file that holds it.
     pub columns: Vec<(String, String)>,
     /// Gear ratio: turns of the motor for one turn of the output.
     pub ratio: PerJoint,
@@ -85,7 +85,8 @@ fn read_columns(node: &Node) -> Option<Vec<(String, String)>> {
     read.collect()
 }
 
-/// Reads a constant: one number for all joints, or an object `{"j1": 100, ...}`.
+/// Reads a constant of the drives: one number for all joints, or an object `{"j1": 100, ...}`. A number for which
+/// `allowed` is false is a fault.
 fn read_per_joint(node: &Node, allowed: fn(f64) -> bool) -> Option<PerJoint> {
     let number = |n: &Node| match n.number()? {
         x if allowed(x) => Some(x),

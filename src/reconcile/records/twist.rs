@@ -25,16 +25,19 @@ use crate::arm::effect::{time_shift, transmission_error};
 
 /// Prior standard deviation of each amplitude of a transmission error \[rad\].
 const USUAL_ERROR_RAD: f64 = 1.5e-3;
-/// A term with one column is named if held-out blocks are better with it by more than this many standard errors.
+/// A term with one column is named only if the model predicts held-out blocks better with it by more than this many
+/// standard errors.
 pub(crate) const CLEARLY: f64 = 2.0;
-/// A term with four columns is named if held-out blocks are better with it by more than this many standard errors.
+/// A term with four columns is named only if the model predicts held-out blocks better with it by more than this many
+/// standard errors.
 const CLEARLY_MANY: f64 = 2.5;
-/// A transmission error of the output is named only if it lowers the error on held-out blocks below this fraction.
+/// A transmission error of the output is named only if it lowers the root mean square error on held-out blocks to
+/// less than this fraction.
 const MATERIAL: f64 = 0.8;
-/// Largest number of iterations for the time shift.
+/// Largest number of iterations by which the time shift is found.
 const ROUNDS: usize = 12;
 
-/// Indices of the columns of the model. The offsets of the records come first.
+/// Indices of the columns of the model of the twist. The offsets of the records, one per record, come first.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Places {
     /// Number of records, which is the number of offsets.
@@ -42,44 +45,47 @@ pub(crate) struct Places {
 }
 
 impl Places {
-    /// Column of the link's speed. Its coefficient is the time shift \[s\].
+    /// Index of the column of the link's speed. The coefficient of this column is the time shift \[s\].
     pub(crate) fn shift(self) -> usize {
         self.records
     }
-    /// Column of the motor's torque, without the torque that accelerates the rotor if its inertia is stated. Its
-    /// coefficient is the compliance \[rad/(N m)\].
+    /// Index of the column of the motor's torque. The torque that accelerates the rotor is subtracted if the rotor's
+    /// inertia is stated. The coefficient of this column is the compliance \[rad/(N m)\].
     pub(crate) fn torque(self) -> usize {
         self.records + 1
     }
-    /// Column of the motor's acceleration.
+    /// Index of the column of the motor's acceleration.
     pub(crate) fn acceleration(self) -> usize {
         self.records + 2
     }
-    /// Column of the sign of the speed.
+    /// Index of the column of the sign of the speed.
     pub(crate) fn sense(self) -> usize {
         self.records + 3
     }
-    /// Column of the sign of the speed times the magnitude of the torque.
+    /// Index of the column of the sign of the speed times the magnitude of the torque.
     pub(crate) fn load_sense(self) -> usize {
         self.records + 4
     }
-    /// Column of the rate of the torque. It represents a filter of the torque sensor and damping in the spring.
+    /// Index of the column of the rate of change of the torque. It represents a filter of the torque sensor and
+    /// damping in the spring.
     pub(crate) fn rate(self) -> usize {
         self.records + 5
     }
-    /// Columns of the transmission error of the output: sine and cosine once a turn, then twice a turn.
+    /// Indices of the columns of the transmission error of the output: sine and cosine once a turn, then twice a
+    /// turn.
     pub(crate) fn output(self) -> [usize; 4] {
         std::array::from_fn(|i| self.records + 6 + i)
     }
-    /// Columns of the transmission error of the input, in the same order.
+    /// Indices of the columns of the transmission error of the input (motor): sine and cosine once a turn, then twice
+    /// a turn.
     pub(crate) fn input(self) -> [usize; 4] {
         std::array::from_fn(|i| self.records + 10 + i)
     }
-    /// First column after these. It holds the target, or the torsion laws.
+    /// Index of the first column after those of the linear model. The target stands there, or the torsion laws.
     pub(crate) fn further(self) -> usize {
         self.records + 14
     }
-    /// Columns of the offsets of the records.
+    /// Indices of the columns of the offsets of the records.
     pub(crate) fn offsets(self) -> Vec<usize> {
         (0..self.records).collect()
     }
@@ -124,7 +130,8 @@ impl Group {
         matches!(self, Group::Output | Group::Input)
     }
 
-    /// Whether held-out blocks are so much better with the group than without it that it is named.
+    /// Whether the group is to be named. `with` and `without` are the fits with and without its columns; the first
+    /// must predict held-out blocks clearly better than the second.
     fn pays(self, with: &Fitted, without: &Fitted) -> bool {
         let clearly = with.better_than(without);
         match self {
@@ -142,11 +149,12 @@ impl Group {
 pub(crate) struct TwistModel<'a> {
     /// Rows of the joint.
     pub rows: &'a JointRows,
-    /// Indices of the columns.
+    /// Indices of the model's columns.
     pub places: Places,
-    /// Time shift at which the link's signal is read and its Taylor series is taken \[s\].
+    /// Time by which the link's signal is late, at which the signal is read and its Taylor series is taken \[s\].
     pub shift_s: f64,
-    /// Sums of products of all columns. The last column is the twist.
+    /// Sums of the products of every two columns of the model, one matrix per block of time. The last column is the
+    /// twist.
     pub sums: Blocks,
     /// Standard deviation that an independent reading would have \[rad\]. It is larger than that of a row, because rows
     /// are autocorrelated.
@@ -155,13 +163,14 @@ pub(crate) struct TwistModel<'a> {
     pub groups: Vec<Group>,
     /// Fit of the model with these groups.
     pub fitted: Fitted,
-    /// Number of rows that are worth one independent reading.
+    /// Number of rows that carry as much information as one independent reading, because errors are autocorrelated.
     pub rows_per_reading: f64,
-    /// Root mean square error on held-out blocks after each step \[rad\], with the name of the step.
+    /// Root mean square error of the twist on held-out blocks after each step \[rad\], with the name of the step.
     pub steps: Vec<(String, f64)>,
 }
 
-/// Writes the columns of row `i`. Returns `false` if the link has no reading at the shifted time.
+/// Writes the columns of the row with index `i` into `row`, with the link's signal read as late by `shift_s` \[s\].
+/// Returns `false` if the link has no reading at the later time.
 pub(crate) fn fill(rows: &JointRows, i: usize, shift_s: f64, row: &mut [f64]) -> bool {
     let sample = &rows.samples[i];
     let (Some(twist), Some([acceleration, _])) =
@@ -192,7 +201,7 @@ pub(crate) fn fill(rows: &JointRows, i: usize, shift_s: f64, row: &mut [f64]) ->
     true
 }
 
-/// Columns of the offsets and of a set of groups.
+/// Indices of the columns of the offsets and of the groups `groups`.
 pub(crate) fn columns(rows: &JointRows, groups: &[Group]) -> Vec<usize> {
     let places = Places { records: rows.record_count() };
     let mut out = places.offsets();
@@ -212,7 +221,8 @@ pub(crate) fn columns(rows: &JointRows, groups: &[Group]) -> Vec<usize> {
 }
 
 impl<'a> TwistModel<'a> {
-    /// Finds the time shift and the groups of columns that the twist needs. `None` if a fit is impossible.
+    /// Finds the time shift and the groups of columns that the twist of a joint needs, and fits them. `None` if a fit
+    /// is impossible.
     pub(crate) fn find(rows: &'a JointRows) -> Option<Self> {
         let places = Places { records: rows.record_count() };
         let shift_s = time_shift_s(rows)?;
@@ -238,7 +248,7 @@ impl<'a> TwistModel<'a> {
         Some(out)
     }
 
-    /// Errors of the present fit, one per row that has a reading \[rad\].
+    /// Errors of the present fit (recorded minus modelled twist), one per row that has a reading \[rad\].
     pub(crate) fn errors(&self) -> Vec<f64> {
         let mut row = vec![0.0; self.places.further() + 1];
         let error = |i: usize| {
@@ -257,18 +267,20 @@ impl<'a> TwistModel<'a> {
         self.sigma_rad = (variance * self.rows_per_reading).sqrt();
     }
 
-    /// Fits a set of groups, with the prior for transmission errors.
+    /// Fits the twist by the offsets and the groups `groups`, with the prior for transmission errors. `None` if the
+    /// fit is impossible.
     pub(crate) fn fit(&self, groups: &[Group]) -> Option<Fitted> {
         self.fit_with(&columns(self.rows, groups))
     }
 
-    /// Fits a set of columns, with the prior for transmission errors.
+    /// Fits the twist by the columns `columns`, with the prior for transmission errors. `None` if the fit is
+    /// impossible.
     pub(crate) fn fit_with(&self, columns: &[usize]) -> Option<Fitted> {
         self.sums.fit(columns, self.places.further(), |c| self.prior(c))
     }
 
-    /// Prior standard deviation of a column's coefficient, in units of the standard deviation of an independent
-    /// reading; `None` if nothing is known before.
+    /// Prior standard deviation of the coefficient of the column `column`, as a multiple of the standard deviation of
+    /// an independent reading; `None` if nothing is known before. Only transmission errors have a prior.
     pub(crate) fn prior(&self, column: usize) -> Option<f64> {
         let errors = [self.places.output(), self.places.input()].concat();
         errors.contains(&column).then_some(USUAL_ERROR_RAD / self.sigma_rad.max(1e-12))
@@ -284,9 +296,9 @@ impl<'a> TwistModel<'a> {
         all.into_iter().filter(|(_, possible)| *possible).map(|(group, _)| group).collect()
     }
 
-    /// Adds the groups with which held-out blocks become better, the best first. Then it removes groups that the others
-    /// have made unnecessary. The compliance is always in the model if the torque is recorded, so that its uncertainty
-    /// is part of the intervals.
+    /// Adds the groups with which the model predicts held-out blocks better, the best first. Then it removes groups
+    /// that the others have made unnecessary. The compliance is always in the model if the torque is recorded, so
+    /// that its uncertainty is part of the intervals. `None` if a fit is impossible.
     fn select(&mut self) -> Option<()> {
         let mut groups: Vec<Group> = Vec::new();
         let mut best = self.fit(&groups)?;
@@ -318,7 +330,8 @@ impl<'a> TwistModel<'a> {
         Some(())
     }
 
-    /// Removes groups without which held-out blocks are predicted as well.
+    /// Removes those of the `groups` without which the model predicts held-out blocks about as well, and returns the
+    /// rest. `best` becomes the fit with the rest.
     fn thinned(&mut self, mut groups: Vec<Group>, best: &mut Fitted) -> Vec<Group> {
         for group in [Group::Input, Group::Output, Group::Shift] {
             let without: Vec<Group> = groups.iter().copied().filter(|g| *g != group).collect();
@@ -333,7 +346,7 @@ impl<'a> TwistModel<'a> {
         groups
     }
 
-    /// Number of standard errors by which held-out blocks are better with a group than without it.
+    /// How clearly the model predicts held-out blocks better with the group than without it, in standard errors.
     pub(crate) fn gain(&self, group: Group) -> f64 {
         let others: Vec<Group> = self.groups.iter().copied().filter(|g| *g != group).collect();
         let all: Vec<Group> = others.iter().copied().chain([group]).collect();
@@ -353,8 +366,8 @@ impl<'a> TwistModel<'a> {
     }
 }
 
-/// Time shift of the link's signal \[s\], by iteration: each fit reads the link at the shift found so far and adds its
-/// correction. `None` if a fit is impossible.
+/// Time by which the link's signal is late \[s\], by iteration: each fit reads the link's signal at the delay found
+/// so far and gives a correction of the delay. `None` if a fit is impossible.
 fn time_shift_s(rows: &JointRows) -> Option<f64> {
     let places = Places { records: rows.record_count() };
     let groups = if rows.has_torque { vec![Group::Shift, Group::Compliance] } else { vec![Group::Shift] };

@@ -10,10 +10,11 @@ use nalgebra::{Matrix4, Vector4};
 
 /// Half width of the window that separates the fast from the slow part of a signal \[rows\].
 const HALF: usize = 16;
-/// Fraction of the sum of squares of the fast twist that the transmission error must explain.
+/// A transmission error is removed only if it explains at least this fraction of the sum of squares of the fast part
+/// of the twist.
 const TELLING: f64 = 0.1;
 
-/// Transmission error once and twice a turn of the motor.
+/// Transmission error of a joint's gear once and twice a turn of the motor.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Wave {
     /// Amplitudes of sine and cosine once a turn, then twice a turn, at the output \[rad\]. All zero if there is no
@@ -35,8 +36,8 @@ fn fast(t_s: &[f64], x: &[f64]) -> Vec<f64> {
 }
 
 impl Wave {
-    /// Finds the transmission error of a joint. It is zero if the ratio is not stated or if the error explains too
-    /// little.
+    /// Finds the transmission error of the joint with the name `joint` from all records. It is zero if the ratio is
+    /// not stated or if the error explains too little.
     pub(crate) fn find(records: &[Record], joint: &str) -> Self {
         let own: Vec<(&[f64], &JointSignals)> = records
             .iter()
@@ -67,8 +68,8 @@ impl Wave {
         Self { waves_rad, is_of_motor: calmed[0] < calmed[1] }
     }
 
-    /// Sum of squares of the acceleration after the error was removed, over the same sum before, for the side that has
-    /// the error.
+    /// How much the signal on the side that has the error is calmed by removing the error: the sum of squares of its
+    /// acceleration after the removal, divided by the same sum before.
     fn calms(&self, own: &[(&[f64], &JointSignals)]) -> f64 {
         let size = |t_s: &[f64], x: &[f64]| -> f64 {
             smooth(t_s, x, HALF).curvature.iter().filter(|a| !a.is_nan()).map(|a| a * a).sum()
@@ -87,7 +88,7 @@ impl Wave {
         if with > 0.0 { without / with } else { 1.0 }
     }
 
-    /// Angles of motor and link \[rad\], with the error removed from the side that has it.
+    /// Angles of motor and link \[rad\], one per row, with the error removed from the side that has it.
     pub(crate) fn taken_from(&self, signals: &JointSignals) -> [Vec<f64>; 2] {
         let [mut motor_rad, mut link_rad] = [signals.motor_rad.clone(), signals.link_rad.clone()];
         let Some(ratio) = signals.ratio.filter(|_| self.waves_rad != [0.0; 4]) else {

@@ -19,11 +19,13 @@ use rayon::prelude::*;
 
 /// Largest number of laws without a name in one model.
 const MOST_LAWS: usize = 3;
-/// A law is accepted if ln of the evidence, less the price of its place, rises by more than this.
+/// A law is accepted if the logarithm of the evidence, less the logarithm of the number of places where a law is
+/// tried, rises by more than this.
 const BETTER: f64 = 2.0;
 /// A joint is not tried if its largest torque is less than this fraction of the largest torque on any joint.
 const UNLOADED: f64 = 1e-3;
-/// Largest further twist that is sought, as a multiple of the joint's twist at its largest torque.
+/// Largest size of a law of a joint (a further twist) that is sought, as a multiple of the joint's nominal twist at
+/// its largest torque.
 const LARGEST: f64 = 3.0;
 
 /// All laws without a name at every place where the readings could show them, as candidates.
@@ -48,7 +50,7 @@ pub(crate) fn laws(forward: &Forward) -> Vec<Candidate> {
     out
 }
 
-/// Possible physical causes of a law, as a sentence.
+/// Sentence on the possible physical causes of the law that the candidate stands for.
 pub(crate) fn may_be(candidate: &Candidate) -> &'static str {
     match candidate.free_parameters.first().map(|free| free.name) {
         Some(ODD_TWIST) => "it may be a gear or a connection that stiffens or softens as it is loaded",
@@ -62,7 +64,7 @@ pub(crate) fn may_be(candidate: &Candidate) -> &'static str {
     }
 }
 
-/// Description of the law in words.
+/// Description in words of the law that the candidate stands for.
 pub(crate) fn in_words(candidate: &Candidate) -> String {
     let at = &candidate.at;
     match candidate.free_parameters.first().map(|free| free.name) {
@@ -73,8 +75,8 @@ pub(crate) fn in_words(candidate: &Candidate) -> String {
     }
 }
 
-/// Adds laws to the fit `from`, one after the other, as long as each raises the score enough. The laws are the
-/// candidates of `search` from index `first` on. `None` if no law does.
+/// Adds laws without a name to the model `from`, one after the other, as long as each raises the score by more than
+/// [`BETTER`]. The laws are the candidates of `search` from the index `first` on. `None` if no law does.
 pub(crate) fn with_laws<'a>(search: &Search<'a>, first: usize, from: &Scored) -> Option<(Scored, Fit<'a>)> {
     let mut best: Option<(Scored, Fit)> = None;
     for _ in 0..MOST_LAWS {
@@ -85,7 +87,8 @@ pub(crate) fn with_laws<'a>(search: &Search<'a>, first: usize, from: &Scored) ->
     best
 }
 
-/// The fit with the law that raises the score most; `None` if the rise is not more than [`BETTER`].
+/// The fit of the model `from` with that law added which raises its score most; `None` if the rise is not more than
+/// [`BETTER`].
 fn next_law<'a>(search: &Search<'a>, first: usize, from: &Scored) -> Option<(Scored, Fit<'a>)> {
     let laws: Vec<usize> =
         (first..search.candidates.len()).filter(|law| !from.effects.contains(law)).collect();
@@ -103,7 +106,8 @@ fn next_law<'a>(search: &Search<'a>, first: usize, from: &Scored) -> Option<(Sco
     (scored.score > from.score + BETTER).then_some((scored, fit))
 }
 
-/// Two laws of a joint: a further twist that is odd in its torque, and one that is even.
+/// Two laws of a joint as candidates: a further twist that is an odd function of the joint's torque, and one that is
+/// an even function. `torque_nm` is the largest torque on the joint, and `twist_rad` its twist there.
 fn twists(joint: &str, torque_nm: f64, twist_rad: f64) -> [Candidate; 2] {
     let most = LARGEST * twist_rad;
     let sized =
@@ -116,8 +120,8 @@ fn twists(joint: &str, torque_nm: f64, twist_rad: f64) -> [Candidate; 2] {
     ]
 }
 
-/// The laws of a channel's readings: a nonlinear characteristic, and a gain for each direction if the channel has three
-/// components.
+/// The laws of a channel's readings as candidates: a nonlinear characteristic, and a gain for each direction if the
+/// channel has three components. `largest` is the largest reading, in its unit.
 fn readings(channel: Channel, largest: f64) -> Vec<Candidate> {
     let bend = Parameter { count: 2, ..Parameter::number(BEND, -1.0, 1.0, 0.1, Scale::Linear) };
     let bent = law(channel.word(), bend, 0.0);
@@ -136,8 +140,8 @@ fn readings(channel: Channel, largest: f64) -> Vec<Candidate> {
     out
 }
 
-/// A law with one free parameter, which may be a vector. Its fits start where it changes nothing. The caller sets
-/// `numbers`.
+/// A candidate at the place `at` with one free parameter, which may be a vector. Its fits start at the value
+/// `absent`, at which the law changes nothing. The caller sets `numbers`.
 fn law(at: &str, parameter: Parameter, absent: f64) -> Candidate {
     let free = (0..parameter.count).map(|component| FreeParameter::new(&parameter, component, 1.0));
     let free_parameters: Vec<FreeParameter> = free.collect();

@@ -30,10 +30,11 @@ pub struct LackOfFit {
     pub fails: bool,
 }
 
-/// The model fails if chi-squared per degree of freedom exceeds this. Wrongly declared standard deviations seldom
-/// explain a larger value.
+/// The model fails the test for lack of fit if chi-squared per degree of freedom exceeds this. Wrongly declared
+/// standard deviations seldom explain a larger value.
 const MATERIAL: f64 = 2.5;
-/// If a structure is suspected, the model fails already above this chi-squared per degree of freedom.
+/// If a structure of the residuals is suspected, the model fails the test already above this chi-squared per degree
+/// of freedom.
 const SUSPICIOUS: f64 = 1.8;
 /// A structure with a probability below this, after correction for the number of tests, is no chance result.
 const CHANCE: f64 = 1e-3;
@@ -55,7 +56,7 @@ impl LackOfFit {
     }
 }
 
-/// Tests the residuals of a fitted model for structure.
+/// Tests the residuals of the model `fit` for structure, and decides whether the model fails.
 pub(crate) fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &Weights) -> LackOfFit {
     let tester = Tester::new(forward, fit, weights);
     let mut structures = Vec::new();
@@ -85,7 +86,7 @@ pub(crate) fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, wei
 /// remainder would only show how well the fit converged.
 const ABSORBED: f64 = 1e-3;
 
-/// Scales columns to length 1.
+/// Scales every column of the matrix to length 1. A column of zeros stays.
 fn unit_columns(mut x: DMatrix<f64>) -> DMatrix<f64> {
     for mut column in x.column_iter_mut() {
         let length = column.norm();
@@ -161,11 +162,11 @@ impl Tester {
     }
 }
 
-/// Receives the quantity that the residuals may follow, in words, and its columns. Tests are made one by one, because
-/// the columns of all would need much memory.
+/// A function that carries out one test. It receives the quantity that the residuals may follow, in words, and its
+/// columns. Tests are made one by one, because the columns of all tests together would need much memory.
 type Ask<'a> = &'a mut dyn FnMut(String, Vec<Vec<f64>>);
 
-/// Tests the residuals of a channel. The columns are zero outside the channel.
+/// Makes all tests of the residuals of the channel `channel`. The columns of a test are zero outside the channel.
 fn questions(
     campaign: &Campaign,
     forward: &Forward,
@@ -183,8 +184,9 @@ fn questions(
     change_questions(forward, fit, weights, channel, ask);
 }
 
-/// Tests whether the size of an effect, or the modulus of a material, changes in the course of the tests. The columns
-/// are the sensitivities of the readings times functions of the order.
+/// Tests whether the size of an effect, or the modulus of a material, changes in the course of the tests of a
+/// channel. The columns are the derivatives of the readings with respect to this number, times functions of the order
+/// of the rows.
 fn change_questions(forward: &Forward, fit: &Fit, weights: &Weights, channel: Channel, ask: Ask) {
     let range = forward.range(channel);
     let part = |i: usize| (i - range.start) as f64 / range.len() as f64;
@@ -212,8 +214,8 @@ fn change_questions(forward: &Forward, fit: &Fit, weights: &Weights, channel: Ch
     }
 }
 
-/// Tests whether a joint's stiffness changes with its angle, its torque or the order of the tests. The columns are the
-/// sensitivities of the readings times functions of these quantities.
+/// Tests whether a joint's stiffness changes with its angle, its torque or the order of the tests of a channel. The
+/// columns are the derivatives of the readings with respect to the stiffness, times functions of these quantities.
 fn stiffness_questions(
     campaign: &Campaign,
     forward: &Forward,
@@ -255,8 +257,8 @@ fn stiffness_questions(
     }
 }
 
-/// Column with `value` at the data of a channel, and zero elsewhere. `value` receives the index of the datum and its
-/// component.
+/// A column of a test that has `value` at the data of the channel, and zero elsewhere. `value` receives the index of
+/// the datum and its component.
 fn spread(forward: &Forward, channel: Channel, value: impl Fn(usize, usize) -> f64) -> Vec<f64> {
     let mut out = vec![0.0; forward.data.len()];
     for i in forward.range(channel) {
@@ -298,7 +300,8 @@ fn static_questions(campaign: &Campaign, forward: &Forward, fit: &Fit, ask: Ask)
     ask("loading or unloading".to_string(), branch);
 }
 
-/// Functions of the position of a joint in each row: waves of its angle, or smooth functions of its travel.
+/// Four functions of the position of a joint at each row: waves of its angle, or smooth functions of its travel.
+/// `entries` holds the joint's entry of the pose, row by row.
 fn positions_of(joint: &DrivenJoint, entries: impl Iterator<Item = f64>) -> Vec<[f64; 4]> {
     let entries: Vec<f64> = entries.collect();
     let (low, high) =
@@ -314,7 +317,7 @@ fn positions_of(joint: &DrivenJoint, entries: impl Iterator<Item = f64>) -> Vec<
     entries.iter().map(of).collect()
 }
 
-/// Name of a joint's entry in a pose.
+/// Word for what a joint's entry in a pose is: angle or travel.
 fn entry_word(joint: &DrivenJoint) -> &'static str {
     match joint.motion {
         Motion::Turns => "angle",

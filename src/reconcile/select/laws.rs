@@ -26,12 +26,13 @@ pub(crate) struct Law {
     pub what: String,
     /// Name of the effect of the library that is the same as this law; `None` if there is none.
     pub effect: Option<&'static str>,
-    /// Change of each prediction per unit of each of the law's parameters, in the unit of the file.
+    /// The law's columns: for each of its parameters, the change of each predicted reading per unit of the parameter,
+    /// in the unit of the file.
     pub columns: Vec<Vec<f64>>,
 }
 
-/// The results of `each` for every law at every place, linearized about a fit. Laws are built in groups, because the
-/// columns of all would need much memory.
+/// Calls `each` for every law at every place, and returns the results. The columns of a law are linearized about
+/// `fit`. Laws are built in groups, because the columns of all laws together would need much memory.
 pub(crate) fn of_every_law<T: Send>(
     campaign: &Campaign,
     forward: &Forward,
@@ -52,20 +53,22 @@ pub(crate) fn of_every_law<T: Send>(
     out
 }
 
-/// The state of a joint at the time of a reading.
+/// Torque, angle and test of a joint at the time of a reading.
 struct State {
     torque_nm: f64,
     angle_deg: f64,
-    /// Fraction of the channel's tests that were made before this reading.
+    /// Fraction of the channel's rows that were taken before this reading.
     part: f64,
     channel: Channel,
 }
 
-/// A further twist at a state of the joint, and the derivative of this twist with respect to torque. Both are without
-/// the factor 1/stiffness.
+/// A function that gives, for a state of the joint, an additional torque-like term and its derivative with respect to
+/// the torque. The additional twist is the compliance times the first \[N m\], and the additional tangent compliance
+/// is the compliance times the second.
 type Shape<'a> = &'a dyn Fn(&State) -> (f64, f64);
 
-/// Builds a column of a channel from a function of the datum's index and its predicted reading.
+/// A function that builds a column of a channel's readings. It receives the entry as a function of the datum's index
+/// and predicted reading.
 type ColumnOf<'a> = &'a dyn Fn(&dyn Fn(usize, f64) -> f64) -> Vec<f64>;
 
 struct Builder<'a> {
@@ -124,9 +127,8 @@ impl Builder<'_> {
             let what =
                 format!("a stiffness of {name} that changes with the order of the {} tests", channel.word());
             out.extend(one_or_both(&what, [order(channel, 1), order(channel, 2)]));
-            // a servo may hold a joint less stiffly than a brake; if there is one kind of readings only, this cannot be
-            // told from the
-            // joint's stiffness
+            // a servo may hold a joint less stiffly than a brake; if there is one kind of readings only, this cannot
+            // be told from the joint's stiffness
             if self.kinds_of_readings() > 1 {
                 let what = format!("a stiffness of {name} that is another in the {} tests", channel.word());
                 out.push(Law { what, effect: None, columns: vec![order(channel, 0)] });
@@ -141,8 +143,8 @@ impl Builder<'_> {
         channels.into_iter().filter(|channel| !self.forward.range(*channel).is_empty()).count()
     }
 
-    /// The change of every reading by an additional twist of a joint. `compliance` is the factor on `shape` \[rad/(N
-    /// m)\].
+    /// The change of every reading, in its unit, by an additional twist of the joint with index `joint`. This twist
+    /// is `compliance` \[rad/(N m)\] times `shape`, which depends on the torque, angle and row.
     fn joint_column(&self, joint: usize, compliance: f64, shape: Shape) -> Vec<f64> {
         let forward = self.forward;
         let driven = self.campaign.arm.driven_joint_names();
@@ -188,8 +190,8 @@ impl Builder<'_> {
         self.read(&truth)
     }
 
-    /// Laws of a base, bearings and links that are more compliant than modelled, each in one direction or in a part of
-    /// the link.
+    /// Laws of a base, bearings and links that are more compliant than modelled, each in one direction only or in a
+    /// part of the link only.
     fn yielding_laws(&self) -> Vec<Law> {
         let layout = &self.forward.layout;
         let own = &self.fit.point.coefficients;
@@ -228,8 +230,8 @@ impl Builder<'_> {
         out
     }
 
-    /// Laws of links that are lighter or heavier than drawn, and of tubes with another wall, whose mass and stiffness
-    /// change in proportion.
+    /// Laws of links that are lighter or heavier than drawn, and of tubes whose wall is thinner or thicker. A thinner
+    /// wall lowers mass and stiffness in proportion.
     fn link_laws(&self) -> Vec<Law> {
         let links = self.forward.nominal.structure.links().enumerate();
         let laws = links.filter(|(_, link)| link.tube_kg_per_m() > 0.0).flat_map(|(l, link)| {
@@ -251,15 +253,15 @@ impl Builder<'_> {
         laws.collect()
     }
 
-    /// Removes mass per length from a link \[kg/m\].
+    /// Removes `kg_per_m` from the mass per length of the link with index `link` \[kg/m\], in mass and weight.
     fn lighten(&self, coefficients: &mut Coefficients, link: usize, kg_per_m: f64) {
         let index = self.forward.layout.joints.len() + link;
         coefficients.masses[index] -= kg_per_m;
         coefficients.weights[index] -= kg_per_m;
     }
 
-    /// The derivative of every reading with respect to the size of a change of the coefficients. `changed` makes a
-    /// change of a given size.
+    /// The derivative of every reading with respect to the size of a change of the coefficients, at size zero.
+    /// `changed` makes the change of a given size in the coefficients.
     fn changed_column(&self, changed: &dyn Fn(&mut Coefficients, f64)) -> Vec<f64> {
         const PART: f64 = 1e-4;
         let mut moved = self.fit.point.coefficients.clone();
@@ -267,8 +269,8 @@ impl Builder<'_> {
         change_to(self.forward, &self.fit.point, moved).into_iter().map(|d| d / PART).collect()
     }
 
-    /// The change of every reading by additional compliances of strain coordinates. `further` holds pairs of index and
-    /// compliance.
+    /// The change of every reading, in its unit, by additional compliances. `further` holds pairs: index of the
+    /// strain coordinate, and its additional compliance.
     fn yielding_column(&self, further: &[(usize, f64)]) -> Vec<f64> {
         let forward = self.forward;
         let mut truth = vec![0.0; forward.data.len()];
@@ -279,8 +281,8 @@ impl Builder<'_> {
         self.read(&truth)
     }
 
-    /// Adds to `truth` the change of the frequencies by a change `dC` of the compliances. `energy` gives `yᵀ dC y` for
-    /// a datum and the mode `y` of the datum.
+    /// Writes into `truth` the change of the frequencies by a change `dC` of the matrix of compliances \[Hz\].
+    /// `energy` receives the index of a datum and the inertia forces `y` of its mode, and gives `yᵀ dC y`.
     fn add_modal(&self, truth: &mut [f64], energy: impl Fn(usize, &DVector<f64>) -> f64) {
         for (test, solved) in self.forward.modal.iter().zip(&self.fit.point.solved) {
             for &(datum, mode) in &test.modes {
@@ -291,7 +293,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Converts changes of values before the measuring channel to changes of readings.
+    /// Converts changes of actual values into changes of the readings that the measuring channels show. `truth` has
+    /// one entry per datum, in its unit.
     fn read(&self, truth: &[f64]) -> Vec<f64> {
         let channels = &self.fit.point.coefficients.channels;
         truth.iter().zip(&self.forward.data).map(|(t, d)| t * channels[d.channel as usize].factor).collect()
@@ -323,8 +326,9 @@ impl Builder<'_> {
         out
     }
 
-    /// Laws of loads that differ from those stated, of a support that deflects in the direction of the load, and of
-    /// readings that grow while a pose is held.
+    /// Laws of static readings that follow the load in a way that the model lacks: loads other than stated, a support
+    /// that deflects in the direction of the load, and readings that grow while a pose is held. `column` builds a
+    /// column.
     fn load_laws(&self, column: ColumnOf) -> Vec<Law> {
         let rows = &self.campaign.statics;
         let gravity = self.forward.layout.gravity_m_s2;
@@ -368,8 +372,8 @@ impl Builder<'_> {
         out
     }
 
-    /// Adds to a column of the static readings the change of the frequencies under payloads that are heavier in the
-    /// same proportion.
+    /// Adds to `column`, a column of the static readings under payloads, the change of the frequencies if all
+    /// payloads are heavier in the same proportion.
     fn heavier_payloads(&self, mut column: Vec<f64>) -> Vec<f64> {
         const PART: f64 = 1e-4;
         let forward = self.forward;
@@ -387,7 +391,8 @@ impl Builder<'_> {
         column
     }
 
-    /// Laws of the measuring frame: a separate gain for each direction, and a rotation of the frame.
+    /// Laws of an instrument of displacements: a gain of its own for each direction (x, y, z), and a frame that is
+    /// rotated. `column` builds a column.
     fn direction_laws(&self, column: ColumnOf) -> Vec<Law> {
         let data = &self.forward.data;
         let gain = |c: usize| column(&|i, d| if data[i].component == c { d } else { 0.0 });
@@ -422,7 +427,7 @@ impl Builder<'_> {
     }
 }
 
-/// For each row, the number of rows directly before it that have the same pose.
+/// For each row, how many rows with the same pose stand directly before it.
 fn rows_in_pose<'a>(poses: impl Iterator<Item = &'a [f64]>) -> Vec<usize> {
     let mut last: Option<(&[f64], usize)> = None;
     poses
@@ -434,7 +439,7 @@ fn rows_in_pose<'a>(poses: impl Iterator<Item = &'a [f64]>) -> Vec<usize> {
         .collect()
 }
 
-/// Three laws with the same description: one with the first column, one with the second, and one with both.
+/// Three laws with the description `what`: one with the first column, one with the second, and one with both.
 fn one_or_both(what: &str, columns: [Vec<f64>; 2]) -> Vec<Law> {
     let [a, b] = columns;
     let law = |columns| Law { what: what.to_string(), effect: None, columns };

@@ -24,31 +24,34 @@ const WORTH: f64 = 3.0;
 /// Smallest rise of the score for which the first effect is accepted. It is zero, because a missing effect is as
 /// probable as none.
 const FIRST_WORTH: f64 = 0.0;
-/// Alternatives to an effect are listed until the effect and its alternatives together have this probability of
-/// containing the right one.
+/// The listed alternatives to an effect are as many as are needed so that the effect and they together contain the
+/// right one with this probability.
 const CREDIBLE: f64 = 0.95;
-/// Models whose score after a few steps is below the best by more than this are not fitted further.
+/// A model whose score after a few steps of a fit is below the best by more than this is not fitted further.
 const HOPELESS: f64 = 40.0;
-/// Models whose score is below the best of a stage by less than this are examined further.
+/// A model whose score is below the best of its stage by less than this is examined further.
 const PROMISING: f64 = 12.0;
 /// Largest number of effects in a model.
 pub(crate) const MOST_EFFECTS: usize = 3;
-/// If ln of the evidence of a law without a name is higher by this much, the effects found are not the cause and the
-/// search ends.
+/// If a law without a name raises the logarithm of the evidence by this much more than the best effects do, these
+/// effects are not the cause, and the search ends.
 const SETTLES: f64 = 12.0;
-/// Largest number of variants of one effect, with different parameters free, among the candidates that are fitted in
-/// full.
+/// Largest number of variants of one effect (the same effect with different parameters free) among the candidates
+/// that are fitted in full.
 const MOST_VARIANTS: usize = 2;
-/// If the objectives of two fits of the same model differ by more than this, one of them had not converged.
+/// If the objectives of two fits of the same model differ by more than this, the fit with the larger one had not
+/// converged.
 const CONVERGED: f64 = 0.5;
-/// Models whose objective after a few steps exceeds the lowest by less than this fraction are fitted further. Far from
-/// an explanation, a few steps do not show how good a model is.
+/// Models whose objective after a few steps exceeds the lowest by less than this fraction are fitted further. Where
+/// no model is near an explanation, a few steps do not show how good a model is.
 const UNDECIDED: f64 = 0.1;
-/// Sizes at which candidates are tried if much is missing, as fractions of the sizes where their fits start.
+/// Sizes of effects at which candidates are tried if much is missing, as fractions of the sizes at which their fits
+/// start.
 const SIZES: [f64; 3] = [0.1, 0.3, 1.0];
-/// If chi-squared is below this fraction of its expectation, the residuals are far below the declared noise.
+/// If chi-squared of a model is below this fraction of its expectation, the residuals are far below the declared
+/// noise.
 const BELOW: f64 = 0.5;
-/// Number of candidates fitted in full at each stage.
+/// Number of candidates that are fitted in full when one effect is to be added.
 const FULL_FITS: usize = 7;
 
 /// The result of a search for effects.
@@ -70,8 +73,8 @@ struct Linearized {
 }
 
 impl<'a> Search<'a> {
-    /// Searches for effects. `before` is a model from an earlier search. If it has two effects or more, the search
-    /// starts from it.
+    /// Searches for the missing effects. `before` is the best model of an earlier search. If it has two effects or
+    /// more, the search starts from it.
     pub(crate) fn run(&self, before: Option<&Scored>) -> Selection {
         let baseline_model = self.model(&[]);
         let mut baseline_fit = self.fit(&[], &vec![0.0; baseline_model.len()], Effort::default());
@@ -121,9 +124,10 @@ impl<'a> Search<'a> {
         Selection { best, baseline, others: seen, given_up }
     }
 
-    /// A fit of the calibration alone that starts at the calibration of the model with its first effect; `None` if it
-    /// is not lower than the fit so far. If it is lower, the earlier fit had not converged, and the effect may only
-    /// compensate for that.
+    /// Fits the calibration alone once more, from the calibrated parameters of `best`, the model with its first
+    /// effect. Returns this fit if its objective is lower than that of `baseline` by more than [`CONVERGED`],
+    /// otherwise `None`. A lower objective shows that `baseline` had not converged, and that the effect may only
+    /// compensate for this.
     fn lower_baseline(&self, best: &Scored, baseline: &Scored) -> Option<Fit<'a>> {
         if best.effects.len() != 1 {
             return None;
@@ -133,8 +137,9 @@ impl<'a> Search<'a> {
         (again.point.objective < baseline.objective - CONVERGED).then_some(again)
     }
 
-    /// Whether the search ends because a law without a name is far better than the best model. If the model has one
-    /// effect so far, the law must also leave no more than noise, because two effects could still be better.
+    /// Whether the search ends because the law without a name `law` raises the logarithm of the evidence above `best`
+    /// by more than [`SETTLES`]. If `best` has one effect so far, the law must also leave no more than noise, because
+    /// two effects could still be better.
     fn is_settled_by(&self, law: &Option<Better>, baseline: &Scored, best: &Scored) -> bool {
         let readings = self.forward.data.len() as f64;
         let noise = readings + 2.0 * (2.0 * readings).sqrt();
@@ -144,9 +149,9 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// Fits the promising models of a selection again with other weights, and chooses among them. Models with only
-    /// some of the best model's effects are included, because the others may have been named only because of the
-    /// earlier weights.
+    /// Fits the promising models of the selection `before` again, with the weights of this search, and chooses among
+    /// them. Models with only some of the best model's effects are included, because the other effects may have been
+    /// named only because of the earlier weights.
     pub(crate) fn weigh_again(&self, before: &Selection) -> Selection {
         let mut promising: Vec<Scored> = vec![before.baseline.clone()];
         let near = before.others.iter().filter(|s| s.score > before.best.score - PROMISING).cloned();
@@ -183,9 +188,9 @@ impl<'a> Search<'a> {
         Selection { best, baseline, others: seen, given_up: before.given_up }
     }
 
-    /// Whether the residuals of a model with effects are far below the declared noise: half of the expected chi-squared
-    /// or less, and by more than chance. A further effect would then describe errors that are smaller than the declared
-    /// ones.
+    /// Whether the residuals of a model with effects are far below the declared noise: chi-squared is less than half
+    /// of its expectation, and lower than chance explains. A further effect would then describe errors that are
+    /// smaller than the declared ones.
     fn is_below_noise(&self, scored: &Scored) -> bool {
         let counted = self.weights.inverse.iter().filter(|w| **w > 0.0).count() as f64;
         let fitted = self.model(&scored.effects).free_parameters().count() as f64;
@@ -195,7 +200,8 @@ impl<'a> Search<'a> {
             && scored.objective < expected - 3.0 * (2.0 * expected).sqrt()
     }
 
-    /// Drops and exchanges effects until nothing improves.
+    /// Drops each effect of `best` in turn, or exchanges it for another candidate, until the score does not improve.
+    /// All models that are fitted are added to `seen`.
     fn repair(&self, mut best: Scored, seen: &mut Vec<Scored>) -> Scored {
         for _ in 0..4 {
             let mut improved = false;
@@ -220,7 +226,8 @@ impl<'a> Search<'a> {
         best
     }
 
-    /// The models with some, but not all, effects of a model. Each starts with parameters of that model.
+    /// The models with some, but not all, effects of the model `scored`. Their parameters are those of `scored`, and
+    /// they are not fitted.
     fn parts(&self, scored: &Scored) -> Vec<Scored> {
         let mut parts: Vec<Scored> = Vec::new();
         let mut open = vec![scored.clone()];
@@ -236,7 +243,8 @@ impl<'a> Search<'a> {
         parts
     }
 
-    /// Fits of models with one more effect. Models that were fitted before are copied from `seen`.
+    /// Fits of the model `base` with one more effect, for the candidates that the screening finds most promising.
+    /// Models that are in `seen` were fitted before and are copied from there.
     fn extend(&self, base: &Scored, seen: &[Scored]) -> Vec<Scored> {
         let mut screened = self.screen(base);
         if !self.may_explain(base) {
@@ -271,17 +279,17 @@ impl<'a> Search<'a> {
         fits
     }
 
-    /// The same model with all calibrated parameters at their nominal values.
+    /// The model `scored` with all calibrated parameters at their nominal values.
     fn uncalibrated(&self, scored: &Scored) -> Scored {
         let mut out = scored.clone();
         out.u[..self.model(&[]).len()].fill(0.0);
         out
     }
 
-    /// Searches the break points of promising gear curves over a grid, at first without the frequencies. This is done
-    /// only if the model may be the explanation: a model that still lacks an effect does not need such exact break
-    /// points. If there are three effects, only a curve that was added last is searched, because the others were found
-    /// in pairs.
+    /// Searches the break points of the gear curves in the models `fits` over a grid, at first without the
+    /// frequencies. This is done only for models whose score is above `least` and that may be the explanation,
+    /// because a model that still lacks an effect does not need such exact break points. If there are three effects,
+    /// only a curve that was added last is searched, because the others were searched in models with two effects.
     fn regrid(&self, fits: &mut [Scored], least: f64) {
         for scored in fits.iter_mut().filter(|s| s.score > least && self.may_explain(s)) {
             let curve = scored.effects.iter().rposition(|&e| self.candidates[e].kind.traits.is_gear_curve);
@@ -297,7 +305,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The best fit over the grid of break points of the effect number `position`.
+    /// The best fit of the model `from` over the grid of break points of its effect number `position`, a gear's
+    /// curve.
     fn over_breaks(&self, from: &Scored, position: usize) -> Fit<'a> {
         let model = self.model(&from.effects);
         let first = model.first_parameter(position);
@@ -323,7 +332,8 @@ impl<'a> Search<'a> {
             .expect("at least one start")
     }
 
-    /// The most promising candidates: index, start parameters, and score of the linearized model, the best first.
+    /// The candidates that raise the score of the model `base` most by the linearized model, the best first: index,
+    /// parameters from which a full fit starts, and the score.
     fn screen(&self, base: &Scored) -> Vec<(usize, Vec<f64>, f64)> {
         let model = self.model(&base.effects);
         let sharp = self.linearized(&model, &base.u);
@@ -359,9 +369,10 @@ impl<'a> Search<'a> {
         tried
     }
 
-    /// The candidates that come closest to the readings at one of a few sizes, each with this start. If much is
-    /// missing, a model that is linearized about the fit so far does not predict the effect of a candidate on the
-    /// frequencies well enough.
+    /// The candidates that come closest to the readings when they are added to the model `base` at one of a few
+    /// sizes, the closest first: index, parameters from which a full fit starts, and minus half of the objective.
+    /// They are needed if much is missing: a model that is linearized about the fit so far then does not predict the
+    /// effect of a candidate on the frequencies well enough.
     fn by_size(&self, base: &Scored) -> Vec<(usize, Vec<f64>, f64)> {
         let model = self.model(&base.effects);
         let here = evaluate(self.forward, &model, &base.u, self.weights);
@@ -402,8 +413,8 @@ impl<'a> Search<'a> {
         Linearized { here, slopes }
     }
 
-    /// Whether a candidate is screened with smoothed jumps of the frequencies: it causes jumps itself, or the model
-    /// already has break points that were found.
+    /// Whether a candidate is screened with the jumps of the frequencies smoothed. This is so if the candidate causes
+    /// jumps itself, or if the model `base` already has fitted break points.
     fn is_smoothed(&self, base: &Model, candidate: usize) -> bool {
         self.candidates[candidate].kind.traits.steps_frequencies() || !base.break_points().is_empty()
     }
@@ -439,7 +450,9 @@ impl<'a> Search<'a> {
             .map(|(u, score)| (index, u, score))
     }
 
-    /// Best parameters and score of a model, linearized about `here` plus the candidate's start.
+    /// Best parameters and score of the model `model` (the model at `here` and one candidate). The model is
+    /// linearized about the parameters of `here` and the candidate's start `start`; `slopes` holds the derivatives at
+    /// `here`.
     fn linear(&self, model: &Model, here: &Point, slopes: &DMatrix<f64>, start: &[f64]) -> (Vec<f64>, f64) {
         let mut u = here.u.clone();
         u.extend_from_slice(start);
@@ -483,11 +496,11 @@ impl<'a> Search<'a> {
         (u, score)
     }
 
-    /// For each effect of the best model, the models with another effect in its place that the data cannot tell from
-    /// it.
+    /// For each effect of the model `best`, the models of `seen` that have another effect in its place and that the
+    /// data cannot tell from `best`.
     ///
-    /// The most probable come first. There are as many as are needed for the right model to be among them and the best
-    /// one with a probability of 95 %.
+    /// The most probable model comes first. There are as many as are needed so that they and `best` together contain
+    /// the right model with a probability of 95 %.
     pub(crate) fn alternatives(&self, best: &Scored, seen: &[Scored]) -> Vec<Vec<Scored>> {
         (0..best.effects.len())
             .map(|i| {
@@ -519,7 +532,8 @@ impl<'a> Search<'a> {
     }
 }
 
-/// The entry with the smallest misfit: misfit and parameters.
+/// The entry of `tried` with the smallest misfit (objective): this misfit, and the parameters; `None` if there are no
+/// entries.
 fn least(tried: impl Iterator<Item = (f64, Vec<f64>)>) -> Option<(f64, Vec<f64>)> {
     tried.min_by(|a, b| a.0.total_cmp(&b.0))
 }

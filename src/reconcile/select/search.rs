@@ -11,10 +11,11 @@ use crate::reconcile::model::parameters::{Candidate, Model};
 use crate::reconcile::readings::campaign::Campaign;
 use rayon::prelude::*;
 
-/// A trial value of a break point is rejected if the objective rises by more than this.
+/// A trial value of a break point is rejected if the objective rises by more than this (its probability is then below
+/// a thousandth).
 const RULED_OUT: f64 = 14.0;
-/// A model whose objective per datum is larger than this cannot become the explanation, even with larger standard
-/// deviations.
+/// A model whose objective per datum is larger than this cannot be the explanation, even if the declared standard
+/// deviations are too small.
 const BEYOND_HOPE: f64 = 3.0;
 
 /// Everything that a search needs.
@@ -31,26 +32,27 @@ pub(crate) struct Search<'a> {
     pub weights: &'a Weights,
 }
 
-/// A model with its score.
+/// A model that was fitted, with its score.
 #[derive(Clone)]
 pub(crate) struct Scored {
     /// Indices of the candidates that are effects of the model.
     pub effects: Vec<usize>,
     /// Fitted parameters of the model.
     pub u: Vec<f64>,
-    /// Score: ln of the evidence less the price of the effects, which is ln of the number of places for each.
+    /// Score: the logarithm of the evidence less the price of the effects. The price of an effect is the logarithm of
+    /// the number of places where an effect could be named, each weighted by its prior odds.
     pub score: f64,
     /// The objective `Σ ρ(r) + Σ u²`.
     pub objective: f64,
 }
 
 impl<'a> Search<'a> {
-    /// A model of the candidates with these indices.
+    /// The model whose effects are the candidates with the indices `effects`.
     pub(crate) fn model(&self, effects: &[usize]) -> Model<'a> {
         Model::of(self.nuisance, self.candidates, effects)
     }
 
-    /// Fits the model of these effects from the start `u`.
+    /// Fits the model whose effects are the candidates with the indices `effects`, from the parameters `u`.
     pub(crate) fn fit(&self, effects: &[usize], u: &[f64], effort: Effort) -> Fit<'a> {
         self.fit_model(self.model(effects), u, effort)
     }
@@ -86,8 +88,9 @@ impl<'a> Search<'a> {
         fit(self.forward, &model, &start, self.weights, few)
     }
 
-    /// Fits a model until it has converged. Break points of a gear's curve are varied by a direct search, because a
-    /// descent does not find lower values of the objective beyond a jump of the frequencies.
+    /// Fits the model with the effects `effects` from the parameters `u` until it has converged. Break points of a
+    /// gear's curve are varied by a direct search, because a descent does not find lower values of the objective
+    /// beyond a jump of the frequencies.
     pub(crate) fn polish(&self, effects: &[usize], u: &[f64]) -> Fit<'a> {
         let model = self.model(effects);
         let breaks = model.break_points();
@@ -111,8 +114,8 @@ impl<'a> Search<'a> {
         self.centre_breaks(model, best)
     }
 
-    /// Fits a model with break points until it has converged, if it may be the explanation. Otherwise, if the descent
-    /// stopped early, a further effect would seem necessary.
+    /// The model `scored`, fitted until it has converged if it has break points and may be the explanation; otherwise
+    /// as it is. If the descent had stopped early, a further effect would seem necessary.
     pub(super) fn settled(&self, scored: Scored) -> Scored {
         if self.model(&scored.effects).break_points().is_empty() || !self.may_explain(&scored) {
             return scored;
@@ -121,8 +124,9 @@ impl<'a> Search<'a> {
         if polished.score > scored.score { polished } else { scored }
     }
 
-    /// Moves break points from the edge of a jump of a frequency to the middle of the flat part of the objective. A
-    /// small change of the torques then does not move a test across the jump.
+    /// Moves the break points of `best` from the edge of a jump of a frequency to the middle of the interval in which
+    /// the objective is nearly constant, and fits the other parameters again. A small change of the torques then does
+    /// not move a test across the jump.
     pub(super) fn centre_breaks(&self, model: Model<'a>, best: Point) -> Fit<'a> {
         const STEP: f64 = 0.002;
         let mut u = best.u.clone();
@@ -146,7 +150,8 @@ impl<'a> Search<'a> {
         fit(self.forward, &model, &end.u, self.weights, Effort { steps: 0, tolerance: 0.0 })
     }
 
-    /// Fits with a parameter held at a value, then with the parameter free. `None` if the readings rule the value out.
+    /// Fits the model with the parameter number `parameter` held at `value`, and then with this parameter free.
+    /// `from` is the point from which the fit starts. `None` if the readings rule the value out.
     fn held_then_free(&self, model: &Model, from: &Point, parameter: usize, value: f64) -> Option<Point> {
         let effort = Effort { steps: 5, tolerance: 0.02 };
         let mut held = model.clone();
@@ -156,7 +161,7 @@ impl<'a> Search<'a> {
         (end.objective <= limit).then(|| self.descent(model, &end.u, effort))
     }
 
-    /// The score of a fitted model.
+    /// The fitted model `fit`, whose effects have the indices `effects`, with its score.
     pub(crate) fn scored(&self, effects: &[usize], fit: &Fit) -> Scored {
         Scored {
             effects: effects.to_vec(),
@@ -166,13 +171,13 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Whether a model fits the readings well enough to be worth refining.
+    /// Whether the model `scored` fits the readings well enough to be worth refining, by its objective per datum.
     pub(crate) fn may_explain(&self, scored: &Scored) -> bool {
         scored.objective < BEYOND_HOPE * self.forward.data.len() as f64
     }
 
-    /// Price of effects, in ln of the evidence: minus the logarithm of their prior probability. It accounts for the
-    /// other effects and places that could have been named instead.
+    /// Price of the effects with the indices `effects` \[ln of the evidence\]: minus the logarithm of their prior
+    /// probability. It accounts for the other effects and places that could have been named instead.
     pub(crate) fn price(&self, effects: &[usize]) -> f64 {
         let odds = |effect: &usize| self.candidates[*effect].kind.traits.odds;
         effects.iter().map(|effect| libm::log(self.places() / odds(effect))).sum()
@@ -187,7 +192,8 @@ impl<'a> Search<'a> {
         labels.iter().map(|(_, odds)| odds).sum()
     }
 
-    /// A model without one of its effects, and the parameters from which its fit starts.
+    /// The model `scored` without its effect number `effect`: the indices of the other effects, and the parameters
+    /// from which its fit starts.
     pub(crate) fn without(&self, scored: &Scored, effect: usize) -> (Vec<usize>, Vec<f64>) {
         let model = self.model(&scored.effects);
         let first = model.first_parameter(effect);

@@ -15,17 +15,19 @@ use crate::reconcile::model::calibration::Nuisance;
 use crate::reconcile::model::parameters::{Candidate, Model};
 use crate::reconcile::readings::campaign::Campaign;
 
-/// Charge for a gross error that is assumed instead of an effect, in ln of the evidence. About one row in a thousand is
-/// a gross error, and ln 1000 is about 7.
+/// Charge for a gross error that is assumed instead of an effect \[ln of the evidence\]. About one row in a thousand
+/// is a gross error, and ln 1000 is about 7.
 const SLIP: f64 = 7.0;
 
-/// Largest tolerable error of a frequency from computing it with fixed trial shapes \[standard deviations\].
+/// Largest tolerable error of a frequency that comes from computing it with fixed trial shapes \[standard deviations
+/// of the reading\].
 const INEXACT: f64 = 0.5;
 
 /// Largest number of times that the trial shapes are replaced by those of the best model.
 const SHAPES: usize = 2;
 
-/// Largest number of times that the worst readings are left out, to see whether calibration alone fits the others.
+/// Largest number of times that the worst readings are left out to see whether calibration alone fits the other
+/// readings.
 const LOOKS: usize = 4;
 
 /// The result of the search for effects and of the judgement of the readings' quality.
@@ -39,7 +41,8 @@ pub(crate) struct Settled {
 }
 
 impl Settled {
-    /// Analyses few readings: they are taken as declared, and every small set of effects is fitted.
+    /// Analyses a campaign with few readings: the readings are taken as declared, and every small set of effects is
+    /// fitted.
     pub(crate) fn of_few(
         campaign: &Campaign,
         forward: &Forward,
@@ -52,7 +55,7 @@ impl Settled {
         Self { selection: few_rows::weigh(&search), noise, remarks: Vec::new() }
     }
 
-    /// Analyses many readings, in these steps.
+    /// Analyses a campaign with many readings, in these steps.
     ///
     /// Missing modes are found first. A search follows with the declared standard deviations and without obvious gross
     /// errors. Then further gross errors are removed and the search is repeated. Finally the best model shows whether
@@ -100,12 +103,12 @@ struct Round {
     coefficients: Coefficients,
     /// The noise according to the residuals of the best model.
     judged: Noise,
-    /// Whether the best model fits well enough that it may become the explanation.
+    /// Whether the best model fits well enough to be the explanation.
     hopeful: bool,
 }
 
 impl Round {
-    /// The score of the best model, less a charge for each row that is left out.
+    /// The score of the best model, less a charge for each row that is left out \[ln of the evidence\].
     fn score(&self) -> f64 {
         self.selection.best.score - SLIP * self.noise.outliers.len() as f64
     }
@@ -132,7 +135,8 @@ impl Settling<'_> {
     }
 
     /// Fits the calibration alone with the declared standard deviations, and returns the fit with its weights. If it
-    /// fits most readings, the few worst readings are left out.
+    /// does not fit most readings, a few worst readings are left out, up to four times. This fit is returned instead
+    /// if it fits most of the other readings.
     fn baseline(&self) -> (Fit<'_>, Weights) {
         let calibrated = |noise: Noise| {
             let baseline = Model::baseline(self.nuisance);
@@ -167,8 +171,10 @@ impl Settling<'_> {
         with.filter(|with| with.hopeful && with.score() > without.score()).unwrap_or(without)
     }
 
-    /// Renumbers frequency lists from which a mode is missing. Lists are judged first by calibration alone, if it fits
-    /// most readings, then by the first effects found, and last by effects that were found without the suspect lists.
+    /// Renumbers the modes of frequency lists from which a mode is missing, and returns the search that follows.
+    /// Missing modes are first sought with calibration alone, if it fits most readings. Then they are sought with the
+    /// first effects found, and last with effects that were found without the suspect lists. `remarks` gets a
+    /// sentence for each list.
     fn count_missed_modes(&mut self, remarks: &mut Vec<String>) -> Round {
         let (baseline, _) = self.baseline();
         if Noise::is_close(self.forward, &baseline) {
@@ -189,9 +195,10 @@ impl Settling<'_> {
         round
     }
 
-    /// Compares the models again with trial shapes of the model that was found. The shapes of the nominal arm are
-    /// inexact for a very different arm, and a further effect or a law without a name would compensate for the error.
-    /// If the change of shapes changes the readings noticeably, the whole search is repeated.
+    /// Repeats the comparison of models after the trial shapes of the modes were computed again for the best model.
+    /// The shapes of the nominal arm are inexact for a very different arm, and a further effect or a law without a
+    /// name would compensate for the error. If the new shapes change the predicted readings noticeably, the whole
+    /// search is repeated.
     fn with_exact_modes(&mut self, mut round: Round) -> Round {
         for _ in 0..SHAPES {
             if round.selection.best.effects.is_empty() {
@@ -215,8 +222,9 @@ impl Settling<'_> {
         round
     }
 
-    /// Searches without one or two rows that are gross errors according to the best model, or to the best model with
-    /// one effect fewer. The new result is taken if such errors are more probable than the effects that they replace.
+    /// Searches again without one or two rows that are gross errors according to the best model, or to the best model
+    /// with one effect fewer. The new result replaces `round` if such errors are more probable than the effects that
+    /// they replace.
     fn with_slips(&self, round: Round) -> Round {
         let best = &round.selection.best;
         if !round.hopeful {
@@ -239,7 +247,8 @@ impl Settling<'_> {
         again.into_iter().max_by(|a, b| a.score().total_cmp(&b.score())).expect("the search before at least")
     }
 
-    /// Searches again without the rows that the best model shows to be gross errors.
+    /// Searches again without the rows that the best model of `round` shows to be gross errors, if they differ from
+    /// those left out so far.
     fn without_gross_errors(&self, mut round: Round) -> Round {
         for again in 0..2 {
             if round.judged.same_rows(&round.noise) || (again > 0 && !round.hopeful) {
@@ -254,7 +263,8 @@ impl Settling<'_> {
         round
     }
 
-    /// Searches again with the standard deviations that the best model suggests.
+    /// Searches again with the standard deviations that the residuals of the best model of `round` suggest, if they
+    /// differ from those assumed.
     fn with_scaled_deviations(&self, mut round: Round) -> Round {
         for _ in 0..2 {
             // larger standard deviations do not make a model right that is far off
@@ -273,8 +283,8 @@ impl Settling<'_> {
 /// An earlier result from which a search can start.
 enum Before<'a> {
     Nothing,
-    /// The best model so far, if the set of rows has changed.
+    /// The best model so far; used if the set of rows has changed.
     Best(&'a Scored),
-    /// All models so far, if only the standard deviations have changed.
+    /// All models so far; used if only the standard deviations have changed.
     Weights(&'a Selection),
 }

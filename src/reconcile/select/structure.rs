@@ -9,11 +9,12 @@ pub struct Structure {
     pub channel: Option<Channel>,
     /// The quantity that the residuals would follow, in words.
     pub follows: String,
-    /// Test statistic.
+    /// Test statistic, which follows a chi-squared distribution if there is no structure.
     pub statistic: f64,
     /// Degrees of freedom of the statistic.
     pub dof: f64,
-    /// ln of the probability that chance gives so large a statistic, corrected for the number of tests (Bonferroni).
+    /// Natural logarithm of the probability that chance gives so large a statistic, corrected for the number of tests
+    /// (Bonferroni).
     pub ln_p: f64,
 }
 

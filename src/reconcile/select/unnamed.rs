@@ -15,15 +15,16 @@ use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::f64::consts::TAU;
 
-/// Sizes of a law below this fraction of its full size are equally probable. At full size a stiffness or a reading
-/// changes by 100 %.
+/// All sizes of a law below this fraction of its full size have equal prior probability. At full size a stiffness or
+/// a reading changes by 100 %.
 const SMALL: f64 = 0.02;
-/// Largest number of reweighted steps of the linear fit.
+/// Largest number of steps of the linearized fit. The weights of the readings are computed again at each step.
 const STEPS: usize = 6;
-/// The linear fit ends when a step lowers the objective by less than this.
+/// The linearized fit ends when a step changes the objective by less than this.
 const SETTLED: f64 = 0.01;
-/// A law without a name is preferred to named effects if ln of its evidence is higher by this much. If no effect is
-/// named, a law that is better than calibration by this much is mentioned.
+/// A law without a name is preferred to named effects if the logarithm of its evidence, less the charge for its
+/// place, is higher by more than this. If no effect is named, a law is mentioned if it is better than calibration by
+/// as much.
 const BETTER: f64 = 2.0;
 
 /// A competing model: the fitted model with a law without a name in it.
@@ -35,7 +36,7 @@ struct Competitor {
     evidence: f64,
 }
 
-/// A law that explains the readings better than the model it competes with.
+/// A law without a name that explains the readings better than the model with which it competes.
 pub(crate) struct Better {
     /// Description of the law in words.
     pub what: String,
@@ -43,11 +44,13 @@ pub(crate) struct Better {
     pub numbers: usize,
     /// The objective `Σ ρ(r) + Σ u²` of the model with the law.
     pub objective: f64,
-    /// Rise of ln of the evidence over the model with which the law competes.
+    /// Rise of the logarithm of the evidence, less the charge for the place, over the model with which the law
+    /// competes.
     pub gain: f64,
 }
 
-/// The reduction of the misfit by each law, as tests for lack of fit.
+/// For each law without a name, a test for lack of fit: the statistic is the fall of the objective of `fit` when the
+/// law is added.
 pub(crate) fn law_questions(
     campaign: &Campaign,
     forward: &Forward,
@@ -67,14 +70,15 @@ pub(crate) fn law_questions(
         .collect()
 }
 
-/// The law that, added to calibration alone, explains the readings better than calibration does; `None` if there is
-/// none.
+/// The law without a name that, added to calibration alone (`baseline`), explains the readings clearly better than
+/// calibration does; `None` if there is none.
 pub(crate) fn better_than_calibration(search: &Search, baseline: &Fit) -> Option<Better> {
     let places = search.places();
     best_of(competitors(search, baseline), baseline.evidence, places)
 }
 
-/// The law that explains the readings better in place of one named effect, or of all of them; `None` if there is none.
+/// The law without a name that explains the readings better than the model `best` when it takes the place of one
+/// named effect, or of all of them; `None` if there is none.
 pub(crate) fn instead(search: &Search, best: &Scored, baseline: &Fit) -> Option<Better> {
     let (named, places) = (best.effects.len(), search.places());
     // with one effect, the model without it is the baseline, which is tried anyway
@@ -88,8 +92,9 @@ pub(crate) fn instead(search: &Search, best: &Scored, baseline: &Fit) -> Option<
     fits.chain([(0.0, baseline)]).filter_map(better).max_by(|a, b| a.gain.total_cmp(&b.gain))
 }
 
-/// The best competing model, if its evidence is higher than `evidence`. That evidence is not charged for the places
-/// of effects that stay.
+/// The competing model with the highest evidence, if this is higher than `evidence` by more than [`BETTER`], after a
+/// charge for having tried `places` places. In both, effects that are in the model anyway are not charged for their
+/// places.
 fn best_of(competitors: Vec<Competitor>, evidence: f64, places: f64) -> Option<Better> {
     let gain = |r: &Competitor| r.evidence - libm::log(places) - evidence;
     let best = competitors.into_iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
@@ -98,7 +103,8 @@ fn best_of(competitors: Vec<Competitor>, evidence: f64, places: f64) -> Option<B
     (better.gain > BETTER).then_some(better)
 }
 
-/// Fits each law together with the parameters of a fit. Laws that are the same as an effect of the search are left out.
+/// Fits each law without a name together with the parameters of the model `fit`. Laws that are the same as an effect
+/// among the candidates of the search are left out.
 fn competitors(search: &Search, fit: &Fit) -> Vec<Competitor> {
     let is_sought = |effect: &str| search.candidates.iter().any(|c| c.kind.name == effect);
     let fitted = of_every_law(search.campaign, search.forward, fit, |law| {
@@ -109,7 +115,7 @@ fn competitors(search: &Search, fit: &Fit) -> Vec<Competitor> {
     fitted.into_iter().flatten().collect()
 }
 
-/// Fits a model together with a law, linearized about the fit of the model.
+/// Fits the model of `fit` together with the law `law`. The predictions are linearized about `fit`.
 fn competitor(forward: &Forward, fit: &Fit, law: &Law, weights: &Weights) -> Competitor {
     let own = fit.point.u.len();
     let n = own + law.columns.len();
@@ -157,8 +163,9 @@ fn competitor(forward: &Forward, fit: &Fit, law: &Law, weights: &Weights) -> Com
     Competitor { what: law.what.clone(), numbers: law.columns.len(), objective, evidence }
 }
 
-/// Width of the prior of parameter `p` at `u`. For a law the width is proportional to `u`, because its size may be of
-/// any order of magnitude.
+/// Width of the prior of the parameter with index `p` at the value `u`. The first `own` parameters belong to the
+/// model. For the parameters of a law, which follow, the width grows with the size of `u`, because the size of a law
+/// may be of any order of magnitude.
 fn width(fit: &Fit, own: usize, p: usize, u: f64) -> f64 {
     match p < own {
         true => fit.model.free_parameters().nth(p - fit.model.calibrated()).map_or(1.0, |k| k.width(u)),

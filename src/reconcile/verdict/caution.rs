@@ -12,7 +12,7 @@ use crate::reconcile::model::parameters::{Candidate, FreeParameter};
 /// Two places are neighbours if they are at most this many elements of the chain apart, such as two joints with a link
 /// between them.
 const NEAR: usize = 2;
-/// Tolerance of a calibrated factor, as a multiple of the standard deviation of its logarithm.
+/// Tolerance of a calibrated factor, as a multiple of the standard deviation of the factor's logarithm.
 const TOLERANCE: f64 = 2.0;
 /// A calibrated factor is called improbable if fewer than one in this many faultless parts deviate so far.
 const RARE: f64 = 200.0;
@@ -43,8 +43,8 @@ pub(crate) fn opposed(forward: &Forward, fit: &Fit) -> Option<String> {
     ))
 }
 
-/// Number of elements of the chain between the places of two effects; `None` if a place is not in the chain. The
-/// payload is the end of the chain.
+/// Number of elements of the chain between the places of the effects `a` and `b`; `None` if a place is not in the
+/// chain. The payload counts as the end of the chain.
 fn distance(forward: &Forward, a: &Candidate, b: &Candidate) -> Option<usize> {
     let structure = &forward.nominal.structure;
     let at = |candidate: &Candidate| {
@@ -57,8 +57,8 @@ fn distance(forward: &Forward, a: &Candidate, b: &Candidate) -> Option<usize> {
     Some(at(a)?.abs_diff(at(b)?))
 }
 
-/// Indices of the effects whose 95 % interval contains the size at which the effect is absent. `ends` holds the
-/// intervals of all parameters of all effects, in order.
+/// Indices of the effects of the model `fit` whose 95 % interval contains the size at which the effect is absent.
+/// `ends` holds the intervals of the parameters of all effects, in the order of the model.
 pub(crate) fn may_be_absent(fit: &Fit, ends: &[Interval]) -> Vec<usize> {
     let mut at = 0;
     let mut out = Vec::new();
@@ -100,7 +100,8 @@ pub(crate) fn beyond_tolerance(fit: &Fit, calibrated: &[Calibrated]) -> Option<S
     (!beyond.is_empty()).then(|| format!("calibration leaves the tolerance: {}{doubt}", beyond.join(", ")))
 }
 
-/// The number n for which one in n faultless parts deviates by at least this many standard deviations.
+/// The number n such that one in n faultless parts deviates from nominal by at least `deviations` standard
+/// deviations.
 fn honest_parts_for_one(deviations: f64) -> f64 {
     1.0 / libm::erfc(deviations.abs() / std::f64::consts::SQRT_2)
 }

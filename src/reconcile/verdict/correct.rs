@@ -10,7 +10,8 @@ use crate::reconcile::model::estimate::Finding;
 use crate::reconcile::readings::campaign::Campaign;
 use serde_json::{Value, json};
 
-/// The corrected arm, and the provenance of its values. Without a fit the arm stays as it was given.
+/// The corrected arm, and the provenance of its values as JSON. The arm is calibrated as in `fit` and gets its
+/// effects, each with its interval from `findings`. Without a fit the arm stays as it was given.
 pub(crate) fn corrected(
     campaign: &Campaign,
     forward: &Forward,

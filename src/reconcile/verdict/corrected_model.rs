@@ -13,7 +13,8 @@ use crate::reconcile::select::empirical;
 use crate::reconcile::select::search::Search;
 use serde_json::{Value, json};
 
-/// A model with more parameters must lower the held-out error by this fraction; otherwise the simpler one is taken.
+/// A model with more parameters is taken only if it lowers the error on held-out poses by at least this fraction
+/// compared with the simpler one.
 const WORTHWHILE: f64 = 0.02;
 
 /// A model that the corrected arm could have, with its error on held-out poses.
@@ -36,7 +37,7 @@ impl Row {
     }
 }
 
-/// The table of the models, and the chosen one.
+/// The models that the corrected arm could have, as a table, and the one that was chosen.
 pub(crate) struct Choice<'a> {
     /// All models that were compared, the simplest first.
     pub rows: Vec<Row>,
@@ -44,8 +45,9 @@ pub(crate) struct Choice<'a> {
     pub fit: Option<Fit<'a>>,
 }
 
-/// Chooses the model of the corrected arm. The laws without a name are the candidates of `search` from index
-/// `first_law` on. `named` is the model with the best known effects, `named_effects`.
+/// Chooses the model of the corrected arm. `baseline` is the calibrated model, and `named` the model with the best
+/// known effects, `named_effects`. The laws without a name are the candidates of `search` from the index `first_law`
+/// on. `noise` scales the declared standard deviations of the held-out errors.
 pub(crate) fn choose<'a>(
     search: &Search<'a>,
     first_law: usize,
@@ -80,7 +82,8 @@ fn row(model: String, kept_out_rms_sigma: f64) -> Row {
     Row { model, kept_out_rms_sigma, is_written: false }
 }
 
-/// Index of the simplest row for which no later row has an error lower by [`WORTHWHILE`] or more.
+/// Index of the chosen row: starting with the simplest model, a later row is taken whenever its error is lower than
+/// that of the row taken so far by [`WORTHWHILE`] or more.
 fn simplest_of_the_best(rows: &[Row]) -> usize {
     let mut chosen = 0;
     for (i, row) in rows.iter().enumerate() {
@@ -91,7 +94,7 @@ fn simplest_of_the_best(rows: &[Row]) -> usize {
     chosen
 }
 
-/// The model in words: calibration, and the effects and laws in it.
+/// The model of `fit` in words: calibration, and the effects and laws in it.
 fn in_words(fit: &Fit) -> String {
     let effect = |candidate: &&Candidate| match candidate.kind.name {
         name if name == KIND.name => empirical::in_words(candidate),
@@ -104,8 +107,8 @@ fn in_words(fit: &Fit) -> String {
     }
 }
 
-/// Root mean square of the residuals of the arm as it was given \[standard deviations\]. It is taken over the same
-/// readings as for the fits.
+/// Root mean square of the residuals of the arm as it was given \[standard deviations, scaled by `noise`\]. It is
+/// taken over the same readings as the held-out errors of the fits.
 fn nominal_rms(search: &Search, noise: &Noise) -> f64 {
     let forward = search.forward;
     let predicted = forward.predict(&forward.coefficients(&forward.nominal));
@@ -117,7 +120,8 @@ fn nominal_rms(search: &Search, noise: &Noise) -> f64 {
     }))
 }
 
-/// Root mean square of the residuals of a model on held-out poses \[standard deviations\].
+/// Root mean square of the residuals of the model `fit`, predicted with their poses held out \[standard deviations,
+/// scaled by `noise`\].
 fn fit_rms(search: &Search, noise: &Noise, fit: &Fit) -> f64 {
     let residuals = held_out::residuals(search.forward, &fit.model, &fit.point.u, search.weights);
     let each = residuals.iter().zip(&search.forward.data);

@@ -8,7 +8,8 @@ use crate::reconcile::model::estimate::Finding;
 const MOST_ALTERNATIVES: usize = 3;
 
 impl Verdict {
-    /// The common verdict on several kinds of readings, each of which was judged by itself: the least favourable one.
+    /// The common verdict on several kinds of readings, each of which was judged by itself: the least favourable of
+    /// the verdicts `said`.
     pub(crate) fn on_all(said: &[Verdict]) -> Verdict {
         let order = [Verdict::Unexplained, Verdict::InsufficientData, Verdict::Explained];
         order.into_iter().find(|verdict| said.contains(verdict)).unwrap_or(Verdict::NoGap)
@@ -19,8 +20,9 @@ impl Verdict {
         matches!(self, Verdict::Explained | Verdict::NoGap)
     }
 
-    /// Divides the effects found into those that are named and those that are only suspected, by the verdict. No
-    /// effects are stated if the verdict is `unexplained`.
+    /// Divides the effects `found` into those that are named (first) and those that are only suspected (second), as
+    /// the verdict demands. `suspects` were only suspected from the beginning. No effects are stated if the verdict
+    /// is `unexplained`.
     pub(crate) fn named_and_suspected(
         self,
         found: Vec<Finding>,
@@ -34,12 +36,13 @@ impl Verdict {
     }
 }
 
-/// Sentence that too many alternatives fit as well as an effect; `None` if there are few enough.
+/// Sentence that `count` alternatives fit as well as the effect `label`; `None` if there are few enough to name it.
 pub(crate) fn too_many_alternatives(label: &str, count: usize) -> Option<String> {
     (count > MOST_ALTERNATIVES).then(|| format!("{count} other effects fit as well as {label}"))
 }
 
-/// Sentence that a model predicts held-out poses worse than calibration alone.
+/// Sentence that the model `label` predicts held-out poses worse than calibration alone. `after` and `before` are the
+/// errors with and without the effects, in words.
 pub(crate) fn does_not_predict(label: &str, after: &str, before: &str) -> String {
     format!("{label} does not predict poses it was not fitted to ({after} after, {before} before)")
 }

@@ -12,8 +12,8 @@ use std::collections::HashMap;
 /// Number of poses that are listed, those with the largest errors first.
 const WORST_POSES: usize = 3;
 
-/// Root mean square residuals of every part of the readings before and after the effects \[declared standard
-/// deviations\], without gross errors.
+/// Root mean square of the residuals of every part of the readings (such as a channel, a load, a mode) with
+/// `baseline` and with `best` \[declared standard deviations\]. Gross errors are left out.
 pub(crate) fn located(
     campaign: &Campaign,
     forward: &Forward,

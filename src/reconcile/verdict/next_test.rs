@@ -16,13 +16,13 @@ use crate::reconcile::readings::rows::{ModalRow, StaticRow, WindupRow};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-/// The models to separate, and the result so far.
+/// The models that the next test is to separate, and the result so far.
 pub(crate) struct Question<'a> {
     /// The campaign with the readings so far.
     pub campaign: &'a Campaign,
-    /// The best model: name, and the arm under test.
+    /// The best model: its name, and the arm under test with its effects.
     pub best: (String, Subject),
-    /// The competing models: name, and the arm under test.
+    /// The competing models: for each its name, and the arm under test with its effects.
     pub competitors: Vec<(String, Subject)>,
     /// The pose in which the best model has its largest error \[deg, mm\]; `None` if there is none.
     pub residuals: Option<Vec<f64>>,
@@ -35,10 +35,11 @@ const MODAL_POSES: usize = 4;
 const PROPOSALS: usize = 4;
 /// Separation of two models that suffices to decide between them \[standard deviations\].
 pub(crate) const ENOUGH: f64 = 4.0;
-/// A test that separates models by less than this would need too many readings \[standard deviations\].
+/// A test in which the predictions of two models differ by less than this needs too many readings to separate them
+/// \[standard deviations\].
 pub(crate) const WORTHLESS_SIGMAS: f64 = 0.1;
-/// Standard deviations that are assumed for a channel that was not measured: displacement \[mm\], relative for
-/// frequencies, twist on the bench \[arcmin\].
+/// Standard deviations that are assumed for displacements \[mm\] and bench readings \[arcmin\] if these were not
+/// measured, and for all frequencies (as a fraction of the frequency).
 const DEFAULT_SIGMA_MM: f64 = 0.01;
 const DEFAULT_SIGMA_PART: f64 = 0.003;
 const DEFAULT_SIGMA_ARCMIN: f64 = 0.05;
@@ -51,7 +52,7 @@ enum Test {
     Bench(Vec<WindupRow>),
 }
 
-/// The tests that separate the models best, the best first.
+/// Up to four tests that separate the models of `question` best, the best first.
 pub(crate) fn propose(question: &Question) -> Vec<NextTest> {
     if question.verdict == Verdict::Unexplained {
         return question.residuals.iter().map(|pose| repeat(question.campaign, pose)).collect();
@@ -105,7 +106,7 @@ pub(crate) fn propose(question: &Question) -> Vec<NextTest> {
     out
 }
 
-/// States that no reading of the arm tells the models apart.
+/// A test of another kind: a sentence that no reading of the arm separates the model `best` from the `competitors`.
 fn nothing_tells(best: &str, competitors: &[&str]) -> NextTest {
     NextTest::of_another_kind(format!(
         "no displacement, frequency or bench reading separates {best} from {}: weigh the parts in question, or take them apart",
@@ -161,7 +162,8 @@ fn ranges(campaign: &Campaign) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Pose number `index` of Halton's sequence within ranges of angles and travels, in whole degrees and millimetres.
+/// Pose number `index` of Halton's sequence within the `ranges` of the joints' angles and travels, in whole degrees
+/// and millimetres. The poses of the sequence fill the ranges evenly.
 pub(crate) fn spread_pose(ranges: &[(f64, f64)], index: usize) -> Vec<f64> {
     ranges
         .iter()
@@ -170,7 +172,7 @@ pub(crate) fn spread_pose(ranges: &[(f64, f64)], index: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Number `index` of Halton's low-discrepancy sequence to a prime base, from 0 to 1.
+/// Member number `index` of Halton's low-discrepancy sequence to the prime base `base`, from 0 to 1.
 fn halton(mut index: usize, base: usize) -> f64 {
     let (mut f, mut r) = (1.0, 0.0);
     while index > 0 {
@@ -226,7 +228,8 @@ fn tests(campaign: &Campaign, best: &Exact) -> Vec<Test> {
     out
 }
 
-/// The components that the campaign's instrument reads, each with the standard deviation of its first reading.
+/// For each component x, y, z of a displacement, the standard deviation of its first reading in the campaign; `None`
+/// if the instrument does not read the component.
 fn instrument(campaign: &Campaign) -> Components {
     let first = |c: usize| campaign.statics.iter().find_map(|row| row.measured[c]);
     let read = |sigma_mm: f64| Some(Component { value_mm: 0.0, sigma_mm });
@@ -276,8 +279,8 @@ fn predict(exact: &Exact, test: &Test) -> Vec<f64> {
     }
 }
 
-/// Difference of two predictions of a test \[standard deviations\]: the root of the sum of squares, over the
-/// modes that both have.
+/// Difference of the predictions `a` and `b` of two models for the same test \[standard deviations\]: the root of the
+/// sum of squares over the readings. Modes that only one of the models has are left out.
 fn separation(test: &Test, a: &[f64], b: &[f64]) -> f64 {
     let sigma = |i: usize| match test {
         // a component that the instrument does not read separates nothing

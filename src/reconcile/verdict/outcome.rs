@@ -45,12 +45,12 @@ pub struct Calibrated {
     pub name: String,
     /// Factor on the nominal value, with its interval.
     pub factor: Estimate,
-    /// Standard deviation of the logarithm of the factor after the readings, over that of the tolerance. The value 1
-    /// means that the readings say nothing about the property.
+    /// Standard deviation of the logarithm of the factor after the readings, divided by its standard deviation before
+    /// them (from the tolerance). The value 1 means that the readings say nothing about the property.
     pub learnt: f64,
 }
 
-/// Root mean square residuals of one part of the readings, before and after the effects.
+/// Size of the residuals of one part of the readings, before and after the effects.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Located {
     /// Name of the part: `static`, `static, unloading`, `modal, mode 2`, `windup, j3`.
@@ -84,7 +84,7 @@ pub struct NextTest {
     pub separates: Vec<String>,
     /// Expected difference between the predictions of the models \[standard deviations\].
     pub expected_sigmas: f64,
-    /// Number of such readings after which the difference reaches four standard deviations.
+    /// Number of readings like this after which the difference reaches four standard deviations.
     pub readings_needed: usize,
 }
 
@@ -105,9 +105,9 @@ pub struct ReadingResidual {
     pub measured: f64,
     /// Declared standard deviation, in the unit of the quantity.
     pub sigma: f64,
-    /// Prediction of the arm as given, calibrated within tolerance.
+    /// Prediction of the arm as given, calibrated within tolerance, in the unit of the quantity.
     pub before: f64,
-    /// Prediction of the model with the effects.
+    /// Prediction of the model with the effects, in the unit of the quantity.
     pub after: f64,
     /// Residual with the pose held out of the fit \[declared standard deviations\]; `None` if the reading is never held
     /// out.
@@ -121,9 +121,10 @@ pub struct ReadingResidual {
 pub struct Evidence {
     /// The model: its effects joined by `+`.
     pub model: String,
-    /// Score of the model minus that of the best model.
+    /// Score of the model (logarithm of the evidence less the price of its effects) minus the score of the best
+    /// model.
     pub score: f64,
-    /// Objective of the fit, which behaves like chi-squared.
+    /// Value of the objective of the fit, which behaves like chi-squared.
     pub objective: f64,
 }
 
@@ -158,7 +159,7 @@ pub struct Outcome {
     /// For the verdict `unexplained`: the models that the corrected arm could have, each with its error on held-out
     /// poses. Empty for other verdicts.
     pub models: Vec<Row>,
-    /// Errors on held-out poses without and with the effects; `None` if nothing was held out.
+    /// Root mean square residuals on held-out poses without and with the effects; `None` if nothing was held out.
     pub held_out: Option<HeldOut>,
     /// Residuals of each part of the readings, which show where the discrepancy is.
     pub located: Vec<Located>,
@@ -187,7 +188,7 @@ pub struct Outcome {
 }
 
 impl NextTest {
-    /// A test of another kind, described in words. The model cannot predict how well it would separate models.
+    /// A test of another kind, described in words. How well it would separate models is not predicted.
     pub fn of_another_kind(description: String) -> Self {
         Self {
             kind: "another kind".into(),
@@ -321,7 +322,7 @@ impl Outcome {
         out
     }
 
-    /// Content of the file of another corrected arm, with the placement of this arm.
+    /// Content of the file of the corrected arm `arm`, one of the other arms on the trunk, with its placement.
     pub fn other_json(&self, arm: &Arm) -> Value {
         let mut out = arm.to_json();
         out["provenance"] = self.provenance.clone();

@@ -14,7 +14,7 @@ use crate::report::pose::pose_signs;
 use crate::report::section::PageSection;
 use crate::report::table::{Column, Table};
 
-/// The page of a campaign and its result.
+/// The values that the page of a campaign shows, from the campaign and the result of its reconciliation.
 pub fn campaign_page(campaign: &Campaign, outcome: &Outcome) -> CampaignPage {
     let text = outcome.to_text();
     CampaignPage {
@@ -74,8 +74,8 @@ fn sentence(outcome: &Outcome) -> String {
     }
 }
 
-/// For the verdict `unexplained`: the models that the corrected arm could have, and the laws without a name in the
-/// chosen one. `None` for other verdicts.
+/// Section on the corrected arm for the verdict `unexplained`: the models that the arm could have, and the laws
+/// without a name in the chosen one. `None` for other verdicts.
 fn corrected_models(outcome: &Outcome) -> Option<PageSection> {
     if outcome.models.is_empty() {
         return None;
@@ -101,12 +101,13 @@ fn corrected_models(outcome: &Outcome) -> Option<PageSection> {
     })
 }
 
-/// Whether a line of the verdict's text is about the quality of the readings.
+/// Whether a line of the verdict's text is about the quality of the readings (gross errors, scatter).
 fn is_quality(line: &str) -> bool {
     line.trim_start().starts_with("gross error") || line.ends_with("times as much as declared")
 }
 
-/// The residuals, each with its pose. They are sorted by channel, then by the order in the file.
+/// The residuals of all readings except positions, each with its pose \[standard deviations\]. They are sorted by
+/// channel, then by the order in the file.
 fn readings(campaign: &Campaign, outcome: &Outcome) -> Vec<Reading> {
     let own = outcome.residuals.iter().filter(|r| r.channel != Channel::Positions);
     own.map(|r| {
@@ -129,7 +130,7 @@ fn readings(campaign: &Campaign, outcome: &Outcome) -> Vec<Reading> {
     .collect()
 }
 
-/// The errors of absolute positions as vectors. A coordinate that was not measured is zero.
+/// The errors of absolute positions as vectors, one per position \[mm\]. A coordinate that was not measured is zero.
 fn positions(campaign: &Campaign, outcome: &Outcome) -> Vec<Position> {
     let own: Vec<&ReadingResidual> =
         outcome.residuals.iter().filter(|r| r.channel == Channel::Positions).collect();

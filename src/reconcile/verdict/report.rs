@@ -11,7 +11,8 @@ use crate::report::whole_file::{create_folder, write_whole};
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// A factor on declared standard deviations below this is not mentioned, because chance produces as much.
+/// A factor on the declared standard deviations of a channel below this is not mentioned, because chance produces as
+/// much.
 const WORTH_SAYING: f64 = 1.05;
 
 impl Outcome {
@@ -77,8 +78,8 @@ impl Outcome {
         }
     }
 
-    /// Table of the models that the corrected arm could have, with their errors on held-out poses, and the laws in the
-    /// chosen one.
+    /// Appends to `out` the table of the models that the corrected arm could have, with their errors on held-out
+    /// poses, and the laws in the chosen one.
     fn models_table(&self, out: &mut String) {
         if self.models.is_empty() {
             return;

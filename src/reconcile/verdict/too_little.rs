@@ -8,7 +8,7 @@ use crate::reconcile::readings::components::FEWEST_ALIKE;
 use crate::reconcile::readings::rows::StaticRow;
 use crate::reconcile::select::few_rows;
 
-/// Smallest number of poses that can tell effects at different places apart.
+/// Smallest number of poses with which effects at different places can be told apart.
 pub(crate) const FEWEST_POSES: usize = 3;
 
 /// Number of rows of displacements, frequencies and bench readings.
