@@ -331,7 +331,8 @@ impl Analysis<'_> {
         )
     }
 
-    /// Intervals of the parameters of all effects of the best model.
+    /// 95 % intervals of the parameters of all effects of the best model, in the order of the parameters. They are
+    /// computed at the first call.
     fn ends(&self) -> &[Interval] {
         self.ends.get_or_init(|| intervals(self.forward, &self.best, self.weights))
     }

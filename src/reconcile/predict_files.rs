@@ -34,7 +34,7 @@ pub struct Prediction {
     pub other_arms: Vec<PathBuf>,
 }
 
-/// Adds a prediction to every reading of a file.
+/// Adds the model's prediction to every reading of the readings file.
 ///
 /// # Errors
 /// All faults of the files, or one file that cannot be read.

@@ -76,7 +76,7 @@ pub struct Fit<'a> {
     pub evidence: f64,
 }
 
-/// Evaluates a model at the parameters `u`.
+/// Computes the predictions and the objective of a model at the parameters `u`.
 pub fn evaluate(forward: &Forward, model: &Model, u: &[f64], weights: &Weights) -> Point {
     evaluate_near(forward, model, u, weights, None)
 }

@@ -20,7 +20,8 @@ const Z95: f64 = 1.959_964;
 /// Rise of the objective at the ends of a 95 % interval: the 95 % quantile of chi-squared with one degree of freedom.
 const RISE: f64 = 3.841_459;
 
-/// Standard deviation of every parameter, from the curvature of the objective.
+/// Standard deviation of every parameter of the fit, in `u`, from the curvature of the objective; infinite if the
+/// curvature is singular.
 pub(crate) fn deviations(fit: &Fit) -> Vec<f64> {
     let n = fit.curvature.nrows();
     let covariance =

@@ -42,9 +42,9 @@ const LARGEST_SCALE: f64 = 1.4;
 /// A model fits most readings of a channel if the robust standard deviation of its residuals exceeds the declared one
 /// by at most this fraction. For a channel with few readings, [`BY_CHANCE`] allows more.
 const CLOSE: f64 = 0.5;
-/// Allowance for chance in the test of the robust standard deviation, times the root of the number of readings: three
-/// standard deviations of the robust standard deviation itself. (Its standard deviation is 1.17 times the declared
-/// one over that root, because it comes from the median of absolute values.)
+/// Allowance for chance when the robust standard deviation of n residuals is tested: it may exceed the declared one
+/// by the fraction `BY_CHANCE / √n`. This is three times its own standard deviation, which is 1.17 / √n of the
+/// declared one, because it comes from the median of absolute values.
 const BY_CHANCE: f64 = 3.5;
 /// Weight of the declared standard deviation when its factor is estimated from the residuals, as a number of
 /// readings.
@@ -301,8 +301,8 @@ fn declared_residuals(forward: &Forward, predicted: &[f64]) -> Vec<f64> {
     forward.data.iter().zip(predicted).map(|(d, p)| (d.value - p) / d.sigma).collect()
 }
 
-/// Robust standard deviation of the residuals, from the median of their absolute values: a few large ones do not change
-/// it.
+/// Robust standard deviation of the residuals, in their unit, from the median of their absolute values. A few large
+/// residuals do not change it.
 fn spread(residuals: &[f64]) -> f64 {
     1.4826 * median(residuals.iter().map(|r| r.abs()).collect())
 }

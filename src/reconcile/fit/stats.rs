@@ -74,7 +74,7 @@ fn ln_gamma(x: f64) -> f64 {
     0.5 * libm::log(std::f64::consts::TAU) + (x + 0.5) * libm::log(t) - t + libm::log(sum)
 }
 
-/// The median; 0 for an empty list.
+/// The median of the values, in their unit; 0 for an empty list.
 pub(crate) fn median(mut values: Vec<f64>) -> f64 {
     if values.is_empty() {
         return 0.0;

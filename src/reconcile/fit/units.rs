@@ -77,8 +77,8 @@ const OPPOSITE: f64 = -0.9;
 /// and the nominal arm by at least this factor.
 const NEARER: f64 = 3.0;
 
-/// Sentences on components of the displacement that seem to have the opposite sign, such as those of a dial gauge that
-/// reads positive when its plunger is pushed in.
+/// One sentence for each component of the displacement whose readings seem to have the opposite sign. An example is a
+/// dial gauge that reads positive when its plunger is pushed in.
 pub(crate) fn other_signs(forward: &Forward) -> Vec<String> {
     let nominal = forward.predict(&forward.coefficients(&forward.nominal));
     let range = forward.range(Channel::Static);

@@ -45,7 +45,7 @@ pub(crate) fn prepare(campaign: &Campaign, layout: &Layout, data: &mut Vec<Datum
 }
 
 impl Bench {
-    /// Magnitudes of the torques \[N m\].
+    /// Magnitudes of the torques on the joint in its bench rows \[N m\].
     pub(crate) fn sizes_nm(&self) -> impl Iterator<Item = f64> + '_ {
         self.torques_nm.iter().map(|t| t.abs())
     }

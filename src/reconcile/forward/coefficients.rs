@@ -80,7 +80,8 @@ impl TestNumbers {
         Self { mass_kg: setup.mass_kg, cg_m: setup.cg_m, servo_rad_per_nm }
     }
 
-    /// Weight of the additional mass as a wrench about the world's origin; zero if there is none.
+    /// Weight of the additional mass as a wrench about the world's origin; zero if there is no such mass. `tip_m` is
+    /// the position of the tip and `rotation` the rotation of the last frame in the world.
     pub fn weight(&self, tip_m: &Vector3<f64>, rotation: &Rotation3<f64>, gravity_m_s2: f64) -> Wrench {
         match self.mass_kg {
             0.0 => Wrench::zeros(),
@@ -157,7 +158,7 @@ impl Layout {
         self.links.iter().any(|link| (link.first..link.first + link.strains.len()).contains(&coordinate))
     }
 
-    /// Lists the strain coordinates of an arm.
+    /// Lists the strain coordinates that the arm `structure` can have.
     pub fn new(structure: &Structure) -> Self {
         let full = with_everything(structure);
         let mut n = 2;

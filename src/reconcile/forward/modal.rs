@@ -68,7 +68,7 @@ pub struct Solved {
     pub y: DVector<f64>,
 }
 
-/// Prepares the modal tests, and appends their readings to `data`.
+/// Prepares the modal tests (one for each pose and payload) of a campaign, and appends their readings to `data`.
 pub(crate) fn prepare(
     campaign: &Campaign,
     layout: &Layout,
@@ -130,7 +130,7 @@ impl ModalTest {
         }
     }
 
-    /// Number of modes that must be computed.
+    /// Number of modes that must be computed: the highest mode number in the list.
     pub fn mode_count(&self) -> usize {
         self.modes.iter().map(|(_, mode)| mode + 1).max().unwrap_or(0)
     }
@@ -160,7 +160,8 @@ impl ModalTest {
         self.forces = self.trial_forces(layout, coefficients, &compliances);
     }
 
-    /// Number of trial shapes that is used if there are enough compliant coordinates.
+    /// Number of trial shapes to use: the number of modes and some more. There may be fewer if few coordinates are
+    /// compliant.
     fn wanted(&self) -> usize {
         self.mode_count() + SPARE_SHAPES
     }
@@ -275,7 +276,7 @@ impl ModalTest {
         [0, 1].map(|i| dead[i] + self.geometry.base[i].twist.dot(wrench))
     }
 
-    /// Static torques on the joints in this test, base to tip \[N m\].
+    /// Static torques on the joints of an arm with these coefficients in this test, base to tip \[N m\].
     pub fn torques_nm(&self, layout: &Layout, coefficients: &Coefficients) -> Vec<f64> {
         let dead = self.geometry.dead_torques_nm(coefficients, layout, Channel::Modal);
         let wrench =
@@ -283,7 +284,8 @@ impl ModalTest {
         self.geometry.joints.iter().zip(dead).map(|(m, t)| t + m.twist.dot(&wrench)).collect()
     }
 
-    /// The `count` lowest modes, lowest first. There may be fewer.
+    /// The `count` lowest modes of an arm with these coefficients in this test, lowest first. There are fewer if the
+    /// arm has fewer.
     pub fn solve(&self, layout: &Layout, coefficients: &Coefficients, count: usize) -> Vec<Solved> {
         if self.forces.ncols() == 0 {
             return Vec::new();
@@ -357,7 +359,7 @@ impl ModalTest {
         is_simpler
     }
 
-    /// The `count` lowest frequencies \[Hz\].
+    /// The `count` lowest natural frequencies of an arm with these coefficients in this test, lowest first \[Hz\].
     fn spectrum(&self, layout: &Layout, coefficients: &Coefficients, count: usize) -> Vec<f64> {
         self.solve(layout, coefficients, count).iter().map(|s| 1.0 / (TAU * s.mu.sqrt())).collect()
     }
@@ -392,7 +394,8 @@ impl ModalTest {
         Some(missed + 1)
     }
 
-    /// Writes the frequencies of the measured modes to `out` \[Hz\].
+    /// Solves for the modes of this test, and writes the frequencies of the measured ones to their data in `out`
+    /// \[Hz\].
     pub fn predict(&self, layout: &Layout, coefficients: &Coefficients, out: &mut [f64]) {
         let solved = self.solve(layout, coefficients, self.mode_count());
         self.write(&solved, out);
@@ -465,7 +468,8 @@ impl ModalTest {
     }
 }
 
-/// A basis of the trial shapes in which the matrix of strain energies is the unit matrix.
+/// A basis of the trial shapes in which the matrix of strain energies is the unit matrix. In this basis the reduced
+/// problem is an ordinary symmetric eigenvalue problem.
 enum UnitStrains {
     /// The Cholesky factor of the matrix of strain energies, whose inverse transpose is the basis.
     Factor(DMatrix<f64>),

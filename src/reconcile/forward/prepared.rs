@@ -41,7 +41,7 @@ pub struct Forward {
 }
 
 impl Forward {
-    /// Prepares a campaign for fitting.
+    /// Prepares a campaign for fitting: lists its data, and computes what does not depend on fitted parameters.
     pub fn new(campaign: &Campaign) -> Self {
         let mut nominal = campaign.arm.subject(JointModel::ThreeSegment);
         if campaign.statement.rigid_links {
@@ -136,7 +136,8 @@ impl Forward {
         self.bench.iter().filter(move |b| b.joint == joint).flat_map(Bench::sizes_nm)
     }
 
-    /// Torque on every joint at each static or modal datum \[N m\]: one list per datum, joints from base to tip.
+    /// Torque on every joint of an arm with these coefficients at each static or modal datum \[N m\]: one list per
+    /// datum, joints from base to tip.
     pub fn torques_nm(&self, coefficients: &Coefficients) -> Vec<Vec<f64>> {
         let mut out = vec![Vec::new(); self.starts[2]];
         for pose in &self.statics {
@@ -186,7 +187,8 @@ impl Forward {
         out
     }
 
-    /// Predicted displacements in every static row \[mm\], including components that were not measured.
+    /// Predicted displacement readings of an arm with these coefficients in every static row \[mm\], including
+    /// components that were not measured.
     pub fn displacements_mm(&self, coefficients: &Coefficients) -> Vec<[f64; 3]> {
         let reading = &coefficients.channels[Channel::Static as usize];
         let mut out = Vec::new();

@@ -101,7 +101,7 @@ pub struct StaticState {
 }
 
 impl StaticState {
-    /// Copies another state into the memory of this one.
+    /// Copies the state `other` into the memory of this state, so that no memory is allocated.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.compliance = other.compliance;
         self.bending = other.bending;
@@ -114,7 +114,8 @@ impl StaticState {
     }
 }
 
-/// Prepares the poses of the static rows, and appends their readings to `data`.
+/// Prepares the poses of a campaign's static rows, each with its loads, and appends their readings to `data`. Rows of
+/// one pose that follow one another share their history of friction.
 pub(crate) fn prepare(
     campaign: &Campaign,
     layout: &Layout,
@@ -426,7 +427,7 @@ impl StaticPose {
         state.lifted_rad.extend(state.wrenches.iter().map(lifted));
     }
 
-    /// Writes the measured components of the displacements under all loads to `out` \[mm\].
+    /// Writes the measured components of the tip displacement under each load to their data in `out` \[mm\].
     pub(crate) fn write(&self, state: &StaticState, out: &mut [f64]) {
         for load in 0..self.loads.len() {
             let moved = self.displacement_mm(state, load);
@@ -457,7 +458,8 @@ impl StaticPose {
         }
     }
 
-    /// Largest moment on the base about world x or y \[N m\], without load and under all loads of the pose.
+    /// Largest moment on the base of an arm with these coefficients, about world x or y, without load and under all
+    /// loads of the pose \[N m\].
     pub fn largest_base_nm(&self, layout: &Layout, coefficients: &Coefficients) -> f64 {
         let dead = self.geometry.dead_base_nm(coefficients, layout, Channel::Static);
         let loads = self.loads.iter().map(|load| {
@@ -468,7 +470,8 @@ impl StaticPose {
         loaded.flatten().chain(dead.map(f64::abs)).fold(0.0, f64::max)
     }
 
-    /// Torque on each joint \[N m\]: first without load, then under each load.
+    /// Torque on each joint of an arm with these coefficients \[N m\]: the first list without load, then one list for
+    /// each load.
     pub fn torques_nm(&self, layout: &Layout, coefficients: &Coefficients) -> Vec<Vec<f64>> {
         let dead = self.geometry.dead_torques_nm(coefficients, layout, Channel::Static);
         let mut out = vec![dead.clone()];

@@ -41,7 +41,7 @@ pub enum Calibration {
 }
 
 impl Calibration {
-    /// Name of the calibrated property in results.
+    /// Name of the calibrated property in result files, such as `j2.stiffness`.
     pub(crate) fn name(&self) -> String {
         match self {
             Calibration::Stiffness(joint) => format!("{joint}.stiffness"),

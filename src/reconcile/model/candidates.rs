@@ -14,7 +14,7 @@ use crate::arm::joint_law::Curve;
 use crate::arm::structure::Piece;
 use crate::reconcile::forward::prepared::Forward;
 
-/// Every effect at every place of this arm that the campaign's channels could show.
+/// The candidates of a campaign: every effect at every place of the arm that its channels could show.
 pub fn candidates(forward: &Forward) -> Vec<Candidate> {
     let structure = &forward.nominal.structure;
     let sizes = Sizes::of(forward);
@@ -114,7 +114,7 @@ fn channels_apart(forward: &Forward, kind: &Kind, joint: &str) -> Vec<Channel> {
     sought.copied().filter(|_| shown.len() > 1).collect()
 }
 
-/// The channels of the campaign that show how a joint twists.
+/// The channels of the campaign that show how the joint named `joint` twists.
 fn channels_of_joint(forward: &Forward, joint: &str) -> Vec<Channel> {
     let index = forward.layout.joints.iter().position(|slot| slot.name == joint);
     let on_bench = index.is_some_and(|index| forward.bench_torques_nm(index).next().is_some());
@@ -201,7 +201,7 @@ fn within_torque(free: FreeParameter, parameter: &Parameter, torque_nm: f64) -> 
     }
 }
 
-/// Number of rows of the longest file of readings of the whole arm.
+/// Number of rows of the static or the modal file, whichever has more.
 fn rows_of_campaign(forward: &Forward) -> f64 {
     forward.static_rows().max(forward.range(Channel::Modal).len()) as f64
 }
@@ -275,7 +275,8 @@ fn reference_of_prismatic(forward: &Forward, kind: &Kind, at: &str) -> f64 {
 /// Reference stiffness of a drive along its travel if the arm file holds it rigid \[N/m\].
 const USUAL_DRIVE_N_PER_M: f64 = 2e7;
 
-/// Middle slope K2 of a joint's torsion curve, by which a gear is usually rated \[N m/rad\].
+/// Slope K2 of the torsion curve of the joint named `at` in its middle segment, by which a gear is usually rated \[N
+/// m/rad\]. Without such a curve it is the reference stiffness.
 fn middle_stiffness(forward: &Forward, at: &str) -> f64 {
     let own = forward.nominal.structure.joints().find(|j| j.name == at);
     match own.map(|joint| joint.law.curve) {

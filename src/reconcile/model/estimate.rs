@@ -41,7 +41,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// The value with the ends of its interval as JSON.
+    /// The value and the two ends of its interval as a JSON object.
     pub(crate) fn json(&self) -> Value {
         json!({"value": self.value, "low": self.low, "high": self.high})
     }

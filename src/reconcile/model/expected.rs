@@ -18,7 +18,7 @@ pub(crate) struct Sizes {
 }
 
 impl Sizes {
-    /// Determines the sizes of the nominal arm and of the readings.
+    /// Determines the sizes of the nominal arm and of the readings of a campaign.
     pub(crate) fn of(forward: &Forward) -> Self {
         let structure = &forward.nominal.structure;
         let largest = |channel| {

@@ -79,7 +79,7 @@ impl FreeParameter {
         Self { low, high, expected: (low, high), ..self }
     }
 
-    /// Distance of `u` from the expected range, as a multiple of the range's width.
+    /// Distance of `u` from its expected range, as a multiple of the range's width; 0 inside the range.
     pub fn beyond_expected(&self, u: f64) -> f64 {
         let (low, high) = self.expected;
         (u - high).max(low - u).max(0.0) / (high - low)
@@ -96,7 +96,7 @@ impl FreeParameter {
         }
     }
 
-    /// The `u` at which the parameter has this value.
+    /// The `u` at which the parameter has the value `value`, which is in the parameter's unit.
     pub fn u(&self, value: f64) -> f64 {
         match self.scale {
             Scale::Linear | Scale::Torque => value / self.reference,
@@ -116,7 +116,7 @@ impl FreeParameter {
         Estimate { value, low: low.map(|u| self.value(u)), high: high.map(|u| self.value(u)) }
     }
 
-    /// Whether the value falls when `u` rises.
+    /// Whether the value of the parameter falls when `u` rises.
     pub fn reversed(&self) -> bool {
         matches!(self.scale, Scale::Stiffness | Scale::Reciprocal)
     }
@@ -131,7 +131,8 @@ impl FreeParameter {
         self.scale == Scale::Stiffness && u <= 1e-6
     }
 
-    /// Difference of `u` from the value at which the effect is absent; `None` if the parameter is no size.
+    /// Difference of `u` from its value for an absent effect; `None` if the parameter does not say how large the
+    /// effect is.
     pub(crate) fn departure(&self, u: f64) -> Option<f64> {
         self.absent.map(|absent| u - absent)
     }
@@ -207,7 +208,7 @@ impl Candidate {
         self.words().into_iter().fold(label, |label, (_, _, word)| format!("{label} ({word})"))
     }
 
-    /// Every number with the name of its parameter, in the order of the kind.
+    /// Every number of the effect with the name of its parameter, in the order of the kind's parameters.
     pub(crate) fn named_numbers(&self) -> Vec<(&'static str, Number)> {
         // channels may have parameters of their own
         let is_own = |place: &&Place| matches!(place, Place::Channel(channel) if channel.word() == self.at);
@@ -309,7 +310,7 @@ pub struct Model<'a> {
 }
 
 impl<'a> Model<'a> {
-    /// The baseline: calibration and no effect.
+    /// The baseline: a model with the calibrated parameters `nuisance` and no effect.
     pub fn baseline(nuisance: &'a Nuisance) -> Self {
         Self { nuisance, effects: Vec::new(), smoothing: 0.0, held: Vec::new() }
     }
@@ -408,7 +409,7 @@ impl<'a> Model<'a> {
         self.calibrated() + self.effects[..effect].iter().map(|e| e.free_parameters.len()).sum::<usize>()
     }
 
-    /// Whether some effect has reached the largest size that is sought.
+    /// Whether some effect of the model has, at the parameters `u`, the largest size that is sought.
     pub fn is_at_a_limit(&self, u: &[f64]) -> bool {
         self.free_parameters()
             .zip(&u[self.calibrated()..])

@@ -155,7 +155,7 @@ impl Positions {
         }
     }
 
-    /// Calibrates the geometry, with the sessions that campaign.json declares.
+    /// Calibrates the geometry, first without sessions and then with those that campaign.json declares.
     fn in_declared_sessions(campaign: &Campaign) -> Self {
         let mut found = Self::new(campaign);
         found.calibrate(campaign);

@@ -33,18 +33,18 @@ pub(crate) struct Sample {
 }
 
 impl Sample {
-    /// The arm, pose, point and session of the sample, for the computation of its nominal position.
+    /// Arm, pose, point and session of the sample, from which its position without deflection is computed.
     pub(crate) fn placing(&self) -> Placing<'_> {
         Placing { arm: self.arm, pose: &self.pose, point: self.point, station: self.station }
     }
 
-    /// Number of coordinates that were measured.
+    /// Number of coordinates of this position that were measured, 0 to 3.
     pub(crate) fn readings(&self) -> usize {
         self.precision.iter().filter(|p| **p > 0.0).count()
     }
 
-    /// Error of this sample at a predicted position, measured minus predicted \[m\]; zero where a coordinate was not
-    /// measured.
+    /// Error of this sample for the predicted position `predicted_m`, measured minus predicted \[m\]. It is zero
+    /// where a coordinate was not measured.
     pub(crate) fn error(&self, predicted_m: Vector3<f64>) -> Vector3<f64> {
         (self.measured_m - predicted_m).zip_map(&self.precision, |e, p| if p > 0.0 { e } else { 0.0 })
     }
@@ -64,7 +64,7 @@ pub(crate) struct Miss {
     pub readings: f64,
 }
 
-/// Number of measured coordinates of all samples.
+/// Number of measured coordinates, summed over all samples.
 pub(crate) fn readings(samples: &[Sample]) -> usize {
     samples.iter().map(Sample::readings).sum()
 }
@@ -120,7 +120,8 @@ impl Fitted {
         rigid + self.geometry.level_to_instrument() * self.displacement(sample)
     }
 
-    /// Error of a sample, measured minus predicted \[m\]; zero where a coordinate was not measured.
+    /// Error of a sample with this model, measured minus predicted position \[m\]; zero where a coordinate was not
+    /// measured.
     pub(crate) fn error(&self, sample: &Sample) -> Vector3<f64> {
         sample.error(self.predicted_m(sample))
     }

@@ -237,7 +237,7 @@ impl Geometry {
         }
     }
 
-    /// Sets the attitude behind a link of unknown mounting. `piece` is the index of the link.
+    /// Sets the attitude of everything behind the link of unknown mounting with the index `piece` to `rotation`.
     pub(crate) fn set_mount(&mut self, piece: usize, rotation: Rotation3<f64>) {
         self.mounts[piece] = rotation;
     }
@@ -403,8 +403,9 @@ impl Placer<'_> {
         own.origin_m + turn * (self.at_m - own.origin_m) + shift_m
     }
 
-    /// Sine and cosine of a joint's angle. For a joint without transmission error they follow from those of its
-    /// commanded angle and of its zero by the addition theorems. Computing sines would otherwise take most of the time.
+    /// Sine and cosine of the joint angle `angle` in a pose. For a joint without transmission error they follow, by
+    /// the addition theorems, from the sines and cosines of its commanded angle and of its zero. Computing sines
+    /// would otherwise take most of the time.
     fn sin_cos(&self, angle: &JointAngle, pose: &Pose) -> (f64, f64) {
         match angle {
             JointAngle::Driven(j) if self.geometry.transmissions_rad[*j] == EVEN => {
@@ -504,7 +505,7 @@ fn turn(axis: &Unit<Vector3<f64>>, (sin, cos): (f64, f64)) -> Rotation3<f64> {
     ))
 }
 
-/// Two unit axes, perpendicular to a given axis and to each other.
+/// Two unit vectors that are perpendicular to the axis `axis` and to each other.
 fn across(axis: &Unit<Vector3<f64>>) -> [Unit<Vector3<f64>>; 2] {
     let least = Vector3::ith(axis.iamin(), 1.0);
     let first = Unit::new_normalize(axis.cross(&least));

@@ -145,8 +145,8 @@ impl Deflection {
     }
 }
 
-/// All candidates: compliance about the axis and tilt across the axis of every joint, compliance of the base, and
-/// compliance of the link behind every joint.
+/// All candidates of compliance: about the axis and across the axis of every joint, of the base, and of the link
+/// behind every joint.
 pub(crate) fn candidates(tree: &Tree) -> Vec<Yielding> {
     let mut out = Vec::new();
     for piece in &tree.pieces {

@@ -38,7 +38,7 @@ impl Factor {
         self.cholesky.solve(&right.component_mul(&self.diagonal)).component_mul(&self.diagonal)
     }
 
-    /// Multiplies columns by `W`, for which `A⁻¹ = WᵀW` with the factorized curvature `A`.
+    /// Multiplies `columns` by the whitening factor `W`, for which `A⁻¹ = WᵀW` with the factorized curvature `A`.
     pub(crate) fn whiten(&self, columns: &mut DMatrix<f64>) {
         columns.column_iter_mut().for_each(|mut column| column.component_mul_assign(&self.diagonal));
         // a Cholesky factor has no zero on its diagonal

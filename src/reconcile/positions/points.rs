@@ -22,7 +22,7 @@ impl Point {
         Self { arm: row.arm, name: row.point.clone(), before_row: None }
     }
 
-    /// Name of the point, with its session.
+    /// Name of the point for reports. For an earlier session it includes the row that ends the session.
     pub(crate) fn label(&self) -> String {
         match self.before_row {
             Some(row) => format!("{} before row {row}", self.name),

@@ -215,8 +215,8 @@ impl Parabola<'_> {
         step
     }
 
-    /// Derivatives of every number (rows) with respect to every free variable (columns). A variable is a free number,
-    /// or an entry of `L`.
+    /// Derivatives of every number of the model (rows) with respect to every free variable (columns). A free variable
+    /// is a number without constraint, or an entry of `L`.
     fn slopes(&self) -> DMatrix<f64> {
         let mut columns: Vec<DVector<f64>> = Vec::new();
         let unit = |at: usize| {

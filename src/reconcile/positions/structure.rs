@@ -24,7 +24,8 @@ pub(crate) const MATERIAL_PART: f64 = 0.1;
 /// If the variance of the errors is below this multiple of the declared variance, the declared standard deviations
 /// are taken to be too small, and the model is not blamed.
 pub(crate) const MATERIAL_VARIANCE: f64 = 1.75;
-/// A structure is real if its probability by chance is less than this.
+/// A structure of the errors is taken as real if chance gives it with a probability below this, after correction for
+/// the number of tests.
 const IMPROBABLE: f64 = 1e-6;
 /// Median length of a vector whose one, two or three components are standard normal deviates.
 const MEDIAN_LENGTHS: [f64; 3] = [0.6745, 1.1774, 1.538];
@@ -34,8 +35,8 @@ const MEDIAN_LENGTHS: [f64; 3] = [0.6745, 1.1774, 1.538];
 type Question = (String, usize);
 
 impl Positions {
-    /// Tests the errors for dependence on the order of the readings, the joint angles, the joint torques and the
-    /// payload.
+    /// Tests whether the errors of the fitted model depend on the order of the readings, the joint angles, the joint
+    /// torques or the payload.
     pub(crate) fn lack_of_fit(&self, campaign: &Campaign) -> LackOfFit {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let asker = Asker::new(self, campaign);
@@ -82,7 +83,8 @@ impl Positions {
         structure.statistic / readings(&self.samples) as f64
     }
 
-    /// Whether a structure is no chance result and explains at least [`MATERIAL_PART`].
+    /// Whether the structure `structure` is no chance result and explains at least [`MATERIAL_PART`] of the errors'
+    /// sum of squares.
     pub(crate) fn is_material(&self, structure: &Structure) -> bool {
         structure.ln_p < libm::log(IMPROBABLE) && self.part(structure) > MATERIAL_PART
     }

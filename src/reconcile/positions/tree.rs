@@ -20,7 +20,7 @@ pub(crate) struct Tree {
 }
 
 impl Tree {
-    /// Collects the arms of a campaign.
+    /// Collects the joints and links of all arms of a campaign.
     pub(crate) fn new(campaign: &Campaign) -> Self {
         let driven = campaign.driven_joint_names();
         let arms = campaign.arms();

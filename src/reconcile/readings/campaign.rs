@@ -402,7 +402,7 @@ impl Campaign {
         (loaded, placed)
     }
 
-    /// Whether there are readings other than absolute positions.
+    /// Whether the campaign has displacements, frequencies or bench readings.
     pub fn has_displacements(&self) -> bool {
         !self.statics.is_empty() || !self.modal.is_empty() || !self.windup.is_empty()
     }

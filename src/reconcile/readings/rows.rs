@@ -114,7 +114,7 @@ impl ModalRow {
 }
 
 impl PositionRow {
-    /// Row and temperature of the reading, for effects of warming.
+    /// Row and temperature of the reading, on which effects of warming depend.
     pub fn moment(&self) -> Moment {
         Moment { row: self.row, temperature_c: self.temperature_c }
     }
@@ -199,7 +199,7 @@ impl StateColumns {
     }
 }
 
-/// Reads the rows of `static.csv`.
+/// Reads the rows of `static.csv`. `purpose` says whether readings may be blank. Faults are recorded in `table`.
 pub(crate) fn static_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<StaticRow> {
     const FORCE: [&str; 3] = ["force_x_n", "force_y_n", "force_z_n"];
     table.check_family("force", &FORCE);
@@ -231,7 +231,7 @@ pub(crate) fn static_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Sta
     rows
 }
 
-/// Reads the rows of `modal.csv`.
+/// Reads the rows of `modal.csv`. `purpose` says whether readings may be blank. Faults are recorded in `table`.
 pub(crate) fn modal_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<ModalRow> {
     let state = StateColumns::find(table, &arm.driven_joints(), false);
     let mode = table.required("mode");
@@ -268,7 +268,7 @@ pub(crate) fn modal_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Moda
     rows
 }
 
-/// Reads the rows of `windup.csv`.
+/// Reads the rows of `windup.csv`. `purpose` says whether readings may be blank. Faults are recorded in `table`.
 pub(crate) fn windup_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<WindupRow> {
     let columns = ["joint", "torque_nm"].map(|n| table.required(n));
     let readings = ["windup_arcmin", "sigma_arcmin"].map(|name| reading_column(table, name, purpose));

@@ -36,7 +36,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// Reads a CSV file. Rows of the wrong length are recorded as faults.
+    /// Reads a CSV file as a table. Rows of the wrong length are recorded as faults.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -47,7 +47,8 @@ impl Table {
         Ok(Self::parse(&file, &text))
     }
 
-    /// Reads a CSV file or a sheet of a spreadsheet, and gives its columns the names of this program.
+    /// Reads a CSV file or a sheet of a spreadsheet, and gives its columns the names of this program. `source` names
+    /// the sheet and the columns.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -60,7 +61,8 @@ impl Table {
         Ok(table)
     }
 
-    /// Reads a sheet of a spreadsheet. A problem with the file as a whole is recorded as a fault.
+    /// Reads the sheet of a spreadsheet that `source` names. A problem with the file as a whole is recorded as a
+    /// fault.
     fn of_spreadsheet(path: &Path, source: &Source) -> Result<Self, InputError> {
         let file = path.display().to_string();
         std::fs::metadata(path).map_err(|source| InputError::Unreadable { file: file.clone(), source })?;
@@ -95,7 +97,8 @@ impl Table {
         }
     }
 
-    /// Parses CSV text. Rows of the wrong length are recorded as faults.
+    /// Reads CSV text as a table; `file` is the name of the file for messages. Rows of the wrong length are recorded
+    /// as faults.
     pub fn parse(file: &str, text: &str) -> Self {
         let mut table = Self::empty(file);
         let csv = Csv::parse(text.as_bytes(), Some(COMMENT));
@@ -107,7 +110,7 @@ impl Table {
         table
     }
 
-    /// Checks the header, and that the table is not empty.
+    /// Checks the column names, removes a row of units, and reports an empty table.
     fn finish(&mut self) {
         self.shown = self.columns.clone();
         self.check_header();

@@ -147,7 +147,8 @@ impl Fitted {
         self.columns.iter().position(|c| *c == column)
     }
 
-    /// Coefficient of a column; 0 if the model lacks the column.
+    /// Coefficient of the column `column`, in the unit of the target per unit of the column; 0 if the model lacks the
+    /// column.
     pub(crate) fn value(&self, column: usize) -> f64 {
         self.place(column).map_or(0.0, |i| self.values[i])
     }

@@ -72,7 +72,7 @@ impl Law {
         }
     }
 
-    /// Number of torques of the law that are fitted.
+    /// Number of the law's torques that are fitted: two for three segments, otherwise one.
     fn torques(self) -> usize {
         if matches!(self, Law::Segments(..)) { 2 } else { 1 }
     }
@@ -352,7 +352,8 @@ impl Curve {
         best
     }
 
-    /// Parameters of a law with their 95 % intervals, named as in `verdict.json`; empty if the law was not found.
+    /// Parameters of the law `law` with their 95 % intervals, named as in `verdict.json`; empty if the law was not
+    /// found.
     pub(crate) fn parameters(&self, law: Law, places: Places) -> Vec<(String, Vec<Estimate>)> {
         let Some(place) = self.laws.iter().position(|l| *l == law) else { return Vec::new() };
         let at = self.first + 4 * place;

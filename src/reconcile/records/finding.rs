@@ -126,12 +126,12 @@ pub struct JointRecord {
 }
 
 impl JointRecord {
-    /// Result for the effect with this name; `None` if it was not looked for.
+    /// Result for the effect with the name `what`; `None` if it was not looked for.
     pub fn of(&self, what: &str) -> Option<&Stated> {
         self.stated.iter().find(|s| s.what == what)
     }
 
-    /// Result for the effect with this name, if it was found.
+    /// Result for the effect with the name `what`; `None` if it was not found.
     pub fn found(&self, what: &str) -> Option<&Stated> {
         self.of(what).filter(|s| s.state == State::Found)
     }

@@ -406,8 +406,8 @@ fn excludes_zero(estimate: &Estimate) -> bool {
     is_positive(estimate) || estimate.high.is_some_and(|h| h < 0.0)
 }
 
-/// Result for the compliance: whether it is identified, and how large it is. `left_share` is the fraction of the
-/// torque's variance that the balance of torques leaves unexplained.
+/// Result for the compliance of a joint: whether it is identified, and the stiffness with its interval. `left_share`
+/// is the fraction of the torque's variance that the balance of torques leaves unexplained.
 fn compliance(model: &TwistModel, left_share: f64) -> Stated {
     const WHAT: &str = "compliance";
     const NAME: &str = "stiffness_nm_per_rad";

@@ -249,8 +249,8 @@ fn nominal_compliance(campaign: &Campaign, joint: &str, torque_nm: f64) -> f64 {
     law.map_or(0.0, |law| law.angle_rad(torque_nm) / torque_nm.max(1e-9))
 }
 
-/// The corrected arm. The effects of a joint that is explained are written into it even if another joint is not
-/// explained.
+/// The corrected arm. The effects and the stiffness of a joint that is explained are written into it even if another
+/// joint is not explained.
 fn corrected(
     campaign: &Campaign,
     findings: &[Finding],

@@ -65,7 +65,7 @@ fn state_words(state: State) -> &'static str {
     }
 }
 
-/// The result for one effect as text: its state, its parameters, and the reason.
+/// The result for one effect as text: its state, its parameters with intervals, and the reason or limitation.
 fn sentence(stated: &Stated) -> String {
     let values = numbers(stated);
     let parts = [state_words(stated.state), &values, &stated.words];

@@ -356,8 +356,8 @@ impl<'a> TwistModel<'a> {
         }
     }
 
-    /// Fraction of the torque's variance that the joint's own motion (speed, its sign, and acceleration) does not
-    /// explain.
+    /// Fraction of the variance of the motor's torque that the joint's own motion (speed, its sign, and acceleration)
+    /// does not explain.
     pub(crate) fn own_share_of_torque(&self) -> f64 {
         let p = self.places;
         let mut own = vec![p.shift(), p.sense()];

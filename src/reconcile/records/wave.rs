@@ -29,7 +29,7 @@ fn shapes(phase: f64) -> [f64; 4] {
     [sin, cos, 2.0 * sin * cos, cos * cos - sin * sin]
 }
 
-/// Fast part of a signal: the signal less its smoothed value; zero near ends and gaps.
+/// Fast part of the signal `x`: the signal less its smoothed value, in its unit; zero near ends and gaps.
 fn fast(t_s: &[f64], x: &[f64]) -> Vec<f64> {
     let slow = smooth(t_s, x, HALF).value;
     x.iter().zip(slow).map(|(x, slow)| if slow.is_nan() { 0.0 } else { x - slow }).collect()

@@ -26,8 +26,8 @@ pub(crate) const FEWEST_ROWS: usize = 11;
 /// Largest number of fits for sets of the same number of effects. If more would be needed, only the most promising
 /// smaller sets are extended.
 const MOST_FITS: usize = 6000;
-/// Smallest probability of chance with which a set of effects still explains the readings. If chance gives a misfit
-/// as large as that of the set with a smaller probability, the set does not explain them.
+/// A set of effects explains the readings if chance gives a misfit at least as large as its own with a probability
+/// above this.
 const IMPROBABLE: f64 = 0.01;
 /// Sets that explain the readings are left out if the logarithm of their evidence is this far below the best. The
 /// limit is wide, because with few readings the evidence mostly repeats the prior.

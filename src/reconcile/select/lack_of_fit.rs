@@ -44,7 +44,8 @@ const SUSPECTED: f64 = 0.02;
 const TOLD: usize = 3;
 
 impl LackOfFit {
-    /// Sentences on the most improbable structures, without repetition.
+    /// Sentences on up to three structures that are no chance result, the most improbable first. No quantity of a
+    /// channel is mentioned twice.
     pub fn sentences(&self) -> Vec<String> {
         let mut told: Vec<&Structure> = Vec::new();
         for structure in self.structures.iter().filter(|s| s.ln_p < libm::log(CHANCE)) {

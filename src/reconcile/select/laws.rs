@@ -137,7 +137,7 @@ impl Builder<'_> {
         out
     }
 
-    /// Number of channels that have readings.
+    /// Number of channels for which the campaign has readings.
     fn kinds_of_readings(&self) -> usize {
         let channels = [Channel::Static, Channel::Modal, Channel::Windup];
         channels.into_iter().filter(|channel| !self.forward.range(*channel).is_empty()).count()

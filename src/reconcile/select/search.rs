@@ -73,8 +73,9 @@ impl<'a> Search<'a> {
         descent(self.forward, model, u, self.weights, effort, f64::INFINITY)
     }
 
-    /// Fits a model in a few steps, enough to see whether it is close to the readings. If the effect that was added
-    /// last is a gear's curve, the curve is strongly smoothed at first.
+    /// Fits the model with the effects `effects` from the parameters `u` in a few steps, enough to see whether it
+    /// comes close to the readings. If the effect that was added last is a gear's curve, the curve is strongly
+    /// smoothed at first.
     pub(super) fn rough(&self, effects: &[usize], u: &[f64]) -> Fit<'a> {
         let mut model = self.model(effects);
         let mut start = u.to_vec();

@@ -159,9 +159,9 @@ impl Settling<'_> {
         (with_all, declared)
     }
 
-    /// Searches without the gross errors that are visible before any effect is known. An effect may show in a single
-    /// frequency. So the search is repeated with the frequencies that were left out, and this result is taken if it is
-    /// more probable.
+    /// Makes the first search, without the gross errors that are visible before any effect is known. An effect may
+    /// show in a single frequency. So the search is repeated with the frequencies that were left out, and this result
+    /// is taken if it is more probable.
     fn first(&self) -> Round {
         let (baseline, weights) = self.baseline();
         let noise = Noise::first_look(self.forward, &baseline, &weights);

@@ -17,9 +17,9 @@ const TOLERANCE: f64 = 2.0;
 /// A calibrated factor is called improbable if fewer than one in this many faultless parts deviate so far.
 const RARE: f64 = 200.0;
 
-/// Sentence that two effects of one kind, or two masses, have opposite signs at neighbouring places; `None` if no two
-/// have. Each then cancels a part of the other. Together they describe one thing that is at another place, or that is
-/// present in one kind of test only.
+/// Sentence that two effects of the model have opposite signs at neighbouring places; `None` if no two have. Both are
+/// of one kind, or both are masses. Each then cancels a part of the other. Together they describe one thing that is
+/// at another place, or that is present in one kind of test only.
 pub(crate) fn opposed(forward: &Forward, fit: &Fit) -> Option<String> {
     let effects = &fit.model.effects;
     let size = |i: usize| -> Option<(&FreeParameter, f64)> {
@@ -74,7 +74,7 @@ pub(crate) fn may_be_absent(fit: &Fit, ends: &[Interval]) -> Vec<usize> {
     out
 }
 
-/// Sentence on the calibrated factors that are outside their tolerance; `None` if there are none.
+/// Sentence on the calibrated factors of the fit that are outside their tolerance; `None` if there are none.
 pub(crate) fn beyond_tolerance(fit: &Fit, calibrated: &[Calibrated]) -> Option<String> {
     let numbers = fit.model.nuisance.numbers.iter().zip(calibrated);
     let beyond = numbers.filter_map(|((_, sd), calibrated)| {

@@ -36,7 +36,7 @@ pub(crate) fn corrected(
     (arm, provenance)
 }
 
-/// The provenance of a corrected arm's values, as JSON.
+/// The provenance of a corrected arm as JSON: the campaign, the program, the verdict and the calibrated values.
 pub(crate) fn provenance(campaign: &Campaign, verdict: Verdict, calibrated: Vec<Value>) -> Value {
     json!({
         "campaign": campaign.statement.name, "campaign_blake3": campaign.hash,

@@ -260,8 +260,8 @@ impl Outcome {
         })
     }
 
-    /// The entry `empirical` of `verdict.json`: the laws without a name, each with the held-out error of the model that
-    /// contains it.
+    /// The entry `empirical` of `verdict.json`: the laws without a name in the corrected arm, each with the held-out
+    /// error of the model that contains it.
     fn empirical_json(&self) -> Vec<Value> {
         let written = self.models.iter().find(|row| row.is_written);
         let laws = self.empirical.iter().map(|law| {

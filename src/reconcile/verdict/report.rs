@@ -179,7 +179,7 @@ fn value(e: &Estimate) -> String {
     format!("{} ({} to {})", number(e.value), end(e.low), end(e.high))
 }
 
-/// A number with four significant figures.
+/// The number `x` as text with four significant figures.
 fn number(x: f64) -> String {
     match x.abs() {
         0.0 => "0".into(),

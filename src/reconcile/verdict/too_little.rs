@@ -11,7 +11,7 @@ use crate::reconcile::select::few_rows;
 /// Smallest number of poses with which effects at different places can be told apart.
 pub(crate) const FEWEST_POSES: usize = 3;
 
-/// Number of rows of displacements, frequencies and bench readings.
+/// Number of rows of the campaign in the files of displacements, frequencies and bench readings together.
 pub(crate) fn rows(campaign: &Campaign) -> usize {
     campaign.statics.len() + campaign.modal.len() + campaign.windup.len()
 }
