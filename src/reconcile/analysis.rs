@@ -180,7 +180,7 @@ struct Analysis<'a> {
     left_out: [Vec<Option<f64>>; 2],
 }
 
-/// The corrected arm, and its differences from the arm as it was given.
+/// The corrected arm, and what was changed in it: calibrated factors and laws without a name.
 struct Corrections {
     calibrated: Vec<Calibrated>,
     empirical: Vec<Law>,

@@ -29,14 +29,14 @@ const OPEN: f64 = 0.146;
 const RULED_OUT: f64 = 14.0;
 /// First step from the best fit to the next node, as a multiple of the standard deviation of the break point.
 const STEP: f64 = 0.5;
-/// Smallest and largest first step \[ln of the torque\].
+/// Smallest and largest value of the first step from the best fit to the next node \[ln of the torque\].
 const STEPS: (f64, f64) = (0.004, 0.08);
 /// Ratio of each step between nodes to the step before it, going outwards from the best fit.
 const GROWTH: f64 = 1.4;
 /// Each node whose distance from the best fit, counted in nodes, is a multiple of this number is always fitted, so
 /// that no separate peak of the density is missed.
 const COARSE: usize = 3;
-/// Limits on the effort of a fit with both break points held.
+/// Largest number of steps, and tolerance, of a fit with both break points held.
 const HELD: Effort = Effort { steps: 4, tolerance: 0.05 };
 
 /// The nodes of one break point: the torques at which it is held, in ascending order \[ln of the torque\].
@@ -48,7 +48,7 @@ struct Axis {
 /// The fit with both break points held at the values of a pair of nodes.
 struct Cell {
     u: Vec<f64>,
-    /// Standard deviations of all parameters except the two break points.
+    /// Standard deviations of all parameters, in `u`. Those of the two held break points are infinite and not used.
     deviations: Vec<f64>,
     objective: f64,
     /// Natural logarithm of the probability density of the two break points at the nodes, up to a common constant.

@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 /// Residual beyond which Huber's loss grows linearly \[standard deviations\].
 const HUBER: f64 = 4.0;
-/// Step of numerical derivatives, in the scaled parameters `u`.
+/// Step of a parameter by which numerical derivatives are computed, in the scaled parameters `u`.
 const STEP: f64 = 1e-4;
 
 /// Weights of the data in a fit: which data count, and how much their declared standard deviations are enlarged.
@@ -29,7 +29,7 @@ pub struct Weights {
     /// Reciprocal of each datum's standard deviation, which is the declared one times the factor of its channel; 0
     /// where the datum is left out.
     pub inverse: Vec<f64>,
-    /// Whether the natural frequencies need not be computed, because none of them counts.
+    /// Whether only static and bench readings count. Natural frequencies are then not computed.
     pub smooth_only: bool,
 }
 
@@ -43,9 +43,9 @@ impl Weights {
     }
 }
 
-/// The predictions and the objective of a model at one parameter vector.
+/// The predictions and the objective of a model at one parameter vector `u`.
 pub struct Point {
-    /// The parameters: the calibrated ones first, then those of the effects.
+    /// The scaled parameters: the calibrated ones first, then those of the effects.
     pub u: Vec<f64>,
     /// Compliances, joint laws and masses of the arm with these parameters (the coefficients).
     pub coefficients: Coefficients,
@@ -62,13 +62,13 @@ pub struct Point {
     pub objective: f64,
 }
 
-/// A fitted model.
+/// A fitted model, with its predictions, derivatives and evidence.
 pub struct Fit<'a> {
     /// The model, with its effects and the parameters that are held.
     pub model: Model<'a>,
     /// The point where the objective is smallest, with its predictions.
     pub point: Point,
-    /// Derivative of every prediction (rows) with respect to every parameter (columns).
+    /// Derivative of every predicted reading (rows) with respect to every parameter (columns).
     pub jacobian: DMatrix<f64>,
     /// Curvature matrix of half the objective: `JᵀWJ` of the data plus the priors of the parameters.
     pub curvature: DMatrix<f64>,
@@ -319,7 +319,7 @@ fn damped(normal: &Normal, free: &[usize], damping: f64) -> DVector<f64> {
     }
 }
 
-/// Limits on the effort of a fit.
+/// Largest number of steps of a fit, and when it ends before.
 #[derive(Debug, Clone, Copy)]
 pub struct Effort {
     /// Largest number of steps.

@@ -17,13 +17,13 @@ const HANDS: usize = 4;
 /// the factor by which the readings scatter more than declared, unless a field says otherwise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeldOut {
-    /// Root mean square without any effect, with the calibration refitted.
+    /// Root mean square of the held-out residuals without any effect, with the calibration refitted.
     pub rms_before: f64,
-    /// Root mean square with the effects.
+    /// Root mean square of the held-out residuals with the effects.
     pub rms_after: f64,
-    /// Root mean square with the effects, in declared standard deviations.
+    /// Root mean square of the held-out residuals with the effects, in declared standard deviations.
     pub rms_declared_after: f64,
-    /// Number of data that were predicted.
+    /// Number of measured values that were held out and predicted.
     pub count: usize,
 }
 

@@ -9,7 +9,8 @@ use crate::reconcile::forward::modal::ModalTest;
 use crate::reconcile::forward::prepared::Forward;
 use std::collections::{HashMap, HashSet};
 
-/// Quality of the readings, judged by the residuals of a fit.
+/// Quality of the readings as the residuals of a fit show it: gross errors, and how much more the readings scatter
+/// than declared.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Noise {
     /// Factors on the declared standard deviations of static, modal and windup readings, in this order.
@@ -21,8 +22,9 @@ pub struct Noise {
 
 /// A reading is a gross error if its residual is at least this many standard deviations.
 const GROSS: f64 = 5.5;
-/// Threshold for gross errors before any effect is sought, in standard deviations. It is high, because play or a break
-/// point can shift a single reading by ten standard deviations.
+/// A row is a gross error, before any effect is sought, only if its residual is larger than this \[standard
+/// deviations\]. The limit is high, because play or a break point can shift a single reading by ten standard
+/// deviations.
 const UNMISTAKABLE: f64 = 16.0;
 /// Largest fraction of a channel's rows that can be gross errors. If there are more, the cause is something that the
 /// model lacks.
@@ -30,11 +32,11 @@ const FEW: f64 = 0.10;
 /// Largest fraction of a channel's rows that can be gross errors before any effect is sought. It is smaller than
 /// [`FEW`], because an effect may change only a few frequencies, and these must not be left out.
 const FEW_UNSEEN: f64 = 0.05;
-/// Largest fraction of the frequency lists that can have been numbered wrongly.
+/// Largest fraction of the frequency lists (modes of one pose and payload) that can have been numbered wrongly.
 const FEW_LISTS: f64 = 0.34;
 /// Largest number of gross errors that may be assumed instead of an effect. More of them have a common cause.
 const MOST_SLIPS: usize = 2;
-/// Channels whose readings are judged.
+/// The channels (kinds of readings) whose quality is judged.
 const CHANNELS: [Channel; 3] = [Channel::Static, Channel::Modal, Channel::Windup];
 /// Largest factor on the declared standard deviations. A larger scatter is ascribed to missing physics and not to a
 /// wrong declaration.

@@ -16,8 +16,8 @@ pub(crate) const WIDE: f64 = 0.1;
 pub(crate) const NARROW: f64 = 0.01;
 const WIDTHS: [f64; 3] = [WIDE, 0.03, NARROW];
 
-/// A torque this close to a break point may lie on either side \[ln of the torque\]: five standard deviations of masses
-/// with a tolerance of 4 %.
+/// Largest logarithm of the ratio of a torque to a break point at which the torque may lie on either side. It
+/// corresponds to five standard deviations of masses with a tolerance of 4 %.
 const CLOSE: f64 = 0.1;
 
 /// Starting parameters for a fit with the exact torsion curve: the end of three descents from `start`, in which the

@@ -8,9 +8,9 @@ use nalgebra::DMatrix;
 /// arrangement that matrix products need.
 pub(super) struct Factor {
     pub(super) l: DMatrix<f64>,
-    /// `L`, arranged as a left factor of products.
+    /// The matrix `L`, arranged in memory as a left factor of products.
     pub(super) down: Panels,
-    /// `Lᵀ`, arranged as a left factor of products.
+    /// The matrix `Lᵀ`, arranged in memory as a left factor of products.
     pub(super) across: Panels,
 }
 

@@ -12,7 +12,7 @@ pub(crate) const ARCMIN_PER_RAD: f64 = 10800.0 / std::f64::consts::PI;
 /// One joint's rows on the bench, in the order of the file.
 #[derive(Debug, Clone)]
 pub(crate) struct Bench {
-    /// Index of the joint in the layout.
+    /// Index of the joint among the joints of the [`Layout`].
     pub joint: usize,
     torques_nm: Vec<f64>,
     rows: Vec<usize>,

@@ -15,7 +15,7 @@ use crate::mechanics::chain::Chain;
 use crate::mechanics::{Wrench, force_wrench};
 use nalgebra::{Rotation3, Vector3};
 
-/// The strain coordinates of a joint.
+/// Where the strain coordinates of a joint stand among all strain coordinates.
 #[derive(Debug, Clone)]
 pub struct JointSlot {
     /// Name of the joint.
@@ -24,7 +24,7 @@ pub struct JointSlot {
     pub twist: usize,
 }
 
-/// The strain coordinates of a link.
+/// Where the strain coordinates of a link stand among all strain coordinates.
 #[derive(Debug, Clone)]
 pub struct LinkSlot {
     /// Name of the link.
@@ -94,7 +94,7 @@ impl TestNumbers {
 /// [`Layout`].
 #[derive(Debug, Clone)]
 pub struct Coefficients {
-    /// Compliance of each coordinate. It is 0 for a joint's twist, because the joint's law is in `laws`.
+    /// Compliance of each strain coordinate. It is 0 for a joint's torsion, because the joint's law is in `laws`.
     pub linear: Vec<f64>,
     /// Base whose feet lift off; `None` if the feet stay on the ground.
     pub lift: Option<BaseLift>,
@@ -115,9 +115,9 @@ pub struct Coefficients {
     pub payload_offset_m: Vector3<f64>,
     /// Fraction of the payload's weight that remains after buoyancy; 1 in air.
     pub payload_weight: f64,
-    /// Errors of the measuring channels.
+    /// Errors of the measuring channels (gain, sign and the like), one entry per channel.
     pub channels: [Reading; 4],
-    /// Special set-up of the tests of each channel.
+    /// Special set-up of the tests of each channel, such as a mass at the tip.
     pub tests: [TestNumbers; 4],
     /// Change of the links' moduli during the tests.
     pub warming: Warming,

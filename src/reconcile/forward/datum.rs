@@ -13,7 +13,7 @@ pub struct Datum {
     pub row: usize,
     /// Index of the row among the rows of its channel in the campaign, from 0.
     pub index: usize,
-    /// Component, 0 to 2, of a vector; 0 for a single value.
+    /// Index of the component, 0 to 2, if the reading is a vector; 0 for a single value.
     pub component: usize,
     /// Index of the pose; `usize::MAX` for the bench, where there is no pose. Data of one pose are held out together.
     pub group: usize,
@@ -23,7 +23,7 @@ pub struct Datum {
     pub sigma: f64,
 }
 
-/// The poses by which data are grouped.
+/// The different poses of a campaign. The data of one pose form a group.
 #[derive(Debug, Default)]
 pub(crate) struct Groups {
     /// Names of the groups: the angles of each pose, separated by commas.

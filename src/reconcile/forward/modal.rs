@@ -40,7 +40,7 @@ const OFF: f64 = 0.05;
 /// this \[standard deviations of the difference\]. Noise does not produce such a fall.
 const UNMISTAKABLE: f64 = 5.0;
 
-/// The list of modes of one pose and payload.
+/// The modal test of one pose and payload: the list of its measured modes, and what their computation needs.
 pub struct ModalTest {
     geometry: PoseGeometry,
     payload: Payload,
@@ -48,7 +48,7 @@ pub struct ModalTest {
     when: Moment,
     /// For each datum of the list: its index, and the number of its mode, from 0.
     pub modes: Vec<(usize, usize)>,
-    /// Mass matrix of the nominal arm without payload, arranged for products.
+    /// Mass matrix of the nominal arm without payload, arranged in memory for matrix products.
     mass: Panels,
     /// For each added mass, the factor `L` of its mass matrix `L Lᵀ`. A factor has few columns, and only the rows of
     /// coordinates inboard of the mass.
@@ -58,7 +58,7 @@ pub struct ModalTest {
     forces: DMatrix<f64>,
 }
 
-/// One vibration mode as solved.
+/// One vibration mode that was solved for.
 pub struct Solved {
     /// Eigenvalue `μ = 1/ω²`, the reciprocal of the squared angular frequency \[s²\].
     pub mu: f64,

@@ -13,7 +13,7 @@ use crate::arm::joint_law::Curve;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::DMatrix;
 
-/// A campaign prepared for fitting.
+/// A campaign prepared for fitting: its data, and what does not depend on fitted parameters.
 pub struct Forward {
     /// The strain coordinates of the arm.
     pub layout: Layout,
@@ -23,7 +23,7 @@ pub struct Forward {
     pub data: Vec<Datum>,
     /// Poses of the static rows, each with its loads.
     pub statics: Vec<StaticPose>,
-    /// Tests of the modal rows.
+    /// The modal tests, one for each pose and payload.
     pub modal: Vec<ModalTest>,
     bench: Vec<Bench>,
     /// Index in `data` at which the data of each channel begin: static, modal, bench; then the number of all data.

@@ -23,7 +23,7 @@ use nalgebra::{Matrix3x6, Rotation3, Vector3};
 pub struct Mover {
     /// Index of the strain coordinate.
     pub index: usize,
-    /// Kinematic twist of everything outboard per unit of the coordinate.
+    /// Motion (kinematic twist) of everything outboard of the coordinate, per unit of the coordinate.
     pub twist: Twist,
     /// Displacement of the tip per unit of the coordinate.
     pub tip: Vector3<f64>,

@@ -54,10 +54,11 @@ impl Calibration {
     }
 }
 
-/// The calibrated parameters of an arm. They are free in every model.
+/// The calibrated parameters of an arm (nuisance parameters). They are free in every model.
 #[derive(Debug, Clone)]
 pub struct Nuisance {
-    /// The property that each parameter adjusts, and the standard deviation of the natural logarithm of its factor.
+    /// For each parameter, the property that it adjusts, and the standard deviation of the natural logarithm of the
+    /// factor on this property.
     pub numbers: Vec<(Calibration, f64)>,
 }
 

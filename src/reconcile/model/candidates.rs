@@ -101,7 +101,7 @@ struct Asked<'a> {
     /// The parameters that are fitted in a variant of the effect. `None` means that all parameters without a default
     /// value are fitted.
     freed: Option<&'static [Freed]>,
-    /// The channel, if the effect has a channel as a parameter.
+    /// The channel in which the effect acts, if the effect has a channel as a parameter.
     channel: Option<Channel>,
 }
 
@@ -272,7 +272,7 @@ fn reference_of_prismatic(forward: &Forward, kind: &Kind, at: &str) -> f64 {
     }
 }
 
-/// Reference stiffness of a drive along its travel if the arm file holds it rigid \[N/m\].
+/// Reference stiffness along the travel of a prismatic joint whose drive is rigid in the arm file \[N/m\].
 const USUAL_DRIVE_N_PER_M: f64 = 2e7;
 
 /// Slope K2 of the torsion curve of the joint named `at` in its middle segment, by which a gear is usually rated \[N

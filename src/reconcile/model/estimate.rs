@@ -7,9 +7,9 @@ use serde_json::{Map, Value, json};
 /// the data do not bound it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
-    /// Lower end, in `u`.
+    /// Lower end of the interval, in the scaled parameter `u`.
     pub low: Option<f64>,
-    /// Upper end, in `u`.
+    /// Upper end of the interval, in the scaled parameter `u`.
     pub high: Option<f64>,
 }
 

@@ -21,7 +21,8 @@ use std::borrow::Cow;
 pub struct Exact<'a> {
     subject: &'a Subject,
     chain: Chain,
-    /// For each channel, the arm with the special set-up of its tests; `None` where there is none.
+    /// For each channel, the arm with the special set-up of the channel's tests; `None` if there is no special
+    /// set-up.
     special: [Option<Chain>; 4],
 }
 

@@ -29,7 +29,7 @@ pub struct FreeParameter {
     /// The value of `u` at which the effect is absent; `None` if the parameter does not say how large the effect is,
     /// but only how it acts.
     absent: Option<f64>,
-    /// The range in which `u` is expected.
+    /// Smallest and largest `u` that are expected before the readings are used (the range of the prior).
     expected: (f64, f64),
 }
 
@@ -39,7 +39,7 @@ const SMALL: f64 = 0.01;
 /// Largest compliance that is sought in a connection, bearing or base, as a multiple of the joint's compliance.
 const SOFTEST: f64 = 100.0;
 
-/// Stiffness that stands for a rigid part: no reading can tell it from rigid \[N m/rad\].
+/// Stiffness that stands for a rigid part \[N m/rad\]. No reading can tell it from an infinite one.
 const RIGID_NM_PER_RAD: f64 = 1e15;
 
 impl FreeParameter {
@@ -175,7 +175,7 @@ impl FreeParameter {
     }
 }
 
-/// A number of a candidate: one component of one parameter.
+/// A number of a candidate effect: one component of one parameter, fitted or stated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Number {
     /// The number is fitted: it is the next of the candidate's free parameters.
@@ -184,7 +184,7 @@ pub(crate) enum Number {
     Stated(f64),
 }
 
-/// An effect at a place, as a candidate.
+/// A candidate: an effect at a place, with the parameters that are fitted.
 #[derive(Clone)]
 pub struct Candidate {
     /// The kind of effect.

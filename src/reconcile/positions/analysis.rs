@@ -30,7 +30,7 @@ const HANDS: usize = 5;
 const GROSS: f64 = 8.0;
 /// Scale of the position errors that is assumed before anything is fitted \[m\].
 const ROUGH_M: f64 = 0.01;
-/// Angle by which gravity is tilted for numerical derivatives \[rad\].
+/// Angle by which gravity is tilted to compute derivatives of the deflection numerically \[rad\].
 const LEAN: f64 = 1e-3;
 
 /// Classes of compliances, in the order in which the search for effects tries them.
@@ -45,7 +45,7 @@ pub(crate) struct Positions {
     pub candidates: Vec<Yielding>,
     /// For each candidate, whether it may be named as an effect.
     pub(super) considered: Vec<bool>,
-    /// The final fit.
+    /// The fit of the final model: geometry, compliances and sessions.
     pub fitted: Fitted,
     /// A fit with the same freed numbers of the geometry and no added compliance.
     pub rigid: Fitted,
@@ -58,7 +58,7 @@ pub(crate) struct Positions {
     pub(super) tree: Tree,
     /// The points on the tools. A point that was moved on the tool between two sessions counts as two points.
     pub(super) points: Vec<Point>,
-    /// The boundaries between sessions.
+    /// The boundaries between sessions (runs of rows with one set-up) that are in the model.
     pub(super) sessions: Vec<Boundary>,
     /// Error of each row's position after the last stage, as predicted by a fit without the row's fold \[m\].
     pub(super) held_out: Vec<Vector3<f64>>,
@@ -68,9 +68,9 @@ pub(crate) struct Positions {
 pub(crate) struct Calibrated {
     /// The arms with calibrated geometry. Everything else about them is unchanged.
     pub arms: Vec<Arm>,
-    /// The table of position errors.
+    /// The table of position errors, one row for each stage of the calibration.
     pub stages: Vec<Stage>,
-    /// Predicted positions \[mm\], one per row.
+    /// Predicted position of each row with the calibrated geometry, in the instrument's frame \[mm\].
     pub predicted_mm: Vec<[f64; 3]>,
     /// Placements of the arms in the instrument's frame, as in `provenance` of a corrected arm.
     pub placements: Value,

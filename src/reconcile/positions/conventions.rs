@@ -19,7 +19,8 @@ use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
-/// Conventions are tested if the errors after calibration exceed the declared ones by this factor.
+/// Other conventions are tested if the scale of the position errors after calibration exceeds the declared standard
+/// deviation by this factor.
 const FAR: f64 = 5.0;
 /// A convention is reported if the errors after calibration with it are smaller than with the file as it is by at
 /// least this factor.
@@ -27,11 +28,12 @@ const TELLING: f64 = 5.0;
 /// A change of convention is kept in the search if it lowers the errors of the quick fit to less than this fraction
 /// of those without it.
 const HELPS: f64 = 0.9;
-/// Conventions whose errors differ by less than this factor cannot be told apart.
+/// Two conventions cannot be told apart if the errors after calibration with them differ by less than this factor.
 const TIE: f64 = 1.2;
 /// Largest number of conventions that are reported in addition to the best one.
 const MOST_EQUALS: usize = 3;
-/// A fit is far off if its errors are larger than this fraction of the spread of the positions.
+/// A fit is far off if the scale of its errors is larger than this fraction of the positions' root mean square
+/// distance from their centre.
 const FAR_OFF: f64 = 0.01;
 /// Largest number of changes of convention that are made together.
 const MOST_CHANGES: usize = 8;
@@ -48,13 +50,14 @@ const UNITS: [(&str, f64); 4] =
 enum Change {
     /// Positions are in another unit, given by its index in [`UNITS`].
     Unit(usize),
-    /// For each axis of the frame: the coordinate of the file, and whether its sign is reversed.
+    /// For each axis of the frame, the index of the coordinate of the file that lies along it, and whether its sign
+    /// is reversed.
     Axes([(usize, bool); 3]),
-    /// An axis points the other way: the frame is left-handed.
+    /// One axis of the instrument's frame points the other way, so that the frame is left-handed.
     LeftHanded,
-    /// A joint's angles have the other sign.
+    /// The angles of the joint with this index have the other sign.
     Sign(usize),
-    /// The zero of a joint is different: this angle \[rad\] is added to its angles.
+    /// The zero of the joint with this index is elsewhere: this angle \[rad\] is added to the joint's angles.
     Zero(usize, f64),
 }
 

@@ -14,7 +14,7 @@ use super::springs::{Best, best_springs};
 const MOST_STEPS: usize = 40;
 /// Largest number of times that a step is halved because the fit is worse after it.
 const MOST_HALVINGS: i32 = 10;
-/// Largest rotation of a frame in one step \[rad\].
+/// Largest rotation of a frame (base or mounting) in one step of a fit \[rad\].
 const MOST_TURN_RAD: f64 = 0.3;
 
 impl Fitted {

@@ -8,10 +8,10 @@ use std::sync::Arc;
 /// Degrees of freedom ν of the Student distribution of the errors.
 pub(crate) const NU: f64 = 4.0;
 
-/// One measured position.
+/// One measured position (sample), with its pose and its deflection.
 #[derive(Debug, Clone)]
 pub(crate) struct Sample {
-    /// Angles of the driven joints.
+    /// Angles of the driven joints, with their sines and cosines.
     pub pose: Arc<Pose>,
     /// Index of the arm to which the point belongs.
     pub arm: usize,
@@ -19,7 +19,7 @@ pub(crate) struct Sample {
     pub point: usize,
     /// Index of the session that sets the arm's place in the instrument's frame (station).
     pub station: usize,
-    /// Index of this sample among the samples.
+    /// Index of this sample, which is the index of its row in the campaign.
     pub index: usize,
     /// Number of the pose, counted over different poses. Samples of one pose are held out together.
     pub group: usize,
@@ -74,15 +74,15 @@ pub(crate) fn readings(samples: &[Sample]) -> usize {
 pub(crate) struct Fitted {
     /// The calibrated geometry.
     pub geometry: Geometry,
-    /// Change of each number of the geometry from its nominal value, in the number's unit.
+    /// Change of each freed number of the geometry from its nominal value, in the number's unit.
     pub moved: Vec<f64>,
-    /// Standard deviations of the numbers of the geometry, in their units.
+    /// Standard deviations of the freed numbers of the geometry, in the numbers' units.
     pub number_deviations: Vec<f64>,
     /// Indices of the candidates that the model contains as effects.
     pub effects: Vec<usize>,
-    /// The compliances of each effect \[rad/(N m)\].
+    /// The compliances of each effect, in the order of `effects` \[rad/(N m)\]; the half width for play \[rad\].
     pub compliances: Vec<Vec<f64>>,
-    /// Standard deviations of the compliances \[rad/(N m)\].
+    /// Standard deviations of the compliances, in the order and units of `compliances`.
     pub deviations: Vec<Vec<f64>>,
     /// Sandwich factor: ratio of the standard deviations of the robust fit to those of the weighted curvature alone.
     pub robust_factor: f64,

@@ -11,12 +11,12 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 /// The amplitudes of a joint's transmission error if the joint has none.
 const EVEN: [f64; 4] = [0.0; 4];
 
-/// One calibrated number of the geometry.
+/// One number of the geometry that a fit can change. Rotations and shifts are changes; indices say of what.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Number {
-    /// Rotation of the arm's base about an instrument axis \[rad\].
+    /// Rotation of the arm's base about the instrument axis with this index \[rad\].
     BaseRotation(usize),
-    /// Position of the arm's base \[m\].
+    /// Coordinate with this index of the base's origin in the instrument's frame \[m\].
     BasePosition(usize),
     /// Offset of a point on the last frame \[m\]: index of the point, component.
     Tool(usize, usize),
@@ -25,7 +25,7 @@ pub(crate) enum Number {
     Mount(usize, usize),
     /// Vector of a link of unknown mounting \[m\]: index of the piece, component.
     MountVector(usize, usize),
-    /// Zero of a driven joint \[rad\]: index of the joint in a pose.
+    /// Shift of the zero of a driven joint \[rad\]: index of the joint in a pose.
     Zero(usize),
     /// Tilt of a joint's axis \[rad\]: index of the piece, and which of the two axes across the joint's axis.
     Axis(usize, usize),
@@ -367,7 +367,7 @@ pub(crate) struct Placer<'a> {
     turned_rad: Vec<f64>,
     /// The frames along the chain: frame `k` is inboard of the chain's piece `k`, frame `k + 1` outboard of it.
     frames: Vec<Frame>,
-    /// Position of the point without the motion of its session \[m\].
+    /// Position of the point that was placed last, without the motion of its session \[m\].
     at_m: Vector3<f64>,
 }
 

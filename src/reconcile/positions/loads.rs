@@ -29,7 +29,7 @@ use std::sync::Arc;
 /// the order in which the entries are fitted.
 pub(crate) const FRAME_ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (0, 1), (0, 2), (1, 2), (2, 2)];
 
-/// A candidate: an effect at a place, which makes the arm compliant there.
+/// A candidate: an effect at a place, which makes the arm compliant or gives it play there.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Yielding {
     /// Name of the effect.
@@ -47,7 +47,7 @@ pub(crate) struct Yielding {
 /// How one measured point deflects under gravity in its pose, in the level frame.
 #[derive(Debug, Clone)]
 pub(crate) struct Deflection {
-    /// Displacement by the compliances that the arm file already has \[m\].
+    /// Displacement of the point by the compliances that the arm file already has \[m\].
     pub known_m: Vector3<f64>,
     /// Derivatives of the known displacement with respect to the two horizontal components of the unit vector of
     /// gravity \[m\].
@@ -224,7 +224,8 @@ impl Yielding {
     }
 }
 
-/// One arm in the level frame with calibrated geometry and a point on its tool, ready to be posed.
+/// One arm in the level frame (z opposite to gravity), with calibrated geometry and its tip at one point on the tool,
+/// ready to be posed.
 struct Ready {
     gravity_m_s2: f64,
     known: Chain,

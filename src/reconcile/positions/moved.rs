@@ -7,9 +7,9 @@ use super::kinematics::Number;
 /// of its own in these rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Moved {
-    /// A point on the tool, by its index.
+    /// A point on the tool, by its index among the points.
     Point(usize),
-    /// The instrument or the base, by the index of the session.
+    /// The instrument or the base, by the index of the session that sets its place.
     Station(usize),
 }
 

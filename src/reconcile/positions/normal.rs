@@ -11,7 +11,7 @@ pub(crate) struct Normal {
     /// Negative gradient of half of chi-squared. The Gauss-Newton step is the inverse of the curvature times this
     /// vector.
     pub gradient: DVector<f64>,
-    /// Number of columns that belong to the model.
+    /// Number of columns that belong to the numbers and compliances of the model.
     pub own: usize,
 }
 

@@ -38,7 +38,7 @@ const UNSTABLE: f64 = 8.0;
 /// Effects that do not explain everything are still written into the corrected arm if they lower the median error at
 /// held-out poses to less than this fraction of the error with calibration alone.
 const HELPFUL: f64 = 0.8;
-/// Name of a session among the alternatives of an effect.
+/// Word for a session in the list of alternatives of an effect.
 const SESSION: &str = "session";
 /// Number of poses that are listed, those with the largest errors first.
 const WORST_POSES: usize = 3;

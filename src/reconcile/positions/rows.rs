@@ -100,7 +100,7 @@ pub(crate) fn normal(samples: &[&Sample], numbers: &[Number], here: &Fitted, fur
 
 /// Sums of the products of the equations' rows, to which one block of rows is added after another.
 struct Products {
-    /// Rows of the equations of one block; each is a column of this matrix.
+    /// Rows of the equations of one block of samples. Each row of the equations is a column of this matrix.
     rows: DMatrix<f64>,
     right: DVector<f64>,
     curvature: DMatrix<f64>,

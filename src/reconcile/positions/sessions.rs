@@ -25,9 +25,9 @@ use super::rows::{Linearized, normal};
 use super::structure::squares;
 use nalgebra::{DMatrix, DVector, Vector3};
 
-/// Smallest number of positions in a session.
+/// Smallest number of positions that a session must have on either side of its boundary.
 const FEWEST: usize = 5;
-/// Largest number of sessions beyond the first.
+/// Largest number of sessions that are found, beyond the first.
 const MOST: usize = 6;
 
 /// The model after the rows before some row have got a placement of their own, as a session.

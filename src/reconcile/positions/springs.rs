@@ -25,12 +25,12 @@ const LOWER: [(usize, usize); FRAME_ENTRIES.len()] = [(0, 0), (1, 0), (1, 1), (2
 
 /// The step to the minimum of half of chi-squared, which is a quadratic function of the numbers.
 pub(crate) struct Best {
-    /// Change of each number. The numbers of the geometry come first, then the compliances.
+    /// Change of each number of the model. The numbers of the geometry come first, then the compliances.
     pub step: Vec<f64>,
     /// Derivatives of every number of the model (rows) with respect to every free variable of the minimization
     /// (columns).
     slopes: DMatrix<f64>,
-    /// The factorized curvature over the free variables.
+    /// The factorized curvature of half of chi-squared over the free variables.
     factor: Factor,
 }
 
@@ -52,9 +52,9 @@ impl Best {
 #[derive(Clone)]
 enum Block {
     Free,
-    /// The compliances change by these amounts and stay at their constraint.
+    /// The compliances have been set to their constraint: each changes by this amount \[rad/(N m)\].
     Held(Vec<f64>),
-    /// The compliances are the entries of `L Lᵀ`.
+    /// The compliances are those of a frame: the entries of the matrix `L Lᵀ`, with this `L`.
     Frame(Matrix3<f64>),
 }
 
@@ -120,7 +120,7 @@ struct Parabola<'a> {
     gradient: DVector<f64>,
     numbers: usize,
     now: &'a [Vec<f64>],
-    /// For each effect, the range of its compliances among the numbers.
+    /// For each effect, the range of indices of its compliances among the numbers of the model.
     ranges: Vec<Range<usize>>,
     blocks: Vec<Block>,
 }

@@ -140,7 +140,8 @@ pub(crate) fn squares(s: &DMatrix<f64>, z: &nalgebra::DVector<f64>) -> (f64, f64
 struct Asker<'a> {
     found: &'a Positions,
     questions: Vec<Question>,
-    /// For each joint the index of its candidate about its axis, and the largest torque on it \[N m\].
+    /// For each joint, the index of the candidate that is a compliance about its axis, and the largest torque on the
+    /// joint \[N m\].
     joints: Vec<(usize, f64)>,
     /// For each driven joint, the index of the candidate that is its compliance about the axis.
     driven: Vec<usize>,

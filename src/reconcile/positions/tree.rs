@@ -9,13 +9,13 @@ use crate::reconcile::readings::campaign::Campaign;
 pub(crate) struct Tree {
     /// Joints and links of all arms. The angle of a joint refers to the pose of the whole campaign.
     pub pieces: Vec<Piece>,
-    /// Indices of the pieces of each arm, base to tip.
+    /// For each arm, the indices in `pieces` of its joints and links, base to tip.
     pub arms: Vec<Vec<usize>>,
     /// Number of joints and links, counted from the base, that all arms have in common.
     pub trunk: usize,
     /// Names of the driven joints, in the order of their angles in a pose.
     pub driven: Vec<String>,
-    /// For each arm, the indices of its driven joints in a pose.
+    /// For each arm, the indices of its driven joints in the pose of the whole campaign.
     poses: Vec<Vec<usize>>,
 }
 

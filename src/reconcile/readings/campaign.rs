@@ -25,7 +25,7 @@ use std::path::{Path, PathBuf};
 pub struct Tolerance {
     /// Limit of the deviation of each joint's stiffness. The joints deviate independently.
     pub joint_stiffness: f64,
-    /// Limit of the common factor on the moduli E and G of each material.
+    /// Limit of the deviation of the common factor on the moduli E and G of each material.
     pub modulus: f64,
     /// Limit of the deviation of each joint's mass. The joints deviate independently.
     pub joint_mass: f64,
@@ -67,7 +67,7 @@ impl PositionsSpec {
 pub struct Statement {
     /// Name of the campaign.
     pub name: String,
-    /// Tolerance of the parts.
+    /// Tolerance of the parts, within which they are calibrated.
     pub tolerance: Tolerance,
     /// Density of the payloads, for their buoyancy \[kg/m³\].
     pub payload_density_kg_m3: f64,
@@ -77,7 +77,7 @@ pub struct Statement {
     pub effects: Option<Vec<String>>,
     /// What is unknown in absolute positions, and the declared sessions.
     pub positions: PositionsSpec,
-    /// Records against time.
+    /// What is stated about each record against time.
     pub records: Vec<RecordSpec>,
     arm_file: String,
     /// Files of other arms on the same trunk, in the folder of `campaign.json`.

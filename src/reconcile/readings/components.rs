@@ -21,10 +21,10 @@ pub struct Component {
 /// The components x, y and z of a vector; `None` for a component that was not measured.
 pub type Components = [Option<Component>; 3];
 
-/// Smallest number of rows from which equal readings are suspicious.
+/// Smallest number of rows from which equal readings of a component are suspicious.
 pub(crate) const FEWEST_ALIKE: usize = 4;
 
-/// Names of the columns that hold the components of a vector.
+/// Names of the columns that hold the components of a vector and their standard deviations.
 pub(crate) struct Names {
     /// Names of the columns of the values.
     pub values: [&'static str; 3],
@@ -32,18 +32,18 @@ pub(crate) struct Names {
     pub sigmas: [&'static str; 3],
 }
 
-/// Columns of displacements.
+/// Names of the columns of tip displacements.
 pub(crate) const DISPLACEMENT: Names =
     Names { values: ["dx_mm", "dy_mm", "dz_mm"], sigmas: ["sigma_dx_mm", "sigma_dy_mm", "sigma_dz_mm"] };
 
-/// Columns of positions.
+/// Names of the columns of absolute positions.
 pub(crate) const POSITION: Names =
     Names { values: ["x_mm", "y_mm", "z_mm"], sigmas: ["sigma_x_mm", "sigma_y_mm", "sigma_z_mm"] };
 
 /// Name of the column with one standard deviation for all components of a row.
 const COMMON_SIGMA: &str = "sigma_mm";
 
-/// Indices of the columns of a vector in a table.
+/// Indices of the columns of a vector's components in a table of readings.
 pub(crate) struct VectorColumns<'a> {
     table: &'a Table,
     names: &'a Names,

@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, Vector3};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
-/// One placement of the arm, and of the points on it.
+/// Where the arm stands in the instrument's frame, and where the points sit on it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stand {
     /// Rotation of the arm's base frame in the instrument's frame.

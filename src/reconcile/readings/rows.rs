@@ -28,7 +28,7 @@ pub struct StaticRow {
     pub temperature_c: Option<f64>,
     /// Force at the tip, in the directions of the world \[N\].
     pub force_n: Vector3<f64>,
-    /// Branch of the loading cycle, as the operator labelled it; may be empty.
+    /// Branch of the loading cycle (loading or unloading), as the operator labelled it; may be empty.
     pub branch: String,
     /// Components of the displacement from the reference state; `None` for those that were not measured.
     pub measured: Components,
@@ -62,7 +62,7 @@ pub struct WindupRow {
     pub joint: String,
     /// Torque on the joint \[N m\].
     pub torque_nm: f64,
-    /// Branch of the torque cycle, as the operator labelled it; may be empty.
+    /// Branch of the torque cycle (loading or unloading), as the operator labelled it; may be empty.
     pub branch: String,
     /// Twist of the joint \[arcmin\].
     pub windup_arcmin: f64,

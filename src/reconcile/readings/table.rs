@@ -12,7 +12,7 @@ use std::path::Path;
 /// First character of a comment line.
 const COMMENT: u8 = b'#';
 
-/// Columns whose cells are names.
+/// Columns whose cells are names and not numbers.
 const NAMES: [&str; 3] = ["test", "joint", "point"];
 
 /// A CSV file or a sheet of a spreadsheet, whose first row names the columns.
@@ -20,7 +20,7 @@ const NAMES: [&str; 3] = ["test", "joint", "point"];
 pub struct Table {
     /// Path of the file as given; for a spreadsheet with the name of the sheet.
     pub file: String,
-    /// Names of the columns, in the terms of this program.
+    /// Names of the columns, by which this program knows them.
     pub columns: Vec<String>,
     /// Cells of each row as text.
     pub rows: Vec<Vec<String>>,

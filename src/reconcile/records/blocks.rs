@@ -29,7 +29,7 @@ pub(crate) struct Fitted {
     pub columns: Vec<usize>,
     /// Coefficient of each column, fitted to all blocks, in the unit of the target per unit of the column.
     pub values: Vec<f64>,
-    /// Coefficients with one block left out: one list for each block.
+    /// Coefficients fitted with one block of time left out: one list for each block.
     without: Vec<Vec<f64>>,
     /// Sum of squared errors of each block, in squared units of the target. The block is predicted by the model that
     /// was fitted without it.

@@ -18,7 +18,7 @@ use crate::reconcile::model::estimate::Estimate;
 const BREAKS: [f64; 11] = [0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 /// Closing torques T_c of lost motion that are tried, as fractions of the largest spring torque.
 const CLOSING: [f64; 6] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.4];
-/// Half widths of the hysteresis in torque that are tried, as fractions of the largest spring torque.
+/// Half widths of the hysteresis, as torques, that are tried, as fractions of the largest spring torque.
 const PLAYS: [f64; 8] = [0.005, 0.01, 0.02, 0.04, 0.07, 0.12, 0.2, 0.3];
 /// A law is accepted only if it predicts held-out blocks better by this many standard errors. More is asked than for
 /// a single given column, because the law is the best of a whole grid.
@@ -26,9 +26,9 @@ const CLEARLY_OF_GRID: f64 = 3.0;
 /// A law is accepted only if it changes the twist by more than this fraction of the twist's root mean square. A
 /// smaller change may come from the simplicity of the model of friction.
 const MATERIAL: f64 = 0.02;
-/// Number of Gauss-Newton steps by which the torques of the laws are improved.
+/// Number of Gauss-Newton steps by which the torques at which the laws change are improved.
 const ROUNDS: usize = 5;
-/// Largest change of a law's torque in one step, as a fraction of this torque.
+/// Largest change of a torque of a law in one Gauss-Newton step, as a fraction of this torque.
 const LARGEST_STEP: f64 = 0.3;
 
 /// A torsion law, with the torques at which it changes \[N m\].
@@ -36,9 +36,9 @@ const LARGEST_STEP: f64 = 0.3;
 pub(crate) enum Law {
     /// Three segments with the break points T1 and T2, `T1 < T2`.
     Segments(f64, f64),
-    /// Lost motion with the torque at which it closes.
+    /// Lost motion (clearance) with the torque at which it closes.
     LostMotion(f64),
-    /// Hysteresis with its half width in torque.
+    /// Hysteresis with its half width, as a torque.
     Play(f64),
 }
 
@@ -50,9 +50,9 @@ pub(crate) struct Curve {
     pub refused: Vec<(&'static str, &'static str)>,
     /// Name of a law that held-out blocks cannot tell from one that was chosen; `None` if there is none.
     pub competing: Option<&'static str>,
-    /// Fit with the columns of all laws, derivatives with respect to their torques included.
+    /// Fit of the twist with the columns of all laws, including the derivatives with respect to their torques.
     pub fitted: Fitted,
-    /// Root mean square error on held-out blocks after each law was added \[rad\], with the law's name.
+    /// Root mean square error of the twist on held-out blocks after each law was added \[rad\], with the law's name.
     pub steps: Vec<(String, f64)>,
     first: usize,
     /// Torque of the spring, one per row \[N m\].

@@ -117,7 +117,7 @@ pub struct JointRecord {
     pub after_rad: f64,
     /// All effects that were looked for, found or not.
     pub stated: Vec<Stated>,
-    /// Error on held-out blocks after each step of the fit, in the order of the steps.
+    /// Error of the twist on held-out blocks after each step of the fit, in the order of the steps.
     pub steps: Vec<Step>,
     /// Twist against torque, thinned for the picture.
     pub trace: Vec<Traced>,

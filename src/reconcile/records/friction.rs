@@ -25,17 +25,18 @@ const SLIGHTLY: f64 = 1.0;
 /// A row enters the balance of torques only if the magnitude of the smoothed sign of the speed differs from one by at
 /// most this. Near a reversal the friction is not known.
 const TURNING: f64 = 0.5;
-/// Number of columns that the motion of one other joint adds.
+/// Number of columns that the motion of one other joint adds to the balance of torques.
 const OTHER: usize = 8;
 
-/// Friction of a joint, with 95 % intervals.
+/// Friction of a joint on the output of its gear, with 95 % intervals.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Friction {
     /// Coulomb friction \[N m\].
     pub coulomb_nm: Estimate,
     /// Viscous friction \[N m s/rad\].
     pub viscous_nms_per_rad: Estimate,
-    /// Friction for each newton metre of load \[-\]; `None` if held-out blocks are not better with it.
+    /// Friction torque for each newton metre of load torque \[-\]; `None` if held-out blocks are not predicted better
+    /// with it.
     pub load_part: Option<Estimate>,
     /// Whether the model predicts held-out blocks clearly better with Coulomb friction (first) and with viscous
     /// friction (second).
@@ -43,7 +44,7 @@ pub(crate) struct Friction {
     /// Whether the viscous friction at the largest speed is below the largest torque of the motor. If it is not, a
     /// part of the load was taken for friction.
     pub is_possible: bool,
-    /// Fraction of the torque's variance that neither load nor friction explains.
+    /// Fraction of the variance of the motor's torque that neither load nor friction explains.
     pub left_share: f64,
 }
 

@@ -16,7 +16,7 @@ use crate::reconcile::model::estimate::Estimate;
 const BLOCKS: usize = 30;
 /// Smallest number of blocks of time into which the records are divided.
 const FEWEST_BLOCKS: usize = 10;
-/// A block lasts at least this many times the correlation time of the errors.
+/// A block of time lasts at least this many times the correlation time of the errors.
 const LONG_BLOCK: f64 = 3.0;
 /// The compliance is identified if at least this fraction of the torque's variance is not explained by the joint's
 /// own acceleration and friction. This remainder is what tells the compliance from rotor inertia and friction. See
@@ -27,19 +27,20 @@ const OWN_SHARE: f64 = 0.1;
 const WELL_BALANCED: f64 = 20.0;
 /// A compliance is not identified if the upper end of its interval is more than this many times the lower end.
 const WIDE: f64 = 5.0;
-/// Smallest half width of an interval, as a fraction of the value: the scale factors of sensors are not known better.
+/// Smallest half width of the interval of a compliance, as a fraction of the value, because the scale factors of
+/// sensors are not known better.
 const LEAST_PART: f64 = 5e-3;
-/// Smallest half width of an interval of friction, as a fraction of the value: the friction of a joint is never
-/// constant.
+/// Smallest half width of an interval of friction, as a fraction of the value, because the friction of a joint is
+/// never constant.
 const LEAST_FRICTION_PART: f64 = 0.01;
-/// Smallest half width of an interval of a parameter of a torsion law, as a fraction of the value: no gear follows a
-/// law exactly.
+/// Smallest half width of an interval of a parameter of a torsion law, as a fraction of the value, because no gear
+/// follows a law exactly.
 const LEAST_LAW_PART: f64 = 0.05;
 /// Smallest half width of the interval of a time shift, as a fraction of the time between rows.
 const LEAST_STEP_PART: f64 = 0.01;
 /// Approximate number of points of a picture.
 const POINTS: usize = 600;
-/// Range of the joint's angle below which errors once and twice a turn cannot be told apart \[rad\].
+/// Smallest range of the joint's angle at which transmission errors once and twice a turn can be told apart \[rad\].
 const TELLING_RANGE_RAD: f64 = 2.0;
 
 /// Judges one joint from all records. `None` if no record has the angles on both sides of its gear, or a fit is

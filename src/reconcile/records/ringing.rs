@@ -23,7 +23,7 @@ const FEWEST_PERIODS: f64 = 4.0;
 const HIGHEST_PART: f64 = 0.2;
 /// The oscillation must explain at least this fraction of the sum of squares that the straight line leaves.
 const TELLING: f64 = 0.6;
-/// Smallest amplitude of the oscillation, as a multiple of the noise of a row.
+/// Smallest amplitude of the oscillation of the twist, as a multiple of the noise of the twist from row to row.
 const LOUD: f64 = 4.0;
 /// Largest number of Gauss-Newton steps over frequency and decay rate.
 const ROUNDS: usize = 30;

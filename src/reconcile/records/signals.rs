@@ -14,14 +14,14 @@ const RESTLESS: f64 = 1.2;
 /// Smallest number of blocks of a record, so that the result for a record does not depend on one block.
 const FEWEST_BLOCKS: usize = 4;
 
-/// One row of one record, with smoothed values.
+/// One row of one record for one joint, with smoothed values (sample).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sample {
-    /// Number of the record.
+    /// Index of the record among those that have the joint.
     pub record: usize,
-    /// Number of the row in the record.
+    /// Index of the row in the record.
     pub row: usize,
-    /// Number of the block of time, counted over all records.
+    /// Index of the block of time to which the row belongs, counted over all records.
     pub block: usize,
     /// Angle of the motor at the output \[rad\].
     pub angle_rad: f64,
@@ -64,7 +64,7 @@ pub(crate) struct JointRows {
     pub blocks: usize,
     /// Usual time between rows of the first record \[s\].
     pub step_s: f64,
-    /// Root mean squares of the accelerations of motor and link \[rad/s²\].
+    /// Root mean squares, over all rows, of the accelerations of motor (first) and link (second) \[rad/s²\].
     accelerations_rad_s2: [f64; 2],
     records: Vec<Signals>,
 }

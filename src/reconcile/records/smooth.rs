@@ -6,12 +6,12 @@
 
 use nalgebra::{Matrix4, Vector4};
 
-/// Half widths of the window that are tried \[rows\].
+/// Half widths of the smoothing window that are tried \[rows\].
 const HALF_WIDTHS: [usize; 9] = [3, 4, 6, 8, 12, 16, 24, 32, 48];
 /// Largest misfit of a window (root mean square), as a multiple of the signal's noise. At this value the distortion
 /// by the window is a third of the noise.
 const STILL_NOISE: f64 = 1.05;
-/// Two rows are separated by a gap if their times differ by more than this many usual steps.
+/// Two neighbouring rows are separated by a gap if their times differ by more than this many usual steps.
 const GAP_STEPS: f64 = 2.5;
 /// Sum of the squares of the weights of a fourth difference (1, -4, 6, -4, 1).
 const FOURTH_DIFFERENCE_VARIANCE: f64 = 70.0;

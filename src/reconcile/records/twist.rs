@@ -40,7 +40,7 @@ const ROUNDS: usize = 12;
 /// Indices of the columns of the model of the twist. The offsets of the records, one per record, come first.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Places {
-    /// Number of records, which is the number of offsets.
+    /// Number of records of the joint. Each has an offset of its own.
     pub records: usize,
 }
 
@@ -161,7 +161,7 @@ pub(crate) struct TwistModel<'a> {
     pub sigma_rad: f64,
     /// Groups of columns that the model contains.
     pub groups: Vec<Group>,
-    /// Fit of the model with these groups.
+    /// Fit of the twist with the columns of these groups.
     pub fitted: Fitted,
     /// Number of rows that carry as much information as one independent reading, because errors are autocorrelated.
     pub rows_per_reading: f64,

@@ -20,7 +20,7 @@ pub(crate) struct Wave {
     /// Amplitudes of sine and cosine once a turn, then twice a turn, at the output \[rad\]. All zero if there is no
     /// error.
     waves_rad: [f64; 4],
-    /// Whether the error is in the motor's signal. If not, it is in the link's.
+    /// Whether the error is in the motor's signal. If not, it is in the link's signal.
     is_of_motor: bool,
 }
 

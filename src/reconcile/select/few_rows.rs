@@ -21,7 +21,7 @@ use crate::reconcile::model::parameters::{FreeParameter, Model};
 use crate::reconcile::readings::campaign::Campaign;
 use rayon::prelude::*;
 
-/// Smallest number of rows from which one model can be chosen.
+/// Smallest number of rows of displacements, frequencies and bench readings from which one model can be chosen.
 pub(crate) const FEWEST_ROWS: usize = 11;
 /// Largest number of fits for sets of the same number of effects. If more would be needed, only the most promising
 /// smaller sets are extended.
@@ -39,7 +39,7 @@ const MATERIAL: f64 = 0.02;
 const WIDE: f64 = 1.2;
 /// Factors by which a stiffness is multiplied, and then divided, to find its possible range.
 const FACTORS: [f64; 9] = [1.1, 1.2, 1.4, 1.7, 2.0, 3.0, 4.0, 6.0, 10.0];
-/// Largest number of sets for which the stiffnesses are varied.
+/// Largest number of explaining sets, the best first, for which the stiffnesses are varied.
 const MOST_PROFILES: usize = 6;
 
 /// Fits every small set of effects of the campaign. In the result, `others` holds the sets that explain the readings,

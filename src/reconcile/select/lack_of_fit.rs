@@ -36,9 +36,11 @@ const MATERIAL: f64 = 2.5;
 /// If a structure of the residuals is suspected, the model fails the test already above this chi-squared per degree
 /// of freedom.
 const SUSPICIOUS: f64 = 1.8;
-/// A structure with a probability below this, after correction for the number of tests, is no chance result.
+/// A structure of the residuals whose probability by chance is below this, after correction for the number of tests,
+/// is no chance result.
 const CHANCE: f64 = 1e-3;
-/// A structure with a probability below this is suspected.
+/// A structure of the residuals whose probability by chance is below this, after correction for the number of tests,
+/// is suspected.
 const SUSPECTED: f64 = 0.02;
 /// Largest number of structures that are described in words.
 const TOLD: usize = 3;

@@ -18,11 +18,11 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::cell::OnceCell;
 
-/// Smallest rise of the score for which a second or third effect is accepted. It is above zero, because two missing
-/// effects are less probable than one.
+/// Smallest rise of the score \[ln of the evidence\] for which a second or third effect is accepted. It is above
+/// zero, because two missing effects are less probable than one.
 const WORTH: f64 = 3.0;
-/// Smallest rise of the score for which the first effect is accepted. It is zero, because a missing effect is as
-/// probable as none.
+/// Smallest rise of the score \[ln of the evidence\] for which the first effect is accepted. It is zero, because a
+/// missing effect is as probable as none.
 const FIRST_WORTH: f64 = 0.0;
 /// The listed alternatives to an effect are as many as are needed so that the effect and they together contain the
 /// right one with this probability.
@@ -56,7 +56,7 @@ const FULL_FITS: usize = 7;
 
 /// The result of a search for effects.
 pub(crate) struct Selection {
-    /// The best model.
+    /// The model with the best score that the search accepted.
     pub best: Scored,
     /// The baseline: calibration and no effect.
     pub baseline: Scored,
@@ -66,7 +66,7 @@ pub(crate) struct Selection {
     pub given_up: bool,
 }
 
-/// A model, linearized at a point.
+/// A model with its predictions at one point, and the derivatives of the predictions there.
 struct Linearized {
     here: Point,
     slopes: DMatrix<f64>,

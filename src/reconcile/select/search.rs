@@ -18,7 +18,7 @@ const RULED_OUT: f64 = 14.0;
 /// deviations are too small.
 const BEYOND_HOPE: f64 = 3.0;
 
-/// Everything that a search needs.
+/// What a search for effects needs: campaign, candidates and weights.
 pub(crate) struct Search<'a> {
     /// The campaign with its readings.
     pub campaign: &'a Campaign,
@@ -42,7 +42,7 @@ pub(crate) struct Scored {
     /// Score: the logarithm of the evidence less the price of the effects. The price of an effect is the logarithm of
     /// the number of places where an effect could be named, each weighted by its prior odds.
     pub score: f64,
-    /// The objective `Σ ρ(r) + Σ u²`.
+    /// Value of the objective `Σ ρ(r) + Σ u²` (Huber's loss and priors) at the fit.
     pub objective: f64,
 }
 

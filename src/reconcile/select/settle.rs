@@ -23,7 +23,7 @@ const SLIP: f64 = 7.0;
 /// of the reading\].
 const INEXACT: f64 = 0.5;
 
-/// Largest number of times that the trial shapes are replaced by those of the best model.
+/// Largest number of times that the trial shapes of the modes are replaced by those of the best model.
 const SHAPES: usize = 2;
 
 /// Largest number of times that the worst readings are left out to see whether calibration alone fits the other
@@ -34,7 +34,7 @@ const LOOKS: usize = 4;
 pub(crate) struct Settled {
     /// The models that were fitted, and the best one.
     pub selection: Selection,
-    /// Quality of the readings.
+    /// Quality of the readings: gross errors, and factors on the declared standard deviations.
     pub noise: Noise,
     /// Sentences on modes that are missing from lists or numbered out of order.
     pub remarks: Vec<String>,
@@ -95,13 +95,13 @@ struct Settling<'a> {
     candidates: &'a [Candidate],
 }
 
-/// One search, with the noise that it assumed and found.
+/// One search for effects, with the gross errors and standard deviations that it assumed and found.
 struct Round {
     /// The gross errors and standard deviations that the search assumed.
     noise: Noise,
     selection: Selection,
     coefficients: Coefficients,
-    /// The noise according to the residuals of the best model.
+    /// The gross errors and standard deviations that the residuals of the best model show.
     judged: Noise,
     /// Whether the best model fits well enough to be the explanation.
     hopeful: bool,

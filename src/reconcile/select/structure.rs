@@ -5,7 +5,7 @@ use crate::arm::effect::channel::Channel;
 /// One test of the residuals for a structure, and its result.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Structure {
-    /// The channel; `None` if the test is about all channels together.
+    /// The channel whose residuals are tested; `None` if the test is about all channels together.
     pub channel: Option<Channel>,
     /// The quantity that the residuals would follow, in words.
     pub follows: String,

@@ -27,12 +27,12 @@ const SETTLED: f64 = 0.01;
 /// as much.
 const BETTER: f64 = 2.0;
 
-/// A competing model: the fitted model with a law without a name in it.
+/// A competing model: a fitted model to which a law without a name was added.
 struct Competitor {
     what: String,
     numbers: usize,
     objective: f64,
-    /// Natural logarithm of the evidence.
+    /// Natural logarithm of the evidence of the model with the law.
     evidence: f64,
 }
 

@@ -22,7 +22,7 @@ const WORTHWHILE: f64 = 0.02;
 pub struct Row {
     /// Description of the model in words.
     pub model: String,
-    /// Root mean square of the model's residuals on held-out poses \[standard deviations\].
+    /// Root mean square of the residuals that the model leaves on held-out poses \[standard deviations\].
     pub kept_out_rms_sigma: f64,
     /// Whether this model was chosen for `arm.corrected.json`.
     pub is_written: bool,

@@ -24,7 +24,7 @@ pub(crate) struct Question<'a> {
     pub best: (String, Subject),
     /// The competing models: for each its name, and the arm under test with its effects.
     pub competitors: Vec<(String, Subject)>,
-    /// The pose in which the best model has its largest error \[deg, mm\]; `None` if there is none.
+    /// The pose in which the best model has its largest residuals \[deg, mm\]; `None` if there is none.
     pub residuals: Option<Vec<f64>>,
     /// The verdict on the readings so far.
     pub verdict: Verdict,
@@ -33,7 +33,7 @@ pub(crate) struct Question<'a> {
 const STATIC_POSES: usize = 24;
 const MODAL_POSES: usize = 4;
 const PROPOSALS: usize = 4;
-/// Separation of two models that suffices to decide between them \[standard deviations\].
+/// Difference of the predictions of two models that suffices to decide between them \[standard deviations\].
 pub(crate) const ENOUGH: f64 = 4.0;
 /// A test in which the predictions of two models differ by less than this needs too many readings to separate them
 /// \[standard deviations\].

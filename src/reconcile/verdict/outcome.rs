@@ -88,7 +88,7 @@ pub struct NextTest {
     pub readings_needed: usize,
 }
 
-/// One measured value, and the values that the models before and after predict.
+/// One measured value, and what the models without and with effects predict for it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReadingResidual {
     /// Channel of the reading.
@@ -109,8 +109,8 @@ pub struct ReadingResidual {
     pub before: f64,
     /// Prediction of the model with the effects, in the unit of the quantity.
     pub after: f64,
-    /// Residual with the pose held out of the fit \[declared standard deviations\]; `None` if the reading is never held
-    /// out.
+    /// Residual, measured minus predicted with the pose held out of the fit \[declared standard deviations\]; `None`
+    /// if the reading is never held out.
     pub held_out: Option<f64>,
     /// Whether the row was taken as a gross error and left out of the fit.
     pub gross: bool,
@@ -161,7 +161,7 @@ pub struct Outcome {
     pub models: Vec<Row>,
     /// Root mean square residuals on held-out poses without and with the effects; `None` if nothing was held out.
     pub held_out: Option<HeldOut>,
-    /// Residuals of each part of the readings, which show where the discrepancy is.
+    /// Root mean square residuals of each part of the readings, which show where the discrepancy is.
     pub located: Vec<Located>,
     /// Proposed tests, the best first.
     pub next_tests: Vec<NextTest>,
@@ -171,7 +171,7 @@ pub struct Outcome {
     pub lack_of_fit: Option<LackOfFit>,
     /// Calibrated properties of the arm.
     pub calibrated: Vec<Calibrated>,
-    /// The models that were compared.
+    /// The models that were compared, each with its score.
     pub evidence: Vec<Evidence>,
     /// Absolute positions: the errors after each stage of the fit. Empty for other readings.
     pub stages: Vec<Stage>,

@@ -2,20 +2,20 @@
 
 use serde_json::{Value, json};
 
-/// Errors of positions at one stage of the fit.
+/// Errors of positions (distances of measured from predicted point) at one stage of the fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stage {
     /// The effect, or the group of calibrated numbers, that this stage added.
     pub added: String,
     /// Effects that the addition made unnecessary and that were dropped.
     pub dropped: Vec<String>,
-    /// Median error of the poses in the fit \[mm\].
+    /// Median position error of the poses in the fit \[mm\].
     pub fitted_median_mm: f64,
-    /// Median error of held-out poses \[mm\].
+    /// Median position error of held-out poses \[mm\].
     pub median_mm: f64,
-    /// Mean error of held-out poses \[mm\].
+    /// Mean position error of held-out poses \[mm\].
     pub mean_mm: f64,
-    /// Largest error of held-out poses \[mm\].
+    /// Largest position error of held-out poses \[mm\].
     pub max_mm: f64,
 }
 
