@@ -76,9 +76,9 @@ fn other_arms(files: &Files, statement: &Statement) -> Vec<PathBuf> {
     }
 }
 
-/// Reads the table of readings from `file`. Users may have columns with names of their own. These names come from the
-/// channel for which `campaign.json` names this file, or else from the channel all of whose stated columns the file
-/// has.
+/// Reads the table of readings from `file`. Users may give columns names of their own in `campaign.json`. The names
+/// stated for a channel are used if `campaign.json` names this file for the channel or, failing that, if the file has
+/// all of these columns.
 fn table(file: &Path, statement: &Statement) -> Result<Table, InputError> {
     let sources = Channel::ALL.map(|channel| statement.source(channel));
     let is_named = |source: &&Source| source.file.as_ref().is_some_and(|named| file.ends_with(named));

@@ -471,7 +471,7 @@ impl ModalTest {
 /// A basis of the trial shapes in which the matrix of strain energies is the unit matrix. In this basis the reduced
 /// problem is an ordinary symmetric eigenvalue problem.
 enum UnitStrains {
-    /// The Cholesky factor of the matrix of strain energies, whose inverse transpose is the basis.
+    /// The Cholesky factor of the matrix of strain energies. The basis is the inverse transpose of this factor.
     Factor(DMatrix<f64>),
     /// The basis itself, with fewer columns than trial shapes. It is needed if some shapes are linear combinations of
     /// others, as where few coordinates are compliant.

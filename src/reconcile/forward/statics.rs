@@ -88,7 +88,7 @@ pub struct StaticState {
     lifted_rad: Vec<[f64; 2]>,
     /// Torque on each joint by weight and springs without load \[N m\].
     dead_nm: Vec<f64>,
-    /// Memory for the torques `dead_nm` that other masses give \[N m\].
+    /// Memory in which the torques `dead_nm` are computed for other masses \[N m\].
     moved_dead_nm: Vec<f64>,
     /// Wrench of each load, about the world's origin.
     wrenches: Vec<Wrench>,

@@ -138,13 +138,13 @@ impl FreeParameter {
     }
 
     /// The value of `u` for an effect whose size is multiplied by `part`: the difference of `u` from its value for an
-    /// absent effect is multiplied. It is `u` itself if the parameter is no size.
+    /// absent effect is multiplied. It is `u` itself if the parameter does not say how large the effect is.
     pub(crate) fn scaled(&self, u: f64, part: f64) -> f64 {
         self.absent.map_or(u, |absent| absent + part * (u - absent))
     }
 
     /// Whether the interval `ends` of `u` contains the value at which the effect is absent; `None` if the parameter
-    /// is no size.
+    /// does not say how large the effect is.
     pub(crate) fn may_be_absent(&self, ends: &Interval) -> Option<bool> {
         let absent = self.absent?;
         Some(ends.low.is_none_or(|low| low <= absent) && ends.high.is_none_or(|high| high >= absent))
@@ -197,7 +197,7 @@ pub struct Candidate {
     pub(crate) numbers: Vec<Number>,
     /// Starting points of fits, each a list of `u`, one per free parameter.
     pub starts: Vec<Vec<f64>>,
-    /// Name and place of effects that are the same thing in this arm by construction.
+    /// Name and place of effects that have exactly the same consequences in this arm.
     pub twins: Vec<(String, String)>,
 }
 

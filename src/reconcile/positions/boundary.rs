@@ -25,8 +25,8 @@ impl Positions {
         self.sessions.iter().filter(|b| b.declared == declared).map(|b| (b.kind, b.first)).collect()
     }
 
-    /// Sum of the prices of all undeclared sessions \[ln of the likelihood\]. The price is the rise of the likelihood
-    /// that a session must bring to be kept.
+    /// Sum of the prices of all undeclared sessions \[ln of the likelihood\]. The price is the rise of the logarithm
+    /// of the likelihood that a session must bring to be kept.
     pub(super) fn sessions_price(&self) -> f64 {
         let kinds = self.kinds(true, true).len();
         let undeclared = self.sessions.iter().filter(|b| !b.declared);

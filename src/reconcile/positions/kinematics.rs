@@ -40,9 +40,10 @@ pub(crate) enum Number {
     /// Horizontal component of the unit vector of gravity \[-\]: index of the axis, x or y, of the level frame.
     Gravity(usize),
     /// Rotation of all points of a later session relative to the first session, about the base's origin \[rad\]:
-    /// session, instrument axis.
+    /// index of the session, instrument axis.
     SessionRotation(usize, usize),
-    /// Shift of all points of a later session relative to the first session \[m\]: session, instrument axis.
+    /// Shift of all points of a later session relative to the first session \[m\]: index of the session, instrument
+    /// axis.
     SessionPosition(usize, usize),
 }
 

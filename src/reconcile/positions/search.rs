@@ -122,8 +122,8 @@ impl Positions {
         effects.iter().map(|effect| self.price_of(*effect)).sum()
     }
 
-    /// Price of one candidate \[ln of the likelihood\]: the rise of the likelihood that it must bring to stay in the
-    /// model.
+    /// Price of one candidate \[ln of the likelihood\]: the rise of the logarithm of the likelihood that it must
+    /// bring to stay in the model.
     fn price_of(&self, candidate: usize) -> f64 {
         let springs = self.candidates.iter().zip(&self.considered);
         let places = springs.filter(|(c, considered)| **considered && c.play_nm.is_none()).count();

@@ -37,8 +37,8 @@ impl Positions {
         self.take_if_confirmed(campaign, next, format!("{EFFECT}@{}", self.tree.driven[joint]))
     }
 
-    /// Price of the transmission error of one joint \[ln of the likelihood\]: the rise of the likelihood that it must
-    /// bring to stay in the model.
+    /// Price of the transmission error of one joint \[ln of the likelihood\]: the rise of the logarithm of the
+    /// likelihood that it must bring to stay in the model.
     pub(crate) fn transmission_price(&self) -> f64 {
         self.price(numbers(0).count(), self.tree.driven.len())
     }

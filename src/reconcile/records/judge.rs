@@ -295,7 +295,8 @@ impl<'a> Judged<'a> {
     }
 
     /// Transmission error from peak to peak \[rad\], over the angles of the output from `low` to `high` \[rad\].
-    /// `columns` are those of sine and cosine, once and twice per turn, of `ratio` times the angle.
+    /// `columns` are the indices of sine and cosine, once and twice per turn, of the angle times `ratio` (1 for the
+    /// output, the gear ratio for the input).
     fn error_size(&self, columns: [usize; 4], low: f64, high: f64, ratio: f64) -> Estimate {
         const STEPS: usize = 60;
         self.model.fitted.estimate(|c| {

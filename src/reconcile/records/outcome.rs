@@ -320,8 +320,8 @@ fn located(joints: &[JointRecord]) -> Vec<Located> {
     all.into_iter().chain(each).collect()
 }
 
-/// Recommends one test for all joints whose compliance the records do not show, because the torque hardly varies by
-/// itself.
+/// Recommends one test for all joints whose compliance the records do not show, because their torque is nearly all
+/// acceleration and friction of the joint itself.
 fn next_tests(joints: &[JointRecord]) -> Vec<NextTest> {
     let blind = joints.iter().filter(|j| {
         j.of("compliance").is_some_and(|s: &Stated| s.words.starts_with("insufficient excitation"))

@@ -371,8 +371,8 @@ impl<'a> Search<'a> {
 
     /// The candidates that come closest to the readings when they are added to the model `base` at one of a few
     /// sizes, the closest first: index, parameters from which a full fit starts, and minus half of the objective.
-    /// They are needed if much is missing: a model that is linearized about the fit so far then does not predict the
-    /// effect of a candidate on the frequencies well enough.
+    /// They are needed if much is missing: a model that is linearized about `base` then does not predict the effect
+    /// of a candidate on the frequencies well enough.
     fn by_size(&self, base: &Scored) -> Vec<(usize, Vec<f64>, f64)> {
         let model = self.model(&base.effects);
         let here = evaluate(self.forward, &model, &base.u, self.weights);

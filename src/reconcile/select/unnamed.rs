@@ -92,9 +92,9 @@ pub(crate) fn instead(search: &Search, best: &Scored, baseline: &Fit) -> Option<
     fits.chain([(0.0, baseline)]).filter_map(better).max_by(|a, b| a.gain.total_cmp(&b.gain))
 }
 
-/// The competing model with the highest evidence, if this is higher than `evidence` by more than [`BETTER`], after a
-/// charge for having tried `places` places. In both, effects that are in the model anyway are not charged for their
-/// places.
+/// The best of the `competitors` by evidence, if its evidence, less a charge for having tried `places` places, is
+/// higher than `evidence` by more than [`BETTER`]; otherwise `None`. `evidence` belongs to the model with which they
+/// compete. Effects that stay in both are not charged for their places.
 fn best_of(competitors: Vec<Competitor>, evidence: f64, places: f64) -> Option<Better> {
     let gain = |r: &Competitor| r.evidence - libm::log(places) - evidence;
     let best = competitors.into_iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
