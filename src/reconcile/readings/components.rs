@@ -26,9 +26,9 @@ pub(crate) const FEWEST_ALIKE: usize = 4;
 
 /// Names of the columns that hold the components of a vector and their standard deviations.
 pub(crate) struct Names {
-    /// Names of the columns of the values.
+    /// Names of the columns with the measured values, for x, y and z.
     pub values: [&'static str; 3],
-    /// Names of the columns of the standard deviations.
+    /// Names of the columns with the standard deviations, for x, y and z.
     pub sigmas: [&'static str; 3],
 }
 

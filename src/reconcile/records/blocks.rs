@@ -22,7 +22,7 @@ pub(crate) struct Blocks {
     scale: Vec<f64>,
 }
 
-/// A model fitted to all blocks, and fitted again with each block left out.
+/// A linear model (coefficients of columns) fitted to all blocks of time, and fitted again with each block left out.
 #[derive(Debug, Clone)]
 pub(crate) struct Fitted {
     /// Indices of the columns that the model contains, in the order of `values`.
