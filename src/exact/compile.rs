@@ -68,16 +68,16 @@ impl<'c> Joints<'c> {
         Self { numbers, ..joints }
     }
 
-    /// Space that a link with this option leaves for the drive of the joint that carries it; unlimited if no joint asks
-    /// for it.
+    /// The space for gear and motor that the link at `place` leaves with this option, for the joint that carries the
+    /// link. Unlimited if no joint has to fit its drive into this link.
     fn room(&self, place: usize, option: usize) -> LinkRoom {
         let mut rooms = self.rooms[..place].iter().flatten();
         let room = rooms.find(|room| room.link_slot == self.numbers[place]);
         room.and_then(|room| room.rooms.get(option)).copied().unwrap_or(LinkRoom::ANY)
     }
 
-    /// Lever along the axis from the bearing of the next joint inboard to the link with this option \[m\]; 0 if no
-    /// bearing is checked there.
+    /// The lever that the link at `place` has with this option \[m\]: the distance along the axis from the bearing of
+    /// the next joint inboard to the link. 0 if no bearing is checked there.
     fn lever_m(&self, place: usize, option: usize) -> f64 {
         let inboard = place.checked_sub(1).and_then(|inboard| self.levers[inboard].as_ref());
         inboard.and_then(|lever| lever.lever_m.get(option)).copied().unwrap_or_default()
@@ -85,8 +85,8 @@ impl<'c> Joints<'c> {
 }
 
 impl JointNeeds {
-    /// What a compiled pose needs to know about a joint with this slot. `reach_m` is the distance of the tip from the
-    /// joint's axis \[m\], from which the acceleration follows.
+    /// What a compiled pose needs to know about `joint`, whose drives are in `slot`. `reach_m` is the distance of the
+    /// tip from the joint's axis \[m\]; the angular acceleration follows from it and the tip's acceleration.
     fn of(space: &DesignSpace, joint: &SpaceJoint, reach_m: f64, slot: &Slot) -> Self {
         let motion = joint.motion(&space.motion, reach_m);
         let of_gear = Self { acceleration_rad_s2: motion.acceleration_rad_s2, ..Self::default() };
@@ -102,8 +102,9 @@ impl JointNeeds {
 }
 
 impl<'c> Problem<'c> {
-    /// Compiles a space with those link options for which `takes` is true. `ties` tells whether drives of equal mass,
-    /// torsion curve and bearing stiffness are one option. `None` if some level has no option.
+    /// Prepares a space for the exact search, with only those link options for which `takes` is true. `ties` tells
+    /// whether drives of equal mass, torsion curve and bearing stiffness become one option. `None` if some level
+    /// (choice) has no option.
     pub(super) fn new(
         space: &'c DesignSpace,
         catalogs: &'c Catalogs,
@@ -203,8 +204,9 @@ impl<'c> Problem<'c> {
         }
     }
 
-    /// Compiles a link of the chain. For an option, `leaves` gives the lever from the joint inboard \[m\] and the space
-    /// that the option leaves for the drive of the joint that carries it. `None` if no option is admitted.
+    /// Compiles a link of the chain with the options for which `takes` is true. For the index of an option, `leaves`
+    /// returns the lever from the joint inboard \[m\] and the space that the link leaves for the drive of this joint.
+    /// `None` if no option is admitted.
     fn link(
         &mut self,
         piece: &'c SpacePiece,
@@ -275,8 +277,8 @@ impl<'c> Problem<'c> {
         0..size as u32
     }
 
-    /// The rays of a joint: fixed proportions of static torque \[N m\] and inertia \[kg m²\], around the proportion
-    /// that the payload alone causes.
+    /// The rays of a joint, which test whether drives can carry its load: fixed proportions of static torque \[N m\]
+    /// and inertia \[kg m²\], around the proportion that the payload alone causes.
     fn rays(&self, piece: usize, motion: &JointMotion) -> Rays {
         let (mut static_nm, mut inertia_kgm2) = (0.0f64, 0.0f64);
         for pose in self.poses.iter().filter(|pose| pose.sizing) {
@@ -317,8 +319,9 @@ fn piece_numbers(space: &DesignSpace) -> Vec<usize> {
     numbers
 }
 
-/// The box of a single drive. If `tilts`, some drive of this joint has a bearing that tilts, and then no bearing of the
-/// joint is taken as perfectly rigid.
+/// The box of the single drive with this index. `tilts` tells whether the bearing of some drive of the joint tilts. If
+/// so, a bearing without tilt gets a very small compliance instead of none, so that all drives of the joint have the
+/// same coordinates.
 fn drive_box(sized: &SizedJoint, index: u32, rays: &Rays, tilts: bool) -> DriveBox {
     let index = index as usize;
     let tilt_rad_per_nm = if tilts { sized.tilts_rad_per_nm[index].max(RIGID_RAD_PER_NM) } else { 0.0 };

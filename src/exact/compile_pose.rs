@@ -83,9 +83,10 @@ impl Pose {
         pose
     }
 
-    /// Goes inward from the tip and writes the rows of all coordinates. The wrench of everything outboard is a linear
-    /// function of the weights at every step. `joints` holds the needs of each joint and `springs` the wrench of
-    /// springs, each with the number of the piece on which it acts.
+    /// Writes the rows of this pose: for each strain coordinate, its generalized force as a linear function of the
+    /// weights outboard. The function goes inward from the tip and adds each piece to the wrench of everything
+    /// outboard. `joints` holds the needs of each joint and `springs` the wrench of each spring, both with the number
+    /// of the piece at which they act.
     fn compile(
         &mut self,
         space: &DesignSpace,
@@ -179,8 +180,8 @@ impl Pose {
 }
 
 /// One layer of the chain at its place in the pose. `tilts` tells whether the bearing of a joint tilts; `pulls` are the
-/// loads of springs on a tube. `None` for the tilt springs of a gear's bearing, because these tilts are coordinates of
-/// the joint.
+/// loads of springs on a tube; `at_m` and `rotation` are the place and the attitude of the layer. `None` for the tilt
+/// springs of a gear's bearing, because these tilts are coordinates of the joint.
 fn posed(
     space: &DesignSpace,
     water: Option<Water>,
@@ -318,7 +319,8 @@ impl Pulls {
 }
 
 impl TubeForms {
-    /// Integrates the products of the displacement fields along the tube.
+    /// Prepares the inertia matrices of the tube by integrating the products of its displacement fields along its
+    /// length.
     fn new(beam: &PreparedBeam) -> Self {
         let n = 6 + COORDINATES;
         let mut forms = vec![DMatrix::<f64>::zeros(n, n); 6];
@@ -401,7 +403,8 @@ struct Outboard {
     per_n: Vec<Wrench>,
     /// Inertia of the payload and of given bodies about the world's origin.
     fixed_inertia: Matrix6<f64>,
-    /// The value of `fixed_inertia` outboard of each piece, tip first.
+    /// Sum of `fixed_inertia` as it was when each piece was added: the inertia of payload and given bodies outboard of
+    /// this piece, tip first.
     fixed_inertia_of: Vec<Matrix6<f64>>,
     /// Inertia of each piece about the world's origin per unit of each line inertia, tip first.
     inertia: Vec<[Matrix6<f64>; INERTIAS]>,
@@ -434,8 +437,9 @@ impl Outboard {
         self.inertia.push(inertia);
     }
 
-    /// The row of a coordinate whose unit moves everything outboard by `twist`. `own_per_n` is the force per newton of
-    /// the weight of the coordinate's own piece.
+    /// The row of a strain coordinate: the force on it and the tip's displacement by it. A unit of the coordinate moves
+    /// everything outboard by the kinematic vector `twist`. `own_per_n` is the force on the coordinate per newton of
+    /// the weight of the piece to which it belongs.
     fn row(
         &self,
         piece: usize,
@@ -450,7 +454,8 @@ impl Outboard {
         Row { piece, coordinate, fixed: twist.dot(&self.fixed), per_n, tip_m, tip_m_per_unit: tip_m.norm() }
     }
 
-    /// The inertia of everything outboard about a joint's axis, for a joint with this unit twist.
+    /// The inertia of everything outboard about a joint's axis \[kg m²\], as a linear function of the line inertias.
+    /// `twist` is the motion per radian of the joint.
     fn inertia_row(&self, twist: &Twist) -> InertiaRow {
         let about = |m: &Matrix6<f64>| twist.dot(&(m * twist)).max(0.0);
         InertiaRow {
@@ -459,7 +464,8 @@ impl Outboard {
         }
     }
 
-    /// Axial force \[N\], moments about y and z and torsion \[N m\] on the section of a tube at a point.
+    /// The loads on the section of a tube at the point `at_m`, as linear functions of the weights: axial force \[N\],
+    /// moments about y and z, and torsion \[N m\].
     fn stress(&self, piece: usize, tube: &PosedTube, at_m: &Vector3<f64>) -> StressRow {
         let local = |wrench: &Wrench| {
             let force = tube.frame.tr_mul(&linear(wrench));
@@ -473,7 +479,7 @@ impl Outboard {
 }
 
 impl Row {
-    /// Largest magnitude among the fixed force and the coefficients of the weights.
+    /// Largest magnitude among the constant part of this row's force and its coefficients per newton.
     fn largest(&self) -> f64 {
         self.per_n.iter().fold(self.fixed.abs(), |most, c| most.max(c.abs()))
     }

@@ -44,7 +44,8 @@ impl Live {
         self.lock().known
     }
 
-    /// Reports a gap that was proved. It has no effect if a smaller gap was proved before.
+    /// Reports a gap that was proved (relative). A gap that is not smaller than the one reported before is ignored, and
+    /// so is `None`.
     pub(super) fn prove(&self, gap: Option<f64>) {
         let known = &mut self.lock().known;
         known.gap = least(known.gap, gap);
@@ -72,7 +73,7 @@ impl Live {
     }
 }
 
-/// The smaller of two bounds; a bound that is `None` is unknown and does not count.
+/// The smaller of two gaps. `None` means that a gap is unknown; then the other one is returned.
 pub(super) fn least(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     a.into_iter().chain(b).reduce(f64::min)
 }

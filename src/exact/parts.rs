@@ -161,9 +161,10 @@ pub(super) const SAME_TORQUE: f64 = 1e-12;
 /// Number of rays, the proportions of static torque and inertia for which a box of drives knows its capacity.
 pub(super) const RAYS: usize = 12;
 
-/// Rays: demands in fixed proportions of static torque and inertia. A drive that carries a demand also carries every
-/// smaller multiple of it. If no member of a box carries that multiple of a ray which lies just below a demand, no
-/// member carries the demand. This excludes boxes in which each single limit is met, but by different members.
+/// Rays: demands on a joint in fixed proportions of static torque and inertia. A drive that carries a demand also
+/// carries every smaller multiple of it. Take the multiple of a ray that lies just below a demand. If no member of a
+/// box carries this multiple, no member carries the demand. This excludes boxes in which each single limit is met, but
+/// by different members.
 pub(super) struct Rays {
     /// Static torque \[N m\] and inertia \[kg m²\] of each ray.
     loads: [(f64, f64); RAYS],
@@ -195,15 +196,16 @@ impl Rays {
     }
 }
 
-/// Fraction by which the motor heat of a least demand is lowered and that of a greatest demand is raised. The motor's
-/// own inertia can cause most of the heat. A margin on the loads alone would then not cover the rounding of the sum.
+/// Fraction by which the motor heat of a least demand is lowered and that of a greatest demand is raised to cover
+/// rounding. A margin on the loads alone would not do, because the motor's own inertia can cause most of the heat.
 pub(super) const HEAT_ROUNDING: f64 = 1e-12;
 
 /// The least demand that the members of a box put on a joint.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct LeastDemand {
     pub demand: JointDemand,
-    /// For each ray, the greatest multiple of its demand that lies below this demand.
+    /// For each ray (fixed proportion of static torque and inertia), the greatest multiple of its demand that lies
+    /// below this demand.
     multiples: [f64; RAYS],
 }
 
@@ -247,7 +249,8 @@ pub(super) struct DriveBox {
     pub limits: DriveLimits,
     /// The least of each limit over the members.
     pub least_limits: DriveLimits,
-    /// For each ray, the greatest multiple of its demand that a single member carries.
+    /// For each ray (fixed proportion of static torque and inertia), the greatest multiple of its demand that a single
+    /// member carries.
     pub multiples: [f64; RAYS],
     /// Envelopes of the torsion curves of the members; `None` if one of them is rigid.
     pub curve: Option<CurveBox>,
@@ -278,15 +281,16 @@ impl DriveBox {
         Some(Self { each: (each.len() > 1).then(|| Arc::from(each)), ..kind })
     }
 
-    /// Whether some member may carry the least demand. If the result is false, no member does.
+    /// Whether some member may carry the least demand `asked`. `false` is certain; `true` may be wrong for a box of
+    /// several drives.
     #[inline]
     pub(super) fn may_hold(&self, asked: &LeastDemand) -> bool {
         self.hold(&asked.demand)
             && self.multiples.iter().zip(&asked.multiples).all(|(carried, asked)| carried >= asked)
     }
 
-    /// Whether the demand is within the greatest of each limit over the members. For a box of a single kind the result
-    /// is exact: whether one of its drives carries the demand.
+    /// Whether the demand is within the greatest value of each limit over the members. For a box of a single kind the
+    /// answer is exact: it tells whether one of the drives of the kind carries the demand.
     #[inline]
     pub(super) fn hold(&self, demand: &JointDemand) -> bool {
         self.limits.hold(demand)

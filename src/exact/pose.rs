@@ -47,7 +47,7 @@ pub(super) const TILT: usize = 1;
 /// Number of strain coordinates of a joint whose bearing tilts: the torsion and two tilts.
 pub(super) const JOINT_COORDINATES: usize = 3;
 
-/// `2i + 1` for a coordinate whose polynomial has degree `i`. It equals the compliance of the coordinate times the
+/// `2i + 1` for a coordinate whose polynomial has degree `i`. This factor equals the coordinate's compliance times the
 /// stiffness of the section times the length of the tube.
 pub(super) fn degree_factor(coordinate: usize) -> f64 {
     f64::from(2 * RESISTED[coordinate].1 + 1)
@@ -179,7 +179,8 @@ pub(super) struct InertiaRow {
 }
 
 impl Pose {
-    /// Torque on a joint as an interval \[N m\]; zero for a piece that is not a joint.
+    /// Torque on the joint with this piece number \[N m\], as an interval that follows from `weights`, the weight
+    /// intervals of the pieces \[N\]. Zero for a piece that is not a joint.
     pub(super) fn torque(&self, piece: usize, weights: &[[f64; 2]]) -> [f64; 2] {
         self.torsion(piece).map_or([0.0; 2], |row| interval(row.fixed, &row.per_n, weights))
     }
@@ -214,7 +215,8 @@ impl Pose {
         ways.iter().enumerate().all(|(i, a)| ways[..i].iter().all(|b| agree(a, b)))
     }
 
-    /// The rows of torsions, and the rows of coordinates that move the tip.
+    /// The rows that matter for the tests of signs: those of joint torsions, and those of coordinates that move the
+    /// tip.
     fn relevant_rows(&self) -> impl Iterator<Item = &Row> {
         self.rows.iter().filter(|row| self.is_torsion(row) || row.tip_m.norm() > 0.0)
     }
@@ -226,8 +228,8 @@ impl Pose {
 }
 
 impl PosedPiece {
-    /// The index of the stiffness that resists a coordinate, and the coordinate's deflection per force times this
-    /// stiffness.
+    /// For a coordinate of this piece: the index of the stiffness that resists it, and the factor that this stiffness
+    /// divides to give the deflection per unit of force.
     #[inline]
     pub(super) fn resisted(&self, coordinate: usize) -> (usize, f64) {
         match self {
@@ -238,8 +240,8 @@ impl PosedPiece {
     }
 }
 
-/// The common sign of a fixed force and of its coefficients per weight. It is 0 if all of them are zero, and `None` if
-/// their signs differ.
+/// The common sign of the constant force `fixed` and of the coefficients `per_n` of the weights: 1 or -1. It is 0 if
+/// all of them are zero, and `None` if their signs differ.
 fn sign(fixed: f64, per_n: &[f64]) -> Option<f64> {
     let largest = per_n.iter().fold(0.0f64, |most, c| most.max(c.abs()));
     // The fixed force and the coefficients have different units. They are compared as if every weight were

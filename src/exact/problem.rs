@@ -86,7 +86,8 @@ impl Part<'_> {
     }
 }
 
-/// The drives that can be a first fit, by rising mass. It gives the box around any contiguous run of these drives.
+/// The drives that a first-fit joint can get, by rising mass. The ladder returns the box around any contiguous run of
+/// these drives.
 pub(super) struct Ladder {
     /// `runs[k][i]` is the box around the `2^k` drives from index `i` on. The box around any run is the union of two
     /// such boxes.
@@ -120,8 +121,8 @@ impl Ladder {
 }
 
 impl<'c> Problem<'c> {
-    /// The problem restricted to the options below some nodes of each level's base tree. `None` if a level has no
-    /// option left.
+    /// The problem restricted to some of its options. `kept` holds, for each level (choice), the nodes of its base tree
+    /// whose options remain. `None` if a level has no option left.
     pub(super) fn restricted_to(&self, kept: &[Vec<u32>]) -> Option<Self> {
         let mut narrower = self.clone();
         for (&piece, nodes) in self.level_pieces.iter().zip(kept) {
@@ -155,7 +156,8 @@ impl<'c> Problem<'c> {
         self.level_pieces.iter().zip(design_box).map(of).product()
     }
 
-    /// For each level, the options below some nodes of its base tree, ascending. All drives of a kind are included.
+    /// The options that remain in each level, ascending. `kept` holds, for each level, the nodes of its base tree that
+    /// remain. All drives of a kind are included.
     pub(super) fn options_below(&self, kept: &[Vec<u32>]) -> Vec<Vec<u32>> {
         let of = |(&piece, nodes): (&usize, &Vec<u32>)| match &self.parts[piece] {
             Part::Drives { tree, kinds, .. } => kinds.drives_of(&tree.options_of(nodes)),
@@ -165,7 +167,8 @@ impl<'c> Problem<'c> {
         self.level_pieces.iter().zip(kept).map(of).collect()
     }
 
-    /// Number of designs below some nodes of each level's base tree. All drives of a kind are counted as one option.
+    /// Number of designs that remain. `kept` holds, for each level, the nodes of its base tree that remain. All drives
+    /// of a kind are counted as one option.
     pub(super) fn designs_below(&self, kept: &[Vec<u32>]) -> f64 {
         let of = |(&piece, nodes): (&usize, &Vec<u32>)| match &self.parts[piece] {
             Part::Drives { tree, .. } => tree.members_of(nodes),

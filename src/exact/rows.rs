@@ -38,7 +38,7 @@ pub(super) struct WarmStart {
     /// Multipliers of the mass row, of the tip rows and of the mode rows. Every box computes its own multipliers for
     /// torque rows.
     pub multipliers: Vec<f64>,
-    /// Trial shapes: for each judged case, one for each starting acceleration.
+    /// Trial shapes (motions that bound the lowest mode): for each judged case, one for each starting acceleration.
     pub shapes: Vec<Shape>,
     /// The feasible drives of each level; `None` for a level of links.
     drives: Vec<Option<FeasibleDrives>>,
@@ -51,7 +51,8 @@ impl WarmStart {
     }
 }
 
-/// The rows of a box: the inequalities that every member below a local upper bound satisfies.
+/// The rows of a box: linear inequalities between the numbers of the parts that every member below a local upper bound
+/// satisfies.
 pub(super) struct Rows<'a> {
     pub problem: &'a Problem<'a>,
     pub work: &'a Work,
@@ -141,8 +142,8 @@ pub(super) struct DualPoint {
 }
 
 impl Problem<'_> {
-    /// The feasible drives of each level of a box; `None` for a level of links. `before` has those of the parent box,
-    /// which are reused if they are the same.
+    /// The drives of each level of a box that carry the least demand; `None` for a level of links. `before` has those
+    /// of the parent box, which are reused if they are the same.
     fn drives_of_levels(
         &self,
         design_box: &[u32],
@@ -159,7 +160,8 @@ impl Problem<'_> {
 }
 
 impl<'a> Rows<'a> {
-    /// The rows of a box for a local upper bound. The numbers of the box are in `work`.
+    /// Makes the rows (inequalities) of a box for the local upper bound `upper`. `work` holds the intervals of the box,
+    /// and `warm_start` the shapes and drives of the parent box.
     pub(super) fn new(
         problem: &'a Problem,
         design_box: &[u32],
@@ -204,7 +206,8 @@ impl<'a> Rows<'a> {
         rows
     }
 
-    /// Adds the gears of a judged case, with two rows for each gear whose slope may change.
+    /// Adds the gears of a judged case to the list of gears. A gear whose slope may change gets two rows, which
+    /// restrict its torque. `judged` is the index among the judged cases and `case` that among all cases.
     fn push_gears(&mut self, judged: usize, case: usize) {
         let (problem, work) = (self.problem, self.work);
         for (at, row) in problem.poses[case].rows.iter().enumerate() {
@@ -225,8 +228,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Adds two rows for each force bound of a judged case, unless the force is the torque of a gear that has rows
-    /// already.
+    /// Adds two rows for each force bound of a judged case: one for the lower and one for the upper limit of the force.
+    /// A torque of a gear that has such rows already gets none.
     fn push_force_bounds(&mut self, judged: usize, case: usize) {
         let (problem, work) = (self.problem, self.work);
         for bound in problem.force_bounds.iter().filter(|bound| bound.case == case) {
@@ -242,8 +245,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Index of the first of the two rows of a gear whose slope may change in a case. `None` if the gear has a single
-    /// slope.
+    /// Index of the first of the two rows of the gear at `piece` in a judged case. `None` if the slope of the gear
+    /// cannot change, so that it has no such rows.
     pub(super) fn free_gear(&self, judged: usize, piece: usize) -> Option<usize> {
         self.gears.iter().find(|gear| gear.judged == judged && gear.piece == piece)?.row
     }
@@ -254,9 +257,9 @@ impl<'a> Rows<'a> {
         self.fixed.push(fixed / scale);
     }
 
-    /// Adds the two rows of a generalized force: its least value less the force that the weights cause, and this force
-    /// less its greatest value. `between` holds the least and the greatest value, and `low` and `high` the interval
-    /// from which the scale of the rows is taken. Returns the index of the first row.
+    /// Adds the two rows of a generalized force. The first is the force's least value less the force that the weights
+    /// cause, the second is this force less its greatest value. `between` holds the least and the greatest value. The
+    /// scale of the rows is taken from the interval from `low` to `high`. Returns the index of the first row.
     fn push_force(&mut self, judged: usize, row: &'a Row, [low, high]: [f64; 2], between: [f64; 2]) -> usize {
         let next = self.scale.len();
         // The scale stays comparable to that of other rows even if the interval is narrow.
@@ -276,8 +279,8 @@ impl<'a> Rows<'a> {
         self.modes.push(Mode { judged, start, shape, kinetic });
     }
 
-    /// The multipliers with which the search starts: those of the parent box, given in `above`. Rows that the parent
-    /// did not have get equal multipliers.
+    /// The multipliers with which the search for better ones starts. `above` holds those of the parent box. Rows that
+    /// the parent box did not have get equal multipliers.
     pub(super) fn starting_multipliers(&self, above: &[f64]) -> Vec<f64> {
         let mut multipliers = vec![0.0; self.scale.len()];
         let others: Vec<usize> = (0..=self.tips.len()).chain(self.first_mode..self.scale.len()).collect();
@@ -289,8 +292,9 @@ impl<'a> Rows<'a> {
         self.with_torques(multipliers)
     }
 
-    /// Adds multipliers of torque rows. With them the twist of a gear grows with the torque of the weights by the least
-    /// compliance of the box (McCormick). Without them a gear could be evaluated at any torque at no price.
+    /// Adds multipliers of the torque rows to `multipliers`. With them the price of a gear's twist grows with the
+    /// torque that the weights make, by the least compliance of the box (McCormick). Without them a gear could be
+    /// evaluated at any torque at no price.
     pub(super) fn with_torques(&self, mut multipliers: Vec<f64>) -> Vec<f64> {
         for gear in &self.gears {
             let Some(row) = gear.row else { continue };
@@ -317,7 +321,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// The upper limit of each scaled row for every member below a local upper bound.
+    /// The upper limit that each scaled row has for every member below the local upper bound `upper`.
     pub(super) fn row_limits<'b>(&'b self, upper: &'b LocalUpperBound) -> impl Iterator<Item = f64> + 'b {
         // The mode rows use the eigenvalue `lambda`, but the bound may ask for another one. The difference times `xᵀMx`
         // is bounded with the lightest or the heaviest parts, depending on its sign.
@@ -328,7 +332,8 @@ impl<'a> Rows<'a> {
         objectives.chain(torques).chain(modes).zip(&self.scale).map(|(row, scale)| row / scale)
     }
 
-    /// For each row with a finite limit, except torque rows, multipliers that use this row alone.
+    /// Sets of multipliers that use a single row. There is one for each row with a finite limit below `upper`, except
+    /// for torque rows.
     pub(super) fn single_row_multipliers(&self, upper: &LocalUpperBound) -> Vec<Vec<f64>> {
         let is_torque = |row: usize| (1 + self.tips.len()..self.first_mode).contains(&row);
         let rows = self.row_limits(upper).enumerate().filter(|(row, a)| a.is_finite() && !is_torque(*row));
@@ -340,7 +345,7 @@ impl<'a> Rows<'a> {
         rows.map(single).collect()
     }
 
-    /// The upper limit of the weighted sum of rows for every member below a local upper bound.
+    /// The upper limit that the weighted sum of the rows has for every member below the local upper bound `upper`.
     pub(super) fn allowed_sum(&self, multipliers: &[f64], upper: &LocalUpperBound) -> f64 {
         let pairs = multipliers.iter().zip(self.row_limits(upper));
         pairs.filter(|(w, _)| **w > 0.0).map(|(w, a)| w * a).sum()

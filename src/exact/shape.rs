@@ -66,7 +66,8 @@ impl Shape {
         shape
     }
 
-    /// One step of inverse iteration towards the lowest mode of an ideal arm.
+    /// One step of inverse iteration of this shape towards the lowest mode of an ideal arm that is orthogonal to the
+    /// shapes in `others`.
     pub(super) fn improve(&mut self, pose: &Pose, ideal: &Ideal, others: &[Self], work: &mut Work) {
         self.iterate(pose, ideal, &Twist::zeros(), work);
         self.clear_of(pose, ideal, others);
@@ -98,7 +99,8 @@ impl Shape {
         kinetic
     }
 
-    /// One step of inverse iteration, `x ← C M x`, in which the base moves by `base`. Scales the shape afterwards.
+    /// Replaces this shape `x` by `C M x`, one step of inverse iteration, in which the base moves by `base`. Then it is
+    /// scaled.
     fn iterate(&mut self, pose: &Pose, ideal: &Ideal, base: &Twist, work: &mut Work) {
         inertia_forces(pose, ideal.inertia, base, &self.x, work);
         let mut largest = 0.0f64;
@@ -119,8 +121,8 @@ impl Shape {
         }
     }
 
-    /// Makes the shape orthogonal to the other shapes with respect to the stiffness matrix `K`, so that it converges to
-    /// another mode.
+    /// Makes this shape orthogonal to the shapes in `others` with respect to the stiffness matrix `K`, so that it
+    /// converges to another mode than these.
     fn clear_of(&mut self, pose: &Pose, ideal: &Ideal, others: &[Self]) {
         for other in others {
             let (mut common, mut own) = (0.0, 0.0);
@@ -185,9 +187,9 @@ pub(super) fn products<const N: usize>(a: &[[f64; N]], b: &[[f64; N]]) -> f64 {
     a.iter().zip(b).map(|(a, b)| dot(a, b)).sum()
 }
 
-/// Computes `M x` into `work.forces`: the inertia forces on every coordinate, per squared angular frequency, when the
-/// arm moves by `x` and its base by `base`. One pass goes outward for the motion and one inward for the forces, so no
-/// matrix is formed.
+/// Writes `M x` to `work.forces`: the inertia force on every coordinate, divided by the squared angular frequency, when
+/// the arm moves by `x` and its base by `base`. One pass goes outward and computes the motion, a second one goes inward
+/// and sums the forces. No matrix is formed.
 pub(super) fn inertia_forces(
     pose: &Pose,
     inertia: &[[f64; INERTIAS]],
@@ -301,7 +303,8 @@ fn displacement(twist: &Twist, at_m: &Vector3<f64>) -> Vector3<f64> {
 }
 
 impl PosedTube {
-    /// Adds the motion by the tube's own coordinates to `twist`, the motion of everything outboard.
+    /// Adds the motion of the tube's end relative to its root to `twist`, the motion of everything outboard. `x` holds
+    /// the strain coordinates of the tube.
     #[inline]
     fn carry(&self, twist: &mut Twist, x: &[f64]) {
         for (end, coordinate) in ENDS.into_iter().enumerate() {
@@ -332,7 +335,7 @@ impl Local {
         }
     }
 
-    /// The momentum of the tube for these line inertias, with the given bodies on it.
+    /// The momentum of the tube with the line inertias `line`, with the given bodies on it.
     #[inline]
     fn momentum(&self, tube: &PosedTube, line: &[f64; INERTIAS]) -> TubeMomentum {
         let f = &tube.forms;

@@ -5,8 +5,8 @@ use super::parts::STIFFNESSES;
 use super::problem::{Part, Problem};
 use super::work::Work;
 
-/// The displacement of the tip in a judged case along the direction of the box's least deflection, as a linear function
-/// of the numbers of the parts.
+/// The displacement of the tip in a judged case along a fixed direction, as a linear function of the numbers of the
+/// parts. The direction is that of the tip's displacement when it is least over the box.
 pub(super) struct TipRow {
     /// Index of the case.
     pub case: usize,

@@ -73,7 +73,8 @@ impl<B: Bounds> Tree<B> {
         Some(Self { nodes, whole: None, stands_on: vec![0] })
     }
 
-    /// A tree over the nodes `kept` of the base tree, none of which is below another. `None` if `kept` is empty.
+    /// A tree over the nodes `kept` of the base tree `tree`. None of these nodes may lie below another. `None` if
+    /// `kept` is empty.
     pub(super) fn over(tree: &Arc<Self>, kept: &[u32]) -> Option<Arc<Self>> {
         // Nothing was excluded, so the same tree serves.
         if tree.whole.is_some() && tree.stands_on == kept {
@@ -104,8 +105,8 @@ impl<B: Bounds> Tree<B> {
     }
 
     /// About `most` nodes of the base tree that together contain every option below `node` for which `may` is true.
-    /// `may` is asked for boxes, so options for which it is false may be among them. The node with the most options is
-    /// divided first.
+    /// `may` is asked for boxes of options, so the nodes may also contain options for which it is false. The node with
+    /// the most options is divided first.
     pub(super) fn kept(&self, node: u32, most: usize, may: impl Fn(&B) -> bool) -> Vec<u32> {
         let mut heap = BinaryHeap::new();
         let mut enter = |at: u32| {
@@ -195,8 +196,8 @@ impl<B: Bounds> Tree<B> {
         }
     }
 
-    /// The smallest node at or below `node` that contains every option for which `holds` is true. `holds` must be true
-    /// for a box if it is true for an option in the box. `None` if no option is left.
+    /// The smallest node at or below `node` that contains every option for which `holds` is true. For a box, `holds`
+    /// must be true if it is true for any option in the box. `None` if it is false for all options.
     pub(super) fn smallest_node(&self, mut node: u32, holds: impl Fn(&B) -> bool) -> Option<u32> {
         if !holds(&self.node(node).bounds) {
             return None;
@@ -241,8 +242,8 @@ struct Item {
     key: Key,
 }
 
-/// Builds the tree over some items and returns the number of its root. For an item, `leaf` returns its bounds and the
-/// kind of its node. The kind is `None` if the item is already a node of the base tree.
+/// Builds the tree over `items`, appends its nodes to `nodes` and returns the number of its root. For an item, `leaf`
+/// returns its bounds and the kind of its node; the kind is `None` if the item is a node of the base tree already.
 fn grow<'b, B: Bounds + 'b>(
     items: &mut [Item],
     nodes: &mut Vec<Node<B>>,

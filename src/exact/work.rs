@@ -9,7 +9,7 @@ use crate::sizing::demand::JointDemand;
 use crate::sizing::fit::LinkRoom;
 use nalgebra::Vector3;
 
-/// Working memory for the bound of one box. A worker reuses it for box after box, so that no memory is allocated for
+/// Working memory with the intervals of one box. A worker uses it for box after box, so that no memory is allocated for
 /// each.
 #[derive(Default)]
 pub(super) struct Work {
@@ -99,7 +99,8 @@ impl Work {
         }
     }
 
-    /// Fills in the mass, weight, torsion curve and bearing stiffness of a joint.
+    /// Writes the mass, weight, torsion curve and bearing stiffness of a joint into this memory. All are intervals over
+    /// the drives of the box.
     pub(super) fn joint(
         &mut self,
         problem: &Problem,
@@ -121,7 +122,8 @@ impl Work {
         }
     }
 
-    /// Fills in the stiffnesses, inertias, mass and weight of a tube.
+    /// Writes the stiffnesses, inertias, mass and weight of a tube into this memory. `links` holds the intervals over
+    /// the options of the box.
     pub(super) fn tube(&mut self, problem: &Problem, piece: usize, length_m: f64, links: &LinkBox) {
         // An infinite stiffness becomes 0, which stands for a rigid coordinate. Infinity times zero strain would be
         // NaN.

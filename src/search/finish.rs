@@ -24,7 +24,8 @@ pub trait FinishRows: OutwardIn {
     /// Allocates the working space of one worker.
     fn scratch(&self) -> Self::Scratch;
 
-    /// Completes and evaluates all designs of some rows and reports them to `keep`.
+    /// Completes and evaluates all designs of the rows `rows` and reports them to `keep`. `compiled` is what all rows
+    /// have in common, and `scratch` is the working space.
     fn finish<K: Keep>(
         &self,
         compiled: &Self::Compiled,
@@ -34,7 +35,8 @@ pub trait FinishRows: OutwardIn {
     );
 }
 
-/// Evaluates the designs of rows one by one. This is slower than eight at once, but works for every tree.
+/// Evaluates the designs of `rows` one by one. This is slower than eight at once, but works for every tree of designs.
+/// `spare` is memory for one arm.
 pub(crate) fn finish_one_by_one<P: OutwardIn>(
     problem: &P,
     rows: &[DesignRow<P::Partial>],

@@ -47,7 +47,8 @@ impl Shortfall {
         Self { front }
     }
 
-    /// The shortfall of a design, as a fraction (0.02 for 2 %); `None` if it is larger than `most`.
+    /// The shortfall of a design: the fraction by which it is worse than the nearest design of the front (0.02 for 2
+    /// %). `None` if it is larger than `most`.
     pub fn within(&self, most: f64, design: &Objectives) -> Option<f64> {
         // the lightest designs of the front cannot count: each is lighter than the design by more than the fraction
         // `most`
@@ -56,7 +57,8 @@ impl Shortfall {
         self.front[first..].iter().map(worst).reduce(f64::min).filter(|shortfall| *shortfall <= most)
     }
 
-    /// Whether some design of the front is better by at most the fraction `most` in every objective.
+    /// Whether the shortfall of a design is at most `most`: some design of the front is then better by no more than
+    /// this fraction in every objective.
     pub fn is_within(&self, most: f64, design: &Objectives) -> bool {
         let worse = 1.0 + most;
         let first = self.front.partition_point(|f| design.mass_kg > f.mass_kg * worse);
@@ -67,8 +69,8 @@ impl Shortfall {
     }
 }
 
-/// The fractions by which a design is worse than another in deflection, mass and lowest mode, in this order. A
-/// fraction is negative where the design is better.
+/// The fractions by which `design` is worse than `other` in deflection, mass and lowest mode, in this order. A fraction
+/// is negative where `design` is better.
 pub fn worse_by(design: &Objectives, other: &Objectives) -> [f64; 3] {
     let over = |a: f64, b: f64| if a == b { 0.0 } else { a / b - 1.0 };
     [

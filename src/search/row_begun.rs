@@ -11,7 +11,7 @@ use crate::space::station::{Modal, StationSlot};
 
 /// Working space in which the designs of rows are evaluated.
 pub struct RowScratch {
-    /// Numbers of the rows of one batch.
+    /// One entry for each row of a batch: the numbers of this row that depend on the arm outboard of it.
     pub(crate) rows: Vec<Begun>,
     /// Eight arms that are being completed.
     pub(crate) arms: EightArms,
@@ -21,10 +21,11 @@ pub struct RowScratch {
 
 /// The numbers of a row that depend on the arm outboard of it.
 pub(crate) struct Begun {
-    /// These numbers in each case.
+    /// The numbers that depend on the case, one entry for each case.
     pub cases: Vec<CaseBegun>,
-    /// For each inner joint, the step of the drive table at which the drive of the last design was found. The search
-    /// for the next drive starts there, because the demands of neighbouring designs are similar.
+    /// For each inner joint (from the row level to the base), the step of the drive table at which the drive of the
+    /// last design was found. The search for the next drive starts there, because the demands of neighbouring designs
+    /// are similar.
     pub steps: Vec<usize>,
     /// Loads on the output bearing of the joint that is the row level; zero if the row level is a link.
     pub of_row: BearingDemand,
@@ -64,8 +65,8 @@ impl RowScratch {
         Self { rows: Vec::new(), arms: EightArms::new(problem), spare: problem.empty() }
     }
 
-    /// Computes, for each row, the numbers that all its designs have in common. `from` are the arms outboard of the
-    /// rows.
+    /// Computes, for each row of a batch, the numbers that all its designs have in common. `from` are the arms outboard
+    /// of the rows, one for each row.
     pub(crate) fn begin<'p>(
         &mut self,
         problem: &ArmProblem,
@@ -103,7 +104,7 @@ impl Begun {
         }
     }
 
-    /// Computes the numbers of the row inboard of the arm `from`. The memory of an earlier row is used again.
+    /// Computes the numbers of the row that continues the arm `from`. The memory of an earlier row is used again.
     fn refill(&mut self, problem: &ArmProblem, row: &Row, from: &Partial) {
         self.of_row = from.next_demand.map_or(BearingDemand::default(), |demand| demand.bearing);
         self.room_of_row = from.next_demand.map_or(LinkRoom::ANY, |demand| demand.room);
