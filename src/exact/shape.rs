@@ -40,8 +40,9 @@ pub(super) struct Ideal<'a> {
 }
 
 impl Shape {
-    /// A shape of a low mode of an ideal arm, by `steps` steps of inverse iteration. The first shape is the deformation
-    /// under an acceleration of the base in this direction. The shape is made orthogonal to the other shapes.
+    /// A shape of a low mode of an ideal arm, found by `steps` steps of inverse iteration. The first shape is the
+    /// deformation under an acceleration of the base along `direction`. The shape is kept orthogonal to the shapes in
+    /// `others`, so that it becomes another mode than these.
     pub(super) fn start(
         pose: &Pose,
         ideal: &Ideal,

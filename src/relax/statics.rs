@@ -29,7 +29,8 @@ pub(super) struct CaseLoads {
     inertia: Vec<Vec<Vec<f64>>>,
 }
 
-/// The end of the loads' intervals at which the linear bound equals the exact value.
+/// The end of the loads' intervals, with all loads least or all greatest, at which the linear bound equals the exact
+/// value.
 #[derive(Clone, Copy, PartialEq)]
 enum LoadEnd {
     Low,
@@ -38,9 +39,10 @@ enum LoadEnd {
 
 /// A linear lower bound of the deflection that one piece causes.
 struct Term {
-    /// For each remaining option of the piece, the deflection that it causes with all loads at that end \[m\].
+    /// For each remaining option of the piece, the tip deflection that it causes if all loads have their values at the
+    /// end for which the bound is made \[m\].
     at_end: Vec<f64>,
-    /// For each load outboard, the change of this deflection per unit of the load \[m per unit\].
+    /// For each load outboard, the least change of this tip deflection per unit of the load \[m per unit\].
     slopes: Vec<f64>,
 }
 
@@ -73,7 +75,8 @@ impl CaseLoads {
         Self { case, unit, amount, inertia }
     }
 
-    /// Least and greatest load of a slot's remaining options.
+    /// Least and greatest load among the remaining options of a slot (mass \[kg\] of a joint, weight \[N\] of a link, 1
+    /// for a body).
     fn range(&self, parts: &Parts, slot: usize) -> [f64; 2] {
         let amounts = parts.alive[slot].iter().map(|&o| self.amount[slot][o as usize]);
         amounts.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], q| [low.min(q), high.max(q)])
@@ -83,7 +86,7 @@ impl CaseLoads {
         self.range(parts, slot)[usize::from(end == LoadEnd::High)]
     }
 
-    /// The wrench (force and moment) of everything outboard of a slot, with all loads at one end of their
+    /// The wrench (force and moment) of everything outboard of `slot`, if all loads are at the end `end` of their
     /// intervals.
     fn wrench(&self, problem: &ArmProblem, parts: &Parts, slot: usize, end: LoadEnd) -> Wrench {
         let start = problem.stations()[self.case].start_wrench;
@@ -97,7 +100,7 @@ impl CaseLoads {
         }
     }
 
-    /// Least and greatest torque on a joint \[N m\].
+    /// Least and greatest torque on the joint in `slot` \[N m\] over the remaining options outboard.
     fn torque_range(&self, problem: &ArmProblem, parts: &Parts, slot: usize) -> [f64; 2] {
         let Some(joint) = self.joint(problem, slot) else { return [0.0; 2] };
         let start = joint.twist.dot(&problem.stations()[self.case].start_wrench);
@@ -108,7 +111,7 @@ impl CaseLoads {
         })
     }
 
-    /// Least and greatest magnitude of the torque on a joint \[N m\].
+    /// Least and greatest magnitude of the torque on the joint in `slot` \[N m\] over the remaining options outboard.
     pub(super) fn torque_size(&self, problem: &ArmProblem, parts: &Parts, slot: usize) -> [f64; 2] {
         let [low, high] = self.torque_range(problem, parts, slot);
         [low.max(-high).max(0.0), high.max(-low)]
@@ -122,7 +125,7 @@ impl CaseLoads {
         })
     }
 
-    /// Least and greatest moment of inertia, about a joint's axis, of everything outboard of the joint \[kg m²\].
+    /// Least and greatest inertia of everything outboard of the joint in `slot` about the joint's axis \[kg m²\].
     pub(super) fn inertia_range(&self, problem: &ArmProblem, parts: &Parts, slot: usize) -> [f64; 2] {
         let Some(joint) = self.joint(problem, slot) else { return [0.0; 2] };
         let start = joint.twist.dot(&(problem.stations()[self.case].start_inertia * joint.twist));
@@ -133,8 +136,8 @@ impl CaseLoads {
         })
     }
 
-    /// Greatest tangent stiffness of every joint's remaining options under the torques that are possible \[N
-    /// m/rad\]. Infinite for a rigid joint, empty for a slot that is no joint.
+    /// Greatest tangent stiffness \[N m/rad\] of each remaining option of every joint under the torques that are
+    /// possible; by slot, then by option. Infinite for a rigid joint, empty for a slot that is no joint.
     pub(super) fn stiffest(&self, problem: &ArmProblem, parts: &Parts) -> Vec<Vec<f64>> {
         let slots = problem.slots().iter().enumerate();
         slots
@@ -151,8 +154,8 @@ impl CaseLoads {
             .collect()
     }
 
-    /// Two inequalities that every design satisfies whose tip moves at most `limit_m` along a direction: one for
-    /// each end of the loads' intervals.
+    /// Two inequalities that every design satisfies whose tip moves at most `limit_m` along `direction`. One is exact
+    /// where all loads are least, the other where all are greatest.
     pub(super) fn deflection_rows(
         &self,
         problem: &ArmProblem,
@@ -176,7 +179,8 @@ impl CaseLoads {
         })
     }
 
-    /// The linear lower bound of the deflection that one slot causes; `None` for a body.
+    /// The linear lower bound of the tip deflection along `direction` that one slot causes. It is exact if all loads
+    /// are at the end `end` of their intervals. `None` for a body, which does not deform.
     fn term(
         &self,
         problem: &ArmProblem,
@@ -279,7 +283,8 @@ impl CaseLoads {
     }
 }
 
-/// Inertia of every option of every slot outboard of a joint, about the joint's axis \[kg m²\].
+/// Inertia of every option of every slot outboard of the joint in `slot` about the joint's axis \[kg m²\]. `amount` has
+/// the load of each option, which is the mass for a joint.
 fn inertias(station: &Station, slot: usize, amount: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let StationSlot::Joint(StationJoint { twist, .. }) = &station.slots[slot] else { return Vec::new() };
     let about = |inertia: &Matrix6<f64>| twist.dot(&(inertia * twist));
