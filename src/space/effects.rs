@@ -350,7 +350,7 @@ impl DesignSpace {
         self.with_effects(Vec::new())
     }
 
-    /// The torque \[N m\] that effects and springs of this joint add to the torque of weight and load.
+    /// The torque that effects exert on a joint in addition to weight and load, as a function of the joint's angle.
     pub(crate) fn joint_torque(&self, joint: &SpaceJoint) -> JointTorque {
         self.joint_piece(joint, Curve::Rigid, None).torque
     }

@@ -36,7 +36,7 @@ pub(super) struct Pose {
     /// Ratio of the stress during acceleration to the stress under static loads. 1 if the case is not a sizing
     /// case.
     pub stress_factor: f64,
-    /// Torque on each joint, as a linear function of the loads \[N m\].
+    /// Torque on each joint \[N m\], as a linear function of the loads (masses of drives, weights per length of tubes).
     pub torques: Vec<Linear>,
     /// Displacement of the tip per radian of torsion of each joint \[m/rad\].
     pub tip_m_per_rad: Vec<Vector3<f64>>,
@@ -46,8 +46,8 @@ pub(super) struct Pose {
     /// Displacement of the tip that each spring of an effect or prismatic joint causes, as a linear function of the
     /// loads \[m\].
     pub by_springs_m: Vec<LinearVector>,
-    /// For each tube and each of its stiffnesses, the displacement of the tip that deformation against this
-    /// stiffness causes, times the stiffness.
+    /// For each tube and each of its stiffnesses, the tip displacement that the strain against this stiffness causes,
+    /// times the stiffness. It is a linear function of the loads.
     pub works: Vec<[LinearVector; STIFFNESSES]>,
     /// Force and moment at root and end of each tube, in the tube's frame, as linear functions of the loads.
     pub ends: Vec<[[Linear; 6]; 2]>,
@@ -65,8 +65,8 @@ struct Wrench {
     moment: Vector3<f64>,
 }
 
-/// Force and moment on a section of the arm, from everything outboard: of the fixed loads, and per unit of each
-/// load.
+/// Force and moment that a section of the arm transmits from everything outboard: the constant part, and the part per
+/// unit of each load.
 pub(super) struct Carried {
     fixed: Wrench,
     per_load: Vec<Wrench>,
@@ -134,7 +134,7 @@ impl Wrench {
         Self { force: self.force + other.force, moment: self.moment + other.moment }
     }
 
-    /// Components of the wrench along the axes of a frame: force, then moment.
+    /// Components of the wrench along the axes of `frame`: three of the force, then three of the moment.
     fn in_frame(&self, frame: &Matrix3<f64>) -> [f64; 6] {
         let (force, moment) = (frame.tr_mul(&self.force), frame.tr_mul(&self.moment));
         [force.x, force.y, force.z, moment.x, moment.y, moment.z]
@@ -142,7 +142,8 @@ impl Wrench {
 }
 
 impl Carried {
-    /// Component of the force, or of the moment, along a direction.
+    /// Component along `direction` of the force, or of the moment if `is_force` is `false`, as a linear function of the
+    /// loads.
     pub(super) fn along(&self, is_force: bool, direction: &Vector3<f64>) -> Linear {
         let part = |wrench: &Wrench| direction.dot(if is_force { &wrench.force } else { &wrench.moment });
         Linear { fixed: part(&self.fixed), per_load: self.per_load.iter().map(part).collect() }
@@ -150,7 +151,7 @@ impl Carried {
 }
 
 impl<'a> Builder<'a> {
-    /// The inputs of a case, with the coordinates of its inertia matrix.
+    /// Collects the inputs of a case. `coordinates` are those over which its inertia matrices are made.
     pub(super) fn new(
         question: &Question,
         structure: &Structure,
@@ -170,14 +171,15 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The same inputs with other coordinates for the inertia matrix.
+    /// The same inputs with the coordinates `coordinates` for the inertia matrices.
     pub(super) fn with_coordinates(&self, coordinates: &'a [Coordinate]) -> Self {
         Self { coordinates, ..*self }
     }
 }
 
 impl Builder<'_> {
-    /// Force and moment at a point from everything outboard of it.
+    /// Force and moment that the section of the arm at `point` transmits from everything outboard, taken about this
+    /// point.
     pub(super) fn carried(&self, point: &Point) -> Carried {
         let down = |size: f64| self.down * size;
         let about_m = &point.at_m;
@@ -211,8 +213,8 @@ impl Builder<'_> {
         carried.along(false, &joint.axis)
     }
 
-    /// Displacement of the tip by a joint's bearing of unit compliance: its tilts under the moments about both axes
-    /// across, times the displacement of the tip per tilt.
+    /// Displacement of the tip if the bearing of `joint` had a compliance of one: the moments about both axes across,
+    /// each times the displacement of the tip per tilt about this axis.
     fn by_tilt(&self, joint: usize) -> LinearVector {
         let joint = &self.layout.joints[joint];
         let carried = self.carried(&Point { at_m: joint.at_m, rank: joint.rank, inside_m: None });

@@ -17,7 +17,8 @@ pub(super) struct Search<'s> {
 }
 
 impl Search<'_> {
-    /// Bounds a box and, unless it is discarded, explores its halves.
+    /// Bounds the box `parts`. Unless it is discarded, its halves are explored in the same way. A single design is
+    /// stored.
     pub(super) fn explore(&self, parts: &PartsBox) -> Found {
         if self.halt.stopped() {
             return Found { open: 1, ..Found::default() };

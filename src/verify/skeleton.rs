@@ -23,10 +23,10 @@ pub(super) struct Skeleton {
     /// Mass of rigid offsets, of bodies and of bearings that the study states \[kg\].
     pub offsets_kg: f64,
     pub poses: Vec<Pose>,
-    /// Loads on the bearing of every joint, for each case; empty for a case that is not a sizing case, `None` for a
-    /// bearing that is not checked.
+    /// Loads on the bearing of every joint; first index the case, second the joint. The list of a case that is not a
+    /// sizing case is empty, and a bearing that is not checked is `None`.
     pub bearings: Vec<Vec<Option<PosedBearing>>>,
-    /// For each joint, the distance from its bearing at which the link attaches.
+    /// For each joint, the lever: the distance along the axis from its bearing to where the link attaches.
     pub levers: Vec<Lever>,
     /// Index of the first tube between each joint and the next; `None` if there is none.
     pub first_tubes: Vec<Option<usize>>,
@@ -127,8 +127,8 @@ impl Skeleton {
     }
 }
 
-/// The first tube between each joint and the next, base to tip, as an index into the list of links with weight
-/// along their length.
+/// The first tube between each joint and the next, base to tip, as an index into the list of links with weight along
+/// their length. `None` if there is no tube between them.
 fn first_tubes(question: &Question) -> Vec<Option<usize>> {
     let mut first: Vec<Option<usize>> = Vec::new();
     let mut tubes = 0;

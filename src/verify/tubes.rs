@@ -113,7 +113,7 @@ impl TubeOptions {
         })
     }
 
-    /// Options with only the given ones kept. `some` has their indices in ascending order.
+    /// The same list with only some of its options. `some` has the indices of these options in ascending order.
     pub(super) fn only(&self, some: &[u32]) -> Self {
         Self { tubes: some.iter().map(|&i| self.tubes[i as usize].clone()).collect(), ..*self }
     }
@@ -153,8 +153,8 @@ pub(super) fn is_too_slender(question: &Question, section: &Section) -> bool {
     question.limits.wall_slenderness_max.is_some_and(|most| slenderness > most)
 }
 
-/// Half the width of a tube along a direction \[m\]; zero for an offset. The half widths of both sides are
-/// projected on the direction, and the root of the sum of their squares is taken.
+/// Half the extent of a link along `direction` \[m\]; zero for an offset. The half widths of both sides of the section
+/// are projected on the direction, and the root of the sum of their squares is taken.
 fn half_width_m(piece: &LinkPiece, direction: &Vector3<f64>) -> f64 {
     let Some(beam) = piece.beam else { return 0.0 };
     let [y, z] = [1, 2].map(|side| section_frame(&piece.vector_m).column(side).dot(direction));
