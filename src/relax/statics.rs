@@ -42,7 +42,8 @@ struct Term {
     /// For each remaining option of the piece, the tip deflection that it causes if all loads have their values at the
     /// end for which the bound is made \[m\].
     at_end: Vec<f64>,
-    /// For each load outboard, the least change of this tip deflection per unit of the load \[m per unit\].
+    /// For each load outboard, the slope with which the linear bound of this tip deflection changes with the load \[m
+    /// per unit\].
     slopes: Vec<f64>,
 }
 

@@ -208,7 +208,8 @@ pub(crate) fn choice_slot<'c>(space: &DesignSpace, choice: &LinkChoice) -> Slot<
 }
 
 impl DesignSpace {
-    /// The torsion curve `curve` under the joint model of the study: with one slope, with three, or rigid.
+    /// The torsion curve `curve` as the joint model of the study uses it: with the middle slope K2 alone, or with all
+    /// three segments.
     pub fn curve(&self, curve: Curve) -> Curve {
         curve.reduced(self.joints)
     }

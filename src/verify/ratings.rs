@@ -127,8 +127,9 @@ fn turns_as_fast(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<bool> {
     )
 }
 
-/// A limit of a gear by its rating; infinite if it has none. `rating` is blank where the catalog has no value. For a
-/// direct drive or an actuator, a blank rating means no limit; for other gears the result is then `None`.
+/// The limit that a rating of a gear sets. For a direct drive or an actuator, a rating that the catalog leaves blank
+/// (`None`) means no limit, and the result is infinite. For other gears the limit is then unknown, and the result is
+/// `None`.
 fn limit(gear: &Gear, rating: Option<f64>) -> Option<f64> {
     match gear.kind {
         GearKind::Direct | GearKind::Actuator => Some(rating.unwrap_or(f64::INFINITY)),
