@@ -52,7 +52,8 @@ pub(super) struct Numbers<'a> {
     pub heavy: &'a [[f64; INERTIAS]],
 }
 
-/// The static load of everything outboard of a joint: the wrench of the given bodies, and the wrench of each piece.
+/// The load at rest of everything outboard of a joint: the wrench of what the study gives, and the wrench of each piece
+/// that has a weight of its own.
 pub(super) struct Loads<'a> {
     /// Wrench of payload, tip force and given bodies about the world's origin.
     pub fixed: Wrench,
@@ -64,9 +65,10 @@ pub(super) struct Loads<'a> {
 pub(super) struct Ramp<'a> {
     /// Kinematic twist of the joint per radian, times its angular acceleration \[rad/s²\].
     pub acceleration: Twist,
-    /// Inertia of payload and given bodies that move with the joint.
+    /// Inertia matrix of the payload and of the bodies that the study gives, as far as they move with the joint.
     pub fixed: Matrix6<f64>,
-    /// Inertia of each piece that moves with the joint, per unit of each line inertia.
+    /// Inertia matrix of each piece that moves with the joint, per unit of each of its line inertias (inertias per
+    /// metre of a tube).
     pub inertia: &'a [[Matrix6<f64>; INERTIAS]],
 }
 
@@ -83,7 +85,8 @@ impl Frame {
         Self([about(first), about(second), along(first), along(second), along(axis)])
     }
 
-    /// The components of a wrench in this frame. A component that is only rounding becomes zero.
+    /// The moments and forces of `wrench` about and along the axes of this frame. A component that is only rounding
+    /// becomes zero.
     fn components(&self, wrench: &Wrench) -> [f64; COMPONENTS] {
         self.0.each_ref().map(|unit| {
             let component = unit.dot(wrench);

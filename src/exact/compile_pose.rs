@@ -153,8 +153,9 @@ impl Pose {
         self.rows.retain(|row| is_torsion.next() == Some(true) || row.largest() > 1e-13 * scale);
     }
 
-    /// The loads on the output bearing of a joint. `None` if the piece is not a joint, its bearing is not checked, or
-    /// the case is not a sizing case.
+    /// The loads on the output bearing of the joint `piece`, as functions of the weights and inertias outboard.
+    /// `joints` holds the needs of each joint. `None` if the piece is not a joint, its bearing is not checked, or the
+    /// case is not a sizing case.
     fn bearing(
         &self,
         piece: usize,
@@ -377,8 +378,8 @@ impl PosedTube {
     }
 }
 
-/// Generalized force on each of the coordinates [`ENDS`] per newton of the tube's own weight, which is distributed
-/// evenly along the tube.
+/// Generalized force on each of the eight coordinates that move the tube's end ([`ENDS`]), per newton of the tube's own
+/// weight. The weight is distributed evenly along the tube.
 fn areas_per_n(tube: &PosedTube, down: &Vector3<f64>) -> [f64; 8] {
     let down = tube.frame.tr_mul(down);
     let f = &tube.forms;

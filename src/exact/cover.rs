@@ -51,7 +51,7 @@ impl Cover {
         Self(cover)
     }
 
-    /// The bounds of the boxes.
+    /// The bound (ideal point) of each box of the cover.
     pub(super) fn bounds(&self) -> Vec<BoxBound> {
         self.0.iter().map(|piece| piece.open.box_bound).collect()
     }

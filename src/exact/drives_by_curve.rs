@@ -110,7 +110,8 @@ impl FeasibleDrives {
         })
     }
 
-    /// The least price of a drive and its node. `None` if no drive is feasible.
+    /// The least price that a feasible drive of the level has under `price`, and the node of this drive. `None` if no
+    /// drive is feasible.
     pub(super) fn cheapest(&self, price: &DualPrice) -> Option<(f64, u32)> {
         self.drives.cheapest(price)
     }

@@ -23,9 +23,9 @@ const STEPS: f64 = 64.0;
 /// Designs that meet every constraint.
 pub(super) struct Incumbents {
     table: Archive,
-    /// Incumbents by the grid step of their mass.
+    /// The incumbents, listed under the grid step of their mass: its cell number on a logarithmic scale.
     rows: HashMap<i32, Vec<Objectives>>,
-    /// Incumbents by the grid step of their deflection.
+    /// The incumbents, listed under the grid step of their deflection: its cell number on a logarithmic scale.
     columns: HashMap<i32, Vec<Objectives>>,
     /// All incumbents in the order in which they were added.
     all: Vec<Objectives>,

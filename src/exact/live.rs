@@ -51,7 +51,7 @@ impl Live {
         known.gap = least(known.gap, gap);
     }
 
-    /// Reports new progress if an update is due. If updates take long, they are due less often.
+    /// Reports the progress that `news` returns, if an update is due. If updates take long, they are due less often.
     pub(super) fn update(&self, news: impl FnOnce() -> Known) {
         let began = Instant::now();
         if self.lock().due.is_some_and(|due| began < due) {
@@ -62,7 +62,7 @@ impl Live {
         self.lock().due = Some(Instant::now() + after);
     }
 
-    /// Reports new progress. The gap is replaced only by a smaller one.
+    /// Reports the new progress `news`. The reported gap is replaced only by a smaller one.
     pub(super) fn tell(&self, news: Known) {
         let known = &mut self.lock().known;
         *known = Known { gap: least(known.gap, news.gap), ..news };

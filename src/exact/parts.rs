@@ -166,17 +166,17 @@ pub(super) const RAYS: usize = 12;
 /// box carries this multiple, no member carries the demand. This excludes boxes in which each single limit is met, but
 /// by different members.
 pub(super) struct Rays {
-    /// Static torque \[N m\] and inertia \[kg m²\] of each ray.
+    /// Static torque \[N m\] and inertia \[kg m²\] whose multiples make up each ray.
     loads: [(f64, f64); RAYS],
-    /// Demand on the joint under the loads of each ray.
+    /// Demand on the joint under the static torque and the inertia of each ray.
     demands: [JointDemand; RAYS],
 }
 
 impl Rays {
-    /// Rays around the proportion of static torque to inertia that the payload alone causes. The demand of a duty that
-    /// is stated in numbers is left out, because it does not grow with the arm. The remaining demand is a lower bound.
-    /// The inertia of the motor itself does not grow with the arm either:
-    /// [`MotorHeat::multiple_of`](crate::sizing::heat::MotorHeat::multiple_of) accounts for it.
+    /// The rays of a joint, around the proportion of static torque to inertia that the payload alone causes. A part of
+    /// the demand that does not grow with the arm would break their proportions. So the demand of a duty that is stated
+    /// in numbers is left out, and the remaining demand is a lower bound. The inertia of the motor itself does not grow
+    /// with the arm either: [`MotorHeat::multiple_of`](crate::sizing::heat::MotorHeat::multiple_of) accounts for it.
     pub(super) fn new(motion: &JointMotion, payload_static_nm: f64, payload_inertia_kgm2: f64) -> Self {
         let motion = motion.without_stated();
         let loads = std::array::from_fn(|k| match k {
@@ -190,7 +190,8 @@ impl Rays {
         Self { demands: loads.map(|(static_nm, inertia)| motion.demand(static_nm, inertia)), loads }
     }
 
-    /// For each ray, the greatest multiple of its demand that a drive with these limits carries.
+    /// For each ray (fixed proportion of static torque and inertia), the greatest multiple of its demand that a drive
+    /// with the limits `limits` carries.
     pub(super) fn capacity(&self, limits: &DriveLimits) -> [f64; RAYS] {
         self.demands.each_ref().map(|demand| limits.multiple_of(demand))
     }

@@ -13,7 +13,8 @@ const NOTHING: f64 = 1e-12;
 /// Number of strain coordinates of a tube: curvatures of the bending along z and along y (4 each), shears along z and y
 /// (3 each), torsion (3), stretch (3). They are polynomial coefficients along the tube.
 pub(super) const COORDINATES: usize = 20;
-/// The eight coordinates of a tube that move its end.
+/// Indices of the eight strain coordinates of a tube that move its end. The others deform the tube only between its
+/// ends.
 pub(super) const ENDS: [usize; 8] = [0, 1, 4, 5, 8, 11, 14, 17];
 /// For each coordinate: the index of the stiffness of a [`Line`](super::parts::Line) that resists it, and the
 /// degree of its polynomial.
@@ -67,7 +68,8 @@ pub(super) struct Pose {
     pub pieces: Vec<PosedPiece>,
     /// Inertia of the payload about the world's origin.
     pub payload_inertia: Matrix6<f64>,
-    /// The rows of all coordinates that a load strains, and of all torsions of joints, tip first.
+    /// The rows of this case: one for each strain coordinate that some load deflects, and one for the torsion of each
+    /// joint, tip first. A row gives the force on its coordinate.
     pub rows: Vec<Row>,
     /// Loads on the end sections of the tubes whose section is chosen, tip first.
     pub stress: Vec<StressRow>,
@@ -97,10 +99,11 @@ pub(super) struct PosedTube {
     pub root_m: Vector3<f64>,
     /// Axes of the section frame as columns, x along the tube.
     pub frame: Matrix3<f64>,
-    /// Motion of everything outboard (a kinematic twist) per unit of each of the coordinates [`ENDS`].
+    /// Motion of everything outboard (a kinematic twist) per unit of each of the eight coordinates that move the tube's
+    /// end ([`ENDS`]).
     pub ends: [Twist; 8],
     /// Inertia matrices of the tube over the motion of its root and its strain coordinates, per unit of each line
-    /// inertia.
+    /// inertia (inertia per metre).
     pub forms: TubeForms,
     /// Added mass of the water across the tube, per outer area and length \[kg/m³\].
     pub added_kg_m3: f64,
@@ -121,16 +124,16 @@ pub(super) struct PosedBodies {
     pub rigid: Matrix6<f64>,
     /// Wrench of the weight of all bodies.
     pub weight: Wrench,
-    /// Generalized force of the weight on each of the coordinates [`ENDS`].
+    /// Generalized force of the bodies' weight on each of the eight coordinates that move the tube's end ([`ENDS`]).
     pub end_forces: [f64; 8],
 }
 
 /// The loads of springs on a tube.
 #[derive(Default)]
 pub(super) struct Pulls {
-    /// Force and moment about the world's origin.
+    /// Force and moment of all springs on the tube, about the world's origin.
     pub wrench: Wrench,
-    /// Generalized force on each of the coordinates [`ENDS`].
+    /// Generalized force of the springs on each of the eight coordinates that move the tube's end ([`ENDS`]).
     pub end_forces: [f64; 8],
 }
 
@@ -151,13 +154,15 @@ pub(super) struct TubeForms {
 pub(super) struct Row {
     /// Index of the piece to which the coordinate belongs.
     pub piece: usize,
-    /// Index of the coordinate within its piece. For a joint 0 is the torsion; 1 and 2 are the tilts of the bearing.
+    /// Index of the strain coordinate within its piece. For a joint 0 is the torsion; 1 and 2 are the tilts of the
+    /// bearing.
     pub coordinate: usize,
-    /// Force that does not depend on the weight of any part, such as that of the payload \[N or N m\].
+    /// Part of the generalized force that does not depend on the weight of any part, such as that of the payload \[N or
+    /// N m\].
     pub fixed: f64,
-    /// For each piece up to and including `piece`, the force per newton of the piece's weight.
+    /// For each piece from the tip to `piece` itself, the generalized force per newton of the piece's weight.
     pub per_n: Vec<f64>,
-    /// Displacement of the tip per unit of the coordinate.
+    /// Displacement of the tip per unit of the strain coordinate, in x, y and z.
     pub tip_m: Vector3<f64>,
     /// Length of the vector `tip_m`.
     pub tip_m_per_unit: f64,
@@ -221,7 +226,7 @@ impl Pose {
         self.rows.iter().filter(|row| self.is_torsion(row) || row.tip_m.norm() > 0.0)
     }
 
-    /// Whether a row belongs to the torsion of a joint.
+    /// Whether `row` belongs to the torsion of a joint, and not to a tilt of its bearing or to a tube.
     pub(super) fn is_torsion(&self, row: &Row) -> bool {
         row.coordinate == TORSION && matches!(self.pieces[row.piece], PosedPiece::Joint { .. })
     }

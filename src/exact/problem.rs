@@ -24,7 +24,7 @@ pub(super) struct Problem<'c> {
     /// Number of options of each level.
     pub level_sizes: Vec<u32>,
     pub poses: Arc<Vec<Pose>>,
-    /// Inertia matrices of the judged cases.
+    /// Inertia matrix of each judged case, as a function of the line inertias of the pieces.
     pub inertias: Arc<Vec<CaseInertia>>,
     /// Ratio of peak stress to static stress in sizing cases, in which the arm also accelerates.
     pub peak_factor: f64,
@@ -70,7 +70,7 @@ pub(super) enum Lever {
     OfLink(usize),
 }
 
-/// The space that a link leaves for the gear and motor of the joint that carries it.
+/// Where the space for gear and motor of a joint comes from. It is what the link that the joint carries leaves free.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Room {
     /// The space is the same for all options.

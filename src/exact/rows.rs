@@ -56,19 +56,19 @@ impl WarmStart {
 pub(super) struct Rows<'a> {
     pub problem: &'a Problem<'a>,
     pub work: &'a Work,
-    /// The scale of each row: its values divided by the scale are about 1.
+    /// The scale of each row (inequality): the row's values divided by its scale are about 1.
     pub scale: Vec<f64>,
     /// The constant term of each row, divided by the scale. It does not depend on any choice.
     pub fixed: Vec<f64>,
-    /// The row of the tip's displacement in each judged case.
+    /// For each judged case, the row (inequality) on the displacement of the tip.
     pub tips: Vec<TipRow>,
-    /// The gears that are not rigid, for all judged cases in turn.
+    /// The gears that are not rigid, first those of the first judged case, then those of the second, and so on.
     pub gears: Vec<Gear>,
-    /// The forces whose value the rows restrict. Each has two rows.
+    /// The generalized forces to which rows set a least and a greatest value. Each has two rows.
     pub forces: Vec<Force<'a>>,
-    /// Eigenvalue `λ` in the mode rows \[1/s²\].
+    /// Eigenvalue `λ` for which the mode rows are made \[1/s²\].
     pub lambda: f64,
-    /// The trial shapes. Each has one mode row.
+    /// The trial shapes (motions of the arm) whose Rayleigh quotients bound the modes. Each has one row.
     pub modes: Vec<Mode>,
     /// Index of the first mode row.
     pub first_mode: usize,
@@ -106,7 +106,8 @@ pub(super) struct RelaxedDesign {
     pub design_box: DesignBox,
     /// The value of every row, divided by the row's scale.
     pub values: Vec<f64>,
-    /// For each piece, the amount that it adds to each row in front of the mode rows, not scaled.
+    /// For each piece, the amount that it adds to each row on mass, tip displacement and torque. The amounts are not
+    /// divided by the scales.
     pub adds: Vec<f64>,
     /// Line inertias of each piece.
     pub inertia: Vec<[f64; INERTIAS]>,
@@ -251,7 +252,7 @@ impl<'a> Rows<'a> {
         self.gears.iter().find(|gear| gear.judged == judged && gear.piece == piece)?.row
     }
 
-    /// Adds a row with this scale and this constant term.
+    /// Adds a row with the scale `scale` and the constant term `fixed`. The term is divided by the scale.
     fn push(&mut self, scale: f64, fixed: f64) {
         self.scale.push(scale);
         self.fixed.push(fixed / scale);
@@ -270,7 +271,8 @@ impl<'a> Rows<'a> {
         next
     }
 
-    /// Adds the mode row of a trial shape.
+    /// Adds the row of the trial shape `shape`, which bounds the modes in a judged case. `start` is the index of the
+    /// starting acceleration from which the shape came.
     pub(super) fn push_mode(&mut self, judged: usize, start: usize, shape: Shape) {
         let kinetic = [&self.work.light, &self.work.heavy].map(|inertia| shape.kinetic_energy(inertia));
         // A shape without kinetic energy bounds nothing.

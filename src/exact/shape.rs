@@ -267,7 +267,8 @@ impl PosedPiece {
     }
 }
 
-/// Adds the motion by the tilts of a joint's bearing to the motion of everything outboard.
+/// Adds the motion that the two tilts of a joint's bearing cause to `twist`, the motion of everything outboard. `x`
+/// holds the coordinates of the joint.
 #[inline]
 fn add_tilts(across: &Option<[Twist; 2]>, x: &[f64], twist: &mut Twist) {
     for (tilt, x) in across.iter().flatten().zip(&x[TILT..]) {
@@ -279,7 +280,7 @@ fn add_tilts(across: &Option<[Twist; 2]>, x: &[f64], twist: &mut Twist) {
 #[derive(Default)]
 pub(super) struct Work {
     momenta: Vec<Momentum>,
-    /// Inertia force on each coordinate: [`COORDINATES`] places for each piece, tip first.
+    /// Inertia force on each strain coordinate. There are [`COORDINATES`] places for each piece, tip first.
     pub forces: Vec<f64>,
 }
 

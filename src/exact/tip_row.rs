@@ -23,7 +23,8 @@ pub(super) struct TipRow {
 }
 
 impl TipRow {
-    /// The tip row of a judged case, and its constant term, which no choice changes \[m\].
+    /// The row of the tip's displacement in a judged case, and the part of this displacement that no choice changes
+    /// \[m\]. `judged` is the index among the judged cases and `case` that among all cases.
     pub(super) fn new(problem: &Problem, judged: usize, case: usize, work: &Work) -> (Self, f64) {
         let pose = &problem.poses[case];
         let pieces = problem.parts.len();

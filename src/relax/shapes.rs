@@ -24,7 +24,7 @@ const MOST_SHAPES: usize = 3;
 
 /// Inertias and stiffnesses of the arm in one case, over the strain coordinates.
 pub(super) struct ShapeModel {
-    /// Index of the case in the study.
+    /// Index of the case among all cases of the study.
     pub case: usize,
     /// Inertia matrix of everything that is the same in all designs: the payload, rigid offsets and bodies.
     given: DMatrix<f64>,
@@ -54,7 +54,8 @@ struct LinkShape {
 }
 
 impl LinkShape {
-    /// The tube of a slot whose first coordinate is `first`. `tubes`: its options.
+    /// The tube in slot `slot`. Its strain coordinates start at the index `first`, `fields` is its motion at each Gauss
+    /// point, and `tubes` are its options.
     fn new(
         slot: usize,
         first: usize,

@@ -22,8 +22,8 @@ pub(crate) struct EightArms {
     /// Mass \[kg\] of the drive in each inner slot (the slots from the row level to the base). The masses of given
     /// drives are set from the beginning.
     pub masses_kg: Vec<Eight>,
-    /// Largest term that a single joint or tube coordinate adds to Dunkerley's sums \[s²\]. The lowest eigenvalue is
-    /// at most the reciprocal of this term.
+    /// The largest single term of Dunkerley's sums (each the sum of `1/λ` over the eigenvalues of a block) that one
+    /// joint or one tube coordinate adds \[s²\]. The lowest eigenvalue is at most the reciprocal of this term.
     pub largest_s2: Eight,
     /// The eight arms in each case.
     pub cases: Vec<CaseArms>,
@@ -45,8 +45,8 @@ pub(crate) struct CaseArms {
     /// Tangent compliance of the joint or bearing spring in each inner slot (the slots from the row level to the base)
     /// \[rad/(N m)\].
     pub compliance: Vec<Eight>,
-    /// Dunkerley's sum \[s²\] of each block of the eigenvalue problem. A planar pose has two blocks, a spatial pose
-    /// only one.
+    /// Dunkerley's sum of each block of the eigenvalue problem \[s²\]: the sum of `1/λ` over its eigenvalues. A planar
+    /// pose has two blocks, a spatial pose only one.
     pub trace_s2: [Eight; 2],
 }
 

@@ -147,7 +147,7 @@ pub fn near_designs<P: FinishRows>(
     (!stop.load(Ordering::Relaxed)).then_some(NearDesigns { nearest, total: Some(total) })
 }
 
-/// The data that all tasks of the search for near designs use in common.
+/// The inputs and the shared results of all tasks of a search for near designs.
 struct Seeker<'s> {
     constraints: &'s Constraints,
     archive: Archive,

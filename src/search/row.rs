@@ -64,7 +64,7 @@ pub(crate) struct Row {
 /// A hinge: one elastic coordinate of an inner slot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Hinge {
-    /// Number of the hinge, its index in lists with an entry per hinge.
+    /// Number of the hinge. It is the hinge's index in lists that have an entry per hinge.
     pub number: usize,
     /// Inner slot that has this coordinate.
     pub slot: usize,
@@ -101,32 +101,33 @@ pub(crate) type AtJoints = Vec<AtJoint>;
 
 /// Numbers of one case that depend on the pose but not on the option of the row level.
 pub(crate) struct RowCase {
-    /// Whether some load or weight turns each hinge. At the other hinges the torque is zero in every arm.
+    /// For each hinge, whether some load or weight turns it. At the other hinges the torque is zero in every arm.
     pub turned: Vec<bool>,
     /// Torque and inertia about each hinge per kilogram of the drive in an inner slot; first index the inner slot of
     /// the drive, second the number of the hinge.
     pub per_kg: Vec<AtJoints>,
-    /// Torque and inertia about each hinge, caused by all inner pieces of known mass.
+    /// Torque and inertia about each hinge that the inner pieces with a given mass cause.
     pub fixed: AtJoints,
     /// Torque \[N m\] on each hinge per newton of the weight of the row's link. All options of a link have the same
     /// centre of mass, so one number serves for all.
     pub link_torque: Vec<f64>,
-    /// Axial force \[N\], torsion and both bending moments \[N m\] at the root of the row's link, per newton of its
-    /// weight.
+    /// Loads at the root of the row's link per newton of the link's own weight: axial force \[N\], torsion and both
+    /// bending moments \[N m\].
     pub link_weight_at_root: [f64; 4],
-    /// Whether bending of the row's link can move the tip in x, in y and in z.
+    /// Whether bending of the row's link (the link of the row level) can move the tip in x, in y and in z.
     pub bends: [bool; 3],
-    /// Entries of the outboard inertia matrix that count in Dunkerley's sum, as block, row and column: those that the
-    /// end of the row's link sets in motion.
+    /// The entries (block, row, column) of the inertia matrix of everything outboard that count in Dunkerley's sum.
+    /// They are those that the end of the row's link sets in motion.
     pub spread_entries: Vec<(usize, usize, usize)>,
-    /// The range of `spread_entries` that belongs to each block.
+    /// For each block of the eigenvalue problem, the range of `spread_entries` that belongs to it.
     pub spread_of: [Range<usize>; 2],
     /// For each block of the eigenvalue problem, the number of inner slots that take part in its modes: all from the
     /// row level to the last compliant one. Slots inboard of that one stand still in every mode.
     pub ends: [usize; 2],
-    /// Whether some option of the row's link is compliant.
+    /// Whether the link of the row level is compliant with at least one of its options.
     pub links_yield: bool,
-    /// Contribution of the given tubes to Dunkerley's sum, by block \[s²\], without the mass outboard of them.
+    /// Contribution of the given tubes to Dunkerley's sum (the sum of `1/λ` over the eigenvalues) of each block \[s²\].
+    /// It counts the mass of each tube itself, without the mass outboard of it.
     pub tubes_trace_s2: [f64; 2],
     /// Whether the case counts for deflection and lowest mode.
     pub judged: bool,
@@ -146,7 +147,7 @@ pub(crate) struct Chunk {
     pub of_one_material: bool,
     /// Bit mask, one bit per option: the options whose wall is too slender.
     pub slender: u8,
-    /// Stress of each option.
+    /// Factors from which the stress in the link follows with each option.
     pub stress: StressEight,
     /// The eight options in each case.
     pub cases: Vec<CaseChunk>,
@@ -156,13 +157,13 @@ pub(crate) struct Chunk {
 /// known.
 #[derive(Default)]
 pub(crate) struct StressEight {
-    /// Per newton of axial force.
+    /// Ratio of stress to strength per newton of axial force.
     pub per_axial_n: Eight,
-    /// Per newton metre of bending moment about the section's y axis.
+    /// Ratio of stress to strength per newton metre of bending moment about the section's y axis.
     pub per_moment_y: Eight,
-    /// Per newton metre of bending moment about the section's z axis.
+    /// Ratio of stress to strength per newton metre of bending moment about the section's z axis.
     pub per_moment_z: Eight,
-    /// Per newton metre of torsion.
+    /// Ratio of stress to strength per newton metre of torsion.
     pub per_torsion: Eight,
     /// Bit mask, one bit per option: the options of round section, in which both bending moments add as vectors.
     pub round: u8,
@@ -176,18 +177,19 @@ pub(crate) struct CaseChunk {
     pub flexibility: [[Eight; 6]; 3],
     /// Displacement of the tip \[m\] in x, y and z, caused by the weight of the link itself.
     pub own_weight_deflection_m: [Eight; 3],
-    /// Inertia of the link about each hinge \[kg m²\].
+    /// Inertia of the row's link, with each option, about each hinge inboard \[kg m²\].
     pub inertia_at: Vec<Eight>,
     /// Contribution to Dunkerley's sum (the sum of `1/λ` over all eigenvalues) per unit of each entry of the outboard
     /// inertia matrix, in the order of [`RowCase::spread_entries`].
     pub spread: Vec<Eight>,
-    /// Contribution of the link with its own mass alone to Dunkerley's sum, by block \[s²\].
+    /// Contribution of the row's link, with its own mass alone, to Dunkerley's sum (the sum of `1/λ` over the
+    /// eigenvalues) of each block \[s²\].
     pub trace_s2: [Eight; 2],
-    /// The link options as the computation of the lowest mode needs them.
+    /// The eight link options in the form in which the computation of the lowest mode needs them.
     pub modal: ChunkModal,
 }
 
-/// Eight options of the row's link, as the computation of the lowest mode needs them.
+/// Eight options of the row's link, in the form in which the computation of the lowest mode needs them.
 pub(crate) enum ChunkModal {
     Planar(Box<[LaneLink<3>; 2]>),
     Spatial(Box<LaneLink<6>>),
@@ -198,11 +200,11 @@ pub(crate) enum ChunkModal {
 pub(crate) struct RowChunk<'a, 'c> {
     pub problem: &'a ArmProblem<'c>,
     pub row: &'a Row,
-    /// The arm outboard of the row.
+    /// The arm outboard of the row level, which all designs of the row have in common.
     pub from: &'a Partial,
     /// Option of each level inboard of the row level, in order towards the base.
     pub inner: &'a [u32],
-    /// Number of the chunk.
+    /// Number of the chunk (eight options of the row level) to which the eight designs belong.
     pub chunk: usize,
 }
 
@@ -291,8 +293,8 @@ pub(super) fn hinge_numbers(slots: &[Slot]) -> usize {
 }
 
 impl Hinge {
-    /// Motion (velocity and angular velocity at the world's origin) of everything outboard per unit of the hinge's
-    /// coordinate. `slots` are the inner slots of a case.
+    /// Motion of everything outboard of this hinge per unit of the hinge's coordinate: velocity and angular velocity at
+    /// the world's origin. `slots` are the inner slots of a case.
     pub(super) fn twist(&self, slots: &[StationSlot]) -> Twist {
         match (&slots[self.slot], self.end) {
             (StationSlot::Joint(joint), _) => joint.twist,

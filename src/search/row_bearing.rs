@@ -18,7 +18,7 @@ use nalgebra::Matrix6;
 pub(crate) struct RowBearing {
     /// Index of the joint among the inner slots (the slots from the row level to the base).
     pub k: usize,
-    /// The bearing in each sizing case, with the number of the case.
+    /// The bearing in each sizing case. Each entry has the index of the case and the bearing's loads in it.
     cases: Vec<(usize, BearingCase)>,
     /// Lever of the radial force about the bearing.
     lever: RowLever,
@@ -33,7 +33,7 @@ enum RowLever {
     OfChunk(Vec<Eight>),
 }
 
-/// One bearing in one case: the load at rest, and the additional load when each joint accelerates.
+/// The loads on one bearing in one case: the load at rest, and the additional load while each joint accelerates.
 struct BearingCase {
     /// Position and axes of the bearing in this pose.
     joint: PosedBearing,
@@ -65,7 +65,8 @@ struct Source {
     fixed: Components,
     /// For each inner drive that is chosen or sized: its inner slot, and the load per kilogram of the drive.
     per_kg: Vec<(usize, Components)>,
-    /// Load from the link of the row, for each chunk of its options; empty if the row level is not a link.
+    /// Load from the link of the row level, with each of its options, eight in a chunk. Empty if the row level is not a
+    /// link.
     link: Vec<[Eight; 5]>,
 }
 
@@ -121,7 +122,8 @@ fn side_by_side(lanes: [Components; LANES]) -> [Eight; 5] {
 }
 
 impl BearingCase {
-    /// Prepares the bearing of the joint in slot `slot` for one case. Returns `None` if the slot has no joint.
+    /// Prepares the loads on the bearing of the joint in `slot` for one case. `first` is the slot of the row level.
+    /// `None` if the slot has no joint.
     fn new(problem: &ArmProblem, station: &Station, first: usize, slot: usize) -> Option<Self> {
         let StationSlot::Joint(place) = &station.slots[slot] else { return None };
         let joint = PosedBearing::new(place);
@@ -147,8 +149,9 @@ impl BearingCase {
 }
 
 impl RowBearing {
-    /// Prepares the checked bearings of the joints inboard of the row level, which is in slot `first`. If the row
-    /// level is itself a joint, its bearing is left out, because its load is the same for all drives of the row.
+    /// Prepares the bearings that are checked, of the joints inboard of the row level. `first` is the slot of the row
+    /// level. If the row level is itself a joint, its bearing is left out, because its load is the same for all drives
+    /// of the row.
     pub(crate) fn all(problem: &ArmProblem, first: usize) -> Vec<Self> {
         let slots = problem.slots();
         let levers = problem.bearing_loads().levers.iter().enumerate().skip(first);

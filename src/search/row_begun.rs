@@ -31,7 +31,7 @@ pub(crate) struct Begun {
     pub of_row: BearingDemand,
     /// Room for the gear and motor of the joint that is the row level; unlimited if the row level is a link.
     pub room_of_row: LinkRoom,
-    /// Loads from outboard of the row on the output bearings inboard of the row level.
+    /// Loads that everything outboard of the row makes on the output bearings inboard of the row level.
     pub bearings: BearingsBegun,
 }
 
@@ -39,16 +39,18 @@ pub(crate) struct Begun {
 pub(crate) struct CaseBegun {
     /// The arm outboard of the row, prepared for the lowest modes.
     pub outboard: CaseOutboard,
-    /// Torque and inertia about each hinge, caused by everything outboard of the row and by the inner pieces of known
-    /// mass.
+    /// Torque and inertia about each hinge that everything outboard of the row and the inner pieces with a given mass
+    /// cause.
     pub at: AtJoints,
-    /// The entries of the outboard inertia matrix that count in Dunkerley's sum. Entries off the diagonal are
-    /// doubled, in the order of [`RowCase::spread_entries`](super::row::RowCase::spread_entries).
+    /// The entries of the inertia matrix of everything outboard that count in Dunkerley's sum (the sum of `1/λ` over
+    /// the eigenvalues). Entries off the diagonal are doubled. The order is that of
+    /// [`RowCase::spread_entries`](super::row::RowCase::spread_entries).
     pub spread: Vec<f64>,
-    /// Axial force \[N\], torsion and both bending moments \[N m\] at the end of the row's link, caused by everything
-    /// outboard.
+    /// Loads at the end of the row's link from everything outboard: axial force \[N\], torsion and both bending moments
+    /// \[N m\].
     pub at_end: [f64; 4],
-    /// The same four loads at the root of the row's link, without the weight of the link.
+    /// Loads at the root of the row's link from everything outboard, without the weight of the link: axial force \[N\],
+    /// torsion and both bending moments \[N m\].
     pub at_root: [f64; 4],
 }
 

@@ -425,8 +425,8 @@ impl RowChunk<'_, '_> {
         largest
     }
 
-    /// Computes Dunkerley's sum for each case and block: the trace of the product of flexibility and mass matrix
-    /// \[s²\].
+    /// Computes Dunkerley's sum for each case and block of the eigenvalue problem \[s²\]: the trace of flexibility
+    /// matrix times mass matrix, which equals the sum of `1/λ` over the eigenvalues.
     #[inline(always)]
     fn sum_traces<V: Lanes>(&self, begun: &Begun, arms: &mut EightArms) {
         for (c, case) in self.row.cases.iter().enumerate().filter(|(_, case)| case.judged) {
@@ -490,7 +490,7 @@ impl RowChunk<'_, '_> {
     }
 }
 
-/// Adds eight numbers to eight numbers in memory.
+/// Adds the eight numbers `more` to the eight numbers `to` in memory.
 #[inline(always)]
 fn add<V: Lanes>(to: &mut Eight, more: V) {
     *to = (V::load(to) + more).store();
@@ -513,14 +513,14 @@ fn all_equal(indices: &[usize; LANES]) -> bool {
     indices.iter().all(|index| *index == indices[0])
 }
 
-/// The entries of a list at eight indices. `all_same` says that the indices are equal.
+/// The entries of `list` at the eight indices `at`. `all_same` tells that these are equal.
 #[inline(always)]
 fn at_places<V: Lanes>(list: &[f64], at: &[usize; LANES], all_same: bool) -> V {
     if all_same { V::splat(list[at[0]]) } else { V::gather(list, at) }
 }
 
-/// Square of the ratio of von Mises stress (bending, axial force and torsion) to strength, for eight links. The loads
-/// are axial force \[N\], torsion and the two bending moments \[N m\].
+/// Square of the ratio of von Mises stress (bending, axial force and torsion) to strength, for eight links. `per` has
+/// the ratio per unit of each load. The loads are axial force \[N\], torsion and the two bending moments \[N m\].
 #[inline(always)]
 fn stress_squared<V: Lanes>(per: &StressEight, [axial, torsion, y, z]: [V; 4]) -> V {
     let y = y.abs() * V::load(&per.per_moment_y);

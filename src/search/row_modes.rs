@@ -137,7 +137,8 @@ impl<'a, 'c> Question<'a, 'c> {
         V::splat(1.0).less(V::load(&self.arms.largest_s2) * below)
     }
 
-    /// Dunkerley's lower bound of the lowest eigenvalue of a block \[1/s²\].
+    /// Dunkerley's lower bound of the lowest eigenvalue of a block \[1/s²\]: the reciprocal of the sum of `1/λ` over
+    /// its eigenvalues.
     #[inline(always)]
     fn least<V: Lanes>(&self, (case, block): (usize, usize)) -> V {
         V::splat(1.0) / V::load(&self.arms.cases[case].trace_s2[block])
@@ -188,7 +189,7 @@ impl<'a, 'c> Question<'a, 'c> {
         }
     }
 
-    /// The inner pieces of the eight arms, in one block.
+    /// The pieces of the eight arms from the row level to the base, in one block of the eigenvalue problem.
     #[inline(always)]
     fn pieces<'s, const N: usize>(
         &'s self,
@@ -244,17 +245,18 @@ fn eigenvalue(hz: f64) -> f64 {
     (TAU * hz) * (TAU * hz)
 }
 
-/// The inner pieces of eight arms in one block, up to the last compliant one.
+/// The pieces of eight arms from the row level to the last compliant one, in one block of the eigenvalue problem.
 struct Pieces<'a, const N: usize> {
     slots: &'a [BlockSlot<N>],
-    /// Number of slots up to the last compliant one.
+    /// Number of inner slots from the row level to the last one that is compliant.
     end: usize,
     /// The eight options of the row's link; `None` if the row level is a joint.
     link: Option<&'a LaneLink<N>>,
     case: &'a RowCase,
-    /// Mass of the drives in each inner slot \[kg\].
+    /// Mass of the drive in each inner slot (from the row level to the base) \[kg\], in eight arms.
     masses_kg: &'a [Eight],
-    /// Tangent compliance of each inner slot \[rad/(N m)\].
+    /// Tangent compliance of the joint or spring in each inner slot (from the row level to the base) \[rad/(N m)\], in
+    /// eight arms.
     compliance: &'a [Eight],
 }
 

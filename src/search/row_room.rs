@@ -5,11 +5,11 @@ use crate::space::fit::RoomAtJoint;
 use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::Slot;
 
-/// The room for gear and motor at a joint inboard of the row level.
+/// The room that a link leaves for the gear and motor of a joint inboard of the row level.
 pub(crate) struct RowRoom {
     /// Index of the joint among the inner slots (the slots from the row level to the base).
     pub k: usize,
-    /// The link that determines the room, or the room itself.
+    /// Which link determines the room.
     of: RoomOf,
 }
 
@@ -22,7 +22,8 @@ enum RoomOf {
 }
 
 impl RowRoom {
-    /// The rooms at the joints inboard of the row level; `first` is the slot of the row level.
+    /// The rooms for gear and motor at the joints inboard of the row level, as far as they are limited. `first` is the
+    /// slot of the row level.
     pub(crate) fn all(problem: &ArmProblem, first: usize) -> Vec<Self> {
         let slots = problem.slots();
         let is_inboard =

@@ -168,7 +168,7 @@ pub struct Sweep<'p, P: FinishRows> {
     shard: Shard,
     overall: Pool,
     groups: Vec<Pool>,
-    /// The completed tasks, and the numbers of designs that they counted.
+    /// The completed tasks, and the numbers of designs that these tasks evaluated and excluded.
     done: Mutex<(Done, Tally)>,
 }
 

@@ -282,8 +282,8 @@ impl DesignSpace {
         }
     }
 
-    /// Elastic displacement of a prismatic joint along its travel as a function of the force, as a linear law
-    /// \[m/N\].
+    /// The linear law by which a prismatic joint deflects elastically along its travel: the displacement as a function
+    /// of the force \[m/N\]. Effects on the joint are included.
     pub(crate) fn slide_law(&self, slide: &SpacePrismatic) -> JointLaw {
         linear_law(self.prismatic_piece(slide).m_per_n)
     }

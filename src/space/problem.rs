@@ -43,7 +43,7 @@ pub struct ArmProblem<'c> {
     level_slots: Vec<usize>,
     /// Number of options of each level, tip first.
     level_sizes: Vec<u32>,
-    /// The level whose options are evaluated together.
+    /// The row level: the level whose options are evaluated together.
     row_level: usize,
     /// The station of each case, in the order of the design space.
     stations: Vec<Station>,
@@ -51,7 +51,7 @@ pub struct ArmProblem<'c> {
     materials: usize,
     /// Ratio of the stress at peak load to the stress at rest.
     peak_factor: f64,
-    /// Data for the loads on output bearings.
+    /// The data from which the loads on output bearings are computed.
     bearing_loads: BearingLoads,
     /// For each slot, the room that the link of its joint leaves for gear and motor; `None` where no limit refers to
     /// a link.

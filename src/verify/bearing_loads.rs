@@ -19,7 +19,7 @@ use nalgebra::Vector3;
 type Components<T> = [T; COMPONENTS];
 const COMPONENTS: usize = 5;
 
-/// Loads on the bearing of one joint in one case.
+/// The loads on the output bearing of one joint in one case, as functions of the weights and inertias of the parts.
 pub(super) struct PosedBearing {
     /// The five components of the load at rest, each a linear function of the weights of the parts.
     rest: Components<Linear>,

@@ -29,7 +29,7 @@ impl Boxes {
         Self::of(Arc::new(skeleton), parts)
     }
 
-    /// Builds the option trees from the options of joints and tubes.
+    /// Prepares the boxes of an arm whose parts are not chosen (`skeleton`), with trees over the options in `parts`.
     pub(super) fn of(skeleton: Arc<Skeleton>, parts: Parts) -> Self {
         let joints = parts.joints.into_iter().map(Drives::new).collect();
         Self { skeleton, joints, tubes: parts.tubes.iter().map(Tubes::new).collect() }

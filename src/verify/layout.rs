@@ -148,8 +148,8 @@ impl Layout {
         layout
     }
 
-    /// Adds the springs on which the arm stands. They are inboard of the first piece, although the list has them after
-    /// the springs of that piece. `structure` is the arm as the mechanics sees it.
+    /// Adds the springs on which the arm stands, such as those of a base that tilts. They are inboard of the first
+    /// piece, although the list has them after the springs of that piece.
     fn add_base(&mut self, structure: &Structure) {
         let fixed = structure.base_frame.springs();
         let level = [Vector3::x(), Vector3::y()].map(|axis| (axis, structure.base_tilt_rad_per_nm));
@@ -162,7 +162,8 @@ impl Layout {
         }
     }
 
-    /// Adds a prismatic joint: the fixed mass with the springs of guide and drive, then the moving mass.
+    /// Adds the prismatic joint `joint`, the piece with the number `place`, at its travel `travel_m`: the fixed mass
+    /// with the springs of guide and drive, then the moving mass.
     fn add_prismatic(
         &mut self,
         place: usize,

@@ -51,10 +51,10 @@ pub(super) struct Pose {
     pub works: Vec<[LinearVector; STIFFNESSES]>,
     /// Force and moment at root and end of each tube, in the tube's frame, as linear functions of the loads.
     pub ends: Vec<[[Linear; 6]; 2]>,
-    /// Inertia matrix of everything that is the same in all designs: lower triangle, row by row.
+    /// Inertia matrix, over all coordinates, of everything that is the same in all designs: lower triangle, row by row.
     pub inertia: Vec<f64>,
-    /// Inertia matrix per unit of mass of each drive, then per unit of each inertia per length of each tube. Lower
-    /// triangles, row by row.
+    /// Inertia matrices over all coordinates: one for each drive, per unit of its mass, then one for each inertia per
+    /// length of each tube, per unit of it. All are lower triangles, row by row.
     pub inertia_per: Vec<Vec<f64>>,
 }
 
@@ -299,7 +299,7 @@ impl Builder<'_> {
         parts.collect()
     }
 
-    /// Inertia matrix of the payload and of the masses that are the same in all designs.
+    /// Inertia matrix, over all coordinates, of the payload and of the masses that are the same in all designs.
     pub(super) fn fixed_inertia(&self, case: &LoadCase) -> Vec<f64> {
         let mut out = self.no_inertia();
         let rotation = &self.layout.tip_rotation;
@@ -339,7 +339,8 @@ impl Builder<'_> {
         drives.chain(tubes).collect()
     }
 
-    /// Inertia matrix per unit of each inertia per length of a tube.
+    /// Inertia matrices of a tube over all coordinates, one per unit of each of its inertias per length. Each is a
+    /// lower triangle, row by row.
     fn tube_inertia(&self, tube: usize) -> [Vec<f64>; DENSITIES] {
         let mut out: [Vec<f64>; DENSITIES] = std::array::from_fn(|_| self.no_inertia());
         let placed = &self.layout.tubes[tube];
@@ -377,7 +378,7 @@ fn along(motions: &[Vector3<f64>], direction: &Vector3<f64>) -> Vec<f64> {
     motions.iter().map(|motion| motion.dot(direction)).collect()
 }
 
-/// Adds `weight · row rowᵀ` to a lower triangle.
+/// Adds the matrix `weight · row rowᵀ` to the lower triangle `triangle` of a symmetric matrix.
 fn add_square(triangle: &mut [f64], row: &[f64], weight: f64) {
     let mut entries = triangle.iter_mut();
     for (i, a) in row.iter().enumerate() {

@@ -191,7 +191,7 @@ pub(super) fn joint_offers(question: &Question, catalogs: &Catalogs) -> Vec<Join
     joints.map(|(joint, reach_m)| JointOffers::new(question, joint, reach_m, catalogs)).collect()
 }
 
-/// Largest distance of the tip from each joint's axis over the sizing cases \[m\].
+/// Reach of each joint \[m\]: the largest distance of the tip from the joint's axis over the sizing cases.
 fn reaches_m(question: &Question) -> Vec<f64> {
     let structure = question.nominal_structure();
     let mut reaches_m = vec![0.0f64; question.joints().count()];

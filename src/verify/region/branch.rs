@@ -172,8 +172,9 @@ impl Rows<'_> {
         works.map(|(which, (work, compliance))| (number(which), work, compliance)).collect()
     }
 
-    /// Ways to branch at the torques of a case, each with its score. The score is positive where the gears of the
-    /// mixture twist less, or are stiffer, than they are under the torques that the mixture's own masses cause.
+    /// Ways to divide a subproblem at the torques of a judged case, each with its score. The score is positive if the
+    /// gears of the mixture twist less, or are stiffer, than they are under the torques that the mixture's own masses
+    /// cause. `between` holds the numbers of the mixture.
     fn by_torques(&self, case: usize, between: &[f64], left: &Reduced) -> Vec<(f64, Branching)> {
         let pose = self.pose(case);
         let own_nm = |torque: &Linear| {

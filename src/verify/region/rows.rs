@@ -73,8 +73,8 @@ pub(super) struct Rows<'a> {
     /// \[rad/(N m)\] with which the twist grows from the end of the interval where it is least.
     pub torques: Vec<Vec<Span>>,
     pub per_torque: Vec<Vec<f64>>,
-    /// For each row of a tip displacement: the index of the row, its judged case, and the direction of the
-    /// displacement.
+    /// For each row on a tip displacement: the index of the row, its judged case, and the direction along which the
+    /// displacement is taken.
     pub tips: Vec<(usize, usize, Vector3<f64>)>,
     /// For each judged case and each strain coordinate, whether the coordinate may be rigid in some member of the
     /// subproblem.
@@ -141,8 +141,8 @@ impl Row {
         Self { per_number: vec![0.0; columns.len()], fixed: 0.0 }
     }
 
-    /// Adds a quantity that is linear in the loads to this row: its constant part `fixed`, and its coefficients
-    /// `per_load`. `water` is the index of the medium around the arm.
+    /// Adds a quantity that is linear in the loads (masses of drives, weights per length of tubes) to this row: its
+    /// constant part `fixed`, and its coefficients `per_load`. `water` is the index of the medium around the arm.
     fn add(&mut self, columns: &Columns, water: usize, fixed: f64, per_load: impl Iterator<Item = f64>) {
         self.fixed += fixed;
         per_load.enumerate().for_each(|(load, per)| self.per_number[columns.load(load, water)] += per);
@@ -227,7 +227,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Adds the row of the tip displacement in a case, along the direction in which the stiffest arm's tip moves.
+    /// Adds the row on the tip displacement in a judged case. The displacement is taken along the direction in which
+    /// the tip of the stiffest arm moves.
     fn add_tip(&mut self, case: usize, pose: &Pose, members: &Members) {
         let Some(direction) = direction(pose, members) else { return };
         let loads = &members.loads[pose.water];
