@@ -55,7 +55,7 @@ pub(super) struct Numbers<'a> {
 /// The load at rest of everything outboard of a joint: the wrench of what the study gives, and the wrench of each piece
 /// that has a weight of its own.
 pub(super) struct Loads<'a> {
-    /// Wrench of payload, tip force and given bodies about the world's origin.
+    /// Wrench of payload, tip force and the bodies that the study gives, about the world's origin.
     pub fixed: Wrench,
     /// Wrench of each piece per newton of its weight.
     pub per_n: &'a [Wrench],
@@ -177,8 +177,8 @@ impl BearingRows {
     }
 }
 
-/// The contribution of one weight or inertia to some components of a load, per unit of it. `None` stands for the
-/// constant contribution of the given bodies.
+/// The contribution of one weight or one line inertia to some components of a load, per unit of it. Without an index
+/// (`None`), it is the constant contribution of payload, tip force and the bodies that the study gives.
 type Share = (Option<usize>, [f64; COMPONENTS]);
 
 /// For the load components with the indices `places`: the contribution of the given bodies first, and then that of each

@@ -60,7 +60,7 @@ impl From<BoxBound> for Objectives {
 pub(super) enum Verdict {
     /// No member meets the constraints, or an incumbent dominates the bound.
     Pruned,
-    /// Some member may be on the front.
+    /// The box has this bound, and a member of it may be on the front.
     Open(BoxBound),
 }
 

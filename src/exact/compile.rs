@@ -176,8 +176,8 @@ impl<'c> Problem<'c> {
         Some(problem.with_inertias())
     }
 
-    /// Compiles a joint of the chain. `tilts` tells whether its bearing tilts with some drive. `None` if the joint has
-    /// no drive.
+    /// Compiles the joint in `slot`. `tilts` tells whether its bearing tilts with some drive. `ties` tells whether
+    /// drives of equal mass, torsion curve and bearing stiffness become one option. `None` if the joint has no drive.
     fn joint(&mut self, slot: Slot<'c>, tilts: bool, ties: Ties) -> Option<Part<'c>> {
         match slot {
             Slot::Given { law, mass_kg } => Some(Part::Given { mass_kg, curve: CurveBox::of(&law) }),
@@ -187,8 +187,8 @@ impl<'c> Problem<'c> {
         }
     }
 
-    /// The lever of a joint to the link outboard. That link is compiled already, because compilation goes inward from
-    /// the tip.
+    /// Finds out on which link of the compiled problem the lever of a joint depends. That link is compiled already,
+    /// because compilation goes inward from the tip.
     fn lever(&self, lever: &LeverByOption) -> Lever {
         match lever.link_slot {
             Some(link) if matches!(self.parts[link], Part::Links { .. }) => Lever::OfLink(link),
@@ -196,7 +196,8 @@ impl<'c> Problem<'c> {
         }
     }
 
-    /// The space at a joint. The link that leaves it is compiled already.
+    /// Finds out on which link of the compiled problem the space at a joint depends. That link is compiled already,
+    /// because compilation goes inward from the tip.
     fn room_at(&self, room: &RoomAtJoint) -> Room {
         match &self.parts[room.link_slot] {
             Part::Links { .. } => Room::OfLink(room.link_slot),
@@ -245,7 +246,8 @@ impl<'c> Problem<'c> {
         }
     }
 
-    /// Compiles a joint whose drive is a level of the search. `None` if it has no drive.
+    /// Compiles a joint whose drive the search chooses. `tilts` tells whether its bearing tilts with some drive. `None`
+    /// if the joint has no drive.
     fn drives(&mut self, sized: SizedJoint<'c>, tilts: bool, ties: Ties) -> Option<Part<'c>> {
         self.level(sized.table.len());
         let rays = self.rays(self.parts.len(), sized.table.motion());
@@ -261,7 +263,8 @@ impl<'c> Problem<'c> {
         })
     }
 
-    /// Compiles a joint that takes the lightest drive which carries its load. `None` if it has no drive.
+    /// Compiles a joint that takes the lightest drive which carries its load (first fit). `tilts` tells whether its
+    /// bearing tilts with some drive. `None` if the joint has no drive.
     fn first_fit(&self, sized: SizedJoint<'c>, tilts: bool) -> Option<Part<'c>> {
         let rays = self.rays(self.parts.len(), sized.table.motion());
         let candidates = sized.table.first_fit_candidates();
@@ -270,7 +273,8 @@ impl<'c> Problem<'c> {
         Some(Part::FirstFit { ladder, sized: Arc::new(sized) })
     }
 
-    /// Adds a level with `size` options for the next piece and returns the numbers of the options.
+    /// Adds a level (choice) with `size` options for the piece that is compiled next. Returns the numbers of the
+    /// options.
     fn level(&mut self, size: usize) -> std::ops::Range<u32> {
         self.level_pieces.push(self.parts.len());
         self.level_sizes.push(size as u32);
@@ -289,8 +293,8 @@ impl<'c> Problem<'c> {
         Rays::new(motion, static_nm, inertia_kgm2)
     }
 
-    /// Adds the inertia matrices of every judged case. An arbitrary arm of the space shows which coordinates deflect
-    /// elastically.
+    /// Adds the inertia matrices of every judged case to the problem. An arbitrary arm of the space shows which
+    /// coordinates deflect elastically.
     pub(super) fn with_inertias(mut self) -> Self {
         let mut work = Work::default();
         let filled = self.fill(&mut self.root(), &mut work);

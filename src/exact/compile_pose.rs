@@ -28,7 +28,7 @@ use nalgebra::{DMatrix, Matrix3, Matrix6, Rotation3, SMatrix, Vector3};
 /// What a compiled pose needs to know about a joint of the chain in addition to its axis.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct JointNeeds {
-    /// Whether the output bearing tilts with some drive that may be chosen.
+    /// Whether the output bearing of the joint tilts with at least one of the drives that may be chosen.
     pub tilts: bool,
     /// Whether the output bearing of some drive has a limit that must be checked.
     pub is_checked: bool,
@@ -348,7 +348,8 @@ impl TubeForms {
 }
 
 impl PosedTube {
-    /// Rigid-body inertia of the tube about the world's origin, per unit of each line inertia.
+    /// Inertia matrices of the tube as a rigid body, about the world's origin, each per unit of one line inertia
+    /// (inertia per metre).
     fn rigid_forms(&self) -> [Matrix6<f64>; INERTIAS] {
         let to_local = crate::mechanics::condensed::world_to_local(&self.root_m, &self.frame);
         let f = &self.forms;
@@ -398,11 +399,11 @@ fn areas_per_n(tube: &PosedTube, down: &Vector3<f64>) -> [f64; 8] {
 /// The wrench and the inertia of everything outboard of the present piece, as linear functions of the weights and
 /// inertias of the parts.
 struct Outboard {
-    /// Wrench of payload, tip force, springs and given bodies.
+    /// Wrench of payload, tip force, springs and the bodies that the study gives, added up so far.
     fixed: Wrench,
     /// Wrench of each piece per newton of its weight, tip first.
     per_n: Vec<Wrench>,
-    /// Inertia of the payload and of given bodies about the world's origin.
+    /// Inertia of the payload and of the bodies that the study gives, added up so far, about the world's origin.
     fixed_inertia: Matrix6<f64>,
     /// Sum of `fixed_inertia` as it was when each piece was added: the inertia of payload and given bodies outboard of
     /// this piece, tip first.
@@ -422,7 +423,8 @@ impl Outboard {
         }
     }
 
-    /// Adds the weight and the inertia of a given body, whose inertia about the world's origin is `body`.
+    /// Adds the weight and the inertia of a body that the study gives. `body` is its inertia matrix about the world's
+    /// origin.
     fn add_body(&mut self, body: &Matrix6<f64>, space: &DesignSpace) {
         self.fixed_inertia += body;
         let mass_kg = body[(0, 0)];

@@ -38,7 +38,7 @@ struct DominatingDrive<'a> {
     /// Torsion curves of the drives of the box. The dominating drive must nowhere be softer than any of them. `None` if
     /// a drive of the box is rigid, so that the dominating drive must be rigid too.
     curve: Option<CurveBox>,
-    /// Greatest torque up to which the curves are compared \[N m\].
+    /// Greatest magnitude of the torque on the joint over the box \[N m\]. The curves are compared up to it.
     most_torque_nm: f64,
     /// Greatest tilt per moment that the drive's bearing may have \[rad/(N m)\].
     most_tilt_rad_per_nm: f64,

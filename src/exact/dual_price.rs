@@ -239,15 +239,15 @@ impl DualPrice {
         self.of_mass(mass_kg) + torsion + self.of_tilt(tilt_rad_per_nm)
     }
 
-    /// Price of the output bearing of a drive, whose tilt per moment lies in this interval. It is a lower bound over
-    /// the interval.
+    /// Price of the output bearing of a drive. The bearing's tilt per moment lies in the interval `tilt_rad_per_nm`,
+    /// and the price is a lower bound over it.
     #[inline]
     fn of_tilt(&self, tilt_rad_per_nm: [f64; 2]) -> f64 {
         least(self.compliance[TILT], tilt_rad_per_nm)
             - self.stiffness[TILT] * stiffness_of(tilt_rad_per_nm[0])
     }
 
-    /// Price of a drive's mass in an interval \[kg\]. It is a lower bound over the interval.
+    /// Price of a drive's mass, which lies in the interval `mass_kg`. It is a lower bound over the interval.
     #[inline]
     pub(super) fn of_mass(&self, mass_kg: [f64; 2]) -> f64 {
         let per_kg = self.inertia[inertia::MASS];
@@ -304,7 +304,7 @@ fn order([a, b]: [Offer; 2]) -> [Offer; 2] {
     if a > b { [a, b] } else { [b, a] }
 }
 
-/// A box of parts, given by its node, and a lower bound of their prices.
+/// A box of parts in the search for the cheapest one: its node, and a lower bound of the prices of its parts.
 #[derive(Clone, Copy)]
 struct Offer {
     price: f64,

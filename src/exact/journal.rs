@@ -46,9 +46,9 @@ struct State {
 #[derive(Clone, Serialize, Deserialize)]
 pub(super) struct Begun {
     state: KeptState,
-    /// The completed passes.
+    /// The completed passes of the present part.
     pub passes: Vec<Pass>,
-    /// The gap that was reported so far (relative); `None` if none was.
+    /// The gap of the present part that was reported to other threads so far (relative); `None` if none was.
     pub told: Option<f64>,
     /// The pass that was begun; `None` between two passes.
     open: Option<OpenPass>,
@@ -162,7 +162,7 @@ impl Begun {
         Self { state: state.to_kept(), passes: passes.to_vec(), told, open: None }
     }
 
-    /// Takes out the designs found.
+    /// Takes the designs found out of this progress, which has none afterwards.
     pub(super) fn state(&mut self) -> KeptState {
         std::mem::take(&mut self.state)
     }

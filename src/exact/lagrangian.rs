@@ -26,7 +26,7 @@ const STEPS: usize = 3;
 /// Stiffnesses and line inertias of each piece of an arm.
 type Arm = (Vec<[f64; STIFFNESSES]>, Vec<[f64; INERTIAS]>);
 
-/// The numbers of a joint that is added to a relaxed design. `curve` is `None` for a rigid joint.
+/// The numbers of a joint that is to be added to a relaxed design. `curve` is `None` for a rigid joint.
 struct AddedJoint<'a> {
     piece: usize,
     mass_kg: f64,
@@ -191,7 +191,7 @@ impl Rows<'_> {
         }
     }
 
-    /// A relaxed design in which all numbers are zero.
+    /// A relaxed design to which no piece was added yet: all of its numbers are zero.
     fn empty_design(&self, design_box: &[u32]) -> RelaxedDesign {
         let pieces = self.problem.parts.len();
         RelaxedDesign {
@@ -330,7 +330,8 @@ impl Rows<'_> {
         adds / self.scale[row]
     }
 
-    /// Value of a mode row, `λ xᵀMx - xᵀKx`, for a relaxed design. The payload and given bodies are not included.
+    /// The part of a mode row's value, `λ xᵀMx - xᵀKx`, that the parts of the relaxed design `member` contribute. The
+    /// payload and the bodies that the study gives are not included.
     fn mode_value(&self, mode: &Mode, member: &RelaxedDesign) -> f64 {
         let moves = products(&mode.shape.kinetic, &member.inertia);
         self.lambda * moves - products(&mode.shape.strain, member.stiffness_in(mode.judged))

@@ -57,7 +57,7 @@ pub(super) struct LocalUpperBounds {
 /// A node of the tree. Nodes are stored in preorder: a node, its first half, its second half.
 struct Node {
     bound: LocalUpperBound,
-    /// Index after the last node of this subtree.
+    /// Index of the first node after this subtree.
     end: usize,
 }
 

@@ -17,7 +17,7 @@ const TOLERANCE: f64 = 1e-9;
 pub(super) struct CaseInertia {
     /// Index of the piece and of its strain coordinate for each row of the matrix.
     coordinates: Vec<(usize, usize)>,
-    /// Inertia matrix of the payload and given bodies, row by row.
+    /// Inertia matrix of the payload and of the bodies that the study gives, row by row.
     fixed: Vec<f64>,
     /// For each line inertia of a piece: index of the piece, index of the inertia, and the matrix per unit of it.
     forms: Vec<(usize, usize, Vec<f64>)>,
@@ -101,7 +101,7 @@ impl CaseInertia {
     }
 }
 
-/// Adds the matrices of an arm's line inertias to the matrix of the given bodies.
+/// Adds the matrices of an arm's line inertias to the inertia matrix of what the study gives.
 struct Inertia<'a> {
     m: &'a mut [f64],
     forms: &'a [(usize, usize, Vec<f64>)],
@@ -119,7 +119,7 @@ impl LaneWork for Inertia<'_> {
     }
 }
 
-/// Decides whether a symmetric matrix of `n` rows is positive definite.
+/// Decides by a Cholesky factorization whether a symmetric matrix of `n` rows is positive definite.
 struct Cholesky<'a> {
     matrix: &'a mut [f64],
     n: usize,

@@ -29,7 +29,7 @@ pub(super) struct Line {
     pub stiffnesses: [f64; STIFFNESSES],
 }
 
-/// Indices into [`Line::inertias`].
+/// Indices of the five inertias in [`Line::inertias`].
 pub(super) mod inertia {
     pub(crate) const MASS: usize = 0;
     pub(crate) const OUTER_AREA: usize = 1;
@@ -255,7 +255,7 @@ pub(super) struct DriveBox {
     pub multiples: [f64; RAYS],
     /// Envelopes of the torsion curves of the members; `None` if one of them is rigid.
     pub curve: Option<CurveBox>,
-    /// Set of the break points of the members' torsion curves.
+    /// The break points (torques at which the slope changes) of the members' torsion curves, as a set.
     pub breaks: BreakPoints,
     /// Least and greatest tilt of the output bearing per moment \[rad/(N m)\], including the tilt that an effect adds
     /// in series. 0 if no drive of the joint has a bearing that tilts.

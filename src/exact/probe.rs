@@ -31,8 +31,8 @@ const MOST_TIME: f64 = 0.1;
 struct Merit([f64; 3]);
 
 impl Merit {
-    /// The weights of probe `n`. Roberts' sequence spreads the weights of all probes evenly over the triangle of
-    /// possible weights.
+    /// The weights of the three objectives in probe `n`. Roberts' sequence spreads the weights of all probes evenly
+    /// over the triangle of possible weights.
     fn nth(n: usize) -> Self {
         const PLASTIC: f64 = 1.324_717_957_244_746;
         let at = |step: f64| (0.5 + (n + 1) as f64 / step).fract();

@@ -46,12 +46,12 @@ pub(super) struct Problem<'c> {
 pub(super) enum Part<'c> {
     /// A joint or an elastic element whose stiffness is given. `curve` is `None` if it is rigid.
     Given { mass_kg: f64, curve: Option<CurveBox> },
-    /// A joint whose drive is a level of the search. An option of the tree is the first drive of a kind (drives of
-    /// equal mass, curve and bearing stiffness).
+    /// A joint whose drive the search chooses. An option of the tree is the first drive of a kind (drives of equal
+    /// mass, curve and bearing stiffness).
     Drives { sized: Arc<SizedJoint<'c>>, kinds: Arc<Kinds>, tree: Arc<Tree<DriveBox>>, rays: Arc<Rays> },
-    /// A joint that takes the lightest drive which carries its demand. It is no level of the search.
+    /// A joint that takes the lightest drive which carries its demand. The search makes no choice here.
     FirstFit { sized: Arc<SizedJoint<'c>>, ladder: Arc<Ladder> },
-    /// A link whose section and material are a level of the search.
+    /// A link whose section and material the search chooses.
     Links { length_m: f64, tree: Arc<Tree<LinkBox>> },
     /// A tube whose section and material are given.
     Tube { length_m: f64, tube: Box<LinkBox> },
@@ -89,8 +89,8 @@ impl Part<'_> {
 /// The drives that a first-fit joint can get, by rising mass. The ladder returns the box around any contiguous run of
 /// these drives.
 pub(super) struct Ladder {
-    /// `runs[k][i]` is the box around the `2^k` drives from index `i` on. The box around any run is the union of two
-    /// such boxes.
+    /// `runs[k][i]` is the box around the `2^k` drives from index `i` on. The box around any run of drives is the union
+    /// of two of these boxes.
     runs: Vec<Vec<DriveBox>>,
 }
 

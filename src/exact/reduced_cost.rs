@@ -80,15 +80,16 @@ impl Rows<'_> {
     }
 }
 
-/// The dual prices of a level at eight dual points, and the greatest allowed price at each.
+/// The prices of a level's numbers at eight dual points (sets of multipliers), and the greatest price that an option
+/// may have at each.
 struct EightPrices {
-    /// Greatest allowed price at each dual point.
+    /// The greatest price that an option may have at each dual point (set of multipliers).
     most: Eight,
-    /// Price per unit of each line inertia.
+    /// Price per unit of each line inertia (inertia per metre of a tube) at each dual point.
     inertia: [Eight; INERTIAS],
-    /// Price per unit of each compliance.
+    /// Price per unit of each compliance at each dual point.
     compliance: [Eight; STIFFNESSES],
-    /// Credit per unit of each stiffness.
+    /// Credit per unit of each stiffness at each dual point. A stiffer part lowers the weighted sum of the rows.
     stiffness: [Eight; STIFFNESSES],
     /// For each judged case, the prices of a joint per unit of twist and of torque, and the credit per unit of slope.
     joint: Vec<[Eight; 3]>,
@@ -119,8 +120,8 @@ impl EightPrices {
     }
 }
 
-/// Computes whether, at some dual point, every drive of a box has a price above the allowed one. A price that is not a
-/// number excludes nothing.
+/// Computes whether every drive of a box is excluded: whether, at some dual point (set of multipliers), its price is
+/// above the allowed one. A price that is not a number excludes nothing.
 struct DrivesCost<'a> {
     drives: &'a DriveBox,
     gears: &'a [JointPrice],
@@ -164,8 +165,8 @@ impl LaneWork for DrivesCost<'_> {
     }
 }
 
-/// Computes whether, at some dual point, every tube of a box has a price above the allowed one. A price that is not a
-/// number excludes nothing.
+/// Computes whether every tube of a box is excluded: whether, at some dual point (set of multipliers), its price is
+/// above the allowed one. A price that is not a number excludes nothing.
 struct LinksCost<'a> {
     links: &'a LinkBox,
     prices: &'a [EightPrices],

@@ -23,7 +23,8 @@ const SHARE: f64 = 1e-9;
 
 /// The options, branchings and candidates that remain of a region after it was bounded.
 pub(super) struct Survivors {
-    /// For each level, nodes of its base tree with every option that a member of the region may have.
+    /// For each level, nodes of its base tree (the tree over all options) that contain every option which a member of
+    /// the region may have.
     pub options: Vec<Vec<u32>>,
     /// Ways to divide the region, the most promising first.
     pub branchings: Vec<Branching>,

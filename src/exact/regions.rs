@@ -202,7 +202,8 @@ fn improved_by_slack(found: &Objectives, slack: f64) -> Objectives {
 }
 
 impl<'p> Subproblem<'p> {
-    /// The subproblem of the whole space. `None` if no design meets the constraints.
+    /// The subproblem with all options of the space. `incumbents_seen` is the number of incumbents from which its local
+    /// upper bounds were made. `None` if no design meets the constraints.
     pub(super) fn whole(problem: &Problem<'p>, incumbents_seen: usize, work: &mut Work) -> Option<Self> {
         let shapes = problem.first_shapes(work)?;
         Some(Self {

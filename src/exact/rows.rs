@@ -87,15 +87,15 @@ pub(super) struct Force<'a> {
     pub row: usize,
 }
 
-/// A trial shape that bounds the modes of a judged case.
+/// A trial shape (motion of the arm) that bounds the modes in a judged case, with the numbers of its row.
 pub(super) struct Mode {
     /// Index of the judged case.
     pub judged: usize,
     /// Index of the starting acceleration from which the shape came.
     pub start: usize,
     pub shape: Shape,
-    /// `xᵀMx` of the shape with the lightest and with the heaviest parts of the box, each with the payload and given
-    /// bodies.
+    /// `xᵀMx` of the shape (twice its kinetic energy per squared angular frequency), with the lightest and with the
+    /// heaviest parts of the box. Each includes the payload and the bodies that the study gives.
     pub kinetic: [f64; 2],
 }
 
@@ -118,7 +118,7 @@ pub(super) struct RelaxedDesign {
 }
 
 impl RelaxedDesign {
-    /// The index of a piece in the lists that have a number for each judged case and each piece.
+    /// The index of `piece` in the lists that have one number for each judged case and each piece.
     pub(super) fn place(&self, judged: usize, piece: usize) -> usize {
         judged * self.inertia.len() + piece
     }

@@ -28,7 +28,7 @@ pub(super) struct Shape {
     /// Coefficients of `xᵀMx` (twice the kinetic energy per squared angular frequency): one for each line inertia of
     /// each piece.
     pub kinetic: Vec<[f64; INERTIAS]>,
-    /// Constant term of `xᵀMx`, from the payload and given bodies.
+    /// Constant term of `xᵀMx`, from the payload and the bodies that the study gives.
     pub kinetic_fixed: f64,
 }
 

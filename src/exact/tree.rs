@@ -20,7 +20,8 @@ pub(super) trait Bounds: Clone {
 /// Coordinates of an option by which a tree separates it from others.
 pub(super) type Key = [f64; 5];
 
-/// The base tree of a level, or a tree over some nodes of the base tree.
+/// A tree over the options of a level. It is either the base tree, which has all options, or a tree that is built over
+/// some nodes of the base tree.
 pub(super) struct Tree<B> {
     nodes: Vec<Node<B>>,
     /// The base tree, if this tree is built over some of its nodes; `None` for a base tree. In this tree, nodes of the
@@ -146,13 +147,13 @@ impl<B: Bounds> Tree<B> {
         kept
     }
 
-    /// Number of options below some nodes of the base tree.
+    /// Number of options below the nodes `kept` of the base tree (the tree over all options of the level).
     pub(super) fn members_of(&self, kept: &[u32]) -> f64 {
         let whole = self.whole.as_deref().unwrap_or(self);
         kept.iter().map(|&at| f64::from(whole.node(at).members)).sum()
     }
 
-    /// The options below some nodes of the base tree, ascending.
+    /// The options below the nodes `kept` of the base tree (the tree over all options of the level), ascending.
     pub(super) fn options_of(&self, kept: &[u32]) -> Vec<u32> {
         let whole = self.whole.as_deref().unwrap_or(self);
         let (mut options, mut open) = (Vec::new(), kept.to_vec());
@@ -166,7 +167,7 @@ impl<B: Bounds> Tree<B> {
         options
     }
 
-    /// The leaf of each wanted option, by the number of the option.
+    /// The leaf (node of a single option) of each option in `wanted`, by the number of the option.
     pub(super) fn leaves_of(&self, wanted: &BTreeSet<u32>) -> HashMap<u32, u32> {
         let nodes = self.nodes.iter().zip(0..);
         nodes

@@ -47,9 +47,9 @@ impl CatalogGears {
 pub struct ErrorLeft {
     /// What is measured or computed for the correction, in words.
     pub method: String,
-    /// Remaining error if the gears are springs of stiffness K2 \[m\].
+    /// Error of the tip's position that remains if the gears are springs of stiffness K2 \[m\].
     pub middle_slope_m: f64,
-    /// Remaining error if the gears follow the three-segment curve \[m\].
+    /// Error of the tip's position that remains if the gears follow the three-segment curve \[m\].
     pub curve_m: f64,
 }
 

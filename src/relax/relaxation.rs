@@ -35,7 +35,7 @@ pub struct MassBound {
 pub struct Relaxation<'a> {
     problem: &'a ArmProblem<'a>,
     cases: Vec<CaseLoads>,
-    /// Trial-shape models, one for each judged case.
+    /// The inertias and stiffnesses of the arm from which trial shapes are made, one model for each judged case.
     models: Vec<ShapeModel>,
 }
 
@@ -144,7 +144,7 @@ impl Search<'_> {
         rows.into_iter().map(|row| self.parts.with_drives(row)).chain(shapes).collect()
     }
 
-    /// The least eigenvalue that is allowed by the required lowest mode \[1/s²\].
+    /// The least eigenvalue `(2πf)²` that a design may have if its lowest mode is to reach the required one \[1/s²\].
     fn eigenvalue(&self) -> f64 {
         let omega = std::f64::consts::TAU * self.asked.lowest_mode_hz;
         omega * omega * (1.0 - ROUNDING)

@@ -17,15 +17,15 @@ use crate::space::slot::Slot;
 use crate::space::station::{Station, StationJoint, StationSlot};
 use nalgebra::{Matrix6, Vector3};
 
-/// The loads of one case: the wrench of each slot's load, and the load of each option.
+/// The loads of one case, as the linear program uses them: the wrench of each slot's load, and the load of each option.
 pub(super) struct CaseLoads {
     case: usize,
     /// For each slot, the wrench (force and moment) per unit of the slot's load.
     unit: Vec<Wrench>,
     /// For each slot, the load of each option: mass \[kg\] for joints, weight \[N\] for links, 1 for bodies.
     amount: Vec<Vec<f64>>,
-    /// For each joint, the inertia of every option of every slot outboard, about the joint's axis \[kg m²\]. Empty
-    /// for a slot that is no joint.
+    /// Inertias about the joints' axes \[kg m²\]; first index the slot of the joint, second a slot outboard of it,
+    /// third an option of that slot. Empty for a slot that is no joint.
     inertia: Vec<Vec<Vec<f64>>>,
 }
 
@@ -48,7 +48,7 @@ struct Term {
 }
 
 impl CaseLoads {
-    /// Computes the loads of a case.
+    /// Computes the wrenches and the loads of the case with the index `case`.
     pub(super) fn new(problem: &ArmProblem, case: usize) -> Self {
         let station = &problem.stations()[case];
         let (mut unit, mut amount) = (Vec::new(), Vec::new());
@@ -118,7 +118,7 @@ impl CaseLoads {
         [low.max(-high).max(0.0), high.max(-low)]
     }
 
-    /// Whether the torque of some joint may have either sign within the remaining options.
+    /// Whether the torque of some joint may be positive with some of the remaining options and negative with others.
     pub(super) fn opposes(&self, problem: &ArmProblem, parts: &Parts) -> bool {
         (0..self.unit.len()).any(|slot| {
             let [low, high] = self.torque_range(problem, parts, slot);

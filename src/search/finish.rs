@@ -13,7 +13,8 @@ use crate::space::problem::{ArmProblem, Partial};
 
 /// A tree of designs in which all designs of a row can be completed and evaluated together.
 pub trait FinishRows: OutwardIn {
-    /// The row level and the levels inboard of it, with every number that is the same in all rows.
+    /// The row level (whose options are evaluated together) and the levels inboard of it, with every number that is the
+    /// same in all rows.
     type Compiled: Send + Sync;
     /// Working space of a worker. It is used again for each row, so that memory is allocated once.
     type Scratch: Send;

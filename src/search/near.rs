@@ -40,7 +40,7 @@ pub struct Shortfall {
 }
 
 impl Shortfall {
-    /// Prepares the designs of a front, which may be in any order.
+    /// Prepares a front for the computation of shortfalls. Its designs may be in any order.
     pub fn of(front: impl IntoIterator<Item = Objectives>) -> Self {
         let mut front: Vec<Objectives> = front.into_iter().collect();
         front.sort_by(|a, b| a.mass_kg.total_cmp(&b.mass_kg));
@@ -209,7 +209,7 @@ impl Worker<'_> {
     }
 }
 
-/// Sorts near designs by shortfall and keeps the first `most` of them.
+/// Sorts `designs` by their shortfalls and keeps the first `most` of them, which are nearest to the front.
 pub(crate) fn keep_nearest(designs: &mut Vec<NearDesign>, most: usize) {
     designs.sort_unstable_by(|a, b| {
         a.shortfall.total_cmp(&b.shortfall).then(a.candidate.number.cmp(&b.candidate.number))

@@ -31,7 +31,7 @@ pub struct Resume<'s> {
 pub(super) struct Done(BTreeMap<u64, u64>);
 
 impl Done {
-    /// Adds a task to the set.
+    /// Adds the task with this number to the set, and joins ranges that touch each other.
     pub(super) fn insert(&mut self, task: u64) {
         let before = self.0.range(..=task).next_back().map(|(&start, &end)| (start, end));
         if before.is_some_and(|(_, end)| end > task) {

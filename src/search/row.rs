@@ -414,8 +414,8 @@ impl AtJoint {
     }
 }
 
-/// Contribution of the given tubes to Dunkerley's sum (the sum of `1/λ` over all eigenvalues), by block \[s²\]. Only
-/// the mass of each tube itself counts here, and not the mass outboard of it.
+/// Contribution of the given tubes to Dunkerley's sum (the sum of `1/λ` over all eigenvalues) of each block \[s²\].
+/// Only the mass of each tube itself counts here, and not the mass outboard of it.
 fn tubes_trace_s2(slots: &[StationSlot]) -> [f64; 2] {
     let mut sum_s2 = [0.0; 2];
     for slot in slots {

@@ -52,7 +52,7 @@ pub struct ChosenParts<'p, 'c> {
     tilting: Vec<Option<&'p SpaceJoint>>,
 }
 
-/// A joint with the sampled values of its ratings.
+/// A joint with one option, built with the sampled values of its ratings.
 struct BuiltJoint {
     /// Angle of the joint as a function of its torque.
     law: JointLaw,
@@ -65,7 +65,7 @@ pub struct BuiltParts<'p, 'c> {
     chosen: &'p ChosenParts<'p, 'c>,
     /// The stations of the cases with the sampled moduli; `None` if no modulus is sampled.
     stations: Option<Vec<Station>>,
-    /// For each slot, the joints by option; empty for links.
+    /// For each slot, the joint with each option that some design uses; empty for links.
     joints: Vec<BTreeMap<u32, BuiltJoint>>,
 }
 

@@ -86,15 +86,15 @@ pub struct SweepOutcome {
 pub struct SweepState {
     /// Number of tasks into which the sweep is divided.
     tasks: u64,
-    /// The tasks that are completed.
+    /// The numbers of the completed tasks.
     done: Done,
-    /// Number of designs that the completed tasks evaluated.
+    /// Number of designs that the completed tasks judged by their objectives.
     evaluated: u64,
     /// Number of designs that a limit excluded in the completed tasks.
     excluded: u128,
     /// Candidates for the front of all designs.
     front: Vec<Candidate>,
-    /// Candidates for the front of each group.
+    /// Candidates for the front of each group (material).
     groups: Vec<Vec<Candidate>>,
 }
 
@@ -172,7 +172,7 @@ pub struct Sweep<'p, P: FinishRows> {
     done: Mutex<(Done, Tally)>,
 }
 
-/// Candidates for one front, found by all tasks.
+/// The candidates that all tasks have found for one front: that of all designs, or that of a material.
 struct Pool {
     /// Table that rejects dominated candidates at once.
     archive: Archive,

@@ -72,13 +72,13 @@ impl<P: FinishRows> Visit<'_, P> {
 /// divides it in the same way.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Tasks {
-    /// Number of the first row.
+    /// Number of the first row that the visit covers.
     start: u128,
-    /// Number of rows.
+    /// Number of rows that the visit covers.
     rows: u128,
     /// Number of rows in each task; the last task may have fewer.
     each: u128,
-    /// Number of tasks.
+    /// Number of tasks into which these rows are divided.
     pub number: u64,
 }
 

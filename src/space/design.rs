@@ -13,9 +13,9 @@ use crate::sizing::drive::Drive;
 /// The part that a design has at one piece of the arm.
 #[derive(Debug, Clone)]
 pub enum Part<'a> {
-    /// A drive from the catalogs.
+    /// The part is a drive from the catalogs.
     Drive(Drive<'a>),
-    /// A material and a cross-section.
+    /// The part is a link, with its material and cross-section.
     Link(&'a LinkOption),
     /// The study gives this piece, so no part is chosen for it.
     Given,

@@ -171,7 +171,7 @@ impl Tilt<'_> {
         }
     }
 
-    /// A linear spring with a compliance \[rad/(N m)\].
+    /// A linear spring that turns about the axis `about` with the compliance `rad_per_nm` \[rad/(N m)\].
     fn linear(about: About<'_>, rad_per_nm: f64) -> Tilt<'_> {
         Tilt { about, law: JointLaw { connection_rad_per_nm: rad_per_nm, ..JointLaw::from(Curve::Rigid) } }
     }
@@ -311,7 +311,7 @@ impl DesignSpace {
         is_pulled.then_some((piece, Layer::Springs(on)))
     }
 
-    /// The springs of the compliant frame at the root of a link.
+    /// The layers of the rotational springs with which the root of a link is attached compliantly.
     fn root_springs(&self, link: &Link) -> impl Iterator<Item = Layer<'_>> + use<'_> {
         let springs = self.link_piece(link).root_frame.springs().into_iter();
         springs.map(|(axis, c)| Layer::Tilt(Tilt::linear(About::Fixed(axis), c)))

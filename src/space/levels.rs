@@ -41,7 +41,7 @@ pub trait Keep {
 pub struct DesignRow<P> {
     /// The arm outboard of the row level.
     pub from: P,
-    /// Number of this arm among all arms outboard of the row level.
+    /// Number of the arm `from` among all arms outboard of the row level.
     pub arm: u128,
     /// Option of each level inboard of the row level, in order from the row level to the base.
     pub inner: Vec<u32>,
@@ -83,7 +83,8 @@ pub trait OutwardIn: Sync {
         self.level_sizes().len().saturating_sub(1)
     }
 
-    /// Evaluates one design of a row and reports it to `keep`. `complete` is working space.
+    /// Evaluates the design of `row` with the option `option` of the row level and reports it to `keep`. `complete` is
+    /// working space for one arm.
     fn finish_one(
         &self,
         row: &DesignRow<Self::Partial>,

@@ -104,7 +104,7 @@ impl StationState {
         self.passive.iter().find(|(slot, ..)| *slot == passive).map(|(_, wrench, inertia)| (wrench, inertia))
     }
 
-    /// Adds a rigid body with its inertia and its weight.
+    /// Adds a rigid body, given by its inertia matrix and its weight about the world's origin.
     pub(crate) fn add_body(&mut self, inertia: &Matrix6<f64>, weight: &Wrench) {
         self.inertia += inertia;
         self.wrench += weight;

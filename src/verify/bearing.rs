@@ -143,12 +143,12 @@ impl BearingRatings {
         (moment_nm, load.radial_n + self.per_moment_per_m * moment_nm)
     }
 
-    /// Static equivalent load `P₀` \[N\].
+    /// Static equivalent load `P₀` of the bearing under `load` \[N\].
     fn static_n(&self, load: &BearingLoad) -> f64 {
         self.across(load).1 + 0.44 * load.axial_n
     }
 
-    /// Dynamic equivalent load `P_c` \[N\].
+    /// Dynamic equivalent load `P_c` of the bearing under `load` \[N\].
     fn dynamic_n(&self, load: &BearingLoad) -> f64 {
         let (_, across_n) = self.across(load);
         let is_radial = load.axial_n <= 1.5 * across_n;

@@ -14,7 +14,8 @@ const FEW: usize = 64;
 
 /// The drives that a joint may have, as a list.
 pub(super) struct DriveOptions {
-    /// Index among the levels of the space; `None` if the drive is not chosen by the search.
+    /// Index of the joint's choice among the levels (choices) of the space; `None` if the search does not choose the
+    /// drive.
     pub level: Option<usize>,
     /// The motion of the joint; `None` for a given drive, on which nothing is checked.
     pub duty: Option<Duty>,
@@ -112,7 +113,7 @@ impl DriveOption {
 }
 
 impl Drives {
-    /// Builds the tree of the options.
+    /// Builds the tree over the options, and computes the least and greatest numbers of each node's drives.
     pub(super) fn new(DriveOptions { level, duty, options }: DriveOptions) -> Self {
         let all: Vec<u32> = (0..options.len() as u32).collect();
         let tree = Tree::new(all, &options.iter().map(keys).collect::<Vec<_>>());

@@ -66,7 +66,8 @@ struct MeanTorque {
 }
 
 impl Duty {
-    /// The motion of a joint. `reach_m` is the largest distance of the tip from the joint's axis \[m\].
+    /// The motion of `joint` that follows from the motion of the tip. `reach_m` is the largest distance of the tip from
+    /// the joint's axis \[m\].
     pub(super) fn new(motion: &AskedMotion, reach_m: f64, joint: &AskedJoint) -> Self {
         let speed_rad_s = speed_rad_s(motion, reach_m, joint);
         let ramp_s = first_ramp_s(&joint.duty).unwrap_or(motion.ramp_time_s);

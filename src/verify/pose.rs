@@ -58,7 +58,7 @@ pub(super) struct Pose {
     pub inertia_per: Vec<Vec<f64>>,
 }
 
-/// A force and a moment.
+/// A force and a moment on a section of the arm.
 #[derive(Debug, Clone, Copy, Default)]
 struct Wrench {
     force: Vector3<f64>,
@@ -356,7 +356,7 @@ impl Builder<'_> {
         out
     }
 
-    /// Displacement and rotation of a point per unit of every coordinate, in the world frame.
+    /// Displacements and rotations of `point` in the world frame, each list with one entry per unit of each coordinate.
     fn motions(&self, point: &Point) -> (Vec<Vector3<f64>>, Vec<Vector3<f64>>) {
         self.coordinates.iter().map(|&coordinate| self.layout.motion(coordinate, point)).unzip()
     }

@@ -56,9 +56,9 @@ impl Ratings {
         widths: [0.0; 2],
     };
 
-    /// The ratings of a drive under a joint's motion. `None` if the motion is too fast for the drive, if the drive
-    /// does not fit into the joint, or if the catalog lacks a number. A blank number of the bearing or of a size
-    /// excludes nothing.
+    /// The limits of a drive (gear, motor and output bearing) under the motion `duty` of its joint. `None` if the
+    /// motion is too fast for the drive, if the drive does not fit into the joint, or if the catalog lacks a number. A
+    /// blank number of the bearing or of a size excludes nothing.
     pub(super) fn of(gear: &Gear, motor: &Motor, bearing: Option<&Bearing>, duty: &Duty) -> Option<Self> {
         let heat = match duty.checks_heat {
             true => {
@@ -107,13 +107,14 @@ impl Ratings {
         }
     }
 
-    /// The greatest allowed value of one quantity.
+    /// The greatest allowed torque of one quantity (static, peak, stop or mean).
     pub(super) fn on(&self, quantity: Quantity) -> f64 {
         self.most[quantity as usize]
     }
 }
 
-/// Whether gear and motor are allowed to turn as fast as the motion needs. `None` if the catalog lacks a number.
+/// Whether gear and motor are allowed to turn as fast as the motion of the joint needs. `None` if the catalog lacks a
+/// number that this needs.
 fn turns_as_fast(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<bool> {
     let of_curve = motor.curve.last().map(|point| point.speed_rpm);
     let of_row = motor.max_speed_rpm.or(motor.rated_speed_rpm);

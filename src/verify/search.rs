@@ -33,7 +33,8 @@ impl Search<'_> {
         here.with(a).with(b)
     }
 
-    /// The level to halve. `None` if the box is discarded, and `Some(None)` if it is a single design.
+    /// The level at which the box `parts` is to be halved. `None` if the box is discarded, and `Some(None)` if it is a
+    /// single design.
     fn level_to_halve(&self, parts: &PartsBox) -> Option<Option<usize>> {
         let boxes = self.boxes;
         let members = boxes.members(parts)?;

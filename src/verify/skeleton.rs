@@ -104,7 +104,8 @@ impl Skeleton {
         }
     }
 
-    /// The options of every joint and tube.
+    /// The options of every joint and tube of the question. `offers` are the drives that the catalogs offer for each
+    /// joint, and `ties` tells whether drives that no objective tells apart are one option.
     pub(super) fn parts(&self, question: &Question, offers: &[JointOffers], ties: Ties) -> Parts {
         let level = |place: Place| self.levels.iter().position(|other| *other == place);
         let joints = offers.iter().enumerate().map(|(joint, offers)| {
@@ -150,7 +151,7 @@ fn first_tubes(question: &Question) -> Vec<Option<usize>> {
     first
 }
 
-/// The distance at which the link attaches, for every joint from base to tip.
+/// The lever of every joint, base to tip: the distance along its axis from the bearing to where the link attaches.
 fn levers(question: &Question) -> Vec<Lever> {
     let mut levers = Vec::new();
     let mut tubes = 0;

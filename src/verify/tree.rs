@@ -49,7 +49,7 @@ impl Tree {
         self.nodes.len()
     }
 
-    /// The options below a node.
+    /// The options below the node `node` of the tree.
     pub(super) fn options(&self, node: u32) -> &[u32] {
         let node = &self.nodes[node as usize];
         &self.order[node.first..node.end]

@@ -53,7 +53,8 @@ pub(super) struct TubeAround {
 
 /// The tubes that a link may have, as a list.
 pub(super) struct TubeOptions {
-    /// Index among the levels of the space; `None` if the tube is not chosen by the search.
+    /// Index of the link's choice among the levels (choices) of the space; `None` if the search does not choose the
+    /// tube.
     pub level: Option<usize>,
     /// Each tube with its index in the link's list. Tubes whose walls are too slender are left out.
     pub tubes: Vec<(u32, TubeNumbers)>,
@@ -118,7 +119,7 @@ impl TubeOptions {
         Self { tubes: some.iter().map(|&i| self.tubes[i as usize].clone()).collect(), ..*self }
     }
 
-    /// The tree of all options.
+    /// The binary tree over all tubes of this list.
     pub(super) fn tree(&self) -> Tree {
         let all = (0..self.tubes.len() as u32).collect();
         Tree::new(all, &self.tubes.iter().map(|(_, tube)| keys(tube)).collect::<Vec<_>>())
@@ -126,7 +127,7 @@ impl TubeOptions {
 }
 
 impl Tubes {
-    /// Builds the tree of the options.
+    /// Builds the tree over the tubes, and computes the least and greatest numbers of each node's tubes.
     pub(super) fn new(options: &TubeOptions) -> Self {
         let tree = options.tree();
         let range = |node| TubeRange::over(tree.options(node).iter().map(|&i| &options.tubes[i as usize].1));

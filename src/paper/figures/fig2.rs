@@ -24,7 +24,7 @@ const OTHERS: [&str; 4] =
 /// One curve of the figure, for one metal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// Name in the legend.
+    /// Name of the metal in the legend.
     pub name: &'static str,
     /// Sections of the curve, smallest first.
     pub points: Vec<BeamPoint>,

@@ -50,7 +50,7 @@ const ROWS: [Row; 7] = [
 /// One curve of the figure, for one material.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// Name in the legend.
+    /// Name of the material in the legend.
     pub name: &'static str,
     /// Whether all fibres of the material run along the link.
     pub axial: bool,

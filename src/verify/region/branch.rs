@@ -46,8 +46,8 @@ pub(super) enum Branching {
     },
 }
 
-/// Ways to branch, the most promising first. `curves` has the twists and slopes of the torsion curves, which are
-/// needed to divide drives by their values.
+/// Ways to divide a subproblem, the most promising first. `curves` has the twists and slopes of the torsion curves.
+/// They are needed to divide drives by a weighted sum of their numbers.
 #[derive(Default)]
 pub(super) struct Branchings {
     pub branchings: Vec<Branching>,

@@ -25,7 +25,7 @@ pub(super) struct PartsTable {
 /// no drive of the subproblem has.
 pub(super) type Numbers = Vec<Option<Vec<f64>>>;
 
-/// The drives that a joint may have.
+/// The drives that a joint may have, sorted by torsion curve and bearing.
 pub(super) struct JointTable {
     pub drives: DriveOptions,
     pub masses_kg: Vec<f64>,
@@ -141,7 +141,7 @@ impl TubeTable {
         Self { options, tree, bounds, width, priced }
     }
 
-    /// Least and greatest value, over a node's tubes, of every number that may have a price.
+    /// The least and the greatest value of every number that may have a price, over the tubes below the node `node`.
     pub(super) fn bounds(&self, node: u32) -> [&[f64]; 2] {
         self.all_bounds(node).map(|bounds| &bounds[..self.priced])
     }
@@ -152,7 +152,7 @@ impl TubeTable {
         [&both[..self.width], &both[self.width..]]
     }
 
-    /// How many of a tube's numbers can have a price.
+    /// How many numbers of a tube can have a price. They come first in its list.
     pub(super) fn priced(&self) -> usize {
         self.priced
     }

@@ -35,7 +35,7 @@ pub(super) struct Subproblem {
     pub shapes: Vec<Shape>,
 }
 
-/// A trial shape in a judged case, with the weight of its row.
+/// A trial shape (motion that bounds the lowest mode) in a judged case, with the weight of its row.
 #[derive(Clone)]
 pub(super) struct Shape {
     pub case: usize,
@@ -127,7 +127,7 @@ impl Subproblem {
         skeleton.strong_enough(&members).then_some(members)
     }
 
-    /// The remaining options, for a search box by box.
+    /// The options of each joint and link that remain in this subproblem, in the form that the search box by box needs.
     pub(super) fn parts(&self, table: &PartsTable) -> Parts {
         let joints = self.joints.iter().zip(&table.joints);
         let tubes = self.tubes.iter().zip(&table.tubes);

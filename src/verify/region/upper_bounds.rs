@@ -13,7 +13,7 @@ use std::collections::HashSet;
 /// front's designs are made worse by this amount before the bounds are computed.
 const BETTER: f64 = 2e-7;
 
-/// A binary tree over upper bounds; the root is node 0.
+/// A binary tree over the local upper bounds of a front. The root is node 0.
 pub(super) struct UpperBounds(Vec<Node>);
 
 /// A node of the tree: the upper bound that covers all bounds below the node, and the indices of its two halves. A

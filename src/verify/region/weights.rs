@@ -59,7 +59,7 @@ pub(super) struct Reduced {
 }
 
 impl Rows<'_> {
-    /// Price of each number: its coefficient in the weighted sum of the rows.
+    /// Price of each number of a part: its coefficient in the sum of the rows with these weights.
     fn prices(&self, weights: &[f64]) -> Vec<f64> {
         let mut prices = vec![0.0; self.columns.len()];
         for (row, weight) in self.rows.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
@@ -68,7 +68,8 @@ impl Rows<'_> {
         prices
     }
 
-    /// Price of each torsion curve of a joint; infinite if no drive of the subproblem has the curve.
+    /// Price of each torsion curve of a joint, with the bearing that belongs to it. Infinite if no drive of the
+    /// subproblem has the curve.
     fn curve_prices(&self, joint: usize, prices: &[f64]) -> Vec<f64> {
         let first = self.columns.mass(joint) + 1;
         let price = |numbers: &Vec<f64>| numbers.iter().zip(&prices[first..]).map(|(a, b)| a * b).sum();
