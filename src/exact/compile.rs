@@ -30,7 +30,8 @@ use std::sync::Arc;
 struct Joints<'c> {
     /// The given joint or the drives of each joint; `None` for any other piece, and after the joint was compiled.
     slots: Vec<Option<Slot<'c>>>,
-    /// What a compiled pose needs to know about each joint; default values for any other piece.
+    /// The motion of each joint and the state of its bearing, as a compiled pose needs them; default values for any
+    /// other piece.
     needs: Vec<JointNeeds>,
     /// Lever from each joint whose bearing is checked to its link; `None` for any other piece.
     levers: Vec<Option<LeverByOption>>,

@@ -246,7 +246,7 @@ pub(super) fn stiffness_of(rad_per_nm: f64) -> f64 {
 pub(super) struct DriveBox {
     /// Least and greatest mass \[kg\].
     pub mass_kg: [f64; 2],
-    /// The greatest of each limit over the members.
+    /// The greatest value of each limit of a drive over the members.
     pub limits: DriveLimits,
     /// The least of each limit over the members.
     pub least_limits: DriveLimits,

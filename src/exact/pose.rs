@@ -122,7 +122,7 @@ pub(super) struct PosedBodies {
     pub inertia: DMatrix<f64>,
     /// Inertia of the bodies about the world's origin, for the tube taken as rigid.
     pub rigid: Matrix6<f64>,
-    /// Wrench of the weight of all bodies.
+    /// Wrench of the weight of all bodies on the tube, about the world's origin.
     pub weight: Wrench,
     /// Generalized force of the bodies' weight on each of the eight coordinates that move the tube's end ([`ENDS`]).
     pub end_forces: [f64; 8],

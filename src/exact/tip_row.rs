@@ -10,15 +10,16 @@ use super::work::Work;
 pub(super) struct TipRow {
     /// Index of the case.
     pub case: usize,
-    /// Displacement per newton of each piece's weight \[m/N\], caused through tubes, bearings and those gears that keep
-    /// a single slope.
+    /// Displacement of the tip along the direction per newton of each piece's weight \[m/N\]. It comes about through
+    /// tubes, bearings and those gears that keep a single slope.
     pub per_n: Vec<f64>,
-    /// Displacement per radian of each joint's torsion \[m/rad\]; 0 for other pieces.
+    /// Displacement of the tip along the direction per radian of each joint's torsion \[m/rad\]; 0 for other pieces.
     pub joints: Vec<f64>,
     /// For each gear that keeps a single slope, the torque at which its torsion curve is evaluated \[N m\]. `None` for
     /// other pieces and for gears whose slope may change.
     pub torques_nm: Vec<Option<f64>>,
-    /// Displacement per unit of each compliance of a tube, and of a joint's bearing.
+    /// Displacement of the tip along the direction per unit of each compliance of a tube, or of a joint's bearing; one
+    /// entry for each piece.
     pub compliances: Vec<[f64; STIFFNESSES]>,
 }
 

@@ -193,7 +193,7 @@ impl Keep for Worker<'_> {
 }
 
 impl Worker<'_> {
-    /// Adds the collected designs to the shared list.
+    /// Adds the designs that this task has collected to the list that all tasks share.
     fn hand_over(&mut self) {
         let most = self.seeker.slack.most;
         let mut all = self.seeker.nearest.lock().unwrap_or_else(std::sync::PoisonError::into_inner);

@@ -90,9 +90,9 @@ pub(crate) enum Twisting {
 /// joint.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct AtJoint {
-    /// Torque about the axis \[N m\].
+    /// Torque about the joint's axis that these pieces make \[N m\].
     pub torque_nm: f64,
-    /// Inertia about the axis \[kg m²\].
+    /// Inertia of these pieces about the joint's axis \[kg m²\].
     pub inertia_kgm2: f64,
 }
 

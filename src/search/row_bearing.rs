@@ -116,7 +116,7 @@ fn add_times(to: &mut Components, what: &Components, times: f64) {
     to.iter_mut().zip(what).for_each(|(to, what)| *to += times * what);
 }
 
-/// Converts eight sets of five components into five components with eight values each.
+/// Converts eight loads of five components each into five components with eight values each.
 fn side_by_side(lanes: [Components; LANES]) -> [Eight; 5] {
     std::array::from_fn(|i| lanes.map(|components| components[i]))
 }

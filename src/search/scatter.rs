@@ -87,7 +87,7 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
         self.designs.len()
     }
 
-    /// Whether there is no design whose parts are varied.
+    /// Whether the list of designs whose parts are varied is empty.
     pub fn is_empty(&self) -> bool {
         self.designs.is_empty()
     }

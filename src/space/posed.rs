@@ -289,8 +289,8 @@ impl Builder<'_> {
         StationSlot::Body { inertia: inertia + along.inertia, weight: weight + along.weight }
     }
 
-    /// The slot of a tube, without its options. The tube has a vector from root to end \[m\], and bodies attached to
-    /// it.
+    /// The slot of a tube that belongs to the piece `piece`, with memory for `options` options, which are added later.
+    /// `vector_m` leads from its root to its end \[m\], and `bodies` are attached to it.
     fn tube(
         &self,
         piece: usize,

@@ -142,7 +142,8 @@ impl Factor {
         x
     }
 
-    /// Solves `Lᵀ x = b` with the factor `L`; `x` holds `b` at first.
+    /// Solves `Lᵀ x = b` for `x`, where `L` is this Cholesky factor. `x` holds `b` at first and the solution at the
+    /// end.
     fn solve_upper(&self, x: &mut [f64]) {
         let lower = |i: usize, j: usize| self.lower[row(i) + j];
         for i in (0..self.size).rev() {

@@ -162,8 +162,8 @@ impl Row {
 }
 
 impl<'a> Rows<'a> {
-    /// The rows of a subproblem with these members. There is one row of a mode for each trial shape of the
-    /// subproblem.
+    /// The rows (inequalities) of a subproblem for the local upper bound `upper`. `members` holds the intervals of its
+    /// parts' numbers. There is one row of a mode for each trial shape of the subproblem.
     pub(super) fn new(
         skeleton: &'a Skeleton,
         table: &'a PartsTable,

@@ -39,7 +39,7 @@ pub(in super::super) struct RegionSearch<'s> {
 
 /// The result of reducing the options of a subproblem.
 enum Narrowed {
-    /// It is proved that no member is below the upper bound.
+    /// The subproblem is done: it is proved that no member is below the upper bound.
     Refuted,
     Few,
     Many(Branchings),
