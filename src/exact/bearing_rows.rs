@@ -11,7 +11,8 @@ use crate::mechanics::{Twist, Wrench, linear, rotation_twist, stack};
 use crate::sizing::bearing::{BearingDemand, BearingLoad};
 use nalgebra::{Matrix6, Vector3};
 
-/// A coefficient below this fraction of its largest possible magnitude for the given wrench is rounding.
+/// A coefficient is set to zero if it is below this fraction of the greatest magnitude that the given wrench could
+/// have. It is then due to rounding.
 const NOTHING: f64 = 1e-13;
 /// Number of components of a load: moments about the two axes across the joint axis, forces along these two axes, and
 /// the force along the joint axis.
@@ -21,16 +22,18 @@ const MOMENT: [usize; 2] = [0, 1];
 const RADIAL: [usize; 2] = [2, 3];
 const AXIAL: [usize; 1] = [4];
 
-/// The loads on the bearing of one joint in one case.
+/// The loads on the output bearing of one joint in one case, as linear functions of the weights and inertias of the
+/// parts.
 pub(super) struct BearingRows {
-    /// Components of gravity and load, as sums over the weight of each piece \[N\].
+    /// Load components at rest, caused by gravity and the tip load. Each is a sum over the weights of the pieces \[N\].
     at_rest: Components,
-    /// Components of the ramp of each joint, as sums over the line inertias (inertias per metre of a tube) of each
-    /// piece. Each piece has [`INERTIAS`] places.
+    /// Additional load components while one joint accelerates, one entry for each joint whose acceleration loads this
+    /// bearing. Each component is a sum over the line inertias (inertias per metre of a tube) of all pieces, with
+    /// [`INERTIAS`] numbers for each piece.
     ramps: Vec<Components>,
 }
 
-/// The components of a load, each as a sum over the parts.
+/// The components of a load, each as a linear function of the numbers of the parts.
 type Components = [Sum; COMPONENTS];
 
 /// A linear function `fixed + Σ coefficient · number` of the weights or of the inertias. `terms` holds the index and
@@ -41,17 +44,18 @@ struct Sum {
     terms: Vec<(usize, f64)>,
 }
 
-/// The numbers of a box: the weight of each piece in the case as an interval \[N\], and the least and greatest line
-/// inertias of each piece.
+/// The numbers of a box from which the loads follow: `weights_n` is the least and greatest weight of each piece in the
+/// case \[N\]; `light` and `heavy` are the least and greatest line inertias of each piece.
 pub(super) struct Numbers<'a> {
     pub weights_n: &'a [[f64; 2]],
     pub light: &'a [[f64; INERTIAS]],
     pub heavy: &'a [[f64; INERTIAS]],
 }
 
-/// The static load of everything outboard of a joint: the wrench of the given bodies, and the wrench of each piece.
+/// The load at rest of everything outboard of a joint: the wrench of what the study gives, and the wrench of each piece
+/// that has a weight of its own.
 pub(super) struct Loads<'a> {
-    /// Wrench of payload, tip force and given bodies about the world's origin.
+    /// Wrench of payload, tip force and the bodies that the study gives, about the world's origin.
     pub fixed: Wrench,
     /// Wrench of each piece per newton of its weight.
     pub per_n: &'a [Wrench],
@@ -61,24 +65,28 @@ pub(super) struct Loads<'a> {
 pub(super) struct Ramp<'a> {
     /// Kinematic twist of the joint per radian, times its angular acceleration \[rad/s²\].
     pub acceleration: Twist,
-    /// Inertia of payload and given bodies that move with the joint.
+    /// Inertia matrix of the payload and of the bodies that the study gives, as far as they move with the joint.
     pub fixed: Matrix6<f64>,
-    /// Inertia of each piece that moves with the joint, per unit of each line inertia.
+    /// Inertia matrix of each piece that moves with the joint, per unit of each of its line inertias (inertias per
+    /// metre of a tube).
     pub inertia: &'a [[Matrix6<f64>; INERTIAS]],
 }
 
-/// The axes about and along which the components of a load are taken.
+/// The axes of a joint about and along which the components of a load are taken, each as a unit motion. The dot product
+/// of such a motion and a wrench is one component.
 struct Frame([Twist; COMPONENTS]);
 
 impl Frame {
-    /// The frame of a joint at a point, with two axes across the joint axis.
+    /// The frame of a joint at the point `at_m` with the given `axis`. `first` and `second` are two directions across
+    /// that axis.
     fn new(at_m: &Vector3<f64>, axis: &Vector3<f64>, [first, second]: &[Vector3<f64>; 2]) -> Self {
         let along = |direction: &Vector3<f64>| stack(direction, &Vector3::zeros());
         let about = |direction: &Vector3<f64>| rotation_twist(direction, at_m);
         Self([about(first), about(second), along(first), along(second), along(axis)])
     }
 
-    /// The components of a wrench in this frame. A component that is only rounding becomes zero.
+    /// The moments and forces of `wrench` about and along the axes of this frame. A component that is only rounding
+    /// becomes zero.
     fn components(&self, wrench: &Wrench) -> [f64; COMPONENTS] {
         self.0.each_ref().map(|unit| {
             let component = unit.dot(wrench);
@@ -87,7 +95,8 @@ impl Frame {
         })
     }
 
-    /// The components of a constant wrench plus wrenches per unit of a number, as sums over these numbers.
+    /// The components of the wrench `fixed + Σ wrench · number`. `wrenches` holds the index of each number (a weight or
+    /// an inertia) and the wrench per unit of it.
     fn sums(&self, fixed: &Wrench, wrenches: impl Iterator<Item = (usize, Wrench)>) -> Components {
         let mut sums: Components = self.components(fixed).map(|fixed| Sum { fixed, terms: Vec::new() });
         for (number, wrench) in wrenches {
@@ -102,7 +111,8 @@ impl Frame {
 }
 
 impl BearingRows {
-    /// Compiles the loads on the bearing of a joint at a point, with two axes across the joint axis.
+    /// Prepares the loads on the bearing of a joint that lies at `at_m` and turns about `axis`. `across` are two
+    /// directions across the axis. `loads` act at rest, and `ramps` are the accelerations of each joint.
     pub(super) fn new<'a>(
         [at_m, axis]: [&Vector3<f64>; 2],
         across: &[Vector3<f64>; 2],
@@ -120,8 +130,9 @@ impl BearingRows {
         Self { at_rest, ramps: ramps.map(of_ramp).filter(counts).collect() }
     }
 
-    /// The least and the greatest loads on the bearing. The moment that radial forces make about the lever to the link
-    /// is not included yet. `stop_factor` is the ratio of the acceleration in a stop to that in a ramp.
+    /// The least and the greatest loads on the bearing over the box: at rest, while a joint accelerates, and in an
+    /// emergency stop. `stop_factor` is the acceleration in a stop divided by that in a ramp. The moment of the radial
+    /// force times its lever to the link is not included; the caller adds it.
     pub(super) fn loads(&self, numbers: &Numbers, stop_factor: f64) -> [BearingDemand; 2] {
         let at_rest = self.at_rest.each_ref().map(|sum| sum.between_weights(numbers.weights_n));
         let rest = squared_lengths(&at_rest);
@@ -142,7 +153,8 @@ impl BearingRows {
         })
     }
 
-    /// Whether no load on the bearing can fall when a drive gets heavier. `is_drive` tells whether a piece is a drive.
+    /// Whether none of the three loads on the bearing (moment, radial force, axial force) can fall when a drive gets
+    /// heavier. `is_drive` tells whether the piece with an index is a drive.
     ///
     /// The length of a sum of vectors grows with one contribution if this contribution has no negative dot product with
     /// any other. For `a` at rest and `b` of a ramp, the greater of `|a + b|` and `|a - b|` grows if `|a|`, `|b|` and
@@ -165,11 +177,12 @@ impl BearingRows {
     }
 }
 
-/// The contribution of one weight or inertia to some components of a load, per unit of it. `None` stands for the
-/// constant contribution of the given bodies.
+/// The contribution of one weight or one line inertia to some components of a load, per unit of it. Without an index
+/// (`None`), it is the constant contribution of payload, tip force and the bodies that the study gives.
 type Share = (Option<usize>, [f64; COMPONENTS]);
 
-/// The contributions of the given bodies and of all weights or inertias to the components with these indices.
+/// For the load components with the indices `places`: the contribution of the given bodies first, and then that of each
+/// weight or each inertia in `sums`.
 fn shares(sums: &Components, places: &[usize]) -> Vec<Share> {
     let mut shares: Vec<Share> = vec![(None, [0.0; COMPONENTS])];
     for &place in places {
@@ -197,7 +210,7 @@ fn dot(a: &[f64; COMPONENTS], b: &[f64; COMPONENTS]) -> f64 {
 }
 
 impl Sum {
-    /// The interval of the sum for weights in intervals \[N\].
+    /// The least and the greatest value of this sum if each weight lies in its interval of `weights_n` \[N\].
     fn between_weights(&self, weights_n: &[[f64; 2]]) -> [f64; 2] {
         self.terms.iter().fold([self.fixed; 2], |[low, high], &(at, c)| {
             let [a, b] = weights_n[at].map(|weight| c * weight);
@@ -205,7 +218,8 @@ impl Sum {
         })
     }
 
-    /// The interval of the sum for line inertias between `light` and `heavy`.
+    /// The least and the greatest value of this sum if each line inertia lies between its entries of `light` and
+    /// `heavy`.
     fn between_inertias(&self, light: &[f64], heavy: &[f64]) -> [f64; 2] {
         self.terms.iter().fold([self.fixed; 2], |[low, high], &(at, c)| {
             let (a, b) = (c * light[at], c * heavy[at]);
@@ -214,7 +228,8 @@ impl Sum {
     }
 }
 
-/// The components at rest plus `times` those of a ramp, as intervals.
+/// The load components of a moving arm, as intervals: the components `at_rest` plus `times` the components `ramp` that
+/// one accelerating joint adds.
 #[inline]
 fn moving(
     at_rest: &[[f64; 2]; COMPONENTS],
@@ -231,7 +246,8 @@ fn moving(
 /// square, so the root is taken only once, after all ramps are compared.
 type Squares = [f64; 3];
 
-/// Squares of the least and of the greatest loads whose components lie in these intervals.
+/// Squares of the least and of the greatest loads (moment, radial force, axial force), if each component lies in its
+/// interval of `components`.
 #[inline]
 fn squared_lengths(components: &[[f64; 2]; COMPONENTS]) -> [Squares; 2] {
     let mut squares = [[0.0; COMPONENTS]; 2];
@@ -243,14 +259,14 @@ fn squared_lengths(components: &[[f64; 2]; COMPONENTS]) -> [Squares; 2] {
     squares.map(|of| [of[MOMENT[0]] + of[MOMENT[1]], of[RADIAL[0]] + of[RADIAL[1]], of[AXIAL[0]]])
 }
 
-/// Raises the least and the greatest load to those of `other` where these are larger.
+/// Replaces the least and the greatest loads in `load` by those in `other` where the latter are larger.
 fn widen(load: &mut [Squares; 2], other: [Squares; 2]) {
     for (load, other) in load.iter_mut().flatten().zip(other.iter().flatten()) {
         *load = load.max(*other);
     }
 }
 
-/// The load with these squares of moment and forces.
+/// The bearing load whose moment, radial force and axial force have these squares.
 fn load(squares: &Squares) -> BearingLoad {
     let [moment_nm, radial_n, axial_n] = squares.map(f64::sqrt);
     BearingLoad { moment_nm, radial_n, axial_n }

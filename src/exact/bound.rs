@@ -18,7 +18,8 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Refinement of the trial shapes stops when the bound improves by less than this (relative).
+/// The refinement of the trial shapes (motions that give an upper bound of the lowest mode) stops when a step lowers
+/// the bound by less than this fraction.
 const SETTLED: f64 = 1e-10;
 /// Accelerations of the base \[m/s²\] whose inertia forces deform the arm into the first trial shapes: one vertical,
 /// and one sideways with a little forward.
@@ -39,7 +40,7 @@ pub(super) struct BoxBound {
 }
 
 impl BoxBound {
-    /// The bound of a box about which nothing is known yet.
+    /// The bound of a box of which nothing is known yet: no mass, no deflection and an infinite frequency.
     pub(super) const OPEN: Self = Self { mass_kg: 0.0, tip_m: 0.0, hz: f64::INFINITY };
 
     /// The bound with all three objectives made worse by the factor `1 + slack`.
@@ -55,11 +56,11 @@ impl From<BoxBound> for Objectives {
     }
 }
 
-/// The result of the computation of a box's bound.
+/// The result of bounding a box.
 pub(super) enum Verdict {
     /// No member meets the constraints, or an incumbent dominates the bound.
     Pruned,
-    /// Some member may be on the front.
+    /// The box has this bound, and a member of it may be on the front.
     Open(BoxBound),
 }
 
@@ -69,8 +70,9 @@ impl<'c> Problem<'c> {
         vec![0; self.level_pieces.len()]
     }
 
-    /// The objectives of the design in a box of one design. Mass and deflection of the bound are exact for it. The
-    /// lowest mode is computed again, because a trial shape gives only an upper bound of its frequency.
+    /// The objectives of the single design in a box. Its mass and deflection are taken from `box_bound`, which is exact
+    /// for a single design. The lowest mode is computed again, because a trial shape gives only an upper bound of its
+    /// frequency.
     pub(super) fn objectives(&self, box_bound: &BoxBound, work: &Work) -> Objectives {
         let quotient = (box_bound.hz * std::f64::consts::TAU).powi(2);
         let lowest =
@@ -106,9 +108,10 @@ impl<'c> Problem<'c> {
         Some(shapes)
     }
 
-    /// Bounds a box. `shapes` holds the trial shapes of the parent box; a shape is replaced by one of this box where
-    /// that sharpens the bound. `is_dominated` tells whether an incumbent dominates a bound, and `worth_refining`
-    /// whether a better shape could prune the box.
+    /// Bounds a box. `shapes` are the trial shapes (motions that give an upper bound of the lowest mode) of the parent
+    /// box. A shape is replaced by one made for this box if that lowers the bound. `is_dominated` tells whether an
+    /// incumbent dominates a given bound. `worth_refining` tells whether the bound is so close to being dominated that
+    /// better shapes might prune the box.
     pub(super) fn bound(
         &self,
         design_box: &mut [u32],
@@ -131,8 +134,8 @@ impl<'c> Problem<'c> {
         self.refine(&mut box_bound, Arc::make_mut(shapes).as_mut_slice(), work, fails)
     }
 
-    /// The bound of a box with the trial shapes of its parent box. `fails` tells whether a bound prunes the box. `None`
-    /// if no member can meet the limits and be on the front.
+    /// The bound of a box, computed with the trial shapes of its parent box. `fails` tells whether a given bound prunes
+    /// the box. `None` if the box is pruned: no member meets the limits, or `fails` is true for the bound.
     fn first_bound(
         &self,
         design_box: &mut [u32],
@@ -170,8 +173,8 @@ impl<'c> Problem<'c> {
         Some(box_bound)
     }
 
-    /// Improves the trial shapes until the box is pruned or the bound no longer falls. A box of several designs gets a
-    /// single step.
+    /// Improves the trial shapes of a box by inverse iteration, until `fails` is true for the bound or the bound no
+    /// longer falls. A box of several designs gets only one step.
     fn refine(
         &self,
         box_bound: &mut BoxBound,
@@ -207,9 +210,9 @@ impl<'c> Problem<'c> {
         Verdict::Open(*box_bound)
     }
 
-    /// Least deflection of the tip in the judged case where it is greatest \[m\]. It also computes the forces, torques,
-    /// slopes and tip directions in `work`. `None` if no member's forces lie in the intervals to which the force bounds
-    /// of the problem restrict them.
+    /// The least tip deflection over the members of the box \[m\], in the judged case in which it is greatest. The
+    /// function also writes the forces, torques, slopes and tip directions of the box to `work`. `None` if no member
+    /// keeps the forces within the force bounds of the problem.
     pub(super) fn least_tip_m(&self, work: &mut Work) -> Option<f64> {
         let mut worst = 0.0f64;
         work.worst_tip = None;
@@ -283,8 +286,9 @@ fn hertz(lambda: f64) -> f64 {
     lambda.sqrt() / std::f64::consts::TAU * (1.0 + ROUNDING)
 }
 
-/// The interval of the strain coordinate of a linear spring (of a tube or of a bearing) under a force in an interval.
-/// The coordinate is force times compliance, and the compliance lies in an interval over the box too.
+/// The least and the greatest deflection in one strain coordinate of a tube or a bearing, under a generalized force
+/// between `low` and `high`. The deflection is force times compliance, and the compliance too is an interval over the
+/// box.
 pub(super) fn linear_strain(pose: &Pose, row: &Row, [low, high]: [f64; 2], work: &Work) -> [f64; 2] {
     let (resisted, factor) = pose.pieces[row.piece].resisted(row.coordinate);
     let (stiff, soft) = (work.stiff[row.piece][resisted], work.soft[row.piece][resisted]);

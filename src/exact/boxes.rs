@@ -12,7 +12,7 @@ use super::shape::Shape;
 use super::work::Work;
 use std::sync::Arc;
 
-/// Greatest number of boxes that one task bounds before it returns the open ones.
+/// Greatest number of boxes that one task bounds. Then it returns the boxes that are still open.
 const BOXES: usize = 32;
 
 /// A box that waits to be bounded, with the trial shapes and the bound of the box from which it was halved.
@@ -29,9 +29,9 @@ impl OpenBox {
         Some(Self { design_box: problem.root(), shapes, box_bound: BoxBound::OPEN })
     }
 
-    /// The two halves of the box along a level; empty if the level has a single option. `box_bound` is the bound of the
-    /// whole box, which is valid for both halves. The half to bound first stands last, because the stack is emptied
-    /// from its end.
+    /// The two halves of this box along a level (the choice of one tube or drive). Empty if the level has a single
+    /// option. `box_bound` is the bound of this box and is valid for both halves. The half that is to be bounded first
+    /// comes last, because the stack is emptied from its end.
     pub(super) fn halves(&self, problem: &Problem, level: usize, box_bound: BoxBound) -> Vec<Self> {
         let half = |node: u32| {
             let mut design_box = self.design_box.clone();
@@ -42,9 +42,10 @@ impl OpenBox {
     }
 }
 
-/// Bounds the box of all designs and all boxes into which it is divided. `open` bounds one box and returns the boxes
-/// into which it is divided. At the end of each round, `learn` adds the findings to the state, and `see` is shown the
-/// state and the open boxes. Returns the boxes that are still open when the search is stopped.
+/// Bounds the box of all designs, then the boxes into which it is divided, and so on. `open` bounds one box and returns
+/// the boxes into which it is divided. At the end of each round of tasks, `learn` adds the designs found to `state`,
+/// and then `see` is shown `state` and the boxes that are still open. Returns the boxes that are open when the search
+/// is stopped.
 pub(super) fn open_all_boxes<K: Sync, F: Send + Default>(
     budget: &Budget,
     problem: &Problem,
@@ -57,7 +58,8 @@ pub(super) fn open_all_boxes<K: Sync, F: Send + Default>(
     go_through_boxes(budget, state, vec![root], open, learn, see)
 }
 
-/// Bounds the boxes in `first` and all boxes into which they are divided, in the same way as [`open_all_boxes`].
+/// Bounds the boxes in `first` and all boxes into which they are divided. The other parameters are those of
+/// [`open_all_boxes`].
 fn go_through_boxes<K: Sync, F: Send + Default>(
     budget: &Budget,
     state: &mut K,
@@ -72,8 +74,8 @@ fn go_through_boxes<K: Sync, F: Send + Default>(
     in_rounds(state, first, || budget.stopped(), task, learn, see)
 }
 
-/// Bounds a box and then boxes into which it is divided, depth first, until [`BOXES`] boxes are bounded. Returns the
-/// boxes that are still open and the findings.
+/// Bounds the box `first` and then boxes into which it is divided, depth first, until [`BOXES`] boxes are bounded.
+/// `open` bounds one box and returns its parts. Returns the boxes that are still open and the designs found.
 pub(super) fn open_boxes<F: Default>(
     budget: &Budget,
     first: OpenBox,
@@ -90,9 +92,10 @@ pub(super) fn open_boxes<F: Default>(
     Done { tasks: stack, findings }
 }
 
-/// One pass over all boxes, or over the boxes that an earlier process left open. After each round, `keep` is shown the
-/// state and the open boxes. Returns the bounds of the boxes that are still open when the search is stopped; empty if
-/// the pass is complete.
+/// One pass over the whole space by boxes, with the slack `slack`. It starts with the boxes `left` that an earlier
+/// process left open, or with the box of all designs if that is `None`. After each round, `keep` is shown the state and
+/// the open boxes, so that it can save them. Returns the bounds of the boxes that are open when the search is stopped;
+/// empty if the pass is complete.
 pub(super) fn pass_by_boxes(
     budget: &Budget,
     problem: &Problem,
@@ -138,8 +141,9 @@ pub(super) struct Search<'s, 'p> {
 }
 
 impl Search<'_, '_> {
-    /// Bounds a box and returns its halves. If the box is one design, the design is evaluated and nothing is returned.
-    /// Nothing is returned either if the box is pruned.
+    /// Bounds the box `here` and returns its two halves. Returns nothing if the box is pruned, or if it is a single
+    /// design; that design is then evaluated and added to `findings`. If dominated drives are removed from the box, the
+    /// smaller box is returned undivided, to be bounded again.
     pub(super) fn open(&self, mut here: OpenBox, work: &mut Work, findings: &mut Findings) -> Vec<OpenBox> {
         self.budget.count_box();
         let verdict = self.problem.bound(
@@ -169,8 +173,8 @@ impl Search<'_, '_> {
         here.halves(self.problem, level, box_bound)
     }
 
-    /// Whether a design of the shared state or of the task's own findings dominates the bound after it was made worse
-    /// by the slack.
+    /// Whether a known design dominates the bound `box_bound` after it was made worse by the slack. Known are the
+    /// designs of the shared state and those in `findings`, which this task found.
     pub(super) fn dominates(&self, box_bound: &BoxBound, findings: &Findings) -> bool {
         let slackened = box_bound.slackened(self.slack);
         self.state.incumbents.dominates(&slackened) || findings.dominates(&slackened)

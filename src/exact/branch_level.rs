@@ -15,15 +15,15 @@ use super::shape::{Shape, products};
 use super::torsion::Torsion;
 use super::work::Work;
 
-/// Relative amount by which the geometric mean of an interval exceeds its lower end. Zero for an interval without
-/// width, and for one that does not begin above zero.
+/// `√(high / low) - 1`: by which fraction the geometric mean of an interval exceeds its lower end. Zero if the interval
+/// has no width or does not begin above zero.
 fn middling(low: f64, high: f64) -> f64 {
     if low > 0.0 && high > low { (high / low).sqrt() - 1.0 } else { 0.0 }
 }
 
 impl Problem<'_> {
-    /// The level whose halving should sharpen the bound of the box most. `shapes` are the trial shapes of the box.
-    /// `None` if every level has a single option.
+    /// The level (choice of one tube or drive) whose halving should improve the bound of the box most. `shapes` are the
+    /// trial shapes of the box. `None` if every level has a single option left.
     pub(super) fn widest_level(
         &self,
         design_box: &[u32],
@@ -71,10 +71,11 @@ impl Problem<'_> {
         best.map(|(_, level)| level)
     }
 
-    /// For each piece, a relative change of a trial shape's Rayleigh quotient that is due to the uncertain weight of
-    /// the piece. A heavier piece may press a gear inboard into a stiffer segment of its torsion curve, and the bound
-    /// assumes this segment. With a torque of middle size the quotient would be lower. This change is divided among the
-    /// pieces in proportion to the width that the weight of each adds to the interval of the torque.
+    /// For each piece, the relative fall of the Rayleigh quotient of `shape` if gears inboard were loaded by a torque
+    /// of middle size. The bound assumes that each gear works in the stiffest segment of its torsion curve that any
+    /// torque of the box reaches, and the torque is uncertain because the weights outboard are. The fall is divided
+    /// among these weights in proportion to the width that each adds to the interval of the torque. `strain` is twice
+    /// the strain energy of the shape.
     fn softened_by_torque(&self, case: usize, shape: &Shape, strain: f64, work: &Work) -> Vec<f64> {
         let mut softened = vec![0.0; self.parts.len()];
         let pose = &self.poses[case];
@@ -93,8 +94,8 @@ impl Problem<'_> {
         softened
     }
 
-    /// Computes `work.tip_growth`: for each piece, the relative growth of the least tip deflection if the stiffnesses
-    /// of the piece had the geometric mean of their interval and not the greatest value.
+    /// Computes `work.tip_growth`: for each piece, the fraction by which the least tip deflection would grow if the
+    /// piece had not its greatest stiffnesses but the geometric mean of its least and greatest ones.
     fn weigh_tip(&self, work: &mut Work) {
         work.tip_growth.clear();
         work.tip_growth.resize(self.parts.len(), 0.0);

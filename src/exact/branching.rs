@@ -15,28 +15,30 @@ use super::problem::{Part, Problem};
 use super::rows::{RelaxedDesign, Rows};
 use super::tree::Key;
 
-/// For drives and for tubes: which coordinate of an option's key ([`Key`]) stands for mass and which for stiffness.
-/// Each has the factor by which the coordinate multiplies the logarithm.
+/// For drives and for tubes: the two coordinates of an option's key ([`Key`]) that stand for its mass and for its
+/// stiffness, each as the index of the coordinate and the factor by which it multiplies the logarithm.
 const DRIVE: [(usize, f64); 2] = [(3, 1.0), (0, 4.0)];
 const TUBE: [(usize, f64); 2] = [(0, 2.0), (1, 1.0)];
-/// A benefit of a branching below this is due to rounding.
+/// A division whose expected benefit is below this is not made, because the benefit is due to rounding.
 const NOTHING: f64 = 1e-9;
 /// A force is known well enough if the width of its interval is less than this fraction of its greatest magnitude. Then
 /// it is not branched on.
 const KNOWN: f64 = 0.1;
-/// Least distance of a branching point from either end of the interval, as a fraction of the width of the interval.
+/// Least distance of the value at which a region is divided from either end of the interval, as a fraction of the
+/// interval's width.
 const SAME: f64 = 1e-3;
 
 /// A way to divide a region into two: the quantity that is divided, and the value at which it is divided.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Branching {
-    /// Estimated benefit of the division: the underestimate and the spread in the weighted sum of rows that the
-    /// division reduces. The rows are scaled, so it has no unit.
+    /// Expected benefit of the division. It is the part of the weighted sum of rows (inequalities of the bound) that
+    /// the McCormick bounds underestimate or in which the mixed designs differ, as far as the division can reduce it.
+    /// The rows are scaled, so it has no unit.
     gain: f64,
     /// The quantity that is divided.
     by: BranchOn,
-    /// Value at which the region is divided: of the coordinate by which the tree separates options (a scaled
-    /// logarithm), or of the force \[N or N m\].
+    /// Value at which the region is divided. It is a value of the key coordinate by which the tree separates options (a
+    /// scaled logarithm), or a force \[N or N m\].
     at: f64,
 }
 
@@ -53,19 +55,20 @@ pub(super) enum BranchOn {
 /// bound although no single design does.
 type Mixed<'a> = [(&'a RelaxedDesign, f64)];
 
-/// Mean of a number over the designs of a mixture.
+/// Weighted mean of the number `of` over the designs of a mixture.
 fn mean(mixed: &Mixed, of: impl Fn(&RelaxedDesign) -> f64) -> f64 {
     mixed.iter().map(|(member, share)| share * of(member)).sum()
 }
 
-/// Mean absolute deviation of a number over the designs of a mixture.
+/// Weighted mean absolute deviation of the number `of` from its mean over the designs of a mixture.
 fn spread(mixed: &Mixed, of: impl Fn(&RelaxedDesign) -> f64) -> f64 {
     let middle = mean(mixed, &of);
     mean(mixed, |member| (of(member) - middle).abs())
 }
 
 impl Rows<'_> {
-    /// Ways to divide the region, the one with the greatest expected benefit first.
+    /// Ways to divide the region, the one with the greatest expected benefit first. `mixed` is the mixture with which
+    /// the bound ended, and `multipliers` are the factors on the rows (inequalities) of the bound.
     pub(super) fn branchings(&self, mixed: &Mixed, multipliers: &[f64]) -> Vec<Branching> {
         let mut branchings = Vec::new();
         let left_out = self.left_out(mixed, multipliers);
@@ -106,8 +109,9 @@ impl Rows<'_> {
         [number(places[0], light), number(places[1], stiff)]
     }
 
-    /// For each piece, the amount by which the McCormick bounds underestimate the weighted sum of scaled rows: first
-    /// the amount that is due to the uncertain weight of the piece, then that due to its uncertain compliance.
+    /// For each piece, the part of the weighted sum of scaled rows that the McCormick bounds of force times compliance
+    /// underestimate. The first number is due to the uncertain weight of the piece, the second to its uncertain
+    /// compliance.
     fn left_out(&self, mixed: &Mixed, multipliers: &[f64]) -> Vec<[f64; 2]> {
         let mut left_out = vec![[0.0; 2]; self.problem.parts.len()];
         for (judged, tip) in self.tips.iter().enumerate() {
@@ -127,9 +131,9 @@ impl Rows<'_> {
         left_out
     }
 
-    /// Ways to divide the region at the torque of a joint whose interval is wide. The expected benefit is the
-    /// underestimate of the McCormick bounds in the twist of this joint and in the tubes and bearings up to the next
-    /// joint outboard, plus the spread of the states of the joint's gear.
+    /// Ways to divide the region at a joint torque whose interval is wide. The expected benefit of such a division has
+    /// two terms. One is the McCormick underestimate in the twist of this joint and in the tubes and bearings up to the
+    /// next joint outboard. The other is the spread of the states of the joint's gear over the mixture.
     fn by_torque(&self, mixed: &Mixed, multipliers: &[f64]) -> Vec<Branching> {
         let mut branchings = Vec::new();
         for (judged, tip) in self.tips.iter().enumerate() {
@@ -170,15 +174,16 @@ impl Rows<'_> {
         branchings
     }
 
-    /// Tip displacement by which the McCormick bound underestimates one product \[m\]. It is the excess of the force
-    /// over its least value times the excess of the compliance over its least value, both as means of the mixture.
+    /// Tip displacement by which the McCormick bound underestimates force times compliance in one strain coordinate
+    /// \[m\]. It is the excess `more` of the force over its least value, times the excess of the compliance over its
+    /// least value. Both are means over the mixture.
     fn product(&self, mixed: &Mixed, judged: usize, row: &Row, more: f64) -> f64 {
         let tip_per_unit = self.work.tip_directions[judged].dot(&row.tip_m);
         (tip_per_unit * more * self.softer(mixed, judged, row)).abs()
     }
 
-    /// For each piece, the amount of a force's excess over its least value that the weight of the piece causes, as a
-    /// mean of the mixture \[N or N m\].
+    /// For each piece, the contribution of its weight to the excess of a force over its least value in the box, as a
+    /// mean over the mixture \[N or N m\]. The sign of `tip_per_unit` tells in which direction the force moves the tip.
     fn heavier(&self, mixed: &Mixed, judged: usize, row: &Row, tip_per_unit: f64) -> Vec<f64> {
         let multipliers = row.per_n.iter().zip(&self.work.weights[self.tips[judged].case]).enumerate();
         multipliers
@@ -189,8 +194,8 @@ impl Rows<'_> {
             .collect()
     }
 
-    /// The excess of a coordinate's compliance over its least value in the box, as a mean of the mixture. It is the
-    /// displacement of the coordinate per force.
+    /// By how much the compliance of a strain coordinate exceeds its least value in the box, as a mean over the
+    /// mixture. A compliance is the displacement of the coordinate per unit of force.
     fn softer(&self, mixed: &Mixed, judged: usize, row: &Row) -> f64 {
         let case = self.tips[judged].case;
         let posed = &self.problem.poses[case].pieces[row.piece];
@@ -208,7 +213,8 @@ impl Rows<'_> {
 }
 
 impl Problem<'_> {
-    /// The coordinates that separate a node of a level's tree from other nodes; zeros for a level without a tree.
+    /// The key of a node of a level's tree: the coordinates by which the tree separates this node from others. Zeros
+    /// for a level without a tree.
     fn key(&self, level: usize, node: u32) -> Key {
         match &self.parts[self.level_pieces[level]] {
             Part::Drives { tree, .. } => tree.node(node).key,
@@ -217,8 +223,8 @@ impl Problem<'_> {
         }
     }
 
-    /// The problem restricted to each side of a branching. `kept` holds, for each level, the nodes of its base tree
-    /// that remain. `None` if all options lie on one side.
+    /// The two problems into which `branching` divides this one. `kept` holds, for each level, the nodes of its base
+    /// tree that remain. `None` if all options lie on one side.
     pub(super) fn branch(&self, kept: &[Vec<u32>], branching: &Branching) -> Option<[Self; 2]> {
         match branching.by {
             BranchOn::Options { level, axis } => {
@@ -236,8 +242,8 @@ impl Problem<'_> {
         }
     }
 
-    /// For each side of a branching on options: for every level, the nodes of its base tree that remain. `None` if all
-    /// options of the divided level lie on one side.
+    /// Divides the options of `level` at the value `at` of the key coordinate `axis`. Returns, for each side and every
+    /// level, the nodes of the level's base tree that remain. `None` if all options of the level lie on one side.
     fn branch_on_options(
         &self,
         kept: &[Vec<u32>],

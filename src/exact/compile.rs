@@ -30,7 +30,8 @@ use std::sync::Arc;
 struct Joints<'c> {
     /// The given joint or the drives of each joint; `None` for any other piece, and after the joint was compiled.
     slots: Vec<Option<Slot<'c>>>,
-    /// What a compiled pose needs to know about each joint; default values for any other piece.
+    /// The motion of each joint and the state of its bearing, as a compiled pose needs them; default values for any
+    /// other piece.
     needs: Vec<JointNeeds>,
     /// Lever from each joint whose bearing is checked to its link; `None` for any other piece.
     levers: Vec<Option<LeverByOption>>,
@@ -68,16 +69,16 @@ impl<'c> Joints<'c> {
         Self { numbers, ..joints }
     }
 
-    /// Space that a link with this option leaves for the drive of the joint that carries it; unlimited if no joint asks
-    /// for it.
+    /// The space for gear and motor that the link at `place` leaves with this option, for the joint that carries the
+    /// link. Unlimited if no joint has to fit its drive into this link.
     fn room(&self, place: usize, option: usize) -> LinkRoom {
         let mut rooms = self.rooms[..place].iter().flatten();
         let room = rooms.find(|room| room.link_slot == self.numbers[place]);
         room.and_then(|room| room.rooms.get(option)).copied().unwrap_or(LinkRoom::ANY)
     }
 
-    /// Lever along the axis from the bearing of the next joint inboard to the link with this option \[m\]; 0 if no
-    /// bearing is checked there.
+    /// The lever that the link at `place` has with this option \[m\]: the distance along the axis from the bearing of
+    /// the next joint inboard to the link. 0 if no bearing is checked there.
     fn lever_m(&self, place: usize, option: usize) -> f64 {
         let inboard = place.checked_sub(1).and_then(|inboard| self.levers[inboard].as_ref());
         inboard.and_then(|lever| lever.lever_m.get(option)).copied().unwrap_or_default()
@@ -85,8 +86,8 @@ impl<'c> Joints<'c> {
 }
 
 impl JointNeeds {
-    /// What a compiled pose needs to know about a joint with this slot. `reach_m` is the distance of the tip from the
-    /// joint's axis \[m\], from which the acceleration follows.
+    /// What a compiled pose needs to know about `joint`, whose drives are in `slot`. `reach_m` is the distance of the
+    /// tip from the joint's axis \[m\]; the angular acceleration follows from it and the tip's acceleration.
     fn of(space: &DesignSpace, joint: &SpaceJoint, reach_m: f64, slot: &Slot) -> Self {
         let motion = joint.motion(&space.motion, reach_m);
         let of_gear = Self { acceleration_rad_s2: motion.acceleration_rad_s2, ..Self::default() };
@@ -102,8 +103,9 @@ impl JointNeeds {
 }
 
 impl<'c> Problem<'c> {
-    /// Compiles a space with those link options for which `takes` is true. `ties` tells whether drives of equal mass,
-    /// torsion curve and bearing stiffness are one option. `None` if some level has no option.
+    /// Prepares a space for the exact search, with only those link options for which `takes` is true. `ties` tells
+    /// whether drives of equal mass, torsion curve and bearing stiffness become one option. `None` if some level
+    /// (choice) has no option.
     pub(super) fn new(
         space: &'c DesignSpace,
         catalogs: &'c Catalogs,
@@ -175,8 +177,8 @@ impl<'c> Problem<'c> {
         Some(problem.with_inertias())
     }
 
-    /// Compiles a joint of the chain. `tilts` tells whether its bearing tilts with some drive. `None` if the joint has
-    /// no drive.
+    /// Compiles the joint in `slot`. `tilts` tells whether its bearing tilts with some drive. `ties` tells whether
+    /// drives of equal mass, torsion curve and bearing stiffness become one option. `None` if the joint has no drive.
     fn joint(&mut self, slot: Slot<'c>, tilts: bool, ties: Ties) -> Option<Part<'c>> {
         match slot {
             Slot::Given { law, mass_kg } => Some(Part::Given { mass_kg, curve: CurveBox::of(&law) }),
@@ -186,8 +188,8 @@ impl<'c> Problem<'c> {
         }
     }
 
-    /// The lever of a joint to the link outboard. That link is compiled already, because compilation goes inward from
-    /// the tip.
+    /// Finds out on which link of the compiled problem the lever of a joint depends. That link is compiled already,
+    /// because compilation goes inward from the tip.
     fn lever(&self, lever: &LeverByOption) -> Lever {
         match lever.link_slot {
             Some(link) if matches!(self.parts[link], Part::Links { .. }) => Lever::OfLink(link),
@@ -195,7 +197,8 @@ impl<'c> Problem<'c> {
         }
     }
 
-    /// The space at a joint. The link that leaves it is compiled already.
+    /// Finds out on which link of the compiled problem the space at a joint depends. That link is compiled already,
+    /// because compilation goes inward from the tip.
     fn room_at(&self, room: &RoomAtJoint) -> Room {
         match &self.parts[room.link_slot] {
             Part::Links { .. } => Room::OfLink(room.link_slot),
@@ -203,8 +206,9 @@ impl<'c> Problem<'c> {
         }
     }
 
-    /// Compiles a link of the chain. For an option, `leaves` gives the lever from the joint inboard \[m\] and the space
-    /// that the option leaves for the drive of the joint that carries it. `None` if no option is admitted.
+    /// Compiles a link of the chain with the options for which `takes` is true. For the index of an option, `leaves`
+    /// returns the lever from the joint inboard \[m\] and the space that the link leaves for the drive of this joint.
+    /// `None` if no option is admitted.
     fn link(
         &mut self,
         piece: &'c SpacePiece,
@@ -243,7 +247,8 @@ impl<'c> Problem<'c> {
         }
     }
 
-    /// Compiles a joint whose drive is a level of the search. `None` if it has no drive.
+    /// Compiles a joint whose drive the search chooses. `tilts` tells whether its bearing tilts with some drive. `None`
+    /// if the joint has no drive.
     fn drives(&mut self, sized: SizedJoint<'c>, tilts: bool, ties: Ties) -> Option<Part<'c>> {
         self.level(sized.table.len());
         let rays = self.rays(self.parts.len(), sized.table.motion());
@@ -259,7 +264,8 @@ impl<'c> Problem<'c> {
         })
     }
 
-    /// Compiles a joint that takes the lightest drive which carries its load. `None` if it has no drive.
+    /// Compiles a joint that takes the lightest drive which carries its load (first fit). `tilts` tells whether its
+    /// bearing tilts with some drive. `None` if the joint has no drive.
     fn first_fit(&self, sized: SizedJoint<'c>, tilts: bool) -> Option<Part<'c>> {
         let rays = self.rays(self.parts.len(), sized.table.motion());
         let candidates = sized.table.first_fit_candidates();
@@ -268,15 +274,16 @@ impl<'c> Problem<'c> {
         Some(Part::FirstFit { ladder, sized: Arc::new(sized) })
     }
 
-    /// Adds a level with `size` options for the next piece and returns the numbers of the options.
+    /// Adds a level (choice) with `size` options for the piece that is compiled next. Returns the numbers of the
+    /// options.
     fn level(&mut self, size: usize) -> std::ops::Range<u32> {
         self.level_pieces.push(self.parts.len());
         self.level_sizes.push(size as u32);
         0..size as u32
     }
 
-    /// The rays of a joint: fixed proportions of static torque \[N m\] and inertia \[kg m²\], around the proportion
-    /// that the payload alone causes.
+    /// The rays of a joint, which test whether drives can carry its load: fixed proportions of static torque \[N m\]
+    /// and inertia \[kg m²\], around the proportion that the payload alone causes.
     fn rays(&self, piece: usize, motion: &JointMotion) -> Rays {
         let (mut static_nm, mut inertia_kgm2) = (0.0f64, 0.0f64);
         for pose in self.poses.iter().filter(|pose| pose.sizing) {
@@ -287,8 +294,8 @@ impl<'c> Problem<'c> {
         Rays::new(motion, static_nm, inertia_kgm2)
     }
 
-    /// Adds the inertia matrices of every judged case. An arbitrary arm of the space shows which coordinates deflect
-    /// elastically.
+    /// Adds the inertia matrices of every judged case to the problem. An arbitrary arm of the space shows which
+    /// coordinates deflect elastically.
     pub(super) fn with_inertias(mut self) -> Self {
         let mut work = Work::default();
         let filled = self.fill(&mut self.root(), &mut work);
@@ -317,8 +324,9 @@ fn piece_numbers(space: &DesignSpace) -> Vec<usize> {
     numbers
 }
 
-/// The box of a single drive. If `tilts`, some drive of this joint has a bearing that tilts, and then no bearing of the
-/// joint is taken as perfectly rigid.
+/// The box of the single drive with this index. `tilts` tells whether the bearing of some drive of the joint tilts. If
+/// so, a bearing without tilt gets a very small compliance instead of none, so that all drives of the joint have the
+/// same coordinates.
 fn drive_box(sized: &SizedJoint, index: u32, rays: &Rays, tilts: bool) -> DriveBox {
     let index = index as usize;
     let tilt_rad_per_nm = if tilts { sized.tilts_rad_per_nm[index].max(RIGID_RAD_PER_NM) } else { 0.0 };

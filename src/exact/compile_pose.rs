@@ -28,7 +28,7 @@ use nalgebra::{DMatrix, Matrix3, Matrix6, Rotation3, SMatrix, Vector3};
 /// What a compiled pose needs to know about a joint of the chain in addition to its axis.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct JointNeeds {
-    /// Whether the output bearing tilts with some drive that may be chosen.
+    /// Whether the output bearing of the joint tilts with at least one of the drives that may be chosen.
     pub tilts: bool,
     /// Whether the output bearing of some drive has a limit that must be checked.
     pub is_checked: bool,
@@ -83,9 +83,10 @@ impl Pose {
         pose
     }
 
-    /// Goes inward from the tip and writes the rows of all coordinates. The wrench of everything outboard is a linear
-    /// function of the weights at every step. `joints` holds the needs of each joint and `springs` the wrench of
-    /// springs, each with the number of the piece on which it acts.
+    /// Writes the rows of this pose: for each strain coordinate, its generalized force as a linear function of the
+    /// weights outboard. The function goes inward from the tip and adds each piece to the wrench of everything
+    /// outboard. `joints` holds the needs of each joint and `springs` the wrench of each spring, both with the number
+    /// of the piece at which they act.
     fn compile(
         &mut self,
         space: &DesignSpace,
@@ -152,8 +153,9 @@ impl Pose {
         self.rows.retain(|row| is_torsion.next() == Some(true) || row.largest() > 1e-13 * scale);
     }
 
-    /// The loads on the output bearing of a joint. `None` if the piece is not a joint, its bearing is not checked, or
-    /// the case is not a sizing case.
+    /// The loads on the output bearing of the joint `piece`, as functions of the weights and inertias outboard.
+    /// `joints` holds the needs of each joint. `None` if the piece is not a joint, its bearing is not checked, or the
+    /// case is not a sizing case.
     fn bearing(
         &self,
         piece: usize,
@@ -179,8 +181,8 @@ impl Pose {
 }
 
 /// One layer of the chain at its place in the pose. `tilts` tells whether the bearing of a joint tilts; `pulls` are the
-/// loads of springs on a tube. `None` for the tilt springs of a gear's bearing, because these tilts are coordinates of
-/// the joint.
+/// loads of springs on a tube; `at_m` and `rotation` are the place and the attitude of the layer. `None` for the tilt
+/// springs of a gear's bearing, because these tilts are coordinates of the joint.
 fn posed(
     space: &DesignSpace,
     water: Option<Water>,
@@ -318,7 +320,8 @@ impl Pulls {
 }
 
 impl TubeForms {
-    /// Integrates the products of the displacement fields along the tube.
+    /// Prepares the inertia matrices of the tube by integrating the products of its displacement fields along its
+    /// length.
     fn new(beam: &PreparedBeam) -> Self {
         let n = 6 + COORDINATES;
         let mut forms = vec![DMatrix::<f64>::zeros(n, n); 6];
@@ -345,7 +348,8 @@ impl TubeForms {
 }
 
 impl PosedTube {
-    /// Rigid-body inertia of the tube about the world's origin, per unit of each line inertia.
+    /// Inertia matrices of the tube as a rigid body, about the world's origin, each per unit of one line inertia
+    /// (inertia per metre).
     fn rigid_forms(&self) -> [Matrix6<f64>; INERTIAS] {
         let to_local = crate::mechanics::condensed::world_to_local(&self.root_m, &self.frame);
         let f = &self.forms;
@@ -375,8 +379,8 @@ impl PosedTube {
     }
 }
 
-/// Generalized force on each of the coordinates [`ENDS`] per newton of the tube's own weight, which is distributed
-/// evenly along the tube.
+/// Generalized force on each of the eight coordinates that move the tube's end ([`ENDS`]), per newton of the tube's own
+/// weight. The weight is distributed evenly along the tube.
 fn areas_per_n(tube: &PosedTube, down: &Vector3<f64>) -> [f64; 8] {
     let down = tube.frame.tr_mul(down);
     let f = &tube.forms;
@@ -395,13 +399,14 @@ fn areas_per_n(tube: &PosedTube, down: &Vector3<f64>) -> [f64; 8] {
 /// The wrench and the inertia of everything outboard of the present piece, as linear functions of the weights and
 /// inertias of the parts.
 struct Outboard {
-    /// Wrench of payload, tip force, springs and given bodies.
+    /// Wrench of payload, tip force, springs and the bodies that the study gives, added up so far.
     fixed: Wrench,
     /// Wrench of each piece per newton of its weight, tip first.
     per_n: Vec<Wrench>,
-    /// Inertia of the payload and of given bodies about the world's origin.
+    /// Inertia of the payload and of the bodies that the study gives, added up so far, about the world's origin.
     fixed_inertia: Matrix6<f64>,
-    /// The value of `fixed_inertia` outboard of each piece, tip first.
+    /// Sum of `fixed_inertia` as it was when each piece was added: the inertia of payload and given bodies outboard of
+    /// this piece, tip first.
     fixed_inertia_of: Vec<Matrix6<f64>>,
     /// Inertia of each piece about the world's origin per unit of each line inertia, tip first.
     inertia: Vec<[Matrix6<f64>; INERTIAS]>,
@@ -418,7 +423,8 @@ impl Outboard {
         }
     }
 
-    /// Adds the weight and the inertia of a given body, whose inertia about the world's origin is `body`.
+    /// Adds the weight and the inertia of a body that the study gives. `body` is its inertia matrix about the world's
+    /// origin.
     fn add_body(&mut self, body: &Matrix6<f64>, space: &DesignSpace) {
         self.fixed_inertia += body;
         let mass_kg = body[(0, 0)];
@@ -434,8 +440,9 @@ impl Outboard {
         self.inertia.push(inertia);
     }
 
-    /// The row of a coordinate whose unit moves everything outboard by `twist`. `own_per_n` is the force per newton of
-    /// the weight of the coordinate's own piece.
+    /// The row of a strain coordinate: the force on it and the tip's displacement by it. A unit of the coordinate moves
+    /// everything outboard by the kinematic vector `twist`. `own_per_n` is the force on the coordinate per newton of
+    /// the weight of the piece to which it belongs.
     fn row(
         &self,
         piece: usize,
@@ -450,7 +457,8 @@ impl Outboard {
         Row { piece, coordinate, fixed: twist.dot(&self.fixed), per_n, tip_m, tip_m_per_unit: tip_m.norm() }
     }
 
-    /// The inertia of everything outboard about a joint's axis, for a joint with this unit twist.
+    /// The inertia of everything outboard about a joint's axis \[kg m²\], as a linear function of the line inertias.
+    /// `twist` is the motion per radian of the joint.
     fn inertia_row(&self, twist: &Twist) -> InertiaRow {
         let about = |m: &Matrix6<f64>| twist.dot(&(m * twist)).max(0.0);
         InertiaRow {
@@ -459,7 +467,8 @@ impl Outboard {
         }
     }
 
-    /// Axial force \[N\], moments about y and z and torsion \[N m\] on the section of a tube at a point.
+    /// The loads on the section of a tube at the point `at_m`, as linear functions of the weights: axial force \[N\],
+    /// moments about y and z, and torsion \[N m\].
     fn stress(&self, piece: usize, tube: &PosedTube, at_m: &Vector3<f64>) -> StressRow {
         let local = |wrench: &Wrench| {
             let force = tube.frame.tr_mul(&linear(wrench));
@@ -473,7 +482,7 @@ impl Outboard {
 }
 
 impl Row {
-    /// Largest magnitude among the fixed force and the coefficients of the weights.
+    /// Largest magnitude among the constant part of this row's force and its coefficients per newton.
     fn largest(&self) -> f64 {
         self.per_n.iter().fold(self.fixed.abs(), |most, c| most.max(c.abs()))
     }

@@ -29,8 +29,8 @@ struct Piece {
 }
 
 impl Cover {
-    /// Makes a cover of at least this many boxes. There are fewer if the remaining boxes cannot be halved or the search
-    /// is stopped.
+    /// Makes a cover of at least `boxes` boxes. `found` are the objectives of the designs found, from which the gap of
+    /// each box follows. There are fewer boxes if the remaining ones cannot be halved or the search is stopped.
     pub(super) fn new(budget: &Budget, problem: &Problem, found: &[Objectives], boxes: usize) -> Self {
         let Some(shapes) = problem.first_shapes(&mut Work::default()) else { return Self(Vec::new()) };
         let root =
@@ -51,15 +51,15 @@ impl Cover {
         Self(cover)
     }
 
-    /// The bounds of the boxes.
+    /// The bound (ideal point) of each box of the cover.
     pub(super) fn bounds(&self) -> Vec<BoxBound> {
         self.0.iter().map(|piece| piece.open.box_bound).collect()
     }
 }
 
 impl Piece {
-    /// Bounds a box and computes its gap. `None` if no member meets the constraints, or if a design found dominates all
-    /// members.
+    /// Bounds a box and computes its gap: by how much the nearest of the designs `found` is worse than the bound.
+    /// `None` if no member meets the constraints, or if one of these designs dominates all members.
     fn bounded(problem: &Problem, mut open: OpenBox, found: &[Objectives]) -> Option<Self> {
         let mut work = Work::default();
         let is_dominated = |bound: &BoxBound| {
@@ -74,7 +74,8 @@ impl Piece {
         Some(Self { gap: gap_of(&box_bound, found), open, level })
     }
 
-    /// The bounded halves of the box. A half without members that may be on the front is left out.
+    /// The two halves of this box, each bounded. A half is left out if it is empty or if a design in `found` dominates
+    /// all its members.
     fn halves(self, problem: &Problem, found: &[Objectives]) -> Vec<Self> {
         let level = self.level.unwrap_or_default();
         let halves = self.open.halves(problem, level, self.open.box_bound);

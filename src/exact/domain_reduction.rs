@@ -14,8 +14,8 @@ use crate::pareto::objectives::Objectives;
 use crate::space::design_space::DesignSpace;
 use std::collections::BTreeSet;
 
-/// Relative margin between the known design's objectives and the local upper bound made of them. With it, rounding
-/// excludes no part of the known design.
+/// Relative amount by which the known design's objectives are made worse before designs below them are looked for. With
+/// this margin, rounding excludes no part of the known design itself.
 const ROOM: f64 = 1e-6;
 /// Greatest number of subproblems that are branched. A subproblem of at most [`FEW`] designs is not branched, because
 /// that is not worth the time.
@@ -67,8 +67,8 @@ impl<'p> DomainReduction<'p> {
     }
 }
 
-/// A subproblem whose options have been reduced until a further reduction is not worth the time. `designs` is the
-/// number of designs that remain.
+/// A subproblem whose options have been excluded as far as that is worth the time. `designs` is the number of designs
+/// that remain.
 struct Reduced<'p> {
     subproblem: Subproblem<'p>,
     survivors: Survivors,
@@ -76,7 +76,8 @@ struct Reduced<'p> {
 }
 
 impl<'p> Reduced<'p> {
-    /// Reduces a subproblem below a local upper bound. `None` if no design of it lies below the bound.
+    /// Excludes the options of a subproblem that no design below the local upper bound `upper` can have. `None` if no
+    /// design lies below it.
     fn new(mut subproblem: Subproblem<'p>, upper: &LocalUpperBound, work: &mut Work) -> Option<Self> {
         loop {
             let (survivors, reduced) = subproblem.reduce(upper, work, |_| false)?;

@@ -31,21 +31,21 @@ const BOXES: usize = 64;
 
 /// The properties that a drive must have to dominate all drives of a box.
 struct DominatingDrive<'a> {
-    /// Mass below which the drive must be \[kg\].
+    /// Mass that the dominating drive must stay below \[kg\].
     lighter_than_kg: f64,
-    /// Greatest demand on the joint, which the drive must carry.
+    /// Greatest demand on the joint over the box. The dominating drive must carry it.
     demand: &'a JointDemand,
-    /// Torsion curves of the drives of the box. The drive must nowhere be softer than any of them. `None` if the drive
-    /// must be rigid.
+    /// Torsion curves of the drives of the box. The dominating drive must nowhere be softer than any of them. `None` if
+    /// a drive of the box is rigid, so that the dominating drive must be rigid too.
     curve: Option<CurveBox>,
-    /// Greatest torque up to which the curves are compared \[N m\].
+    /// Greatest magnitude of the torque on the joint over the box \[N m\]. The curves are compared up to it.
     most_torque_nm: f64,
     /// Greatest tilt per moment that the drive's bearing may have \[rad/(N m)\].
     most_tilt_rad_per_nm: f64,
 }
 
 impl DominatingDrive<'_> {
-    /// Whether a dominating drive may be in a box of drives. For a box of one drive the answer is exact.
+    /// Whether the box `drives` may contain a dominating drive. For a box of a single drive the answer is exact.
     fn may_be_in(&self, drives: &DriveBox) -> bool {
         drives.mass_kg[0] < self.lighter_than_kg
             && drives.tilt_rad_per_nm[0] <= self.most_tilt_rad_per_nm
@@ -57,8 +57,8 @@ impl DominatingDrive<'_> {
             }
     }
 
-    /// Mass of a dominating drive below a node \[kg\]; `None` if no such drive is found within `boxes_left` visits of
-    /// nodes.
+    /// Mass \[kg\] of some dominating drive below `node`. `None` if none is found within `boxes_left` visits of nodes;
+    /// the number of visits is subtracted from it.
     fn find(&self, tree: &Tree<DriveBox>, node: u32, boxes_left: &mut usize) -> Option<f64> {
         let drives = &tree.node(node).bounds;
         if *boxes_left == 0 || !self.may_be_in(drives) {
@@ -88,8 +88,8 @@ impl Problem<'_> {
             && bearings().all(|rows| rows.grow_with_mass(&is_drive))
     }
 
-    /// Removes dominated drives from a box whose numbers are in `work`. Returns whether the box became smaller;
-    /// `None` if no design is left.
+    /// Removes dominated drives from `design_box`, whose numbers are in `work`. `tip_m` is the least tip deflection of
+    /// the box \[m\]. Returns whether the box became smaller; `None` if no design is left.
     pub(super) fn prune_dominated_drives(
         &self,
         design_box: &mut [u32],
@@ -113,7 +113,8 @@ impl Problem<'_> {
         Some(shrunk)
     }
 
-    /// Whether a lighter drive dominates every drive of a box.
+    /// Whether a lighter drive dominates every drive of the box `drives` at the joint `piece`. The tree is searched for
+    /// such a drive; `demand` is the greatest demand on the joint.
     fn is_dominated(
         &self,
         piece: usize,
@@ -136,8 +137,8 @@ impl Problem<'_> {
         })
     }
 
-    /// Whether the modes see the same slope of every gear inboard, and the same play, if a piece becomes lighter by
-    /// this weight \[N\].
+    /// Whether every gear inboard keeps its slope and its play in the modes if the piece becomes lighter by `lost_n`
+    /// \[N\].
     fn slopes_stay(&self, piece: usize, lost_n: f64, work: &Work) -> bool {
         self.judged_cases().all(|case| {
             self.poses[case].rows.iter().filter(|row| row.piece > piece).all(|row| {

@@ -36,7 +36,8 @@ impl CurveGroup {
 struct DrivesByCurve(Vec<CurveGroup>);
 
 impl DrivesByCurve {
-    /// The drives below a node that carry the least demand on the joint; all drives below it if no demand is given.
+    /// The drives below a node, grouped by curve and bearing. Drives that cannot carry the least demand `asked` are
+    /// left out; `None` keeps all.
     fn new(tree: &Tree<DriveBox>, node: u32, asked: Option<&LeastDemand>) -> Self {
         let mut curves: Vec<CurveGroup> = Vec::new();
         let (mut open, mut last) = (vec![node], 0);
@@ -69,7 +70,8 @@ impl DrivesByCurve {
         Self(curves)
     }
 
-    /// The least price of a drive and the node of this drive. `None` if no drive is feasible.
+    /// The least price of a drive in any group, and the node of this drive. `price` holds the prices of the joint's
+    /// numbers. `None` if no drive is feasible.
     fn cheapest(&self, price: &DualPrice) -> Option<(f64, u32)> {
         let of = |of: &CurveGroup| {
             let (mass_kg, node) = if price.of_mass([0.0, 1.0]) < 0.0 { of.heaviest } else { of.lightest };
@@ -90,8 +92,8 @@ pub(super) struct FeasibleDrives {
 }
 
 impl FeasibleDrives {
-    /// The drives below a node that carry the least demand `asked`. They are taken from `before` if it was made of the
-    /// same tree, node and demand.
+    /// The drives below a node that carry the least demand `asked`. The groups are copied from `before`, those of the
+    /// parent box, if these were made of the same tree, node and demand.
     pub(super) fn new(
         tree: &Arc<Tree<DriveBox>>,
         node: u32,
@@ -108,7 +110,8 @@ impl FeasibleDrives {
         })
     }
 
-    /// The least price of a drive and its node. `None` if no drive is feasible.
+    /// The least price that a feasible drive of the level has under `price`, and the node of this drive. `None` if no
+    /// drive is feasible.
     pub(super) fn cheapest(&self, price: &DualPrice) -> Option<(f64, u32)> {
         self.drives.cheapest(price)
     }

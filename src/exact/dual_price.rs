@@ -27,10 +27,10 @@ pub(super) struct Gear {
     pub judged: usize,
     /// Interval of the gear's torque \[N m\].
     pub torques_nm: [f64; 2],
-    /// Index of the first of two rows, if the slope of the gear may change within the interval. The two rows, one for
-    /// each direction, force the torque at which the gear is evaluated to equal the torque of the weights. `None` for a
-    /// gear with a single slope. Such a gear is evaluated at the torque `torques_nm[0]`, from which its twist grows
-    /// linearly with the weights.
+    /// Index of the first of the gear's two rows (inequalities of the bound), if the slope of the gear may change
+    /// within the interval. The two rows, one for each direction, force the torque at which the gear is evaluated to
+    /// equal the torque of the weights. `None` for a gear with a single slope. Such a gear is evaluated at the torque
+    /// `torques_nm[0]`, and its twist grows linearly with the weights from there.
     pub row: Option<usize>,
     /// Least compliance of any gear of the box within the interval of torque \[rad/(N m)\]. It is 0 and unused for a
     /// gear with a single slope.
@@ -38,7 +38,8 @@ pub(super) struct Gear {
 }
 
 impl Gear {
-    /// A gear whose torque may lie in several segments of its curve. `next` is the index of the first of its two rows.
+    /// A gear whose torque, between `low` and `high` \[N m\], may lie in several segments of its curve. `next` is the
+    /// index of the first of its two rows.
     pub(super) fn free(
         piece: usize,
         judged: usize,
@@ -117,7 +118,8 @@ impl GearStates {
     }
 }
 
-/// Calls `see` for every candidate state of a torsion curve under torques in an interval \[N m\].
+/// Calls `see` for every candidate state of a gear with the torsion curve `curve`, whose torque lies between `low_nm`
+/// and `high_nm` \[N m\]. `play` is the lost motion and friction of the joint.
 #[inline(always)]
 fn each_state(
     curve: &CurveBox,
@@ -166,8 +168,8 @@ fn each_state_of_sign(
 }
 
 impl JointPrice {
-    /// Price of the cheapest state of a joint with this torsion curve, and this state. For a box of joints the price is
-    /// a lower bound over its members. `None` as the curve stands for a rigid joint.
+    /// The price of the cheapest state of a joint's gear, and this state. For a box of gears the price is a lower bound
+    /// over its members. A `curve` of `None` stands for a rigid joint.
     pub(super) fn best_of(&self, curve: Option<&CurveBox>) -> (f64, JointState) {
         let Some(curve) = curve else { return self.rigid() };
         let mut best = (f64::INFINITY, JointState::default());
@@ -182,7 +184,7 @@ impl JointPrice {
         best
     }
 
-    /// Price of the cheapest state of a joint with this torsion curve, without the state.
+    /// The price of the cheapest state of a joint's gear, without the state itself.
     #[inline]
     pub(super) fn least_of(&self, curve: Option<&CurveBox>) -> f64 {
         let Some(curve) = curve else { return self.rigid().0 };
@@ -193,7 +195,7 @@ impl JointPrice {
         least
     }
 
-    /// Price of one state, with the twist of its interval that is cheaper.
+    /// Price of one state. Where the twist is an interval, the end with the lower price is taken.
     #[inline]
     fn of_state(&self, end: &GearState) -> f64 {
         let [least, most] = end.twist_rad.map(|twist| self.twist * twist);
@@ -210,8 +212,8 @@ impl JointPrice {
         });
     }
 
-    /// Price and state of a rigid joint. A box without a curve has a rigid member and perhaps other members with
-    /// unknown curves, so the price must be a lower bound for those too.
+    /// Price and state of a rigid joint. A box without a curve has a rigid member, but may have other members whose
+    /// curves are not known. The price is a lower bound for those too.
     fn rigid(&self) -> (f64, JointState) {
         let [low, high] = self.torques_nm.map(|t| self.torque * t);
         // Other members of the box may twist by any angle. If some twist lowers the price, no finite lower bound
@@ -225,7 +227,8 @@ impl JointPrice {
 }
 
 impl DualPrice {
-    /// Price of a joint's drive. For a box of drives: a lower bound over its members.
+    /// Price of a joint's drive with mass, torsion curve and bearing tilt in these intervals. For a box of drives, it
+    /// is a lower bound over its members.
     pub(super) fn of_joint(
         &self,
         mass_kg: [f64; 2],
@@ -236,15 +239,15 @@ impl DualPrice {
         self.of_mass(mass_kg) + torsion + self.of_tilt(tilt_rad_per_nm)
     }
 
-    /// Price of the output bearing of a drive, whose tilt per moment lies in this interval. It is a lower bound over
-    /// the interval.
+    /// Price of the output bearing of a drive. The bearing's tilt per moment lies in the interval `tilt_rad_per_nm`,
+    /// and the price is a lower bound over it.
     #[inline]
     fn of_tilt(&self, tilt_rad_per_nm: [f64; 2]) -> f64 {
         least(self.compliance[TILT], tilt_rad_per_nm)
             - self.stiffness[TILT] * stiffness_of(tilt_rad_per_nm[0])
     }
 
-    /// Price of a drive's mass in an interval \[kg\]. It is a lower bound over the interval.
+    /// Price of a drive's mass, which lies in the interval `mass_kg`. It is a lower bound over the interval.
     #[inline]
     pub(super) fn of_mass(&self, mass_kg: [f64; 2]) -> f64 {
         let per_kg = self.inertia[inertia::MASS];
@@ -268,14 +271,15 @@ impl DualPrice {
     }
 }
 
-/// The least price of a number that lies in an interval.
+/// The least cost of a number that lies in an interval: `price` times the lower end, or times the upper end if the
+/// price is negative.
 #[inline]
 fn least(price: f64, [low, high]: [f64; 2]) -> f64 {
     price * if price >= 0.0 { low } else { high }
 }
 
-/// The least price of an option below a node, and the node of this option. If the search ends early, the node is a box
-/// of several options and the price is a lower bound.
+/// The least price of an option below `node`, and the node of this option. `price` returns a lower bound for a box of
+/// options. If the search ends early, the returned node is a box of several options, and its price is a lower bound.
 pub(super) fn cheapest<B: Bounds>(tree: &Tree<B>, node: u32, price: impl Fn(&B) -> f64) -> (f64, u32) {
     let offer = |node: u32| Offer { price: price(&tree.node(node).bounds), node };
     let mut open = BinaryHeap::with_capacity(2 + MOST_LOOKS / 2);
@@ -295,12 +299,12 @@ pub(super) fn cheapest<B: Bounds>(tree: &Tree<B>, node: u32, price: impl Fn(&B) 
     (cheapest.price, cheapest.node)
 }
 
-/// Orders two offers, the cheaper first.
+/// Orders two boxes by their prices, the cheaper first.
 fn order([a, b]: [Offer; 2]) -> [Offer; 2] {
     if a > b { [a, b] } else { [b, a] }
 }
 
-/// A box of parts, given by its node, and a lower bound of their prices.
+/// A box of parts in the search for the cheapest one: its node, and a lower bound of the prices of its parts.
 #[derive(Clone, Copy)]
 struct Offer {
     price: f64,
@@ -308,8 +312,8 @@ struct Offer {
 }
 
 impl Ord for Offer {
-    /// The cheapest offer is the greatest, because [`BinaryHeap`] pops the greatest; among equals the lower
-    /// node comes first.
+    /// The cheaper box counts as greater, because [`BinaryHeap`] pops its greatest entry. Of boxes with equal prices
+    /// the one with the lower node comes first.
     fn cmp(&self, other: &Self) -> Ordering {
         other.price.total_cmp(&self.price).then(other.node.cmp(&self.node))
     }

@@ -43,8 +43,8 @@ impl<'l> Early<'l> {
         early
     }
 
-    /// Reports the gap after the designs `found` were found too. `designs` is the number of designs whose objectives
-    /// were computed so far.
+    /// Reports the gap that the cover proves with the designs of the dives and the designs `found` since. `designs` is
+    /// the number of designs whose objectives were computed so far.
     pub(super) fn tell(&self, found: &[Objectives], designs: u64) {
         self.live.update(|| Known {
             gap: self.gap(found),
@@ -55,14 +55,15 @@ impl<'l> Early<'l> {
         });
     }
 
-    /// Adds the designs of the dives to those of a search that was stopped, and returns the gap that the cover proves
-    /// for all of them.
+    /// Adds the designs of the dives to `state`, the state of a search that was stopped. Returns the gap that the cover
+    /// proves for all designs in it (relative), `None` if it proves nothing.
     pub(super) fn into_state(self, state: &mut SearchState) -> Option<f64> {
         state.learn(self.findings);
         gap(&self.cover, &state.front())
     }
 
-    /// The gap of the cover with the designs of the dives and `found` (relative). `None` if nothing is proved.
+    /// The gap that the cover proves with the designs of the dives and the designs in `found` (relative). `None` if
+    /// nothing is proved.
     fn gap(&self, found: &[Objectives]) -> Option<f64> {
         let dived = self.findings.kept.iter().map(|c| c.objectives);
         gap(&self.cover, &found.iter().copied().chain(dived).collect::<Vec<_>>())

@@ -31,7 +31,7 @@ const MOST_TIME: f64 = 0.25;
 /// Greatest number of children in a generation. In a small space, a generation has as many children as the square
 /// root of the number of designs.
 const MOST_CHILDREN: f64 = 8192.0;
-/// Width of a grid cell, in logarithms of the objectives.
+/// Width of a cell of the grid that thins out similar designs, in logarithms of the objectives.
 const STEP: f64 = 0.02;
 /// The designs are ordered by mass. The second parent is at most this many places away from the first.
 const CLOSE: u64 = 12;
@@ -70,8 +70,9 @@ impl Offspring {
     }
 }
 
-/// Evolves designs from those in `first` and adds the designs found to the state. After each generation, `tell`
-/// receives the objectives of the best designs and the number of designs whose objectives were computed.
+/// Evolves new designs from those in `first` and adds them to `state`. After each generation, `tell` receives the
+/// objectives of the designs from which the next generation is made, and the number of designs whose objectives were
+/// computed.
 pub(super) fn evolve<'p>(
     budget: &Budget,
     problem: &Problem<'p>,
@@ -109,7 +110,7 @@ pub(super) fn evolve<'p>(
     state.learn(findings);
 }
 
-/// One design for each cell of the grid, the lightest first.
+/// Keeps one design for each cell of the grid over the objectives, and sorts them by mass, the lightest first.
 fn by_mass(members: Vec<Individual>) -> Vec<Individual> {
     let mut kept = thinned(members, STEP, |member| &member.objectives);
     kept.sort_by(|a, b| a.objectives.mass_kg.total_cmp(&b.objectives.mass_kg));
@@ -128,7 +129,7 @@ struct Recombination<'a, 'p> {
 }
 
 impl Recombination<'_, '_> {
-    /// Makes one child, bounds it and checks the constraints.
+    /// Makes one child of two parents, bounds it and tests the constraints.
     fn child(mut self, work: &mut Work) -> Offspring {
         let first = self.below(self.parents.len() as u64);
         let from = first.saturating_sub(CLOSE);
@@ -161,7 +162,8 @@ impl Recombination<'_, '_> {
         Offspring::Feasible(Individual { design_box, objectives, shapes })
     }
 
-    /// Replaces about a third of the options by those of another design.
+    /// Replaces each option of `design_box` with a probability of about a third by the option of `other` at the same
+    /// level.
     fn exchange(&mut self, design_box: &mut DesignBox, other: &DesignBox) {
         for (mine, theirs) in design_box.iter_mut().zip(other) {
             if self.below(3) == 0 {

@@ -11,10 +11,11 @@ use std::collections::HashMap;
 
 /// Two objectives that differ by less than this (relative) count as equal.
 const EQUAL: f64 = 1e-9;
-/// The dominating design must be better by this fraction in at least one objective.
+/// A design dominates another only if it is better by at least this fraction in one objective, so that rounding cannot
+/// decide.
 const BETTER: f64 = 1e-7;
-/// Least factor by which a better trial shape is expected to lower the frequency of a bound. Where even this factor
-/// would not let an incumbent dominate the bound, no better shape is computed.
+/// A better trial shape is assumed to lower the frequency of a bound to no less than this fraction of it. If no
+/// incumbent would dominate the bound even then, no better shape is computed, because it would not prune the box.
 const NEAR: f64 = 0.4;
 /// Number of grid steps in a factor of two of mass or deflection.
 const STEPS: f64 = 64.0;
@@ -22,13 +23,13 @@ const STEPS: f64 = 64.0;
 /// Designs that meet every constraint.
 pub(super) struct Incumbents {
     table: Archive,
-    /// Incumbents by the grid step of their mass.
+    /// The incumbents, listed under the grid step of their mass: its cell number on a logarithmic scale.
     rows: HashMap<i32, Vec<Objectives>>,
-    /// Incumbents by the grid step of their deflection.
+    /// The incumbents, listed under the grid step of their deflection: its cell number on a logarithmic scale.
     columns: HashMap<i32, Vec<Objectives>>,
     /// All incumbents in the order in which they were added.
     all: Vec<Objectives>,
-    /// The only objective that counts, with the least cost of a design in it; `None` if all three count.
+    /// If a single objective counts: this objective, and the least cost of a design in it. `None` if all three count.
     only: Option<(Objective, f64)>,
 }
 
@@ -45,8 +46,8 @@ impl Default for Incumbents {
 }
 
 impl Incumbents {
-    /// An empty set of incumbents. If one objective is given, it alone counts: a design dominates all designs that are
-    /// no better in it.
+    /// An empty set of incumbents. If `only` is given, that objective alone counts, and a design dominates every design
+    /// that is no better in it.
     pub(super) fn toward(only: Option<Objective>) -> Self {
         Self { only: only.map(|objective| (objective, f64::INFINITY)), ..Self::default() }
     }
@@ -94,8 +95,8 @@ impl Incumbents {
         in_list(self.rows.get(&step(best.mass_kg))) || in_list(self.columns.get(&step(best.tip_deflection_m)))
     }
 
-    /// Whether an incumbent would dominate the bound if a better trial shape lowered the frequency of the bound by the
-    /// factor [`NEAR`]. Only then is a better shape worth the time.
+    /// Whether an incumbent would dominate the bound if a better trial shape lowered the frequency of the bound to the
+    /// fraction [`NEAR`]. Only then is a better shape worth its time.
     pub(super) fn nearly_dominates(&self, box_bound: &BoxBound) -> bool {
         self.dominates(&BoxBound { hz: box_bound.hz * NEAR, ..*box_bound })
     }

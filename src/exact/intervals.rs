@@ -14,13 +14,13 @@ use crate::space::slot::SizedJoint;
 
 /// Relative margin for rounding of a sum of a few dozen terms.
 pub(super) const ROUNDING: f64 = 1e-12;
-/// Depth of a tree to which the search for drives that cannot carry a demand descends.
+/// Number of levels that the search for drives that cannot carry a demand descends in a tree of drives.
 const DEPTH: usize = 6;
 
 impl Problem<'_> {
-    /// Computes every interval of a box, from the tip inward, and writes it to `work`. Each node of the box is replaced
-    /// by the smallest node with all options that can carry the least load. `None` if a level has no option left, or
-    /// the material costs too much.
+    /// Computes every interval of a box, part by part from the tip inward, and writes it to `work`. Each node of
+    /// `design_box` is replaced by the smallest node that contains all options which can carry the least load. `None`
+    /// if a level has no option left, or if even the least material cost exceeds the limit.
     pub(super) fn fill(&self, design_box: &mut [u32], work: &mut Work) -> Option<()> {
         work.clear(self.parts.len(), self.poses.len());
         let mut level = 0;
@@ -52,8 +52,9 @@ impl Problem<'_> {
         Some(())
     }
 
-    /// Reduces a box of drives to those that may carry the least demand, and computes their intervals. `None` if no
-    /// drive may carry it.
+    /// Reduces the drives of a joint to those that may carry the least demand, and writes the intervals over them to
+    /// `work`. `node` is the node of the joint's tree and is replaced by a smaller one. `None` if no drive may carry
+    /// the demand.
     fn fill_drives(
         &self,
         piece: usize,
@@ -78,8 +79,9 @@ impl Problem<'_> {
         Some(())
     }
 
-    /// Computes the intervals over all drives from the first fit of the least demand to the first fit of the greatest.
-    /// `None` if no drive carries the least demand.
+    /// Writes the intervals of a joint that takes the lightest drive which carries its demand (first fit). They extend
+    /// over all drives from the first fit of the least demand to that of the greatest. `None` if no drive carries the
+    /// least demand.
     fn fill_first_fit(
         &self,
         piece: usize,
@@ -108,8 +110,9 @@ impl Problem<'_> {
         Some(())
     }
 
-    /// Reduces a box of link options to those that may carry the least stress, and computes their intervals. `None` if
-    /// no option may carry it.
+    /// Reduces the options of a link to those that may carry the least stress, and writes the intervals over them to
+    /// `work`. `node` is the node of the link's tree and is replaced by a smaller one. `None` if no option may carry
+    /// the stress.
     fn fill_links(
         &self,
         piece: usize,
@@ -182,9 +185,9 @@ impl Problem<'_> {
         }
     }
 
-    /// The least axial force \[N\], moments about y and z and torsion \[N m\] on the end sections of a tube, one array
-    /// for each section and case. They include the peak factor and the safety factor, so that they can be compared with
-    /// the strength.
+    /// The least loads on each end section of a tube in each case: axial force \[N\], moments about y and z and torsion
+    /// \[N m\]. They are multiplied by the peak factor and by `safety`, the safety factor, so that they can be compared
+    /// with the strength.
     fn least_loads(&self, piece: usize, safety: f64, work: &Work) -> Vec<[f64; 4]> {
         let cases = self.poses.iter().zip(&work.weights);
         cases
@@ -202,8 +205,8 @@ impl Problem<'_> {
     }
 }
 
-/// The box around those drives below a node that may carry a demand. The tree is descended at most `depth` levels, so
-/// that drives that cannot carry the demand do not widen the box. `None` if no drive may carry it.
+/// The box around those drives below `node` that may carry the demand `asked`. The function descends at most `depth`
+/// levels of the tree. Drives that it excludes there do not widen the box. `None` if no drive may carry the demand.
 fn feasible_drives(tree: &Tree<DriveBox>, node: u32, asked: &LeastDemand, depth: usize) -> Option<DriveBox> {
     let drives = &tree.node(node).bounds;
     if !drives.may_hold(asked) {
@@ -219,7 +222,7 @@ fn feasible_drives(tree: &Tree<DriveBox>, node: u32, asked: &LeastDemand, depth:
     }
 }
 
-/// Whether some option of a box may carry a load: axial force \[N\], moments about y and z and torsion \[N m\].
+/// Whether some option of the box may carry `load`: axial force \[N\], moments about y and z and torsion \[N m\].
 fn stress_holds(links: &LinkBox, load: &[f64; 4]) -> bool {
     let [axial, y, z, torsion]: [f64; 4] = std::array::from_fn(|k| load[k] * links.stress[k]);
     // For other sections the two bending stresses add up at one edge of the section.

@@ -31,8 +31,8 @@ impl JointPlay {
         self.friction_rad > 0.0
     }
 
-    /// Least and greatest twist that play adds \[rad\]. The torque lies in an interval \[N m\], and the compliance of
-    /// the gear's spring lies between `stiff` and `soft` \[rad/(N m)\].
+    /// The least and the greatest twist that play adds to that of the gear \[rad\]. The torque lies between `low` and
+    /// `high` \[N m\], and the compliance of the gear's spring between `stiff` and `soft` \[rad/(N m)\].
     pub(super) fn twist(&self, [stiff, soft]: [f64; 2], [low, high]: [f64; 2]) -> [f64; 2] {
         let lost = |torque_nm: f64| self.lost_motion.map_or(0.0, |lost| lost.angle_rad(torque_nm));
         let held_back = |torque_nm: f64, compliance: f64| {
@@ -43,8 +43,8 @@ impl JointPlay {
         [lost(low) - most_held_back, lost(high) - least_held_back]
     }
 
-    /// Upper bound of the stiffness of the joint for small oscillations \[N m/rad\]: a gear of this stiffness in series
-    /// with lost motion, under torques of at most this magnitude \[N m\].
+    /// Upper bound of the stiffness of the joint for small oscillations \[N m/rad\]: a gear with the given stiffness
+    /// \[N m/rad\] in series with the lost motion. `most_nm` is the greatest magnitude of the torque \[N m\].
     pub(super) fn in_series(&self, stiffness: f64, most_nm: f64) -> f64 {
         match self.lost_motion {
             None => stiffness,
@@ -52,7 +52,8 @@ impl JointPlay {
         }
     }
 
-    /// Whether the slope of lost motion for small oscillations is the same under all torques up to a magnitude \[N m\].
+    /// Whether lost motion has the same slope for small oscillations under all torques up to the magnitude `most_nm`
+    /// \[N m\].
     pub(super) fn stays(&self, most_nm: f64) -> bool {
         self.lost_motion.is_none_or(|lost| most_nm <= AT_REST * lost.torque_nm)
     }

@@ -19,7 +19,8 @@ use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// The journal of a search. If `keeper` is `None`, nothing is saved.
+/// The journal of a search: it saves states and returns what an earlier process saved. If `keeper` is `None`, nothing
+/// is saved.
 #[derive(Default)]
 pub(super) struct Journal<'s> {
     keeper: Option<&'s dyn KeepState>,
@@ -45,9 +46,9 @@ struct State {
 #[derive(Clone, Serialize, Deserialize)]
 pub(super) struct Begun {
     state: KeptState,
-    /// The completed passes.
+    /// The completed passes of the present part.
     pub passes: Vec<Pass>,
-    /// The gap that was reported so far (relative); `None` if none was.
+    /// The gap of the present part that was reported to other threads so far (relative); `None` if none was.
     pub told: Option<f64>,
     /// The pass that was begun; `None` between two passes.
     open: Option<OpenPass>,
@@ -93,7 +94,8 @@ impl<'s> Journal<'s> {
         self.lock().begun.take()
     }
 
-    /// Adds the result of a finished part to the state, and saves the state if that is due.
+    /// Adds `outcome`, the result of a finished part, to the state. Then it saves the state if enough time has passed
+    /// since the last save.
     pub(super) fn finish(&self, outcome: &ExactOutcome) {
         if let Some(keeper) = self.keeper {
             let mut state = self.lock();
@@ -107,7 +109,8 @@ impl<'s> Journal<'s> {
         }
     }
 
-    /// Saves the state of a pass over boxes between two rounds, if that is due.
+    /// Saves the state of a pass over boxes between two rounds, if enough time has passed since the last save. `begun`
+    /// makes the progress of the present part, `slack` is the slack of the pass, and `open` are its open boxes.
     pub(super) fn keep_round(
         &self,
         budget: &Budget,
@@ -122,7 +125,7 @@ impl<'s> Journal<'s> {
         }
     }
 
-    /// Stores the state at the start of a pass over regions, to be saved later.
+    /// Stores the state at the start of a pass over regions. [`keep_start`](Self::keep_start) saves it later.
     pub(super) fn begin_pass(&self, budget: &Budget, begun: impl FnOnce() -> Begun) {
         if self.keeper.is_some() && !budget.stopped() {
             let bytes = self.with(budget, begun());
@@ -130,7 +133,8 @@ impl<'s> Journal<'s> {
         }
     }
 
-    /// Saves the start of the present pass over regions, if that is due and not done yet.
+    /// Saves the state at the start of the present pass over regions, if enough time has passed since the last save and
+    /// this state is not saved yet.
     pub(super) fn keep_start(&self) {
         if let Some(keeper) = self.keeper.filter(|keeper| keeper.is_due()) {
             let start = self.start.lock().unwrap_or_else(PoisonError::into_inner).take();
@@ -138,7 +142,7 @@ impl<'s> Journal<'s> {
         }
     }
 
-    /// The state as bytes, together with the progress of the unfinished part.
+    /// The bytes of the whole state: the finished parts, and `begun`, the progress of the unfinished part.
     fn with(&self, budget: &Budget, begun: Begun) -> Vec<u8> {
         let mut state = self.lock();
         (state.boxes, state.begun) = (budget.boxes(), Some(begun));
@@ -158,7 +162,7 @@ impl Begun {
         Self { state: state.to_kept(), passes: passes.to_vec(), told, open: None }
     }
 
-    /// Takes out the designs found.
+    /// Takes the designs found out of this progress, which has none afterwards.
     pub(super) fn state(&mut self) -> KeptState {
         std::mem::take(&mut self.state)
     }

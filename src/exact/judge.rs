@@ -21,9 +21,9 @@ impl Problem<'_> {
         }
     }
 
-    /// Evaluates a box of one design, adds the design to the findings and returns its objectives. Mass and deflection
-    /// come from the bound. The mode is computed again. `None` if the box has several designs, if the design breaks a
-    /// constraint, or if rounding leaves open whether it meets one.
+    /// Evaluates a box of one design, adds the design to `findings` and returns its objectives. Its mass and deflection
+    /// are taken from `box_bound`, and its lowest mode is computed anew. `None` if the box has several designs, if the
+    /// design breaks a constraint, or if rounding leaves open whether it meets one.
     pub(super) fn judge(
         &self,
         design_box: &[u32],

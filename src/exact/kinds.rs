@@ -25,7 +25,8 @@ pub(super) enum Ties {
 pub(super) struct Kinds(Vec<Vec<u32>>);
 
 impl Kinds {
-    /// The kinds of a joint's drives.
+    /// Groups the drives of a joint into kinds. `ties` tells whether drives of equal mass, curve and tilt form one
+    /// kind, or each drive a kind of its own.
     pub(super) fn of(sized: &SizedJoint, ties: Ties) -> Self {
         Self(match ties {
             Ties::Merged => sized.kinds(),
@@ -43,7 +44,7 @@ impl Kinds {
         self.0.binary_search_by_key(&first, |kind| kind[0]).map_or(&[], |at| &self.0[at])
     }
 
-    /// The drives of some kinds, ascending.
+    /// The drives of the kinds with the numbers `firsts`, ascending.
     pub(super) fn drives_of(&self, firsts: &[u32]) -> Vec<u32> {
         let mut drives: Vec<u32> = firsts.iter().flat_map(|first| self.drives(*first)).copied().collect();
         drives.sort_unstable();

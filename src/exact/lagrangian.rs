@@ -26,7 +26,7 @@ const STEPS: usize = 3;
 /// Stiffnesses and line inertias of each piece of an arm.
 type Arm = (Vec<[f64; STIFFNESSES]>, Vec<[f64; INERTIAS]>);
 
-/// The numbers of a joint that is added to a relaxed design. `curve` is `None` for a rigid joint.
+/// The numbers of a joint that is to be added to a relaxed design. `curve` is `None` for a rigid joint.
 struct AddedJoint<'a> {
     piece: usize,
     mass_kg: f64,
@@ -35,8 +35,8 @@ struct AddedJoint<'a> {
 }
 
 impl Problem<'_> {
-    /// Mass of a piece per unit of its first line inertia: the length of a tube \[m\]. It is 1 for any other piece,
-    /// whose first inertia is the mass itself.
+    /// Mass of a piece divided by its first line inertia (mass per metre): the length of a tube \[m\]. It is 1 for any
+    /// other piece, because its first line inertia is the mass itself.
     fn length_m(&self, piece: usize) -> f64 {
         match &self.parts[piece] {
             Part::Links { length_m, .. } | Part::Tube { length_m, .. } => *length_m,
@@ -46,8 +46,10 @@ impl Problem<'_> {
 }
 
 impl Rows<'_> {
-    /// The multipliers under which the least weighted sum of the given relaxed designs is as far as possible above the
-    /// limits of a local upper bound. They solve a matrix game in which the relaxed designs play against the rows.
+    /// Finds the multipliers on the rows (inequalities of the bound) that come nearest to a refutation of the local
+    /// upper bound `upper`. Under them, the weighted sum of the rows of each relaxed design in `members` exceeds its
+    /// upper limit by as much as possible. They are the solution of a matrix game between the rows and the relaxed
+    /// designs.
     pub(super) fn best_multipliers(&self, members: &[RelaxedDesign], upper: &LocalUpperBound) -> Game {
         /// Lower limit of the scaled excess of a row over its limit. A row so far below its limit has no influence on
         /// the game.
@@ -62,8 +64,8 @@ impl Rows<'_> {
         solve(&above, row_limits.len(), balanced)
     }
 
-    /// Adds a row for each mode of the mixed arm that lies below the required frequency. `mix` holds the weights of the
-    /// relaxed designs. Returns whether a row was added.
+    /// Adds a row for each mode of the mixed arm that lies below the frequency of `upper`. `mix` holds the weight of
+    /// each relaxed design of `members` in the mixed arm. Returns whether a row was added.
     pub(super) fn add_violated_modes(
         &mut self,
         members: &mut [RelaxedDesign],
@@ -103,8 +105,8 @@ impl Rows<'_> {
         self.modes.len() > before
     }
 
-    /// Stiffness and inertia of the mixed arm in a judged case: the means over the relaxed designs with the weights
-    /// `mix`.
+    /// Stiffnesses and inertias of the mixed arm in a judged case. They are means over the relaxed designs `members`
+    /// with the weights `mix`.
     fn mixed_arm(&self, members: &[RelaxedDesign], mix: &[f64], judged: usize) -> Arm {
         let pieces = self.problem.parts.len();
         let mut arm = (vec![[0.0; STIFFNESSES]; pieces], vec![[0.0; INERTIAS]; pieces]);
@@ -116,8 +118,8 @@ impl Rows<'_> {
         arm
     }
 
-    /// The least weighted sum of the rows over the members of the box as a dual point, and the relaxed design that
-    /// attains this sum.
+    /// Minimizes the weighted sum of the rows (inequalities of the bound) over the members of a box. Returns the
+    /// multipliers with this least sum as a dual point, and the relaxed design that attains it.
     pub(super) fn minimize(&self, design_box: &[u32], multipliers: Vec<f64>) -> (DualPoint, RelaxedDesign) {
         let mut total: f64 = multipliers.iter().zip(&self.fixed).map(|(w, f)| w * f).sum();
         let mut levels = Vec::with_capacity(design_box.len());
@@ -178,8 +180,8 @@ impl Rows<'_> {
         (DualPoint { multipliers, least: total, levels }, member)
     }
 
-    /// Computes the values of the mode rows of a relaxed design to which all pieces were added, and scales the values
-    /// of all rows.
+    /// Completes a relaxed design to which all pieces were added: computes the values of its mode rows and divides the
+    /// values of all rows by their scales.
     fn complete(&self, member: &mut RelaxedDesign) {
         for (m, mode) in self.modes.iter().enumerate() {
             member.values[self.first_mode + m] = self.mode_value(mode, member);
@@ -189,7 +191,7 @@ impl Rows<'_> {
         }
     }
 
-    /// A relaxed design in which all numbers are zero.
+    /// A relaxed design to which no piece was added yet: all of its numbers are zero.
     fn empty_design(&self, design_box: &[u32]) -> RelaxedDesign {
         let pieces = self.problem.parts.len();
         RelaxedDesign {
@@ -202,7 +204,8 @@ impl Rows<'_> {
         }
     }
 
-    /// Adds a joint's drive to a relaxed design. Its gear gets the state that is cheapest under the prices.
+    /// Adds a joint's drive to the relaxed design `member`. The gear gets the state (torque and twist) that is cheapest
+    /// under `price`.
     fn add_joint(&self, joint: &AddedJoint, price: &DualPrice, member: &mut RelaxedDesign) {
         let AddedJoint { piece, mass_kg, curve, tilt_rad_per_nm } = *joint;
         member.values[0] += mass_kg;
@@ -228,7 +231,8 @@ impl Rows<'_> {
         }
     }
 
-    /// Adds a tube to a relaxed design. For a box of tubes, the least masses and the greatest stiffnesses are added.
+    /// Adds a tube to the relaxed design `member`. For a box of tubes, the least masses and the greatest stiffnesses
+    /// are added.
     fn add_tube(&self, piece: usize, length_m: f64, links: &LinkBox, member: &mut RelaxedDesign) {
         let (line, stiffnesses) = (&links.low.inertias, &links.high.stiffnesses);
         let mass_kg = line[inertia::MASS] * length_m;
@@ -245,8 +249,8 @@ impl Rows<'_> {
         }
     }
 
-    /// Adds the effect of a piece's weight \[N\] on the tip and on the torques of the gears inboard to a relaxed
-    /// design.
+    /// Adds the effects of the weight of a piece to the relaxed design `member` in a judged case: on the displacement
+    /// of the tip, and on the torques of the gears inboard.
     fn add_weight(&self, piece: usize, judged: usize, weight_n: f64, member: &mut RelaxedDesign) {
         member.values[1 + judged] += weight_n * self.tips[judged].per_n[piece];
         let place = member.place(judged, piece);
@@ -259,7 +263,8 @@ impl Rows<'_> {
         }
     }
 
-    /// The dual prices of a piece under these multipliers, one for each of its numbers.
+    /// The dual prices of a piece: for each of its numbers, the amount per unit that the piece adds to the weighted sum
+    /// of rows under `multipliers`.
     pub(super) fn price(&self, piece: usize, multipliers: &[f64]) -> DualPrice {
         let multiplier = |row: usize| multipliers[row] / self.scale[row];
         let (length_m, is_joint) = (self.problem.length_m(piece), self.problem.parts[piece].is_joint());
@@ -312,7 +317,7 @@ impl Rows<'_> {
         price
     }
 
-    /// The amount that one piece of a relaxed design adds to a row, divided by the scale of the row.
+    /// The amount that one piece of the relaxed design `member` adds to a row, divided by the scale of the row.
     pub(super) fn added(&self, member: &RelaxedDesign, piece: usize, row: usize) -> f64 {
         let adds = match row.checked_sub(self.first_mode) {
             None => member.adds[piece * self.first_mode + row],
@@ -325,7 +330,8 @@ impl Rows<'_> {
         adds / self.scale[row]
     }
 
-    /// Value of a mode row, `λ xᵀMx - xᵀKx`, for a relaxed design. The payload and given bodies are not included.
+    /// The part of a mode row's value, `λ xᵀMx - xᵀKx`, that the parts of the relaxed design `member` contribute. The
+    /// payload and the bodies that the study gives are not included.
     fn mode_value(&self, mode: &Mode, member: &RelaxedDesign) -> f64 {
         let moves = products(&mode.shape.kinetic, &member.inertia);
         self.lambda * moves - products(&mode.shape.strain, member.stiffness_in(mode.judged))

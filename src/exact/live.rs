@@ -44,13 +44,14 @@ impl Live {
         self.lock().known
     }
 
-    /// Reports a gap that was proved. It has no effect if a smaller gap was proved before.
+    /// Reports a gap that was proved (relative). A gap that is not smaller than the one reported before is ignored, and
+    /// so is `None`.
     pub(super) fn prove(&self, gap: Option<f64>) {
         let known = &mut self.lock().known;
         known.gap = least(known.gap, gap);
     }
 
-    /// Reports new progress if an update is due. If updates take long, they are due less often.
+    /// Reports the progress that `news` returns, if an update is due. If updates take long, they are due less often.
     pub(super) fn update(&self, news: impl FnOnce() -> Known) {
         let began = Instant::now();
         if self.lock().due.is_some_and(|due| began < due) {
@@ -61,7 +62,7 @@ impl Live {
         self.lock().due = Some(Instant::now() + after);
     }
 
-    /// Reports new progress. The gap is replaced only by a smaller one.
+    /// Reports the new progress `news`. The reported gap is replaced only by a smaller one.
     pub(super) fn tell(&self, news: Known) {
         let known = &mut self.lock().known;
         *known = Known { gap: least(known.gap, news.gap), ..news };
@@ -72,7 +73,7 @@ impl Live {
     }
 }
 
-/// The smaller of two bounds; a bound that is `None` is unknown and does not count.
+/// The smaller of two gaps. `None` means that a gap is unknown; then the other one is returned.
 pub(super) fn least(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     a.into_iter().chain(b).reduce(f64::min)
 }

@@ -21,7 +21,8 @@ pub(super) struct LocalUpperBound {
 }
 
 impl LocalUpperBound {
-    /// The least local upper bound that covers this one and another.
+    /// The smallest region that contains the regions below this local upper bound and below `other`: the larger mass
+    /// and deflection and the lower frequency of the two.
     fn join(&self, other: &Self) -> Self {
         Self {
             mass_kg: self.mass_kg.max(other.mass_kg),
@@ -30,7 +31,7 @@ impl LocalUpperBound {
         }
     }
 
-    /// Whether a box of designs with this ideal point may have a member below this local upper bound.
+    /// Whether a box of designs with the ideal point `box_bound` may have a member below this local upper bound.
     #[inline]
     pub(super) fn admits(&self, box_bound: &BoxBound) -> bool {
         box_bound.mass_kg <= self.mass_kg && box_bound.tip_m <= self.tip_m && box_bound.hz >= self.hz
@@ -56,13 +57,13 @@ pub(super) struct LocalUpperBounds {
 /// A node of the tree. Nodes are stored in preorder: a node, its first half, its second half.
 struct Node {
     bound: LocalUpperBound,
-    /// Index after the last node of this subtree.
+    /// Index of the first node after this subtree.
     end: usize,
 }
 
 impl LocalUpperBounds {
-    /// The local upper bounds that designs leave open within the limits of the study. Dominated designs are removed
-    /// from the list `designs`.
+    /// The local upper bounds of the region that `designs` leave undominated within `limits`, the limits of the study.
+    /// Dominated designs are removed from `designs`.
     pub(super) fn new(designs: &mut Vec<Objectives>, limits: LocalUpperBound) -> Self {
         designs.sort_unstable_by(|a, b| {
             (a.mass_kg.total_cmp(&b.mass_kg))
@@ -82,8 +83,8 @@ impl LocalUpperBounds {
         Self { nodes }
     }
 
-    /// The bound of a node, and the node's two halves if it has any. Node 0 is the root. `None` if there is no such
-    /// node.
+    /// The local upper bound at node `at`, and the numbers of the node's two halves; `None` in place of the halves for
+    /// a leaf. Node 0 is the root. `None` if there is no node `at`.
     pub(super) fn node(&self, at: usize) -> Option<(LocalUpperBound, Option<[usize; 2]>)> {
         let node = self.nodes.get(at)?;
         let halves = (node.end > at + 1).then(|| [at + 1, self.nodes[at + 1].end]);
@@ -99,8 +100,8 @@ struct Stairs {
 }
 
 impl Stairs {
-    /// Adds a design that is at least as heavy as all designs before it, and appends the local upper bounds that are
-    /// complete now. Returns whether the design is not dominated.
+    /// Adds a design that is at least as heavy as all designs before it. Local upper bounds that are complete now are
+    /// appended to `upper_bounds`. Returns whether no earlier design dominates this one.
     fn add(&mut self, design: &Objectives, upper_bounds: &mut Vec<LocalUpperBound>) -> bool {
         let (tip_m, hz) = (design.tip_deflection_m, design.lowest_mode_hz);
         // Steps before `from` deflect less than the design. Steps before `to` have no higher mode.
@@ -116,8 +117,8 @@ impl Stairs {
         true
     }
 
-    /// The local upper bound between step `k` and the step before it, with this mass \[kg\]. The limits of the study
-    /// take the place of a missing step.
+    /// The local upper bound between step `k` of the staircase and the step before it. `mass_kg` is its mass. Where one
+    /// of the steps is missing, the limits of the study take its place.
     fn bound_before(&self, k: usize, mass_kg: f64) -> LocalUpperBound {
         LocalUpperBound {
             mass_kg,
@@ -127,8 +128,8 @@ impl Stairs {
     }
 }
 
-/// Builds the tree over some bounds and returns the bound of its root. The bounds are halved at the median of the
-/// objective in which the ratio of the greatest to the least value is largest.
+/// Builds the tree over the bounds `upper_bounds`, appends its nodes to `nodes` and returns the bound of its root. The
+/// bounds are divided at the median of the objective whose greatest value is the largest multiple of its least value.
 fn grow(upper_bounds: &mut [LocalUpperBound], nodes: &mut Vec<Node>) -> LocalUpperBound {
     let here = nodes.len();
     nodes.push(Node { bound: upper_bounds[0], end: here + 1 });

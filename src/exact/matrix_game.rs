@@ -9,8 +9,8 @@ const MOST_PIVOTS: usize = 200;
 /// Numbers below this count as rounding.
 const NOTHING: f64 = 1e-11;
 
-/// Tolerance of the sums over balanced columns. A small amount that differs from column to column is added to it, so
-/// that no two pivots are equal.
+/// A sum over balanced columns may exceed zero by this much. A small amount that differs from column to column is added
+/// to it, so that no two pivots of the simplex method are equal.
 const BALANCED: f64 = 1e-6;
 
 /// The solution of a matrix game.
@@ -19,12 +19,12 @@ pub(super) struct Game {
     pub weights: Vec<f64>,
     /// Weights of the rows in the mixture that keeps the greatest column as low as possible. They sum to one.
     pub mix: Vec<f64>,
-    /// Value of the game: the least weighted sum over a row.
+    /// Value of the game: the weighted sum of the numbers of a row, for the row in which it is least.
     pub value: f64,
 }
 
-/// Finds the weights of columns that make the least weighted row as large as possible. `rows` holds all rows one after
-/// the other, each with `width` numbers.
+/// Solves a matrix game: finds weights of the columns that make the weighted sum of the worst row as large as possible.
+/// `rows` holds the numbers of all rows one after the other, `width` numbers for each row.
 ///
 /// The simplex method solves the linear program of the other player: `max Σ z` with `Σ_j (a_ji + c) z_j <= 1` for every
 /// column `i`, and `z >= 0`. The dual values of this program are the weights.

@@ -16,14 +16,15 @@ use crate::search::near::{BUFFER, NearDesign, NearDesigns, ROUNDING, Shortfall, 
 use crate::search::sweep::Candidate;
 use crate::space::design::number;
 
-/// Least factor by which a better trial shape is expected to lower the frequency of a bound. A better shape is computed
-/// only if the box would be pruned at this factor.
+/// A better trial shape is assumed to lower the frequency of a bound to no less than this fraction of it. If the box
+/// would not be pruned even then, no better shape is computed.
 const NEAR: f64 = 0.4;
 
 impl Exact<'_> {
-    /// Finds the designs that meet the constraints and whose shortfall from the front is at most the slack. The designs
-    /// of the front are included. `None` if the search was stopped. If there are far more designs than were asked for,
-    /// their total number is not counted.
+    /// Finds the designs that meet the constraints and are near `front`. A design is near if its shortfall, the
+    /// fraction by which it is worse than some design of the front, is at most the slack. The designs of the front are
+    /// included. `None` if the search was stopped. If there are far more designs than were asked for, their total
+    /// number is not counted.
     pub fn near(&self, front: &[Candidate], slack: Slack) -> Option<NearDesigns> {
         let mut seeker = Seeker {
             shortfall: Shortfall::of(front.iter().map(|c| c.objectives)),
@@ -51,8 +52,8 @@ impl Exact<'_> {
         Some(NearDesigns { nearest, total })
     }
 
-    /// Bounds a box and returns its halves. If the box is one design, the design is added to `near` if it is near, and
-    /// nothing is returned.
+    /// Bounds the box `here` and returns its two halves. If the box is one design, nothing is returned, and the design
+    /// is added to `near` if it is near the front.
     fn open_near(
         &self,
         problem: &Problem,
@@ -84,8 +85,8 @@ impl Exact<'_> {
     }
 }
 
-/// Number of designs that may be stored before all but the nearest are dropped. `most` is the number that was asked
-/// for.
+/// Number of near designs up to which all are stored. If there are more, only the `most` nearest are kept, `most` being
+/// the number that was asked for.
 fn kept_at_most(most: usize) -> usize {
     2 * most + BUFFER
 }
@@ -103,12 +104,12 @@ struct Seeker {
 }
 
 impl Seeker {
-    /// Whether a box with this bound may have a near member.
+    /// Whether a box with the bound `box_bound` may have a near member.
     fn is_near(&self, box_bound: &BoxBound) -> bool {
         self.shortfall.is_within(self.reach, &Objectives::from(*box_bound))
     }
 
-    /// The design with its shortfall; `None` if the design is not near.
+    /// The design with its shortfall; `None` if the shortfall is too large for a near design.
     fn if_near(&self, candidate: Candidate) -> Option<NearDesign> {
         let shortfall = self.shortfall.within(self.reach, &candidate.objectives)?;
         Some(NearDesign { candidate, shortfall })

@@ -3,7 +3,7 @@
 use crate::search::sweep::Candidate;
 use serde::{Deserialize, Serialize};
 
-/// The result of the search.
+/// The result of an exact search: the front, and how far it is proved.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ExactOutcome {
     /// Number of designs in the space.

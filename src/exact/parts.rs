@@ -29,7 +29,7 @@ pub(super) struct Line {
     pub stiffnesses: [f64; STIFFNESSES],
 }
 
-/// Indices into [`Line::inertias`].
+/// Indices of the five inertias in [`Line::inertias`].
 pub(super) mod inertia {
     pub(crate) const MASS: usize = 0;
     pub(crate) const OUTER_AREA: usize = 1;
@@ -161,21 +161,22 @@ pub(super) const SAME_TORQUE: f64 = 1e-12;
 /// Number of rays, the proportions of static torque and inertia for which a box of drives knows its capacity.
 pub(super) const RAYS: usize = 12;
 
-/// Rays: demands in fixed proportions of static torque and inertia. A drive that carries a demand also carries every
-/// smaller multiple of it. If no member of a box carries that multiple of a ray which lies just below a demand, no
-/// member carries the demand. This excludes boxes in which each single limit is met, but by different members.
+/// Rays: demands on a joint in fixed proportions of static torque and inertia. A drive that carries a demand also
+/// carries every smaller multiple of it. Take the multiple of a ray that lies just below a demand. If no member of a
+/// box carries this multiple, no member carries the demand. This excludes boxes in which each single limit is met, but
+/// by different members.
 pub(super) struct Rays {
-    /// Static torque \[N m\] and inertia \[kg m²\] of each ray.
+    /// Static torque \[N m\] and inertia \[kg m²\] whose multiples make up each ray.
     loads: [(f64, f64); RAYS],
-    /// Demand on the joint under the loads of each ray.
+    /// Demand on the joint under the static torque and the inertia of each ray.
     demands: [JointDemand; RAYS],
 }
 
 impl Rays {
-    /// Rays around the proportion of static torque to inertia that the payload alone causes. The demand of a duty that
-    /// is stated in numbers is left out, because it does not grow with the arm. The remaining demand is a lower bound.
-    /// The inertia of the motor itself does not grow with the arm either:
-    /// [`MotorHeat::multiple_of`](crate::sizing::heat::MotorHeat::multiple_of) accounts for it.
+    /// The rays of a joint, around the proportion of static torque to inertia that the payload alone causes. A part of
+    /// the demand that does not grow with the arm would break their proportions. So the demand of a duty that is stated
+    /// in numbers is left out, and the remaining demand is a lower bound. The inertia of the motor itself does not grow
+    /// with the arm either: [`MotorHeat::multiple_of`](crate::sizing::heat::MotorHeat::multiple_of) accounts for it.
     pub(super) fn new(motion: &JointMotion, payload_static_nm: f64, payload_inertia_kgm2: f64) -> Self {
         let motion = motion.without_stated();
         let loads = std::array::from_fn(|k| match k {
@@ -189,21 +190,23 @@ impl Rays {
         Self { demands: loads.map(|(static_nm, inertia)| motion.demand(static_nm, inertia)), loads }
     }
 
-    /// For each ray, the greatest multiple of its demand that a drive with these limits carries.
+    /// For each ray (fixed proportion of static torque and inertia), the greatest multiple of its demand that a drive
+    /// with the limits `limits` carries.
     pub(super) fn capacity(&self, limits: &DriveLimits) -> [f64; RAYS] {
         self.demands.each_ref().map(|demand| limits.multiple_of(demand))
     }
 }
 
-/// Fraction by which the motor heat of a least demand is lowered and that of a greatest demand is raised. The motor's
-/// own inertia can cause most of the heat. A margin on the loads alone would then not cover the rounding of the sum.
+/// Fraction by which the motor heat of a least demand is lowered and that of a greatest demand is raised to cover
+/// rounding. A margin on the loads alone would not do, because the motor's own inertia can cause most of the heat.
 pub(super) const HEAT_ROUNDING: f64 = 1e-12;
 
 /// The least demand that the members of a box put on a joint.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct LeastDemand {
     pub demand: JointDemand,
-    /// For each ray, the greatest multiple of its demand that lies below this demand.
+    /// For each ray (fixed proportion of static torque and inertia), the greatest multiple of its demand that lies
+    /// below this demand.
     multiples: [f64; RAYS],
 }
 
@@ -243,15 +246,16 @@ pub(super) fn stiffness_of(rad_per_nm: f64) -> f64 {
 pub(super) struct DriveBox {
     /// Least and greatest mass \[kg\].
     pub mass_kg: [f64; 2],
-    /// The greatest of each limit over the members.
+    /// The greatest value of each limit of a drive over the members.
     pub limits: DriveLimits,
     /// The least of each limit over the members.
     pub least_limits: DriveLimits,
-    /// For each ray, the greatest multiple of its demand that a single member carries.
+    /// For each ray (fixed proportion of static torque and inertia), the greatest multiple of its demand that a single
+    /// member carries.
     pub multiples: [f64; RAYS],
     /// Envelopes of the torsion curves of the members; `None` if one of them is rigid.
     pub curve: Option<CurveBox>,
-    /// Set of the break points of the members' torsion curves.
+    /// The break points (torques at which the slope changes) of the members' torsion curves, as a set.
     pub breaks: BreakPoints,
     /// Least and greatest tilt of the output bearing per moment \[rad/(N m)\], including the tilt that an effect adds
     /// in series. 0 if no drive of the joint has a bearing that tilts.
@@ -278,15 +282,16 @@ impl DriveBox {
         Some(Self { each: (each.len() > 1).then(|| Arc::from(each)), ..kind })
     }
 
-    /// Whether some member may carry the least demand. If the result is false, no member does.
+    /// Whether some member may carry the least demand `asked`. `false` is certain; `true` may be wrong for a box of
+    /// several drives.
     #[inline]
     pub(super) fn may_hold(&self, asked: &LeastDemand) -> bool {
         self.hold(&asked.demand)
             && self.multiples.iter().zip(&asked.multiples).all(|(carried, asked)| carried >= asked)
     }
 
-    /// Whether the demand is within the greatest of each limit over the members. For a box of a single kind the result
-    /// is exact: whether one of its drives carries the demand.
+    /// Whether the demand is within the greatest value of each limit over the members. For a box of a single kind the
+    /// answer is exact: it tells whether one of the drives of the kind carries the demand.
     #[inline]
     pub(super) fn hold(&self, demand: &JointDemand) -> bool {
         self.limits.hold(demand)

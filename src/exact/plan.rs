@@ -18,12 +18,12 @@ const SLACKS: [f64; 25] = [
 ];
 /// Slacks below this are used only in a search by regions. A search by boxes finds no more designs with such passes.
 const FINE: f64 = 0.02;
-/// At most this many slacks of the list are skipped at once.
+/// Greatest number of slacks of the list that are skipped between two passes.
 const MOST_PASSED_OVER: usize = 4;
-/// Greatest number of slacks of the list that are skipped at once if a gap was asked for.
+/// Greatest number of slacks that are skipped between two passes if the search is to end at a gap that was asked for.
 const PASSED_OVER_TO_A_GAP: usize = 8;
-/// Exponent `g` of the growth of a pass's time that is assumed before two passes are completed. A measured exponent is
-/// limited to the interval from `LEAST_GROWTH` to `MOST_GROWTH`.
+/// Exponent `g` with which the time of a pass is assumed to grow until two passes are completed. An exponent measured
+/// later is limited to the interval from `LEAST_GROWTH` to `MOST_GROWTH`.
 const GROWTH: f64 = 3.3;
 const LEAST_GROWTH: f64 = 1.0;
 const MOST_GROWTH: f64 = 4.5;
@@ -84,8 +84,9 @@ impl Plan {
         Some(step_to(least_slack_within(done, SAFE * left_s).max(finest), last.slack).max(finest))
     }
 
-    /// The next slack of the list after `last`, with some slacks skipped. The pass without slack is never reached by
-    /// skipping. It comes last in any case. `None` if `last` is the last slack of the list.
+    /// The next slack of the list after the slack `last`. Up to `most_passed_over` slacks are skipped, but a skip never
+    /// leads to the pass without slack; that one comes only after all others. `None` if `last` is the last slack of the
+    /// list.
     fn listed(&self, last: f64) -> Option<f64> {
         let finer = self.slacks.iter().copied().filter(|slack| *slack < last);
         let mut ahead = finer.take(1 + self.most_passed_over);
@@ -94,8 +95,8 @@ impl Plan {
     }
 }
 
-/// The first slack on the way from the slack `from` to a finer one. The way is divided into as few equal steps as
-/// possible, equal in the logarithm and none longer than [`LONGEST_STEP`].
+/// The slack of the next pass on the way from the slack `from` to the finer one `slack`. The way is divided into as few
+/// equal steps of the logarithm as possible, none longer than [`LONGEST_STEP`].
 fn step_to(slack: f64, from: f64) -> f64 {
     let finer = from / slack;
     if finer * SHORTEST_STEP < 1.0 {
@@ -113,7 +114,8 @@ fn growth(done: &[Pass]) -> f64 {
     if measured.is_finite() { measured.clamp(LEAST_GROWTH, MOST_GROWTH) } else { GROWTH }
 }
 
-/// The least slack for which a pass is predicted to be done within a time \[s\]. Infinite if no pass is completed yet.
+/// The least slack for which a pass is predicted to take at most `within_s` \[s\]. Infinite if no pass in `done` is
+/// completed yet.
 fn least_slack_within(done: &[Pass], within_s: f64) -> f64 {
     let Some(last) = done.last() else { return f64::INFINITY };
     last.slack * libm::pow(last.took_s / within_s, growth(done).recip())

@@ -13,7 +13,8 @@ const NOTHING: f64 = 1e-12;
 /// Number of strain coordinates of a tube: curvatures of the bending along z and along y (4 each), shears along z and y
 /// (3 each), torsion (3), stretch (3). They are polynomial coefficients along the tube.
 pub(super) const COORDINATES: usize = 20;
-/// The eight coordinates of a tube that move its end.
+/// Indices of the eight strain coordinates of a tube that move its end. The others deform the tube only between its
+/// ends.
 pub(super) const ENDS: [usize; 8] = [0, 1, 4, 5, 8, 11, 14, 17];
 /// For each coordinate: the index of the stiffness of a [`Line`](super::parts::Line) that resists it, and the
 /// degree of its polynomial.
@@ -47,7 +48,7 @@ pub(super) const TILT: usize = 1;
 /// Number of strain coordinates of a joint whose bearing tilts: the torsion and two tilts.
 pub(super) const JOINT_COORDINATES: usize = 3;
 
-/// `2i + 1` for a coordinate whose polynomial has degree `i`. It equals the compliance of the coordinate times the
+/// `2i + 1` for a coordinate whose polynomial has degree `i`. This factor equals the coordinate's compliance times the
 /// stiffness of the section times the length of the tube.
 pub(super) fn degree_factor(coordinate: usize) -> f64 {
     f64::from(2 * RESISTED[coordinate].1 + 1)
@@ -67,7 +68,8 @@ pub(super) struct Pose {
     pub pieces: Vec<PosedPiece>,
     /// Inertia of the payload about the world's origin.
     pub payload_inertia: Matrix6<f64>,
-    /// The rows of all coordinates that a load strains, and of all torsions of joints, tip first.
+    /// The rows of this case: one for each strain coordinate that some load deflects, and one for the torsion of each
+    /// joint, tip first. A row gives the force on its coordinate.
     pub rows: Vec<Row>,
     /// Loads on the end sections of the tubes whose section is chosen, tip first.
     pub stress: Vec<StressRow>,
@@ -97,10 +99,11 @@ pub(super) struct PosedTube {
     pub root_m: Vector3<f64>,
     /// Axes of the section frame as columns, x along the tube.
     pub frame: Matrix3<f64>,
-    /// Motion of everything outboard (a kinematic twist) per unit of each of the coordinates [`ENDS`].
+    /// Motion of everything outboard (a kinematic twist) per unit of each of the eight coordinates that move the tube's
+    /// end ([`ENDS`]).
     pub ends: [Twist; 8],
     /// Inertia matrices of the tube over the motion of its root and its strain coordinates, per unit of each line
-    /// inertia.
+    /// inertia (inertia per metre).
     pub forms: TubeForms,
     /// Added mass of the water across the tube, per outer area and length \[kg/m³\].
     pub added_kg_m3: f64,
@@ -119,18 +122,18 @@ pub(super) struct PosedBodies {
     pub inertia: DMatrix<f64>,
     /// Inertia of the bodies about the world's origin, for the tube taken as rigid.
     pub rigid: Matrix6<f64>,
-    /// Wrench of the weight of all bodies.
+    /// Wrench of the weight of all bodies on the tube, about the world's origin.
     pub weight: Wrench,
-    /// Generalized force of the weight on each of the coordinates [`ENDS`].
+    /// Generalized force of the bodies' weight on each of the eight coordinates that move the tube's end ([`ENDS`]).
     pub end_forces: [f64; 8],
 }
 
 /// The loads of springs on a tube.
 #[derive(Default)]
 pub(super) struct Pulls {
-    /// Force and moment about the world's origin.
+    /// Force and moment of all springs on the tube, about the world's origin.
     pub wrench: Wrench,
-    /// Generalized force on each of the coordinates [`ENDS`].
+    /// Generalized force of the springs on each of the eight coordinates that move the tube's end ([`ENDS`]).
     pub end_forces: [f64; 8],
 }
 
@@ -151,13 +154,15 @@ pub(super) struct TubeForms {
 pub(super) struct Row {
     /// Index of the piece to which the coordinate belongs.
     pub piece: usize,
-    /// Index of the coordinate within its piece. For a joint 0 is the torsion; 1 and 2 are the tilts of the bearing.
+    /// Index of the strain coordinate within its piece. For a joint 0 is the torsion; 1 and 2 are the tilts of the
+    /// bearing.
     pub coordinate: usize,
-    /// Force that does not depend on the weight of any part, such as that of the payload \[N or N m\].
+    /// Part of the generalized force that does not depend on the weight of any part, such as that of the payload \[N or
+    /// N m\].
     pub fixed: f64,
-    /// For each piece up to and including `piece`, the force per newton of the piece's weight.
+    /// For each piece from the tip to `piece` itself, the generalized force per newton of the piece's weight.
     pub per_n: Vec<f64>,
-    /// Displacement of the tip per unit of the coordinate.
+    /// Displacement of the tip per unit of the strain coordinate, in x, y and z.
     pub tip_m: Vector3<f64>,
     /// Length of the vector `tip_m`.
     pub tip_m_per_unit: f64,
@@ -179,7 +184,8 @@ pub(super) struct InertiaRow {
 }
 
 impl Pose {
-    /// Torque on a joint as an interval \[N m\]; zero for a piece that is not a joint.
+    /// Torque on the joint with this piece number \[N m\], as an interval that follows from `weights`, the weight
+    /// intervals of the pieces \[N\]. Zero for a piece that is not a joint.
     pub(super) fn torque(&self, piece: usize, weights: &[[f64; 2]]) -> [f64; 2] {
         self.torsion(piece).map_or([0.0; 2], |row| interval(row.fixed, &row.per_n, weights))
     }
@@ -214,20 +220,21 @@ impl Pose {
         ways.iter().enumerate().all(|(i, a)| ways[..i].iter().all(|b| agree(a, b)))
     }
 
-    /// The rows of torsions, and the rows of coordinates that move the tip.
+    /// The rows that matter for the tests of signs: those of joint torsions, and those of coordinates that move the
+    /// tip.
     fn relevant_rows(&self) -> impl Iterator<Item = &Row> {
         self.rows.iter().filter(|row| self.is_torsion(row) || row.tip_m.norm() > 0.0)
     }
 
-    /// Whether a row belongs to the torsion of a joint.
+    /// Whether `row` belongs to the torsion of a joint, and not to a tilt of its bearing or to a tube.
     pub(super) fn is_torsion(&self, row: &Row) -> bool {
         row.coordinate == TORSION && matches!(self.pieces[row.piece], PosedPiece::Joint { .. })
     }
 }
 
 impl PosedPiece {
-    /// The index of the stiffness that resists a coordinate, and the coordinate's deflection per force times this
-    /// stiffness.
+    /// For a coordinate of this piece: the index of the stiffness that resists it, and the factor that this stiffness
+    /// divides to give the deflection per unit of force.
     #[inline]
     pub(super) fn resisted(&self, coordinate: usize) -> (usize, f64) {
         match self {
@@ -238,8 +245,8 @@ impl PosedPiece {
     }
 }
 
-/// The common sign of a fixed force and of its coefficients per weight. It is 0 if all of them are zero, and `None` if
-/// their signs differ.
+/// The common sign of the constant force `fixed` and of the coefficients `per_n` of the weights: 1 or -1. It is 0 if
+/// all of them are zero, and `None` if their signs differ.
 fn sign(fixed: f64, per_n: &[f64]) -> Option<f64> {
     let largest = per_n.iter().fold(0.0f64, |most, c| most.max(c.abs()));
     // The fixed force and the coefficients have different units. They are compared as if every weight were

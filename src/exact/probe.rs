@@ -31,8 +31,8 @@ const MOST_TIME: f64 = 0.1;
 struct Merit([f64; 3]);
 
 impl Merit {
-    /// The weights of probe `n`. Roberts' sequence spreads the weights of all probes evenly over the triangle of
-    /// possible weights.
+    /// The weights of the three objectives in probe `n`. Roberts' sequence spreads the weights of all probes evenly
+    /// over the triangle of possible weights.
     fn nth(n: usize) -> Self {
         const PLASTIC: f64 = 1.324_717_957_244_746;
         let at = |step: f64| (0.5 + (n + 1) as f64 / step).fract();
@@ -41,8 +41,8 @@ impl Merit {
         Self([u, v, 1.0 - u - v])
     }
 
-    /// The objective of a probe: a weighted sum of the logarithms of mass, deflection and the reciprocal of the mode.
-    /// Less is better.
+    /// The objective of a probe for a bound: the weighted sum of the logarithms of its mass, of its deflection and of
+    /// the reciprocal of its mode. Less is better.
     fn of(&self, box_bound: &BoxBound) -> f64 {
         let [mass, tip, mode] = self.0;
         mass * libm::log(box_bound.mass_kg) + tip * libm::log(box_bound.tip_m.max(1e-12))
@@ -58,8 +58,8 @@ struct Best {
     shapes: Arc<Vec<Shape>>,
 }
 
-/// Runs this many probes, each with other weights of the objectives, and adds the designs found to the state. Returns
-/// the best design of each probe.
+/// Runs `probes` probes, each with other weights of the objectives, and adds the designs found to `state`. Returns the
+/// best design of each probe.
 pub(super) fn probe<'p>(
     budget: &Budget,
     problem: &Problem<'p>,
@@ -81,7 +81,8 @@ pub(super) fn probe<'p>(
     best.into_iter().flatten().collect()
 }
 
-/// The designs that short probes find. A short probe descends once and optimizes no single level.
+/// The designs that `dives` short probes find. A short probe only descends once; it does not optimize the levels one by
+/// one.
 pub(super) fn dives(budget: &Budget, problem: &Problem, dives: usize) -> Findings {
     let mut all = Findings::default();
     let Some(shapes) = problem.first_shapes(&mut Work::default()) else { return all };
@@ -126,8 +127,9 @@ impl Probe<'_, '_> {
         Some(Individual { design_box: best.design_box, objectives: best.objectives, shapes: best.shapes })
     }
 
-    /// The design with the least merit in a box, or `best` if that is better. Of two halves the one with the better
-    /// bound is opened first. At most `most_boxes` boxes are bounded.
+    /// Searches the box `design_box` for a design of less merit (the objective of the probe) than `best`. Of two
+    /// halves, the one with the better bound is opened first, and at most `most_boxes` boxes are bounded. Returns the
+    /// better design, or `best` if none was found.
     fn descend(
         &self,
         design_box: DesignBox,
@@ -165,8 +167,9 @@ impl Probe<'_, '_> {
         best
     }
 
-    /// Bounds a box. If the box is one design, the design is evaluated, and stored in `best` if it is better. Returns
-    /// the box if it may contain a design better than `best`, and `None` otherwise.
+    /// Bounds a box. If the box is one design, the design is evaluated, and stored in `best` if it is better than the
+    /// design there. Returns the box if it has several designs and one of them may be better than `best`; otherwise
+    /// `None`.
     fn look(
         &self,
         mut design_box: DesignBox,

@@ -24,7 +24,7 @@ pub(super) struct Problem<'c> {
     /// Number of options of each level.
     pub level_sizes: Vec<u32>,
     pub poses: Arc<Vec<Pose>>,
-    /// Inertia matrices of the judged cases.
+    /// Inertia matrix of each judged case, as a function of the line inertias of the pieces.
     pub inertias: Arc<Vec<CaseInertia>>,
     /// Ratio of peak stress to static stress in sizing cases, in which the arm also accelerates.
     pub peak_factor: f64,
@@ -46,12 +46,12 @@ pub(super) struct Problem<'c> {
 pub(super) enum Part<'c> {
     /// A joint or an elastic element whose stiffness is given. `curve` is `None` if it is rigid.
     Given { mass_kg: f64, curve: Option<CurveBox> },
-    /// A joint whose drive is a level of the search. An option of the tree is the first drive of a kind (drives of
-    /// equal mass, curve and bearing stiffness).
+    /// A joint whose drive the search chooses. An option of the tree is the first drive of a kind (drives of equal
+    /// mass, curve and bearing stiffness).
     Drives { sized: Arc<SizedJoint<'c>>, kinds: Arc<Kinds>, tree: Arc<Tree<DriveBox>>, rays: Arc<Rays> },
-    /// A joint that takes the lightest drive which carries its demand. It is no level of the search.
+    /// A joint that takes the lightest drive which carries its demand. The search makes no choice here.
     FirstFit { sized: Arc<SizedJoint<'c>>, ladder: Arc<Ladder> },
-    /// A link whose section and material are a level of the search.
+    /// A link whose section and material the search chooses.
     Links { length_m: f64, tree: Arc<Tree<LinkBox>> },
     /// A tube whose section and material are given.
     Tube { length_m: f64, tube: Box<LinkBox> },
@@ -70,7 +70,7 @@ pub(super) enum Lever {
     OfLink(usize),
 }
 
-/// The space that a link leaves for the gear and motor of the joint that carries it.
+/// Where the space for gear and motor of a joint comes from. It is what the link that the joint carries leaves free.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Room {
     /// The space is the same for all options.
@@ -86,10 +86,11 @@ impl Part<'_> {
     }
 }
 
-/// The drives that can be a first fit, by rising mass. It gives the box around any contiguous run of these drives.
+/// The drives that a first-fit joint can get, by rising mass. The ladder returns the box around any contiguous run of
+/// these drives.
 pub(super) struct Ladder {
-    /// `runs[k][i]` is the box around the `2^k` drives from index `i` on. The box around any run is the union of two
-    /// such boxes.
+    /// `runs[k][i]` is the box around the `2^k` drives from index `i` on. The box around any run of drives is the union
+    /// of two of these boxes.
     runs: Vec<Vec<DriveBox>>,
 }
 
@@ -120,8 +121,8 @@ impl Ladder {
 }
 
 impl<'c> Problem<'c> {
-    /// The problem restricted to the options below some nodes of each level's base tree. `None` if a level has no
-    /// option left.
+    /// The problem restricted to some of its options. `kept` holds, for each level (choice), the nodes of its base tree
+    /// whose options remain. `None` if a level has no option left.
     pub(super) fn restricted_to(&self, kept: &[Vec<u32>]) -> Option<Self> {
         let mut narrower = self.clone();
         for (&piece, nodes) in self.level_pieces.iter().zip(kept) {
@@ -155,7 +156,8 @@ impl<'c> Problem<'c> {
         self.level_pieces.iter().zip(design_box).map(of).product()
     }
 
-    /// For each level, the options below some nodes of its base tree, ascending. All drives of a kind are included.
+    /// The options that remain in each level, ascending. `kept` holds, for each level, the nodes of its base tree that
+    /// remain. All drives of a kind are included.
     pub(super) fn options_below(&self, kept: &[Vec<u32>]) -> Vec<Vec<u32>> {
         let of = |(&piece, nodes): (&usize, &Vec<u32>)| match &self.parts[piece] {
             Part::Drives { tree, kinds, .. } => kinds.drives_of(&tree.options_of(nodes)),
@@ -165,7 +167,8 @@ impl<'c> Problem<'c> {
         self.level_pieces.iter().zip(kept).map(of).collect()
     }
 
-    /// Number of designs below some nodes of each level's base tree. All drives of a kind are counted as one option.
+    /// Number of designs that remain. `kept` holds, for each level, the nodes of its base tree that remain. All drives
+    /// of a kind are counted as one option.
     pub(super) fn designs_below(&self, kept: &[Vec<u32>]) -> f64 {
         let of = |(&piece, nodes): (&usize, &Vec<u32>)| match &self.parts[piece] {
             Part::Drives { tree, .. } => tree.members_of(nodes),

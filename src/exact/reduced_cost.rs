@@ -14,17 +14,17 @@ use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, in_lanes};
 
 /// Approximate number of tree nodes by which the remaining options of a level are described.
 const BOXES: usize = 256;
-/// Number of dual points that are used to exclude options. Those with the smallest difference between the allowed and
-/// the least weighted sum are taken.
+/// Number of dual points (sets of multipliers) that are used to exclude options. Those are taken whose least weighted
+/// sum leaves least up to the sum that the local upper bound allows.
 const STRICTEST: usize = 32;
 
-/// The dual prices of a level at one dual point, and the greatest price that an option may have there if it belongs to
-/// a member below the local upper bound.
+/// The dual prices of a level at one dual point, and the greatest price at which an option of the level may still
+/// belong to a member below the local upper bound.
 type PricedLimit = (DualPrice, f64);
 
 impl Rows<'_> {
-    /// For each level, the nodes of its base tree whose options no dual point excludes. `None` if a level has no
-    /// option left.
+    /// The options that remain in each level after reduced-cost fixing, as nodes of its base tree. `points` are the
+    /// dual points that may exclude options of members below `upper`. `None` if a level has no option left.
     pub(super) fn affordable_options(
         &self,
         design_box: &[u32],
@@ -58,8 +58,8 @@ impl Rows<'_> {
             .collect()
     }
 
-    /// The nodes of a level's base tree below `node` that contain every option whose price is at most the allowed one
-    /// at all dual points.
+    /// Nodes of a level's base tree below `node` that contain every option which no dual point excludes. `afforded`
+    /// holds, for each dual point, the prices of the level and the greatest price that an option may have.
     fn affordable(&self, piece: usize, node: u32, afforded: &[PricedLimit]) -> Vec<u32> {
         let prices: Vec<EightPrices> = afforded.chunks(LANES).map(EightPrices::new).collect();
         let prices = &prices[..];
@@ -80,15 +80,16 @@ impl Rows<'_> {
     }
 }
 
-/// The dual prices of a level at eight dual points, and the greatest allowed price at each.
+/// The prices of a level's numbers at eight dual points (sets of multipliers), and the greatest price that an option
+/// may have at each.
 struct EightPrices {
-    /// Greatest allowed price at each dual point.
+    /// The greatest price that an option may have at each dual point (set of multipliers).
     most: Eight,
-    /// Price per unit of each line inertia.
+    /// Price per unit of each line inertia (inertia per metre of a tube) at each dual point.
     inertia: [Eight; INERTIAS],
-    /// Price per unit of each compliance.
+    /// Price per unit of each compliance at each dual point.
     compliance: [Eight; STIFFNESSES],
-    /// Credit per unit of each stiffness.
+    /// Credit per unit of each stiffness at each dual point. A stiffer part lowers the weighted sum of the rows.
     stiffness: [Eight; STIFFNESSES],
     /// For each judged case, the prices of a joint per unit of twist and of torque, and the credit per unit of slope.
     joint: Vec<[Eight; 3]>,
@@ -119,8 +120,8 @@ impl EightPrices {
     }
 }
 
-/// Computes whether, at some dual point, every drive of a box has a price above the allowed one. A price that is not a
-/// number excludes nothing.
+/// Computes whether every drive of a box is excluded: whether, at some dual point (set of multipliers), its price is
+/// above the allowed one. A price that is not a number excludes nothing.
 struct DrivesCost<'a> {
     drives: &'a DriveBox,
     gears: &'a [JointPrice],
@@ -164,8 +165,8 @@ impl LaneWork for DrivesCost<'_> {
     }
 }
 
-/// Computes whether, at some dual point, every tube of a box has a price above the allowed one. A price that is not a
-/// number excludes nothing.
+/// Computes whether every tube of a box is excluded: whether, at some dual point (set of multipliers), its price is
+/// above the allowed one. A price that is not a number excludes nothing.
 struct LinksCost<'a> {
     links: &'a LinkBox,
     prices: &'a [EightPrices],
@@ -198,7 +199,7 @@ impl LaneWork for LinksCost<'_> {
     }
 }
 
-/// The least price of a number that lies in an interval, at each of eight dual points.
+/// The least cost of a number that lies in an interval, at each of eight dual points with the prices `price`.
 #[inline(always)]
 fn least<V: Lanes>(price: &Eight, [low, high]: [f64; 2]) -> V {
     let price = V::load(price);

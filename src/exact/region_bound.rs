@@ -15,15 +15,16 @@ const MOST_SHAPES: usize = 3;
 /// Greatest number of dual points that are added once it is clear that the multipliers cannot prove the region empty.
 /// Further points still exclude more options by their reduced costs.
 const MOST_TO_REDUCE: usize = 8;
-/// The search for multipliers stops if the value of the game exceeds the best dual point so far by at most this much
-/// (in the scale of the rows).
+/// The search for multipliers stops if the value of the matrix game, which limits what any multipliers can prove,
+/// exceeds the best dual point so far by at most this much (in the scale of the rows).
 const SETTLED: f64 = 1e-4;
 /// Least weight of a relaxed design in the mixture. A smaller weight is due to rounding.
 const SHARE: f64 = 1e-9;
 
 /// The options, branchings and candidates that remain of a region after it was bounded.
 pub(super) struct Survivors {
-    /// For each level, nodes of its base tree with every option that a member of the region may have.
+    /// For each level, nodes of its base tree (the tree over all options) that contain every option which a member of
+    /// the region may have.
     pub options: Vec<Vec<u32>>,
     /// Ways to divide the region, the most promising first.
     pub branchings: Vec<Branching>,
@@ -32,8 +33,9 @@ pub(super) struct Survivors {
 }
 
 impl Problem<'_> {
-    /// Tests whether a box has designs below a local upper bound. The numbers of the box are in `work`. `None` if the
-    /// bound proves that there are none; otherwise the options and designs that remain possible.
+    /// Tests whether a box has designs below the local upper bound `upper`. The intervals of the box are in `work`, and
+    /// `warm_start` holds the multipliers of the parent box. `None` if the bound proves that there are none; otherwise
+    /// the options and designs that remain possible.
     pub(super) fn bound_below(
         &self,
         design_box: &[u32],

@@ -27,7 +27,8 @@ use crate::pareto::objectives::Objectives;
 use crate::space::design::number;
 use std::sync::Arc;
 
-/// The bound of a region is computed again if at least this fraction of its designs was excluded.
+/// The bound of a region is computed again with the remaining options if at least this fraction of the region's designs
+/// was excluded.
 const WORTH_IT: f64 = 0.1;
 /// Width of a grid cell for the thinning of incumbents, as a fraction of the slack.
 const THINNED: f64 = 0.45;
@@ -52,9 +53,9 @@ enum Task<'p> {
     Boxes { problem: Arc<Problem<'p>>, upper: LocalUpperBound, first: OpenBox },
 }
 
-/// One pass over the whole search region. `regions_to` is the number of designs below which a region is searched box by
-/// box. `seen` is called after each round. Returns one open bound for each task that is left when the search is
-/// stopped; empty if the pass is complete.
+/// One pass over the whole search region with the slack `slack`. A region of fewer designs than `regions_to` is
+/// searched box by box. `seen` is called after each round of tasks. Returns one bound without information for each task
+/// that is left when the search is stopped; empty if the pass is complete.
 pub(super) fn pass_by_regions<'p>(
     budget: &Budget<'p>,
     problem: &Problem<'p>,
@@ -98,7 +99,7 @@ pub(super) fn pass_by_regions<'p>(
 }
 
 impl<'p> Search<'_, 'p> {
-    /// Searches the regions below a node of the tree of local upper bounds. Returns the tasks that remain.
+    /// Searches the region below the local upper bounds under node `at` of their tree. Returns the tasks that remain.
     fn region(
         &self,
         upper_bounds: Arc<LocalUpperBounds>,
@@ -134,8 +135,8 @@ impl<'p> Search<'_, 'p> {
             .into()
     }
 
-    /// Reduces the options of a subproblem as long as that is worth the time, and evaluates promising designs. `None`
-    /// if the region is empty.
+    /// Excludes options of a subproblem below `upper` as long as that is worth the time, and evaluates promising
+    /// designs. Returns what remains. `None` if the region is empty.
     fn reduce(
         &self,
         subproblem: &mut Subproblem<'p>,
@@ -179,8 +180,9 @@ impl<'p> Search<'_, 'p> {
         }
     }
 
-    /// The local upper bounds that remain of a region after it is cut by incumbents found since its bounds were made.
-    /// `None` if no such incumbent lies in the region.
+    /// The local upper bounds of what remains of the region below `upper` after incumbents that were found since
+    /// `upper` was made have cut it. `incumbents_seen` is the number of incumbents that were known then, and is brought
+    /// up to date. `None` if no later incumbent lies in the region.
     fn clipped(&self, upper: &LocalUpperBound, incumbents_seen: &mut usize) -> Option<LocalUpperBounds> {
         let is_inside = |o: &Objectives| {
             o.mass_kg < upper.mass_kg && o.tip_deflection_m < upper.tip_m && o.lowest_mode_hz > upper.hz
@@ -193,14 +195,15 @@ impl<'p> Search<'_, 'p> {
     }
 }
 
-/// The objectives of an incumbent, improved by the slack. The search then looks only for designs that are better than
-/// the incumbent by more than the slack.
+/// The objectives of an incumbent, improved by the slack. With them in the place of the incumbent, the search looks
+/// only for designs that are better than the incumbent by more than the slack.
 fn improved_by_slack(found: &Objectives, slack: f64) -> Objectives {
     found.better_by(1.0 + slack - DOMINANCE_MARGIN)
 }
 
 impl<'p> Subproblem<'p> {
-    /// The subproblem of the whole space. `None` if no design meets the constraints.
+    /// The subproblem with all options of the space. `incumbents_seen` is the number of incumbents from which its local
+    /// upper bounds were made. `None` if no design meets the constraints.
     pub(super) fn whole(problem: &Problem<'p>, incumbents_seen: usize, work: &mut Work) -> Option<Self> {
         let shapes = problem.first_shapes(work)?;
         Some(Self {
@@ -212,8 +215,9 @@ impl<'p> Subproblem<'p> {
         })
     }
 
-    /// Bounds a subproblem below a local upper bound. Returns the survivors, and whether enough designs were excluded
-    /// that the subproblem was restricted to them. `None` if the region is empty.
+    /// Bounds a subproblem below the local upper bound `upper`. `is_beaten` tells whether a given bound is dominated.
+    /// Returns the options that remain, and `true` if so many designs were excluded that the subproblem was restricted
+    /// to these options. `None` if the region is empty.
     pub(super) fn reduce(
         &mut self,
         upper: &LocalUpperBound,
@@ -250,13 +254,13 @@ impl<'p> Subproblem<'p> {
         }
     }
 
-    /// Number of designs that survive.
+    /// Number of designs that the options in `survivors` make.
     pub(super) fn designs_of(&self, survivors: &Survivors) -> f64 {
         self.problem.designs_below(&survivors.options)
     }
 
-    /// Two halves of the subproblem. They are made by the first branching that divides it, or else by halving a level.
-    /// `None` if a single design is left.
+    /// Divides the subproblem into two. The first branching of `survivors` that separates its options is taken; if
+    /// there is none, a level is halved. `None` if a single design is left.
     pub(super) fn branch(&self, survivors: &Survivors, work: &mut Work) -> Option<[Self; 2]> {
         let branch = survivors
             .branchings

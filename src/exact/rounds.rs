@@ -16,9 +16,9 @@ pub(super) struct Done<T, F> {
     pub findings: F,
 }
 
-/// Does the tasks in `first` and all tasks that they leave, the last one first. After each round, `learn` adds the
-/// findings of each task to `known`, and `see` is shown `known` and the open tasks. Returns the tasks that are still
-/// open when the search is stopped.
+/// Does the tasks in `first` and all tasks that these leave, in rounds; the last task of the list is done first. `task`
+/// does one task with the knowledge `known`. After each round, `learn` adds the findings of each task to `known`, and
+/// then `see` is shown `known` and the open tasks. Returns the tasks that are open when `stopped` becomes true.
 pub(super) fn in_rounds<K: Sync, T: Send, F: Send>(
     known: &mut K,
     first: Vec<T>,

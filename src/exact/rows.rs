@@ -38,7 +38,7 @@ pub(super) struct WarmStart {
     /// Multipliers of the mass row, of the tip rows and of the mode rows. Every box computes its own multipliers for
     /// torque rows.
     pub multipliers: Vec<f64>,
-    /// Trial shapes: for each judged case, one for each starting acceleration.
+    /// Trial shapes (motions that bound the lowest mode): for each judged case, one for each starting acceleration.
     pub shapes: Vec<Shape>,
     /// The feasible drives of each level; `None` for a level of links.
     drives: Vec<Option<FeasibleDrives>>,
@@ -51,23 +51,24 @@ impl WarmStart {
     }
 }
 
-/// The rows of a box: the inequalities that every member below a local upper bound satisfies.
+/// The rows of a box: linear inequalities between the numbers of the parts that every member below a local upper bound
+/// satisfies.
 pub(super) struct Rows<'a> {
     pub problem: &'a Problem<'a>,
     pub work: &'a Work,
-    /// The scale of each row: its values divided by the scale are about 1.
+    /// The scale of each row (inequality): the row's values divided by its scale are about 1.
     pub scale: Vec<f64>,
     /// The constant term of each row, divided by the scale. It does not depend on any choice.
     pub fixed: Vec<f64>,
-    /// The row of the tip's displacement in each judged case.
+    /// For each judged case, the row (inequality) on the displacement of the tip.
     pub tips: Vec<TipRow>,
-    /// The gears that are not rigid, for all judged cases in turn.
+    /// The gears that are not rigid, first those of the first judged case, then those of the second, and so on.
     pub gears: Vec<Gear>,
-    /// The forces whose value the rows restrict. Each has two rows.
+    /// The generalized forces to which rows set a least and a greatest value. Each has two rows.
     pub forces: Vec<Force<'a>>,
-    /// Eigenvalue `λ` in the mode rows \[1/s²\].
+    /// Eigenvalue `λ` for which the mode rows are made \[1/s²\].
     pub lambda: f64,
-    /// The trial shapes. Each has one mode row.
+    /// The trial shapes (motions of the arm) whose Rayleigh quotients bound the modes. Each has one row.
     pub modes: Vec<Mode>,
     /// Index of the first mode row.
     pub first_mode: usize,
@@ -86,15 +87,15 @@ pub(super) struct Force<'a> {
     pub row: usize,
 }
 
-/// A trial shape that bounds the modes of a judged case.
+/// A trial shape (motion of the arm) that bounds the modes in a judged case, with the numbers of its row.
 pub(super) struct Mode {
     /// Index of the judged case.
     pub judged: usize,
     /// Index of the starting acceleration from which the shape came.
     pub start: usize,
     pub shape: Shape,
-    /// `xᵀMx` of the shape with the lightest and with the heaviest parts of the box, each with the payload and given
-    /// bodies.
+    /// `xᵀMx` of the shape (twice its kinetic energy per squared angular frequency), with the lightest and with the
+    /// heaviest parts of the box. Each includes the payload and the bodies that the study gives.
     pub kinetic: [f64; 2],
 }
 
@@ -105,7 +106,8 @@ pub(super) struct RelaxedDesign {
     pub design_box: DesignBox,
     /// The value of every row, divided by the row's scale.
     pub values: Vec<f64>,
-    /// For each piece, the amount that it adds to each row in front of the mode rows, not scaled.
+    /// For each piece, the amount that it adds to each row on mass, tip displacement and torque. The amounts are not
+    /// divided by the scales.
     pub adds: Vec<f64>,
     /// Line inertias of each piece.
     pub inertia: Vec<[f64; INERTIAS]>,
@@ -116,7 +118,7 @@ pub(super) struct RelaxedDesign {
 }
 
 impl RelaxedDesign {
-    /// The index of a piece in the lists that have a number for each judged case and each piece.
+    /// The index of `piece` in the lists that have one number for each judged case and each piece.
     pub(super) fn place(&self, judged: usize, piece: usize) -> usize {
         judged * self.inertia.len() + piece
     }
@@ -141,8 +143,8 @@ pub(super) struct DualPoint {
 }
 
 impl Problem<'_> {
-    /// The feasible drives of each level of a box; `None` for a level of links. `before` has those of the parent box,
-    /// which are reused if they are the same.
+    /// The drives of each level of a box that carry the least demand; `None` for a level of links. `before` has those
+    /// of the parent box, which are reused if they are the same.
     fn drives_of_levels(
         &self,
         design_box: &[u32],
@@ -159,7 +161,8 @@ impl Problem<'_> {
 }
 
 impl<'a> Rows<'a> {
-    /// The rows of a box for a local upper bound. The numbers of the box are in `work`.
+    /// Makes the rows (inequalities) of a box for the local upper bound `upper`. `work` holds the intervals of the box,
+    /// and `warm_start` the shapes and drives of the parent box.
     pub(super) fn new(
         problem: &'a Problem,
         design_box: &[u32],
@@ -204,7 +207,8 @@ impl<'a> Rows<'a> {
         rows
     }
 
-    /// Adds the gears of a judged case, with two rows for each gear whose slope may change.
+    /// Adds the gears of a judged case to the list of gears. A gear whose slope may change gets two rows, which
+    /// restrict its torque. `judged` is the index among the judged cases and `case` that among all cases.
     fn push_gears(&mut self, judged: usize, case: usize) {
         let (problem, work) = (self.problem, self.work);
         for (at, row) in problem.poses[case].rows.iter().enumerate() {
@@ -225,8 +229,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Adds two rows for each force bound of a judged case, unless the force is the torque of a gear that has rows
-    /// already.
+    /// Adds two rows for each force bound of a judged case: one for the lower and one for the upper limit of the force.
+    /// A torque of a gear that has such rows already gets none.
     fn push_force_bounds(&mut self, judged: usize, case: usize) {
         let (problem, work) = (self.problem, self.work);
         for bound in problem.force_bounds.iter().filter(|bound| bound.case == case) {
@@ -242,21 +246,21 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Index of the first of the two rows of a gear whose slope may change in a case. `None` if the gear has a single
-    /// slope.
+    /// Index of the first of the two rows of the gear at `piece` in a judged case. `None` if the slope of the gear
+    /// cannot change, so that it has no such rows.
     pub(super) fn free_gear(&self, judged: usize, piece: usize) -> Option<usize> {
         self.gears.iter().find(|gear| gear.judged == judged && gear.piece == piece)?.row
     }
 
-    /// Adds a row with this scale and this constant term.
+    /// Adds a row with the scale `scale` and the constant term `fixed`. The term is divided by the scale.
     fn push(&mut self, scale: f64, fixed: f64) {
         self.scale.push(scale);
         self.fixed.push(fixed / scale);
     }
 
-    /// Adds the two rows of a generalized force: its least value less the force that the weights cause, and this force
-    /// less its greatest value. `between` holds the least and the greatest value, and `low` and `high` the interval
-    /// from which the scale of the rows is taken. Returns the index of the first row.
+    /// Adds the two rows of a generalized force. The first is the force's least value less the force that the weights
+    /// cause, the second is this force less its greatest value. `between` holds the least and the greatest value. The
+    /// scale of the rows is taken from the interval from `low` to `high`. Returns the index of the first row.
     fn push_force(&mut self, judged: usize, row: &'a Row, [low, high]: [f64; 2], between: [f64; 2]) -> usize {
         let next = self.scale.len();
         // The scale stays comparable to that of other rows even if the interval is narrow.
@@ -267,7 +271,8 @@ impl<'a> Rows<'a> {
         next
     }
 
-    /// Adds the mode row of a trial shape.
+    /// Adds the row of the trial shape `shape`, which bounds the modes in a judged case. `start` is the index of the
+    /// starting acceleration from which the shape came.
     pub(super) fn push_mode(&mut self, judged: usize, start: usize, shape: Shape) {
         let kinetic = [&self.work.light, &self.work.heavy].map(|inertia| shape.kinetic_energy(inertia));
         // A shape without kinetic energy bounds nothing.
@@ -276,8 +281,8 @@ impl<'a> Rows<'a> {
         self.modes.push(Mode { judged, start, shape, kinetic });
     }
 
-    /// The multipliers with which the search starts: those of the parent box, given in `above`. Rows that the parent
-    /// did not have get equal multipliers.
+    /// The multipliers with which the search for better ones starts. `above` holds those of the parent box. Rows that
+    /// the parent box did not have get equal multipliers.
     pub(super) fn starting_multipliers(&self, above: &[f64]) -> Vec<f64> {
         let mut multipliers = vec![0.0; self.scale.len()];
         let others: Vec<usize> = (0..=self.tips.len()).chain(self.first_mode..self.scale.len()).collect();
@@ -289,8 +294,9 @@ impl<'a> Rows<'a> {
         self.with_torques(multipliers)
     }
 
-    /// Adds multipliers of torque rows. With them the twist of a gear grows with the torque of the weights by the least
-    /// compliance of the box (McCormick). Without them a gear could be evaluated at any torque at no price.
+    /// Adds multipliers of the torque rows to `multipliers`. With them the price of a gear's twist grows with the
+    /// torque that the weights make, by the least compliance of the box (McCormick). Without them a gear could be
+    /// evaluated at any torque at no price.
     pub(super) fn with_torques(&self, mut multipliers: Vec<f64>) -> Vec<f64> {
         for gear in &self.gears {
             let Some(row) = gear.row else { continue };
@@ -317,7 +323,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// The upper limit of each scaled row for every member below a local upper bound.
+    /// The upper limit that each scaled row has for every member below the local upper bound `upper`.
     pub(super) fn row_limits<'b>(&'b self, upper: &'b LocalUpperBound) -> impl Iterator<Item = f64> + 'b {
         // The mode rows use the eigenvalue `lambda`, but the bound may ask for another one. The difference times `xᵀMx`
         // is bounded with the lightest or the heaviest parts, depending on its sign.
@@ -328,7 +334,8 @@ impl<'a> Rows<'a> {
         objectives.chain(torques).chain(modes).zip(&self.scale).map(|(row, scale)| row / scale)
     }
 
-    /// For each row with a finite limit, except torque rows, multipliers that use this row alone.
+    /// Sets of multipliers that use a single row. There is one for each row with a finite limit below `upper`, except
+    /// for torque rows.
     pub(super) fn single_row_multipliers(&self, upper: &LocalUpperBound) -> Vec<Vec<f64>> {
         let is_torque = |row: usize| (1 + self.tips.len()..self.first_mode).contains(&row);
         let rows = self.row_limits(upper).enumerate().filter(|(row, a)| a.is_finite() && !is_torque(*row));
@@ -340,7 +347,7 @@ impl<'a> Rows<'a> {
         rows.map(single).collect()
     }
 
-    /// The upper limit of the weighted sum of rows for every member below a local upper bound.
+    /// The upper limit that the weighted sum of the rows has for every member below the local upper bound `upper`.
     pub(super) fn allowed_sum(&self, multipliers: &[f64], upper: &LocalUpperBound) -> f64 {
         let pairs = multipliers.iter().zip(self.row_limits(upper));
         pairs.filter(|(w, _)| **w > 0.0).map(|(w, a)| w * a).sum()

@@ -86,7 +86,7 @@ pub struct Exact<'p> {
 }
 
 /// How the passes of a search ended. `gap` is the gap that was proved (relative; `None` if no gap was proved). `open`
-/// holds the bounds of the boxes or regions that were not searched to the end; it is empty after a complete search.
+/// holds the bounds of the boxes or regions that are not searched to the end; it is empty after a complete search.
 struct Ended {
     gap: Option<f64>,
     open: Vec<BoxBound>,
@@ -154,7 +154,7 @@ impl<'p> Exact<'p> {
         Ok(Self { journal, ..self })
     }
 
-    /// What the search knows now of the front of all designs. The gap in it never rises.
+    /// The progress of the search for the front of all designs at this moment. The gap in it never rises.
     pub fn known(&self) -> Known {
         Known { boxes: self.budget.boxes(), ..self.live.known() }
     }
@@ -216,8 +216,8 @@ impl<'p> Exact<'p> {
         outcome
     }
 
-    /// Searches a compiled space in passes with less and less slack. `is_new` tells that no designs are known at the
-    /// start.
+    /// Searches a compiled space in passes with less and less slack. `is_new` tells that no known designs were given at
+    /// the start, so that the search has to find its first incumbents itself.
     fn search(
         &self,
         whole: &Problem<'p>,

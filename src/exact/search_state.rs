@@ -85,8 +85,8 @@ impl SearchState {
         }
     }
 
-    /// The state that an earlier process saved. Its designs are entered in the same order, so that the state is the
-    /// same.
+    /// Restores the state that an earlier process saved. Its designs are entered in the same order, so that the
+    /// restored state equals the saved one. `only` is the only objective that counts, if there is one.
     pub(super) fn from_kept(of: KeptState, only: Option<Objective>) -> Self {
         let KeptState { incumbents, tried, kept, undecided, evaluated } = of;
         let mut state = Self::toward(only);
@@ -106,8 +106,9 @@ impl SearchState {
         exact_front(&points).unwrap_or_default().into_iter().map(|i| self.kept[i].objectives).collect()
     }
 
-    /// The progress of the search, for a front and a number of open boxes or regions. A `gap` of `None` adds nothing to
-    /// the gap reported before.
+    /// The progress of the search as other threads read it. `front` are the designs found that no other dominates,
+    /// `open` is the number of open boxes or regions, and `gap` a gap that was proved. If it is `None`, the gap
+    /// reported before remains.
     pub(super) fn known(&self, front: &[Objectives], open: usize, gap: Option<f64>) -> Known {
         Known {
             boxes_open: open as u64,

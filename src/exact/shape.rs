@@ -28,7 +28,7 @@ pub(super) struct Shape {
     /// Coefficients of `xᵀMx` (twice the kinetic energy per squared angular frequency): one for each line inertia of
     /// each piece.
     pub kinetic: Vec<[f64; INERTIAS]>,
-    /// Constant term of `xᵀMx`, from the payload and given bodies.
+    /// Constant term of `xᵀMx`, from the payload and the bodies that the study gives.
     pub kinetic_fixed: f64,
 }
 
@@ -40,8 +40,9 @@ pub(super) struct Ideal<'a> {
 }
 
 impl Shape {
-    /// A shape of a low mode of an ideal arm, by `steps` steps of inverse iteration. The first shape is the deformation
-    /// under an acceleration of the base in this direction. The shape is made orthogonal to the other shapes.
+    /// A shape of a low mode of an ideal arm, found by `steps` steps of inverse iteration. The first shape is the
+    /// deformation under an acceleration of the base along `direction`. The shape is kept orthogonal to the shapes in
+    /// `others`, so that it becomes another mode than these.
     pub(super) fn start(
         pose: &Pose,
         ideal: &Ideal,
@@ -66,7 +67,8 @@ impl Shape {
         shape
     }
 
-    /// One step of inverse iteration towards the lowest mode of an ideal arm.
+    /// One step of inverse iteration of this shape towards the lowest mode of an ideal arm that is orthogonal to the
+    /// shapes in `others`.
     pub(super) fn improve(&mut self, pose: &Pose, ideal: &Ideal, others: &[Self], work: &mut Work) {
         self.iterate(pose, ideal, &Twist::zeros(), work);
         self.clear_of(pose, ideal, others);
@@ -98,7 +100,8 @@ impl Shape {
         kinetic
     }
 
-    /// One step of inverse iteration, `x ← C M x`, in which the base moves by `base`. Scales the shape afterwards.
+    /// Replaces this shape `x` by `C M x`, one step of inverse iteration, in which the base moves by `base`. Then it is
+    /// scaled.
     fn iterate(&mut self, pose: &Pose, ideal: &Ideal, base: &Twist, work: &mut Work) {
         inertia_forces(pose, ideal.inertia, base, &self.x, work);
         let mut largest = 0.0f64;
@@ -119,8 +122,8 @@ impl Shape {
         }
     }
 
-    /// Makes the shape orthogonal to the other shapes with respect to the stiffness matrix `K`, so that it converges to
-    /// another mode.
+    /// Makes this shape orthogonal to the shapes in `others` with respect to the stiffness matrix `K`, so that it
+    /// converges to another mode than these.
     fn clear_of(&mut self, pose: &Pose, ideal: &Ideal, others: &[Self]) {
         for other in others {
             let (mut common, mut own) = (0.0, 0.0);
@@ -185,9 +188,9 @@ pub(super) fn products<const N: usize>(a: &[[f64; N]], b: &[[f64; N]]) -> f64 {
     a.iter().zip(b).map(|(a, b)| dot(a, b)).sum()
 }
 
-/// Computes `M x` into `work.forces`: the inertia forces on every coordinate, per squared angular frequency, when the
-/// arm moves by `x` and its base by `base`. One pass goes outward for the motion and one inward for the forces, so no
-/// matrix is formed.
+/// Writes `M x` to `work.forces`: the inertia force on every coordinate, divided by the squared angular frequency, when
+/// the arm moves by `x` and its base by `base`. One pass goes outward and computes the motion, a second one goes inward
+/// and sums the forces. No matrix is formed.
 pub(super) fn inertia_forces(
     pose: &Pose,
     inertia: &[[f64; INERTIAS]],
@@ -264,7 +267,8 @@ impl PosedPiece {
     }
 }
 
-/// Adds the motion by the tilts of a joint's bearing to the motion of everything outboard.
+/// Adds the motion that the two tilts of a joint's bearing cause to `twist`, the motion of everything outboard. `x`
+/// holds the coordinates of the joint.
 #[inline]
 fn add_tilts(across: &Option<[Twist; 2]>, x: &[f64], twist: &mut Twist) {
     for (tilt, x) in across.iter().flatten().zip(&x[TILT..]) {
@@ -276,7 +280,7 @@ fn add_tilts(across: &Option<[Twist; 2]>, x: &[f64], twist: &mut Twist) {
 #[derive(Default)]
 pub(super) struct Work {
     momenta: Vec<Momentum>,
-    /// Inertia force on each coordinate: [`COORDINATES`] places for each piece, tip first.
+    /// Inertia force on each strain coordinate. There are [`COORDINATES`] places for each piece, tip first.
     pub forces: Vec<f64>,
 }
 
@@ -301,7 +305,8 @@ fn displacement(twist: &Twist, at_m: &Vector3<f64>) -> Vector3<f64> {
 }
 
 impl PosedTube {
-    /// Adds the motion by the tube's own coordinates to `twist`, the motion of everything outboard.
+    /// Adds the motion of the tube's end relative to its root to `twist`, the motion of everything outboard. `x` holds
+    /// the strain coordinates of the tube.
     #[inline]
     fn carry(&self, twist: &mut Twist, x: &[f64]) {
         for (end, coordinate) in ENDS.into_iter().enumerate() {
@@ -332,7 +337,7 @@ impl Local {
         }
     }
 
-    /// The momentum of the tube for these line inertias, with the given bodies on it.
+    /// The momentum of the tube with the line inertias `line`, with the given bodies on it.
     #[inline]
     fn momentum(&self, tube: &PosedTube, line: &[f64; INERTIAS]) -> TubeMomentum {
         let f = &tube.forms;

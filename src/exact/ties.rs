@@ -7,9 +7,9 @@ use crate::space::design::{number, options};
 use std::collections::{BTreeSet, HashMap};
 
 impl Problem<'_> {
-    /// All designs for which the designs in `found` stand. The drive of such a design stands for all drives of its
-    /// kind. If there are more than `most` designs, only the first one for each design in `found` is returned. The flag
-    /// tells whether all are returned.
+    /// All designs that the designs in `found` represent. The drive of such a design represents all drives of its kind
+    /// (equal mass, curve and bearing stiffness). If there are more than `most` designs, only the first one for each
+    /// design in `found` is returned. The flag is `true` if all are returned.
     pub(super) fn with_ties(&self, found: &[Candidate], most: usize) -> (Vec<Candidate>, bool) {
         let with_ties: Vec<(&Candidate, Vec<Vec<u32>>)> = self.feasible_drives(found);
         let count = |lists: &Vec<Vec<u32>>| lists.iter().map(|list| list.len() as f64).product::<f64>();
@@ -34,8 +34,9 @@ impl Problem<'_> {
         (designs, lists_all)
     }
 
-    /// For each design found, a list of options for each level, tip first. For a level of drives, the list contains the
-    /// drives of the same kind that carry the demand. Drives that carry it by more than rounding come first.
+    /// For each design in `found`, the options of each level that may replace its own, tip first. For a level of
+    /// drives, these are the drives of the same kind that carry the demand. Drives that carry it by more than rounding
+    /// come first.
     fn feasible_drives<'f>(&self, found: &'f [Candidate]) -> Vec<(&'f Candidate, Vec<Vec<u32>>)> {
         let chosen: Vec<Option<Vec<u32>>> =
             found.iter().map(|candidate| options(&self.level_sizes, candidate.number)).collect();
@@ -72,7 +73,7 @@ impl Problem<'_> {
         pairs.filter_map(|(candidate, options)| Some((candidate, lists_of(options.as_ref()?)?))).collect()
     }
 
-    /// For each level, the leaf of each option that some of the designs has.
+    /// For each level, the leaf of each option that one of the designs has. Each design is given by its options.
     fn leaves_of(&self, designs: &[Option<Vec<u32>>]) -> Vec<HashMap<u32, u32>> {
         let of_level = |(level, &piece): (usize, &usize)| {
             let wanted: BTreeSet<u32> = designs.iter().flatten().map(|options| options[level]).collect();

@@ -5,25 +5,27 @@ use super::parts::STIFFNESSES;
 use super::problem::{Part, Problem};
 use super::work::Work;
 
-/// The displacement of the tip in a judged case along the direction of the box's least deflection, as a linear function
-/// of the numbers of the parts.
+/// The displacement of the tip in a judged case along a fixed direction, as a linear function of the numbers of the
+/// parts. The direction is that of the tip's displacement when it is least over the box.
 pub(super) struct TipRow {
     /// Index of the case.
     pub case: usize,
-    /// Displacement per newton of each piece's weight \[m/N\], caused through tubes, bearings and those gears that keep
-    /// a single slope.
+    /// Displacement of the tip along the direction per newton of each piece's weight \[m/N\]. It comes about through
+    /// tubes, bearings and those gears that keep a single slope.
     pub per_n: Vec<f64>,
-    /// Displacement per radian of each joint's torsion \[m/rad\]; 0 for other pieces.
+    /// Displacement of the tip along the direction per radian of each joint's torsion \[m/rad\]; 0 for other pieces.
     pub joints: Vec<f64>,
     /// For each gear that keeps a single slope, the torque at which its torsion curve is evaluated \[N m\]. `None` for
     /// other pieces and for gears whose slope may change.
     pub torques_nm: Vec<Option<f64>>,
-    /// Displacement per unit of each compliance of a tube, and of a joint's bearing.
+    /// Displacement of the tip along the direction per unit of each compliance of a tube, or of a joint's bearing; one
+    /// entry for each piece.
     pub compliances: Vec<[f64; STIFFNESSES]>,
 }
 
 impl TipRow {
-    /// The tip row of a judged case, and its constant term, which no choice changes \[m\].
+    /// The row of the tip's displacement in a judged case, and the part of this displacement that no choice changes
+    /// \[m\]. `judged` is the index among the judged cases and `case` that among all cases.
     pub(super) fn new(problem: &Problem, judged: usize, case: usize, work: &Work) -> (Self, f64) {
         let pose = &problem.poses[case];
         let pieces = problem.parts.len();

@@ -68,8 +68,8 @@ impl CurveBox {
         Some(Self { stiff: torsion, soft: torsion, k1_in_modes: !matches!(curve, Curve::Windup(_)) })
     }
 
-    /// Whether modes see, for each gear of the box, one slope and one play under all torques whose magnitude lies in an
-    /// interval \[N m\].
+    /// Whether every gear of the box has a single slope in the modes, and a single play, under all torques whose
+    /// magnitude lies between `least_nm` and `most_nm` \[N m\]. `breaks` are the break points of the gears' curves.
     pub(super) fn keeps_its_slope(
         &self,
         play: Option<&JointPlay>,
@@ -85,23 +85,26 @@ impl CurveBox {
         keeps_its_segment && play.is_none_or(|play| play.stays(most_nm))
     }
 
-    /// Greatest slope that modes may see for torques whose magnitude lies in an interval \[N m/rad\].
+    /// Greatest slope that a gear of the box may have in the modes \[N m/rad\] under torques whose magnitude lies
+    /// between `least_nm` and `most_nm` \[N m\].
     pub(super) fn stiffest(&self, least_nm: f64, most_nm: f64) -> f64 {
         self.slopes(&self.stiff.windup, least_nm, most_nm).fold(0.0, f64::max)
     }
 
-    /// Least slope that modes may see for torques whose magnitude lies in an interval \[N m/rad\].
+    /// Least slope that a gear of the box may have in the modes \[N m/rad\] under torques whose magnitude lies between
+    /// `least_nm` and `most_nm` \[N m\].
     pub(super) fn softest(&self, least_nm: f64, most_nm: f64) -> f64 {
         self.slopes(&self.soft.windup, least_nm, most_nm).fold(f64::INFINITY, f64::min)
     }
 
-    /// Greatest slope of the static torsion curve for torques whose magnitude lies in an interval \[N m/rad\]. The
-    /// static twist uses the slope at the torque even if modes use K1.
+    /// Greatest slope of the torsion curves \[N m/rad\] for static twist under torques whose magnitude lies between
+    /// `least_nm` and `most_nm` \[N m\]. Static twist uses the slope at the torque even if modes use K1.
     pub(super) fn steepest(&self, least_nm: f64, most_nm: f64) -> f64 {
         slopes(&self.stiff.windup, least_nm, most_nm).fold(0.0, f64::max)
     }
 
-    /// Least and greatest twist of the members, with play \[rad\], for torques in an interval \[N m\].
+    /// The least and the greatest twist over the members, with play \[rad\], under torques between `low` and `high` \[N
+    /// m\].
     pub(super) fn twist(&self, play: Option<&JointPlay>, [low, high]: [f64; 2]) -> [f64; 2] {
         let least = if low >= 0.0 { &self.stiff } else { &self.soft }.angle_rad(low);
         let most = if high >= 0.0 { &self.soft } else { &self.stiff }.angle_rad(high);
@@ -109,19 +112,21 @@ impl CurveBox {
         [least + less, most + more]
     }
 
-    /// Least and greatest part of the twist that comes from play \[rad\], for torques in an interval \[N m\].
+    /// The least and the greatest twist that play adds over the members \[rad\], under torques in the interval
+    /// `between_nm` \[N m\].
     pub(super) fn twist_of_play(&self, play: Option<&JointPlay>, between_nm: [f64; 2]) -> [f64; 2] {
         let middle = [&self.stiff, &self.soft].map(|torsion| torsion.compliance[1]);
         play.map_or([0.0; 2], |play| play.twist(middle, between_nm))
     }
 
-    /// The slopes of curve `w` that modes may see for torques whose magnitude lies in an interval.
+    /// The slopes that the curve `w` may have in the modes \[N m/rad\] under torques whose magnitude lies between
+    /// `least_nm` and `most_nm` \[N m\].
     fn slopes(&self, w: &Windup, least_nm: f64, most_nm: f64) -> impl Iterator<Item = f64> {
         let (least_nm, most_nm) = if self.k1_in_modes { (0.0, 0.0) } else { (least_nm, most_nm) };
         slopes(w, least_nm, most_nm)
     }
 
-    /// The box of the members of both boxes.
+    /// The box of all members of this box and of `other`.
     pub(super) fn join(&self, other: &Self) -> Self {
         Self {
             stiff: join(rising, [&self.stiff, &other.stiff], f64::max, f64::min),
@@ -131,8 +136,9 @@ impl CurveBox {
     }
 }
 
-/// A curve that bounds two others on one side. First `lifted` makes the slopes of each curve rise with torque. Then
-/// `slope` and `end` take the extreme of the slopes and of the break points.
+/// A curve that bounds the curves `both` on one side. First `lifted` replaces each of them by a curve whose slope does
+/// not fall with torque. Then `slope` selects the slope of each segment, and `end` the break points: the larger or the
+/// smaller of the two.
 fn join(
     lifted: fn(&Windup) -> Windup,
     both: [&Torsion; 2],
@@ -149,21 +155,21 @@ fn join(
     })
 }
 
-/// The curve with the least slopes that do not fall with torque and are nowhere below those of `w`. Of several such
-/// curves, the greatest slopes and the least break points make a curve that is nowhere softer than any of them.
+/// The softest curve whose slope does not fall with torque and is nowhere below that of `w`. If several such curves are
+/// combined by the greatest slopes and the least break points, the result is nowhere softer than any of them.
 fn rising(w: &Windup) -> Windup {
     let k2 = w.k1_nm_per_rad.max(w.k2_nm_per_rad);
     Windup { k2_nm_per_rad: k2, k3_nm_per_rad: k2.max(w.k3_nm_per_rad), ..*w }
 }
 
-/// The curve with the greatest slopes that do not fall with torque and are nowhere above those of `w`.
+/// The stiffest curve whose slope does not fall with torque and is nowhere above that of `w`.
 fn rising_below(w: &Windup) -> Windup {
     let k2 = w.k2_nm_per_rad.min(w.k3_nm_per_rad);
     Windup { k1_nm_per_rad: k2.min(w.k1_nm_per_rad), k2_nm_per_rad: k2, ..*w }
 }
 
-/// The slopes of the segments \[N m/rad\] that contain a torque of the interval. Torques are given by their magnitudes
-/// \[N m\].
+/// The slopes of those segments of `w` \[N m/rad\] that contain a torque whose magnitude lies between `least_nm` and
+/// `most_nm` \[N m\].
 fn slopes(w: &Windup, least_nm: f64, most_nm: f64) -> impl Iterator<Item = f64> {
     // A break point belongs to the segment below it
     let touched = move |s: &Segment| least_nm <= s.to_nm && (most_nm > s.from_nm || s.from_nm == 0.0);
@@ -191,13 +197,13 @@ impl BreakPoints {
         })
     }
 
-    /// The break points of both sets.
+    /// The break points of this set and of `other`.
     pub(super) fn join(&self, other: &Self) -> Self {
         Self(std::array::from_fn(|i| self.0[i] | other.0[i]))
     }
 
-    /// Whether a break point may lie between two torques \[N m\]. Within the steps of the grid, the answer may be true
-    /// without one.
+    /// Whether the set may have a break point between two torques \[N m\]. The grid has steps of about 5 %, so the
+    /// answer may be `true` although the nearest break point lies just outside.
     fn any_between(&self, least_nm: f64, most_nm: f64) -> bool {
         (Self::cell(least_nm)..=Self::cell(most_nm)).any(|cell| self.0[cell / 64] >> (cell % 64) & 1 == 1)
     }

@@ -20,7 +20,8 @@ pub(super) trait Bounds: Clone {
 /// Coordinates of an option by which a tree separates it from others.
 pub(super) type Key = [f64; 5];
 
-/// The base tree of a level, or a tree over some nodes of the base tree.
+/// A tree over the options of a level. It is either the base tree, which has all options, or a tree that is built over
+/// some nodes of the base tree.
 pub(super) struct Tree<B> {
     nodes: Vec<Node<B>>,
     /// The base tree, if this tree is built over some of its nodes; `None` for a base tree. In this tree, nodes of the
@@ -73,7 +74,8 @@ impl<B: Bounds> Tree<B> {
         Some(Self { nodes, whole: None, stands_on: vec![0] })
     }
 
-    /// A tree over the nodes `kept` of the base tree, none of which is below another. `None` if `kept` is empty.
+    /// A tree over the nodes `kept` of the base tree `tree`. None of these nodes may lie below another. `None` if
+    /// `kept` is empty.
     pub(super) fn over(tree: &Arc<Self>, kept: &[u32]) -> Option<Arc<Self>> {
         // Nothing was excluded, so the same tree serves.
         if tree.whole.is_some() && tree.stands_on == kept {
@@ -104,8 +106,8 @@ impl<B: Bounds> Tree<B> {
     }
 
     /// About `most` nodes of the base tree that together contain every option below `node` for which `may` is true.
-    /// `may` is asked for boxes, so options for which it is false may be among them. The node with the most options is
-    /// divided first.
+    /// `may` is asked for boxes of options, so the nodes may also contain options for which it is false. The node with
+    /// the most options is divided first.
     pub(super) fn kept(&self, node: u32, most: usize, may: impl Fn(&B) -> bool) -> Vec<u32> {
         let mut heap = BinaryHeap::new();
         let mut enter = |at: u32| {
@@ -145,13 +147,13 @@ impl<B: Bounds> Tree<B> {
         kept
     }
 
-    /// Number of options below some nodes of the base tree.
+    /// Number of options below the nodes `kept` of the base tree (the tree over all options of the level).
     pub(super) fn members_of(&self, kept: &[u32]) -> f64 {
         let whole = self.whole.as_deref().unwrap_or(self);
         kept.iter().map(|&at| f64::from(whole.node(at).members)).sum()
     }
 
-    /// The options below some nodes of the base tree, ascending.
+    /// The options below the nodes `kept` of the base tree (the tree over all options of the level), ascending.
     pub(super) fn options_of(&self, kept: &[u32]) -> Vec<u32> {
         let whole = self.whole.as_deref().unwrap_or(self);
         let (mut options, mut open) = (Vec::new(), kept.to_vec());
@@ -165,7 +167,7 @@ impl<B: Bounds> Tree<B> {
         options
     }
 
-    /// The leaf of each wanted option, by the number of the option.
+    /// The leaf (node of a single option) of each option in `wanted`, by the number of the option.
     pub(super) fn leaves_of(&self, wanted: &BTreeSet<u32>) -> HashMap<u32, u32> {
         let nodes = self.nodes.iter().zip(0..);
         nodes
@@ -195,8 +197,8 @@ impl<B: Bounds> Tree<B> {
         }
     }
 
-    /// The smallest node at or below `node` that contains every option for which `holds` is true. `holds` must be true
-    /// for a box if it is true for an option in the box. `None` if no option is left.
+    /// The smallest node at or below `node` that contains every option for which `holds` is true. For a box, `holds`
+    /// must be true if it is true for any option in the box. `None` if it is false for all options.
     pub(super) fn smallest_node(&self, mut node: u32, holds: impl Fn(&B) -> bool) -> Option<u32> {
         if !holds(&self.node(node).bounds) {
             return None;
@@ -241,8 +243,8 @@ struct Item {
     key: Key,
 }
 
-/// Builds the tree over some items and returns the number of its root. For an item, `leaf` returns its bounds and the
-/// kind of its node. The kind is `None` if the item is already a node of the base tree.
+/// Builds the tree over `items`, appends its nodes to `nodes` and returns the number of its root. For an item, `leaf`
+/// returns its bounds and the kind of its node; the kind is `None` if the item is a node of the base tree already.
 fn grow<'b, B: Bounds + 'b>(
     items: &mut [Item],
     nodes: &mut Vec<Node<B>>,

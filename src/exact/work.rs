@@ -9,7 +9,7 @@ use crate::sizing::demand::JointDemand;
 use crate::sizing::fit::LinkRoom;
 use nalgebra::Vector3;
 
-/// Working memory for the bound of one box. A worker reuses it for box after box, so that no memory is allocated for
+/// Working memory with the intervals of one box. A worker uses it for box after box, so that no memory is allocated for
 /// each.
 #[derive(Default)]
 pub(super) struct Work {
@@ -35,9 +35,11 @@ pub(super) struct Work {
     pub(super) stiff_in: Vec<Vec<[f64; STIFFNESSES]>>,
     /// Mass of each piece, as an interval \[kg\].
     pub(super) masses: Vec<[f64; 2]>,
-    /// The least demand on each joint whose drive is a level, one place for each piece; `None` for any other piece.
+    /// The least demand on each joint whose drive the search chooses; one entry for each piece, `None` for any other
+    /// piece.
     pub(super) least_demands: Vec<Option<LeastDemand>>,
-    /// The greatest demand on each joint whose drive is a level, one place for each piece; `None` for any other piece.
+    /// The greatest demand on each joint whose drive the search chooses; one entry for each piece, `None` for any other
+    /// piece.
     pub(super) greatest_demands: Vec<Option<JointDemand>>,
     /// Tilt of each joint's output bearing per moment, as an interval \[rad/(N m)\]; 0 for a bearing that does not
     /// tilt.
@@ -51,10 +53,10 @@ pub(super) struct Work {
     pub(super) breaks: Vec<BreakPoints>,
     /// Least and greatest magnitude of the torque on each joint, in each judged case \[N m\].
     pub(super) torques: Vec<Vec<[f64; 2]>>,
-    /// The judged case in which the tip's least deflection is greatest, and the direction of the tip's displacement
-    /// there.
+    /// The judged case in which the least tip deflection of the box is greatest, and the direction in which the tip
+    /// moves there.
     pub(super) worst_tip: Option<(usize, Vector3<f64>)>,
-    /// Direction of the tip's least deflection in each judged case.
+    /// For each judged case, the direction of the tip's displacement when it is least over the box.
     pub(super) tip_directions: Vec<Vector3<f64>>,
     /// Upper bound of the tip's deflection \[m\], one entry for each judged case in which contributions to the tip's
     /// displacement may oppose each other.
@@ -64,8 +66,8 @@ pub(super) struct Work {
     pub(super) tip_growth: Vec<f64>,
     /// Buffers of the inverse iteration that improves trial shapes.
     pub(super) shape: ShapeWork,
-    /// The trial shape with the least Rayleigh quotient: index of the judged case, and index of the starting
-    /// acceleration ([`STARTS`](super::bound::STARTS)).
+    /// The trial shape (motion that bounds the lowest mode) with the least Rayleigh quotient, given by the index of its
+    /// judged case and the index of its starting acceleration ([`STARTS`](super::bound::STARTS)).
     pub(super) worst: (usize, usize),
 }
 
@@ -99,7 +101,8 @@ impl Work {
         }
     }
 
-    /// Fills in the mass, weight, torsion curve and bearing stiffness of a joint.
+    /// Writes the mass, weight, torsion curve and bearing stiffness of a joint into this memory. All are intervals over
+    /// the drives of the box.
     pub(super) fn joint(
         &mut self,
         problem: &Problem,
@@ -121,7 +124,8 @@ impl Work {
         }
     }
 
-    /// Fills in the stiffnesses, inertias, mass and weight of a tube.
+    /// Writes the stiffnesses, inertias, mass and weight of a tube into this memory. `links` holds the intervals over
+    /// the options of the box.
     pub(super) fn tube(&mut self, problem: &Problem, piece: usize, length_m: f64, links: &LinkBox) {
         // An infinite stiffness becomes 0, which stands for a rigid coordinate. Infinity times zero strain would be
         // NaN.

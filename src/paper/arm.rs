@@ -53,7 +53,7 @@ pub struct PaperArm {
 /// Statics and modes of an arm, computed by the library.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solved {
-    /// Displacements, torques and the parts of the displacement under static load.
+    /// Displacements and torques under static load, and the part of the displacement that each element causes.
     pub statics: Statics,
     /// Natural frequencies in the vertical plane, lowest first \[Hz\].
     pub in_plane_hz: Vec<f64>,
@@ -76,7 +76,8 @@ impl PaperArm {
         }
     }
 
-    /// This arm with its joint stiffnesses multiplied by `factors`. Joints with a torsion curve keep their curve.
+    /// This arm with the stiffness of each of joints 2, 3 and 4 multiplied by its entry in `factors`. A joint with a
+    /// torsion curve keeps its curve.
     pub fn with_stiffness_factors(&self, factors: [f64; 3]) -> Self {
         let mut arm = self.clone();
         for (curve, factor) in arm.curves.iter_mut().zip(factors) {
@@ -160,13 +161,14 @@ impl PaperArm {
         Payload { mass_kg: self.load_kg, ..Payload::default() }
     }
 
-    /// Statics and in-plane modes of the stretched arm under its load.
+    /// Statics of the stretched arm under its load, and its modes in the vertical plane. `links` tells which
+    /// deformations of the links count.
     pub fn solve(&self, links: LinkModel) -> Solved {
         self.solve_changed(links, |_| {})
     }
 
-    /// Statics and in-plane modes after a change to the structure. The change may be a connection in series or a
-    /// stiffer link.
+    /// Statics and modes in the vertical plane after `change` has altered the structure (the arm as the mechanics sees
+    /// it). A change may be a connection in series with a joint, or a stiffer link.
     pub fn solve_changed(&self, links: LinkModel, change: impl FnOnce(&mut Structure)) -> Solved {
         let mut structure = self.arm().structure(JointModel::ThreeSegment);
         change(&mut structure);
@@ -179,7 +181,7 @@ impl PaperArm {
         })
     }
 
-    /// Puts the stretched arm into its pose and calls `use_it` with it.
+    /// Puts the arm `structure` into the stretched pose and calls `use_it` with the posed arm.
     pub fn with_posed<T>(
         &self,
         structure: &Structure,
@@ -197,7 +199,7 @@ impl Solved {
         -self.statics.tip_displacement_m.z
     }
 
-    /// Part of the load's downward displacement that one element causes \[m\].
+    /// Part of the load's downward displacement \[m\] that the element with this name (a joint or a link) causes.
     pub fn share_m(&self, name: &str) -> f64 {
         self.statics.shares_m.iter().filter(|(n, _)| n == name).map(|(_, s)| -s.z).sum()
     }
@@ -223,7 +225,8 @@ impl Solved {
     }
 }
 
-/// Adds a connection in series with a joint. `compliance_rad_per_nm` is the compliance of the connection.
+/// Adds a connection in series with the joint of this name. `compliance_rad_per_nm` is the compliance of the
+/// connection.
 pub fn connect(structure: &mut Structure, joint: &str, compliance_rad_per_nm: f64) {
     for piece in &mut structure.pieces {
         if let Piece::Joint(piece) = piece
@@ -234,7 +237,7 @@ pub fn connect(structure: &mut Structure, joint: &str, compliance_rad_per_nm: f6
     }
 }
 
-/// Multiplies every stiffness of a link by `factor`, and leaves its mass unchanged.
+/// Multiplies every stiffness of the link with this name by `factor`. The mass of the link stays the same.
 pub fn stiffen_link(structure: &mut Structure, link: &str, factor: f64) {
     for piece in &mut structure.pieces {
         if let Piece::Link(piece) = piece

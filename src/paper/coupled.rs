@@ -109,7 +109,7 @@ fn cubic_roots([c0, c1, c2, c3]: [f64; 4]) -> [f64; 3] {
     roots
 }
 
-/// Root of `x³ + a x² + b x + c`, by Newton's method from a good start.
+/// The root of `x³ + a x² + b x + c` that Newton's method finds from `start`.
 fn polish([c, b, a]: [f64; 3], start: f64) -> f64 {
     (0..4).fold(start, |x, _| {
         let value = ((x + a) * x + b) * x + c;
@@ -123,10 +123,10 @@ pub fn single_spring_hz(stiffness_n_per_m: f64, mass_kg: f64) -> f64 {
     (stiffness_n_per_m / mass_kg).sqrt() / TAU
 }
 
-/// Changes the masses of an arm so that it gets three given frequencies. The third spring stays unchanged.
+/// Changes masses of an arm so that its three frequencies become `wanted_hz`. The third spring stays unchanged.
 ///
 /// The unknowns are the wrist mass, the load mass and the distance of the load. Newton's method on their logarithms
-/// starts from the arm's own values. No step changes an unknown by more than a tenth. `None` if the three
+/// starts from the values that the arm has. No step changes an unknown by more than a tenth. `None` if the three
 /// frequencies cannot be reached with this spring.
 pub fn masses_that_give(arm: &PaperArm, wanted_hz: [f64; 3]) -> Option<PaperArm> {
     let wanted = Vector3::from(wanted_hz.map(libm::log));

@@ -78,7 +78,7 @@ fn frequencies(arm: &PaperArm, matching: &Reading) -> Vec<PaperRow> {
     .concat()
 }
 
-/// Text with the masses and the third spring that give the printed frequencies.
+/// Text that states the masses and the third spring with which Eq 16 gives the frequencies that the paper prints.
 fn matching_words(arm: &PaperArm, matching: &Reading) -> String {
     format!(
         "{} kg at and beyond the wrist (Table 1: {} kg), third spring K4 and K5 in series, \

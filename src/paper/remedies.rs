@@ -42,19 +42,19 @@ impl CatalogGears {
     }
 }
 
-/// The tip error that remains after a correction.
+/// The error of the tip's position that remains after a correction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ErrorLeft {
     /// What is measured or computed for the correction, in words.
     pub method: String,
-    /// Remaining error if the gears are springs of stiffness K2 \[m\].
+    /// Error of the tip's position that remains if the gears are springs of stiffness K2 \[m\].
     pub middle_slope_m: f64,
-    /// Remaining error if the gears follow the three-segment curve \[m\].
+    /// Error of the tip's position that remains if the gears follow the three-segment curve \[m\].
     pub curve_m: f64,
 }
 
-/// The errors that remain after the two remedies of the paper's conclusions. In one, the deflection of the joints
-/// is measured at the output. In the other, it is computed from the motor's torque.
+/// The errors of the tip's position that remain after each of the two remedies in the paper's conclusions. In one, the
+/// deflection of the joints is measured at the output. In the other, it is computed from the motor's torque.
 pub fn error_left(gears: &CatalogGears) -> Vec<ErrorLeft> {
     let [k2, curve] = [&gears.middle_slope, &gears.curve].map(|arm| arm.solve(LinkModel::Full));
     let row = |method: &str, left: &dyn Fn(&Solved) -> f64| ErrorLeft {
@@ -111,7 +111,8 @@ pub struct Connection {
     pub frequency_ratio: f64,
 }
 
-/// The effect of connections after Rivin, between motor and gear or between gear and arm, in one joint at a time.
+/// The effect of compliant connections (after Rivin) on deflection and lowest frequency. Each is between motor and gear
+/// or between gear and arm, in one joint at a time.
 pub fn connections(arm: &PaperArm) -> Vec<Connection> {
     let before = arm.solve(LinkModel::Full);
     let one = |joint: &'static str, stiffness: f64| {
@@ -163,7 +164,8 @@ pub struct Stiffer {
     pub frequency_ratio: f64,
 }
 
-/// Doubles the stiffness of each joint and of each link, one at a time. Masses stay unchanged.
+/// Doubles the stiffness of each joint and of each link, one at a time, and computes the effect on deflection and
+/// lowest frequency. Masses stay unchanged.
 pub fn stiffer(arm: &PaperArm) -> Vec<Stiffer> {
     let before = arm.solve(LinkModel::Full);
     let row = |element, after: Solved| Stiffer {

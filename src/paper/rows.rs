@@ -31,7 +31,7 @@ pub struct PaperRow {
 }
 
 impl PaperRow {
-    /// A row without any number yet.
+    /// A row with its name and unit, in which no number is set yet.
     pub fn new(id: &'static str, quantity: &'static str, unit: &'static str, decimals: usize) -> Self {
         Self { id, quantity, unit, decimals, ..Self::default() }
     }
@@ -43,20 +43,20 @@ impl PaperRow {
         self
     }
 
-    /// Sets our number for one reading of the equation, and describes this reading in words.
+    /// Sets the number that we compute with one reading of the equation, and describes this reading in words.
     pub fn reading(mut self, value: f64, reading: impl Into<String>) -> Self {
         self.reading_value = Some(value);
         self.reading = reading.into();
         self
     }
 
-    /// Sets the number of the exact model.
+    /// Sets the number that the exact model gives.
     pub fn exact(mut self, value: f64) -> Self {
         self.exact = Some(value);
         self
     }
 
-    /// Sets the reason why the numbers differ.
+    /// Sets the reason why our number and the paper's differ.
     pub fn because(mut self, reason: impl Into<String>) -> Self {
         self.reason = reason.into();
         self

@@ -33,7 +33,7 @@ impl Reading {
         self.arm.wrist_kg + self.arm.load_kg
     }
 
-    /// Largest relative difference between a frequency and the paper's.
+    /// Largest relative difference between one of the three frequencies and the frequency that the paper prints.
     pub fn worst(&self) -> f64 {
         let gaps = self.frequencies_hz.iter().zip(PRINTED_HZ).map(|(f, p)| (f / p - 1.0).abs());
         gaps.fold(0.0, f64::max)

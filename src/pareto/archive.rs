@@ -38,7 +38,7 @@ impl Archive {
         Self { bits, columns, best_hz: (0..all).map(|_| AtomicU32::new(0)).collect() }
     }
 
-    /// Whether a design that was entered before surely dominates this one.
+    /// Whether a design that was entered before surely dominates a design with the objectives `o`.
     #[inline]
     pub(crate) fn rejects(&self, o: &Objectives) -> bool {
         self.bar_hz(o.mass_kg, o.tip_deflection_m) > o.lowest_mode_hz
@@ -80,8 +80,8 @@ impl Archive {
         }
     }
 
-    /// The index of the step of the logarithmic scale at or below a positive number, or at or above it. `None`
-    /// outside of the range.
+    /// The index of the grid step next to the positive number `x`: the step at or below it, or at or above it, as
+    /// `side` says. `low` and `high` are the ends of the scale in powers of two. `None` outside of the scale.
     #[inline]
     fn corner(&self, x: f64, (low, high): (i32, i32), side: Corner) -> Option<usize> {
         let shift = f64::MANTISSA_DIGITS - 1 - self.bits;

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 /// Number of significant decimal digits that count when two objectives are compared. Smaller differences are rounding
 /// errors.
 const DIGITS: i32 = 12;
-/// Relative difference from which on two objectives surely differ after rounding to twelve digits.
+/// If two numbers differ by at least this fraction, they surely differ after rounding to twelve digits.
 const SURELY_APART: f64 = 1e-10;
 
 /// The error for a point with an objective that is not a number (NaN), which cannot be compared with others.
@@ -121,8 +121,8 @@ pub fn not_clearly_beaten(points: &[[f64; 3]], slack: f64) -> Vec<usize> {
     kept
 }
 
-/// For each rank of the second objective, the largest rank whose value is not above the lowered value of this rank.
-/// `None` if there is none.
+/// For each rank of the second objective, the largest rank whose value is not above the value of the first after
+/// `lowered` was applied to it. `None` if there is none.
 fn reaches(second: &[f64], lowered: impl Fn(f64) -> f64) -> Vec<Option<u32>> {
     let mut below = 0;
     let count = second.iter().map(|&x| {

@@ -37,7 +37,8 @@ impl Objective {
 }
 
 impl Objectives {
-    /// The objectives of a hypothetical design that is better by this factor in all three.
+    /// The objectives of a hypothetical design that is better in all three by `factor`: mass and deflection divided by
+    /// it, lowest mode multiplied by it.
     pub(crate) fn better_by(&self, factor: f64) -> Self {
         Self {
             tip_deflection_m: self.tip_deflection_m / factor,

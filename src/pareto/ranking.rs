@@ -52,8 +52,8 @@ fn key(x: f64) -> u64 {
     if bits >> 63 == 0 { bits | 1 << 63 } else { !bits }
 }
 
-/// Gives ranks to a list of points that is sorted by the second objective. Returns the value of the second
-/// objective for each rank.
+/// Sets the rank of each point in `order`, which is sorted by the second objective. Returns the value of the second
+/// objective of each rank.
 fn rank(order: &mut [Ranked], points: &[[f64; 3]]) -> Vec<f64> {
     let mut second: Vec<f64> = Vec::new();
     for ranked in order {
@@ -66,15 +66,15 @@ fn rank(order: &mut [Ranked], points: &[[f64; 3]]) -> Vec<f64> {
     second
 }
 
-/// A point with its 32-bit code, by which it is sorted.
+/// A point with the 32-bit code by which it is sorted.
 #[derive(Clone, Copy, Default)]
 struct Coded {
     code: u32,
     ranked: Ranked,
 }
 
-/// Sorts points by a key, in two steps. First they are sorted by the leading bits of `key`, and the sort is stable.
-/// Then each run of points with equal leading bits is sorted by `whole`, unless it is already in order.
+/// Sorts points in two steps. First they are sorted by the leading bits of `key`, and points with equal bits keep their
+/// order. Then each run of points with equal leading bits is sorted by `whole`, unless it is in order already.
 fn sorted<O: Ord + Send>(
     order: Vec<Ranked>,
     key: impl Fn(&Ranked) -> u64 + Sync,

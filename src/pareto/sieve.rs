@@ -44,7 +44,7 @@ struct Bins {
 }
 
 impl Bins {
-    /// The bins of one objective.
+    /// Divides the objective with the index `objective` into bins.
     fn new(points: &[[f64; 3]], objective: usize) -> Self {
         // the sample is every n-th point, so that it is the same in every run, and with it the result
         let stride = points.len().div_ceil(SAMPLE);

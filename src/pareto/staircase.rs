@@ -26,13 +26,14 @@ impl Staircase {
         self.steps.at_or_below(rank).map(|step| self.third[step as usize])
     }
 
-    /// Whether some point so far is at least as good in the second and third objective.
+    /// Whether some point of the staircase is at least as good as a point with this rank of the second objective and
+    /// this third objective.
     pub(crate) fn covers(&self, rank: u32, third: f64) -> bool {
         self.best(rank).is_some_and(|best| best <= third)
     }
 
-    /// Adds a step that is not covered, and removes the steps that it covers. `see` is called with rank and third
-    /// objective of each following step, up to and including the first that stays.
+    /// Adds a step that no other step covers, and removes the steps that it covers. `see` is called for each of the
+    /// following steps that is removed, and for the first one that stays, with its rank and its third objective.
     pub(crate) fn insert(&mut self, rank: u32, third: f64, mut see: impl FnMut(u32, f64)) {
         self.steps.insert(rank);
         self.third[rank as usize] = third;
@@ -113,8 +114,8 @@ impl RankSet {
         None
     }
 
-    /// Descends from a non-empty word to one of the members below it. `bit` chooses among the bits of a word, for
-    /// example the highest.
+    /// Descends from the non-empty word at `height` and `place` to one of the members below it. `bit` selects one of
+    /// the bits of a word, for example the highest.
     fn descend(&self, height: usize, mut place: usize, bit: impl Fn(u64) -> usize) -> u32 {
         for level in self.levels[..height].iter().rev() {
             place = place * 64 + bit(level[place]);

@@ -8,9 +8,9 @@ use crate::space::problem::ArmProblem;
 use crate::space::slot::Slot;
 
 impl Parts {
-    /// Drops the drives that cannot meet the least demand on their joint. If a joint takes the lightest drive that
-    /// meets its demand, drives heavier than the lightest one that meets the greatest demand are dropped too.
-    /// Returns whether any drive was dropped.
+    /// Drops the drives that cannot meet the least demand on their joint, over all remaining options outboard. If a
+    /// joint takes the lightest drive that meets its demand, drives heavier than the lightest one that meets the
+    /// greatest demand are dropped too. Returns whether any drive was dropped.
     pub(super) fn drop_drives(&mut self, problem: &ArmProblem, cases: &[CaseLoads]) -> bool {
         let mut dropped = false;
         for (slot, piece) in problem.slots().iter().enumerate() {

@@ -40,15 +40,15 @@ impl Parts {
         Self { alive, known: known.to_vec(), mass_kg, bearings }
     }
 
-    /// Gives every bearing the options that are left for its drive, because a bearing comes with its drive.
+    /// Leaves every bearing only the options that its drive still has, because a bearing comes with its drive.
     pub(super) fn follow_drives(&mut self) {
         for &(bearing, joint) in &self.bearings {
             self.alive[bearing] = self.alive[joint].clone();
         }
     }
 
-    /// The same inequality with the coefficients of each bearing added to those of its drive, because both have one
-    /// weight. [`Self::follow_drives`] must have been called before.
+    /// The inequality `row` with the coefficients of each bearing moved to those of its drive, because the linear
+    /// program has one weight for both. [`Self::follow_drives`] must have been called before.
     pub(super) fn with_drives(&self, mut row: Row) -> Row {
         for &(bearing, joint) in &self.bearings {
             for at in 0..self.alive[joint].len() {
@@ -59,7 +59,7 @@ impl Parts {
         row
     }
 
-    /// The weights, with those of each drive copied to its bearing.
+    /// The weights of all options in a mixture. The weights of each drive are copied to its bearing.
     pub(super) fn with_bearings(&self, weights: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let mut out = weights.to_vec();
         for &(bearing, joint) in &self.bearings {
@@ -78,14 +78,14 @@ impl Parts {
         self.each(|slot, option| self.mass_kg(slot, option))
     }
 
-    /// Computes a number for each remaining option, slot by slot.
+    /// Computes `number(slot, option)` for each remaining option, slot by slot.
     pub(super) fn each(&self, number: impl Fn(usize, u32) -> f64) -> Vec<Vec<f64>> {
         let slots = self.alive.iter().enumerate();
         slots.map(|(slot, alive)| alive.iter().map(|&o| number(slot, o)).collect()).collect()
     }
 
-    /// Drops the options with which a row exceeds its limit even if every other slot takes the option that is best
-    /// for this row. Returns whether any option was dropped.
+    /// Drops the options that cannot satisfy the inequality `row`, even if every other slot takes the option with the
+    /// least coefficient. Returns whether any option was dropped.
     pub(super) fn drop_by(&mut self, row: &Row) -> bool {
         let least = row.least();
         let total: f64 = least.iter().sum();

@@ -87,7 +87,7 @@ impl Program {
         Some(Solution { bound_kg, weights, grew })
     }
 
-    /// Drops the options that no design of at most `mass_kg` can have.
+    /// Drops those options from `parts` that no design of at most the mass `mass_kg` can have, by their reduced costs.
     pub(super) fn drop_options(&self, parts: &mut Parts, mass_kg: f64) {
         let (bound_kg, multipliers) = &self.best;
         let reduced = self.reduced(multipliers);
@@ -97,8 +97,8 @@ impl Program {
         }
     }
 
-    /// Reduced cost of each remaining option: its mass plus its coefficients times the multipliers of the rows. A
-    /// row that was added after the solution has no multiplier and adds nothing.
+    /// Reduced cost of each remaining option \[kg\]: its mass plus its coefficient in each row times the multiplier of
+    /// this row. A row that was added after the last solution has no multiplier and adds nothing.
     fn reduced(&self, multipliers: &[f64]) -> Vec<Vec<f64>> {
         let mut out = self.masses.clone();
         for (row, y) in self.rows.iter().zip(multipliers).filter(|(_, y)| **y > 0.0) {
@@ -109,13 +109,14 @@ impl Program {
         out
     }
 
-    /// The Lagrangian bound on the mass for these reduced costs \[kg\].
+    /// The Lagrangian lower bound on the mass \[kg\] for these multipliers and the reduced costs that follow from them.
     fn bound(&self, reduced: &[Vec<f64>], multipliers: &[f64]) -> f64 {
         let least: f64 = reduced.iter().map(|r| r.iter().copied().fold(f64::INFINITY, f64::min)).sum();
         least - self.rows.iter().zip(multipliers).map(|(row, y)| y * row.limit).sum::<f64>()
     }
 
-    /// Adds the options with the least reduced cost to the solver's program. Returns whether any of them was new.
+    /// Adds, for each slot, the options with the least reduced cost to the solver's program. Returns whether any of
+    /// them was new.
     fn see_more(&mut self, reduced: &[Vec<f64>]) -> bool {
         let mut grew = false;
         for (seen, reduced) in self.seen.iter_mut().zip(reduced) {
@@ -176,7 +177,7 @@ fn place_of_least(numbers: &[f64]) -> usize {
     (0..numbers.len()).min_by(|&a, &b| numbers[a].total_cmp(&numbers[b])).unwrap_or_default()
 }
 
-/// Adds an index to a sorted list, unless it is in the list already. Returns whether it was added.
+/// Adds the index `at` to the sorted list `seen`, unless it is in the list already. Returns whether it was added.
 fn see(seen: &mut Vec<usize>, at: usize) -> bool {
     match seen.binary_search(&at) {
         Ok(_) => false,

@@ -35,7 +35,7 @@ pub struct MassBound {
 pub struct Relaxation<'a> {
     problem: &'a ArmProblem<'a>,
     cases: Vec<CaseLoads>,
-    /// Trial-shape models, one for each judged case.
+    /// The inertias and stiffnesses of the arm from which trial shapes are made, one model for each judged case.
     models: Vec<ShapeModel>,
 }
 
@@ -49,9 +49,9 @@ impl<'a> Relaxation<'a> {
         }
     }
 
-    /// Lower bound on the mass of every design that deflects at most, and has a lowest mode at least, as `asked`.
-    /// `known` is a design (one option for each level) that meets these objectives and weighs at most the mass in
-    /// `asked`. `None` if a part of the known design cannot take its load.
+    /// Lower bound on the mass of every design that deflects at most as far as `asked`, and whose lowest mode is at
+    /// least that of `asked`. `known` is a design (one option for each level) that meets these objectives and weighs at
+    /// most the mass in `asked`. `None` if a part of the known design cannot take its load.
     pub fn mass_lower_bound(&self, known: &[u32], asked: &Objectives) -> Option<MassBound> {
         let arm = self.problem.walk(known, |_, _| {}).ok()?;
         let mut search = Search {
@@ -112,8 +112,8 @@ impl Search<'_> {
         }
     }
 
-    /// Drops the options with which some row exceeds its limit even if every other piece takes the option that is
-    /// best for that row.
+    /// Drops the options that cannot satisfy some inequality, even if every other piece takes the option that is best
+    /// for this inequality.
     fn reduce(&mut self) {
         loop {
             let mut dropped = self.parts.drop_drives(self.problem, self.cases);
@@ -129,7 +129,7 @@ impl Search<'_> {
         }
     }
 
-    /// All inequalities that every design with the required objectives satisfies.
+    /// All linear inequalities that every design with the required deflection, mass and lowest mode satisfies.
     fn rows(&self) -> Vec<Row> {
         let mut rows = Vec::new();
         for (case, direction) in &self.directions {
@@ -144,14 +144,14 @@ impl Search<'_> {
         rows.into_iter().map(|row| self.parts.with_drives(row)).chain(shapes).collect()
     }
 
-    /// The least eigenvalue that is allowed by the required lowest mode \[1/s²\].
+    /// The least eigenvalue `(2πf)²` that a design may have if its lowest mode is to reach the required one \[1/s²\].
     fn eigenvalue(&self) -> f64 {
         let omega = std::f64::consts::TAU * self.asked.lowest_mode_hz;
         omega * omega * (1.0 - ROUNDING)
     }
 
-    /// For each judged case and each slot, the greatest tangent stiffness of each remaining option of the joint \[N
-    /// m/rad\].
+    /// Greatest tangent stiffness of each remaining option of a joint \[N m/rad\]; first index the judged case, second
+    /// the slot, third the option.
     fn stiffness(&self) -> Vec<Vec<Vec<f64>>> {
         self.models.iter().map(|m| self.cases[m.case].stiffest(self.problem, &self.parts)).collect()
     }

@@ -12,12 +12,12 @@ pub(super) struct Row {
 }
 
 impl Row {
-    /// For each slot (a piece of the arm), the least coefficient among its remaining options.
+    /// For each slot (piece of the arm), the least coefficient that an option of the slot has in this inequality.
     pub(super) fn least(&self) -> Vec<f64> {
         self.coefficients.iter().map(|c| c.iter().copied().fold(f64::INFINITY, f64::min)).collect()
     }
 
-    /// Whether some choice of options exceeds the limit. If none does, the inequality can be left out.
+    /// Whether some choice of options violates the inequality. If none does, the inequality can be left out.
     pub(super) fn can_bind(&self) -> bool {
         let most: f64 =
             self.coefficients.iter().map(|c| c.iter().copied().fold(f64::NEG_INFINITY, f64::max)).sum();

@@ -24,9 +24,9 @@ const MOST_SHAPES: usize = 3;
 
 /// Inertias and stiffnesses of the arm in one case, over the strain coordinates.
 pub(super) struct ShapeModel {
-    /// Index of the case in the study.
+    /// Index of the case among all cases of the study.
     pub case: usize,
-    /// Inertia of everything that is the same in all designs: the payload, rigid offsets and bodies.
+    /// Inertia matrix of everything that is the same in all designs: the payload, rigid offsets and bodies.
     given: DMatrix<f64>,
     joints: Vec<JointShape>,
     links: Vec<LinkShape>,
@@ -54,7 +54,8 @@ struct LinkShape {
 }
 
 impl LinkShape {
-    /// The tube of a slot whose first coordinate is `first`. `tubes`: its options.
+    /// The tube in slot `slot`. Its strain coordinates start at the index `first`, `fields` is its motion at each Gauss
+    /// point, and `tubes` are its options.
     fn new(
         slot: usize,
         first: usize,
@@ -143,8 +144,8 @@ impl ShapeModel {
         model
     }
 
-    /// The inequality for a trial shape and a required eigenvalue \[1/s²\]. `stiffness` has the stiffnesses of the
-    /// remaining options of joints, by slot.
+    /// The inequality that the trial shape `x` gives for designs whose lowest eigenvalue is at least `eigenvalue`
+    /// \[1/s²\]. `stiffness` has the stiffnesses of the remaining options of joints, by slot.
     pub(super) fn row(
         &self,
         parts: &Parts,
@@ -178,8 +179,9 @@ impl ShapeModel {
         row.ready()
     }
 
-    /// The modes of a mixture whose eigenvalues are below a given one \[1/s²\], as trial shapes, the lowest mode
-    /// first.
+    /// The modes of a mixture whose eigenvalues are below `eigenvalue` \[1/s²\], as trial shapes, the lowest mode
+    /// first. `weights` are the weights of the options in the mixture, and `stiffness` the stiffnesses of the joints'
+    /// options, both by slot.
     pub(super) fn violated(
         &self,
         parts: &Parts,
@@ -236,7 +238,8 @@ impl ShapeModel {
 }
 
 impl LinkShape {
-    /// For each component of motion, the integral of the square of this component along the link in the shape `x`.
+    /// For each of the six components of motion, the integral of its square along the link, if the arm moves by the
+    /// shape `x`.
     fn moved(&self, x: &DVector<f64>) -> [f64; 6] {
         let mut out = [0.0; 6];
         for field in &self.fields {
@@ -263,7 +266,8 @@ fn mixture(weights: &[f64]) -> impl Iterator<Item = (usize, f64)> + Clone + '_ {
     weights.iter().copied().enumerate().filter(|(_, w)| *w > 0.0)
 }
 
-/// Velocity of a point per unit of each coordinate. `twist` has the motion of the chain inboard of the point.
+/// Velocity of the point `at_m` per unit of each coordinate of the arm. Each column of `twist` is the motion of the
+/// chain inboard of the point for one coordinate.
 fn point_motion(twist: &DMatrix<f64>, at_m: &Vector3<f64>) -> DMatrix<f64> {
     let columns: Vec<Vector3<f64>> =
         twist.column_iter().map(|t| displacement_at(&t.fixed_rows::<6>(0).into_owned(), at_m)).collect();
@@ -275,7 +279,8 @@ fn is_on_tube(layer: &Layer) -> bool {
     matches!(layer, Layer::Bodies(Carried { by: Carrier::Tube, .. }))
 }
 
-/// Inertia of a body on a tube, as a matrix over all coordinates. The coordinates of the tube start at `first`.
+/// Inertia matrix of a body on a tube over all coordinates of the arm. The coordinates of the tube start at the index
+/// `first`; `twist` has the motion of the tube's root for the coordinates inboard of it.
 fn body_inertia_over(
     beam: &PreparedBeam,
     body: &RigidBody,
@@ -301,7 +306,8 @@ fn root_motion(frame: &Matrix3<f64>, root_m: &Vector3<f64>, twist: &DMatrix<f64>
     root
 }
 
-/// Displacement and rotation in the section frame at each Gauss point, times the square root of its weight.
+/// Displacement and rotation of the link's section at each Gauss point, in the section frame, per unit of each
+/// coordinate of the arm. They are multiplied by the square root of the point's weight.
 fn link_fields(
     beam: &PreparedBeam,
     frame: &Matrix3<f64>,

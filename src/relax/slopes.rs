@@ -2,10 +2,11 @@
 
 use crate::arm::joint_law::{Curve, JointLaw};
 
-/// Relative margin for rounding of a torque near a break point.
+/// Relative margin within which a torque counts as being at a break point, because of rounding.
 const NEAR: f64 = 1e-12;
 
-/// Least and greatest tangent compliance of a joint under torques in an interval \[rad/(N m)\].
+/// Least and greatest tangent compliance of a joint with the law `law` \[rad/(N m)\], under torques in the interval
+/// `torque_nm`.
 pub(super) fn tangent_range(law: &JointLaw, torque_nm: [f64; 2]) -> [f64; 2] {
     let size = size_range(torque_nm);
     let curve = curve_range(&law.curve, size);
@@ -16,9 +17,9 @@ pub(super) fn tangent_range(law: &JointLaw, torque_nm: [f64; 2]) -> [f64; 2] {
     [0, 1].map(|end| curve[end] + law.connection_rad_per_nm + play[end])
 }
 
-/// Least and greatest secant compliance of a joint between any two torques of an interval, for a torque that has
-/// risen from rest \[rad/(N m)\]. Friction reduces the twist of the gear until the half width of the hysteresis is
-/// reached.
+/// Least and greatest secant compliance of a joint \[rad/(N m)\] between any two torques of the interval `torque_nm`.
+/// The torque has risen from rest, so friction holds back a part of the gear's twist, until the half width of the
+/// hysteresis is reached.
 pub(super) fn rising_range(law: &JointLaw, torque_nm: [f64; 2]) -> [f64; 2] {
     let [least, most] = tangent_range(&as_it_twists(law), torque_nm);
     let Some(stiffness) = law.play_stiffness_nm_per_rad() else { return [least, most] };
@@ -29,8 +30,8 @@ pub(super) fn rising_range(law: &JointLaw, torque_nm: [f64; 2]) -> [f64; 2] {
     [least - held_back, most - freed]
 }
 
-/// The law with the curve for static twist. A gear that vibrates with its first slope alone still twists along all
-/// three.
+/// The joint law `law` with the torsion curve that holds for static twist. A gear whose vibration is computed with its
+/// first slope alone still has all three segments in static twist.
 fn as_it_twists(law: &JointLaw) -> JointLaw {
     let curve = match law.curve {
         Curve::WindupK1(windup) => Curve::Windup(windup),

@@ -17,19 +17,20 @@ use crate::space::slot::Slot;
 use crate::space::station::{Station, StationJoint, StationSlot};
 use nalgebra::{Matrix6, Vector3};
 
-/// The loads of one case: the wrench of each slot's load, and the load of each option.
+/// The loads of one case, as the linear program uses them: the wrench of each slot's load, and the load of each option.
 pub(super) struct CaseLoads {
     case: usize,
     /// For each slot, the wrench (force and moment) per unit of the slot's load.
     unit: Vec<Wrench>,
     /// For each slot, the load of each option: mass \[kg\] for joints, weight \[N\] for links, 1 for bodies.
     amount: Vec<Vec<f64>>,
-    /// For each joint, the inertia of every option of every slot outboard, about the joint's axis \[kg m²\]. Empty
-    /// for a slot that is no joint.
+    /// Inertias about the joints' axes \[kg m²\]; first index the slot of the joint, second a slot outboard of it,
+    /// third an option of that slot. Empty for a slot that is no joint.
     inertia: Vec<Vec<Vec<f64>>>,
 }
 
-/// The end of the loads' intervals at which the linear bound equals the exact value.
+/// The end of the loads' intervals, with all loads least or all greatest, at which the linear bound equals the exact
+/// value.
 #[derive(Clone, Copy, PartialEq)]
 enum LoadEnd {
     Low,
@@ -38,14 +39,16 @@ enum LoadEnd {
 
 /// A linear lower bound of the deflection that one piece causes.
 struct Term {
-    /// For each remaining option of the piece, the deflection that it causes with all loads at that end \[m\].
+    /// For each remaining option of the piece, the tip deflection that it causes if all loads have their values at the
+    /// end for which the bound is made \[m\].
     at_end: Vec<f64>,
-    /// For each load outboard, the change of this deflection per unit of the load \[m per unit\].
+    /// For each load outboard, the slope with which the linear bound of this tip deflection changes with the load \[m
+    /// per unit\].
     slopes: Vec<f64>,
 }
 
 impl CaseLoads {
-    /// Computes the loads of a case.
+    /// Computes the wrenches and the loads of the case with the index `case`.
     pub(super) fn new(problem: &ArmProblem, case: usize) -> Self {
         let station = &problem.stations()[case];
         let (mut unit, mut amount) = (Vec::new(), Vec::new());
@@ -73,7 +76,8 @@ impl CaseLoads {
         Self { case, unit, amount, inertia }
     }
 
-    /// Least and greatest load of a slot's remaining options.
+    /// Least and greatest load among the remaining options of a slot (mass \[kg\] of a joint, weight \[N\] of a link, 1
+    /// for a body).
     fn range(&self, parts: &Parts, slot: usize) -> [f64; 2] {
         let amounts = parts.alive[slot].iter().map(|&o| self.amount[slot][o as usize]);
         amounts.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], q| [low.min(q), high.max(q)])
@@ -83,7 +87,7 @@ impl CaseLoads {
         self.range(parts, slot)[usize::from(end == LoadEnd::High)]
     }
 
-    /// The wrench (force and moment) of everything outboard of a slot, with all loads at one end of their
+    /// The wrench (force and moment) of everything outboard of `slot`, if all loads are at the end `end` of their
     /// intervals.
     fn wrench(&self, problem: &ArmProblem, parts: &Parts, slot: usize, end: LoadEnd) -> Wrench {
         let start = problem.stations()[self.case].start_wrench;
@@ -97,7 +101,7 @@ impl CaseLoads {
         }
     }
 
-    /// Least and greatest torque on a joint \[N m\].
+    /// Least and greatest torque on the joint in `slot` \[N m\] over the remaining options outboard.
     fn torque_range(&self, problem: &ArmProblem, parts: &Parts, slot: usize) -> [f64; 2] {
         let Some(joint) = self.joint(problem, slot) else { return [0.0; 2] };
         let start = joint.twist.dot(&problem.stations()[self.case].start_wrench);
@@ -108,13 +112,13 @@ impl CaseLoads {
         })
     }
 
-    /// Least and greatest magnitude of the torque on a joint \[N m\].
+    /// Least and greatest magnitude of the torque on the joint in `slot` \[N m\] over the remaining options outboard.
     pub(super) fn torque_size(&self, problem: &ArmProblem, parts: &Parts, slot: usize) -> [f64; 2] {
         let [low, high] = self.torque_range(problem, parts, slot);
         [low.max(-high).max(0.0), high.max(-low)]
     }
 
-    /// Whether the torque of some joint may have either sign within the remaining options.
+    /// Whether the torque of some joint may be positive with some of the remaining options and negative with others.
     pub(super) fn opposes(&self, problem: &ArmProblem, parts: &Parts) -> bool {
         (0..self.unit.len()).any(|slot| {
             let [low, high] = self.torque_range(problem, parts, slot);
@@ -122,7 +126,7 @@ impl CaseLoads {
         })
     }
 
-    /// Least and greatest moment of inertia, about a joint's axis, of everything outboard of the joint \[kg m²\].
+    /// Least and greatest inertia of everything outboard of the joint in `slot` about the joint's axis \[kg m²\].
     pub(super) fn inertia_range(&self, problem: &ArmProblem, parts: &Parts, slot: usize) -> [f64; 2] {
         let Some(joint) = self.joint(problem, slot) else { return [0.0; 2] };
         let start = joint.twist.dot(&(problem.stations()[self.case].start_inertia * joint.twist));
@@ -133,8 +137,8 @@ impl CaseLoads {
         })
     }
 
-    /// Greatest tangent stiffness of every joint's remaining options under the torques that are possible \[N
-    /// m/rad\]. Infinite for a rigid joint, empty for a slot that is no joint.
+    /// Greatest tangent stiffness \[N m/rad\] of each remaining option of every joint under the torques that are
+    /// possible; by slot, then by option. Infinite for a rigid joint, empty for a slot that is no joint.
     pub(super) fn stiffest(&self, problem: &ArmProblem, parts: &Parts) -> Vec<Vec<f64>> {
         let slots = problem.slots().iter().enumerate();
         slots
@@ -151,8 +155,8 @@ impl CaseLoads {
             .collect()
     }
 
-    /// Two inequalities that every design satisfies whose tip moves at most `limit_m` along a direction: one for
-    /// each end of the loads' intervals.
+    /// Two inequalities that every design satisfies whose tip moves at most `limit_m` along `direction`. One is exact
+    /// where all loads are least, the other where all are greatest.
     pub(super) fn deflection_rows(
         &self,
         problem: &ArmProblem,
@@ -176,7 +180,8 @@ impl CaseLoads {
         })
     }
 
-    /// The linear lower bound of the deflection that one slot causes; `None` for a body.
+    /// The linear lower bound of the tip deflection along `direction` that one slot causes. It is exact if all loads
+    /// are at the end `end` of their intervals. `None` for a body, which does not deform.
     fn term(
         &self,
         problem: &ArmProblem,
@@ -279,7 +284,8 @@ impl CaseLoads {
     }
 }
 
-/// Inertia of every option of every slot outboard of a joint, about the joint's axis \[kg m²\].
+/// Inertia of every option of every slot outboard of the joint in `slot` about the joint's axis \[kg m²\]. `amount` has
+/// the load of each option, which is the mass for a joint.
 fn inertias(station: &Station, slot: usize, amount: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let StationSlot::Joint(StationJoint { twist, .. }) = &station.slots[slot] else { return Vec::new() };
     let about = |inertia: &Matrix6<f64>| twist.dot(&(inertia * twist));

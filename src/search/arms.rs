@@ -1,28 +1,29 @@
-//! Eight arms, whose numbers stand next to each other in memory, while slots are added from the row level to the
-//! base.
+//! Eight partial arms, whose numbers stand next to each other in memory, while slots (places of a part) are added from
+//! the row level to the base.
 
 use super::row::hinge_numbers;
 use crate::mechanics::lanes::{Eight, LANES};
 use crate::pareto::objectives::Objectives;
 use crate::space::problem::ArmProblem;
 
-/// Eight arms, to which the slots from the row level to the base are added one after another.
+/// Eight partial arms, to which the inner slots (places of a part, from the row level to the base) are added one after
+/// another.
 ///
 /// Eight numbers that are loaded together must also be stored together. Partial stores would defeat store-to-load
 /// forwarding: the processor would wait until they have reached the cache.
 pub(crate) struct EightArms {
     /// Bit mask, one bit per arm: the arms that have met every limit checked so far.
     pub held: u8,
-    /// If no arm is left in `held`: number of the drives chosen inboard of the row level that were added until then.
-    /// The other rows that begin with the same drives fail too, so the sweep skips them.
+    /// If no arm is left in `held`: number of the drives chosen inboard of the row level that had been added when the
+    /// last arm failed. The other rows that begin with the same drives fail too, so the sweep skips them.
     pub failed_with: usize,
-    /// Mass of each arm so far \[kg\].
+    /// Mass of each arm, summed over the slots added so far \[kg\].
     pub mass_kg: Eight,
-    /// Mass \[kg\] of the drive in each inner slot, from the row level to the base. The masses of given drives are
-    /// set from the beginning.
+    /// Mass \[kg\] of the drive in each inner slot (the slots from the row level to the base). The masses of given
+    /// drives are set from the beginning.
     pub masses_kg: Vec<Eight>,
-    /// Largest term that a single joint or tube coordinate adds to Dunkerley's sums \[s²\]. The lowest eigenvalue is
-    /// at most the reciprocal of this term.
+    /// The largest single term of Dunkerley's sums (each the sum of `1/λ` over the eigenvalues of a block) that one
+    /// joint or one tube coordinate adds \[s²\]. The lowest eigenvalue is at most the reciprocal of this term.
     pub largest_s2: Eight,
     /// The eight arms in each case.
     pub cases: Vec<CaseArms>,
@@ -41,10 +42,11 @@ pub(crate) struct CaseArms {
     pub torque_at: Vec<Eight>,
     /// Inertia \[kg m²\] of everything outboard of each hinge, about the axis of this hinge.
     pub inertia_at: Vec<Eight>,
-    /// Tangent compliance of each inner joint or bearing spring \[rad/(N m)\], in the order of the inner slots.
+    /// Tangent compliance of the joint or bearing spring in each inner slot (the slots from the row level to the base)
+    /// \[rad/(N m)\].
     pub compliance: Vec<Eight>,
-    /// Dunkerley's sum \[s²\] of each block of the eigenvalue problem. A planar pose has two blocks, a spatial pose
-    /// only one.
+    /// Dunkerley's sum of each block of the eigenvalue problem \[s²\]: the sum of `1/λ` over its eigenvalues. A planar
+    /// pose has two blocks, a spatial pose only one.
     pub trace_s2: [Eight; 2],
 }
 
@@ -73,7 +75,7 @@ impl EightArms {
         }
     }
 
-    /// Objectives of the arm in one lane.
+    /// Objectives of the complete arm in one lane (0 to 7).
     pub(crate) fn objectives(&self, lane: usize) -> Objectives {
         Objectives {
             tip_deflection_m: self.tip_deflection_m[lane],

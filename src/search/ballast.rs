@@ -54,7 +54,8 @@ struct Weighed<'p, 'c> {
     options: Vec<u32>,
     arm: Partial,
     objectives: Objectives,
-    /// Torque on every joint \[N m\], by slot and then by case. It is 0 for slots that are no joints.
+    /// Torque on every joint of the design \[N m\]; first index the slot, second the case. It is 0 for slots that are
+    /// no joints.
     torques_nm: Vec<Vec<f64>>,
 }
 
@@ -88,8 +89,8 @@ impl<'p, 'c> Weighed<'p, 'c> {
         Some(Self { problem, options, arm, objectives, torques_nm })
     }
 
-    /// Options for one level that are lighter and show the present part of this level to be ballast. Each comes with
-    /// the mass of the design that has it \[kg\].
+    /// All lighter options for a level that show the present part of this level to be ballast. Each is returned with
+    /// the mass of the design that has the option \[kg\].
     fn at(&self, level: usize) -> Vec<(f64, Ballast)> {
         let slot = self.problem.level_slots()[level];
         let now = self.options[level];
@@ -99,8 +100,8 @@ impl<'p, 'c> Weighed<'p, 'c> {
         better.filter_map(|option| self.without_weight(level, slot, option)).collect()
     }
 
-    /// Whether an option weighs less than the present one, and is at least as stiff: at every torque if it is a
-    /// drive, in every deformation if it is a tube.
+    /// Whether `option` weighs less than `now`, the present option of a slot, and is at least as stiff. A drive must be
+    /// as stiff at every torque, a tube in every kind of deformation.
     fn lighter_and_as_stiff(&self, slot: usize, option: u32, now: u32) -> bool {
         match (&self.problem.slots()[slot], self.problem.piece_in_slot(slot)) {
             (Slot::Sized(sized), _) => {
@@ -117,9 +118,9 @@ impl<'p, 'c> Weighed<'p, 'c> {
         }
     }
 
-    /// The design with a lighter part in one slot, as a ballast finding with the mass of this design \[kg\]. It is
-    /// `None` unless the lowest mode is the only objective that gets worse, and unless a softer joint inboard is the
-    /// reason.
+    /// Replaces the part in `slot` by the lighter `option`. If this shows the part to be ballast, the finding is
+    /// returned with the mass of the lighter design \[kg\]. It does so if the lowest mode is the only objective that
+    /// gets worse, and if a joint inboard that became softer is the reason. Otherwise `None`.
     fn without_weight(&self, level: usize, slot: usize, option: u32) -> Option<(f64, Ballast)> {
         let relieved = self.relieved(slot, option)?;
         let mut options = self.options.clone();
@@ -142,8 +143,8 @@ impl<'p, 'c> Weighed<'p, 'c> {
         })
     }
 
-    /// The first joint inboard, with its case, whose tangent compliance grows if the weight in `slot` changes to the
-    /// weight of `option`.
+    /// The first joint inboard of `slot` whose tangent compliance grows if the weight in this slot becomes that of
+    /// `option`, with the case in which it grows. `None` if no joint becomes softer.
     fn relieved(&self, slot: usize, option: u32) -> Option<Relieved> {
         let cases = &self.problem.space().judged_cases;
         let inboard = slot + 1..self.problem.slots().len();
@@ -168,7 +169,8 @@ impl<'p, 'c> Weighed<'p, 'c> {
         self.problem.slots()[slot].law(self.arm.options[slot] as usize)
     }
 
-    /// Change of the weight in a slot if the slot takes another option, as a wrench (force and moment).
+    /// Wrench (force and moment) by which the weight in `slot` changes if the slot takes `option` in place of its
+    /// present option.
     fn change_of_weight(&self, station: &Station, slot: usize, option: u32) -> Wrench {
         let now = self.arm.options[slot] as usize;
         match (&station.slots[slot], &self.problem.slots()[slot]) {

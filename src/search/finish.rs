@@ -13,7 +13,8 @@ use crate::space::problem::{ArmProblem, Partial};
 
 /// A tree of designs in which all designs of a row can be completed and evaluated together.
 pub trait FinishRows: OutwardIn {
-    /// The row level and the levels inboard of it, with every number that is the same in all rows.
+    /// The row level (whose options are evaluated together) and the levels inboard of it, with every number that is the
+    /// same in all rows.
     type Compiled: Send + Sync;
     /// Working space of a worker. It is used again for each row, so that memory is allocated once.
     type Scratch: Send;
@@ -24,7 +25,8 @@ pub trait FinishRows: OutwardIn {
     /// Allocates the working space of one worker.
     fn scratch(&self) -> Self::Scratch;
 
-    /// Completes and evaluates all designs of some rows and reports them to `keep`.
+    /// Completes and evaluates all designs of the rows `rows` and reports them to `keep`. `compiled` is what all rows
+    /// have in common, and `scratch` is the working space.
     fn finish<K: Keep>(
         &self,
         compiled: &Self::Compiled,
@@ -34,7 +36,8 @@ pub trait FinishRows: OutwardIn {
     );
 }
 
-/// Evaluates the designs of rows one by one. This is slower than eight at once, but works for every tree.
+/// Evaluates the designs of `rows` one by one. This is slower than eight at once, but works for every tree of designs.
+/// `spare` is memory for one arm.
 pub(crate) fn finish_one_by_one<P: OutwardIn>(
     problem: &P,
     rows: &[DesignRow<P::Partial>],

@@ -40,14 +40,15 @@ pub struct Shortfall {
 }
 
 impl Shortfall {
-    /// Prepares the designs of a front, which may be in any order.
+    /// Prepares a front for the computation of shortfalls. Its designs may be in any order.
     pub fn of(front: impl IntoIterator<Item = Objectives>) -> Self {
         let mut front: Vec<Objectives> = front.into_iter().collect();
         front.sort_by(|a, b| a.mass_kg.total_cmp(&b.mass_kg));
         Self { front }
     }
 
-    /// The shortfall of a design, as a fraction (0.02 for 2 %); `None` if it is larger than `most`.
+    /// The shortfall of a design: the fraction by which it is worse than the nearest design of the front (0.02 for 2
+    /// %). `None` if it is larger than `most`.
     pub fn within(&self, most: f64, design: &Objectives) -> Option<f64> {
         // the lightest designs of the front cannot count: each is lighter than the design by more than the fraction
         // `most`
@@ -56,7 +57,8 @@ impl Shortfall {
         self.front[first..].iter().map(worst).reduce(f64::min).filter(|shortfall| *shortfall <= most)
     }
 
-    /// Whether some design of the front is better by at most the fraction `most` in every objective.
+    /// Whether the shortfall of a design is at most `most`: some design of the front is then better by no more than
+    /// this fraction in every objective.
     pub fn is_within(&self, most: f64, design: &Objectives) -> bool {
         let worse = 1.0 + most;
         let first = self.front.partition_point(|f| design.mass_kg > f.mass_kg * worse);
@@ -67,8 +69,8 @@ impl Shortfall {
     }
 }
 
-/// The fractions by which a design is worse than another in deflection, mass and lowest mode, in this order. A
-/// fraction is negative where the design is better.
+/// The fractions by which `design` is worse than `other` in deflection, mass and lowest mode, in this order. A fraction
+/// is negative where `design` is better.
 pub fn worse_by(design: &Objectives, other: &Objectives) -> [f64; 3] {
     let over = |a: f64, b: f64| if a == b { 0.0 } else { a / b - 1.0 };
     [
@@ -145,7 +147,7 @@ pub fn near_designs<P: FinishRows>(
     (!stop.load(Ordering::Relaxed)).then_some(NearDesigns { nearest, total: Some(total) })
 }
 
-/// The data that all tasks of the search for near designs use in common.
+/// The inputs and the shared results of all tasks of a search for near designs.
 struct Seeker<'s> {
     constraints: &'s Constraints,
     archive: Archive,
@@ -191,7 +193,7 @@ impl Keep for Worker<'_> {
 }
 
 impl Worker<'_> {
-    /// Adds the collected designs to the shared list.
+    /// Adds the designs that this task has collected to the list that all tasks share.
     fn hand_over(&mut self) {
         let most = self.seeker.slack.most;
         let mut all = self.seeker.nearest.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
@@ -207,7 +209,7 @@ impl Worker<'_> {
     }
 }
 
-/// Sorts near designs by shortfall and keeps the first `most` of them.
+/// Sorts `designs` by their shortfalls and keeps the first `most` of them, which are nearest to the front.
 pub(crate) fn keep_nearest(designs: &mut Vec<NearDesign>, most: usize) {
     designs.sort_unstable_by(|a, b| {
         a.shortfall.total_cmp(&b.shortfall).then(a.candidate.number.cmp(&b.candidate.number))

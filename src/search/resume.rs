@@ -25,13 +25,13 @@ pub struct Resume<'s> {
     pub keeper: &'s dyn KeepState,
 }
 
-/// A set of completed task numbers, stored as ranges that do not touch each other. The map leads from the first task
-/// of a range to the first task after it.
+/// A set of numbers of completed tasks, stored as ranges that do not touch each other. Each entry of the map is a
+/// range: the key is its first task, and the value is the first task after it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(super) struct Done(BTreeMap<u64, u64>);
 
 impl Done {
-    /// Adds a task to the set.
+    /// Adds the task with this number to the set, and joins ranges that touch each other.
     pub(super) fn insert(&mut self, task: u64) {
         let before = self.0.range(..=task).next_back().map(|(&start, &end)| (start, end));
         if before.is_some_and(|(_, end)| end > task) {
@@ -47,8 +47,8 @@ impl Done {
         self.0.range(..=task).next_back().is_some_and(|(_, &end)| end > task)
     }
 
-    /// Whether all tasks of the set have numbers below `tasks`. It is `false` also if a range is empty or reversed,
-    /// as in a damaged file.
+    /// Whether this set can belong to a sweep of `tasks` tasks: all its numbers must be below `tasks`. It is `false`
+    /// also if a range is empty or reversed, as in a damaged file.
     pub(super) fn is_within(&self, tasks: u64) -> bool {
         self.0.iter().all(|(&start, &end)| start < end && end <= tasks)
     }

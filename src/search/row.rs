@@ -32,26 +32,28 @@ use crate::space::station::{Block, BlockSlot, Modal, Station, StationLink, Stati
 use nalgebra::{Matrix3x6, Matrix6, Vector3, Vector6};
 use std::ops::Range;
 
-/// The inner slots of a problem, with every number that is the same in all rows.
+/// The slots from the row level to the base (inner slots), with every number of theirs that is the same in all rows.
 pub(crate) struct Row {
     /// Slot number of the row level.
     pub first: usize,
-    /// For each inner slot: the position of its level among the levels inboard of the row level, if the search
-    /// chooses its drive; otherwise `None`.
+    /// One entry for each inner slot (the slots from the row level to the base). If the search chooses the drive of the
+    /// slot: the index of this choice among the levels inboard of the row level, in order towards the base. Otherwise
+    /// `None`.
     pub chosen: Vec<Option<usize>>,
     /// The options of the row's link, eight in a chunk; empty if the row level is the drive of a joint.
     pub chunks: Vec<Chunk>,
     /// For each case, the numbers that do not depend on the option of the row level.
     pub cases: Vec<RowCase>,
-    /// The drives that each inner slot can have; without entries for links and offsets.
+    /// Masses and torsion curves of the drives that each inner slot can have, one entry for each inner slot. An entry
+    /// for a link or an offset has no drives.
     pub drives: Vec<DriveAttributes>,
-    /// Inner slots with elastic coordinates, without the link of the row level.
+    /// Indices of the inner slots that deflect elastically. The link of the row level is left out.
     pub yielding: Vec<usize>,
-    /// The hinges of all inner slots, without the link of the row level.
+    /// The hinges (elastic coordinates) of all inner slots. The link of the row level is left out.
     pub hinges: Vec<Hinge>,
     /// Mass of the given drives, tubes and offsets among the inner slots \[kg\].
     pub fixed_kg: f64,
-    /// How the drives of each inner slot are computed: which form their torsion curves have.
+    /// Form of the torsion curves of the drives in each inner slot. It decides how their twist is computed.
     pub twisting: Vec<Twisting>,
     /// The checked output bearings of the joints inboard of the row level.
     pub bearings: Vec<RowBearing>,
@@ -62,7 +64,7 @@ pub(crate) struct Row {
 /// A hinge: one elastic coordinate of an inner slot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Hinge {
-    /// Number of the hinge, its index in lists with an entry per hinge.
+    /// Number of the hinge. It is the hinge's index in lists that have an entry per hinge.
     pub number: usize,
     /// Inner slot that has this coordinate.
     pub slot: usize,
@@ -84,12 +86,13 @@ pub(crate) enum Twisting {
     Play,
 }
 
-/// Torque and inertia about the axis of a joint, caused by something outboard of it.
+/// Torque and inertia about the axis of a joint. Both are caused by some piece, or by several pieces, outboard of the
+/// joint.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct AtJoint {
-    /// Torque about the axis \[N m\].
+    /// Torque about the joint's axis that these pieces make \[N m\].
     pub torque_nm: f64,
-    /// Inertia about the axis \[kg m²\].
+    /// Inertia of these pieces about the joint's axis \[kg m²\].
     pub inertia_kgm2: f64,
 }
 
@@ -98,32 +101,33 @@ pub(crate) type AtJoints = Vec<AtJoint>;
 
 /// Numbers of one case that depend on the pose but not on the option of the row level.
 pub(crate) struct RowCase {
-    /// Whether some load or weight turns each hinge. At the other hinges the torque is zero in every arm.
+    /// For each hinge, whether some load or weight turns it. At the other hinges the torque is zero in every arm.
     pub turned: Vec<bool>,
-    /// Torque and inertia about each hinge inboard, per kilogram of the drive in each inner slot: by slot, then by
-    /// hinge.
+    /// Torque and inertia about each hinge per kilogram of the drive in an inner slot; first index the inner slot of
+    /// the drive, second the number of the hinge.
     pub per_kg: Vec<AtJoints>,
-    /// Torque and inertia about each hinge, caused by all inner pieces of known mass.
+    /// Torque and inertia about each hinge that the inner pieces with a given mass cause.
     pub fixed: AtJoints,
     /// Torque \[N m\] on each hinge per newton of the weight of the row's link. All options of a link have the same
     /// centre of mass, so one number serves for all.
     pub link_torque: Vec<f64>,
-    /// Axial force \[N\], torsion and both bending moments \[N m\] at the root of the row's link, per newton of its
-    /// weight.
+    /// Loads at the root of the row's link per newton of the link's own weight: axial force \[N\], torsion and both
+    /// bending moments \[N m\].
     pub link_weight_at_root: [f64; 4],
-    /// Whether bending of the row's link can move the tip in x, in y and in z.
+    /// Whether bending of the row's link (the link of the row level) can move the tip in x, in y and in z.
     pub bends: [bool; 3],
-    /// Entries of the outboard inertia matrix that count in Dunkerley's sum, as block, row and column: those that the
-    /// end of the row's link sets in motion.
+    /// The entries (block, row, column) of the inertia matrix of everything outboard that count in Dunkerley's sum.
+    /// They are those that the end of the row's link sets in motion.
     pub spread_entries: Vec<(usize, usize, usize)>,
-    /// The range of `spread_entries` that belongs to each block.
+    /// For each block of the eigenvalue problem, the range of `spread_entries` that belongs to it.
     pub spread_of: [Range<usize>; 2],
-    /// In each block, the number of inner slots up to the last compliant one. Slots inboard of it stand still in
-    /// every mode.
+    /// For each block of the eigenvalue problem, the number of inner slots that take part in its modes: all from the
+    /// row level to the last compliant one. Slots inboard of that one stand still in every mode.
     pub ends: [usize; 2],
-    /// Whether some option of the row's link is compliant.
+    /// Whether the link of the row level is compliant with at least one of its options.
     pub links_yield: bool,
-    /// Contribution of the given tubes to Dunkerley's sum, by block \[s²\], without the mass outboard of them.
+    /// Contribution of the given tubes to Dunkerley's sum (the sum of `1/λ` over the eigenvalues) of each block \[s²\].
+    /// It counts the mass of each tube itself, without the mass outboard of it.
     pub tubes_trace_s2: [f64; 2],
     /// Whether the case counts for deflection and lowest mode.
     pub judged: bool,
@@ -143,7 +147,7 @@ pub(crate) struct Chunk {
     pub of_one_material: bool,
     /// Bit mask, one bit per option: the options whose wall is too slender.
     pub slender: u8,
-    /// Stress of each option.
+    /// Factors from which the stress in the link follows with each option.
     pub stress: StressEight,
     /// The eight options in each case.
     pub cases: Vec<CaseChunk>,
@@ -153,13 +157,13 @@ pub(crate) struct Chunk {
 /// known.
 #[derive(Default)]
 pub(crate) struct StressEight {
-    /// Per newton of axial force.
+    /// Ratio of stress to strength per newton of axial force.
     pub per_axial_n: Eight,
-    /// Per newton metre of bending moment about the section's y axis.
+    /// Ratio of stress to strength per newton metre of bending moment about the section's y axis.
     pub per_moment_y: Eight,
-    /// Per newton metre of bending moment about the section's z axis.
+    /// Ratio of stress to strength per newton metre of bending moment about the section's z axis.
     pub per_moment_z: Eight,
-    /// Per newton metre of torsion.
+    /// Ratio of stress to strength per newton metre of torsion.
     pub per_torsion: Eight,
     /// Bit mask, one bit per option: the options of round section, in which both bending moments add as vectors.
     pub round: u8,
@@ -173,17 +177,19 @@ pub(crate) struct CaseChunk {
     pub flexibility: [[Eight; 6]; 3],
     /// Displacement of the tip \[m\] in x, y and z, caused by the weight of the link itself.
     pub own_weight_deflection_m: [Eight; 3],
-    /// Inertia of the link about each hinge \[kg m²\].
+    /// Inertia of the row's link, with each option, about each hinge inboard \[kg m²\].
     pub inertia_at: Vec<Eight>,
-    /// Contribution to Dunkerley's sum per unit of each entry of the outboard inertia ([`RowCase::spread_entries`]).
+    /// Contribution to Dunkerley's sum (the sum of `1/λ` over all eigenvalues) per unit of each entry of the outboard
+    /// inertia matrix, in the order of [`RowCase::spread_entries`].
     pub spread: Vec<Eight>,
-    /// Contribution of the link with its own mass alone to Dunkerley's sum, by block \[s²\].
+    /// Contribution of the row's link, with its own mass alone, to Dunkerley's sum (the sum of `1/λ` over the
+    /// eigenvalues) of each block \[s²\].
     pub trace_s2: [Eight; 2],
-    /// The link options as the computation of the lowest mode needs them.
+    /// The eight link options in the form in which the computation of the lowest mode needs them.
     pub modal: ChunkModal,
 }
 
-/// Eight options of the row's link, as the computation of the lowest mode needs them.
+/// Eight options of the row's link, in the form in which the computation of the lowest mode needs them.
 pub(crate) enum ChunkModal {
     Planar(Box<[LaneLink<3>; 2]>),
     Spatial(Box<LaneLink<6>>),
@@ -194,19 +200,19 @@ pub(crate) enum ChunkModal {
 pub(crate) struct RowChunk<'a, 'c> {
     pub problem: &'a ArmProblem<'c>,
     pub row: &'a Row,
-    /// The arm outboard of the row.
+    /// The arm outboard of the row level, which all designs of the row have in common.
     pub from: &'a Partial,
     /// Option of each level inboard of the row level, in order towards the base.
     pub inner: &'a [u32],
-    /// Number of the chunk.
+    /// Number of the chunk (eight options of the row level) to which the eight designs belong.
     pub chunk: usize,
 }
 
 impl Row {
-    /// Computes what is the same in all rows. Returns `None` where the designs must be evaluated one by one: if there
-    /// is no level; if a given tube inboard is too slender, so that no design meets its limits; if the space has
-    /// linkages or effects that eight designs at once do not know; and if springs pull on tubes, where the stress is
-    /// not checked for eight designs at once.
+    /// Prepares the inner slots of a problem for the evaluation of eight designs at once. `None` where the designs must
+    /// be evaluated one by one: if there is no level; if a given tube inboard is too slender, so that no design meets
+    /// its limits; if the space has linkages or effects that are not written for eight designs at once; and if springs
+    /// pull on tubes, because the stress is then not checked for eight designs at once.
     pub(crate) fn new(problem: &ArmProblem) -> Option<Self> {
         if problem.space().beyond_exact().is_some() || problem.space().pulls_on_tubes() {
             return None;
@@ -253,14 +259,14 @@ impl Row {
     }
 }
 
-/// For each inner slot: the position of its level among the levels inboard of the row level, if the search chooses
-/// its drive.
+/// One entry for each inner slot, the slots from `first` (the slot of the row level) to the base. If the search chooses
+/// the drive of the slot: the index of this choice among the levels inboard of the row level. Otherwise `None`.
 fn chosen(problem: &ArmProblem, first: usize) -> Vec<Option<usize>> {
     let inner: Vec<usize> = problem.level_slots().iter().copied().filter(|&slot| slot > first).collect();
     (first..problem.slots().len()).map(|slot| inner.iter().position(|&level| level == slot)).collect()
 }
 
-/// The hinges (elastic coordinates) of inner slots.
+/// The hinges (elastic coordinates) of the inner slots `slots`, without those of the row's link.
 fn hinges(slots: &[Slot]) -> Vec<Hinge> {
     let mut tubes = slots.len();
     let mut hinges = Vec::new();
@@ -287,8 +293,8 @@ pub(super) fn hinge_numbers(slots: &[Slot]) -> usize {
 }
 
 impl Hinge {
-    /// Motion (velocity and angular velocity at the world's origin) of everything outboard per unit of the hinge's
-    /// coordinate. `slots` are the inner slots of a case.
+    /// Motion of everything outboard of this hinge per unit of the hinge's coordinate: velocity and angular velocity at
+    /// the world's origin. `slots` are the inner slots of a case.
     pub(super) fn twist(&self, slots: &[StationSlot]) -> Twist {
         match (&slots[self.slot], self.end) {
             (StationSlot::Joint(joint), _) => joint.twist,
@@ -298,7 +304,8 @@ impl Hinge {
     }
 }
 
-/// The form of the torsion curves of the drives in inner slot `k`.
+/// The form that the torsion curves of the drives in inner slot `k` have in the judged cases. `drives` are the drives
+/// of this slot.
 fn twisting(slot: &Slot, drives: &DriveAttributes, k: usize, cases: &[RowCase]) -> Twisting {
     let has_play = match slot {
         Slot::Given { law, .. } => law.has_play(),
@@ -317,7 +324,8 @@ fn twisting(slot: &Slot, drives: &DriveAttributes, k: usize, cases: &[RowCase]) 
 }
 
 impl RowCase {
-    /// Computes the numbers of one case. `pieces` are the inner slots, `first` is the slot of the row level.
+    /// Computes the numbers of the case `station`. `pieces` are the inner slots, and `first` is the slot of the row
+    /// level. `judged` and `sizing` tell what the case counts for.
     fn new(
         station: &Station,
         pieces: &[Slot],
@@ -393,21 +401,21 @@ impl RowCase {
 }
 
 impl AtJoint {
-    /// Torque and inertia about an axis. `twist` is the motion per radian about it, `inertia` and `wrench` belong to
-    /// what moves.
+    /// Torque and inertia about an axis. `twist` is the motion per radian of turning about it. `inertia` is the inertia
+    /// matrix of the bodies that move, and `wrench` the load on them.
     pub(super) fn new(twist: &Twist, inertia: &Matrix6<f64>, wrench: &Wrench) -> Self {
         Self { torque_nm: twist.dot(wrench), inertia_kgm2: twist.dot(&(inertia * twist)) }
     }
 
-    /// Adds another torque and inertia, multiplied by `times`.
+    /// Adds `times` times the torque and the inertia of `other`.
     pub(super) fn add(&mut self, other: Self, times: f64) {
         self.torque_nm += times * other.torque_nm;
         self.inertia_kgm2 += times * other.inertia_kgm2;
     }
 }
 
-/// Contribution of the given tubes to Dunkerley's sum, by block \[s²\]. Only the mass of each tube itself counts
-/// here.
+/// Contribution of the given tubes to Dunkerley's sum (the sum of `1/λ` over all eigenvalues) of each block \[s²\].
+/// Only the mass of each tube itself counts here, and not the mass outboard of it.
 fn tubes_trace_s2(slots: &[StationSlot]) -> [f64; 2] {
     let mut sum_s2 = [0.0; 2];
     for slot in slots {
@@ -421,7 +429,8 @@ fn tubes_trace_s2(slots: &[StationSlot]) -> [f64; 2] {
     sum_s2
 }
 
-/// For each hinge: whether some load turns it, and the torque on it per newton of the weight of the row's link.
+/// For each hinge: whether some load of the case turns it, and the torque on it per newton of the weight of the row's
+/// link. `link_weight` is the wrench of this weight per newton.
 fn turning(
     station: &Station,
     slots: &[StationSlot],
@@ -440,7 +449,7 @@ fn turning(
     (turned, link_torque)
 }
 
-/// Whether the bending of some option of a link moves the tip in x, in y and in z.
+/// Whether the bending of a link moves the tip in x, in y and in z, for at least one of the options `links`.
 fn bends(links: &[StationLink]) -> [bool; 3] {
     links.iter().fold([false; 3], |bends, link| {
         let (flexibility, own_m) = (link.flexibility(), link.own_weight_deflection_m());
@@ -448,7 +457,7 @@ fn bends(links: &[StationLink]) -> [bool; 3] {
     })
 }
 
-/// For each component of a wrench, whether some load or weight of the case has this component.
+/// For each of the six components of a wrench, whether some load or weight of the case has this component.
 fn loaded(station: &Station) -> [bool; 6] {
     let weights = station.slots.iter().flat_map(|slot| match slot {
         StationSlot::Joint(joint) => vec![&joint.weight_per_kg],
@@ -462,7 +471,8 @@ fn loaded(station: &Station) -> [bool; 6] {
     loaded
 }
 
-/// Number of inner slots up to the last one that is compliant in this block; 0 if none is.
+/// Number of inner slots from the row level to the last one that is compliant in this block; 0 if none is. `first` is
+/// the slot of the row level, and `links_yield` tells whether some option of the row's link is compliant.
 fn last_yielding<const N: usize>(block: &Block<N>, first: usize, links_yield: bool) -> usize {
     let yields = |slot: &BlockSlot<N>| match slot {
         BlockSlot::Joint { twist, .. } => twist.amax() > 0.0,
@@ -492,7 +502,8 @@ fn spread_entries(modal: &Modal) -> Vec<(usize, usize, usize)> {
 }
 
 impl Chunk {
-    /// Computes the numbers of chunk number `c` of the options of a link.
+    /// Computes the numbers of chunk `c`: of the eight link options from number `8 c` on. `options` are all options of
+    /// the link.
     fn new(
         problem: &ArmProblem,
         cases: &[RowCase],
@@ -537,7 +548,8 @@ impl Chunk {
 }
 
 impl CaseChunk {
-    /// The options of a chunk in one case; `at(lane)` is the option in a lane.
+    /// Computes the numbers of the eight link options of a chunk in one case. `at(lane)` is the number of the option in
+    /// a lane, and `first` the slot of the link.
     fn new(
         station: &Station,
         case: &RowCase,
@@ -577,13 +589,14 @@ impl CaseChunk {
     }
 }
 
-/// Contribution of a link to Dunkerley's sum per unit of one entry (block, row, column) of the outboard inertia
-/// matrix.
+/// Contribution of a link to Dunkerley's sum (the sum of `1/λ` over all eigenvalues) per unit of one entry of the
+/// outboard inertia matrix. The entry is given by its block, row `i` and column `j`.
 fn spread_of(link: &StationLink, (block, i, j): (usize, usize, usize)) -> f64 {
     (0..6).filter(|&g| link.block[g] == block).map(|g| link.end[(i, g)] * link.end[(j, g)]).sum()
 }
 
-/// The options of a chunk as the computation of the lowest mode needs them.
+/// The eight options of a chunk as the computation of the lowest mode needs them. `at(lane)` is the number of the
+/// option in a lane, and `first` the slot of the link.
 fn chunk_modal(modal: &Modal, first: usize, at: &dyn Fn(usize) -> usize) -> ChunkModal {
     match modal {
         Modal::Planar(blocks) => {
@@ -594,7 +607,8 @@ fn chunk_modal(modal: &Modal, first: usize, at: &dyn Fn(usize) -> usize) -> Chun
     }
 }
 
-/// The options of a chunk in one block of the eigenvalue problem.
+/// The eight options of a chunk in one block of the eigenvalue problem. `at(lane)` is the number of the option in a
+/// lane, and `first` the slot of the link.
 fn lane_link<const N: usize>(block: &Block<N>, first: usize, at: &dyn Fn(usize) -> usize) -> LaneLink<N> {
     match &block.slots[first] {
         BlockSlot::Links(options) => LaneLink::new(std::array::from_fn(|lane| &options[at(lane)])),

@@ -16,9 +16,9 @@ use nalgebra::Matrix6;
 
 /// The output bearing of an inner joint, with its loads prepared for the designs of a row.
 pub(crate) struct RowBearing {
-    /// Inner slot of the joint.
+    /// Index of the joint among the inner slots (the slots from the row level to the base).
     pub k: usize,
-    /// The bearing in each sizing case, with the number of the case.
+    /// The bearing in each sizing case. Each entry has the index of the case and the bearing's loads in it.
     cases: Vec<(usize, BearingCase)>,
     /// Lever of the radial force about the bearing.
     lever: RowLever,
@@ -33,13 +33,15 @@ enum RowLever {
     OfChunk(Vec<Eight>),
 }
 
-/// One bearing in one case: the load at rest, and the additional load when each joint accelerates.
+/// The loads on one bearing in one case: the load at rest, and the additional load while each joint accelerates.
 struct BearingCase {
     /// Position and axes of the bearing in this pose.
     joint: PosedBearing,
-    /// Load from weight, as far as it does not depend on the arm outboard of the row.
+    /// Load at rest from the weight of the row's link and of the inner pieces. The load from the arm outboard of the
+    /// row is added later.
     at_rest: Source,
-    /// Load from the acceleration of each joint, tip first.
+    /// Additional load while each joint accelerates, one entry for each joint whose acceleration loads the bearing, tip
+    /// first.
     ramps: Vec<Ramp>,
 }
 
@@ -50,24 +52,27 @@ struct Ramp {
     /// Acceleration of everything outboard of the joint that moves: its twist (a kinematic vector) times its angular
     /// acceleration. `None` if the joint is outboard of the row, since then the load is known from the outboard arm.
     inner: Option<Wrench>,
-    /// Load as far as it does not depend on the arm outboard of the row.
+    /// Load that the accelerated inertia of the row's link and of the inner pieces makes. The load from the arm
+    /// outboard of the row is added later.
     source: Source,
 }
 
-/// The terms of a load that do not depend on the arm outboard of the row.
+/// A load on a bearing, as far as it comes from the row's link and from the inner pieces (from the row level to the
+/// base).
 #[derive(Default)]
 struct Source {
-    /// Load from inner pieces of known mass \[N, N m\].
+    /// Load from inner pieces whose mass is given \[N, N m\].
     fixed: Components,
-    /// For each inner drive of unknown mass: its inner slot, and the load per kilogram of the drive.
+    /// For each inner drive that is chosen or sized: its inner slot, and the load per kilogram of the drive.
     per_kg: Vec<(usize, Components)>,
-    /// Load from the link of the row, for each chunk of its options; empty if the row level is not a link.
+    /// Load from the link of the row level, with each of its options, eight in a chunk. Empty if the row level is not a
+    /// link.
     link: Vec<[Eight; 5]>,
 }
 
 impl Source {
-    /// Adds the loads from the inner pieces outboard of slot `limit`. `effect` turns the inertia and weight of a
-    /// piece into the load on the bearing.
+    /// Sums the loads from the row's link and from the inner pieces outboard of the slot `limit`. `effect` returns the
+    /// load on the bearing that a piece makes with a given inertia and weight. `first` is the slot of the row level.
     fn new(
         problem: &ArmProblem,
         station: &Station,
@@ -111,13 +116,14 @@ fn add_times(to: &mut Components, what: &Components, times: f64) {
     to.iter_mut().zip(what).for_each(|(to, what)| *to += times * what);
 }
 
-/// Converts eight sets of five components into five components with eight values each.
+/// Converts eight loads of five components each into five components with eight values each.
 fn side_by_side(lanes: [Components; LANES]) -> [Eight; 5] {
     std::array::from_fn(|i| lanes.map(|components| components[i]))
 }
 
 impl BearingCase {
-    /// Prepares the bearing of the joint in slot `slot` for one case. Returns `None` if the slot has no joint.
+    /// Prepares the loads on the bearing of the joint in `slot` for one case. `first` is the slot of the row level.
+    /// `None` if the slot has no joint.
     fn new(problem: &ArmProblem, station: &Station, first: usize, slot: usize) -> Option<Self> {
         let StationSlot::Joint(place) = &station.slots[slot] else { return None };
         let joint = PosedBearing::new(place);
@@ -143,8 +149,9 @@ impl BearingCase {
 }
 
 impl RowBearing {
-    /// Prepares the checked bearings of the joints inboard of the row level, which is in slot `first`. If the row
-    /// level is itself a joint, its bearing is left out, because its load is the same for all drives of the row.
+    /// Prepares the bearings that are checked, of the joints inboard of the row level. `first` is the slot of the row
+    /// level. If the row level is itself a joint, its bearing is left out, because its load is the same for all drives
+    /// of the row.
     pub(crate) fn all(problem: &ArmProblem, first: usize) -> Vec<Self> {
         let slots = problem.slots();
         let levers = problem.bearing_loads().levers.iter().enumerate().skip(first);
@@ -172,8 +179,9 @@ impl RowBearing {
             .collect()
     }
 
-    /// For each sizing case, writes the loads that come from the arm outboard of the row: at rest first, then for
-    /// each mover.
+    /// Writes to `out` the loads that come from the arm `from`, which is outboard of the row. There is one list for
+    /// each sizing case: the load at rest first, then the load from the acceleration of each mover (joint that
+    /// accelerates).
     pub(crate) fn begin(&self, from: &Partial, out: &mut Vec<Vec<Components>>) {
         out.resize_with(self.cases.len(), Vec::new);
         for ((case, of), out) in self.cases.iter().zip(out) {
@@ -194,13 +202,13 @@ impl RowBearing {
     }
 }
 
-/// Loads from the arm outboard of a row, by bearing, then by case, then by source: at rest first, then for each
-/// mover.
+/// Loads from the arm outboard of a row. First index the bearing, second the sizing case, third the cause: the load at
+/// rest first, then that of each mover (joint that accelerates).
 pub(crate) type BearingsBegun = Vec<Vec<Vec<Components>>>;
 
 impl RowBearing {
-    /// Loads on the bearing in eight designs of a chunk. `begun` are the loads from the arm outboard of the row, and
-    /// `masses_kg` the masses of the inner drives that are outboard of the bearing.
+    /// Loads on the bearing in the eight designs of a chunk. `from` is the arm outboard of the row and `begun` are the
+    /// loads from it. `masses_kg` are the masses of the drives in the inner slots.
     #[inline(always)]
     pub(crate) fn demands<V: Lanes>(
         &self,
@@ -231,8 +239,8 @@ impl RowBearing {
 }
 
 impl Source {
-    /// The five components of a load in eight designs: the sum of the terms of the arm outboard, of the row's link
-    /// and of the inner drives.
+    /// The five components of this load in eight designs. The term `begun` comes from the arm outboard of the row; the
+    /// terms of the row's link and of the inner drives, which have the masses `masses_kg`, are added to it.
     #[inline(always)]
     fn load<V: Lanes>(&self, chunk: usize, begun: &Components, masses_kg: &[Eight]) -> [V; 5] {
         let mut out = [V::zero(); 5];

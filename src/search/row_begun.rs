@@ -11,7 +11,7 @@ use crate::space::station::{Modal, StationSlot};
 
 /// Working space in which the designs of rows are evaluated.
 pub struct RowScratch {
-    /// Numbers of the rows of one batch.
+    /// One entry for each row of a batch: the numbers of this row that depend on the arm outboard of it.
     pub(crate) rows: Vec<Begun>,
     /// Eight arms that are being completed.
     pub(crate) arms: EightArms,
@@ -21,16 +21,17 @@ pub struct RowScratch {
 
 /// The numbers of a row that depend on the arm outboard of it.
 pub(crate) struct Begun {
-    /// These numbers in each case.
+    /// The numbers that depend on the case, one entry for each case.
     pub cases: Vec<CaseBegun>,
-    /// For each inner joint, the step of the drive table at which the drive of the last design was found. The search
-    /// for the next drive starts there, because the demands of neighbouring designs are similar.
+    /// For each inner joint (from the row level to the base), the step of the drive table at which the drive of the
+    /// last design was found. The search for the next drive starts there, because the demands of neighbouring designs
+    /// are similar.
     pub steps: Vec<usize>,
     /// Loads on the output bearing of the joint that is the row level; zero if the row level is a link.
     pub of_row: BearingDemand,
     /// Room for the gear and motor of the joint that is the row level; unlimited if the row level is a link.
     pub room_of_row: LinkRoom,
-    /// Loads from outboard of the row on the output bearings inboard of the row level.
+    /// Loads that everything outboard of the row makes on the output bearings inboard of the row level.
     pub bearings: BearingsBegun,
 }
 
@@ -38,16 +39,18 @@ pub(crate) struct Begun {
 pub(crate) struct CaseBegun {
     /// The arm outboard of the row, prepared for the lowest modes.
     pub outboard: CaseOutboard,
-    /// Torque and inertia about each hinge, caused by everything outboard of the row and by the inner pieces of known
-    /// mass.
+    /// Torque and inertia about each hinge that everything outboard of the row and the inner pieces with a given mass
+    /// cause.
     pub at: AtJoints,
-    /// The entries of the outboard inertia matrix that count in Dunkerley's sum. Entries off the diagonal are
-    /// doubled, in the order of [`RowCase::spread_entries`](super::row::RowCase::spread_entries).
+    /// The entries of the inertia matrix of everything outboard that count in Dunkerley's sum (the sum of `1/λ` over
+    /// the eigenvalues). Entries off the diagonal are doubled. The order is that of
+    /// [`RowCase::spread_entries`](super::row::RowCase::spread_entries).
     pub spread: Vec<f64>,
-    /// Axial force \[N\], torsion and both bending moments \[N m\] at the end of the row's link, caused by everything
-    /// outboard.
+    /// Loads at the end of the row's link from everything outboard: axial force \[N\], torsion and both bending moments
+    /// \[N m\].
     pub at_end: [f64; 4],
-    /// The same four loads at the root of the row's link, without the weight of the link.
+    /// Loads at the root of the row's link from everything outboard, without the weight of the link: axial force \[N\],
+    /// torsion and both bending moments \[N m\].
     pub at_root: [f64; 4],
 }
 
@@ -64,8 +67,8 @@ impl RowScratch {
         Self { rows: Vec::new(), arms: EightArms::new(problem), spare: problem.empty() }
     }
 
-    /// Computes, for each row, the numbers that all its designs have in common. `from` are the arms outboard of the
-    /// rows.
+    /// Computes, for each row of a batch, the numbers that all its designs have in common. `from` are the arms outboard
+    /// of the rows, one for each row.
     pub(crate) fn begin<'p>(
         &mut self,
         problem: &ArmProblem,
@@ -103,7 +106,7 @@ impl Begun {
         }
     }
 
-    /// Computes the numbers of the row inboard of the arm `from`. The memory of an earlier row is used again.
+    /// Computes the numbers of the row that continues the arm `from`. The memory of an earlier row is used again.
     fn refill(&mut self, problem: &ArmProblem, row: &Row, from: &Partial) {
         self.of_row = from.next_demand.map_or(BearingDemand::default(), |demand| demand.bearing);
         self.room_of_row = from.next_demand.map_or(LinkRoom::ANY, |demand| demand.room);

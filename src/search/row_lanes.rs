@@ -41,8 +41,8 @@ pub(crate) struct RowsWork<'a, 'c, K> {
 struct FinishedEight {
     /// Designs that meet all limits.
     held: u8,
-    /// Designs that meet all limits, but whose lowest mode is below the bar. They are dominated, so their modes are
-    /// not computed.
+    /// Designs that meet all limits, but whose lowest mode is below the bar, the mode that they would need for not
+    /// being dominated. Their modes are not computed.
     below_bar: u8,
     /// Designs that meet all limits, but whose iteration for the lowest mode did not converge. They are computed
     /// again, one by one.
@@ -85,8 +85,9 @@ impl<K: Keep> LaneWork for RowsWork<'_, '_, K> {
 }
 
 impl RowChunk<'_, '_> {
-    /// Evaluates eight designs; `valid` is a bit mask of those that exist. Tests go from the cheapest to the most
-    /// expensive. The function returns as soon as every design has failed or is below its bar.
+    /// Evaluates eight designs. `valid` is a bit mask of the lanes that hold a design. The tests go from the cheapest
+    /// to the most expensive, and the function returns as soon as every design breaks a limit or is below its bar (the
+    /// lowest mode that it needs for not being dominated).
     #[inline(always)]
     fn finish<V: Lanes>(
         &self,
@@ -127,8 +128,8 @@ impl RowChunk<'_, '_> {
         FinishedEight { held, below_bar, unsure }
     }
 
-    /// Reports the designs that are above the bar to `keep`. The function is rarely called, so it is not inlined into
-    /// the loop.
+    /// Reports the designs whose lowest mode is above the bar to `keep`. `done` is the outcome of the eight designs.
+    /// The function is rarely called, so it is not inlined into the loop.
     #[inline(never)]
     fn hand_over(
         &self,
@@ -150,8 +151,8 @@ impl RowChunk<'_, '_> {
         }
     }
 
-    /// Adds one slot after another, until every arm is complete or no arm meets its limits. Returns how many of the
-    /// drives chosen inboard of the row level were added.
+    /// Adds one inner slot (from the row level to the base) after another to the eight arms, until every arm is
+    /// complete or every arm breaks a limit. Returns how many of the drives chosen inboard of the row level were added.
     #[inline(always)]
     fn grow<V: Lanes>(&self, begun: &mut Begun, arms: &mut EightArms) -> usize {
         let slots = &self.problem.slots()[self.row.first..];
@@ -187,7 +188,8 @@ impl RowChunk<'_, '_> {
         chosen
     }
 
-    /// Starts all eight arms with the same arm outboard of the row.
+    /// Sets all eight arms to the same arm outboard of the row, whose numbers are in `begun`. Nothing is added for the
+    /// row level.
     #[inline(always)]
     fn start<V: Lanes>(&self, begun: &Begun, arms: &mut EightArms) {
         arms.mass_kg = V::splat(self.from.mass_kg + self.row.fixed_kg).store();
@@ -202,7 +204,8 @@ impl RowChunk<'_, '_> {
         }
     }
 
-    /// Starts the eight arms with the arm outboard of the row and one link option each.
+    /// Sets the eight arms to the arm outboard of the row, whose numbers are in `begun`, and adds one link option of
+    /// `chunk` to each.
     #[inline(always)]
     fn start_with_link<V: Lanes>(&self, chunk: &Chunk, begun: &Begun, arms: &mut EightArms) {
         let constraints = &self.problem.space().constraints;
@@ -246,8 +249,8 @@ impl RowChunk<'_, '_> {
         }
     }
 
-    /// Largest ratio of stress to strength at peak load, over both ends of the row's link and of all links outboard
-    /// of it.
+    /// For each of eight designs, the largest ratio of stress to strength at peak load, over both ends of the row's
+    /// link and of all links outboard of it.
     #[inline(always)]
     fn stress<V: Lanes>(&self, chunk: &Chunk, begun: &Begun) -> V {
         let (mut standing, mut moving) = (V::zero(), V::zero());
@@ -270,8 +273,8 @@ impl RowChunk<'_, '_> {
         own.max(V::splat(self.from.stress_ratio))
     }
 
-    /// Index of the drive of each arm at inner slot `k`. An arm for which no drive meets the demand is removed from
-    /// `held`.
+    /// Index of the drive that each of the eight arms gets at inner slot `k`: the chosen drive, or the lightest one
+    /// that meets the demand. An arm for which no drive meets the demand is removed from `held`.
     #[inline(always)]
     fn pick<V: Lanes>(
         &self,
@@ -318,8 +321,9 @@ impl RowChunk<'_, '_> {
         }
     }
 
-    /// Index of the drive of each arm if the row level is a joint. Each lane then has another drive with limits of
-    /// its own, while the demand is the same in all lanes.
+    /// Index of the drive of each arm if the row level is a joint. The eight lanes have eight different drives, with
+    /// different limits, while the demand is the same in all lanes. An arm whose drive does not meet the demand is
+    /// removed from `held`.
     #[inline(always)]
     fn drive_in_each_lane(
         &self,
@@ -340,7 +344,8 @@ impl RowChunk<'_, '_> {
         indices
     }
 
-    /// Adds the mass of each arm's drive, and the torque and inertia that this mass causes at the joints inboard.
+    /// Adds the mass of each arm's drive at inner slot `k`, and the torque and inertia that this mass causes at the
+    /// joints inboard. `indices` are the drives of the eight arms.
     #[inline(always)]
     fn add_drive<V: Lanes>(&self, k: usize, indices: &[usize; LANES], arms: &mut EightArms) {
         let mass: V = at_places(&self.row.drives[k].mass_kg, indices, all_equal(indices));
@@ -360,8 +365,8 @@ impl RowChunk<'_, '_> {
         }
     }
 
-    /// Adds the deflection from the torsion of each arm's drive. Returns the largest term that this joint adds to
-    /// Dunkerley's sums \[s²\].
+    /// Adds the tip displacement that the torsion of the joint in inner slot `k` causes. `indices` are the drives of
+    /// the eight arms. Returns, for each arm, the largest term that this joint adds to Dunkerley's sums \[s²\].
     #[inline(always)]
     fn add_joint<V: Lanes>(&self, k: usize, indices: [usize; LANES], arms: &mut EightArms) -> V {
         let drives = &self.row.drives[k];
@@ -395,8 +400,8 @@ impl RowChunk<'_, '_> {
         largest
     }
 
-    /// Adds the deflection from the bending of a given tube. Returns the largest term that one of its end coordinates
-    /// adds to Dunkerley's sums \[s²\].
+    /// Adds the tip displacement that the bending of the given tube in inner slot `k` causes. Returns, for each arm,
+    /// the largest term that one end coordinate of the tube adds to Dunkerley's sums \[s²\].
     #[inline(always)]
     fn add_tube<V: Lanes>(&self, k: usize, arms: &mut EightArms) -> V {
         let mut largest = V::zero();
@@ -420,8 +425,8 @@ impl RowChunk<'_, '_> {
         largest
     }
 
-    /// Computes Dunkerley's sum for each case and block: the trace of the product of flexibility and mass matrix
-    /// \[s²\].
+    /// Computes Dunkerley's sum for each case and block of the eigenvalue problem \[s²\]: the trace of flexibility
+    /// matrix times mass matrix, which equals the sum of `1/λ` over the eigenvalues.
     #[inline(always)]
     fn sum_traces<V: Lanes>(&self, begun: &Begun, arms: &mut EightArms) {
         for (c, case) in self.row.cases.iter().enumerate().filter(|(_, case)| case.judged) {
@@ -454,8 +459,9 @@ impl RowChunk<'_, '_> {
         }
     }
 
-    /// Angle \[rad\] and tangent compliance \[rad/(N m)\] of joints with play or friction. They are computed one arm
-    /// at a time, because their joint laws are not written for eight at once.
+    /// Angle \[rad\] and tangent compliance \[rad/(N m)\] of the joints in inner slot `k`, which have play or friction,
+    /// under `torque_nm`. They are computed one arm at a time, because laws with play are not written for eight at
+    /// once.
     #[inline(always)]
     fn each_by_itself<V: Lanes>(&self, k: usize, indices: [usize; LANES], torque_nm: V) -> (V, V) {
         let slot = &self.problem.slots()[self.row.first + k];
@@ -484,7 +490,7 @@ impl RowChunk<'_, '_> {
     }
 }
 
-/// Adds eight numbers to eight numbers in memory.
+/// Adds the eight numbers `more` to the eight numbers `to` in memory.
 #[inline(always)]
 fn add<V: Lanes>(to: &mut Eight, more: V) {
     *to = (V::load(to) + more).store();
@@ -500,21 +506,21 @@ fn load_all<V: Lanes, const K: usize>(from: &[Eight; K]) -> [V; K] {
     out
 }
 
-/// Whether all eight arms have the same drive. Neighbouring options often have, and one load from memory is faster
-/// than eight.
+/// Whether all eight arms have the same drive. This is frequent, because the drives of neighbouring designs are
+/// similar, and one load from memory is faster than eight.
 #[inline(always)]
 fn all_equal(indices: &[usize; LANES]) -> bool {
     indices.iter().all(|index| *index == indices[0])
 }
 
-/// The entries of a list at eight indices. `all_same` says that the indices are equal.
+/// The entries of `list` at the eight indices `at`. `all_same` tells that these are equal.
 #[inline(always)]
 fn at_places<V: Lanes>(list: &[f64], at: &[usize; LANES], all_same: bool) -> V {
     if all_same { V::splat(list[at[0]]) } else { V::gather(list, at) }
 }
 
-/// Square of the ratio of von Mises stress (bending, axial force and torsion) to strength, for eight links. The loads
-/// are axial force \[N\], torsion and the two bending moments \[N m\].
+/// Square of the ratio of von Mises stress (bending, axial force and torsion) to strength, for eight links. `per` has
+/// the ratio per unit of each load. The loads are axial force \[N\], torsion and the two bending moments \[N m\].
 #[inline(always)]
 fn stress_squared<V: Lanes>(per: &StressEight, [axial, torsion, y, z]: [V; 4]) -> V {
     let y = y.abs() * V::load(&per.per_moment_y);
@@ -545,7 +551,7 @@ impl<V: Lanes> Curves<V> {
         Self { compliance: [compliance; 3], ends_nm: [V::zero(); 2], first_in_modes: true }
     }
 
-    /// The curves of the drives at eight indices.
+    /// The torsion curves of the drives with the eight indices `at`. `all_same` says that the indices are equal.
     #[inline(always)]
     fn gather(of: &DriveAttributes, at: &[usize; LANES], all_same: bool) -> Self {
         let zero = V::zero();
@@ -560,8 +566,8 @@ impl<V: Lanes> Curves<V> {
         curves
     }
 
-    /// Angle under a torque \[rad\], and compliance in modes \[rad/(N m)\]. Every segment is computed and then
-    /// selected, because the eight lanes cannot branch separately.
+    /// Angle \[rad\] of eight gears under `torque_nm`, and their compliance in modes \[rad/(N m)\]. Every segment is
+    /// computed and then selected, because the eight lanes cannot branch separately.
     #[inline(always)]
     fn windup(&self, torque_nm: V) -> (V, V) {
         let Self { compliance, ends_nm, first_in_modes } = self;

@@ -23,7 +23,8 @@ use crate::space::levels::Keep;
 use crate::space::station::{Block, BlockSlot, Modal};
 use std::f64::consts::TAU;
 
-/// Finds the lowest modes of eight complete arms, or whether these are below a bar.
+/// Eight complete arms whose lowest modes are to be found, or at least compared with a bar. A bar is the lowest mode
+/// that a design needs for not being dominated.
 #[derive(Clone, Copy)]
 pub(crate) struct Question<'a, 'c> {
     at: RowChunk<'a, 'c>,
@@ -31,10 +32,10 @@ pub(crate) struct Question<'a, 'c> {
     arms: &'a EightArms,
 }
 
-/// What is asked about the lowest eigenvalue of one block.
+/// A question about the lowest eigenvalue of one block of the eigenvalue problem, for eight arms.
 #[derive(Clone, Copy)]
 struct Ask<V> {
-    /// Bit mask, one bit per arm: the arms in question.
+    /// Bit mask, one bit per arm: the arms for which the question is asked.
     open: u8,
     /// Eigenvalues \[1/s²\] that are not below this number are of no interest.
     below: V,
@@ -51,7 +52,7 @@ impl RowChunk<'_, '_> {
         self.from.group.with(material).material()
     }
 
-    /// Whether the eight designs are all of the same group.
+    /// Whether the eight designs all belong to the same group (material).
     #[inline(always)]
     fn of_one_group(&self) -> bool {
         self.row.chunks.get(self.chunk).is_none_or(|chunk| chunk.of_one_material)
@@ -63,9 +64,10 @@ impl<'a, 'c> Question<'a, 'c> {
         Self { at, begun, arms }
     }
 
-    /// The designs that are dominated according to a single bar for all eight. It is the bar of an imagined design
-    /// with the least mass and the least deflection of the eight, so the bar of each of the eight is at least as
-    /// high. `tip_m2` has the squares of the deflections \[m²\].
+    /// The designs among `held` that are shown to be dominated by a single bar for all eight. A bar is the lowest mode
+    /// that a design of known mass and deflection needs for not being dominated. This one belongs to an imagined design
+    /// with the least mass and the least deflection of the eight, so the bar of each of the eight is at least as high.
+    /// `tip_m2` has the squares of the deflections \[m²\].
     #[inline(always)]
     pub(crate) fn below_one_bar<V: Lanes>(&self, keep: &impl Keep, tip_m2: &Eight, held: u8) -> u8 {
         if !self.at.of_one_group() {
@@ -75,7 +77,8 @@ impl<'a, 'c> Question<'a, 'c> {
         held & self.sluggish(V::splat(eigenvalue(bar_hz)))
     }
 
-    /// The designs whose lowest mode is below the bar of the design itself.
+    /// The designs among `held` whose lowest mode is below their own bar, that is, below the mode that a design of this
+    /// mass and deflection needs for not being dominated.
     #[inline(always)]
     pub(crate) fn below_bar<V: Lanes>(&self, keep: &impl Keep, held: u8) -> u8 {
         let (mass_kg, tip_deflection_m) = (&self.arms.mass_kg, &self.arms.tip_deflection_m);
@@ -86,8 +89,7 @@ impl<'a, 'c> Question<'a, 'c> {
         self.below::<V>(&bars, held)
     }
 
-    /// The arms whose lowest eigenvalue is below a bar. `bars` has an eigenvalue for each arm, and `held` is a bit
-    /// mask of the arms in question.
+    /// The arms among `held` whose lowest eigenvalue is below the arm's entry in `bars` \[1/s²\], as a bit mask.
     #[inline(always)]
     fn below<V: Lanes>(&self, bars: &Eight, held: u8) -> u8 {
         let below = V::load(bars);
@@ -107,7 +109,7 @@ impl<'a, 'c> Question<'a, 'c> {
     }
 
     /// The lowest eigenvalue of each arm over all judged cases \[1/s²\], and a bit mask of the arms for which the
-    /// iteration did not converge.
+    /// iteration did not converge. `held` is a bit mask of the arms in question.
     #[inline(always)]
     pub(crate) fn lowest<V: Lanes>(&self, held: u8) -> (V, u8) {
         let (mut lowest, mut unsure) = (V::splat(f64::INFINITY), 0);
@@ -127,22 +129,24 @@ impl<'a, 'c> Question<'a, 'c> {
         (lowest, unsure)
     }
 
-    /// The arms in which a single joint is so compliant that the lowest eigenvalue is below a bar. The reciprocal of
-    /// the lowest eigenvalue is the largest eigenvalue of flexibility times mass (in its symmetric form). No diagonal
-    /// entry of a symmetric matrix exceeds its largest eigenvalue.
+    /// The arms in which a single joint is so compliant that the lowest eigenvalue must be below the bar `below`
+    /// \[1/s²\]. The reason: the reciprocal of the lowest eigenvalue is the largest eigenvalue of flexibility times
+    /// mass (in its symmetric form), and no diagonal entry of a symmetric matrix exceeds its largest eigenvalue.
     #[inline(always)]
     fn sluggish<V: Lanes>(&self, below: V) -> u8 {
         V::splat(1.0).less(V::load(&self.arms.largest_s2) * below)
     }
 
-    /// Dunkerley's lower bound of the lowest eigenvalue of a block \[1/s²\].
+    /// Dunkerley's lower bound of the lowest eigenvalue of a block \[1/s²\]: the reciprocal of the sum of `1/λ` over
+    /// its eigenvalues.
     #[inline(always)]
     fn least<V: Lanes>(&self, (case, block): (usize, usize)) -> V {
         V::splat(1.0) / V::load(&self.arms.cases[case].trace_s2[block])
     }
 
-    /// The blocks of the judged cases, as case and block. The block with the largest Dunkerley sum comes first, since
-    /// it most likely has the lowest eigenvalue. `of` is a bit mask of the arms in question.
+    /// The blocks of the eigenvalue problems of all judged cases, each given by case and block. The block with the
+    /// largest Dunkerley sum over the arms in the bit mask `of` comes first, since it most likely has the lowest
+    /// eigenvalue.
     fn blocks(&self, of: u8) -> impl Iterator<Item = (usize, usize)> {
         let sum = move |(case, block): (usize, usize)| -> f64 {
             let traces = &self.arms.cases[case].trace_s2[block];
@@ -159,8 +163,9 @@ impl<'a, 'c> Question<'a, 'c> {
         first.into_iter().chain(blocks.filter(move |&block| Some(block) != first && sum(block) > 0.0))
     }
 
-    /// The lowest eigenvalues of a block, and a bit mask of the arms for which none was found. If the question has no
-    /// guess, the bit mask has the arms with an eigenvalue below `below` instead.
+    /// Answers the question `ask` for one block. Returns the lowest eigenvalue of each arm \[1/s²\], and a bit mask of
+    /// the arms for which none was found. If the question has no guess, the bit mask has the arms with an eigenvalue
+    /// below `below` instead.
     #[inline(always)]
     fn answer<V: Lanes>(&self, (case, block): (usize, usize), ask: Ask<V>) -> (V, u8) {
         let chunk = self.at.row.chunks.get(self.at.chunk).map(|chunk| &chunk.cases[case].modal);
@@ -184,7 +189,7 @@ impl<'a, 'c> Question<'a, 'c> {
         }
     }
 
-    /// The inner pieces of the eight arms, in one block.
+    /// The pieces of the eight arms from the row level to the base, in one block of the eigenvalue problem.
     #[inline(always)]
     fn pieces<'s, const N: usize>(
         &'s self,
@@ -203,7 +208,8 @@ impl<'a, 'c> Question<'a, 'c> {
         }
     }
 
-    /// Answers the question for a block of `N` motions.
+    /// Answers the question `ask` for a block of `N` motions, as [`answer`](Self::answer) does. `inner` are the inner
+    /// pieces of the arms, and `outboard` is the arm outboard of the row.
     #[inline(always)]
     fn solve<V: Lanes, const N: usize>(
         &self,
@@ -239,17 +245,18 @@ fn eigenvalue(hz: f64) -> f64 {
     (TAU * hz) * (TAU * hz)
 }
 
-/// The inner pieces of eight arms in one block, up to the last compliant one.
+/// The pieces of eight arms from the row level to the last compliant one, in one block of the eigenvalue problem.
 struct Pieces<'a, const N: usize> {
     slots: &'a [BlockSlot<N>],
-    /// Number of slots up to the last compliant one.
+    /// Number of inner slots from the row level to the last one that is compliant.
     end: usize,
     /// The eight options of the row's link; `None` if the row level is a joint.
     link: Option<&'a LaneLink<N>>,
     case: &'a RowCase,
-    /// Mass of the drives in each inner slot \[kg\].
+    /// Mass of the drive in each inner slot (from the row level to the base) \[kg\], in eight arms.
     masses_kg: &'a [Eight],
-    /// Tangent compliance of each inner slot \[rad/(N m)\].
+    /// Tangent compliance of the joint or spring in each inner slot (from the row level to the base) \[rad/(N m)\], in
+    /// eight arms.
     compliance: &'a [Eight],
 }
 

@@ -5,11 +5,11 @@ use crate::space::fit::RoomAtJoint;
 use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::Slot;
 
-/// The room for gear and motor at a joint inboard of the row level.
+/// The room that a link leaves for the gear and motor of a joint inboard of the row level.
 pub(crate) struct RowRoom {
-    /// Inner slot of the joint.
+    /// Index of the joint among the inner slots (the slots from the row level to the base).
     pub k: usize,
-    /// Where the room comes from.
+    /// Which link determines the room.
     of: RoomOf,
 }
 
@@ -22,7 +22,8 @@ enum RoomOf {
 }
 
 impl RowRoom {
-    /// The rooms at the joints inboard of the row level; `first` is the slot of the row level.
+    /// The rooms for gear and motor at the joints inboard of the row level, as far as they are limited. `first` is the
+    /// slot of the row level.
     pub(crate) fn all(problem: &ArmProblem, first: usize) -> Vec<Self> {
         let slots = problem.slots();
         let is_inboard =
@@ -36,7 +37,8 @@ impl RowRoom {
         rooms.filter_map(room).collect()
     }
 
-    /// The room for gear and for motor \[m\] in eight designs of a chunk. `from` is the arm outboard of the row.
+    /// The room for gear and for motor \[m\] in the eight designs of a chunk. `from` is the arm outboard of the row.
+    /// `None` if the room is not limited.
     #[inline(always)]
     pub(crate) fn room<V: Lanes>(
         &self,
@@ -53,8 +55,8 @@ impl RowRoom {
     }
 }
 
-/// The room \[m\] for gear and for motor by option of the link, eight in a chunk. The last chunk repeats the last
-/// option.
+/// The room \[m\] for gear and for motor that each option of the link leaves, eight options in a chunk. The last chunk
+/// is filled up with copies of the last option.
 fn chunks(room: &RoomAtJoint) -> Vec<[Eight; 2]> {
     let of = |option: usize| room.rooms[option.min(room.rooms.len() - 1)];
     let eight = |chunk: usize| {

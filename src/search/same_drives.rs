@@ -23,10 +23,10 @@ pub struct OnSameDrives {
 }
 
 impl ArmProblem<'_> {
-    /// An arm with the first-fit drives of a design that is lighter and no worse in deflection and lowest mode. It is
-    /// found by exchanging one part at a time for the one that gives the lightest arm, so it need not be the lightest
-    /// of all. `None` if no joint is sized by first fit, if no exchange helps, or if first fit would give the lighter
-    /// arm the same drives.
+    /// An arm that is lighter than the design with these `options`, has its first-fit drives, and is no worse in
+    /// deflection and lowest mode. It is found by exchanging one part at a time for the one that gives the lightest
+    /// arm, so it need not be the lightest of all. `None` if no joint is sized by first fit, if no exchange helps, or
+    /// if first fit would give the lighter arm the same drives.
     pub fn lighter_on_same_drives(&self, options: &[u32]) -> Option<OnSameDrives> {
         let design = self.walk(options, |_, _| {}).ok()?;
         let first_fit = |slot: &Slot| matches!(slot, Slot::Sized(sized) if !sized.all_fits);
@@ -50,8 +50,8 @@ impl ArmProblem<'_> {
         (!oversized.is_empty()).then_some(OnSameDrives { exchanged, oversized, arm })
     }
 
-    /// The lightest arm that differs from `arm` in one part, weighs less, and is no worse than `judged` in deflection
-    /// and lowest mode.
+    /// The lightest arm that differs from `arm` in one part, weighs less than `arm`, and is no worse than the
+    /// objectives `judged` in deflection and lowest mode. `None` if there is no such arm.
     fn lightest_exchange(&self, arm: &Partial, judged: &Objectives) -> Option<Partial> {
         let sizes = self.level_slots().iter().zip(self.level_sizes());
         let exchanges = sizes.flat_map(|(&slot, &size)| (0..size).map(move |option| (slot, option)));
@@ -72,7 +72,7 @@ impl ArmProblem<'_> {
     }
 }
 
-/// Whether the objectives `arm` are no worse than `than` in deflection and lowest mode.
+/// Whether `arm` is no worse than `than` in deflection and lowest mode. The mass is not compared.
 fn no_worse(arm: &Objectives, than: &Objectives) -> bool {
     arm.tip_deflection_m <= than.tip_deflection_m && arm.lowest_mode_hz >= than.lowest_mode_hz
 }

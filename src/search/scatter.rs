@@ -52,7 +52,7 @@ pub struct ChosenParts<'p, 'c> {
     tilting: Vec<Option<&'p SpaceJoint>>,
 }
 
-/// A joint with the sampled values of its ratings.
+/// A joint with one option, built with the sampled values of its ratings.
 struct BuiltJoint {
     /// Angle of the joint as a function of its torque.
     law: JointLaw,
@@ -65,13 +65,13 @@ pub struct BuiltParts<'p, 'c> {
     chosen: &'p ChosenParts<'p, 'c>,
     /// The stations of the cases with the sampled moduli; `None` if no modulus is sampled.
     stations: Option<Vec<Station>>,
-    /// For each slot, the joints by option; empty for links.
+    /// For each slot, the joint with each option that some design uses; empty for links.
     joints: Vec<BTreeMap<u32, BuiltJoint>>,
 }
 
 impl<'p, 'c> ChosenParts<'p, 'c> {
-    /// The parts of some designs. Each design is given by its options, one for each level, tip first. Returns `None`
-    /// if a design breaks a limit.
+    /// Prepares the parts of some designs, so that their ratings can be varied. Each design is given by its options,
+    /// one for each level, tip first. `None` if a design breaks a limit.
     pub fn new(problem: &'p ArmProblem<'c>, designs: &[Vec<u32>]) -> Option<Self> {
         let complete =
             designs.iter().map(|options| problem.walk(options, |_, _| {}).ok().map(|arm| arm.options));
@@ -87,7 +87,7 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
         self.designs.len()
     }
 
-    /// Whether there is no design whose parts are varied.
+    /// Whether the list of designs whose parts are varied is empty.
     pub fn is_empty(&self) -> bool {
         self.designs.is_empty()
     }
@@ -109,7 +109,7 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
         .collect()
     }
 
-    /// The parts with sampled values: each rating of the catalog times its factor.
+    /// The parts with sampled values of their ratings: the value of the catalog times the rating's factor in `factors`.
     pub fn built(&self, factors: &Factors) -> BuiltParts<'_, 'c> {
         let bends = factors.keys().any(|rating| matches!(rating, Rating::Modulus(_)));
         let stations = bends.then(|| {
@@ -151,8 +151,8 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
         Some(BuiltJoint { law: JointLaw { curve: law.curve.stiffened(stiffness), ..law }, mass_kg })
     }
 
-    /// Name of the catalog gear of a joint, whether the gear is chosen or given; `None` if the drive is given in
-    /// numbers.
+    /// Name of the catalog gear that the joint in `slot` has with `option`, whether the gear is chosen or given. `None`
+    /// if the drive is given in numbers.
     fn gear(&self, slot: usize, option: u32) -> Option<String> {
         match (self.drive(slot, option), self.problem.piece_in_slot(slot)) {
             (Some(drive), _) => Some(drive.gear.id.clone()),
@@ -164,8 +164,8 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
         }
     }
 
-    /// If the slot is a spring of an output bearing: the rating of this bearing, and its nominal compliance \[rad/(N
-    /// m)\].
+    /// If `slot` is a spring of an output bearing: the rating of this bearing, and its compliance by the catalog or the
+    /// study \[rad/(N m)\]. Otherwise `None`.
     fn bearing(&self, slot: usize, option: u32) -> Option<(Rating, f64)> {
         let (rating, bearing) = match &self.problem.slots()[slot] {
             Slot::Bearing { joint, .. } => {
@@ -183,8 +183,8 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
         (rad_per_nm > 0.0).then_some((rating, rad_per_nm))
     }
 
-    /// The drive of a joint that is sized; `None` for other slots. A given drive has the mass that the study states,
-    /// which does not scatter.
+    /// The drive `option` of the joint in `slot`, if the joint is sized; `None` for other slots. A given drive has the
+    /// mass that the study states, and this mass does not scatter.
     fn drive(&self, slot: usize, option: u32) -> Option<Drive<'c>> {
         match &self.problem.slots()[slot] {
             Slot::Sized(sized) => Some(sized.table.drive(option as usize)),
@@ -205,8 +205,8 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
 }
 
 impl BuiltParts<'_, '_> {
-    /// Objectives of a design with the sampled values. `design` is the index of the design in the list from which the
-    /// parts were taken.
+    /// Objectives of one design with the sampled values of its ratings. `design` is the index of the design in the list
+    /// from which the parts were prepared.
     pub fn objectives(&self, design: usize) -> Objectives {
         let problem = self.chosen.problem;
         let stations = self.stations.as_deref().unwrap_or(problem.stations());
@@ -214,7 +214,7 @@ impl BuiltParts<'_, '_> {
         objectives_over(problem.space().judged_cases.iter().map(|&i| (&stations[i], &arm.stations[i])), &arm)
     }
 
-    /// The complete arm of a design, with the sampled values, and its states in the judged cases.
+    /// The complete arm of the design with these `options`, with the sampled values. `stations` are the compiled cases.
     fn arm(&self, stations: &[Station], options: &[u32]) -> Partial {
         let problem = self.chosen.problem;
         let mut arm = problem.empty();
@@ -245,7 +245,7 @@ impl BuiltParts<'_, '_> {
     }
 }
 
-/// The space with the sampled moduli of its materials.
+/// A copy of the space in which the modulus of each material is multiplied by its factor in `factors`.
 fn with_moduli(space: &DesignSpace, factors: &Factors) -> DesignSpace {
     let factor = |name: &str| factors.get(&Rating::Modulus(name.to_string())).copied().unwrap_or(1.0);
     let mut out = space.clone();

@@ -86,15 +86,15 @@ pub struct SweepOutcome {
 pub struct SweepState {
     /// Number of tasks into which the sweep is divided.
     tasks: u64,
-    /// The tasks that are completed.
+    /// The numbers of the completed tasks.
     done: Done,
-    /// Number of designs that the completed tasks evaluated.
+    /// Number of designs that the completed tasks judged by their objectives.
     evaluated: u64,
     /// Number of designs that a limit excluded in the completed tasks.
     excluded: u128,
     /// Candidates for the front of all designs.
     front: Vec<Candidate>,
-    /// Candidates for the front of each group.
+    /// Candidates for the front of each group (material).
     groups: Vec<Vec<Candidate>>,
 }
 
@@ -113,7 +113,7 @@ impl SweepState {
     }
 }
 
-/// One of the parts into which a space is divided, so that several computers can sweep it. Part `number` of `of`
+/// One of the parts into which a space is divided, so that several computers can sweep it. It is part `number` of `of`
 /// parts, counted from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
@@ -168,15 +168,15 @@ pub struct Sweep<'p, P: FinishRows> {
     shard: Shard,
     overall: Pool,
     groups: Vec<Pool>,
-    /// The completed tasks, and the numbers of designs that they counted.
+    /// The completed tasks, and the numbers of designs that these tasks evaluated and excluded.
     done: Mutex<(Done, Tally)>,
 }
 
-/// Candidates for one front, found by all tasks.
+/// The candidates that all tasks have found for one front: that of all designs, or that of a material.
 struct Pool {
     /// Table that rejects dominated candidates at once.
     archive: Archive,
-    /// The candidates, and how many of them were left after the last comparison of all with all.
+    /// The candidates, and how many of them were left after the last removal of dominated ones.
     candidates: Mutex<(Vec<Candidate>, usize)>,
 }
 
@@ -185,8 +185,8 @@ impl Pool {
         Self { archive: Archive::new(bits), candidates: Mutex::new((Vec::new(), 0)) }
     }
 
-    /// Adds a candidate to the buffer of a task, unless an earlier candidate surely dominates it. Returns whether it
-    /// was added.
+    /// Adds a candidate for this front to the buffer of a task, unless the table of earlier candidates shows that one
+    /// of them surely dominates it. Returns whether it was added.
     fn offer(&self, candidate: Candidate, buffer: &mut Vec<Candidate>) -> bool {
         if self.archive.rejects(&candidate.objectives) {
             return false;
@@ -234,8 +234,8 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// How many of `all` blocks the first `shards` of `of` shards have together: `all * shards / of`, rounded down. The
-/// result is exact even where the product would overflow.
+/// Number of blocks that the first `shards` of `of` shards have together, if there are `all` blocks: `all * shards /
+/// of`, rounded down. The result is exact even where the product would overflow.
 fn share(all: u128, shards: u32, of: u32) -> u128 {
     let (shards, of) = (u128::from(shards), u128::from(of));
     all / of * shards + all % of * shards / of
@@ -248,7 +248,7 @@ pub(crate) fn clear_dominated(candidates: &mut Vec<Candidate>) {
     *candidates = kept.into_iter().map(|i| candidates[i]).collect();
 }
 
-/// Numbers of designs, as tasks count them.
+/// Counts of designs that a task, or all tasks together, visited.
 #[derive(Debug, Clone, Copy, Default)]
 struct Tally {
     evaluated: u64,
@@ -377,7 +377,8 @@ impl<'p, P: FinishRows> Sweep<'p, P> {
         }
     }
 
-    /// Does the tasks that are not in `before`, and returns how many designs they evaluated and excluded.
+    /// Does the tasks that are not completed in `before`. Returns how many designs they evaluated and excluded. `root`
+    /// is the arm without any chosen part.
     fn visit(&self, root: &P::Partial, before: &Done) -> Tally {
         let Self { problem, visited, stop, constraints, overall, groups, .. } = self;
         let visit = Visit { problem: *problem, compiled: problem.compile(), visited, stop };

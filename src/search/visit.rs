@@ -26,7 +26,7 @@ const BATCH_DESIGNS: usize = 1 << 18;
 /// Largest number of designs of a task: some seconds of work. This is what is lost when a task is interrupted.
 const TASK_DESIGNS: u128 = 1 << 24;
 
-/// A visit to all designs whose progress other threads can read, and which they can stop.
+/// A visit to all designs of a tree. Other threads can read its progress and stop it.
 pub(crate) struct Visit<'p, P: FinishRows> {
     pub problem: &'p P,
     /// The row level with every number that is the same in all rows.
@@ -38,8 +38,8 @@ pub(crate) struct Visit<'p, P: FinishRows> {
 }
 
 impl<P: FinishRows> Visit<'_, P> {
-    /// Visits every design. `keeper` makes a new keeper for each task; the keepers are returned in the order of the
-    /// tasks.
+    /// Visits every design below `root`, the arm without any chosen part. `keeper` makes the keeper that collects the
+    /// designs of one task. The keepers are returned in the order of the tasks.
     pub(crate) fn every_design<'v, K: Keep + Send + 'v>(
         &'v self,
         root: &'v P::Partial,
@@ -49,7 +49,8 @@ impl<P: FinishRows> Visit<'_, P> {
         self.tasks(tasks, root, |_| true, keeper).map(|walked| walked.keeper)
     }
 
-    /// Does the tasks for which `is_wanted` is true, until the visit is stopped.
+    /// Does the tasks with numbers for which `is_wanted` is true, until the visit is stopped. `keeper` makes the keeper
+    /// that collects the designs of one task.
     pub(crate) fn tasks<'v, K: Keep + Send + 'v>(
         &'v self,
         Tasks { start, rows, each, number }: Tasks,
@@ -71,13 +72,13 @@ impl<P: FinishRows> Visit<'_, P> {
 /// divides it in the same way.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Tasks {
-    /// Number of the first row.
+    /// Number of the first row that the visit covers.
     start: u128,
-    /// Number of rows.
+    /// Number of rows that the visit covers.
     rows: u128,
     /// Number of rows in each task; the last task may have fewer.
     each: u128,
-    /// Number of tasks.
+    /// Number of tasks into which these rows are divided.
     pub number: u64,
 }
 
@@ -99,7 +100,7 @@ pub(crate) struct Walked<K> {
     pub task: u64,
     /// Whether all rows of the task were visited; `false` if the visit was stopped before.
     pub is_whole: bool,
-    /// What the task found.
+    /// The keeper of the task, with the designs that it collected.
     pub keeper: K,
 }
 
@@ -110,7 +111,8 @@ pub(crate) fn blocks(problem: &impl FinishRows) -> (u128, u128) {
     (product(outer), u128::from(row) * product(inner))
 }
 
-/// Number of options at each level outboard of the row level, at the row level, and at each level inboard of it.
+/// Number of options at each level, in three groups: the levels outboard of the row level, the row level itself, and
+/// the levels inboard of it.
 struct Levels<'p> {
     outer: &'p [u32],
     row: u32,
@@ -156,8 +158,8 @@ impl<'v, 'p, P: FinishRows, K: Keep> Walker<'v, 'p, P, K> {
         }
     }
 
-    /// Visits every design of some rows. Returns `false` if the visit was stopped before the end. A space without
-    /// levels has one design.
+    /// Visits every design of the rows with these numbers. Returns `false` if the visit was stopped before the end. A
+    /// space without levels has a single design.
     fn walk(&mut self, rows: Range<u128>) -> bool {
         let problem = self.visit.problem;
         if problem.level_sizes().is_empty() {
@@ -204,7 +206,8 @@ impl<'v, 'p, P: FinishRows, K: Keep> Walker<'v, 'p, P, K> {
         row >= rows.end
     }
 
-    /// Builds the arm outboard of the rows of block `arm`.
+    /// Builds the arm outboard of the rows of the block with the number `arm`. `outer` are the numbers of options of
+    /// the levels outboard of the row level.
     ///
     /// # Errors
     /// The level at which the arm breaks a limit, whatever the options of the later levels are.
@@ -224,7 +227,7 @@ impl<'v, 'p, P: FinishRows, K: Keep> Walker<'v, 'p, P, K> {
         Ok(())
     }
 
-    /// Evaluates the rows of the batch.
+    /// Evaluates the rows that wait in the batch. `row_length` is the number of designs in each row.
     fn finish(&mut self, row_length: u32) {
         let Visit { problem, compiled, .. } = self.visit;
         problem.finish(compiled, &self.batch, &mut self.scratch, &mut self.keeper);

@@ -9,11 +9,12 @@ use nalgebra::{Vector3, Vector6};
 pub(crate) struct OptionAttributes {
     /// Mass of the link \[kg\].
     pub mass_kg: f64,
-    /// Number of the material in the study; `None` for a given tube, which does not count for the group of a design.
+    /// Index of the material in the study's list. `None` for a tube that the study gives: it has no influence on the
+    /// group (material) of a design.
     pub material: Option<usize>,
     /// Cost of the material \[EUR\]; `None` if unknown.
     pub cost_eur: Option<f64>,
-    /// Factors for the stress in the link; `None` if the strength of the material is unknown.
+    /// Factors from which the stress in the link is computed; `None` if the strength of the material is unknown.
     pub stress: Option<StressCheck>,
     /// Whether the wall is more slender than the study allows.
     pub slender: bool,
@@ -50,9 +51,9 @@ impl StressCheck {
         })
     }
 
-    /// Ratio of the von Mises stress (bending, axial force and torsion) to the strength. `wrench` is the load on the
-    /// link at the point `at_m`, with the moment taken about the world's origin. `at_m` is the point of the axis at
-    /// which the stress is computed \[m\].
+    /// Ratio of the von Mises stress (bending, axial force and torsion) to the strength, at the point `at_m` \[m\] of
+    /// the link's axis. `wrench` is the force and moment that the section there transmits, with the moment taken about
+    /// the world's origin. `place` is the position and attitude of the link.
     pub(crate) fn ratio(&self, wrench: &Vector6<f64>, at_m: &Vector3<f64>, place: &Place) -> f64 {
         let [axial_n, torsion_nm, moment_y_nm, moment_z_nm] = place.local(wrench, at_m);
         let (y, z) = (moment_y_nm.abs() * self.per_moment_y, moment_z_nm.abs() * self.per_moment_z);
@@ -70,7 +71,8 @@ pub(crate) fn von_mises(normal: f64, shear: f64) -> f64 {
     (normal * normal + 3.0 * shear * shear).sqrt()
 }
 
-/// The properties of an option for a link of length `length_m` \[m\].
+/// The properties of `option` as the section of a link with the length `length_m` \[m\], checked against the limits of
+/// `space`.
 pub(crate) fn attributes_of(space: &DesignSpace, option: &LinkOption, length_m: f64) -> OptionAttributes {
     let mass_kg = option.mass_kg_per_m() * length_m;
     OptionAttributes {

@@ -19,18 +19,18 @@ use crate::sizing::bearing::{BearingDemand, BearingLoad};
 /// radial force \[N²\], and the axial force \[N\].
 #[derive(Default)]
 struct Largest {
-    /// Under weight and load alone.
+    /// Largest loads under weight and tip load alone.
     at_rest: [f64; 3],
-    /// With the acceleration of a joint in addition.
+    /// Largest loads while a joint accelerates in normal operation.
     running: [f64; 3],
-    /// With the emergency stop of a joint in addition.
+    /// Largest loads while a joint makes an emergency stop.
     in_stop: [f64; 3],
 }
 
 impl Largest {
-    /// Takes in the load at rest combined with the load `ramp` of an accelerating joint. The ramp may have either
-    /// sign. In a stop it is `stop_factor` times as large. Of the two signs, the larger norm of `s ± d` is the root
-    /// of `|s|² + |d|² + 2 |s·d|`.
+    /// Raises the largest loads to those of a moving arm: the load `rest` at rest, combined with the load `ramp` that
+    /// the acceleration of one joint adds. The acceleration may have either sign, and in an emergency stop it is
+    /// `stop_factor` times as large. The larger norm of `s ± d` is the root of `|s|² + |d|² + 2 |s·d|`.
     fn moving(&mut self, rest: &Components, ramp: &Components, stop_factor: f64) {
         let larger = |first: usize, times: f64| {
             let (s, d) = ([rest[first], rest[first + 1]], [ramp[first] * times, ramp[first + 1] * times]);
@@ -67,8 +67,9 @@ fn take(largest: &mut [f64; 3], load: [f64; 3]) {
 }
 
 impl ArmProblem<'_> {
-    /// Loads on the bearing of the joint in a slot, the largest over some cases. `states` and `options` are those of
-    /// the arm outboard of the joint. The loads are zero if the bearing is not checked.
+    /// The largest loads over `cases` on the output bearing of the joint in `slot`. `states` and `options` describe the
+    /// arm outboard of the joint: its state in each case, and the option of each slot. The loads are zero if the
+    /// bearing is not checked.
     pub(crate) fn bearing_demand(
         &self,
         cases: &[usize],
@@ -85,7 +86,8 @@ impl ArmProblem<'_> {
         largest.demand().with_lever(lever.lever_m(options))
     }
 
-    /// Takes in the loads at the face of the joint's flange in one case.
+    /// Raises `largest` to the loads on the bearing of the joint in `slot` in one case, taken at the face of the
+    /// joint's flange. `state` is the state of the arm outboard of the joint in this case.
     fn load_bearing(&self, case: usize, state: &StationState, slot: usize, largest: &mut Largest) {
         let station = &self.stations()[case];
         let StationSlot::Joint(joint) = &station.slots[slot] else { return };
@@ -102,8 +104,8 @@ impl ArmProblem<'_> {
         }
     }
 
-    /// Stores the force and moment with which the joint in a slot, when it accelerates, loads the bearings inboard of
-    /// it. The function is called just before the joint is added to the arm, when the state has everything outboard
+    /// Stores in each state the wrench with which the joint in `slot`, when it accelerates, loads the bearings inboard
+    /// of it. The function is called just before the joint is added to the arm, when the state has everything outboard
     /// of the joint.
     pub(crate) fn keep_ramp(&self, slot: usize, states: &mut [StationState]) {
         let loads = self.bearing_loads();

@@ -12,14 +12,14 @@ use crate::mechanics::{Wrench, angular, linear};
 use crate::sizing::bearing::BearingLimits;
 use nalgebra::Vector3;
 
-/// The data of a space from which the loads on bearings are computed, apart from the pose.
+/// What must be known of a space, in addition to poses and masses, to compute the loads on output bearings.
 pub(crate) struct BearingLoads {
     /// The driven joints of the chain, tip first.
     pub movers: Vec<Mover>,
     /// For each slot, the distance along the axis at which the link attaches to the joint; `None` if the bearing is
     /// not checked.
     pub levers: Vec<Option<Lever>>,
-    /// Ratio of the deceleration in an emergency stop to the acceleration in normal operation.
+    /// Ratio of the deceleration in an emergency stop to the acceleration in a normal ramp.
     pub stop_factor: f64,
 }
 
@@ -41,13 +41,14 @@ pub(crate) struct Lever {
 }
 
 impl Lever {
-    /// The lever \[m\] of an arm with these options, one for each slot.
+    /// The lever \[m\] if the arm has these `options`, one for each slot.
     pub(crate) fn lever_m(&self, options: &[u32]) -> f64 {
         self.link_slot.map_or(self.lever_m[0], |slot| self.lever_m[options[slot] as usize])
     }
 
-    /// The lever of a joint: the offset that the study states, or else half the width of the link next to the joint.
-    /// It is zero if the next piece is no tube.
+    /// The lever of `joint`: the offset that the study states, or else half the width of the link next to the joint. It
+    /// is zero if the next piece is no tube. `piece` is the number of the joint in the chain, and `piece_slots` has the
+    /// slot of each piece.
     pub(crate) fn new(space: &DesignSpace, piece: usize, joint: &SpaceJoint, piece_slots: &[usize]) -> Self {
         let half_m =
             |vector_m: &Vector3<f64>, section: &Section| half_width_m(&joint.axis, vector_m, section);
@@ -70,8 +71,8 @@ impl Lever {
     }
 }
 
-/// The bearing of a joint of an arm with its lever as a number. If the arm states no offset, the lever is the offset
-/// of the flange plus half the extent of the link next to the joint.
+/// The bearing of a joint with its lever as a number. If the arm states no lever, it is the offset of the flange plus
+/// half the extent of the link `next` to the joint along the joint's `axis`.
 pub(crate) fn resolved(bearing: Bearing, axis: &Vector3<f64>, next: Option<&Element>) -> Bearing {
     let half_m = match next {
         Some(Element::Link(Link { vector_m, body: LinkBody::Tube { section, .. }, .. })) => {

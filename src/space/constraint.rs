@@ -32,7 +32,8 @@ pub struct Servo {
 }
 
 impl Constraints {
-    /// Whether a design breaks the limits on deflection, on mass and on the lowest mode, in this order.
+    /// Whether the objectives `o` of a design break the limits on deflection, on mass and on the lowest mode, in this
+    /// order.
     pub fn broken(&self, o: &Objectives) -> [bool; 3] {
         [
             self.tip_deflection_max_m.is_some_and(|max| o.tip_deflection_m > max),

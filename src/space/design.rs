@@ -13,9 +13,9 @@ use crate::sizing::drive::Drive;
 /// The part that a design has at one piece of the arm.
 #[derive(Debug, Clone)]
 pub enum Part<'a> {
-    /// A drive from the catalogs.
+    /// The part is a drive from the catalogs.
     Drive(Drive<'a>),
-    /// A material and a cross-section.
+    /// The part is a link, with its material and cross-section.
     Link(&'a LinkOption),
     /// The study gives this piece, so no part is chosen for it.
     Given,
@@ -102,12 +102,13 @@ impl<'c> ArmProblem<'c> {
             .collect()
     }
 
-    /// The arm of the design with these options, with every part in numbers; `None` if the design breaks a limit.
+    /// The design with these `options` as an arm in which every part is given in numbers. `None` if the design breaks a
+    /// limit.
     pub fn arm(&self, options: &[u32]) -> Option<Arm> {
         self.arm_of(&self.walk(options, |_, _| {}).ok()?)
     }
 
-    /// A complete arm with every part in numbers; `None` if the catalog leaves a mass blank.
+    /// A complete design as an arm in which every part is given in numbers. `None` if the catalog leaves a mass blank.
     pub(crate) fn arm_of(&self, complete: &Partial) -> Option<Arm> {
         let space = self.space();
         let chain = space
@@ -135,8 +136,8 @@ impl<'c> ArmProblem<'c> {
         })
     }
 
-    /// Mass of the joints of a design that is neither in drives nor in bearings \[kg\]; `None` if the design breaks a
-    /// limit.
+    /// Mass of those parts at the joints of a design that are neither drive nor bearing \[kg\]. `None` if the design
+    /// breaks a limit.
     pub fn extras_mass_kg(&self, options: &[u32]) -> Option<f64> {
         let joints = self.space().pieces.iter().zip(self.parts(options)?);
         let extras_kg = joints.map(|(piece, part)| match (piece, part) {
@@ -170,7 +171,7 @@ impl<'c> ArmProblem<'c> {
     }
 }
 
-/// The chain after the lever of every output bearing was computed from the link next to it.
+/// The same chain with the lever of every output bearing as a number, computed from the link next to the bearing.
 fn with_levers(mut chain: Vec<Element>) -> Vec<Element> {
     for index in 0..chain.len() {
         let (inboard, outboard) = chain.split_at_mut(index + 1);
@@ -181,8 +182,8 @@ fn with_levers(mut chain: Vec<Element>) -> Vec<Element> {
     chain
 }
 
-/// A joint with a drive from the catalogs, and with its bearing and extras; `None` if the catalog leaves a mass
-/// blank.
+/// The joint with the catalog drive `drive`, and with its bearing and its extra masses. `None` if the catalog leaves a
+/// mass blank.
 pub(crate) fn joint_with(joint: &SpaceJoint, drive: &Drive) -> Option<Joint> {
     Some(Joint {
         name: joint.name.clone(),

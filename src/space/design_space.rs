@@ -307,15 +307,15 @@ impl SpaceJoint {
         self.bearing == BearingSource::OfGear && self.drive.is_sized()
     }
 
-    /// Torsion curve of the joint with a gear from the catalogs, with the compliance of its connections. It is rigid
-    /// if the catalog has no curve for the gear.
+    /// Torsion curve of the joint with a catalog gear. It includes the compliance of the connections at the joint. The
+    /// curve is rigid if the catalog has none for this gear.
     pub(crate) fn curve_with(&self, gear: &Gear) -> Curve {
         let yields = 1.0 + self.connection_share;
         windup_of(gear).map_or(Curve::Rigid, |windup| Curve::Windup(windup.stiffened(1.0 / yields)))
     }
 
-    /// Output bearing of the joint with a drive from the catalogs, with the compliance of its connections; `None` if
-    /// there is none.
+    /// Output bearing of the joint with a catalog drive. It includes the compliance of the connections at the joint.
+    /// `None` if there is no bearing.
     pub(crate) fn bearing_with(&self, drive: &Drive) -> Option<Bearing> {
         match self.bearing {
             BearingSource::Stated(bearing) => bearing,
@@ -406,7 +406,7 @@ pub(crate) struct SpaceLinkage {
     pub factor: f64,
 }
 
-/// The items of a list that are present, joined by "and"; `None` if no item is present.
+/// Joins the texts in `list` that are present by "and". `None` if there is none.
 fn in_words(list: [Option<String>; 2]) -> Option<String> {
     let words: Vec<String> = list.into_iter().flatten().collect();
     (!words.is_empty()).then(|| words.join(" and "))
@@ -470,7 +470,8 @@ impl DesignSpace {
         self.joints().flat_map(of).collect()
     }
 
-    /// Every driven joint with its entry in the pose of a case: an angle \[rad\] or a travel \[m\].
+    /// Every driven joint with its entry in the pose of a case: an angle \[rad\], or the travel of a prismatic joint
+    /// \[m\].
     fn entries_si(&self, case: &Case) -> Vec<(DrivenJoint, f64)> {
         let driven = self.pieces.iter().filter_map(|piece| match piece {
             SpacePiece::Joint(joint) if joint.coupled.is_none() => Some(DrivenJoint::turning(&joint.name)),

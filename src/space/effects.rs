@@ -34,7 +34,8 @@ pub(crate) enum Layer<'s> {
     /// A point mass \[kg\] that an effect adds at a joint. It has weight and inertia, but does not count in the mass
     /// of the design, because it is neither a link nor a drive.
     Mass(f64),
-    /// Such a point mass at the moving point of a prismatic joint \[kg\].
+    /// A point mass \[kg\] that an effect adds at the moving point of a prismatic joint. It has weight and inertia, but
+    /// does not count in the mass of the design.
     Travelling(f64),
     /// A point mass \[kg\] at a joint that counts in the mass of the design, such as a separate output bearing.
     Extra(f64),
@@ -47,13 +48,13 @@ pub(crate) enum Layer<'s> {
 /// The rigid bodies of a piece, and what they are attached to.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Carried<'s> {
-    /// The bodies.
+    /// The rigid bodies.
     pub bodies: &'s [RigidBody],
-    /// What the bodies are attached to.
+    /// The frame or tube to which the bodies are attached.
     pub by: Carrier,
 }
 
-/// What the bodies of a piece are attached to.
+/// The frame or tube to which the bodies of a piece are attached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Carrier {
     /// The frame in which the piece begins, inboard of any rotation of the piece itself.
@@ -71,7 +72,7 @@ impl Carried<'_> {
     }
 }
 
-/// The layer of some bodies; `None` if there are no bodies.
+/// The layer of the bodies `bodies`, which are attached to `by`. `None` if there are none.
 fn carried(bodies: &[RigidBody], by: Carrier) -> Option<Layer<'_>> {
     (!bodies.is_empty()).then_some(Layer::Bodies(Carried { bodies, by }))
 }
@@ -91,14 +92,14 @@ enum About<'s> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Tilt<'s> {
     about: About<'s>,
-    /// Angle of the spring as a function of the moment.
+    /// Angle of the spring \[rad\] as a function of the moment \[N m\].
     law: JointLaw,
 }
 
 /// One of the two springs of the output bearing of a joint whose gear is chosen.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BearingSpring<'s> {
-    /// The joint.
+    /// The joint that has the bearing.
     pub joint: &'s SpaceJoint,
     /// Which of the two axes at right angles to the joint's axis the spring turns about (0 or 1).
     which: usize,
@@ -121,7 +122,7 @@ impl GuideSpring<'_> {
         rotation * section_frame(&self.slide.joint.axis).column(self.which)
     }
 
-    /// Angle of the spring as a function of the moment.
+    /// Angle of the spring \[rad\] as a function of the moment \[N m\].
     pub(crate) fn law(&self) -> JointLaw {
         linear_law(self.rad_per_nm)
     }
@@ -170,12 +171,12 @@ impl Tilt<'_> {
         }
     }
 
-    /// A linear spring with a compliance \[rad/(N m)\].
+    /// A linear spring that turns about the axis `about` with the compliance `rad_per_nm` \[rad/(N m)\].
     fn linear(about: About<'_>, rad_per_nm: f64) -> Tilt<'_> {
         Tilt { about, law: JointLaw { connection_rad_per_nm: rad_per_nm, ..JointLaw::from(Curve::Rigid) } }
     }
 
-    /// Angle of the spring as a function of the moment.
+    /// Angle of the spring \[rad\] as a function of the moment \[N m\].
     pub(crate) fn law(&self) -> JointLaw {
         self.law
     }
@@ -281,14 +282,14 @@ impl DesignSpace {
         }
     }
 
-    /// Elastic displacement of a prismatic joint along its travel as a function of the force, as a linear law
-    /// \[m/N\].
+    /// The linear law by which a prismatic joint deflects elastically along its travel: the displacement as a function
+    /// of the force \[m/N\]. Effects on the joint are included.
     pub(crate) fn slide_law(&self, slide: &SpacePrismatic) -> JointLaw {
         linear_law(self.prismatic_piece(slide).m_per_n)
     }
 
-    /// The points of a link at which springs pull, from 0 (root) to 1 (end), in the order in which the springs load
-    /// it; empty for a joint.
+    /// The points of the link at `piece` at which springs pull, from 0 (root) to 1 (end), in the order in which the
+    /// springs load it. Empty for a joint.
     pub(crate) fn pulled_at(&self, piece: usize) -> Vec<f64> {
         let vector_m = match &self.pieces[piece] {
             SpacePiece::Link(link) => link.vector_m,
@@ -303,20 +304,21 @@ impl DesignSpace {
         here.map(|end| along(&vector_m, &end.point_m)).collect()
     }
 
-    /// The layer with the forces of springs on one side of a joint or on a link; `None` if no spring acts there.
+    /// The layer with the forces of springs on the side `on` of the joint at `piece`, or on the link there. `None` if
+    /// no spring acts there.
     fn pulled(&self, piece: usize, on: Side) -> Option<(usize, Layer<'_>)> {
         let is_pulled = self.springs.iter().any(|spring| spring.sides().contains(&on));
         is_pulled.then_some((piece, Layer::Springs(on)))
     }
 
-    /// The springs of the compliant frame at the root of a link.
+    /// The layers of the rotational springs with which the root of a link is attached compliantly.
     fn root_springs(&self, link: &Link) -> impl Iterator<Item = Layer<'_>> + use<'_> {
         let springs = self.link_piece(link).root_frame.springs().into_iter();
         springs.map(|(axis, c)| Layer::Tilt(Tilt::linear(About::Fixed(axis), c)))
     }
 
-    /// A joint with this torsion curve and bearing, under the joint model of the study and with the effects at the
-    /// joint. The mass of the returned piece is only the mass that the effects add \[kg\].
+    /// The joint with the torsion curve `curve` and the output bearing `bearing`. The joint model of the study and the
+    /// effects at the joint are applied. The mass of the returned piece is only the mass that the effects add \[kg\].
     pub(crate) fn joint_piece(
         &self,
         joint: &SpaceJoint,
@@ -348,7 +350,7 @@ impl DesignSpace {
         self.with_effects(Vec::new())
     }
 
-    /// The torque that acts on a joint in addition to weight and load, as an effect describes it.
+    /// The torque that effects exert on a joint in addition to weight and load, as a function of the joint's angle.
     pub(crate) fn joint_torque(&self, joint: &SpaceJoint) -> JointTorque {
         self.joint_piece(joint, Curve::Rigid, None).torque
     }

@@ -112,8 +112,8 @@ impl LinkChoice {
         places
     }
 
-    /// Keeps at most `most` options: the lightest, the heaviest, and others at equal steps between them in the order
-    /// by mass.
+    /// Reduces the options to at most `most`: the lightest, the heaviest, and others at equal steps between them in the
+    /// order by mass.
     pub(crate) fn spread(&mut self, most: u32) {
         let by_mass = self.by_mass();
         let (last, steps) = (by_mass.len().saturating_sub(1), most.max(2) as usize - 1);

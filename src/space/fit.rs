@@ -51,7 +51,7 @@ impl RoomAtJoint {
         Some(Self { link_slot: piece_slots[link], rooms })
     }
 
-    /// The room if the arm has these options, one for each slot.
+    /// The room that the link leaves if the arm has these `options`, one for each slot.
     pub(crate) fn of(&self, options: &[u32]) -> LinkRoom {
         self.rooms[options[self.link_slot] as usize]
     }

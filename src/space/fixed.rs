@@ -49,7 +49,8 @@ impl ArmProblem<'_> {
         })
     }
 
-    /// Demand on a joint with a given drive. `outboard` is the arm outboard of the joint.
+    /// Demand on the joint in `slot`, whose drive the study gives. `outboard` is the arm outboard of the joint, and
+    /// `motion` the motion that the study asks of it.
     pub fn fixed_demand(&self, outboard: &Partial, slot: usize, motion: &JointMotion) -> JointDemand {
         self.demand(outboard, slot, Some(motion))
     }

@@ -1,6 +1,6 @@
 //! The material of the chosen links of a design, which decides in which group the design is.
 
-/// The material that the links so far have in common.
+/// The material that the chosen links of a partial arm have in common.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) enum Group {
     #[default]
@@ -21,7 +21,8 @@ impl Group {
         }
     }
 
-    /// The group after one more link. A given tube has no material here (`None`) and changes nothing.
+    /// The group after a link of this material is added. A link that the study gives has no material here (`None`) and
+    /// changes nothing.
     pub(crate) fn with(self, material: Option<usize>) -> Self {
         match (self, material) {
             (group, None) => group,

@@ -22,9 +22,9 @@ pub trait Keep {
     /// Counts designs that a limit on a part excludes.
     fn exclude(&mut self, designs: u128);
 
-    /// The bar \[Hz\]: a design of this group, mass \[kg\] and tip deflection \[m\] whose lowest mode is below the
-    /// bar is of no interest, and its mode need not be computed. The same is true of designs that are heavier and
-    /// deflect more. A bar of 0 means that every design is of interest.
+    /// The bar \[Hz\] for designs of this group, with at least this mass \[kg\] and at least this tip deflection \[m\].
+    /// If the lowest mode of such a design is below the bar, the design is of no interest, and its mode need not be
+    /// computed. A bar of 0 means that every design is of interest.
     fn bar_hz(&self, group: Option<usize>, mass_kg: f64, tip_deflection_m: f64) -> f64 {
         let _ = (group, mass_kg, tip_deflection_m);
         0.0
@@ -41,7 +41,7 @@ pub trait Keep {
 pub struct DesignRow<P> {
     /// The arm outboard of the row level.
     pub from: P,
-    /// Number of this arm among all arms outboard of the row level.
+    /// Number of the arm `from` among all arms outboard of the row level.
     pub arm: u128,
     /// Option of each level inboard of the row level, in order from the row level to the base.
     pub inner: Vec<u32>,
@@ -52,7 +52,7 @@ pub struct DesignRow<P> {
 }
 
 impl<P> DesignRow<P> {
-    /// Whether another row has the same outboard arm and the same first `levels` entries of `inner`.
+    /// Whether this row and the row `other` have the same arm outboard and the same first `levels` entries of `inner`.
     pub(crate) fn begins_like(&self, other: &Self, levels: usize) -> bool {
         self.arm == other.arm && self.inner[..levels] == other.inner[..levels]
     }
@@ -83,7 +83,8 @@ pub trait OutwardIn: Sync {
         self.level_sizes().len().saturating_sub(1)
     }
 
-    /// Evaluates one design of a row and reports it to `keep`. `complete` is working space.
+    /// Evaluates the design of `row` with the option `option` of the row level and reports it to `keep`. `complete` is
+    /// working space for one arm.
     fn finish_one(
         &self,
         row: &DesignRow<Self::Partial>,

@@ -69,8 +69,9 @@ struct Tube {
 }
 
 impl Tube {
-    /// Condenses a link on which springs pull at the points `pulled_at` (0 at the root, 1 at the end). Returns `None`
-    /// for a rigid offset that has no mass along it, and for a link without length.
+    /// Condenses a link to the motions of its end. Springs pull on it at the points `pulled_at` (0 at the root, 1 at
+    /// the end). `structure` has gravity and water, and `model` tells which deformations count. `None` for a rigid
+    /// offset that has no mass along it, and for a link without length.
     fn new(link: &LinkPiece, structure: &Structure, model: LinkModel, pulled_at: &[f64]) -> Option<Self> {
         let beam = PreparedBeam::new(link, structure, model)?;
         let condensed = CondensedLink::new(&beam, pulled_at);
@@ -106,13 +107,13 @@ fn few_at_a_time<'a>(
         .map(move |first| (first..options.min(first + AT_A_TIME)).into_par_iter().filter_map(tube).collect())
 }
 
-/// A case to whose links the options are still to be added.
+/// A case of which all slots are placed, but whose links have no options yet.
 struct Posed {
     /// Gravity, base and water around the arm.
     structure: Structure,
     /// Position of the tip in the pose \[m\].
     tip_m: Vector3<f64>,
-    /// The station so far.
+    /// The station of the case, as far as it is computed.
     station: Station,
 }
 
@@ -154,7 +155,7 @@ impl Posed {
         }
     }
 
-    /// Adds options to the link in a slot, placed in the pose. Does nothing if the slot is not a link.
+    /// Adds the options `tubes` to the link in `slot`, placed in the pose. Does nothing if the slot is not a link.
     fn add_options(&mut self, slot: usize, tubes: &[Tube]) {
         let down = &self.structure.down;
         let StationSlot::Link { options, place, carried } = &mut self.station.slots[slot] else { return };
@@ -228,7 +229,7 @@ impl Builder<'_> {
         }
     }
 
-    /// A joint at its angle, with the torque that acts on it in addition to weight and load.
+    /// The joint at its angle in the pose. A torque that acts on it in addition to weight and load is included.
     fn joint(&self, joint: &SpaceJoint) -> StationSlot {
         let (_, rotation) = self.place;
         let mut slot = self.hinge(&(rotation * joint.axis));
@@ -288,8 +289,8 @@ impl Builder<'_> {
         StationSlot::Body { inertia: inertia + along.inertia, weight: weight + along.weight }
     }
 
-    /// The slot of a tube, without its options. The tube has a vector from root to end \[m\], and bodies attached to
-    /// it.
+    /// The slot of a tube that belongs to the piece `piece`, with memory for `options` options, which are added later.
+    /// `vector_m` leads from its root to its end \[m\], and `bodies` are attached to it.
     fn tube(
         &self,
         piece: usize,
@@ -328,7 +329,9 @@ impl Builder<'_> {
     }
 }
 
-/// The data of one option of a link in a pose.
+/// The data of one option of a link in a pose. `tube` is the condensed option, `placed` the same in world axes, `place`
+/// the position and attitude of the link. `tip_m` is the position of the tip \[m\], and `down` the direction of
+/// gravity.
 fn station_link(
     tube: &Tube,
     placed: &PlacedLink,
@@ -384,7 +387,7 @@ fn put_into_one_block(slot: &mut StationSlot) {
     }
 }
 
-/// Whether an inertia matrix does not couple motions within the x-z plane with motions across it.
+/// Whether the inertia matrix `m` has no terms that couple motions within the x-z plane with motions across it.
 fn uncoupled(m: &Matrix6<f64>) -> bool {
     let largest = m.amax();
     PLANES[0].iter().all(|&i| PLANES[1].iter().all(|&j| m[(i, j)].abs() <= ROUNDING * largest))
@@ -435,7 +438,7 @@ fn ends_by_block(placed: &PlacedLink) -> [usize; 6] {
     blocks
 }
 
-/// The slots restricted to the given motions. The options of links are added later.
+/// The slots of an arm, restricted to the given motions (indices from 0 to 5). The options of links are added later.
 fn block<const N: usize>(slots: &[StationSlot], payload: &Matrix6<f64>, motions: [usize; N]) -> Block<N> {
     let select = |m: &Matrix6<f64>| SMatrix::<f64, N, N>::from_fn(|i, j| m[(motions[i], motions[j])]);
     let restricted = |slot: &StationSlot| match slot {
@@ -450,7 +453,7 @@ fn block<const N: usize>(slots: &[StationSlot], payload: &Matrix6<f64>, motions:
 }
 
 impl<const N: usize> Block<N> {
-    /// Adds options of the link in a slot, restricted to the given motions.
+    /// Adds the options `placed` of the link in `slot`, restricted to the given motions (indices from 0 to 5).
     fn add(&mut self, slot: usize, placed: &[PlacedLink], motions: [usize; N]) {
         if let BlockSlot::Links(options) = &mut self.slots[slot] {
             options.par_extend(placed.par_iter().map(|placed| block_link(placed, motions)));
@@ -458,7 +461,8 @@ impl<const N: usize> Block<N> {
     }
 }
 
-/// One option of a link restricted to the given motions and to the end coordinates that belong to them.
+/// One option of a link, restricted to the given motions (indices from 0 to 5) and to the end coordinates that belong
+/// to them.
 fn block_link<const N: usize>(placed: &PlacedLink, motions: [usize; N]) -> BlockLink<N> {
     let mut ends = [0; N];
     // one block of six motions has all end coordinates; of two blocks, each has the three coordinates that move it

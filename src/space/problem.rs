@@ -43,7 +43,7 @@ pub struct ArmProblem<'c> {
     level_slots: Vec<usize>,
     /// Number of options of each level, tip first.
     level_sizes: Vec<u32>,
-    /// The level whose options are evaluated together.
+    /// The row level: the level whose options are evaluated together.
     row_level: usize,
     /// The station of each case, in the order of the design space.
     stations: Vec<Station>,
@@ -51,7 +51,7 @@ pub struct ArmProblem<'c> {
     materials: usize,
     /// Ratio of the stress at peak load to the stress at rest.
     peak_factor: f64,
-    /// Data for the loads on output bearings.
+    /// The data from which the loads on output bearings are computed.
     bearing_loads: BearingLoads,
     /// For each slot, the room that the link of its joint leaves for gear and motor; `None` where no limit refers to
     /// a link.
@@ -61,18 +61,18 @@ pub struct ArmProblem<'c> {
 /// A partial arm: everything from the tip to the next level.
 #[derive(Debug, Clone, Default)]
 pub struct Partial {
-    /// The slot that is added next.
+    /// The slot (step in which the arm is built) that is added next.
     next_slot: usize,
-    /// Demand on the joint in the next slot, if the slot is a sized joint. It is the same for all drives of the
-    /// joint.
+    /// Demand on the joint in the next slot. The demand does not depend on the joint's own drive. `None` if the next
+    /// slot is not a sized joint.
     pub(crate) next_demand: Option<JointDemand>,
-    /// Mass of the arm so far \[kg\].
+    /// Mass of the partial arm \[kg\].
     pub(crate) mass_kg: f64,
-    /// Cost of the material of the links so far \[EUR\]; unknown costs count as 0.
+    /// Cost of the material of the links in the partial arm \[EUR\]. Unknown costs count as 0.
     pub(crate) cost_eur: f64,
-    /// The material that the chosen links so far have in common.
+    /// The material that the chosen links of the partial arm have in common.
     pub(crate) group: Group,
-    /// Largest ratio of stress to strength at peak load, over all links so far whose strength is known.
+    /// Largest ratio of stress to strength at peak load over the links of the partial arm whose strength is known.
     pub(crate) stress_ratio: f64,
     /// Option of each slot, tip first; 0 for slots that are not added yet.
     pub(crate) options: Vec<u32>,
@@ -189,7 +189,7 @@ impl<'c> ArmProblem<'c> {
         self.piece_slots.iter().map(|&slot| complete.options[slot])
     }
 
-    /// Demand on the joint in a slot. `partial` is the arm outboard of the joint.
+    /// Demand on the joint in `slot` over the sizing cases. `partial` is the arm outboard of the joint.
     pub fn demand_at(&self, partial: &Partial, slot: usize) -> JointDemand {
         self.demand(partial, slot, self.slots[slot].motion())
     }
@@ -215,8 +215,8 @@ impl<'c> ArmProblem<'c> {
         Ok(partial)
     }
 
-    /// The arm with these options, one for each slot. For a sized joint the option is the index of its drive, even
-    /// where first fit would take another drive. `None` if the arm breaks a limit.
+    /// The arm with these `options`, one for each slot. For a sized joint the option is the index of its drive, and
+    /// this drive is taken even where first fit would take another one. `None` if the arm breaks a limit.
     pub(crate) fn assemble(&self, options: &[u32]) -> Option<Partial> {
         let mut partial = self.empty();
         let mut adds = |(slot, &option): (usize, &u32)| match &self.slots[slot] {
@@ -230,9 +230,9 @@ impl<'c> ArmProblem<'c> {
         options.iter().enumerate().all(&mut adds).then_some(partial)
     }
 
-    /// The first piece from the tip that some of the cases overload. It comes with the check of its drive that fails,
-    /// or with `None` if the piece is a link that fails by stress. `options` has the option of every slot; `None` is
-    /// returned if no piece is overloaded.
+    /// The first piece from the tip that is overloaded in one of `cases`, for an arm with these `options`, one for each
+    /// slot. Returns its number, and the check that its drive fails; `None` in the place of the check means that the
+    /// piece is a link whose stress is too high. `None` if no piece is overloaded.
     pub(crate) fn overload(&self, options: &[u32], cases: &[usize]) -> Option<(usize, Option<Check>)> {
         let mut partial = self.empty();
         for (slot, &option) in options.iter().enumerate() {
@@ -320,8 +320,8 @@ impl<'c> ArmProblem<'c> {
         }
     }
 
-    /// Adds the slots without a choice up to the next level. Returns `false` if the arm breaks a limit with one of
-    /// them.
+    /// Adds the slots inboard of `partial` in which nothing is chosen, up to the next level. Returns `false` if the arm
+    /// breaks a limit with one of them.
     fn advance(&self, partial: &mut Partial) -> bool {
         while partial.next_slot < self.slots.len() && !self.slots[partial.next_slot].is_level() {
             if !self.add(partial.next_slot, 0, partial) {
@@ -337,7 +337,7 @@ impl<'c> ArmProblem<'c> {
         true
     }
 
-    /// Adds one slot inboard with this option. Returns `false` if the arm breaks a limit with it.
+    /// Adds the next slot, `slot`, with this option to the arm `to`. Returns `false` if the arm breaks a limit with it.
     fn add(&self, slot: usize, option: u32, to: &mut Partial) -> bool {
         to.next_slot = slot + 1;
         to.options[slot] = option;
@@ -365,8 +365,8 @@ impl<'c> ArmProblem<'c> {
         index.is_some_and(|index| self.add_drive(slot, sized, index, to))
     }
 
-    /// Adds a drive that meets the demand. The index of the drive is stored as the option of the slot even where
-    /// first fit chose it, so that the parts can be read from the arm.
+    /// Adds the drive `index` to the joint in `slot`; it is known to meet the demand. The index is stored as the option
+    /// of the slot even where first fit chose it, so that the parts of the arm can be read later.
     fn add_drive(&self, slot: usize, sized: &SizedJoint, index: usize, to: &mut Partial) -> bool {
         to.options[slot] = index as u32;
         self.add_joint(slot, &sized.laws[index], sized.table.mass_kg(index), to)
@@ -385,7 +385,7 @@ impl<'c> ArmProblem<'c> {
         self.demand_in(&self.space.sizing_cases, outboard, slot, motion)
     }
 
-    /// Demand on a joint over some of the cases.
+    /// Demand on the joint in `slot` over the given cases, made in the same way as by [`demand`](Self::demand).
     fn demand_in(
         &self,
         cases: &[usize],
@@ -409,8 +409,8 @@ impl<'c> ArmProblem<'c> {
         torques.with_bearing(bearing).with_room(room)
     }
 
-    /// Adds a joint to the state of every case. It always returns `true`: a sized drive was checked before, and a
-    /// given drive excludes no design.
+    /// Adds the joint in `slot` with the joint law `law` and a drive of the mass `mass_kg` to the state of every case.
+    /// It always returns `true`: a sized drive was checked before, and a given drive excludes no design.
     fn add_joint(&self, slot: usize, law: &JointLaw, mass_kg: f64, to: &mut Partial) -> bool {
         to.mass_kg += mass_kg;
         to.masses_kg[slot] = mass_kg;
@@ -475,8 +475,9 @@ impl<'c> ArmProblem<'c> {
     }
 }
 
-/// The level whose options are evaluated eight at a time. It is the innermost link, unless this link has fewer than
-/// eight options and fewer than the innermost level. The drives inboard of it are the same for a whole row.
+/// Selects the row level, whose options are evaluated eight at a time. It is the innermost link. If this link has fewer
+/// than eight options and fewer than the innermost level, it is the innermost level. The drives inboard of the row
+/// level are the same for a whole row.
 fn row_level(slots: &[Slot], level_slots: &[usize], level_sizes: &[u32]) -> usize {
     let innermost = level_slots.len().saturating_sub(1);
     let link = level_slots.iter().rposition(|&slot| matches!(slots[slot], Slot::Link { .. }));
@@ -484,7 +485,8 @@ fn row_level(slots: &[Slot], level_slots: &[usize], level_sizes: &[u32]) -> usiz
         .unwrap_or(innermost)
 }
 
-/// Objectives of a complete arm, from its states in the judged cases.
+/// Objectives of the arm `complete`. `judged` are the judged cases: the station of each, and the state of the arm in
+/// it.
 pub(crate) fn objectives_over<'s>(
     judged: impl Iterator<Item = (&'s Station, &'s StationState)> + Clone,
     complete: &Partial,
@@ -494,7 +496,7 @@ pub(crate) fn objectives_over<'s>(
     Objectives { tip_deflection_m, mass_kg: complete.mass_kg, lowest_mode_hz }
 }
 
-/// Smallest lowest natural frequency of a complete arm over the cases \[Hz\].
+/// Smallest lowest natural frequency \[Hz\] of the arm `complete` over the cases `judged`.
 fn lowest_mode_hz<'s>(
     judged: impl Iterator<Item = (&'s Station, &'s StationState)>,
     complete: &Partial,
@@ -526,8 +528,8 @@ fn block_eigenvalue<const N: usize>(
     lowest_eigenvalue(&steps, trace_s2)
 }
 
-/// The steps from which the lowest mode of a block is computed, tip first: the payload and the first `slots` slots of
-/// an arm. Slots with neither compliance nor mass are left out.
+/// The steps in which the lowest mode of a block (motions that do not couple with the others) is computed, tip first.
+/// They are the payload and the first `slots` slots of the arm. Slots with neither compliance nor mass are left out.
 pub(crate) fn block_steps<'a, const N: usize>(
     block: &'a Block<N>,
     arm: &'a Partial,

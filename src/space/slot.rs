@@ -9,7 +9,7 @@ use crate::catalog::Catalogs;
 use crate::sizing::demand::{JointDemand, JointMotion};
 use crate::sizing::select::{DriveFilter, DriveTable};
 
-/// What the search adds to an arm in one step.
+/// One slot: the piece of an arm that the search adds in one step.
 pub(crate) enum Slot<'c> {
     /// A joint whose drive the study gives, or a spring that an effect adds.
     Given { law: JointLaw, mass_kg: f64 },
@@ -30,8 +30,8 @@ pub struct SizedJoint<'c> {
     pub table: DriveTable<'c>,
     /// Joint law (angle as a function of torque) with each drive of the table. Effects are included.
     pub(crate) laws: Vec<JointLaw>,
-    /// Tilting compliance of the output bearing with each drive \[rad/(N m)\]: that of the gear's bearing, and what
-    /// effects add.
+    /// Compliance of the output bearing against tilt \[rad/(N m)\], one entry for each drive. It is the compliance of
+    /// the gear's bearing plus that which effects add.
     pub(crate) tilts_rad_per_nm: Vec<f64>,
     /// Whether every drive that meets the demand is an option of the search. If not, the lightest drive that meets
     /// the demand is taken (first fit).
@@ -64,8 +64,8 @@ impl SizedJoint<'_> {
         kinds
     }
 
-    /// The ties of the drive `index` that meet a demand, as indices of drives. The drive itself is among them if it
-    /// meets the demand.
+    /// The drives that meet `demand` and are ties of the drive `index`, that is, equal to it in mass, torsion curve and
+    /// bearing. The drive itself is among them if it meets the demand.
     pub(crate) fn ties_of<'t>(
         &'t self,
         index: usize,
@@ -83,7 +83,8 @@ impl SizedJoint<'_> {
 }
 
 impl<'c> Slot<'c> {
-    /// One of the two springs of the output bearing of the joint in slot `joint`, which comes earlier.
+    /// The slot of one of the two springs of an output bearing. The bearing belongs to the joint in slot `joint`, which
+    /// comes earlier in `slots`.
     pub(crate) fn bearing(joint: usize, slots: &[Slot<'c>]) -> Self {
         let spring = |rad_per_nm: &f64| JointLaw {
             connection_rad_per_nm: *rad_per_nm,
@@ -130,7 +131,8 @@ impl Slot<'_> {
         }
     }
 
-    /// Joint law (angle as a function of torque) with one of the drives; `None` if the slot has no joint or spring.
+    /// The joint law (angle as a function of torque) that the slot has with the drive `option`. `None` if the slot has
+    /// no joint or spring.
     pub(crate) fn law(&self, option: usize) -> Option<&JointLaw> {
         match self {
             Slot::Given { law, .. } => Some(law),
@@ -206,14 +208,15 @@ pub(crate) fn choice_slot<'c>(space: &DesignSpace, choice: &LinkChoice) -> Slot<
 }
 
 impl DesignSpace {
-    /// A torsion curve as the joint model of the study uses it.
+    /// The torsion curve `curve` as the joint model of the study uses it: with the middle slope K2 alone, or with all
+    /// three segments.
     pub fn curve(&self, curve: Curve) -> Curve {
         curve.reduced(self.joints)
     }
 }
 
 impl LinkChoice {
-    /// The link with one of its options, as a given link.
+    /// The link with `option` as its material and section, in the form of a link that the study gives.
     pub fn link(&self, option: &LinkOption) -> Link {
         Link {
             name: self.name.clone(),

@@ -11,8 +11,8 @@ use crate::arm::joint_law::JointLaw;
 use crate::mechanics::Wrench;
 use nalgebra::{Matrix6, Vector3};
 
-/// Force, inertia and displacement of a partial arm in one case. Wrench and inertia are taken about the world's
-/// origin.
+/// Forces on a partial arm, its inertia and its displacement, in one case. Wrench and inertia are taken about the
+/// world's origin.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct StationState {
     /// Wrench of weight and load of everything outboard.
@@ -26,10 +26,11 @@ pub(crate) struct StationState {
     pub trace_s2: [f64; 2],
     /// Tangent compliance of each slot \[rad/(N m)\], tip first; 0 for slots that are no joints or are not added yet.
     pub compliances: Vec<f64>,
-    /// Wrench from the acceleration of each joint so far, with the other joints at rest, tip first. The list is empty
-    /// if no bearing is checked.
+    /// Wrench that the acceleration of each joint makes while the other joints are at rest; one entry for each joint
+    /// added so far, tip first. The list is empty if no bearing is checked.
     pub ramps: Vec<Wrench>,
-    /// For each passive joint so far, tip first: its slot, and the wrench and inertia of everything outboard of it.
+    /// The passive joints added so far, tip first. Each has its slot, and the wrench and the inertia of everything
+    /// outboard of it.
     pub passive: Vec<(usize, Wrench, Matrix6<f64>)>,
 }
 
@@ -51,24 +52,24 @@ impl StationState {
         self.wrench += joint.weight_per_kg * mass_kg;
     }
 
-    /// Torque on a joint that is added next \[N m\]: the torque of weight and load, and the torque that acts on the
-    /// joint in addition.
+    /// Torque on the joint that is to be added next \[N m\]: the torque of weight and load outboard, plus the torque
+    /// that acts on this joint in addition, such as that of a counterbalance.
     pub(crate) fn torque_nm(&self, joint: &StationJoint) -> f64 {
         let of_passive: f64 = joint.turns.iter().map(|turned| turned.own_nm).sum();
         self.load_torque_nm(joint) + joint.own_nm + of_passive
     }
 
-    /// Torque of weight and load on a joint that is added next \[N m\]. A linkage makes a driving joint hold the
-    /// torques of its passive joints too, by virtual work: a radian of the driving joint turns each of them by its
-    /// factor.
+    /// Torque of weight and load outboard on the joint that is to be added next \[N m\]. A linkage makes a driving
+    /// joint hold the torques of its passive joints too, by virtual work: a radian of the driving joint turns each of
+    /// them by its factor.
     pub(crate) fn load_torque_nm(&self, joint: &StationJoint) -> f64 {
         let of_passive =
             |turned: &Turned| self.outboard_of(turned.slot).map_or(0.0, |(w, _)| turned.twist.dot(w));
         joint.twist.dot(&self.wrench) + joint.turns.iter().map(of_passive).sum::<f64>()
     }
 
-    /// Inertia of everything outboard about a joint that is added next in `slot` \[kg m²\]. The passive joints that
-    /// the joint drives turn with it.
+    /// Inertia of everything outboard about the axis of the joint that is to be added next in `slot` \[kg m²\]. The
+    /// passive joints that this joint drives turn with it.
     pub(crate) fn inertia_about(&self, slot: usize, joint: &StationJoint) -> f64 {
         if joint.turns.is_empty() {
             return joint.twist.dot(&(self.inertia * joint.twist));
@@ -82,13 +83,14 @@ impl StationState {
         joint.twist.dot(&momentum) + joint.turns.iter().map(with_passive).sum::<f64>()
     }
 
-    /// Momentum of everything outboard of `slot`, per radian per second of a joint that is in this slot or inboard of
-    /// it.
+    /// Momentum of everything outboard of `slot` per unit of the speed of `joint` \[per rad/s\]. The joint is in this
+    /// slot or inboard of it.
     pub(crate) fn momentum(&self, slot: usize, joint: &StationJoint) -> Wrench {
         self.momentum_of(&self.inertia, slot, joint)
     }
 
-    /// Momentum of the inertia `inertia`, which is everything outboard of `slot`, per radian per second of the joint.
+    /// Momentum per unit of the speed of `joint` \[per rad/s\] of bodies with the inertia matrix `inertia`. These
+    /// bodies are everything outboard of `slot`.
     fn momentum_of(&self, inertia: &Matrix6<f64>, slot: usize, joint: &StationJoint) -> Wrench {
         let (further, nearer): (Vec<&Turned>, Vec<&Turned>) = joint.turns.iter().partition(|t| t.slot < slot);
         let motion = nearer.iter().fold(joint.twist, |sum, turned| sum + turned.twist);
@@ -102,7 +104,7 @@ impl StationState {
         self.passive.iter().find(|(slot, ..)| *slot == passive).map(|(_, wrench, inertia)| (wrench, inertia))
     }
 
-    /// Adds a rigid body with its inertia and its weight.
+    /// Adds a rigid body, given by its inertia matrix and its weight about the world's origin.
     pub(crate) fn add_body(&mut self, inertia: &Matrix6<f64>, weight: &Wrench) {
         self.inertia += inertia;
         self.wrench += weight;

@@ -68,9 +68,9 @@ pub(crate) struct OnAxis {
 }
 
 impl OnTube {
-    /// The points at which springs pull on the tube, each with two loads about the world's origin: the load of
-    /// everything outboard of the point, without and with what acts at the point itself. `outboard` is the load on
-    /// the end of the tube, and `own` the weight of the tube.
+    /// The points of the tube at which springs pull, each with the load on the section just outboard of the point and
+    /// on the section just inboard of it. The two differ by what acts at the point itself. Both are taken about the
+    /// world's origin. `outboard` is the load on the end of the tube, and `own` is the weight of the tube.
     pub(crate) fn at_pulls(
         &self,
         place: &Place,
@@ -142,7 +142,8 @@ pub(crate) struct Place {
 }
 
 impl Place {
-    /// Axial force \[N\], torsion and both bending moments \[N m\] that a wrench causes at a point of the link.
+    /// Axial force \[N\], torsion and both bending moments \[N m\] that the section at the point `at_m` of the link
+    /// transmits. `wrench` is the load outboard of it, about the world's origin.
     pub(crate) fn local(&self, wrench: &Wrench, at_m: &Vector3<f64>) -> [f64; 4] {
         let force = self.frame.tr_mul(&linear(wrench));
         let moment = self.frame.tr_mul(&(angular(wrench) - at_m.cross(&linear(wrench))));
@@ -162,16 +163,18 @@ pub(crate) struct StationLink {
     /// Motion (velocity and angular velocity) of everything outboard, per unit of each end coordinate: one column for
     /// each.
     pub end: Matrix6<f64>,
-    /// Values of the end coordinates under the weight of the link, the bodies on it and the pull of springs.
+    /// Values of the six end coordinates (motions of the link's end) under the weight of the link, the bodies on it and
+    /// the pull of springs.
     pub own_weight_end: Vector6<f64>,
     /// Displacement of the tip per unit of each end coordinate: one column for each.
     pub tip: Matrix3x6<f64>,
-    /// Inertia of the link itself in each end coordinate. It is a term of Dunkerley's sum \[s²\], since the stiffness
-    /// is 1.
+    /// Inertia of the link itself for a unit of each end coordinate (motion of the link's end). It is a term of
+    /// Dunkerley's sum \[s²\], because the stiffness of each end coordinate is 1.
     pub end_inertia: Vector6<f64>,
     /// Block to which each end coordinate belongs: 0 within the x-z plane, 1 across it.
     pub block: [usize; 6],
-    /// Sum of `1/λ` over the inner modes of the link \[s²\], which the end coordinates do not have.
+    /// Sum of `1/λ` over the inner modes of the link \[s²\]. These modes do not move the end of the link, so the end
+    /// coordinates do not contain them.
     pub inner_trace_s2: f64,
 }
 
@@ -181,7 +184,8 @@ impl StationLink {
         down.dot(&linear(&self.weight))
     }
 
-    /// Displacement of the tip \[m\] per unit of each component of the wrench on the link's end.
+    /// Displacement of the tip per unit of each of the six components of the wrench on the link's end \[m/N and m/(N
+    /// m)\].
     pub(crate) fn flexibility(&self) -> Matrix3x6<f64> {
         // the end coordinates have unit stiffness: a wrench w deflects them by endᵀ w
         self.tip * self.end.transpose()
@@ -307,7 +311,8 @@ impl Walk {
         end_loads(&space.springs, &frames)
     }
 
-    /// Position and attitude of a layer of a piece.
+    /// Position and attitude of a layer of the piece with the number `piece`: at the beginning of the piece, or at its
+    /// end.
     pub(crate) fn place(&self, piece: usize, layer: &Layer) -> &(Vector3<f64>, Rotation3<f64>) {
         &self.places[piece + usize::from(layer.is_at_end())]
     }
@@ -330,8 +335,8 @@ pub(crate) fn bodies_at(
     (inertia, weight)
 }
 
-/// Reach of each joint \[m\], base to tip: the largest displacement of the tip per radian of the joint, over some
-/// cases. It is the distance of the tip from the axis, unless the joint drives passive joints.
+/// Reach of each joint, base to tip \[m\]: the largest displacement of the tip per radian of the joint over the given
+/// cases. It is the distance of the tip from the joint's axis, unless the joint drives passive joints.
 pub(crate) fn reaches_m<'a>(space: &DesignSpace, cases: impl Iterator<Item = &'a Case>) -> Vec<f64> {
     let joints: Vec<(usize, Vector3<f64>)> = space
         .pieces

@@ -26,8 +26,8 @@ pub(super) struct BearingLoad {
     pub axial_n: f64,
 }
 
-/// The loads that a study puts on the bearing of one joint: the largest over the sizing cases, at rest, in a ramp
-/// and in a stop.
+/// The largest loads that a study puts on the bearing of one joint over the sizing cases: at rest, while a joint ramps,
+/// and while a joint makes an emergency stop.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct BearingDemand {
     pub at_rest: BearingLoad,
@@ -57,8 +57,9 @@ const SAFETY_IN_A_STOP: f64 = 2.0;
 /// Load factor f_w of the life: the value for which the vendor's own tables hold.
 const LOAD_FACTOR: f64 = 1.3;
 
-/// The bearing of a joint with this gear: the bearing that the study states, or else that of a housed gear. `None`
-/// if the gear is a component set, which has no output bearing.
+/// The output bearing that a joint has with `gear`. `source` tells whether the study states the bearing or it comes
+/// with the gear, and `which` whether the gear is a housed unit or a component set. `None` if the bearing would come
+/// with a component set, which has none.
 pub(super) fn with_gear(source: &BearingSource, gear: &Gear, which: GearMass) -> Option<Bearing> {
     match (source, which) {
         (BearingSource::Stated(bearing), _) => *bearing,
@@ -79,8 +80,8 @@ impl BearingLoad {
         Self { moment_nm: moment_nm * factor, radial_n: radial_n * factor, axial_n: axial_n * factor }
     }
 
-    /// The load if the same forces act further out along the axis by the lever \[m\]. The radial force then adds to
-    /// the moment.
+    /// The load if the same forces attach further out along the axis, by `lever_m` \[m\]. The radial force times this
+    /// lever then adds to the moment.
     fn with_lever(self, lever_m: f64) -> Self {
         Self { moment_nm: self.moment_nm + lever_m * self.radial_n, ..self }
     }
@@ -92,19 +93,19 @@ impl BearingDemand {
         Self { at_rest: change(at_rest), running: change(running), in_stop: change(in_stop) }
     }
 
-    /// The demand with every load multiplied by a factor.
+    /// This demand with every load multiplied by `factor`.
     pub(super) fn times(self, factor: f64) -> Self {
         self.with_each(|load| load.times(factor))
     }
 
-    /// The demand if the forces attach further out along the axis by the lever \[m\].
+    /// This demand if the forces attach further out along the axis, by `lever_m` \[m\].
     pub(super) fn with_lever(self, lever_m: f64) -> Self {
         self.with_each(|load| load.with_lever(lever_m))
     }
 }
 
 impl BearingRatings {
-    /// Ratings of a bearing on which nothing is checked: all limits are infinite.
+    /// Limits of a bearing that is not checked: all are infinite.
     pub(super) const UNLIMITED: Self = Self {
         centre_m: 0.0,
         per_moment_per_m: 0.0,
@@ -114,7 +115,8 @@ impl BearingRatings {
         life_n: f64::INFINITY,
     };
 
-    /// Limits of a bearing. `duty` is the mean speed of the joint \[rad/s\] and its required life \[h\].
+    /// The limits of a bearing. `duty` is the mean speed of the joint \[rad/s\] and its required life \[h\]. Without a
+    /// bearing nothing is limited.
     pub(super) fn of(bearing: Option<&Bearing>, duty: [f64; 2]) -> Self {
         let Some(bearing) = bearing else { return Self::UNLIMITED };
         let printed = &bearing.ratings;
@@ -134,19 +136,19 @@ impl BearingRatings {
         }
     }
 
-    /// Moment at the centre of the bearing \[N m\], and the radial force with the moment converted to a force at
-    /// the pitch circle \[N\].
+    /// The moment at the centre of the bearing \[N m\], and the equivalent radial force \[N\]: the radial force plus
+    /// the moment converted to a force at the pitch circle.
     fn across(&self, load: &BearingLoad) -> (f64, f64) {
         let moment_nm = load.moment_nm + self.centre_m * load.radial_n;
         (moment_nm, load.radial_n + self.per_moment_per_m * moment_nm)
     }
 
-    /// Static equivalent load `P₀` \[N\].
+    /// Static equivalent load `P₀` of the bearing under `load` \[N\].
     fn static_n(&self, load: &BearingLoad) -> f64 {
         self.across(load).1 + 0.44 * load.axial_n
     }
 
-    /// Dynamic equivalent load `P_c` \[N\].
+    /// Dynamic equivalent load `P_c` of the bearing under `load` \[N\].
     fn dynamic_n(&self, load: &BearingLoad) -> f64 {
         let (_, across_n) = self.across(load);
         let is_radial = load.axial_n <= 1.5 * across_n;
@@ -154,7 +156,7 @@ impl BearingRatings {
         x * across_n + y * load.axial_n
     }
 
-    /// Whether the bearing passes all four checks.
+    /// Whether the bearing passes all of its checks under the demand `asked`.
     pub(super) fn hold(&self, asked: &BearingDemand) -> bool {
         self.across(&asked.running).0 <= self.running_nm
             && self.static_n(&asked.at_rest) <= self.at_rest_n
@@ -162,14 +164,14 @@ impl BearingRatings {
             && self.dynamic_n(&asked.at_rest) <= self.life_n
     }
 
-    /// Whether this bearing passes its checks under every load under which the other one does.
+    /// Whether this bearing passes its checks under every load under which the bearing `other` does.
     pub(super) fn cover(&self, other: &Self) -> bool {
         let limits = self.limits().into_iter().zip(other.limits());
         let levers = self.levers().into_iter().zip(other.levers());
         limits.into_iter().all(|(a, b)| a >= b) && levers.into_iter().all(|(a, b)| a <= b)
     }
 
-    /// Ratings that are at least as good as both: the larger of each limit, with the smaller of each lever.
+    /// Ratings at least as good as these and as `other`: the larger of each limit, with the smaller of each lever.
     pub(super) fn max(&self, other: &Self) -> Self {
         Self {
             centre_m: self.centre_m.min(other.centre_m),

@@ -19,17 +19,17 @@ use nalgebra::Vector3;
 type Components<T> = [T; COMPONENTS];
 const COMPONENTS: usize = 5;
 
-/// Loads on the bearing of one joint in one case.
+/// The loads on the output bearing of one joint in one case, as functions of the weights and inertias of the parts.
 pub(super) struct PosedBearing {
-    /// Load at rest, linear in the weights of the parts.
+    /// The five components of the load at rest, each a linear function of the weights of the parts.
     rest: Components<Linear>,
-    /// Load that the ramp of each joint adds (one entry per joint, base first), linear in the inertias of the
-    /// parts.
+    /// The five components of the load that the ramp of each joint adds, one entry per joint, base first. Each is a
+    /// linear function of the inertias of the parts.
     ramps: Vec<Components<Linear>>,
 }
 
-/// Lower and upper bounds of the largest loads on a bearing so far: at rest, in a ramp and in a stop, each as
-/// moment, radial force and axial force.
+/// Lower and upper bounds of the largest loads on a bearing over the cases treated so far. First index: at rest, in a
+/// ramp, in a stop. Second index: moment, radial force, axial force.
 #[derive(Default)]
 pub(super) struct Largest([[Span; 3]; 3]);
 
@@ -78,7 +78,8 @@ fn probes_of(joint: usize) -> Components<Coordinate> {
     ]
 }
 
-/// Load on the bearing of a joint from the weights outboard of it.
+/// The five components of the load on the bearing of `joint` that the weights outboard of it make, each as a linear
+/// function of these weights.
 fn at_rest(builder: &Builder, joint: usize) -> Components<Linear> {
     let placed = &builder.layout.joints[joint];
     let carried = builder.carried(&Point { at_m: placed.at_m, rank: placed.rank, inside_m: None });
@@ -89,8 +90,8 @@ fn at_rest(builder: &Builder, joint: usize) -> Components<Linear> {
 }
 
 impl PosedBearing {
-    /// Updates the largest loads with those of this case. `loads` and `inertias` are the intervals of the weights
-    /// and inertias of the parts.
+    /// Raises `largest` to the loads on this bearing in this case. `loads` and `inertias` are the intervals of the
+    /// weights and inertias of the parts. `stop_factor` is the acceleration in a stop divided by that in a ramp.
     pub(super) fn load(&self, loads: &[Span], inertias: &[Span], stop_factor: f64, largest: &mut Largest) {
         let rest = self.rest.each_ref().map(|component| component.over(loads));
         let [at_rest, running, in_stop] = &mut largest.0;
@@ -106,7 +107,8 @@ impl PosedBearing {
     }
 }
 
-/// Updates the largest moment, radial force and axial force with those of a load that is given by its components.
+/// Raises the largest moment, radial force and axial force to those of one load. The load is given by its forces and
+/// moments along the three axes, as intervals.
 fn take(largest: &mut [Span; 3], [u_n, v_n, axial_n, u_nm, v_nm]: &Components<Span>) {
     let norm = |a: &Span, b: &Span| Span {
         least: libm::hypot(a.least_size(), b.least_size()),

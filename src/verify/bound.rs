@@ -23,8 +23,8 @@ pub(super) struct Members<'w> {
     /// For each joint, base first, the range of the drives that may meet its demand.
     pub drives: Vec<DriveRange>,
     pub tubes: Vec<&'w TubeRange>,
-    /// Masses of the drives \[kg\], then weights per length of the tubes \[N/m\]; one list for each of the
-    /// surroundings (air, water) of the study.
+    /// Intervals of the loads: the masses of the drives \[kg\], followed by the weights per length of the tubes
+    /// \[N/m\]. There is one list for each medium around the arm (air, water) in the study.
     pub loads: Vec<Vec<Span>>,
 }
 
@@ -40,7 +40,7 @@ pub(super) struct IdealPoint {
     pub direction: Vector3<f64>,
 }
 
-/// Intervals, over the members, of the static torque and of the inertia that load a joint.
+/// The loads on a joint over the members: intervals of the static torque \[N m\] and of the inertia outboard \[kg m²\].
 #[derive(Default)]
 struct Asked {
     static_nm: Span,
@@ -57,14 +57,15 @@ impl<'w> Members<'w> {
         Self { loads: (0..waters).map(loads).collect(), drives, tubes }
     }
 
-    /// Sets the range of drives of a joint.
+    /// Sets the range of the drives of a joint, and with it their masses among the loads.
     pub(super) fn set_drive(&mut self, joint: usize, range: DriveRange) {
         self.drives[joint] = range;
         let mass = Span { least: range.least_kg, most: range.most_kg };
         self.loads.iter_mut().for_each(|loads| loads[joint] = mass);
     }
 
-    /// Masses of the drives, then inertias per length of the tubes, in one of the surroundings.
+    /// Intervals of the masses of the drives, followed by those of the inertias per length of the tubes. `water` is the
+    /// index of the medium around the arm.
     fn inertias(&self, water: usize) -> impl Iterator<Item = Span> {
         let of_drives = self.loads[water][..self.drives.len()].iter().copied();
         let of_tubes = self.tubes.iter().flat_map(move |tube| {
@@ -97,8 +98,8 @@ impl Skeleton {
         ]
     }
 
-    /// Lower and upper bound of the loads on a joint's bearing over the sizing cases, at the face where the link
-    /// attaches. Zero if the bearing is not checked.
+    /// Lower and upper bound, over the members, of the largest loads on a joint's bearing in the sizing cases. They are
+    /// taken at the face where the link attaches. Zero if the bearing is not checked.
     fn bearing_demands(&self, joint: usize, duty: &Duty, members: &Members) -> [BearingDemand; 2] {
         let mut largest = Largest::default();
         for (pose, bearings) in self.poses.iter().zip(&self.bearings) {
@@ -125,8 +126,8 @@ impl Skeleton {
         })
     }
 
-    /// Intervals of the largest static torque and the largest inertia of a joint over the sizing cases. The parts
-    /// outboard of the joint must be known.
+    /// Intervals, over the members, of the largest static torque on a joint and of the largest inertia about it in the
+    /// sizing cases. The drives outboard of the joint must be set in `members`.
     fn asked(&self, joint: usize, members: &Members) -> Asked {
         let mut asked = Asked::default();
         for pose in self.poses.iter().filter(|pose| pose.sizing) {
@@ -142,8 +143,8 @@ impl Skeleton {
         asked
     }
 
-    /// Inertia of everything outboard about a joint's axis \[kg m²\]. It is the diagonal entry of the inertia
-    /// matrix that belongs to the joint.
+    /// Interval, over the members, of the inertia of everything outboard about a joint's axis \[kg m²\]. It is the
+    /// diagonal entry of the inertia matrix that belongs to the joint.
     fn inertia_about(&self, pose: &Pose, joint: usize, members: &Members) -> Span {
         let entry = joint * (joint + 3) / 2;
         let fixed = Span { least: pose.inertia[entry], most: pose.inertia[entry] };

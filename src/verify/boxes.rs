@@ -29,7 +29,7 @@ impl Boxes {
         Self::of(Arc::new(skeleton), parts)
     }
 
-    /// Builds the option trees from the options of joints and tubes.
+    /// Prepares the boxes of an arm whose parts are not chosen (`skeleton`), with trees over the options in `parts`.
     pub(super) fn of(skeleton: Arc<Skeleton>, parts: Parts) -> Self {
         let joints = parts.joints.into_iter().map(Drives::new).collect();
         Self { skeleton, joints, tubes: parts.tubes.iter().map(Tubes::new).collect() }
@@ -42,7 +42,8 @@ impl Boxes {
         some.then(|| PartsBox(vec![0; self.skeleton.levels.len()]))
     }
 
-    /// A box divided into two by the options of one level; `None` if the level has only one option.
+    /// The two boxes into which the box `parts` is divided by the options of one level; `None` if the level has only
+    /// one option.
     pub fn halves(&self, parts: &PartsBox, level: usize) -> Option<[PartsBox; 2]> {
         let halves = self.tree(level).halves(parts.0[level])?;
         Some(halves.map(|node| {
@@ -52,7 +53,7 @@ impl Boxes {
         }))
     }
 
-    /// Indices of the options that a box has at each level, tip first.
+    /// Indices of the options that the box `parts` has at each level, tip first.
     pub fn options(&self, parts: &PartsBox) -> Vec<Vec<u32>> {
         let levels = self.skeleton.levels.iter().zip(&parts.0);
         levels
@@ -68,8 +69,8 @@ impl Boxes {
             .collect()
     }
 
-    /// A lower bound of the mass \[kg\] and of the tip deflection \[m\] of all members of a box; `None` if it is
-    /// proved that no member meets the limits.
+    /// A mass \[kg\] and a tip deflection \[m\] below which no member of the box `parts` lies. `None` if it is proved
+    /// that no member meets the limits.
     pub fn least_mass_and_deflection(&self, parts: &PartsBox) -> Option<[f64; 2]> {
         let ideal = self.skeleton.ideal_point(&self.members(parts)?)?;
         Some([ideal.mass_kg, ideal.tip_m])
@@ -80,8 +81,8 @@ impl Boxes {
         self.members(parts).is_none_or(|members| self.skeleton.slowest(&members, hz).is_none())
     }
 
-    /// Intervals of the parts of a box, computed from the tip inward; `None` if it is proved that no member passes
-    /// its checks.
+    /// The interval of each number of a part over the designs of a box, computed from the tip inward. `None` if it is
+    /// proved that no member passes its checks.
     pub(super) fn members(&self, nodes: &PartsBox) -> Option<Members<'_>> {
         let tubes: Vec<&TubeRange> =
             self.tubes.iter().map(|tube| &tube.nodes[self.node(tube.level, nodes)]).collect();
@@ -117,7 +118,8 @@ impl Boxes {
         }
     }
 
-    /// The design of a box that has one option at every level, together with all designs that tie with it.
+    /// The single design of a box that has one option at every level, with all designs that tie with it. `None` if a
+    /// level has several options.
     pub(super) fn design(&self, parts: &PartsBox) -> Option<Design> {
         let members = self.members(parts)?;
         let choice = |(place, &node): (&Place, &u32)| match *place {

@@ -39,8 +39,9 @@ impl BranchScore<'_> {
             + 0.5 * libm::log1p(slower)
     }
 
-    /// By how much an average drive instead of the best one makes the ideal point worse: mass \[kg\], deflection
-    /// \[m\] and the squared angular frequency `λ` of the lowest mode \[1/s²\].
+    /// By how much the ideal point becomes worse if `joint` has an average drive and not the best one: the mass \[kg\],
+    /// the deflection \[m\] and the squared angular frequency `λ` of the lowest mode \[1/s²\]. `node` is the node of
+    /// the joint's tree in the box.
     fn of_joint(&self, joint: usize, node: u32) -> [f64; 3] {
         let (range, whole) = (&self.members.drives[joint], self.boxes.joints[joint].range(node));
         let mass_kg = 0.5 * (whole.most_kg.min(range.most_kg) - range.least_kg);
@@ -60,8 +61,8 @@ impl BranchScore<'_> {
         [mass_kg, tip_m + self.deflection_per(joint) * mass_kg, eigenvalue]
     }
 
-    /// By how much an average bearing instead of the stiffest one lowers the strain energy of the mode (times two)
-    /// \[N m\].
+    /// By how much twice the strain energy of the lowest mode falls if `joint` has an average bearing and not the
+    /// stiffest one \[N m\]. `range` are the drives of the joint in the box.
     fn slower_by_tilt(&self, joint: usize, range: &DriveRange) -> f64 {
         let weaker = range.greatest_tilt_stiffness() - 1.0 / range.tilt_rad_per_nm.middle();
         let coordinates = self.boxes.skeleton.coordinates.iter().zip(&self.slow.mode);
@@ -71,8 +72,8 @@ impl BranchScore<'_> {
         if strain.is_finite() { strain } else { 0.0 }
     }
 
-    /// By how much an average tube instead of the best one makes the ideal point worse: mass \[kg\], deflection
-    /// \[m\] and the squared angular frequency `λ` of the lowest mode \[1/s²\].
+    /// By how much the ideal point becomes worse if the link has an average tube and not the best one: the mass \[kg\],
+    /// the deflection \[m\] and the squared angular frequency `λ` of the lowest mode \[1/s²\].
     fn of_tube(&self, tube: usize) -> [f64; 3] {
         let range: &TubeRange = self.members.tubes[tube];
         let pose = &self.boxes.skeleton.poses[self.ideal.worst];
@@ -116,7 +117,8 @@ impl BranchScore<'_> {
         strain + self.slow.eigenvalue * inertia
     }
 
-    /// Deflection of the stiffest arm per unit of a load (the mass of a drive, or the weight per length of a tube).
+    /// Deflection of the stiffest arm of the box per unit of the load with the index `load` (the mass of a drive
+    /// \[kg\], or the weight per length of a tube \[N/m\]).
     fn deflection_per(&self, load: usize) -> f64 {
         let pose = &self.boxes.skeleton.poses[self.ideal.worst];
         let loads = &self.members.loads[pose.water];

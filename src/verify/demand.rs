@@ -4,7 +4,7 @@ use super::bearing::BearingDemand;
 use super::fit::Widths;
 use super::heat::HeatDemand;
 
-/// The four torques on the output side of a gear that are compared with ratings.
+/// The four torques, taken on the output side of the gear, that are compared with ratings of the drive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Quantity {
     /// Torque at rest in the worst pose (Eq 7) \[N m\].

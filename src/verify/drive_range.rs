@@ -12,7 +12,7 @@
 use super::span::Span;
 use crate::arm::joint_law::{Curve, JointLaw, LostMotion, Windup};
 
-/// Least and greatest value of each number over a set of drives.
+/// A set of drives, described by the least and the greatest value of each number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct DriveRange {
     pub least_kg: f64,
@@ -86,8 +86,8 @@ impl DriveRange {
         1.0 / self.tilt_rad_per_nm.least
     }
 
-    /// Least twist of the joint over an interval of torques, with its sign \[rad\]. Gear and lost motion twist
-    /// least under the least torque. The reduction by friction is greatest under the greatest torque.
+    /// Least twist of the joint over the drives and over torques in an interval, with its sign \[rad\]. Gear and lost
+    /// motion twist least under the least torque, and friction reduces the twist most under the greatest torque.
     pub(super) fn least_angle_rad(&self, torque_nm: Span) -> f64 {
         let Span { least, most } = torque_nm;
         let gear = if least >= 0.0 { angle_rad(&self.stiff, least) } else { -angle_rad(&self.soft, -least) };
@@ -95,7 +95,7 @@ impl DriveRange {
         gear + closed - self.most_held_rad(most)
     }
 
-    /// Greatest reduction of the twist by friction under any torque up to this one, with its sign \[rad\].
+    /// Greatest angle by which friction can reduce the twist under any torque up to `torque_nm`, with its sign \[rad\].
     fn most_held_rad(&self, torque_nm: f64) -> f64 {
         match torque_nm >= 0.0 {
             true => (torque_nm / self.soft.k2_nm_per_rad).min(self.friction_rad),
@@ -103,7 +103,8 @@ impl DriveRange {
         }
     }
 
-    /// Greatest tangent stiffness of the joint at any torque of at most this magnitude \[N m/rad\].
+    /// Greatest tangent stiffness that the joint has with any of the drives \[N m/rad\], under torques with a magnitude
+    /// of at most `torque_nm`.
     pub(super) fn largest_slope(&self, torque_nm: f64) -> f64 {
         // a torque that is below a break point by less than rounding counts as beyond it
         let reach_nm = torque_nm * (1.0 + 1e-9) + 1e-9;

@@ -14,7 +14,8 @@ const FEW: usize = 64;
 
 /// The drives that a joint may have, as a list.
 pub(super) struct DriveOptions {
-    /// Index among the levels of the space; `None` if the drive is not chosen by the search.
+    /// Index of the joint's choice among the levels (choices) of the space; `None` if the search does not choose the
+    /// drive.
     pub level: Option<usize>,
     /// The motion of the joint; `None` for a given drive, on which nothing is checked.
     pub duty: Option<Duty>,
@@ -26,7 +27,7 @@ pub(super) struct DriveOptions {
 #[derive(Debug, Clone)]
 pub(super) struct DriveOption {
     pub range: DriveRange,
-    /// Index of each drive of the option, with its ratings.
+    /// The drives of the option, each with its index among the joint's drives and its ratings.
     pub drives: Vec<(u32, Ratings)>,
 }
 
@@ -43,13 +44,16 @@ pub(super) struct Drives {
     pub level: Option<usize>,
     pub duty: Option<Duty>,
     pub tree: Tree,
-    /// For each node of the tree, the ranges of its drives and the greatest of their ratings.
+    /// For each node of the tree: the least and greatest numbers of the drives below it, and the greatest of their
+    /// ratings.
     nodes: Vec<(DriveRange, Ratings)>,
     options: Vec<DriveOption>,
 }
 
 impl DriveOptions {
-    /// All drives that a joint may have. `level` is stored only if the search chooses the drive.
+    /// All drives that a joint may have, as the catalogs offer them. `level` is the index of the joint's choice among
+    /// the levels; it is stored only if the search chooses the drive. `ties` tells whether drives that no objective
+    /// tells apart are one option.
     pub(super) fn new(offers: &JointOffers, level: usize, ties: Ties) -> Self {
         let offers = match offers {
             JointOffers::Given { law, tilt_rad_per_nm, mass_kg } => {
@@ -69,7 +73,7 @@ impl DriveOptions {
         Self { level: offers.is_choice.then_some(level), duty: Some(offers.duty.clone()), options }
     }
 
-    /// Options with only the given ones kept. `some` has their indices in ascending order.
+    /// The same list with only some of its options. `some` has the indices of these options in ascending order.
     pub(super) fn only(&self, some: &[u32]) -> Self {
         let options = some.iter().map(|&i| self.options[i as usize].clone()).collect();
         Self { level: self.level, duty: self.duty.clone(), options }
@@ -85,13 +89,13 @@ impl DriveOption {
         }
     }
 
-    /// Whether at least one drive of the option meets a demand.
+    /// Whether at least one drive of the option meets the demand `asked`.
     pub(super) fn holds(&self, asked: &Demand) -> bool {
         self.drives.iter().any(|(_, ratings)| ratings.hold(asked))
     }
 
-    /// For a demand that is known only between a least and a greatest one: the drives of the option that may meet
-    /// it, and whether the first of these surely does.
+    /// The drives of the option that may meet a demand of which only a least and a greatest value are known. Drives
+    /// that meet even the greatest come first; the flag of the choice tells whether there is such a drive.
     pub(super) fn holding(&self, [least, most]: &[Demand; 2]) -> Choice {
         let may = self.drives.iter().filter(|(_, ratings)| ratings.hold(least));
         let (mut drives, unsure): (Vec<&(u32, Ratings)>, Vec<_>) =
@@ -101,7 +105,7 @@ impl DriveOption {
         Choice { options: drives.into_iter().map(|&(number, _)| number).collect(), one_holds }
     }
 
-    /// The greatest rating of the option's drives for each quantity.
+    /// For each quantity, the greatest rating of any drive of the option.
     fn ratings(&self) -> Ratings {
         let (first, rest) = self.drives.split_first().expect("an option has a drive");
         rest.iter().fold(first.1, |ratings, (_, other)| ratings.max(other))
@@ -109,7 +113,7 @@ impl DriveOption {
 }
 
 impl Drives {
-    /// Builds the tree of the options.
+    /// Builds the tree over the options, and computes the least and greatest numbers of each node's drives.
     pub(super) fn new(DriveOptions { level, duty, options }: DriveOptions) -> Self {
         let all: Vec<u32> = (0..options.len() as u32).collect();
         let tree = Tree::new(all, &options.iter().map(keys).collect::<Vec<_>>());
@@ -128,7 +132,8 @@ impl Drives {
         self.tree.options(node).iter().map(|&i| &self.options[i as usize])
     }
 
-    /// Range of those drives of a node that may meet a demand of at least `asked`; `None` if none can.
+    /// Least and greatest numbers of those drives below `node` that may meet a demand of at least `asked`. `None` if no
+    /// drive can.
     pub(super) fn holding(&self, node: u32, asked: &Demand) -> Option<DriveRange> {
         if self.tree.options(node).len() > FEW {
             let (range, ratings) = &self.nodes[node as usize];
@@ -138,14 +143,14 @@ impl Drives {
         holding.map(|option| option.range).reduce(|a, b| a.with(&b))
     }
 
-    /// Range of the drives that may be the lightest to meet a demand. The demand is known only between `least` and
-    /// `most`. `None` if no drive meets the least demand.
+    /// Least and greatest numbers of the drives that may be the lightest one to meet a demand. The demand lies between
+    /// `least` and `most`. `None` if no drive meets the least demand.
     pub(super) fn first_fits(&self, least: &Demand, most: &Demand) -> Option<DriveRange> {
         let fits = first_fits(self.options.iter().map(|option| ((), option)), least, most);
         fits.map(|(_, option)| option.range).reduce(|a, b| a.with(&b))
     }
 
-    /// Range of all drives below a node of the tree.
+    /// Least and greatest numbers of all drives below a node of the tree.
     pub(super) fn range(&self, node: u32) -> &DriveRange {
         &self.nodes[node as usize].0
     }

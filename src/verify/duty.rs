@@ -45,7 +45,8 @@ pub(super) struct Duty {
     pub stated: Stated,
 }
 
-/// Torques of a duty that the study states for a joint in numbers. All zero and without phases if none is stated.
+/// The part of a joint's torques that follows from a duty stated in numbers. All zero and without phases if none is
+/// stated.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Stated {
     /// Largest torque of the stated phases \[N m\].
@@ -65,7 +66,8 @@ struct MeanTorque {
 }
 
 impl Duty {
-    /// The motion of a joint. `reach_m` is the largest distance of the tip from the joint's axis \[m\].
+    /// The motion of `joint` that follows from the motion of the tip. `reach_m` is the largest distance of the tip from
+    /// the joint's axis \[m\].
     pub(super) fn new(motion: &AskedMotion, reach_m: f64, joint: &AskedJoint) -> Self {
         let speed_rad_s = speed_rad_s(motion, reach_m, joint);
         let ramp_s = first_ramp_s(&joint.duty).unwrap_or(motion.ramp_time_s);
@@ -96,7 +98,7 @@ impl Duty {
         if joint.duty.is_empty() { duty } else { duty.with_stated(&joint.duty) }
     }
 
-    /// The same motion with a duty stated in numbers in place of the study's cycle.
+    /// This motion with the duty `duty`, which the study states in numbers, in place of the study's cycle.
     fn with_stated(self, duty: &[AskedDutyPhase]) -> Self {
         let travel = |phase: &AskedDutyPhase| phase.speed_rpm * phase.time_s;
         let whole_s: f64 = duty.iter().map(|phase| phase.time_s).sum();
@@ -116,9 +118,9 @@ impl Duty {
         }
     }
 
-    /// The torques and the motor heat that follow from a static torque and an inertia outboard, without any load on
-    /// the bearing. They grow with both (see [`AskedMotion::grows`]). `heat_room` multiplies the heat and is a
-    /// margin for rounding.
+    /// The demand on a drive that follows from a static torque \[N m\] and an inertia outboard \[kg m²\]: torques and
+    /// motor heat, without any load on the bearing. Both grow with the torque and the inertia (see
+    /// [`AskedMotion::grows`]). `heat_room` multiplies the heat and is a margin for rounding.
     pub(super) fn demand(&self, static_nm: f64, inertia_kgm2: f64, heat_room: f64) -> Demand {
         let static_nm = static_nm.abs();
         let linear_nm = (self.linear_per_inertia * inertia_kgm2 + self.linear_per_static * static_nm).abs();
@@ -137,9 +139,9 @@ impl Duty {
     }
 }
 
-/// Largest speed of a joint \[rad/s\]: the joint's stated maximum, or else the speed of the tip divided by its
-/// lever. The lever is at least `min_lever_m`, because a short lever would give a roll joint an absurd speed. A
-/// duty in numbers has its own largest speed.
+/// Largest speed of a joint \[rad/s\]. It is the maximum that the study states for the joint, or else the speed of the
+/// tip divided by the lever `reach_m`. The lever is taken as at least `min_lever_m`, because a short lever would give a
+/// roll joint an absurd speed. A duty in numbers has its own largest speed.
 fn speed_rad_s(motion: &AskedMotion, reach_m: f64, joint: &AskedJoint) -> f64 {
     let fastest_rpm = joint.duty.iter().map(|phase| phase.speed_rpm).fold(0.0, f64::max);
     match (joint.max_speed_rad_s, joint.duty.is_empty()) {
@@ -148,7 +150,7 @@ fn speed_rad_s(motion: &AskedMotion, reach_m: f64, joint: &AskedJoint) -> f64 {
     }
 }
 
-/// Duration of the first ramp up in a duty that is stated in numbers \[s\]; `None` if the duty has no ramp up.
+/// Duration of the first phase \[s\] in which a duty stated in numbers speeds up. `None` if it has no such phase.
 fn first_ramp_s(duty: &[AskedDutyPhase]) -> Option<f64> {
     let ramp = stated_phases(duty, false).iter().position(StatedPhase::speeds_up)?;
     Some(duty[ramp].time_s)
@@ -173,7 +175,7 @@ impl AskedMotion {
         self.phases.iter().map(AskedPhase::travel_s).sum()
     }
 
-    /// Fraction of the cycle's time that each kind of phase takes.
+    /// Fractions of the cycle's time that its kinds of phases take.
     fn shares(&self, has_brake: bool) -> CycleShares {
         let whole_s: f64 = self.phases.iter().map(|phase| phase.duration_s).sum();
         let mut shares = CycleShares::default();
@@ -201,8 +203,8 @@ impl AskedMotion {
         if whole_s > 0.0 { self.travel_s() / whole_s } else { 0.0 }
     }
 
-    /// Weights of the cubic mean, which is weighted by time and speed (Harmonic Drive, engineering data 1019659, Eq
-    /// 18.2). The mean torque of a joint that never moves is its static torque.
+    /// Weights of the three terms of the cubic mean torque. The mean is weighted by time and speed (Harmonic Drive,
+    /// engineering data 1019659, Eq 18.2). The mean torque of a joint that never moves is its static torque.
     fn mean_torque(&self) -> MeanTorque {
         let travel_s = self.travel_s();
         if travel_s <= 0.0 {

@@ -28,8 +28,8 @@ pub(super) type Widths = [f64; 2];
 /// Widths without a limit: there is no link, or the study asks nothing of it.
 pub(super) const ANY_WIDTH: Widths = [f64::INFINITY; 2];
 
-/// The largest widths of gear and motor for which a tube along a vector leaves room to the parts of the joint
-/// inboard of it.
+/// The largest widths of gear and motor that fit to a tube. The tube has the section `section` and runs along
+/// `vector_m` \[m\]. The gear and the motor belong to `joint`, the joint inboard of it.
 pub(super) fn room(joint: &AskedJoint, vector_m: &Vector3<f64>, section: &Section) -> Widths {
     let AskedFit { gear_to_link_max, motor_in_link, .. } = joint.fit;
     let [mut gear_m, mut motor_m] = ANY_WIDTH;
@@ -57,8 +57,8 @@ fn width_m(axis: &Vector3<f64>, vector_m: &Vector3<f64>, section: &Section) -> f
     ((width_m * on_y).powi(2) + (height_m * on_z).powi(2)).sqrt()
 }
 
-/// Widths of gear and motor of a drive \[m\], as far as the joint checks them. 0 if a width is not checked or is
-/// blank in the catalog.
+/// Widths of gear and motor of a drive \[m\], where `fit` limits them. A width is 0 if it is not limited or is blank in
+/// the catalog.
 pub(super) fn widths(fit: &AskedFit, gear: &Gear, motor: &Motor) -> Widths {
     let of = |asked: bool, width_m: Option<f64>| if asked { width_m.unwrap_or(0.0) } else { 0.0 };
     [

@@ -38,7 +38,8 @@ impl Halt<'_> {
         self.count.load(Ordering::Relaxed) > MOST_DESIGNS || self.out_of_time()
     }
 
-    /// Stores a design. A set is used because the same design may be found in several regions.
+    /// Stores a design that no bound discarded; `None` stores nothing. The designs are a set, because the same design
+    /// may be found in several regions.
     pub(super) fn note(&self, design: Option<Design>) {
         let mut designs = self.designs.lock().unwrap_or_else(PoisonError::into_inner);
         designs.extend(design);

@@ -10,20 +10,21 @@ use crate::catalog::gear::{Gear, GearKind};
 use crate::catalog::motor::Motor;
 use std::f64::consts::PI;
 
-/// Torques of a motor as fractions of its continuous torque. Smaller numbers are better.
+/// Numbers of a drive from which the heat of its motor follows. They are torques of the motor divided by its continuous
+/// torque. Smaller numbers are better.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct MotorHeat {
     /// Motor torque for each newton metre at the joint, where the motor drives the joint \[1/(N m)\].
     driving: f64,
     /// Motor torque for each newton metre at the joint, where the joint drives the motor \[1/(N m)\].
     driven: f64,
-    /// Motor torque that accelerates rotor and wave generator.
+    /// Motor torque that accelerates rotor and wave generator, as a fraction of the continuous torque.
     own: f64,
     /// Mean square of the motor torque over a duty that the study states in numbers; 0 without one.
     stated: f64,
 }
 
-/// Torques at the joint and time fractions of the cycle, from which motor heat is computed.
+/// What a joint asks of its motor over the cycle: torques at the joint and fractions of the cycle's time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct HeatDemand {
     pub static_nm: f64,
@@ -41,7 +42,8 @@ pub(super) struct CycleShares {
     /// this fraction.
     pub travel: f64,
     pub ramp_down: f64,
-    /// Rest, weighted in the same way; 0 if a brake holds the joint.
+    /// Rest, weighted with the square of its fraction of the static torque in the same way; 0 if a brake holds the
+    /// joint.
     pub rest: f64,
 }
 
@@ -49,8 +51,8 @@ impl MotorHeat {
     /// A motor that is never too hot: all torques are zero.
     pub(super) const NONE: Self = Self { driving: 0.0, driven: 0.0, own: 0.0, stated: 0.0 };
 
-    /// Torque fractions of a drive. The joint cruises at a speed \[rad/s\], which it reaches with an acceleration
-    /// \[rad/s²\], or has a stated duty. `None` if the catalog leaves a needed number blank.
+    /// The numbers of a drive with this gear and motor. The joint cruises at `speed_rad_s`, which it reaches with
+    /// `acceleration_rad_s2`, or has the stated duty `stated`. `None` if the catalog leaves a needed number blank.
     pub(super) fn of(
         (gear, motor): (&Gear, &Motor),
         speed_rad_s: f64,
@@ -74,7 +76,7 @@ impl MotorHeat {
         Some(Self { stated: stated.sum(), ..heat })
     }
 
-    /// Whether the root mean square of the motor's torque is within its continuous torque.
+    /// Whether the root mean square of the motor's torque over the cycle is within its continuous torque.
     pub(super) fn holds(&self, asked: &HeatDemand) -> bool {
         let worse = self.mean_square(asked, 1.0).max(self.mean_square(asked, -1.0));
         (worse + self.stated) * asked.room <= 1.0
@@ -95,13 +97,13 @@ impl MotorHeat {
             + asked.shares.rest * standing * standing
     }
 
-    /// Torque of the motor for a torque at the joint in the direction of motion. With a negative torque the joint
-    /// drives the motor.
+    /// Torque of the motor, as a fraction of its continuous torque, for the torque `joint_nm` at the joint in the
+    /// direction of motion. If that torque is negative, the joint drives the motor.
     fn at_motor(&self, joint_nm: f64) -> f64 {
         joint_nm * if joint_nm < 0.0 { self.driven } else { self.driving }
     }
 
-    /// The smaller of each number of two drives.
+    /// For each number, the smaller one of these and of `other`. The result is at least as good as both.
     pub(super) fn min(&self, other: &Self) -> Self {
         Self {
             driving: self.driving.min(other.driving),
@@ -111,7 +113,7 @@ impl MotorHeat {
         }
     }
 
-    /// Whether each number is at most that of another drive, so that this motor passes whenever the other one does.
+    /// Whether each number is at most that of `other`, so that this motor passes whenever the other one does.
     pub(super) fn covers(&self, other: &Self) -> bool {
         self.driving <= other.driving
             && self.driven <= other.driven
@@ -120,7 +122,7 @@ impl MotorHeat {
     }
 }
 
-/// Efficiency of a gear. A direct drive has 1; `None` if the catalog leaves it blank.
+/// Efficiency of a gear (1 is no loss). A direct drive has 1. `None` if the catalog leaves it blank.
 pub(super) fn efficiency(gear: &Gear) -> Option<f64> {
     gear.efficiency.or((gear.kind == GearKind::Direct).then_some(1.0))
 }
@@ -140,8 +142,8 @@ pub(super) fn peak_nm(motor: &Motor, speed_rpm: f64) -> Option<f64> {
     least.or(motor.peak_torque_nm)
 }
 
-/// Torque at a speed, interpolated on a curve of (speed, torque) points. Beyond the ends it is constant; `None`
-/// without points.
+/// Torque at `speed_rpm`, interpolated linearly between the points (speed \[rpm\], torque \[N m\]) of a curve. Beyond
+/// the ends it is constant. `None` without points.
 fn on_curve(points: &[(f64, f64)], speed_rpm: f64) -> Option<f64> {
     let (first, last) = (points.first()?, points.last()?);
     let between = points.windows(2).find(|pair| (pair[0].0..=pair[1].0).contains(&speed_rpm));

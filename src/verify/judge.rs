@@ -51,7 +51,7 @@ pub struct Judge<'q> {
     pub(super) offers: Vec<JointOffers>,
 }
 
-/// The drive that a joint of a design has, with its range of numbers for the bounds.
+/// The drive that was determined for a joint of a design, and its numbers as the bounds need them.
 struct Fitted {
     range: DriveRange,
     pick: Pick,
@@ -103,8 +103,8 @@ impl<'q> Judge<'q> {
         self.question.pieces.iter().zip(picks).map(first).collect()
     }
 
-    /// The numbers of the tubes of a design, base to tip, each as a range of one tube. `None` if a tube is too
-    /// slender.
+    /// The tubes of a design, base to tip, each as a range of a single tube. `picks` are the parts of the design.
+    /// `None` if a tube is too slender.
     fn tubes(&self, picks: &[Pick]) -> Option<Vec<TubeRange>> {
         let (question, waters): (_, &[Option<Water>]) = (self.question, &self.skeleton.waters);
         let mut tubes = Vec::new();
@@ -129,8 +129,8 @@ impl<'q> Judge<'q> {
         Some(tubes)
     }
 
-    /// Checks from the tip inward whether every drive meets the demand of what is outboard of it, and names the
-    /// drives of joints with the first-fit rule. `None` if a drive fails.
+    /// Checks from the tip inward whether every drive meets the demand of everything outboard of it. Returns the parts
+    /// `picks` with the drives of the joints that take the lightest one filled in. `None` if a drive or a tube fails.
     fn with_drives(&self, picks: &[Pick], tubes: &[TubeRange]) -> Option<Vec<Pick>> {
         let pieces = self.question.pieces.iter().enumerate();
         let places: Vec<usize> = pieces
@@ -149,7 +149,8 @@ impl<'q> Judge<'q> {
         self.skeleton.strong_enough(&members).then_some(out)
     }
 
-    /// The drive of a joint; `None` if it fails a check. The parts outboard of the joint must be known.
+    /// The drive of a joint, as `pick` names it or as the first-fit rule determines it. `None` if it fails a check. The
+    /// drives outboard of the joint must be set in `members`.
     fn fitted(&self, joint: usize, pick: &Pick, members: &Members) -> Option<Fitted> {
         let offers = match &self.offers[joint] {
             JointOffers::Given { law, tilt_rad_per_nm, mass_kg } => {

@@ -17,12 +17,12 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 /// Rank of the springs on which the arm stands. No piece has a lower rank.
 const BASE_RANK: usize = 0;
 
-/// Rank of the springs of a piece, and of masses inboard of these springs. Ranks grow from base to tip.
+/// Rank of the springs of a piece, and of masses inboard of these springs. Ranks order all elements from base to tip.
 fn spring_rank(piece: usize) -> usize {
     3 * piece + 1
 }
 
-/// Rank of a piece in the same order. The springs of the piece come before it.
+/// Rank of a piece itself. It is higher than the rank of the piece's springs, which are inboard of it.
 fn piece_rank(piece: usize) -> usize {
     3 * piece + 2
 }
@@ -66,8 +66,8 @@ impl PlacedMass {
         self.carrier.at_m + self.arm_m
     }
 
-    /// Whether the mass loads the section of the arm at a point. At the root of a tube all bodies of the tube load
-    /// the section, at its end none.
+    /// Whether the mass loads the section of the arm at `point`. At the root of a tube all bodies of the tube load the
+    /// section, at its end none does.
     pub(super) fn is_outboard_of(&self, point: &Point) -> bool {
         match (self.carrier.rank.cmp(&point.rank), self.carrier.inside_m, point.inside_m) {
             (std::cmp::Ordering::Equal, Some(mass_m), Some(x)) => mass_m > x || x == 0.0,
@@ -88,7 +88,8 @@ pub(super) struct PlacedSpring {
 }
 
 impl PlacedSpring {
-    /// Displacement and rotation of a point outboard per unit of the spring's coordinate.
+    /// Displacement and rotation of the point `at_m`, which is outboard of the spring, per unit of the spring's
+    /// coordinate.
     pub(super) fn way(&self, at_m: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
         match self.slides {
             true => (self.axis, Vector3::zeros()),
@@ -147,8 +148,8 @@ impl Layout {
         layout
     }
 
-    /// Adds the springs on which the arm stands. They are inboard of the first piece, although the list has them
-    /// after the springs of that piece.
+    /// Adds the springs on which the arm stands, such as those of a base that tilts. They are inboard of the first
+    /// piece, although the list has them after the springs of that piece.
     fn add_base(&mut self, structure: &Structure) {
         let fixed = structure.base_frame.springs();
         let level = [Vector3::x(), Vector3::y()].map(|axis| (axis, structure.base_tilt_rad_per_nm));
@@ -161,7 +162,8 @@ impl Layout {
         }
     }
 
-    /// Adds a prismatic joint: the fixed mass with the springs of guide and drive, then the moving mass.
+    /// Adds the prismatic joint `joint`, the piece with the number `place`, at its travel `travel_m`: the fixed mass
+    /// with the springs of guide and drive, then the moving mass.
     fn add_prismatic(
         &mut self,
         place: usize,
@@ -186,8 +188,9 @@ impl Layout {
         self.add_bodies(piece_rank(place), &joint.bodies.rotating, rotation);
     }
 
-    /// Adds rotational springs at the end of the chain so far, about axes in the world frame. Springs without
-    /// compliance are left out.
+    /// Adds rotational springs at the present end of the chain. `springs` holds the axis of each in the world and its
+    /// compliance \[rad/(N m)\]. Springs without compliance are left out. `place` is the number of the piece to which
+    /// they belong.
     fn add_springs(&mut self, place: usize, springs: &[(Vector3<f64>, f64)]) {
         for &(axis, rad_per_nm) in springs.iter().filter(|(_, rad_per_nm)| *rad_per_nm > 0.0) {
             let (rank, at_m, compliance) = (spring_rank(place), self.tip_m, rad_per_nm);
@@ -206,7 +209,8 @@ impl Layout {
         }
     }
 
-    /// Adds rigid bodies whose positions are given from the end of the chain so far.
+    /// Adds rigid bodies whose positions are measured from the present end of the chain. `rank` is their place in the
+    /// order from base to tip.
     fn add_bodies(&mut self, rank: usize, bodies: &[RigidBody], rotation: &Rotation3<f64>) {
         for body in bodies {
             let carrier = Point { at_m: self.tip_m, rank, inside_m: None };
@@ -214,7 +218,7 @@ impl Layout {
         }
     }
 
-    /// Adds the bodies of a tube that begins at the end of the chain so far. Each body moves with the point of the
+    /// Adds the bodies of a tube whose root is the present end of the chain. Each body moves with the point of the
     /// tube's axis that is nearest to it.
     fn add_bodies_on_tube(&mut self, rank: usize, link: &LinkPiece, rotation: &Rotation3<f64>) {
         let length_m = link.vector_m.norm();
@@ -268,11 +272,11 @@ pub(super) struct Point {
 /// One way in which a tube deforms.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Shape {
-    /// Curvature that moves the tube along z: constant, or falling linearly from 1 at the root to -1 at the end.
+    /// Curvature that bends the tube in z: constant, or falling linearly from 1 at the root to -1 at the end.
     BendZ {
         linear: bool,
     },
-    /// Curvature that moves the tube along y, in the same two forms.
+    /// Curvature that bends the tube in y: constant, or falling linearly from 1 at the root to -1 at the end.
     BendY {
         linear: bool,
     },
@@ -314,7 +318,7 @@ impl Shape {
     }
 
     /// Index of the tube's stiffness that resists the shape, and the integral of the squared strain along the tube
-    /// \[m\].
+    /// \[m\]. Their product is the stiffness of the coordinate.
     pub(super) fn stiffness(self, length_m: f64) -> (usize, f64) {
         let bending = |linear: bool| if linear { length_m / 3.0 } else { length_m };
         match self {
@@ -343,8 +347,8 @@ pub(super) enum Coordinate {
     Spring(usize),
 }
 
-/// All coordinates of an arm, those of the joints first. `tilting` says for each joint whether its bearing may
-/// tilt.
+/// All coordinates (ways to deform) of an arm, those of the joints first. `model` tells which deformations of links
+/// count, and `tilting` tells for each joint whether its bearing may tilt.
 pub(super) fn coordinates(layout: &Layout, model: LinkModel, tilting: &[bool]) -> Vec<Coordinate> {
     let shapes: &[&[Shape]] = match model {
         LinkModel::Rigid => &[],
@@ -362,8 +366,8 @@ pub(super) fn coordinates(layout: &Layout, model: LinkModel, tilting: &[bool]) -
 }
 
 impl Layout {
-    /// Displacement and rotation of a point per unit of a coordinate, in the world frame. Zero for a point that is
-    /// inboard of the coordinate.
+    /// Displacement and rotation of `point` per unit of `coordinate`, in the world frame. Zero if the point is inboard
+    /// of the element that deforms.
     pub(super) fn motion(&self, coordinate: Coordinate, point: &Point) -> (Vector3<f64>, Vector3<f64>) {
         let still = (Vector3::zeros(), Vector3::zeros());
         let turned = |axis: &Vector3<f64>, at_m| (axis.cross(&(point.at_m - at_m)), *axis);
@@ -391,8 +395,8 @@ impl Layout {
 }
 
 impl PlacedTube {
-    /// Displacement and rotation, per unit of a shape, of a point in the tube or outboard of it, in the world frame.
-    /// `None` for a point inboard of the tube.
+    /// Displacement and rotation of `point` per unit of a shape of this tube, in the world frame. The point lies in the
+    /// tube or outboard of it. `None` for a point inboard of the tube.
     fn motion(&self, shape: Shape, point: &Point) -> Option<(Vector3<f64>, Vector3<f64>)> {
         let world = |x: f64| {
             let (moved, turned) = shape.field(x, self.length_m);

@@ -19,7 +19,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, PoisonError};
 use std::time::Instant;
 
-/// Number of single designs that are judged together before the search looks whether it must stop.
+/// Number of single designs that are judged together. After each batch, the search looks whether it must stop.
 const BATCH: usize = 4096;
 /// Largest number of designs up to which all ties are listed. If there are more, one design of each set of ties is
 /// listed.
@@ -104,7 +104,8 @@ impl Judge<'_> {
         drives.chain(tubes).try_fold(1u128, |product, options| product.checked_mul(options as u128))
     }
 
-    /// Judges designs, and returns those that pass all checks and limits and that no design of the front dominates.
+    /// Judges designs by the full model. Returns those that pass all checks and limits and that no design of the front
+    /// dominates. Each design is given by its options, one for each level.
     fn unbeaten(&self, designs: &[Vec<u32>], front: &FrontIndex) -> Vec<Judged> {
         let judged = designs.par_iter().filter_map(|options| self.judge(&self.picks(options)));
         judged.filter(|design| !front.beats(&design.objectives)).collect()
@@ -129,8 +130,8 @@ impl Judge<'_> {
     }
 }
 
-/// The options of each single design, in ascending order, and whether all ties are listed. If there are too many,
-/// one design of each set of ties is listed.
+/// The options of each single design, in ascending order, and a flag that tells whether all ties are listed. If there
+/// are too many, one design of each set of ties is listed.
 fn one_by_one(designs: &BTreeSet<Design>) -> (Vec<Vec<u32>>, bool) {
     let count = |design: &Design| design.iter().map(|choice| choice.options.len() as f64).product::<f64>();
     let is_one = |design: &Design| count(design) == 1.0;

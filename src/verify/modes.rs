@@ -10,12 +10,13 @@ use super::skeleton::Skeleton;
 pub(super) struct Slow<'w> {
     pub pose: &'w Pose,
     pub mode: Vec<f64>,
-    /// Rayleigh quotient of the mode \[1/s²\].
+    /// Rayleigh quotient of the mode, strain energy over kinetic energy \[1/s²\].
     pub eigenvalue: f64,
 }
 
 impl Skeleton {
-    /// The judged case in which the ideal arm has the lowest frequency; `None` if this frequency is at most `hz`.
+    /// The judged case in which the ideal arm of `members` has the lowest frequency. `None` if this frequency is at
+    /// most `hz`.
     pub(super) fn slowest(&self, members: &Members, hz: f64) -> Option<Slow<'_>> {
         let eigenvalue = eigenvalue_of(hz);
         if !eigenvalue.is_finite() {

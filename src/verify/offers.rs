@@ -22,7 +22,7 @@ pub(super) struct Offer {
     pub gear: usize,
     /// Index of the motor in the catalogs.
     pub motor: usize,
-    /// Mass of gear, motor and extras \[kg\].
+    /// Mass of gear, motor and the joint's extra parts \[kg\].
     pub mass_kg: f64,
     /// Mass of gear and motor \[kg\].
     pub drive_kg: f64,
@@ -57,7 +57,7 @@ pub(super) struct CatalogOffers {
 }
 
 impl JointOffers {
-    /// The drives of a joint. `reach_m` is the largest distance of the tip from the joint's axis \[m\].
+    /// The drives that `joint` may have. `reach_m` is the largest distance of the tip from the joint's axis \[m\].
     pub(super) fn new(question: &Question, joint: &AskedJoint, reach_m: f64, catalogs: &Catalogs) -> Self {
         let springs = |curve, bearing| {
             let piece = question.joint_piece(joint, curve, bearing);
@@ -106,8 +106,8 @@ impl Offer {
         DriveRange::of(&self.law, self.tilt_rad_per_nm, self.mass_kg)
     }
 
-    /// Whether two drives of equal mass have the same stiffness in torsion and tilt, so that no objective tells
-    /// them apart.
+    /// Whether this drive and the drive `other`, which have equal mass, have the same stiffness in torsion and tilt.
+    /// Then no objective tells them apart.
     fn yields_like(&self, other: &Self) -> bool {
         self.law == other.law && self.tilt_rad_per_nm == other.tilt_rad_per_nm
     }
@@ -162,8 +162,8 @@ fn drive_kg(allowed: &AllowedParts, gear: &Gear, motor: &Motor) -> Option<f64> {
     Some(((gear.mass_kg(allowed.gear_mass)? + motor.mass_kg?) * PER_KG).round() / PER_KG)
 }
 
-/// The torsion curve of a gear in series with its connections, whose compliance is this fraction of the gear's own.
-/// `None` if the catalog lacks a number of the curve.
+/// The torsion curve of a gear in series with its connections. `share` is the compliance of the connections divided by
+/// that of the gear. `None` if the catalog lacks a number of the curve.
 fn torsion_curve(gear: &Gear, share: f64) -> Option<Windup> {
     let together = |stiffness: Option<f64>| Some(stiffness? * (1.0 / (1.0 + share)));
     // K1 alone, or equal slopes without break points, make a straight line, for which any break points do
@@ -180,7 +180,7 @@ fn torsion_curve(gear: &Gear, share: f64) -> Option<Windup> {
 }
 
 impl CatalogOffers {
-    /// Indices of the drives that can be the lightest one to meet a demand. A drive is left out if a lighter drive
+    /// Indices of the drives that can be the lightest one to meet some demand. A drive is left out if a lighter drive
     /// has ratings at least as large in every quantity.
     pub(super) fn first_fits(&self) -> Vec<u32> {
         let mut kept: Vec<u32> = Vec::new();
@@ -212,18 +212,18 @@ impl CatalogOffers {
         sets
     }
 
-    /// The lightest drive that meets a demand.
+    /// The lightest drive that meets `demand`; `None` if there is none.
     pub(super) fn first_fit(&self, demand: &Demand) -> Option<&Offer> {
         self.offers.iter().find(|offer| offer.ratings.hold(demand))
     }
 
-    /// The first drive of the same mass, torsion curve and bearing stiffness as this drive.
+    /// The first drive in the list with the same mass, torsion curve and bearing stiffness as the drive `offer`.
     pub(super) fn first_tie<'o>(&'o self, offer: &'o Offer) -> &'o Offer {
         let first = self.offers.partition_point(|other| other.mass_kg < offer.mass_kg);
         self.offers[first..].iter().find(|other| other.yields_like(offer)).unwrap_or(offer)
     }
 
-    /// The drive with this gear and motor.
+    /// The drive with the gear and the motor of these indices in the catalogs; `None` if it is not offered.
     pub(super) fn of(&self, gear: usize, motor: usize) -> Option<&Offer> {
         self.places.get(&(gear, motor)).map(|&place| &self.offers[place as usize])
     }

@@ -30,8 +30,8 @@ fn row(i: usize) -> usize {
 }
 
 impl Pencil {
-    /// The pencil of these matrices. Coordinates of infinite stiffness cannot move, so their inertia is set to
-    /// zero.
+    /// The pencil with the stiffnesses `stiffness` (the diagonal of K) and the inertia matrix `inertia` (a lower
+    /// triangle). Coordinates of infinite stiffness cannot move, so their inertia is set to zero.
     pub(super) fn new(mut stiffness: Vec<f64>, mut inertia: Vec<f64>) -> Self {
         let size = stiffness.len();
         for i in 0..size {
@@ -44,14 +44,15 @@ impl Pencil {
         Self { stiffness, inertia }
     }
 
-    /// The factor of `K - λ M`; `None` if an eigenvalue is `λ` or less.
+    /// The Cholesky factor of `K - λ M` at `λ` = `eigenvalue`; `None` if an eigenvalue of the pencil is `λ` or less.
     pub(super) fn factor(&self, eigenvalue: f64) -> Option<Factor> {
         self.factor_or_slower(eigenvalue).ok()
     }
 
-    /// The factor of `K - λ M`, or a motion `x` with `xᵀ K x <= λ xᵀ M x`. The motion comes from the first pivot
-    /// that is not positive. It is one at the coordinate of the pivot and zero at later coordinates; the earlier
-    /// coordinates are in equilibrium. The pivot then equals `xᵀ (K - λ M) x`.
+    /// The Cholesky factor of `K - λ M` at `λ` = `eigenvalue`. If there is none, a motion `x` with `xᵀ K x <= λ xᵀ M x`
+    /// is returned as the error. The motion comes from the first pivot that is not positive. It is one at the
+    /// coordinate of the pivot and zero at later coordinates; the earlier coordinates are in equilibrium. The pivot
+    /// then equals `xᵀ (K - λ M) x`.
     fn factor_or_slower(&self, eigenvalue: f64) -> Result<Factor, Vec<f64>> {
         let size = self.stiffness.len();
         let mut lower = vec![0.0; self.inertia.len()];
@@ -76,7 +77,8 @@ impl Pencil {
         Ok(Factor { size, lower })
     }
 
-    /// Approximation of the lowest mode by a few steps of inverse iteration, scaled to `xᵀ M x = 1`.
+    /// Approximation of the lowest mode by a few steps of inverse iteration with `factor`, the Cholesky factor of `K -
+    /// λ M`. The mode is scaled to `xᵀ M x = 1`.
     pub(super) fn lowest_mode(&self, factor: &Factor) -> Vec<f64> {
         let mut x = vec![1.0; self.stiffness.len()];
         for _ in 0..3 {
@@ -140,7 +142,8 @@ impl Factor {
         x
     }
 
-    /// Solves `Lᵀ x = b` with the factor `L`; `x` holds `b` at first.
+    /// Solves `Lᵀ x = b` for `x`, where `L` is this Cholesky factor. `x` holds `b` at first and the solution at the
+    /// end.
     fn solve_upper(&self, x: &mut [f64]) {
         let lower = |i: usize, j: usize| self.lower[row(i) + j];
         for i in (0..self.size).rev() {

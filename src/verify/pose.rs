@@ -36,7 +36,7 @@ pub(super) struct Pose {
     /// Ratio of the stress during acceleration to the stress under static loads. 1 if the case is not a sizing
     /// case.
     pub stress_factor: f64,
-    /// Torque on each joint, as a linear function of the loads \[N m\].
+    /// Torque on each joint \[N m\], as a linear function of the loads (masses of drives, weights per length of tubes).
     pub torques: Vec<Linear>,
     /// Displacement of the tip per radian of torsion of each joint \[m/rad\].
     pub tip_m_per_rad: Vec<Vector3<f64>>,
@@ -46,27 +46,27 @@ pub(super) struct Pose {
     /// Displacement of the tip that each spring of an effect or prismatic joint causes, as a linear function of the
     /// loads \[m\].
     pub by_springs_m: Vec<LinearVector>,
-    /// For each tube and each of its stiffnesses, the displacement of the tip that deformation against this
-    /// stiffness causes, times the stiffness.
+    /// For each tube and each of its stiffnesses, the tip displacement that the strain against this stiffness causes,
+    /// times the stiffness. It is a linear function of the loads.
     pub works: Vec<[LinearVector; STIFFNESSES]>,
     /// Force and moment at root and end of each tube, in the tube's frame, as linear functions of the loads.
     pub ends: Vec<[[Linear; 6]; 2]>,
-    /// Inertia matrix of everything that is the same in all designs: lower triangle, row by row.
+    /// Inertia matrix, over all coordinates, of everything that is the same in all designs: lower triangle, row by row.
     pub inertia: Vec<f64>,
-    /// Inertia matrix per unit of mass of each drive, then per unit of each inertia per length of each tube. Lower
-    /// triangles, row by row.
+    /// Inertia matrices over all coordinates: one for each drive, per unit of its mass, then one for each inertia per
+    /// length of each tube, per unit of it. All are lower triangles, row by row.
     pub inertia_per: Vec<Vec<f64>>,
 }
 
-/// A force and a moment.
+/// A force and a moment on a section of the arm.
 #[derive(Debug, Clone, Copy, Default)]
 struct Wrench {
     force: Vector3<f64>,
     moment: Vector3<f64>,
 }
 
-/// Force and moment on a section of the arm, from everything outboard: of the fixed loads, and per unit of each
-/// load.
+/// Force and moment that a section of the arm transmits from everything outboard: the constant part, and the part per
+/// unit of each load.
 pub(super) struct Carried {
     fixed: Wrench,
     per_load: Vec<Wrench>,
@@ -134,7 +134,7 @@ impl Wrench {
         Self { force: self.force + other.force, moment: self.moment + other.moment }
     }
 
-    /// Components of the wrench along the axes of a frame: force, then moment.
+    /// Components of the wrench along the axes of `frame`: three of the force, then three of the moment.
     fn in_frame(&self, frame: &Matrix3<f64>) -> [f64; 6] {
         let (force, moment) = (frame.tr_mul(&self.force), frame.tr_mul(&self.moment));
         [force.x, force.y, force.z, moment.x, moment.y, moment.z]
@@ -142,7 +142,8 @@ impl Wrench {
 }
 
 impl Carried {
-    /// Component of the force, or of the moment, along a direction.
+    /// Component along `direction` of the force, or of the moment if `is_force` is `false`, as a linear function of the
+    /// loads.
     pub(super) fn along(&self, is_force: bool, direction: &Vector3<f64>) -> Linear {
         let part = |wrench: &Wrench| direction.dot(if is_force { &wrench.force } else { &wrench.moment });
         Linear { fixed: part(&self.fixed), per_load: self.per_load.iter().map(part).collect() }
@@ -150,7 +151,7 @@ impl Carried {
 }
 
 impl<'a> Builder<'a> {
-    /// The inputs of a case, with the coordinates of its inertia matrix.
+    /// Collects the inputs of a case. `coordinates` are those over which its inertia matrices are made.
     pub(super) fn new(
         question: &Question,
         structure: &Structure,
@@ -170,14 +171,15 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The same inputs with other coordinates for the inertia matrix.
+    /// The same inputs with the coordinates `coordinates` for the inertia matrices.
     pub(super) fn with_coordinates(&self, coordinates: &'a [Coordinate]) -> Self {
         Self { coordinates, ..*self }
     }
 }
 
 impl Builder<'_> {
-    /// Force and moment at a point from everything outboard of it.
+    /// Force and moment that the section of the arm at `point` transmits from everything outboard, taken about this
+    /// point.
     pub(super) fn carried(&self, point: &Point) -> Carried {
         let down = |size: f64| self.down * size;
         let about_m = &point.at_m;
@@ -211,8 +213,8 @@ impl Builder<'_> {
         carried.along(false, &joint.axis)
     }
 
-    /// Displacement of the tip by a joint's bearing of unit compliance: its tilts under the moments about both axes
-    /// across, times the displacement of the tip per tilt.
+    /// Displacement of the tip if the bearing of `joint` had a compliance of one: the moments about both axes across,
+    /// each times the displacement of the tip per tilt about this axis.
     fn by_tilt(&self, joint: usize) -> LinearVector {
         let joint = &self.layout.joints[joint];
         let carried = self.carried(&Point { at_m: joint.at_m, rank: joint.rank, inside_m: None });
@@ -297,7 +299,7 @@ impl Builder<'_> {
         parts.collect()
     }
 
-    /// Inertia matrix of the payload and of the masses that are the same in all designs.
+    /// Inertia matrix, over all coordinates, of the payload and of the masses that are the same in all designs.
     pub(super) fn fixed_inertia(&self, case: &LoadCase) -> Vec<f64> {
         let mut out = self.no_inertia();
         let rotation = &self.layout.tip_rotation;
@@ -337,7 +339,8 @@ impl Builder<'_> {
         drives.chain(tubes).collect()
     }
 
-    /// Inertia matrix per unit of each inertia per length of a tube.
+    /// Inertia matrices of a tube over all coordinates, one per unit of each of its inertias per length. Each is a
+    /// lower triangle, row by row.
     fn tube_inertia(&self, tube: usize) -> [Vec<f64>; DENSITIES] {
         let mut out: [Vec<f64>; DENSITIES] = std::array::from_fn(|_| self.no_inertia());
         let placed = &self.layout.tubes[tube];
@@ -353,7 +356,7 @@ impl Builder<'_> {
         out
     }
 
-    /// Displacement and rotation of a point per unit of every coordinate, in the world frame.
+    /// Displacements and rotations of `point` in the world frame, each list with one entry per unit of each coordinate.
     fn motions(&self, point: &Point) -> (Vec<Vector3<f64>>, Vec<Vector3<f64>>) {
         self.coordinates.iter().map(|&coordinate| self.layout.motion(coordinate, point)).unzip()
     }
@@ -375,7 +378,7 @@ fn along(motions: &[Vector3<f64>], direction: &Vector3<f64>) -> Vec<f64> {
     motions.iter().map(|motion| motion.dot(direction)).collect()
 }
 
-/// Adds `weight · row rowᵀ` to a lower triangle.
+/// Adds the matrix `weight · row rowᵀ` to the lower triangle `triangle` of a symmetric matrix.
 fn add_square(triangle: &mut [f64], row: &[f64], weight: f64) {
     let mut entries = triangle.iter_mut();
     for (i, a) in row.iter().enumerate() {

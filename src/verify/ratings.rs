@@ -56,9 +56,9 @@ impl Ratings {
         widths: [0.0; 2],
     };
 
-    /// The ratings of a drive under a joint's motion. `None` if the motion is too fast for the drive, if the drive
-    /// does not fit into the joint, or if the catalog lacks a number. A blank number of the bearing or of a size
-    /// excludes nothing.
+    /// The limits of a drive (gear, motor and output bearing) under the motion `duty` of its joint. `None` if the
+    /// motion is too fast for the drive, if the drive does not fit into the joint, or if the catalog lacks a number. A
+    /// blank number of the bearing or of a size excludes nothing.
     pub(super) fn of(gear: &Gear, motor: &Motor, bearing: Option<&Bearing>, duty: &Duty) -> Option<Self> {
         let heat = match duty.checks_heat {
             true => {
@@ -77,8 +77,7 @@ impl Ratings {
         (turns_as_fast(gear, motor, duty)? && bears_the_stops(gear, duty) && goes_in).then_some(ratings)
     }
 
-    /// Whether a drive with these ratings passes every check under a demand: torques, bearing, motor heat and
-    /// widths.
+    /// Whether a drive with these ratings passes every check under `demand`: torques, bearing, motor heat and widths.
     pub(super) fn hold(&self, demand: &Demand) -> bool {
         // the torques are compared without a branch, because nearly every box calls this for many drives
         let torques = self.most.iter().zip(&demand.torques);
@@ -88,7 +87,7 @@ impl Ratings {
             && self.widths.iter().zip(&demand.room).all(|(width, room)| width <= room)
     }
 
-    /// Whether a drive with these ratings meets every demand that a drive with the other ratings meets.
+    /// Whether a drive with these ratings meets every demand that a drive with the ratings `other` meets.
     pub(super) fn cover(&self, other: &Self) -> bool {
         self.most.iter().zip(&other.most).all(|(a, b)| a >= b)
             && self.bearing.cover(&other.bearing)
@@ -108,13 +107,14 @@ impl Ratings {
         }
     }
 
-    /// The greatest allowed value of one quantity.
+    /// The greatest allowed torque of one quantity (static, peak, stop or mean).
     pub(super) fn on(&self, quantity: Quantity) -> f64 {
         self.most[quantity as usize]
     }
 }
 
-/// Whether gear and motor are allowed to turn as fast as the motion needs. `None` if the catalog lacks a number.
+/// Whether gear and motor are allowed to turn as fast as the motion of the joint needs. `None` if the catalog lacks a
+/// number that this needs.
 fn turns_as_fast(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<bool> {
     let of_curve = motor.curve.last().map(|point| point.speed_rpm);
     let of_row = motor.max_speed_rpm.or(motor.rated_speed_rpm);
@@ -128,7 +128,9 @@ fn turns_as_fast(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<bool> {
     )
 }
 
-/// A limit of a gear. For a direct drive or an actuator, a blank rating means no limit.
+/// The limit that a rating of a gear sets. For a direct drive or an actuator, a rating that the catalog leaves blank
+/// (`None`) means no limit, and the result is infinite. For other gears the limit is then unknown, and the result is
+/// `None`.
 fn limit(gear: &Gear, rating: Option<f64>) -> Option<f64> {
     match gear.kind {
         GearKind::Direct | GearKind::Actuator => Some(rating.unwrap_or(f64::INFINITY)),
@@ -142,8 +144,8 @@ fn breaks_nm(gear: &Gear) -> f64 {
     [gear.buckling_torque_nm, gear.ratcheting_torque_nm].into_iter().flatten().fold(f64::INFINITY, f64::min)
 }
 
-/// Whether the gear survives as many emergency stops as the study asks for. It survives 1e4 waves of the wave
-/// generator in stops; a turn counts as two waves, and a stop as at least one.
+/// Whether the gear survives the number of emergency stops that the study asks for. In stops it survives 1e4 waves of
+/// the wave generator. One turn of the wave generator counts as two waves, and a stop as at least one.
 fn bears_the_stops(gear: &Gear, duty: &Duty) -> bool {
     let waves = 2.0 * input_rpm(gear, duty.speed_rad_s) / 60.0 * duty.stop_s;
     let has_waves = gear.kind == GearKind::StrainWave;
@@ -155,7 +157,8 @@ fn input_rpm(gear: &Gear, output_rad_s: f64) -> f64 {
     gear.ratio * (output_rad_s * 30.0 / std::f64::consts::PI)
 }
 
-/// Torque at the joint for one newton metre at the motor, losses included.
+/// Torque at the joint divided by torque at the motor, with the losses of the gear; `None` if the catalog lacks a
+/// number.
 fn gain(gear: &Gear) -> Option<f64> {
     Some(gear.ratio * efficiency(gear)?)
 }

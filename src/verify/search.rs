@@ -17,7 +17,8 @@ pub(super) struct Search<'s> {
 }
 
 impl Search<'_> {
-    /// Bounds a box and, unless it is discarded, explores its halves.
+    /// Bounds the box `parts`. Unless it is discarded, its halves are explored in the same way. A single design is
+    /// stored.
     pub(super) fn explore(&self, parts: &PartsBox) -> Found {
         if self.halt.stopped() {
             return Found { open: 1, ..Found::default() };
@@ -32,7 +33,8 @@ impl Search<'_> {
         here.with(a).with(b)
     }
 
-    /// The level to halve. `None` if the box is discarded, and `Some(None)` if it is a single design.
+    /// The level at which the box `parts` is to be halved. `None` if the box is discarded, and `Some(None)` if it is a
+    /// single design.
     fn level_to_halve(&self, parts: &PartsBox) -> Option<Option<usize>> {
         let boxes = self.boxes;
         let members = boxes.members(parts)?;

@@ -23,10 +23,10 @@ pub(super) struct Skeleton {
     /// Mass of rigid offsets, of bodies and of bearings that the study states \[kg\].
     pub offsets_kg: f64,
     pub poses: Vec<Pose>,
-    /// Loads on the bearing of every joint, for each case; empty for a case that is not a sizing case, `None` for a
-    /// bearing that is not checked.
+    /// Loads on the bearing of every joint; first index the case, second the joint. The list of a case that is not a
+    /// sizing case is empty, and a bearing that is not checked is `None`.
     pub bearings: Vec<Vec<Option<PosedBearing>>>,
-    /// For each joint, the distance from its bearing at which the link attaches.
+    /// For each joint, the lever: the distance along the axis from its bearing to where the link attaches.
     pub levers: Vec<Lever>,
     /// Index of the first tube between each joint and the next; `None` if there is none.
     pub first_tubes: Vec<Option<usize>>,
@@ -104,7 +104,8 @@ impl Skeleton {
         }
     }
 
-    /// The options of every joint and tube.
+    /// The options of every joint and tube of the question. `offers` are the drives that the catalogs offer for each
+    /// joint, and `ties` tells whether drives that no objective tells apart are one option.
     pub(super) fn parts(&self, question: &Question, offers: &[JointOffers], ties: Ties) -> Parts {
         let level = |place: Place| self.levels.iter().position(|other| *other == place);
         let joints = offers.iter().enumerate().map(|(joint, offers)| {
@@ -127,8 +128,8 @@ impl Skeleton {
     }
 }
 
-/// The first tube between each joint and the next, base to tip, as an index into the list of links with weight
-/// along their length.
+/// The first tube between each joint and the next, base to tip, as an index into the list of links with weight along
+/// their length. `None` if there is no tube between them.
 fn first_tubes(question: &Question) -> Vec<Option<usize>> {
     let mut first: Vec<Option<usize>> = Vec::new();
     let mut tubes = 0;
@@ -150,7 +151,7 @@ fn first_tubes(question: &Question) -> Vec<Option<usize>> {
     first
 }
 
-/// The distance at which the link attaches, for every joint from base to tip.
+/// The lever of every joint, base to tip: the distance along its axis from the bearing to where the link attaches.
 fn levers(question: &Question) -> Vec<Lever> {
     let mut levers = Vec::new();
     let mut tubes = 0;
@@ -191,7 +192,7 @@ pub(super) fn joint_offers(question: &Question, catalogs: &Catalogs) -> Vec<Join
     joints.map(|(joint, reach_m)| JointOffers::new(question, joint, reach_m, catalogs)).collect()
 }
 
-/// Largest distance of the tip from each joint's axis over the sizing cases \[m\].
+/// Reach of each joint \[m\]: the largest distance of the tip from the joint's axis over the sizing cases.
 fn reaches_m(question: &Question) -> Vec<f64> {
     let structure = question.nominal_structure();
     let mut reaches_m = vec![0.0f64; question.joints().count()];

@@ -10,24 +10,24 @@ pub(super) struct Span {
 }
 
 impl Span {
-    /// The interval of all products of a factor and a number of the span.
+    /// The interval of `factor` times a number of this interval.
     pub(super) fn times(self, factor: f64) -> Self {
         let (a, b) = (self.least * factor, self.most * factor);
         Self { least: a.min(b), most: a.max(b) }
     }
 
-    /// The interval of all sums of a number of this span and a number of the other.
+    /// The interval of the sums of a number of this interval and a number of `other`.
     pub(super) fn plus(self, other: Self) -> Self {
         Self { least: self.least + other.least, most: self.most + other.most }
     }
 
-    /// The smallest interval that contains both.
+    /// The smallest interval that contains this one and `other`.
     pub(super) fn with(self, other: Self) -> Self {
         Self { least: self.least.min(other.least), most: self.most.max(other.most) }
     }
 
-    /// The least product of a number of this span and a number of a span of compliances. Compliances are never
-    /// negative.
+    /// The least product of a number of this interval and a compliance in the interval `compliance`. Compliances are
+    /// never negative.
     pub(super) fn least_product(self, compliance: Self) -> f64 {
         let factor = if self.least >= 0.0 { compliance.least } else { compliance.most };
         if self.least == 0.0 { 0.0 } else { self.least * factor }
@@ -72,7 +72,7 @@ pub(super) struct LinearVector {
 }
 
 impl LinearVector {
-    /// The interval of the vector's component along a direction, over intervals of the loads.
+    /// The interval of the component of this vector along `direction`, if each load lies in its interval of `loads`.
     pub(super) fn along(&self, direction: &Vector3<f64>, loads: &[Span]) -> Span {
         let fixed = self.fixed.dot(direction);
         let start = Span { least: fixed, most: fixed };
@@ -82,7 +82,7 @@ impl LinearVector {
             .fold(start, |sum, (factor, load)| sum.plus(load.times(factor.dot(direction))))
     }
 
-    /// The vector for loads that are each in the middle of their intervals.
+    /// This vector, if each load is in the middle of its interval.
     pub(super) fn middle(&self, loads: &[Span]) -> Vector3<f64> {
         let sum = |sum, (factor, load): (&Vector3<f64>, &Span)| sum + factor * load.middle();
         self.per_load.iter().zip(loads).fold(self.fixed, sum)

@@ -18,7 +18,8 @@ struct Node {
 }
 
 impl Tree {
-    /// Builds the tree. A set of options is halved at the median of the key in which the set has the widest spread.
+    /// Builds the tree over `options`. `keys` holds the coordinates of each option. A set of options is halved at the
+    /// median of the coordinate in which the set has the widest spread.
     pub(super) fn new(options: Vec<u32>, keys: &[Vec<f64>]) -> Self {
         let mut tree = Self { nodes: Vec::new(), order: options };
         if !tree.order.is_empty() {
@@ -48,7 +49,7 @@ impl Tree {
         self.nodes.len()
     }
 
-    /// The options below a node.
+    /// The options below the node `node` of the tree.
     pub(super) fn options(&self, node: u32) -> &[u32] {
         let node = &self.nodes[node as usize];
         &self.order[node.first..node.end]
@@ -60,7 +61,7 @@ impl Tree {
     }
 }
 
-/// Index of the key in which the options differ most.
+/// Index of the coordinate in `keys` in which the options differ most.
 fn widest(options: &[u32], keys: &[Vec<f64>]) -> usize {
     let width = |key: usize| {
         let values = options.iter().map(|&option| keys[option as usize][key]);

@@ -53,7 +53,8 @@ pub(super) struct TubeAround {
 
 /// The tubes that a link may have, as a list.
 pub(super) struct TubeOptions {
-    /// Index among the levels of the space; `None` if the tube is not chosen by the search.
+    /// Index of the link's choice among the levels (choices) of the space; `None` if the search does not choose the
+    /// tube.
     pub level: Option<usize>,
     /// Each tube with its index in the link's list. Tubes whose walls are too slender are left out.
     pub tubes: Vec<(u32, TubeNumbers)>,
@@ -113,12 +114,12 @@ impl TubeOptions {
         })
     }
 
-    /// Options with only the given ones kept. `some` has their indices in ascending order.
+    /// The same list with only some of its options. `some` has the indices of these options in ascending order.
     pub(super) fn only(&self, some: &[u32]) -> Self {
         Self { tubes: some.iter().map(|&i| self.tubes[i as usize].clone()).collect(), ..*self }
     }
 
-    /// The tree of all options.
+    /// The binary tree over all tubes of this list.
     pub(super) fn tree(&self) -> Tree {
         let all = (0..self.tubes.len() as u32).collect();
         Tree::new(all, &self.tubes.iter().map(|(_, tube)| keys(tube)).collect::<Vec<_>>())
@@ -126,7 +127,7 @@ impl TubeOptions {
 }
 
 impl Tubes {
-    /// Builds the tree of the options.
+    /// Builds the tree over the tubes, and computes the least and greatest numbers of each node's tubes.
     pub(super) fn new(options: &TubeOptions) -> Self {
         let tree = options.tree();
         let range = |node| TubeRange::over(tree.options(node).iter().map(|&i| &options.tubes[i as usize].1));
@@ -153,8 +154,8 @@ pub(super) fn is_too_slender(question: &Question, section: &Section) -> bool {
     question.limits.wall_slenderness_max.is_some_and(|most| slenderness > most)
 }
 
-/// Half the width of a tube along a direction \[m\]; zero for an offset. The half widths of both sides are
-/// projected on the direction, and the root of the sum of their squares is taken.
+/// Half the extent of a link along `direction` \[m\]; zero for an offset. The half widths of both sides of the section
+/// are projected on the direction, and the root of the sum of their squares is taken.
 fn half_width_m(piece: &LinkPiece, direction: &Vector3<f64>) -> f64 {
     let Some(beam) = piece.beam else { return 0.0 };
     let [y, z] = [1, 2].map(|side| section_frame(&piece.vector_m).column(side).dot(direction));

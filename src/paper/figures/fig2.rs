@@ -24,7 +24,7 @@ const OTHERS: [&str; 4] =
 /// One curve of the figure, for one metal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// Name in the legend.
+    /// Name of the metal in the legend.
     pub name: &'static str,
     /// Sections of the curve, smallest first.
     pub points: Vec<BeamPoint>,
@@ -103,7 +103,7 @@ fn range(points: &[BeamPoint]) -> String {
     format!("{} to {}", mm(points.first()), mm(points.last()))
 }
 
-/// For each size, the largest and the smallest deflection of the metals \[m\].
+/// For each outer size, the largest and the smallest deflection that any of the metals has \[m\].
 fn extremes(curves: &[Curve]) -> Vec<(f64, f64)> {
     let at = |i: usize| curves.iter().filter_map(move |c| c.points.get(i)).map(|p| p.deflection_m);
     let count = curves.first().map_or(0, |c| c.points.len());
@@ -140,7 +140,7 @@ fn ends(values: &[f64]) -> (f64, f64) {
     (values.first().copied().unwrap_or(f64::NAN), values.last().copied().unwrap_or(f64::NAN))
 }
 
-/// Stiffness per weight of the largest section, less that of the smallest.
+/// By how much the stiffness per weight of the largest section exceeds that of the smallest.
 fn rise(points: &[BeamPoint]) -> f64 {
     let values: Vec<f64> = points.iter().map(BeamPoint::stiffness_per_weight).collect();
     let (first, last) = ends(&values);

@@ -44,8 +44,8 @@ pub fn growths(catalogs: &Catalogs) -> Result<Vec<Growth>, PaperError> {
     Ok(sizes(material).iter().flat_map(|from| ratios.map(|ratio| growth(material, from, ratio))).collect())
 }
 
-/// Makes a section heavier in both ways. The area of a square tube with outer size b and wall t is 4 t (b - t).
-/// This is solved for b with t unchanged, and for t with b unchanged.
+/// Makes the section `from` heavier by the factor `weight_ratio` in two ways. The area of a square tube with outer size
+/// b and wall t is 4 t (b - t). This is solved for b with t unchanged, and for t with b unchanged.
 fn growth(material: &Material, from: &BeamPoint, weight_ratio: f64) -> Growth {
     let (b, t) = (from.size_m, from.wall_m);
     let area_m2 = weight_ratio * 4.0 * t * (b - t);

@@ -50,7 +50,7 @@ const ROWS: [Row; 7] = [
 /// One curve of the figure, for one material.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// Name in the legend.
+    /// Name of the material in the legend.
     pub name: &'static str,
     /// Whether all fibres of the material run along the link.
     pub axial: bool,
@@ -84,7 +84,8 @@ pub fn curves(catalogs: &Catalogs) -> Result<Vec<Curve>, PaperError> {
         .collect()
 }
 
-/// The section with [`REFERENCE_M`] deflection. The outer size is found by bisection between 21 mm and 1 m.
+/// The square tube of this material that deflects by [`REFERENCE_M`]. `deflection_m` returns the deflection of a tube,
+/// and the outer size is found by bisection between 21 mm and 1 m.
 fn section_for(material: &Material, deflection_m: impl Fn(&BeamPoint) -> Option<f64>) -> Option<BeamPoint> {
     let (mut small, mut large) = (2.1 * WALL_M, 1.0);
     for _ in 0..60 {

@@ -16,10 +16,12 @@ use super::weights::{Member, Reduced};
 /// Smallest score for which a level or torque is branched, as a fraction of what the upper bound allows. If no
 /// score is larger, the level with the most options is branched.
 const WORTH_IT: f64 = 1e-4;
-/// A row counts for [`SAY`] more than its weight if the mixture's value of the row is within this distance of zero.
+/// If a row's value for the mixture is within this distance of zero (its limit), [`SAY`] is added to the weight of the
+/// row in the score.
 const NEAR: f64 = 0.2;
 const SAY: f64 = 0.1;
-/// A member with a smaller weight in the mixture contributes no break points at which a torque is branched.
+/// A member with a smaller weight in the mixture than this has no influence on the torque at which an interval is
+/// divided.
 const SHARE: f64 = 1e-3;
 /// A torque is not branched if its interval is narrower than this fraction of the torque's greatest magnitude.
 const KNOWN: f64 = 2e-3;
@@ -44,8 +46,8 @@ pub(super) enum Branching {
     },
 }
 
-/// Ways to branch, the most promising first. `curves` has the twists and slopes of the torsion curves, which are
-/// needed to divide drives by their values.
+/// Ways to divide a subproblem, the most promising first. `curves` has the twists and slopes of the torsion curves.
+/// They are needed to divide drives by a weighted sum of their numbers.
 #[derive(Default)]
 pub(super) struct Branchings {
     pub branchings: Vec<Branching>,
@@ -53,7 +55,8 @@ pub(super) struct Branchings {
 }
 
 impl Rows<'_> {
-    /// Ways to branch a reduced subproblem, the most promising first.
+    /// Ways to divide a subproblem, the most promising first. `left` is the subproblem after its options were reduced,
+    /// with the mixture that no weights refute.
     pub(super) fn branchings(&self, members: &Members, left: &Reduced) -> Vec<Branching> {
         let between = self.between(left);
         let mut found = Vec::new();
@@ -69,7 +72,8 @@ impl Rows<'_> {
         found.into_iter().map(|(_, branching)| branching).collect()
     }
 
-    /// The numbers of the mixture: the mean of the members' numbers, weighted with their fractions of the mixture.
+    /// The numbers of all parts of the mixture in `left`: the means of its members' numbers, weighted with their
+    /// fractions.
     fn between(&self, left: &Reduced) -> Vec<f64> {
         let mut between = vec![0.0; self.columns.len()];
         for (share, member) in &left.mixed {
@@ -78,9 +82,9 @@ impl Rows<'_> {
         between
     }
 
-    /// Score of branching by the options of a part, and how to do it. The score is how much the members of the
-    /// mixture differ in what the part adds to the rows. The options are divided by the row in which they differ
-    /// most.
+    /// Score of a division by the options of a part, and this division. The score says how much the members of the
+    /// mixture differ in what the part adds to the rows. The options are divided by their value in the row in which the
+    /// members differ most. `between` holds the numbers of the mixture.
     fn by_options(
         &self,
         part: usize,
@@ -118,8 +122,8 @@ impl Rows<'_> {
         }
     }
 
-    /// Weight of a row in the score: its multiplier, and [`SAY`] more if the mixture is close to the row's limit.
-    /// Rows of torque intervals have weight zero.
+    /// Weight of a row in the score of a branching: its multiplier, and [`SAY`] more if the mixture, with the numbers
+    /// `between`, is close to the row's limit. Rows of torque intervals have weight zero.
     fn says(&self, row: usize, between: &[f64], left: &Reduced) -> f64 {
         let near = self.rows[row].value(between) > -NEAR;
         match (self.first_interval..self.first_mode).contains(&row) {
@@ -128,8 +132,8 @@ impl Rows<'_> {
         }
     }
 
-    /// Error of the linear (McCormick) bound of force times compliance at the mixture, for the tip displacement by
-    /// a tube or bearing, in units of the weighted rows.
+    /// By how much the linear (McCormick) bound of force times compliance is too low for the mixture with the numbers
+    /// `between`. It is the error in the tip displacement by one tube or bearing, in units of the weighted rows.
     fn left_out_of(&self, part: usize, between: &[f64], members: &Members, weights: &[f64]) -> f64 {
         let of_tip = |&(row, case, direction): &(usize, usize, nalgebra::Vector3<f64>)| {
             let pose = self.pose(case);
@@ -151,8 +155,8 @@ impl Rows<'_> {
         self.tips.iter().map(of_tip).sum()
     }
 
-    /// Every product of force and compliance by which a part displaces the tip: the position of the compliance
-    /// among the numbers, the force, and the interval of the compliance.
+    /// Every product of force and compliance by which a part displaces the tip in a case. Each is given by the position
+    /// of the compliance in the list of numbers, the force, and the interval of the compliance.
     fn products<'p>(
         &self,
         part: usize,
@@ -168,8 +172,9 @@ impl Rows<'_> {
         works.map(|(which, (work, compliance))| (number(which), work, compliance)).collect()
     }
 
-    /// Ways to branch at the torques of a case, each with its score. The score is positive where the gears of the
-    /// mixture twist less, or are stiffer, than they are under the torques that the mixture's own masses cause.
+    /// Ways to divide a subproblem at the torques of a judged case, each with its score. The score is positive if the
+    /// gears of the mixture twist less, or are stiffer, than they are under the torques that the mixture's own masses
+    /// cause. `between` holds the numbers of the mixture.
     fn by_torques(&self, case: usize, between: &[f64], left: &Reduced) -> Vec<(f64, Branching)> {
         let pose = self.pose(case);
         let own_nm = |torque: &Linear| {
@@ -205,8 +210,8 @@ impl Rows<'_> {
         branchings.collect()
     }
 
-    /// By how much the gears of the mixture twist less than they would under a torque, in units of the weighted row
-    /// of the tip displacement.
+    /// By how much the gears of the mixture twist less than they would under `torque_nm`, the torque that the mixture's
+    /// own masses cause. The difference is given in units of the weighted row of the tip displacement.
     fn less_twisted(&self, case: usize, joint: usize, torque_nm: f64, left: &Reduced) -> f64 {
         let Some(&(row, _, direction)) = self.tips.iter().find(|tip| tip.1 == case) else { return 0.0 };
         let sense = 1.0f64.copysign(self.pose(case).tip_m_per_rad[joint].dot(&direction));
@@ -222,9 +227,10 @@ impl Rows<'_> {
         left.weights[row] * self.rows[row].per_number[twist] * less
     }
 
-    /// Torque at which the interval of a joint's torque is divided. It is the next break point (T1, T2) of a gear
-    /// in the mixture beyond the mixture's own torque. If there is none, it is the mixture's own torque; if that is
-    /// too near an end, the middle of the interval. `None` if the interval is already narrow enough.
+    /// Torque at which the interval of a joint's torque is divided. `torque_nm` is the torque that the mixture's own
+    /// masses cause. The interval is divided at the next break point (T1, T2) of a gear of the mixture beyond this
+    /// torque. If there is none, it is divided at this torque, or in the middle if this torque is too near an end.
+    /// `None` if the interval is narrow enough already.
     fn branching_nm(&self, case: usize, joint: usize, torque_nm: f64, left: &Reduced) -> Option<f64> {
         let Span { least, most } = self.torques[case][joint];
         let edge = EDGE * (most - least);
@@ -299,8 +305,8 @@ impl Subproblem {
     }
 }
 
-/// The options whose value is at most `at`, and the others. If either group would be empty, the options are sorted by
-/// their value and divided into equal parts. `None` if there is only one option.
+/// Divides `options` into those whose `value` is at most `at` and the others. If either group would be empty, the
+/// options are sorted by their value and divided into equal parts. `None` if there is only one option.
 fn halved(options: &[u32], value: impl Fn(&u32) -> f64, at: Option<f64>) -> Option<[Vec<u32>; 2]> {
     let (mut low, mut high): (Vec<u32>, Vec<u32>) =
         options.iter().partition(|option| at.is_some_and(|at| value(option) <= at));

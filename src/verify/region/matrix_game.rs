@@ -18,7 +18,8 @@ const STAGE: f64 = 0.2;
 const LAST: f64 = 3e-4;
 /// Largest number of Newton steps at each stage.
 const STEPS: usize = 4;
-/// Upper limit of a condition's weight. It is needed because these weights are not limited by the sum.
+/// Upper limit of the weight of a condition (a column of a pair of opposite sign). It is needed because the sum of the
+/// weights does not limit these weights.
 const MOST: f64 = 3.0;
 /// Largest fraction of the distance to the nearest limit that a step may take, so that weights and slacks stay
 /// positive.

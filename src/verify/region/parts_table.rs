@@ -20,19 +20,19 @@ pub(super) struct PartsTable {
     pub tubes: Vec<TubeTable>,
 }
 
-/// For each torsion curve of a joint: its twist in every judged case, then its slope in every judged case, then
-/// compliance and stiffness of the output bearing that belongs to it. `None` for a curve that no drive of the
-/// subproblem has.
+/// The numbers of each torsion curve that the drives of a joint have: its twist in every judged case, then its slope in
+/// every judged case, then compliance and stiffness of the output bearing that belongs to it. `None` for a curve that
+/// no drive of the subproblem has.
 pub(super) type Numbers = Vec<Option<Vec<f64>>>;
 
-/// The drives that a joint may have.
+/// The drives that a joint may have, sorted by torsion curve and bearing.
 pub(super) struct JointTable {
     pub drives: DriveOptions,
     pub masses_kg: Vec<f64>,
     /// For each drive, the index of its torsion curve in `curves`.
     pub curve: Vec<u32>,
-    /// The distinct torsion curves with their bearings, each with the numbers of the first drive that has the
-    /// curve.
+    /// The distinct torsion curves, each together with a bearing. An entry holds the numbers of the first drive that
+    /// has this curve and this bearing.
     pub curves: Vec<DriveRange>,
 }
 
@@ -107,7 +107,7 @@ impl JointTable {
 }
 
 impl JointTable {
-    /// The range of numbers of a drive.
+    /// The numbers of the drive with this index, as a range of a single curve.
     pub(super) fn range(&self, drive: u32) -> &DriveRange {
         &self.drives.options[drive as usize].range
     }
@@ -141,7 +141,7 @@ impl TubeTable {
         Self { options, tree, bounds, width, priced }
     }
 
-    /// Least and greatest value, over a node's tubes, of every number that may have a price.
+    /// The least and the greatest value of every number that may have a price, over the tubes below the node `node`.
     pub(super) fn bounds(&self, node: u32) -> [&[f64]; 2] {
         self.all_bounds(node).map(|bounds| &bounds[..self.priced])
     }
@@ -152,12 +152,12 @@ impl TubeTable {
         [&both[..self.width], &both[self.width..]]
     }
 
-    /// How many of a tube's numbers can have a price.
+    /// How many numbers of a tube can have a price. They come first in its list.
     pub(super) fn priced(&self) -> usize {
         self.priced
     }
 
-    /// Least and greatest numbers of the tubes below some nodes.
+    /// Least and greatest numbers of the tubes below the nodes `nodes` of the tree.
     pub(super) fn range(&self, nodes: &[u32]) -> TubeRange {
         let [mut least, mut most] = self.all_bounds(nodes[0]).map(<[f64]>::to_vec);
         for &node in nodes {
@@ -169,14 +169,14 @@ impl TubeTable {
         TubeRange { middle: least.clone(), least, most }
     }
 
-    /// The tubes below some nodes, as a list of options.
+    /// The tubes below the nodes `nodes` of the tree, as a list of options.
     pub(super) fn only(&self, nodes: &[u32]) -> TubeOptions {
         let mut options: Vec<u32> = nodes.iter().flat_map(|&node| self.tree.options(node)).copied().collect();
         options.sort_unstable();
         self.options.only(&options)
     }
 
-    /// Number of tubes below some nodes.
+    /// Number of tubes below the nodes `nodes` of the tree.
     pub(super) fn count(&self, nodes: &[u32]) -> usize {
         nodes.iter().map(|&node| self.tree.options(node).len()).sum()
     }

@@ -69,12 +69,12 @@ pub(super) struct Rows<'a> {
     /// For each joint, the twists, slopes and bearing numbers of its torsion curves. `None` for a curve that no
     /// drive of the subproblem has.
     pub curves: Vec<Numbers>,
-    /// Interval of the torque on each joint in each judged case \[N m\]. `per_torque` is the least increase of the
-    /// twist per torque, from the end of the interval where the twist is least \[rad/(N m)\].
+    /// Interval of the torque on each joint in each judged case \[N m\]. `per_torque` holds the least compliance
+    /// \[rad/(N m)\] with which the twist grows from the end of the interval where it is least.
     pub torques: Vec<Vec<Span>>,
     pub per_torque: Vec<Vec<f64>>,
-    /// For each row of a tip displacement: the index of the row, its judged case, and the direction of the
-    /// displacement.
+    /// For each row on a tip displacement: the index of the row, its judged case, and the direction along which the
+    /// displacement is taken.
     pub tips: Vec<(usize, usize, Vector3<f64>)>,
     /// For each judged case and each strain coordinate, whether the coordinate may be rigid in some member of the
     /// subproblem.
@@ -126,8 +126,8 @@ impl Columns {
         }
     }
 
-    /// Position of the number to which a load is proportional: the mass of a drive, or the weight per length of a
-    /// tube.
+    /// Position, in the list of all numbers, of the number to which the load with the index `load` is proportional: the
+    /// mass of a drive, or the weight per length of a tube. `water` is the index of the medium around the arm.
     pub(super) fn load(&self, load: usize, water: usize) -> usize {
         match load.checked_sub(self.joints) {
             None => self.mass(load),
@@ -141,13 +141,15 @@ impl Row {
         Self { per_number: vec![0.0; columns.len()], fixed: 0.0 }
     }
 
-    /// Adds a quantity that is linear in the loads: its constant part, and its coefficient for each load.
+    /// Adds a quantity that is linear in the loads (masses of drives, weights per length of tubes) to this row: its
+    /// constant part `fixed`, and its coefficients `per_load`. `water` is the index of the medium around the arm.
     fn add(&mut self, columns: &Columns, water: usize, fixed: f64, per_load: impl Iterator<Item = f64>) {
         self.fixed += fixed;
         per_load.enumerate().for_each(|(load, per)| self.per_number[columns.load(load, water)] += per);
     }
 
-    /// Subtracts the upper limit from the row and divides the row by a scale. The row is then at most zero.
+    /// Subtracts the upper limit `allowed` from the row and divides the row by `scale`. The row is then at most zero
+    /// for every member below the upper bound.
     fn less(mut self, allowed: f64, scale: f64) -> Self {
         self.fixed = (self.fixed - allowed) / scale;
         self.per_number.iter_mut().for_each(|per| *per /= scale);
@@ -160,8 +162,8 @@ impl Row {
 }
 
 impl<'a> Rows<'a> {
-    /// The rows of a subproblem with these members. There is one row of a mode for each trial shape of the
-    /// subproblem.
+    /// The rows (inequalities) of a subproblem for the local upper bound `upper`. `members` holds the intervals of its
+    /// parts' numbers. There is one row of a mode for each trial shape of the subproblem.
     pub(super) fn new(
         skeleton: &'a Skeleton,
         table: &'a PartsTable,
@@ -225,7 +227,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Adds the row of the tip displacement in a case, along the direction in which the stiffest arm's tip moves.
+    /// Adds the row on the tip displacement in a judged case. The displacement is taken along the direction in which
+    /// the tip of the stiffest arm moves.
     fn add_tip(&mut self, case: usize, pose: &Pose, members: &Members) {
         let Some(direction) = direction(pose, members) else { return };
         let loads = &members.loads[pose.water];
@@ -259,8 +262,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Adds the linear bound of the product of a force and a compliance to a row. `number` is the position of the
-    /// compliance, `least` is the least value of the compliance.
+    /// Adds the linear lower bound of force times compliance to `row`. `number` is the position of the compliance in
+    /// the list of numbers and `least` its least value. The displacement is taken along `direction`.
     fn add_product(&self, row: &mut Row, number: usize, least: f64, force: &Force, direction: &Vector3<f64>) {
         row.per_number[number] += force.least;
         let per_load = force.work.per_load.iter().map(|per| least * per.dot(direction));
@@ -268,7 +271,9 @@ impl<'a> Rows<'a> {
         row.add(&self.columns, force.water, fixed, per_load);
     }
 
-    /// Adds the tip displacement by a gear to a row, and stores the least twist of each torsion curve.
+    /// Adds the displacement of the tip by the twist of a gear to `row`, and stores the least twist of each torsion
+    /// curve among its numbers. `torque` is the torque on the joint as a function of the loads. `along_m` is the
+    /// displacement of the tip per radian along the direction of the row.
     fn add_twist(
         &mut self,
         row: &mut Row,
@@ -294,7 +299,8 @@ impl<'a> Rows<'a> {
         row.add(&self.columns, water, by * (sense * torque.fixed - span.least), per_load);
     }
 
-    /// Stores the greatest slope of each torsion curve under the torques of the subproblem.
+    /// Stores the greatest slope that each torsion curve has under the torques of the subproblem among the numbers of
+    /// the curve.
     fn add_slopes(&mut self) {
         let cases = self.columns.cases;
         for (joint, curves) in self.curves.iter_mut().enumerate() {
@@ -323,8 +329,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Adds the row of a mode for a trial shape. Coordinates that may be rigid are set to zero in the shape,
-    /// because a rigid coordinate cannot move.
+    /// Adds the row of a mode for the trial shape `shape` in a judged case. Coordinates that may be rigid in some
+    /// member are set to zero in it, because a rigid coordinate cannot move.
     pub(super) fn add_mode(&mut self, case: usize, mut shape: Vec<f64>) {
         let eigenvalue = self.upper.eigenvalue();
         if eigenvalue == 0.0 {
@@ -364,8 +370,8 @@ impl<'a> Rows<'a> {
         masses.chain(densities)
     }
 
-    /// Position of the number that determines the stiffness of a coordinate, and the factor on this number. If no
-    /// part determines the stiffness, the stiffness itself is returned as `Err`.
+    /// Position of the number that determines the stiffness of `coordinate`, and the factor by which it is multiplied.
+    /// If no part determines the stiffness, the stiffness itself is returned as `Err`.
     fn stiffness(&self, case: usize, coordinate: &Coordinate) -> Result<(usize, f64), f64> {
         match *coordinate {
             Coordinate::Joint(joint) => Ok((self.columns.slope(joint, case), 1.0)),
@@ -383,7 +389,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Stiffness and inertia matrices, in a case, of the arm whose parts have these numbers.
+    /// Stiffness and inertia matrices of an arm in a judged case. `numbers` is the list of the numbers of all its
+    /// parts.
     pub(super) fn pencil(&self, case: usize, numbers: &[f64]) -> Pencil {
         let pose = self.pose(case);
         let stiffness = self.skeleton.coordinates.iter().zip(&self.rigid[case]);
@@ -400,7 +407,8 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// A force, given as tip displacement per compliance, and its least value along the direction of a row.
+/// A force that deforms a tube or bearing, given as the tip displacement that it causes per unit of compliance. `least`
+/// is its least value along the direction of a row.
 struct Force<'w> {
     work: &'w LinearVector,
     least: f64,
@@ -415,8 +423,8 @@ fn numbers_of(range: &DriveRange, cases: usize) -> Vec<f64> {
     numbers
 }
 
-/// Least increase of a gear's twist per torque, from the least torque of an interval to any other torque in it
-/// \[rad/(N m)\].
+/// Least secant compliance of a gear \[rad/(N m)\] between the least torque of an interval and any other torque in it.
+/// `range` are the gears.
 fn least_twist_per_nm(range: &DriveRange, torque_nm: Span) -> f64 {
     let Span { least, most } = torque_nm;
     let stiff = &range.stiff;

@@ -39,7 +39,7 @@ pub(in super::super) struct RegionSearch<'s> {
 
 /// The result of reducing the options of a subproblem.
 enum Narrowed {
-    /// It is proved that no member is below the upper bound.
+    /// The subproblem is done: it is proved that no member is below the upper bound.
     Refuted,
     Few,
     Many(Branchings),
@@ -47,7 +47,8 @@ enum Narrowed {
 }
 
 impl RegionSearch<'_> {
-    /// Searches for designs that belong on a front but are missing from it.
+    /// Searches all regions for designs that belong on a front but are missing from it. `parts` are the options of the
+    /// space, and `work` has the front and the conditions that end the search.
     pub(crate) fn explore_all(skeleton: Arc<Skeleton>, parts: Parts, work: &Work) -> Found {
         let limits = &skeleton.limits;
         let room = 1.0 + ROUNDING;
@@ -62,7 +63,7 @@ impl RegionSearch<'_> {
         RegionSearch { skeleton, table, work }.explore(&uppers, 0, whole)
     }
 
-    /// Searches the regions below a node of the tree of upper bounds.
+    /// Searches the regions below the node `at` of the tree of upper bounds, with the options of `subproblem`.
     fn explore(&self, uppers: &UpperBounds, at: usize, mut subproblem: Subproblem) -> Found {
         let Some((upper, halves)) = uppers.node(at) else { return Found::default() };
         let mut found = Found::default();
@@ -82,7 +83,8 @@ impl RegionSearch<'_> {
         found.with(a).with(b)
     }
 
-    /// Reduces the options of a subproblem as long as each step removes enough designs.
+    /// Reduces the options of `subproblem` below `upper` as long as each step removes enough designs. `regions` counts
+    /// the steps.
     fn narrow(&self, subproblem: &mut Subproblem, upper: UpperBound, regions: &mut u64) -> Narrowed {
         loop {
             if self.work.halt.stopped() {
@@ -101,8 +103,8 @@ impl RegionSearch<'_> {
         }
     }
 
-    /// Removes the options that no member below an upper bound can have, and returns ways to branch the rest.
-    /// `None` if no member is left.
+    /// Removes the options that no member below `upper` can have from `subproblem`, and returns ways to branch the
+    /// rest. `None` if it is proved that no member is left.
     fn narrow_once(&self, subproblem: &mut Subproblem, upper: UpperBound) -> Option<Branchings> {
         let tubes = subproblem.tube_ranges(&self.table);
         let members = subproblem.hold(&self.skeleton, &self.table, &tubes)?;
@@ -133,8 +135,9 @@ impl RegionSearch<'_> {
         Some(Branchings { branchings, curves })
     }
 
-    /// Adds the lowest mode of the stiffest arm as a trial shape in each case in which the subproblem has none.
-    /// `None` if this arm has a frequency of at most `hz` in some case.
+    /// Adds a trial shape to `subproblem` in each judged case in which it has none: the lowest mode of the ideal arm
+    /// (every stiffness greatest, every inertia least). `None` if this arm has a frequency of at most `hz` in some
+    /// case, so that no member is faster.
     fn stiffest_shapes(&self, subproblem: &mut Subproblem, members: &Members, hz: f64) -> Option<()> {
         let eigenvalue = eigenvalue_of(hz);
         if !eigenvalue.is_finite() {
@@ -150,7 +153,7 @@ impl RegionSearch<'_> {
         Some(())
     }
 
-    /// Searches the designs of a subproblem box by box.
+    /// Searches the designs of a subproblem below `upper` box by box.
     fn explore_boxes(&self, subproblem: &Subproblem, upper: UpperBound) -> Found {
         let boxes = Boxes::of(Arc::clone(&self.skeleton), subproblem.parts(&self.table));
         let search = Search { boxes: &boxes, front: self.work.index, upper, halt: self.work.halt };

@@ -29,12 +29,13 @@ pub(super) struct Subproblem {
     /// For each link, the nodes of its tree whose tubes it may have.
     pub tubes: Vec<Vec<u32>>,
     pub torque_intervals: Vec<TorqueInterval>,
-    /// Weights of the rows from which the search for weights starts. Rows of torques and modes are left out.
+    /// Weights of the rows (inequalities), with which the search for better weights starts. Rows of torques and modes
+    /// are left out.
     pub weights: Vec<f64>,
     pub shapes: Vec<Shape>,
 }
 
-/// A trial shape in a judged case, with the weight of its row.
+/// A trial shape (motion that bounds the lowest mode) in a judged case, with the weight of its row.
 #[derive(Clone)]
 pub(super) struct Shape {
     pub case: usize,
@@ -58,7 +59,7 @@ impl Subproblem {
         })
     }
 
-    /// Number of designs. A joint with the first-fit rule has no options and counts once.
+    /// Number of designs that the options make. A joint with the first-fit rule has no choice and counts once.
     pub(super) fn designs(&self, table: &PartsTable) -> f64 {
         let joints = self.joints.iter().zip(&table.joints);
         let joints = joints.map(|(kept, joint)| if joint.drives.level.is_some() { kept.len() } else { 1 });
@@ -66,7 +67,8 @@ impl Subproblem {
         joints.chain(tubes).map(|count| count as f64).product()
     }
 
-    /// Limits a torque to an interval. If the torque has an interval already, the intersection is taken.
+    /// Limits the torque on a joint to the interval `new`. If the torque has an interval already, the intersection of
+    /// both is taken.
     pub(super) fn keep_torque(&mut self, new: TorqueInterval) {
         let known =
             self.torque_intervals.iter_mut().find(|known| known.case == new.case && known.joint == new.joint);
@@ -79,7 +81,8 @@ impl Subproblem {
         }
     }
 
-    /// Keeps those trial shapes whose rows have enough weight, and the last shape of each case.
+    /// Removes trial shapes whose rows have little weight. The last shape of each of the `cases` judged cases is kept
+    /// in any event.
     pub(super) fn keep_shapes(&mut self, cases: usize) {
         let mut kept = Vec::new();
         for case in 0..cases {
@@ -95,8 +98,9 @@ impl Subproblem {
         self.tubes.iter().zip(&table.tubes).map(|(nodes, tubes)| tubes.range(nodes)).collect()
     }
 
-    /// Removes the drives that cannot meet their demand, and returns the ranges of the remaining parts. `None` if
-    /// it is proved that no member passes its checks.
+    /// Removes the drives that cannot meet their demand, going from the tip inward. Returns the remaining members: the
+    /// ranges of their drives, and of their tubes, which are in `tubes`. `None` if it is proved that no member passes
+    /// its checks.
     pub(super) fn hold<'t>(
         &mut self,
         skeleton: &Skeleton,
@@ -123,7 +127,7 @@ impl Subproblem {
         skeleton.strong_enough(&members).then_some(members)
     }
 
-    /// The remaining options, for a search box by box.
+    /// The options of each joint and link that remain in this subproblem, in the form that the search box by box needs.
     pub(super) fn parts(&self, table: &PartsTable) -> Parts {
         let joints = self.joints.iter().zip(&table.joints);
         let tubes = self.tubes.iter().zip(&table.tubes);

@@ -13,7 +13,7 @@ use std::collections::HashSet;
 /// front's designs are made worse by this amount before the bounds are computed.
 const BETTER: f64 = 2e-7;
 
-/// A binary tree over upper bounds; the root is node 0.
+/// A binary tree over the local upper bounds of a front. The root is node 0.
 pub(super) struct UpperBounds(Vec<Node>);
 
 /// A node of the tree: the upper bound that covers all bounds below the node, and the indices of its two halves. A
@@ -21,9 +21,9 @@ pub(super) struct UpperBounds(Vec<Node>);
 type Node = (UpperBound, Option<[usize; 2]>);
 
 impl UpperBounds {
-    /// The local upper bounds of a front within the limits: every feasible design that no design of the front
-    /// dominates lies below at least one of them. With `apart` > 0, only one design is used for each cell of a
-    /// logarithmic grid of this relative step. Fewer designs give looser bounds, so nothing is missed.
+    /// The local upper bounds that a front leaves open within the limits. Every feasible design that no design of the
+    /// front dominates lies below at least one of them. With `apart` > 0, only one design of the front is used for each
+    /// cell of a logarithmic grid of this relative step. Fewer designs give looser bounds, so nothing is missed.
     pub(super) fn new(front: &[Objectives], limits: UpperBound, apart: f64) -> Self {
         let mut uppers = left_open(&thinned(front, apart), limits);
         let mut nodes = Vec::new();
@@ -33,14 +33,15 @@ impl UpperBounds {
         Self(nodes)
     }
 
-    /// A node of the tree. Node 0, the root, is `None` if no region is open.
+    /// The node with the number `at`: its upper bound and its two halves. Node 0 is the root; it is missing (`None`) if
+    /// no region is open.
     pub(super) fn node(&self, at: usize) -> Option<Node> {
         self.0.get(at).copied()
     }
 }
 
-/// One design for each cell of a logarithmic grid with steps of `apart` (relative), or all designs if `apart` is
-/// zero. Their objectives are made worse by [`BETTER`].
+/// One design of the front for each cell of a logarithmic grid with steps of `apart` (relative), or all designs if
+/// `apart` is zero. The objectives of each are made worse by [`BETTER`].
 fn thinned(front: &[Objectives], apart: f64) -> Vec<UpperBound> {
     let mut taken = HashSet::new();
     let step = libm::log1p(apart);
@@ -57,7 +58,7 @@ fn thinned(front: &[Objectives], apart: f64) -> Vec<UpperBound> {
     rows.map(worse).collect()
 }
 
-/// The local upper bounds, within the limits, that some designs leave open. No bound lies within another.
+/// The local upper bounds within `limits` that the designs `rows` leave open. No bound lies within another.
 fn left_open(rows: &[UpperBound], limits: UpperBound) -> Vec<UpperBound> {
     let mut uppers = vec![limits];
     for row in rows {

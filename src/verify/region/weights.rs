@@ -18,7 +18,8 @@ const MOST_SHAPES: usize = 3;
 /// Number of further weightings after it is clear that no weighting refutes the subproblem. They are worth the time
 /// because better weights exclude more options.
 const TO_NARROW: usize = 4;
-/// The search for weights ends if no weighting can raise the least weighted sum by more than this.
+/// The search for weights ends if no weighting can raise the least weighted sum by more than this. Rows are scaled, so
+/// it has no unit.
 const SETTLED: f64 = 5e-4;
 /// Values of rows are limited to this magnitude, so that a row far from its limit does not outweigh the others.
 const FAR: f64 = 10.0;
@@ -29,7 +30,8 @@ const STRICTEST: usize = 12;
 /// Approximate number of nodes into which the tubes of a link are divided when options are excluded.
 const NODES: usize = 128;
 
-/// Weights of the rows, the least weighted sum over all members (`least`), and how much each part adds to it.
+/// A weighting of the rows: the weights, the least value of the weighted sum over all members (`least`), and the amount
+/// that each part adds to it.
 struct Surrogate {
     weights: Vec<f64>,
     least: f64,
@@ -57,7 +59,7 @@ pub(super) struct Reduced {
 }
 
 impl Rows<'_> {
-    /// Price of each number: its coefficient in the weighted sum of the rows.
+    /// Price of each number of a part: its coefficient in the sum of the rows with these weights.
     fn prices(&self, weights: &[f64]) -> Vec<f64> {
         let mut prices = vec![0.0; self.columns.len()];
         for (row, weight) in self.rows.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
@@ -66,14 +68,16 @@ impl Rows<'_> {
         prices
     }
 
-    /// Price of each torsion curve of a joint; infinite if no drive of the subproblem has the curve.
+    /// Price of each torsion curve of a joint, with the bearing that belongs to it. Infinite if no drive of the
+    /// subproblem has the curve.
     fn curve_prices(&self, joint: usize, prices: &[f64]) -> Vec<f64> {
         let first = self.columns.mass(joint) + 1;
         let price = |numbers: &Vec<f64>| numbers.iter().zip(&prices[first..]).map(|(a, b)| a * b).sum();
         self.curves[joint].iter().map(|numbers| numbers.as_ref().map_or(f64::INFINITY, price)).collect()
     }
 
-    /// The least weighted sum over the members of a subproblem, and a member that attains it.
+    /// Minimizes the weighted sum of the rows over the members of a subproblem. Returns the least sum, and a member
+    /// that attains it.
     fn least(&self, subproblem: &Subproblem, weights: Vec<f64>) -> (Surrogate, Member) {
         let prices = self.prices(&weights);
         let mut numbers = vec![0.0; self.columns.len()];
@@ -111,7 +115,8 @@ impl Rows<'_> {
         (Surrogate { weights, least, parts }, Member { numbers, drives })
     }
 
-    /// The weights with which the parent subproblem ended; equal weights if there is no parent.
+    /// The weights with which the search of a subproblem starts: those with which its parent ended, or equal weights if
+    /// it has no parent.
     fn inherited(&self, subproblem: &Subproblem) -> Vec<f64> {
         let mut weights = subproblem.weights.clone();
         weights.resize(self.first_mode, 0.0);
@@ -123,7 +128,8 @@ impl Rows<'_> {
         if fits { weights.iter().map(|weight| weight / sum).collect() } else { even }
     }
 
-    /// Reduces a subproblem below the upper bound; `None` if some weighting proves that no member is below it.
+    /// Reduces the options of a subproblem below the upper bound for which these rows were made. `None` if some
+    /// weighting proves that no member lies below it.
     pub(super) fn reduce(&mut self, subproblem: &Subproblem) -> Option<Reduced> {
         let (mut surrogates, mut members, mut values) = (Vec::new(), Vec::new(), Vec::<Vec<f64>>::new());
         let (mut shapes, mut to_narrow, mut nearest) = (0, 0, f64::NEG_INFINITY);
@@ -187,8 +193,8 @@ impl Rows<'_> {
         self.rows.iter().map(|row| row.value(&member.numbers).clamp(-FAR, FAR)).collect()
     }
 
-    /// Adds the row of a mode in every case in which the mixture of some members has a mode below the upper bound's
-    /// frequency. Returns whether a row was added.
+    /// Adds the row of a mode in every case in which a mixture has a mode below the upper bound's frequency. The
+    /// mixture consists of `members`, with the fractions in `minimax`. Returns whether a row was added.
     fn add_shapes(&mut self, members: &[Member], minimax: &Minimax) -> bool {
         let mut between = vec![0.0; self.columns.len()];
         for (member, share) in members.iter().zip(&minimax.shares) {
@@ -204,8 +210,8 @@ impl Rows<'_> {
         self.rows.len() > before
     }
 
-    /// The options of each joint and of each link that no weighting excludes; `None` if a joint or link has no
-    /// option left.
+    /// The options of each joint and of each link that none of the weightings `surrogates` excludes; `None` if a joint
+    /// or link has no option left.
     fn affordable(
         &self,
         subproblem: &Subproblem,
