@@ -170,13 +170,13 @@ pub struct Beam {
 }
 
 impl Arm {
-    /// The structure of the arm for a calculation with this joint model, with the effects of the product applied.
-    /// Effects that describe a test are left out ([`Arm::ignored_effects`] lists them).
+    /// The structure of the arm, with the effects of the product applied, for a calculation with the joint model
+    /// `joints`. Effects that describe a test are left out ([`Arm::ignored_effects`] lists them).
     pub fn structure(&self, joints: JointModel) -> Structure {
         self.subject(joints).structure
     }
 
-    /// The structure of the arm in a load case, which gives the joint model. If the case states water, it replaces
+    /// The structure of the arm in a load case; the case states the joint model. If the case states water, it replaces
     /// the water of an effect.
     pub fn structure_in(&self, case: &LoadCase) -> Structure {
         let mut structure = self.structure(case.joints);
@@ -184,7 +184,7 @@ impl Arm {
         structure
     }
 
-    /// The structure of the arm without any effect.
+    /// The structure of the arm without any effect, for a calculation with the joint model `joints`.
     pub fn nominal_structure(&self, joints: JointModel) -> Structure {
         let driven = self.driven_joint_names();
         let entry = |name: &str| driven.iter().position(|d| *d == name).unwrap_or_default();
@@ -232,7 +232,7 @@ impl Structure {
         joints.into_iter().map(|(_, joint)| joint).collect()
     }
 
-    /// A structure of these pieces on a rigid base, upright and in air.
+    /// A structure that consists of `pieces`, on a rigid base, upright and in air.
     pub(crate) fn nominal(gravity_m_s2: f64, pieces: Vec<Piece>) -> Self {
         Self {
             gravity_m_s2,
