@@ -25,7 +25,8 @@ use std::time::{Duration, Instant};
 pub struct Judged {
     /// Number and objectives of the design.
     pub design: Evaluated,
-    /// Number of the group of designs with equal objectives to which it belongs on the front, from 1.
+    /// Number of the tie group of the design, from 1: all designs of the front with the same objectives have the same
+    /// number.
     pub tie_group: usize,
 }
 
@@ -72,9 +73,9 @@ pub fn run_study(
     judge_swept(study, &problem, swept)
 }
 
-/// Evaluates the designs of one shard, which is a range of design numbers. Returns its candidates and the range. It
-/// continues from the saved state in `resume`, and saves its own states there. `watch` is as in [`run_study`].
-///
+/// Evaluates the designs of one shard, which is a range of design numbers. Returns the candidates of the shard and the
+/// range. The search continues from the saved state in `resume`, and saves its own states there. `watch` is as in
+/// [`run_study`].
 /// # Errors
 /// A message if the saved state belongs to another search.
 pub fn sweep_shard(
@@ -131,7 +132,8 @@ pub fn judge_swept(study: &Study, problem: &ArmProblem, outcome: SweepOutcome) -
     }
 }
 
-/// Runs `work` while `watch` runs on another thread. The watcher's flag is set when the work ends, even by a panic.
+/// Runs `work` and returns its result, while `watch` runs on another thread. The flag that `watch` gets is set when the
+/// work ends, even by a panic, because the program would otherwise wait for the watcher forever.
 fn watched<T>(watch: impl FnOnce(&AtomicBool) + Send, work: impl FnOnce() -> T) -> T {
     struct EndOnDrop<'f>(&'f AtomicBool);
     impl Drop for EndOnDrop<'_> {
@@ -150,7 +152,7 @@ fn watched<T>(watch: impl FnOnce(&AtomicBool) + Send, work: impl FnOnce() -> T) 
 /// The result of an exact search.
 #[derive(Debug, Clone)]
 pub struct ExactStudy {
-    /// The study, reduced to the link options that occur in the designs that were found.
+    /// The study, reduced to the link options that occur in the designs found. Its tables are then small.
     pub study: Study,
     /// The fronts. Those of single materials are searched only if the front of all designs is whole.
     pub outcome: StudyOutcome,
@@ -217,8 +219,8 @@ impl Searched {
         fronts.flat_map(|of| of.front.iter().map(|c| c.number)).chain(near).collect()
     }
 
-    /// Evaluates the designs with the full model, after conversion to the numbers of an excerpt of the space: the
-    /// fronts, and at most `most` near designs.
+    /// Evaluates the designs that were found with the full model: all those of the fronts, and at most `most` near
+    /// designs. `problem` is an excerpt of the space, so the numbers of the designs are converted to it.
     fn judged(&self, problem: &ArmProblem, most: Option<usize>) -> (StudyOutcome, Option<NearDesigns>) {
         let here = |candidate: &Candidate| {
             let options = problem.options_of_whole(candidate.number)?;
@@ -334,7 +336,8 @@ pub(super) fn by_full_model(problem: &ArmProblem, mut numbers: Vec<u128>) -> Has
     numbers.into_par_iter().filter_map(|n| Some((n, evaluate(problem, n)?))).collect()
 }
 
-/// The candidates that no other one dominates, with their tie groups.
+/// The designs of `candidates` that no other one dominates by the full model, with their tie groups. `judged` are the
+/// designs by number as the full model evaluates them; candidates that are not in it are infeasible.
 fn front_of(judged: &HashMap<u128, Evaluated>, candidates: &[Candidate]) -> Front {
     let judged: Vec<&Evaluated> = candidates.iter().filter_map(|c| judged.get(&c.number)).collect();
     let points: Vec<[f64; 3]> = judged.iter().map(|d| d.objectives.minimized()).collect();

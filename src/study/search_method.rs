@@ -29,7 +29,7 @@ pub struct SearchWish {
     pub has_time_limit: bool,
 }
 
-/// Largest number of designs for which an exhaustive search is accepted. It would take years with more.
+/// Largest number of designs for which an exhaustive search is accepted. With more designs it would take years.
 const MOST_CONCEIVABLE: u128 = 1_000_000_000_000_000;
 
 impl SearchWish {
