@@ -27,7 +27,7 @@ enum Shared<const N: usize> {
     Link(Box<BlockLink<N>>),
 }
 
-/// The inboard pieces, which differ between the eight chains.
+/// The inboard pieces of eight chains, in which the chains differ.
 pub(crate) trait Inner<V: Lanes, const N: usize> {
     /// Adds the pieces to a pass, from the tip inward. If any of them is compliant, the last one must be.
     fn add_to(&self, walk: &mut Walk<V, N>);
@@ -62,7 +62,7 @@ pub(crate) struct LanePass<V> {
 pub(crate) struct Roots<V> {
     /// Lowest eigenvalue in each wanted lane \[1/s²\].
     pub eigenvalue: V,
-    /// Bit mask: wanted lanes in which no root was found.
+    /// Bit mask: lanes that were asked for, but in which no root was found.
     pub unsure: u8,
 }
 
@@ -109,7 +109,7 @@ impl<const N: usize> LaneLink<N> {
     }
 }
 
-/// Eight matrices as one matrix of eights.
+/// Eight matrices, stored as one matrix that has the eight numbers of each entry side by side.
 pub(crate) fn side_by_side<'a, const N: usize>(
     of: impl Fn(usize) -> &'a SMatrix<f64, N, N>,
 ) -> LaneMatrix<N> {
@@ -221,7 +221,8 @@ macro_rules! at_lambda {
 pub(crate) struct Walk<V, const N: usize> {
     lambda: V,
     apparent: Inertia<V, N>,
-    /// Bit mask of the lanes with at least one negative pivot; the next field has those with at least two.
+    /// Bit mask of the lanes with at least one negative pivot. The next field is the bit mask of the lanes with at
+    /// least two.
     negative: u8,
     twice_negative: u8,
     /// Product of all pivots so far.
@@ -257,14 +258,15 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
         add_lower!(self.apparent, |i, j| mass * V::splat(inertia[(i, j)]));
     }
 
-    /// Adds a rigid link.
+    /// Adds a rigid link, one for each of the eight chains. Only its inertia over the motion of the root counts.
     #[inline(always)]
     pub(crate) fn rigid(&mut self, link: &LaneLink<N>) {
         add_lower!(self.apparent, |i, j| V::load(&link.root[0][i][j]));
     }
 
-    /// Eliminates one strain coordinate, given its pivot and its row. The apparent inertia for everything inboard
-    /// grows by `λ row rowᵀ / pivot`. `scale` is `λ / pivot`, for a joint multiplied by its compliance.
+    /// Eliminates one strain coordinate, given its pivot and its row of the matrix, one per lane. The apparent inertia
+    /// for everything inboard grows by `λ row rowᵀ / pivot`. `scale` is `λ / pivot`; for a joint it is multiplied by
+    /// the compliance of the joint.
     #[inline(always)]
     fn yield_by(&mut self, pivot: V, row: &[V; N], scale: V) {
         for i in 0..N {

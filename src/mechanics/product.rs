@@ -21,8 +21,8 @@ pub(crate) fn transposed_product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<
     out
 }
 
-/// Adds `AᵀB` to a matrix. If tall factors are divided into blocks of rows and the blocks are added one after the
-/// other, the sums are equal to those of the whole factors.
+/// Adds `AᵀB` to the matrix `out`. Tall matrices A and B may be divided into blocks of rows that are added one after
+/// the other; the sums are then the same to the last bit.
 ///
 /// # Panics
 /// If the sizes of the matrices do not fit.

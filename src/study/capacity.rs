@@ -13,7 +13,7 @@ use crate::space::problem::ArmProblem;
 use crate::space::station::Walk;
 use serde_json::{Value, json};
 
-/// Largest payload that is tried \[kg\]. An arm that still passes has no limit.
+/// Largest payload that is tried \[kg\]. An arm that still passes with it is reported as having no limit.
 const MOST_KG: f64 = 1e6;
 /// Relative tolerance of the bisection for the largest payload.
 const TOLERANCE: f64 = 1e-10;

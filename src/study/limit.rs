@@ -156,7 +156,8 @@ pub(super) fn short(x: f64) -> String {
 }
 
 /// Rounds a number to five significant digits, up if `up` is true, else down. A limit that is rounded away from the
-/// designs that it excludes stays a limit that admits the best of them.
+/// Rounds a number to five significant digits, up if `up` is true, else down. Limits are rounded to the side that
+/// admits more designs, so that a value that suffices still does so after rounding.
 pub(super) fn toward(x: f64, up: bool) -> f64 {
     let scale = 10f64.powi(4 - libm::log10(x.abs().max(f64::MIN_POSITIVE)).floor() as i32);
     let scaled = x * scale;
