@@ -62,8 +62,9 @@ const RATINGS: [[&str; 4]; 2] = [
 ];
 
 impl BlankRatings {
-    /// The blank ratings of the output bearing of a joint with this gear. `None` if all ratings are known or the
-    /// joint has no bearing.
+    /// The blank ratings of the output bearing of a joint with this gear. `source` says where the bearing comes from,
+    /// `which` whether the gear is a housed unit or a component set. `None` if all ratings are known or the joint has
+    /// no bearing.
     pub fn of(source: &BearingSource, gear: &Gear, which: GearMass) -> Option<Self> {
         match source {
             BearingSource::OfGear => Self::under(&RATINGS[0], Bearing::of_gear(gear, which)?),
@@ -97,8 +98,8 @@ impl BlankRatings {
     }
 }
 
-/// The rating that a separate bearing of the joint (key `bearing`) needs to pass a failed check, as a phrase. `None`
-/// if the check is not about the bearing.
+/// The rating that a separate bearing of the joint (key `bearing`) needs so that the failed `check` passes, as a
+/// phrase. `None` if the check is not about the bearing.
 pub(super) fn bearing_that_holds(check: &Check) -> Option<String> {
     let times = check.torque_margin().map(|margin| (100.0 / margin).ceil() / 100.0);
     let rating = match check.kind {
