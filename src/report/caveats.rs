@@ -35,8 +35,8 @@ impl Caveats {
         self.of_part(name).map_or(name.to_string(), |caveat| format!("{name} ({caveat})"))
     }
 
-    /// One sentence for the terminal about the parts of picks. `picks` has the row and the name of each pick. Empty
-    /// if no part has a caveat.
+    /// One sentence for the terminal that names the parts with caveats and the picks that use them. Each item of
+    /// `picks` is the row of the front and the name of a pick. Empty if no part has a caveat.
     pub(crate) fn sentence(&self, front: &FrontTable, picks: &[(usize, String)]) -> String {
         let mut used: Vec<(&str, Vec<String>)> = Vec::new();
         for (row, name) in picks {

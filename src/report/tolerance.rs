@@ -188,14 +188,15 @@ impl Scattered {
         json!({"scatter": scatter, "samples": self.samples, "seed": self.seed, "picks": picks})
     }
 
-    /// Every pick, as its index in [`PICKS`], with the design that is picked with the catalog ratings.
+    /// For every pick, its index in [`PICKS`] and the design that is picked with the catalog ratings.
     fn picks(&self) -> impl Iterator<Item = (usize, &Fate)> {
         PICKS.iter().enumerate().filter_map(|(name, word)| {
             Some((name, self.fates.iter().find(|fate| fate.picks.contains(word))?))
         })
     }
 
-    /// A sentence that names the designs that replace a pick, most often first; `None` if no design does.
+    /// A sentence that names the designs that replace the pick with the index `name` in some samples, most often first.
+    /// `fate` is the design that is picked with the catalog ratings. `None` if no design replaces it.
     fn displaced(&self, name: usize, fate: &Fate) -> Option<String> {
         let mut others: Vec<&Fate> =
             self.fates.iter().filter(|f| f.picked[name] > 0 && f.design.row != fate.design.row).collect();
@@ -219,7 +220,7 @@ impl Scattered {
     }
 }
 
-/// The value below which a percentage of the sorted values lies. Between two values it is interpolated.
+/// The value below which `percent` percent of the values in `sorted` lie. Between two values it is interpolated.
 pub fn percentile(sorted: &[f64], percent: u32) -> f64 {
     let place = f64::from(percent) / 100.0 * (sorted.len().saturating_sub(1)) as f64;
     let below = place.floor() as usize;

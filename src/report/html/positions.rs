@@ -21,7 +21,7 @@ const NAMES: [&str; 3] = ["before", "after", "after, pose held out"];
 /// Size of the position error at one stage of the model \[mm\].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Step {
-    /// Words that say what the stage adds to the model.
+    /// Words that name what the stage adds to the model.
     pub added: String,
     /// Median error over the poses of the fit.
     pub fitted_median: f64,
@@ -44,7 +44,7 @@ pub struct Position {
     pub before_mm: [f64; 3],
     /// Error with the effects found.
     pub after_mm: [f64; 3],
-    /// Error with the effects found and parameters fitted without this pose.
+    /// Error of this position with the effects found and parameters fitted without its pose, by component \[mm\].
     pub kept_out_mm: [f64; 3],
 }
 
