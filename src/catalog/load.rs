@@ -180,8 +180,8 @@ fn add_file(catalogs: &mut Catalogs, source: &Source, rows: &[Row]) {
     });
 }
 
-/// Adds the parts of a file's rows. A part whose name exists replaces the earlier one. Returns how many parts were
-/// replaced.
+/// Adds the parts of a file's rows to `parts`. A part whose name exists replaces the earlier one. `read` makes a part
+/// of a row, and `name` gives its name. Returns how many parts were replaced.
 fn add<T>(parts: &mut Vec<T>, rows: &[Row], read: fn(&Row) -> Option<T>, name: fn(&T) -> String) -> usize {
     let mut places: std::collections::BTreeMap<String, usize> =
         parts.iter().enumerate().map(|(i, part)| (name(part).to_lowercase(), i)).collect();

@@ -44,8 +44,8 @@ use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// A function that writes files as a result and replaces the result written before. It returns the names of files
-/// that it did not write, because files that are not part of a result have the same names.
+/// A function that writes files as a result and replaces the result that was written before. It returns the names of
+/// files that it did not write, because files with these names exist that are not part of a result.
 pub(super) type Keep<'a> = dyn Fn(&[(String, Vec<u8>)]) -> Result<Vec<String>, Failure> + Sync + 'a;
 
 /// A finished search whose files are written.
@@ -75,7 +75,7 @@ pub(super) struct Written {
     pub elapsed_s: f64,
 }
 
-/// Entry in `run.json` for all files that are still missing while only the front is written.
+/// Text for `run.json` while only the front is written: the names of all files that are still missing.
 const NOTHING_ELSE: &str =
     "what goes with the front: budget.csv, summary.md, report.html, plots, ties and supplements";
 
@@ -107,7 +107,7 @@ pub(super) struct Finished<'a> {
     pub text: &'a str,
     /// Corrections of a measured arm.
     pub corrections: &'a [Correction],
-    /// The problem with the options that the designs of the front use, or with all options.
+    /// The problem with all options of the study, or only with the options that the designs of the front use.
     pub problem: &'a ArmProblem<'a>,
     /// The space with all options of the study.
     pub whole: &'a DesignSpace,
@@ -127,7 +127,8 @@ pub(super) struct Finished<'a> {
 }
 
 impl<'a> Finished<'a> {
-    /// The result of a visit to every design of a study, on one computer or in shards.
+    /// The result of a search that visited every design of a study, on one computer or in shards. `dir` is the folder
+    /// of results, `elapsed_s` the time that the search took \[s\].
     pub(super) fn visit(
         asked: &'a Asked,
         (problem, outcome): (&'a ArmProblem<'a>, &'a StudyOutcome),

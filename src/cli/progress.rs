@@ -100,7 +100,8 @@ impl<'r> Watch<'r> {
         Self { started, record, log }
     }
 
-    /// Looks at a search again and again until `finished` is set. Each time, `see` is called with the elapsed time.
+    /// Looks at a search again and again until `finished` is set, and records `now`, its state, at each look. Each
+    /// time, `see` is called with the elapsed time to show the progress.
     fn look(&self, finished: &AtomicBool, now: impl Fn() -> Progress, mut see: impl FnMut(Duration)) {
         let (mut next, mut last_gap) = (Duration::ZERO, None);
         while !finished.load(Ordering::Relaxed) {
@@ -119,7 +120,7 @@ impl<'r> Watch<'r> {
         }
     }
 
-    /// Shows how many of all designs have been visited.
+    /// Shows how many of `total` designs have been visited, until `finished` is set.
     pub(super) fn designs(&self, total: u128, visited: &(dyn Fn() -> u64 + Sync), finished: &AtomicBool) {
         let now = || Progress::visited(visited());
         if self.log.draws() {
@@ -142,7 +143,7 @@ impl<'r> Watch<'r> {
         say("searched", self.started.elapsed());
     }
 
-    /// Shows the state of an exact search: its gap, its front and its boxes.
+    /// Shows the state of an exact search (gap, front and boxes) until `finished` is set. `known` returns the state.
     pub(super) fn search(&self, known: &(dyn Fn() -> Known + Sync), finished: &AtomicBool) {
         let now = || Progress::known(&known());
         let line = |elapsed: Duration| search_line(&known(), elapsed);
@@ -160,7 +161,7 @@ impl<'r> Watch<'r> {
     }
 }
 
-/// Calls `say` every ten seconds of elapsed time.
+/// A function that calls `say` at most every ten seconds of elapsed time. It is itself called with the elapsed time.
 fn in_lines(say: impl Fn(Duration)) -> impl FnMut(Duration) {
     let mut next = LINE_EVERY;
     move |elapsed| {

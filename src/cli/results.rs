@@ -11,8 +11,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// How many times a folder is read again if its files do not fit together, and after which time. It may be that a
-/// result is being replaced.
+/// How many times a folder is read again if its files do not fit together, and the time between two attempts. The
+/// reason may be that another process is just replacing the result.
 const AGAIN: (u32, Duration) = (3, Duration::from_millis(200));
 
 /// The result of a study, as it is in a folder.

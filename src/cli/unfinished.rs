@@ -17,11 +17,13 @@ use std::time::{Duration, Instant};
 
 /// Shortest time between two saved states.
 const KEEP_EVERY: Duration = Duration::from_secs(2);
-/// Saving states may take at most the fraction 1/`SHARE` of the running time.
+/// Saving states may take at most the fraction 1/`SHARE` of the running time. Otherwise the time between two saves is
+/// made longer.
 const SHARE: u32 = 200;
 /// Ending of the name of a file with a state.
 pub(super) const ENDING: &str = ".unfinished";
-/// Keys in which two searches of one study may differ, each with the word for it in messages.
+/// Keys that must be equal in the saved state and in the search that is to be continued. Each comes with the word for
+/// it in messages.
 const SAME: [(&str, &str); 4] = [
     ("study_hash", "study"),
     ("catalogs_hash", "catalogs"),

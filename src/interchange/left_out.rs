@@ -16,8 +16,8 @@ pub(crate) struct LeftOut {
     pub at: String,
     /// Reason why it is left out, and what to do instead.
     pub why: String,
-    /// The part of the tip deflection that is lost with this property: its component along the whole deflection,
-    /// divided by the whole. All these parts and the remaining one add up to 1.
+    /// The part of the tip deflection that is lost with this property: the component of the lost displacement along the
+    /// whole deflection, divided by the whole. The parts of all properties and the remaining part add up to 1.
     pub tip_share: f64,
 }
 
@@ -44,7 +44,8 @@ impl Remainder {
         Self { structure, case: case.clone(), tip_m, left_out: Vec::new() }
     }
 
-    /// Component of a displacement along the whole displacement of the tip, divided by the latter.
+    /// Component of the displacement `part_m` \[m\] along the whole displacement of the tip, divided by the whole
+    /// displacement.
     fn share(&self, part_m: &Vector3<f64>) -> f64 {
         match self.tip_m.norm_squared() {
             0.0 => 0.0,
@@ -52,7 +53,8 @@ impl Remainder {
         }
     }
 
-    /// Removes a property by `change`, and records the change of the tip deflection that this causes.
+    /// Removes a property from the structure by the function `change`, and records how much of the tip deflection is
+    /// lost with it. `what`, `at` and `why` say what the property is, where it is and why it is removed.
     fn remove(&mut self, what: &'static str, at: &str, why: &str, change: impl FnOnce(&mut Structure)) {
         let before_m = Snapshot::new(self.structure.clone(), &self.case, self.case.links).tip_m();
         change(&mut self.structure);
@@ -112,7 +114,8 @@ impl Remainder {
         });
     }
 
-    /// Removes the force and the moment at the tip, and returns the remaining case.
+    /// Removes the force and the moment at the tip, and returns the case without them. `why` is the reason for the
+    /// record.
     pub(crate) fn without_tip_load(&mut self, why: &str) -> LoadCase {
         let bare =
             LoadCase { tip_force_n: Vector3::zeros(), tip_moment_nm: Vector3::zeros(), ..self.case.clone() };

@@ -85,7 +85,8 @@ pub struct PickBound {
     /// `mass_kg`, the bound.
     pub mixture_kg: f64,
     /// Whether the torque of some joint may have either sign over the designs that the bound covers. This weakens the
-    /// bound.
+    /// Whether the torque of some joint may have either sign within the options that the bound considers. The bound
+    /// then takes the more favourable sign and is weaker.
     pub loads_oppose: bool,
 }
 

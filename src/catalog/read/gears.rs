@@ -137,8 +137,8 @@ fn order(row: &Row, columns: &[&'static str], strict: bool, hint: &str) {
     row.ascending(&figures, strict, hint);
 }
 
-/// Warns of numbers that are far from those of all known harmonic drives of that size. Such a number is often in
-/// the wrong unit.
+/// Warns of numbers of a row that are far from the numbers of all known harmonic drives of the same size. Such a number
+/// is often in the wrong unit.
 fn usual_figures(row: &Row) {
     let Some(size) = row.count("size").map(f64::from) else { return };
     let scaled = |column: &str, scale: f64, [low, high]: [f64; 2], unit: &str| {

@@ -133,8 +133,8 @@ impl<'a> Row<'a> {
         }
     }
 
-    /// Reports numbers that do not ascend in the given order. Unknown numbers are skipped. With `strict`, equal
-    /// neighbours are reported too.
+    /// Reports those of the numbers in `figures` (column and value) that are smaller than the number before them.
+    /// Unknown numbers are skipped. With `strict`, a number that equals the one before is reported too.
     pub(crate) fn ascending(&self, figures: &[(&str, Option<f64>)], strict: bool, hint: &str) {
         let known: Vec<_> = figures.iter().filter_map(|(column, x)| Some((*column, (*x)?))).collect();
         for pair in known.windows(2) {
@@ -146,8 +146,9 @@ impl<'a> Row<'a> {
         }
     }
 
-    /// Compares a printed number with the same number computed from others of the row. A relative deviation of more
-    /// than `warn` gives a warning, of more than `refuse` a fault.
+    /// Compares `printed`, a number in the column `column`, with `computed`, the same number computed from others of
+    /// the row, which `from` names. A relative deviation of more than `warn` gives a warning, of more than `refuse` a
+    /// fault.
     pub(crate) fn agrees(
         &self,
         column: &str,
@@ -171,8 +172,8 @@ impl<'a> Row<'a> {
         }
     }
 
-    /// Compares a number with two ranges. Outside the physically possible range it is a fault, outside the usual
-    /// range a warning. Returns whether the number is possible.
+    /// Compares `x`, the number in the column `column`, with two ranges. Outside the physically possible range it is a
+    /// fault, outside the usual range a warning. Returns whether the number is possible.
     pub(crate) fn within(
         &self,
         column: &str,

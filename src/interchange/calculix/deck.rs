@@ -6,8 +6,8 @@ use nalgebra::Vector3;
 use std::fmt::Write;
 
 /// Stiffness of the springs that connect point masses to the ground \[N/m\]. CalculiX drops the coupling inertia
-/// between degrees of freedom that no stiffness connects. These springs connect them and are too soft to change
-/// anything else.
+/// between degrees of freedom that no stiffness connects. These springs connect the degrees of freedom, and are too
+/// soft to change anything else.
 const GROUNDING_N_PER_M: f64 = 1e-3;
 /// Range of Poisson's ratio E / (2 G) - 1 within which E and G can belong to an isotropic material.
 const ISOTROPIC: std::ops::Range<f64> = -0.9..0.49;
@@ -83,8 +83,9 @@ fn bricks(out: &mut String, solid: &Solid, k: usize, element: &mut usize) {
     let _ = writeln!(out, "*SOLID SECTION, ELSET=LINK{k}, MATERIAL=M{k}{orientation}");
 }
 
-/// The elastic constants of a link, and whether they are orthotropic. If no isotropic material has these E and G,
-/// they belong to a layup. They are then written as engineering constants in the axes of the section.
+/// The elastic constants of a link as lines of the deck, and whether they are orthotropic. If no isotropic material has
+/// the E and G of the link, they belong to a layup. They are then written as engineering constants in the axes of the
+/// section.
 fn elastic(beam: &Beam) -> (String, bool) {
     let (e_pa, g_pa) = (
         beam.material.youngs_modulus_pa / beam.flexibility,

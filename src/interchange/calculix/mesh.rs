@@ -138,8 +138,8 @@ fn walls(outer_m: f64, wall_m: f64) -> Vec<f64> {
     vec![-outer_m / 2.0, wall_m - outer_m / 2.0, outer_m / 2.0 - wall_m, outer_m / 2.0]
 }
 
-/// A grid of the rectangles between lines. `has` says which rectangles have material. Rectangles between walls are
-/// divided further.
+/// A grid of the rectangles between lines at `y_m` and `z_m` \[m\]. `has` says which rectangles have material.
+/// Rectangles between walls are divided further.
 fn cells(y_m: Vec<f64>, z_m: Vec<f64>, has: impl Fn(usize, usize) -> bool + 'static) -> Grid {
     let cut = |lines: &[f64]| {
         let rectangles = lines.len() - 1;

@@ -71,7 +71,8 @@ fn asked(limited: Objective, sought: Objective) -> bool {
     Question::ALL.into_iter().any(|q| q.limited() == limited && q.sought() == sought)
 }
 
-/// The smallest of `values` that is not exceeded by at least the fraction `share` of the values; NaN without values.
+/// The smallest value v of `values` such that at least the fraction `share` of the values is at most v; NaN without
+/// values.
 fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     let index = (share * values.len() as f64).ceil() as usize;
