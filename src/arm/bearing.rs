@@ -87,7 +87,7 @@ impl Bearing {
         })
     }
 
-    /// The bearing of a housed gear that a file names.
+    /// The bearing of the housed gear whose name is the value of `node`. Faults if the catalogs have no such gear.
     fn named(node: &Node, catalogs: &Catalogs) -> Option<Self> {
         let gear = match catalogs.gear(node.string()?) {
             Ok(gear) => gear,

@@ -60,7 +60,7 @@ pub struct JointBodies {
 }
 
 impl JointBodies {
-    /// Mass of all bodies \[kg\].
+    /// Mass of all bodies of the joint \[kg\].
     pub fn mass_kg(&self) -> f64 {
         total_kg(&self.fixed) + total_kg(&self.rotating)
     }

@@ -140,7 +140,7 @@ impl Extras {
         })
     }
 
-    /// The extras as files write them.
+    /// The masses as an arm file writes them, one key for each mass.
     pub(crate) fn to_json(self) -> Value {
         json!({
             "housing_kg": self.housing_kg,

@@ -344,7 +344,7 @@ fn read_parameters(node: &Node) -> Option<Vec<(String, Vec<f64>)>> {
     read.into_iter().collect()
 }
 
-/// The number by which a channel is stored, read from the channel's word.
+/// The number that stands for a measuring channel in the list of parameters, read from the word for the channel.
 fn read_channel(node: &Node) -> Option<f64> {
     let word = node.string()?;
     match Channel::from_word(word) {

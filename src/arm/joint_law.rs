@@ -246,7 +246,7 @@ pub struct FurtherTwist {
 }
 
 impl FurtherTwist {
-    /// Angle \[rad\] that this term adds under the total torque \[N m\].
+    /// Angle of torsion \[rad\] that this further term adds under the total torque on the joint \[N m\].
     pub fn angle_rad(&self, torque_nm: f64) -> f64 {
         let p = torque_nm / self.torque_nm;
         let ([a, b], [c, d]) = (self.odd_rad, self.even_rad);

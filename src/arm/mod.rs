@@ -363,7 +363,7 @@ impl Arm {
 }
 
 impl Joint {
-    /// Mass of gear, motor, bearing and extras \[kg\]. It is a point on the axis.
+    /// Mass of gear, motor, bearing and extras \[kg\]. It is a point mass on the axis.
     pub fn total_mass_kg(&self) -> f64 {
         self.mass_kg + self.bearing.map_or(0.0, |bearing| bearing.mass_kg) + self.extras.total_kg()
     }

@@ -178,7 +178,7 @@ fn read_part(
 }
 
 impl LinkPart {
-    /// Length \[m\] and tube of every slice of this piece.
+    /// Length \[m\] and tube of each slice into which this piece of a link is divided, from its root to its end.
     fn slices(&self) -> Vec<(f64, LinkBody)> {
         let count = slices(self.end_section.is_some());
         let middle = |slice: usize| (slice as f64 + 0.5) / count as f64;

@@ -190,7 +190,7 @@ impl Spring {
         }
     }
 
-    /// The parts of the arm on which the spring acts, whatever the pose.
+    /// The parts of the arm on which the spring acts. They are the same in every pose.
     pub(crate) fn sides(&self) -> Vec<Side> {
         match &self.kind {
             SpringKind::Line { ends, .. } => ends.iter().filter_map(SpringEnd::side).collect(),

@@ -247,7 +247,8 @@ impl Structure {
     }
 }
 
-/// A joint as the mechanics needs it, without any effect.
+/// A joint of the arm file in the form that the mechanics uses, without any effect. `driven` are the names of the
+/// driven joints, base to tip; `model` is the joint model.
 fn joint_piece(joint: &Joint, driven: &[&str], model: JointModel) -> JointPiece {
     let index = |name: &str| driven.iter().position(|d| *d == name);
     let angle = match &joint.coupled {
@@ -268,7 +269,7 @@ fn joint_piece(joint: &Joint, driven: &[&str], model: JointModel) -> JointPiece 
     }
 }
 
-/// A link as the mechanics needs it, without any effect.
+/// A link of the arm file in the form that the mechanics uses, without any effect.
 pub(crate) fn link_piece(link: &Link) -> LinkPiece {
     let (beam, point_mass_kg) = match &link.body {
         LinkBody::Tube { material, section, .. } => {

@@ -92,7 +92,7 @@ pub struct LifeLaw {
 }
 
 impl LifeLaw {
-    /// The life equation of a kind if the row leaves all of its cells blank.
+    /// The life equation of a gear of this kind whose row leaves all cells of the equation blank.
     pub fn usual(kind: GearKind) -> Self {
         Self {
             rated_h: kind.usual_life_h(),

@@ -161,7 +161,7 @@ fn begins(id: &str, name: &str) -> bool {
     !(within_number && name.ends_with(|c: char| c.is_ascii_digit()))
 }
 
-/// Whether a word of `id` begins with `name`.
+/// Whether some word of `id` begins with `name`, as in [`begins`].
 fn has_word(id: &str, name: &str) -> bool {
     let starts = id.char_indices().filter(|(i, _)| {
         id[..*i].chars().next_back().is_some_and(|before| !before.is_alphanumeric() && before != '.')

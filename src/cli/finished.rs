@@ -281,7 +281,7 @@ impl Finished<'_> {
         files
     }
 
-    /// The short name of each material, for names of files.
+    /// A short name for each material, which is a part of the names of its files.
     fn file_names(&self) -> Vec<String> {
         file_names(self.outcome.by_material.iter().map(|of| of.name.as_str()))
     }
@@ -344,7 +344,8 @@ impl Finished<'_> {
         self.study.space.effects.iter().map(counted).collect()
     }
 
-    /// The page for a browser.
+    /// The page of the result for a browser. `picture` is the picture of the front, `sections` are those of the
+    /// supplements, and `run` is the content of `run.json`.
     fn page(&self, summary: &SummaryInput, picture: String, sections: Vec<PageSection>, run: &Value) -> Page {
         let mut page = study_page(self.study, self.problem, self.catalogs, summary);
         page.extras.extend(sections);

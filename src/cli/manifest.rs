@@ -61,7 +61,7 @@ impl Earlier {
         }
     }
 
-    /// The names of the listed files.
+    /// The names of the files of the earlier result that are listed.
     pub(super) fn names(&self) -> impl Iterator<Item = &String> {
         let listed = match self {
             Earlier::Listed(files) => Some(files.keys()),

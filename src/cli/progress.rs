@@ -50,7 +50,8 @@ impl Progress {
 }
 
 impl Progress {
-    /// The state as a JSON object, one line of the record.
+    /// The state of the search as a JSON object, which is one line of the record. `elapsed_s` is the time since the
+    /// start of the search \[s\].
     fn to_json(self, elapsed_s: f64) -> Value {
         let Self { designs, gap, front_size, boxes_open } = self;
         json!({
@@ -75,7 +76,7 @@ impl Record {
         Ok(Self { path: path.to_path_buf(), file })
     }
 
-    /// Adds a line to the record.
+    /// Adds a line with the state of the search after `elapsed_s` \[s\] to the record.
     ///
     /// # Errors
     /// The file cannot be written.

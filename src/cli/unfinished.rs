@@ -96,7 +96,7 @@ impl Unfinished {
         Ok(())
     }
 
-    /// The error for a state that is damaged.
+    /// The error that is reported if the saved state is damaged.
     pub(super) fn damaged(&self) -> Failure {
         Failure::File(format!(
             "{}: the state of the unfinished search is damaged; give --fresh to discard it and begin anew",

@@ -78,7 +78,7 @@ pub(crate) struct Export {
     pub expected: Value,
 }
 
-/// Exports an arm to a format.
+/// Exports an arm as files of the format that is asked for.
 pub(crate) fn export(asked: &Asked, catalogs: &Catalogs) -> Export {
     let mut out = match asked.format {
         Format::Calculix => to_calculix(asked),
@@ -104,7 +104,7 @@ pub(crate) fn export(asked: &Asked, catalogs: &Catalogs) -> Export {
 }
 
 impl Export {
-    /// The record of the export, the content of `export.json`.
+    /// What the export consists of and what the other program should compute, as JSON: the content of `export.json`.
     pub(crate) fn to_json(&self, asked: &Asked) -> Value {
         let names: Vec<&str> = self.files.iter().map(|(name, _)| name.as_str()).collect();
         json!({

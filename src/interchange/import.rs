@@ -107,12 +107,12 @@ impl<'a> Robot<'a> {
         moving.map(|joint| MovingJoint { name: &joint.name, slides: slides(joint) }).collect()
     }
 
-    /// Whether a joint follows another one.
+    /// Whether the angle of a joint follows another joint (`<mimic>`).
     fn follows(&self, joint: &urdf_rs::Joint) -> bool {
         matches!(self.motion_of(&joint.name), Moves::With(..))
     }
 
-    /// Whether a joint follows a joint that slides.
+    /// Whether the angle of a joint follows the travel of a joint that slides.
     fn follows_a_slide(&self, joint: &urdf_rs::Joint) -> bool {
         let Moves::With(driver, ..) = self.motion_of(&joint.name) else { return false };
         self.tree.joints.iter().any(|other| other.name == driver && slides(other))

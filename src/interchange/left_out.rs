@@ -38,7 +38,7 @@ pub(crate) struct Remainder {
 }
 
 impl Remainder {
-    /// The arm as it is, before anything is removed.
+    /// The arm as it is in a case, before anything is removed.
     pub(crate) fn new(structure: Structure, case: &LoadCase) -> Self {
         let tip_m = Snapshot::new(structure.clone(), case, case.links).tip_m();
         Self { structure, case: case.clone(), tip_m, left_out: Vec::new() }
@@ -82,7 +82,8 @@ impl Remainder {
         }
     }
 
-    /// Removes the compliance of every link.
+    /// Removes the compliance of every link, one by one, so that the loss of each is recorded. `why` is the reason for
+    /// the record.
     pub(crate) fn without_flexible_links(&mut self, why: &str) {
         let names: Vec<String> = self
             .structure
@@ -100,7 +101,7 @@ impl Remainder {
         }
     }
 
-    /// Removes the compliance of one link.
+    /// Removes the compliance of the link `name`. `why` is the reason for the record.
     pub(crate) fn without_flexible_link(&mut self, name: &str, why: &str) {
         self.remove("link_compliance", name, why, |structure| {
             for piece in &mut structure.pieces {

@@ -38,7 +38,7 @@ pub(crate) struct Mjcf {
     pub balanced: bool,
 }
 
-/// Writes an arm in a case as MJCF.
+/// Writes an arm in a case as MJCF. `motors` has inertia and peak torque of the motors by name of the joint.
 pub(crate) fn mjcf(
     name: &str,
     snapshot: &Snapshot,

@@ -29,7 +29,7 @@ pub(crate) struct Working {
 }
 
 impl Working {
-    /// Whether the spring does not deflect at all.
+    /// Whether the spring has no compliance: neither a deflection nor a tangent compliance at the load of the case.
     pub(crate) fn is_rigid(&self) -> bool {
         self.tangent_rad_per_nm == 0.0 && self.deflection_rad == 0.0
     }
@@ -88,7 +88,7 @@ impl Snapshot {
         self.chain.pose_rad(&vec![0.0; self.case.pose_deg.len()], &self.case.payload, Vector3::zeros())
     }
 
-    /// Displacement of the tip in the case, in world axes \[m\].
+    /// Displacement of the tip in the case, from its position in the weightless arm, in world axes \[m\].
     pub(crate) fn tip_m(&self) -> Vector3<f64> {
         self.posed().statics().tip_displacement_m
     }

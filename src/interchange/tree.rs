@@ -170,7 +170,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Adds a link with mass along it, as one body or in pieces.
+    /// Adds a link with mass along it, as one rigid body, or as rigid pieces with springs between them if the options
+    /// ask for it.
     fn link(&mut self, link: Option<&LinkPiece>, own: &OwnMass) {
         let Some(link) = link else { return };
         let vector_m = own.frame.column(0) * link.vector_m.norm();

@@ -41,7 +41,8 @@ pub(crate) fn urdf(arm: &Arm, snapshot: &Snapshot) -> String {
     xml.finish()
 }
 
-/// Name of a link in the URDF, which must differ from the names of joints.
+/// Name of the URDF link for a body, which must differ from the names of joints. `number` counts the bodies from the
+/// base.
 fn link_name(number: usize, node: &Node) -> String {
     if number == 0 { "base".into() } else { format!("{}_link", node.name) }
 }

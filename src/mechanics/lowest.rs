@@ -238,7 +238,7 @@ fn through_link<const N: usize>(
 }
 
 impl Pass {
-    /// Records a pivot. The one before it now counts among the inner pivots.
+    /// Records the pivot of the next coordinate. The pivot before it now counts among the inner pivots.
     #[inline]
     fn next(&mut self, pivot: f64) {
         self.inner_sound &= self.last > 0.0;

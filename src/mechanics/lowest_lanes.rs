@@ -98,7 +98,8 @@ impl<const N: usize> Outboard<N> {
 }
 
 impl<const N: usize> LaneLink<N> {
-    /// Stores eight links with their lanes interleaved.
+    /// Stores eight links in one value, with the eight numbers of each entry side by side, so that one instruction
+    /// handles them.
     pub(crate) fn new(links: [&BlockLink<N>; LANES]) -> Self {
         Self {
             root: std::array::from_fn(|k| side_by_side(|lane| &links[lane].root[k])),
@@ -237,7 +238,7 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
         Self { lambda, apparent, negative: 0, twice_negative: 0, product: V::splat(1.0) }
     }
 
-    /// Records a pivot.
+    /// Records the pivot of one coordinate in each lane: its sign, and its product with the pivots before.
     #[inline(always)]
     fn pivot(&mut self, pivot: V) {
         let negative = pivot.less(V::zero());

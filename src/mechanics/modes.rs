@@ -138,7 +138,7 @@ impl Posed<'_> {
         self.with_linkages(mass)
     }
 
-    /// The mode with this shape and frequency, described for output.
+    /// The mode of this frequency in the form for output. `shape` has its strain coordinates.
     fn describe(&self, statics: &Statics, shape: &DVector<f64>, frequency_hz: f64) -> Mode {
         Mode {
             frequency_hz,
@@ -149,7 +149,7 @@ impl Posed<'_> {
         }
     }
 
-    /// The strain coordinates of a shape, divided into one list for each element.
+    /// The strain coordinates `shape` of all elements, divided into one list for each element, base to tip.
     fn by_element(&self, shape: &DVector<f64>) -> Vec<Vec<f64>> {
         let mut rest = shape.iter().copied();
         self.elements().map(|e| rest.by_ref().take(e.twists.len()).collect()).collect()

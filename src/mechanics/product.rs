@@ -39,7 +39,7 @@ pub(crate) struct Panels {
 }
 
 impl Panels {
-    /// Stores a matrix as a left factor.
+    /// Stores the matrix A so that it can be the left factor of a product A B.
     pub(crate) fn of_rows(a: &DMatrix<f64>) -> Self {
         let (rows, terms) = a.shape();
         let mut eights = vec![[0.0; LANES]; rows.div_ceil(LANES) * terms];
@@ -76,7 +76,7 @@ impl Panels {
         }
     }
 
-    /// Stores the transpose of a matrix as a left factor.
+    /// Stores the matrix A so that its transpose can be the left factor of a product AᵀB.
     pub(crate) fn of_columns(a: DMatrixView<f64>) -> Self {
         let (terms, rows) = a.shape();
         let mut eights = vec![[0.0; LANES]; rows.div_ceil(LANES) * terms];

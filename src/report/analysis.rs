@@ -163,7 +163,7 @@ impl Analysis {
         }
     }
 
-    /// The joints, each with the load on its output bearing at rest.
+    /// The joints, each with the load on its output bearing while the joint is at rest.
     fn carried(&self) -> impl Iterator<Item = (&str, &JointLoad)> {
         let joints = self.statics.joint_torques_nm.iter().map(|(name, _)| name.as_str());
         joints.zip(&self.statics.bearing_loads)

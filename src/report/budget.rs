@@ -17,7 +17,7 @@ pub struct Gain {
 }
 
 impl Gain {
-    /// Whether the added mass lowers the deflection or raises the lowest mode.
+    /// Whether one more kilogram lowers the deflection or raises the lowest mode by more than rounding errors.
     pub fn helps(&self) -> bool {
         self.mm_per_kg < -NOTHING || self.hz_per_kg > NOTHING
     }
@@ -84,7 +84,6 @@ pub struct PickBound {
     /// Approximate mass of an equally good arm if parts could be blended between catalog options \[kg\]. It is at most
     /// `mass_kg`, the bound.
     pub mixture_kg: f64,
-    /// Whether the torque of some joint may have either sign over the designs that the bound covers. This weakens the
     /// Whether the torque of some joint may have either sign within the options that the bound considers. The bound
     /// then takes the more favourable sign and is weaker.
     pub loads_oppose: bool,
@@ -172,7 +171,7 @@ impl PickBudget {
         )
     }
 
-    /// The pick with its mass and bounds, as an object for `run.json`.
+    /// The pick with its mass and its lower bounds on mass, as an object for `run.json`.
     pub fn to_json(&self) -> serde_json::Value {
         serde_json::json!({
             "names": self.names,

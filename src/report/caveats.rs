@@ -62,7 +62,7 @@ impl Caveats {
     }
 }
 
-/// The names of the parts of a row.
+/// The names of the parts (materials, profiles, gears and motors) of the design in the row `row`.
 fn parts(front: &FrontTable, row: usize) -> impl Iterator<Item = &str> {
     let named = front.columns.iter().zip(&front.rows[row]);
     named

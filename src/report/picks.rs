@@ -156,7 +156,7 @@ pub struct Pick {
     pub design: Design,
 }
 
-/// The row and the joined names of each pick.
+/// For each pick, its row in the table and its names in one text.
 pub(crate) fn rows_and_names(picks: &[Pick]) -> Vec<(usize, String)> {
     picks.iter().map(|pick| (pick.design.row, pick.names.join(", "))).collect()
 }

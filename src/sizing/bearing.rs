@@ -190,7 +190,8 @@ impl BearingLimits {
         load.radial_n + self.force_per_moment_per_m * self.moment_nm(load)
     }
 
-    /// Static equivalent load P₀ \[N\].
+    /// Static equivalent load P₀ of a load on the bearing \[N\]: radial force, force equivalent to the moment, and 0.44
+    /// times the axial force.
     #[inline]
     pub fn static_load_n(&self, load: &BearingLoad) -> f64 {
         self.across_n(load) + AXIAL_SHARE * load.axial_n

@@ -201,7 +201,7 @@ pub struct Check {
 }
 
 impl Check {
-    /// A check that cannot be made because a rating is blank.
+    /// A check of the kind `kind` that cannot be made because `rating` is blank.
     pub(super) fn not_made(kind: CheckKind, rating: MissingRating) -> Self {
         let torque_exponent = kind.torque_exponent();
         Self { kind, needed: None, allowed: None, state: CheckState::NotChecked(rating), torque_exponent }

@@ -86,12 +86,12 @@ impl JointMotion {
         Self { stated: None, ..self }
     }
 
-    /// Duration of an emergency stop from the largest speed \[s\].
+    /// Duration of an emergency stop from the largest speed of the joint to rest \[s\].
     pub fn stop_time_s(&self) -> f64 {
         self.ramp_time_s / self.stop_factor
     }
 
-    /// Mean speed over the duty cycle, output side \[rad/s\].
+    /// Mean speed of the joint over the duty cycle, on the output side of the gear \[rad/s\].
     pub fn mean_speed_rad_s(&self) -> f64 {
         self.speed_rad_s * self.mean_speed_fraction
     }

@@ -117,14 +117,14 @@ impl DutyCycle {
             .map(|kind| self.phases.iter().filter(|p| p.kind == kind).map(|p| p.duration_s).sum())
     }
 
-    /// Travel of the whole cycle divided by the largest speed \[s\].
+    /// Angle through which the joint turns in the whole cycle, divided by its largest speed \[s\].
     fn travel_s(&self) -> f64 {
         self.phases.iter().map(Phase::travel_s).sum()
     }
 }
 
 impl Phase {
-    /// Travel of the phase divided by the largest speed \[s\].
+    /// Angle through which the joint turns in this phase, divided by its largest speed \[s\].
     fn travel_s(&self) -> f64 {
         let speed = match self.kind {
             PhaseKind::Accelerate | PhaseKind::Decelerate => 0.5,

@@ -40,7 +40,7 @@ pub struct DriveFilter {
 }
 
 impl DriveFilter {
-    /// Allows everything in the catalogs.
+    /// A filter that allows all parts of the catalogs. `gear_mass` says which mass of a gear counts.
     pub fn everything(gear_mass: GearMass) -> Self {
         Self {
             gear_mass,
@@ -57,7 +57,7 @@ impl DriveFilter {
         }
     }
 
-    /// Whether a gear may be used.
+    /// Whether the filter allows this gear for the joint.
     pub fn allows_gear(&self, gear: &Gear) -> bool {
         if gear.kind == GearKind::Actuator {
             return allows(&self.actuator_ids, &gear.id);
@@ -68,7 +68,7 @@ impl DriveFilter {
             && allows(&self.gear_ids, &gear.id)
     }
 
-    /// Whether a motor may be used.
+    /// Whether the filter allows this motor for the joint.
     pub fn allows_motor(&self, motor: &Motor) -> bool {
         if motor.kind == MotorKind::OfActuator {
             return allows(&self.actuator_ids, &motor.id);
@@ -190,7 +190,8 @@ impl<'c> DriveTable<'c> {
         table
     }
 
-    /// Fills the table with the legal pairs.
+    /// Fills the table with the legal pairs of gear and motor (fast enough, and with all ratings that a check needs),
+    /// sorted by mass.
     fn fill(&mut self) {
         let mut legal = Vec::new();
         for (drive, pair) in self.all_pairs().filter(|(drive, _)| self.knows_torsion(drive.gear)) {
@@ -271,12 +272,12 @@ impl<'c> DriveTable<'c> {
         self.gear_mass
     }
 
-    /// Gears that the filter allows, legal or not.
+    /// Gears that the filter allows, whether or not they are in a legal drive.
     pub fn gears(&self) -> &[&'c Gear] {
         &self.gears
     }
 
-    /// Motors that the filter allows, legal or not.
+    /// Motors that the filter allows, whether or not they are in a legal drive.
     pub fn motors(&self) -> &[&'c Motor] {
         &self.motors
     }
@@ -291,18 +292,18 @@ impl<'c> DriveTable<'c> {
         self.pairs.is_empty()
     }
 
-    /// The drive at an index.
+    /// The drive with the index `index` in the table.
     pub fn drive(&self, index: usize) -> Drive<'c> {
         self.drive_of(self.pairs[index])
     }
 
-    /// Mass of the drive at an index, including extras \[kg\].
+    /// Mass of the drive with the index `index`, including extras \[kg\].
     #[inline]
     pub fn mass_kg(&self, index: usize) -> f64 {
         self.masses_kg[index]
     }
 
-    /// Thresholds of the drive at an index.
+    /// Thresholds of torque, load and size of the drive with the index `index`.
     #[inline]
     pub fn limits(&self, index: usize) -> &DriveLimits {
         &self.limits[index]
@@ -355,14 +356,14 @@ impl<'c> DriveTable<'c> {
         low + reach[low..high.min(reach.len())].partition_point(|reach| !reach.hold(demand))
     }
 
-    /// Indices of all drives that meet a demand, lightest first.
+    /// Indices of all drives that meet `demand`, lightest first.
     #[inline]
     pub fn all_fits<'t>(&'t self, demand: &'t JointDemand) -> impl Iterator<Item = usize> + 't {
         let holding = self.limits.iter().enumerate().filter(|(_, limits)| limits.hold(demand));
         holding.map(|(index, _)| index)
     }
 
-    /// Every pair that the filter allows, legal or not.
+    /// Every pair of gear and motor that the filter allows, even if it turns too fast or lacks a rating.
     pub(super) fn all_drives(&self) -> impl Iterator<Item = Drive<'c>> + '_ {
         self.all_pairs().map(|(drive, _)| drive)
     }

@@ -62,7 +62,7 @@ fn joints(root: &Node) -> Option<Vec<TorqueLimit>> {
     Some(read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect())
 }
 
-/// The torque limits that follow from the gears and motors that an arm names.
+/// The torque limits of joints at rest that follow from the ratings of the gears and motors that an arm names.
 pub(crate) fn limits_of_parts(arm: &Arm, catalogs: &Catalogs) -> Vec<TorqueLimit> {
     let of_joint = |joint: &crate::arm::Joint| {
         let gear = joint.gear.as_ref().and_then(|name| catalogs.gear(name).ok());

@@ -72,7 +72,8 @@ mod tests {
     use crate::study::read::read_study;
     use serde_json::{Value, json};
 
-    /// Objectives and remarks of an arm with one rigid link on one joint.
+    /// Objectives and remarks of an arm with one rigid link on one joint, in a study with the fraction `share` for
+    /// connections. `joint` has further keys of the joint.
     fn arm(share: f64, joint: Value) -> (Objectives, String) {
         let mut study = json!({"name": "one joint", "connection_share": share,
             "chain": [{"type": "joint", "name": "j1", "axis": [0, 1, 0]},

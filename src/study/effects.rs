@@ -208,7 +208,8 @@ fn parameters(effect: &Effect) -> String {
     each.collect::<Vec<_>>().join("; ")
 }
 
-/// Replaces the stiffness in the entry of a joint by a torsion curve.
+/// Writes the torsion curve `curve` into `entry`, the entry of a joint in a study file, in place of the stiffness
+/// there.
 fn write_curve(entry: &mut Value, curve: &Curve) {
     if let Some(entry) = entry.as_object_mut() {
         entry.shift_remove("stiffness_nm_per_rad");

@@ -194,7 +194,7 @@ fn no_legal_drive(table: &DriveTable, demand: &JointDemand) -> String {
     }
 }
 
-/// A shortfall in words, with the ratings that other parts lack.
+/// The shortfall of the nearest drive in words, followed by the ratings that other parts lack.
 fn in_words(table: &DriveTable, shortfall: &Shortfall) -> String {
     format!("{shortfall}{}", missing_words(table))
 }

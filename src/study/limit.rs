@@ -39,7 +39,7 @@ impl Quantity {
         }
     }
 
-    /// Replaces the limit on this quantity in the constraints; `None` removes it.
+    /// Sets the limit on this quantity in `constraints`; `None` removes it.
     pub(super) fn set(self, constraints: &mut Constraints, limit: Option<f64>) {
         match self {
             Self::Deflection => constraints.tip_deflection_max_m = limit,
@@ -155,7 +155,6 @@ pub(super) fn short(x: f64) -> String {
     significant(x, 4)
 }
 
-/// Rounds a number to five significant digits, up if `up` is true, else down. A limit that is rounded away from the
 /// Rounds a number to five significant digits, up if `up` is true, else down. Limits are rounded to the side that
 /// admits more designs, so that a value that suffices still does so after rounding.
 pub(super) fn toward(x: f64, up: bool) -> f64 {

@@ -212,7 +212,7 @@ impl Searched {
         }
     }
 
-    /// The numbers of all designs that were found.
+    /// The numbers, in the whole space, of all designs that were found: those of the fronts and the near designs.
     fn numbers(&self) -> Vec<u128> {
         let fronts = std::iter::once(&self.whole).chain(self.by_material.iter().map(|(_, of)| of));
         let near = self.near.iter().flat_map(|near| near.nearest.iter().map(|n| n.candidate.number));

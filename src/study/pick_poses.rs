@@ -87,7 +87,7 @@ impl WorstPose {
     }
 }
 
-/// The objective in words.
+/// The objective in words, as sentences on worst poses name it.
 fn name_of(objective: Objective) -> &'static str {
     if objective == Objective::Mode { "lowest mode" } else { "tip deflection" }
 }

@@ -53,7 +53,7 @@ impl Turn {
         Self { low_deg, high_deg: low_deg + 360.0, is_full: true, degree: 1.0 }
     }
 
-    /// The range of a travel \[mm\].
+    /// The range of a travel \[mm\], from the smallest to the largest.
     fn travel([low_mm, high_mm]: [f64; 2]) -> Self {
         let degree = (high_mm - low_mm) / 360.0;
         Self { low_deg: low_mm, high_deg: high_mm, is_full: false, degree }
@@ -275,7 +275,7 @@ impl PoseRanges {
         (score > from.score + RISE * from.score.abs()).then_some(Scored { pose_deg, score })
     }
 
-    /// The pose of Halton's sequence with this index, in whole degrees.
+    /// The pose with the index `index` in Halton's sequence, within the ranges and in whole degrees.
     fn spread(&self, index: usize) -> Vec<f64> {
         let mut pose_deg = self.home();
         for (place, &joint) in self.free.iter().enumerate() {

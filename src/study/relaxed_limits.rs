@@ -169,7 +169,7 @@ fn reached(problem: &ArmProblem, design: u128, quantity: Quantity) -> Option<f64
     quantity.of(problem, &arm, &judged.objectives)
 }
 
-/// All subsets with `size` elements, in the order of the list.
+/// All subsets of `list` with `size` elements. The elements of each are in the order of the list.
 fn subsets<T: Copy>(list: &[T], size: usize) -> Vec<Vec<T>> {
     match (size, list) {
         (0, _) => vec![Vec::new()],

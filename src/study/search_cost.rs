@@ -168,7 +168,7 @@ fn options(piece: &SpacePiece, catalogs: &Catalogs) -> usize {
     }
 }
 
-/// Names of the gears and of the motors that a joint may use.
+/// Names of the gears and names of the motors that the filter allows.
 fn allowed(filter: &DriveFilter, catalogs: &Catalogs) -> [Vec<String>; 2] {
     let gears = catalogs.gears.iter().filter(|gear| filter.allows_gear(gear)).map(|gear| gear.id.clone());
     let motors =

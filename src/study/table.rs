@@ -13,7 +13,7 @@ use crate::space::design_space::{DriveChoice, LinkOption, SpacePiece};
 use crate::space::levels::OutwardIn;
 use crate::space::problem::{ArmProblem, Partial};
 
-/// The table of a front.
+/// A front as a table: one row for each design, with its choices, objectives and margins.
 pub fn front_table(problem: &ArmProblem, catalogs: &Catalogs, front: &Front) -> FrontTable {
     FrontTable {
         columns: columns(problem, catalogs),

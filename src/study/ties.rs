@@ -104,7 +104,7 @@ impl Ties {
         lacks.chain(adds).collect()
     }
 
-    /// The number of designs that the front represents, in a sentence.
+    /// A sentence that says how many designs with the same objectives the rows of the front stand for.
     pub fn sentence(&self) -> String {
         format!(
             "The {} rows of the front stand for {} designs with the same objectives: at some joints several drives have \

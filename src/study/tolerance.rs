@@ -93,7 +93,7 @@ pub fn part(text: &str) -> Result<f64, String> {
 }
 
 impl Tolerance {
-    /// Names and scatter of the ratings that scatter.
+    /// Name and scatter (a fraction) of each kind of rating whose scatter is not zero.
     fn named(&self) -> impl Iterator<Item = (&'static str, f64)> {
         KINDS.iter().zip(self.parts).map(|((name, _), part)| (*name, part)).filter(|(_, part)| *part > 0.0)
     }
@@ -309,7 +309,7 @@ impl Tally {
     }
 }
 
-/// A percentage without the rounding error of its conversion from a fraction.
+/// A percentage, rounded so that it has no error from its conversion from a fraction.
 fn round(percent: f64) -> f64 {
     (percent * 1e9).round() / 1e9
 }

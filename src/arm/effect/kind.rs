@@ -120,7 +120,8 @@ pub struct Parameter {
 }
 
 impl Parameter {
-    /// A parameter with a single value that must be given.
+    /// A parameter with a single value that a file must give, between `low` and `high`. `typical` is a usual value,
+    /// `scale` says how a fit varies it.
     pub const fn number(name: &'static str, low: f64, high: f64, typical: f64, scale: Scale) -> Self {
         let absent = match scale {
             Scale::Linear | Scale::Stiffness | Scale::Torque => Absent::AtZero,
@@ -145,7 +146,7 @@ impl Parameter {
         }
     }
 
-    /// A parameter with three values that must be given.
+    /// A parameter with three values that a file must give, each between `low` and `high`. `typical` is a usual value.
     pub const fn vector(name: &'static str, low: f64, high: f64, typical: f64) -> Self {
         Self { count: 3, ..Self::number(name, low, high, typical, Scale::Linear) }
     }

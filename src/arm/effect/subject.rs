@@ -30,7 +30,7 @@ pub struct Subject {
 }
 
 impl Subject {
-    /// An arm whose tests do not deviate from their description.
+    /// The arm `structure` under test, with tests that do not deviate from their description.
     pub fn new(structure: Structure) -> Self {
         Self {
             structure,

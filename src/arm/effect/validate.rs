@@ -20,7 +20,8 @@ pub struct EffectFault {
 }
 
 impl Effect {
-    /// All faults of the effect in this arm; empty if there are none.
+    /// All faults of the effect in the arm `structure`: an unknown name, a place where it cannot be, values out of
+    /// their limits. Empty if there are none.
     pub fn faults(&self, structure: &Structure) -> Vec<EffectFault> {
         let Some(kind) = kind(&self.effect) else { return vec![self.unknown_kind()] };
         match structure.place(&self.at, kind.places) {

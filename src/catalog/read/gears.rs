@@ -4,7 +4,7 @@ use super::envelope::envelope;
 use super::row::Row;
 use crate::catalog::gear::{BearingRatings, Gear, GearKind, LifeLaw};
 
-/// The gear of a row; `None` if its name or source is blank or not valid.
+/// The gear that a row describes; `None` if its name or source is blank or not valid.
 pub(crate) fn gear(row: &Row) -> Option<Gear> {
     check(row);
     let (series, size, ratio) = (row.filled("series")?.to_string(), row.count("size")?, row.number("ratio")?);

@@ -17,7 +17,8 @@ pub(crate) struct Row<'a> {
 }
 
 impl<'a> Row<'a> {
-    /// A row of the file with this kind and this name in messages.
+    /// The row in the line `line` of a file of the kind `file`. `name` is the name of the file in messages; faults and
+    /// warnings go to `log`.
     pub(crate) fn new(
         file: CatalogFile,
         name: &'a str,
@@ -94,7 +95,8 @@ impl<'a> Row<'a> {
         self.check_column_list("derived_fields");
     }
 
-    /// Source of the row; `None` if it is blank or the confidence is not valid.
+    /// Where the numbers of the row come from: source, confidence, file and line. `None` if the source is blank or the
+    /// confidence is not valid.
     pub(crate) fn provenance(&self) -> Option<Provenance> {
         Some(Provenance {
             source: self.filled("source")?.to_string(),
@@ -218,7 +220,8 @@ fn check_cell(kind: Cell, text: &str) -> Result<(), Refusal> {
     }
 }
 
-/// The number in a cell of some kind; `None` if the cell is blank.
+/// The number that the text of a cell states, or the reason why a cell of this kind must not have this text. `None` if
+/// the cell is blank.
 fn read_number(kind: Cell, text: &str) -> Result<Option<f64>, Refusal> {
     const BLANK: &str = "leave the cell blank if the figure is unknown";
     if text.is_empty() {

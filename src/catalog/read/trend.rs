@@ -9,7 +9,8 @@ use std::collections::BTreeMap;
 
 type Figure = (&'static str, fn(&Gear) -> Option<f64>);
 
-/// Numbers that grow with the size, within a series and ratio.
+/// Ratings that grow with the size of a gear, if series and ratio are the same: the column, and a function that gives
+/// the value.
 const GROW_WITH_SIZE: &[Figure] = &[
     ("rated_torque_nm", |g| g.rated_torque_nm),
     ("repeated_peak_torque_nm", |g| g.repeated_peak_torque_nm),
@@ -32,7 +33,8 @@ const GROW_WITH_SIZE: &[Figure] = &[
     ("max_input_speed_rpm", |g| g.max_input_speed_rpm.map(|speed| -speed)),
 ];
 
-/// Numbers that do not decrease with the ratio, within a series and size.
+/// Ratings that do not decrease as the ratio of a gear grows, if series and size are the same: the column, and a
+/// function that gives the value.
 const GROW_WITH_RATIO: &[Figure] = &[
     ("rated_torque_nm", |g| g.rated_torque_nm),
     ("repeated_peak_torque_nm", |g| g.repeated_peak_torque_nm),

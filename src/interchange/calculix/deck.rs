@@ -32,7 +32,7 @@ pub(crate) fn modes(model: &Model) -> usize {
     }
 }
 
-/// The text of the input deck of a model for this analysis.
+/// The text of the input deck for the analysis `step` of a model.
 pub(crate) fn deck(model: &Model, step: Step, heading: &str, gravity_m_s2: &Vector3<f64>) -> String {
     let mut out = format!("*HEADING\n{}\n", heading.replace('\n', " "));
     let mut element = 0;
@@ -129,7 +129,8 @@ fn springs(out: &mut String, model: &Model, step: Step, element: &mut usize) {
     }
 }
 
-/// Writes a spring between a degree of freedom and the ground.
+/// Writes a spring of the given stiffness \[N/m, or N m/rad at a hinge\] between a degree of freedom of a node and the
+/// ground. `element` counts the elements of the deck.
 fn spring(out: &mut String, element: &mut usize, node: usize, direction: usize, stiffness: f64) {
     *element += 1;
     let _ = writeln!(

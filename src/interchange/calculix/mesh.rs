@@ -133,7 +133,7 @@ fn grid(section: &Section) -> Option<Grid> {
     })
 }
 
-/// Coordinates of the outer and inner faces of two opposite walls \[m\].
+/// Coordinates across a tube of the outer and inner faces of two opposite walls, in ascending order \[m\].
 fn walls(outer_m: f64, wall_m: f64) -> Vec<f64> {
     vec![-outer_m / 2.0, wall_m - outer_m / 2.0, outer_m / 2.0 - wall_m, outer_m / 2.0]
 }

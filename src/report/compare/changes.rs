@@ -140,7 +140,7 @@ impl Changes {
             .collect()
     }
 
-    /// The counts and the picks, as text for a terminal.
+    /// The numbers of designs and the picks under both models, as text for a terminal.
     pub(crate) fn to_text(&self) -> String {
         let [stay, leave, enter] = self.counts();
         let mut table = Table::new(vec![

@@ -19,7 +19,7 @@ pub struct Thresholds {
 }
 
 impl Thresholds {
-    /// The limits of a question.
+    /// The limits at which a question is asked.
     pub fn of(&self, question: Question) -> &[f64] {
         match question.limited() {
             Objective::Deflection => &self.deflection_mm,

@@ -196,12 +196,12 @@ impl CampaignPage {
         gallery.page("campaign.html", &self.name, content, &json!({}))
     }
 
-    /// Whether a part of the readings is a whole channel.
+    /// Whether a group of readings is a whole channel, so that its name is one word.
     fn is_channel(part: &Compared) -> bool {
         !part.part.contains([',', ' '])
     }
 
-    /// A picture of the difference between model and readings in each channel.
+    /// A picture of the root mean square of the residuals in each channel, before and after the effects were added.
     fn channels_figure(&self) -> Option<Figure> {
         let channels: Vec<Compared> = self.parts.iter().filter(|p| Self::is_channel(p)).cloned().collect();
         (!channels.is_empty()).then(|| {

@@ -186,7 +186,7 @@ impl Axis {
     }
 }
 
-/// Numbers of designs: on the front of all designs, and not on it.
+/// Numbers of designs among `rows`: on the front of all designs, and only on the front of their group.
 fn counts(rows: &[Row]) -> [usize; 2] {
     let front = rows.iter().filter(|r| r.on_front).count();
     [front, rows.len() - front]

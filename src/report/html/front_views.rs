@@ -28,7 +28,7 @@ pub(crate) struct FrontViews<'a> {
 }
 
 impl FrontViews<'_> {
-    /// The values for the template of this section.
+    /// The values for the part of the page's template that shows the linked views. Pictures are added to `gallery`.
     pub(super) fn context(&self, gallery: &mut Gallery) -> Value {
         let data = &self.data;
         json!({

@@ -103,7 +103,7 @@ impl PickedArm {
         self.worst().map_or(Vec::new(), |s| s.parts)
     }
 
-    /// The values of the card for its template.
+    /// The values for the template of the card that shows this pick. Pictures are added to `gallery`.
     pub(super) fn context(&self, gallery: &mut Gallery) -> Value {
         let (worst, slowest) = (self.worst(), self.slowest());
         let drawing = worst.as_ref().map(|s| gallery.show(&self.drawing(s)));

@@ -52,7 +52,7 @@ fn length(v: &[f64; 3]) -> f64 {
     v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// A picture of the error at each stage of the model.
+/// A picture of the position error (median, mean and largest) at each stage of the model.
 pub(crate) fn steps_figure(steps: &[Step]) -> Option<Figure> {
     let row = |s: &Step| Row {
         label: s.added.clone(),

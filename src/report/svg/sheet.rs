@@ -168,7 +168,7 @@ impl Rect {
             && other.top < self.bottom
     }
 
-    /// The point of the rectangle that is nearest to a given point.
+    /// The point of the rectangle that is nearest to the point (`x`, `y`) \[px\].
     fn nearest(&self, (x, y): (f64, f64)) -> (f64, f64) {
         (x.clamp(self.left, self.right), y.clamp(self.top, self.bottom))
     }
