@@ -44,8 +44,8 @@ impl Bearing {
         })
     }
 
-    /// The bearing of a housed gear as a separate part, for use with a component set. Its mass is the difference
-    /// between the masses of the housed unit and of the component set.
+    /// The bearing of a housed gear as a separate part, for use with a component set. Its mass is the mass of the
+    /// housed unit less the mass of the component set. `None` if one of the two is unknown.
     fn as_part(gear: &Gear) -> Option<Self> {
         let mass_kg = gear.mass_housed_unit_kg? - gear.mass_component_set_kg?;
         Some(Self { mass_kg, ..Self::of_gear(gear, GearMass::HousedUnit)? })

@@ -253,8 +253,8 @@ impl FurtherTwist {
         a * p * p.abs() + b * p.powi(3) + c * p.abs() + d * p * p
     }
 
-    /// Tangent compliance \[rad/(N m)\] of this term at a torque \[N m\]. It is negative where the term makes the
-    /// joint stiffer.
+    /// Tangent compliance \[rad/(N m)\] of this further term at a torque \[N m\]. It is negative where the term makes
+    /// the joint stiffer.
     pub fn tangent_compliance_rad_per_nm(&self, torque_nm: f64) -> f64 {
         let p = torque_nm / self.torque_nm;
         let ([a, b], [c, d]) = (self.odd_rad, self.even_rad);

@@ -194,8 +194,8 @@ impl LinkPart {
     }
 }
 
-/// The section at the fraction `part` (0 to 1) between two sections of the same shape. `None` if the shapes differ,
-/// or if sections of this shape cannot taper.
+/// The section at the fraction `part` of the way (0 to 1) from the section `from` to the section `to`. `None` if their
+/// shapes differ, or if sections of this shape cannot taper.
 fn between(from: &Section, to: &Section, part: f64) -> Option<Section> {
     let mix = |a: f64, b: f64| a + (b - a) * part;
     match (*from, *to) {

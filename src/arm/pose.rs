@@ -11,9 +11,9 @@ use serde_json::{Map, Value, json};
 /// How a driven joint moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Motion {
-    /// It turns about its axis; poses have its angle \[deg\].
+    /// The joint turns about its axis; poses have its angle \[deg\].
     Turns,
-    /// It slides along its axis; poses have its travel \[mm\].
+    /// The joint slides along its axis; poses have its travel \[mm\].
     Slides,
 }
 

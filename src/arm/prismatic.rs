@@ -62,11 +62,11 @@ impl Moves {
 /// Rotational stiffnesses of a guide, as moment per tilt \[N m/rad\]; `None` means rigid about this axis.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Guide {
-    /// Stiffness in roll, about the travel.
+    /// Stiffness in roll, about the travel \[N m/rad\].
     pub roll_nm_per_rad: Option<f64>,
-    /// Stiffness in pitch, about the y axis of the section frame whose x axis is the travel.
+    /// Stiffness in pitch, about the y axis of the section frame whose x axis is the travel \[N m/rad\].
     pub pitch_nm_per_rad: Option<f64>,
-    /// Stiffness in yaw, about the z axis of the same section frame.
+    /// Stiffness in yaw, about the z axis of the same section frame \[N m/rad\].
     pub yaw_nm_per_rad: Option<f64>,
 }
 

@@ -39,8 +39,8 @@ pub struct Structure {
 pub struct FrameCompliance(pub Matrix3<f64>);
 
 impl FrameCompliance {
-    /// The compliance as rotational springs in series about its principal axes. Each item is the axis in the frame
-    /// and the compliance about it \[rad/(N m)\]; axes without compliance are left out.
+    /// This compliance as rotational springs in series about its principal axes. Each item is an axis in the frame and
+    /// the compliance about it \[rad/(N m)\]. Axes without compliance are left out.
     pub fn springs(&self) -> Vec<(Vector3<f64>, f64)> {
         if self.0 == Matrix3::zeros() {
             return Vec::new();
@@ -106,9 +106,9 @@ impl JointPiece {
 /// How the angle of a joint follows from the pose.
 #[derive(Debug, Clone, PartialEq)]
 pub enum JointAngle {
-    /// It is the entry of the pose with this index.
+    /// The angle is the entry of the pose with this index.
     Driven(usize),
-    /// It is a sum of factors times entries of the pose. Each item is the index of the entry and its factor.
+    /// The angle is a sum of factors times entries of the pose. Each item is the index of the entry and its factor.
     Coupled(Vec<(usize, f64)>),
 }
 

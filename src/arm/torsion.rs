@@ -76,8 +76,8 @@ fn open(b: f64, h: f64, t: f64) -> f64 {
 const ODD_FIFTH_POWERS: f64 = 1.004_523_762_795_139_5;
 const ODD: [f64; 5] = [1.0, 3.0, 5.0, 7.0, 9.0];
 
-/// Torsion constant `J` of a solid bar of sides b, h \[m\] \[m⁴\]. The sum over n⁻⁵ is taken exactly and only `1 -
-/// tanh` is summed as a series, which converges after few terms.
+/// Torsion constant `J` of a solid bar of sides b, h \[m\] \[m⁴\]. The sum over n⁻⁵ is taken exactly and only
+/// `1 - tanh` is summed as a series, which converges after few terms.
 fn bar_constant(b: f64, h: f64) -> f64 {
     let (b, h) = (b.min(h), b.max(h));
     let rest: f64 = ODD.iter().map(|n| 2.0 / (n.powi(5) * (libm::exp(n * PI * h / b) + 1.0))).sum();

@@ -69,7 +69,6 @@ impl EfficiencyPoint {
 impl Catalogs {
     /// Efficiency of `gear` at rated torque and at an input speed \[rpm\], interpolated between the points of the
     /// gear's own curve.
-    /// curve.
     ///
     /// `None` if the catalog has no curve of this gear, or if the speed is outside the curve. The caller may then
     /// use [`Gear::efficiency`] (at 2000 rpm) and should say so. The four HFUC sizes 14 to 25 at 100:1 have a
@@ -80,7 +79,6 @@ impl Catalogs {
 
     /// Factor on the efficiency at rated torque for another torque, which is the fraction `torque_over_rated` of the
     /// rated torque. It is interpolated between points.
-    /// between points.
     ///
     /// `None` if the catalog has no factor of this series, or if the fraction is outside its range (0.1 to 1 in the
     /// built-in file).

@@ -34,7 +34,6 @@ impl Gear {
     /// The numbers that the row of the gear leaves blank and that must be known before the gear can be chosen for a
     /// joint. `mass` says which mass is needed, of the component set or of the housed unit. Empty if every check of the
     /// gear can be made.
-    /// if every check of the gear can be made.
     ///
     /// ```
     /// use armwright::catalog::{Catalogs, GearMass};

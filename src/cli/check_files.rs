@@ -156,8 +156,8 @@ fn kind_of(value: &Value) -> Option<&'static str> {
     best.1
 }
 
-/// Checks a cases file with the `arm.json` of the same folder. If there is none, only the entries of the poses are
-/// compared with those of the first pose.
+/// Checks the cases file `document` against the arm file `arm.json` in the same folder. If there is none, the poses are
+/// only compared with the first pose: all must have entries for the same joints.
 fn check_cases(document: Document, path: &Path, catalogs: &Catalogs) -> Result<(), Problem> {
     let beside = folder_of(path).join("arm.json");
     let arm: Option<Arm> = if beside.is_file() { Some(read_arm(&beside, catalogs)?) } else { None };

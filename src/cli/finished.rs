@@ -210,7 +210,7 @@ impl Finished<'_> {
         })
     }
 
-    /// Computes the supplements that the user asked for, and adds their files.
+    /// Computes the supplements that the user asked for, such as near designs, and adds their files to `beside`.
     ///
     /// # Errors
     /// The user stopped the computation.
@@ -232,7 +232,8 @@ impl Finished<'_> {
         Ok(supplements)
     }
 
-    /// Makes the tables, the picture, the summary and the page. Returns the contents of `run.json`.
+    /// Makes the tables, the picture, the summary and the page, and adds them to `beside`. Returns the contents of
+    /// `run.json`.
     fn fill(&self, summary: &SummaryInput, supplements: &[Supplement], beside: &mut Beside) -> Value {
         for (file, of) in self.file_names().iter().zip(&self.outcome.by_material) {
             if !of.ties_listed {
@@ -463,7 +464,7 @@ pub(super) fn pretty(value: &Value) -> Vec<u8> {
     serde_json::to_vec_pretty(value).expect("a value of numbers and strings serializes")
 }
 
-/// A count as a JSON number. Above 2^64 it is rounded to a floating-point number.
+/// A count as a JSON number. From 2^64 on it is rounded to a floating-point number.
 fn count(n: u128) -> Value {
     u64::try_from(n).map_or_else(|_| json!(n as f64), |n| json!(n))
 }

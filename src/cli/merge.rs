@@ -296,7 +296,7 @@ impl Found {
     }
 }
 
-/// A word in the form that a POSIX shell reads as this word: in quotes if needed.
+/// A word as it must be written in a POSIX shell to be read unchanged: in quotes if it has special characters.
 pub(super) fn shell_word(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+%@".contains(c);
     match !word.is_empty() && word.chars().all(is_plain) {

@@ -34,7 +34,7 @@ pub(super) struct Progress {
 }
 
 impl Progress {
-    /// The state of an exhaustive search after so many designs. It knows its front only at its end.
+    /// The state of an exhaustive search that has visited `designs` designs. Its front is known only at its end.
     fn visited(designs: u64) -> Self {
         Self { designs, gap: None, front_size: None, boxes_open: None }
     }

@@ -94,8 +94,8 @@ impl ResultFolder {
         Ok(foreign.into_iter().map(|(name, _)| name).collect())
     }
 
-    /// Removes the saved states of unfinished searches. They are kept if the user stopped the search, or if its
-    /// result could not be written.
+    /// Removes the saved states of unfinished searches when a search has ended as `end` says. They are kept if the user
+    /// stopped the search, or if its result could not be written.
     ///
     /// # Errors
     /// A saved state cannot be removed.

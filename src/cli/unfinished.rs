@@ -118,7 +118,8 @@ impl Unfinished {
         Resume { from: self.from.as_deref(), keeper: self }
     }
 
-    /// The time at which the search would have started if this process had done all of it.
+    /// The time at which the search would have started if this process had done all of it. The time of earlier
+    /// processes is thus counted.
     pub(super) fn started(&self) -> Instant {
         self.started.checked_sub(self.earlier).unwrap_or(self.started)
     }
@@ -148,7 +149,7 @@ impl KeepState for Unfinished {
     }
 }
 
-/// The line of JSON and the state in the bytes of a file; `None` if the file is damaged.
+/// The line of JSON and the saved state, taken from the bytes of a file; `None` if the file is damaged.
 fn parts(bytes: &[u8]) -> Option<(Value, &[u8])> {
     let end = bytes.iter().position(|byte| *byte == b'\n')?;
     let head: Value = serde_json::from_slice(&bytes[..end]).ok()?;

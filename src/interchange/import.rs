@@ -200,7 +200,7 @@ struct Walk<'t> {
 }
 
 impl<'t> Walk<'t> {
-    /// Begins a link of the arm with a URDF link and the side branches that hang on it.
+    /// Begins a link of the arm with the URDF link `link` and the side branches that hang on it.
     fn begin(&mut self, link: &str) {
         self.start_m = self.at.translation.vector;
         self.name = self.free_name(link);

@@ -195,8 +195,8 @@ fn actuators(xml: &mut Xml, snapshot: &Snapshot, motors: &BTreeMap<String, Motor
     xml.close();
 }
 
-/// Writes the pose of the case twice: with all springs undeflected, for the comparison of frequencies and torques,
-/// and deflected.
+/// Writes the pose of the case as two keyframes. In the first all springs are undeflected, for the comparison of
+/// frequencies and torques; in the second they are deflected by the load of the case.
 fn keyframes(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
     let pose_rad: Vec<f64> = snapshot.case.pose_deg.iter().map(|deg| deg.to_radians()).collect();
     let angle = |name: &str| {

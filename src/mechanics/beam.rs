@@ -195,7 +195,8 @@ impl PreparedBeam {
         self.line.densities()
     }
 
-    /// The Gauss points (0 to 1), each with its weight times the length of the link \[m\].
+    /// The Gauss points of the link (0 at its root, 1 at its end), each with its weight times the length of the link
+    /// \[m\].
     pub(crate) fn quadrature(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         GAUSS.iter().map(|&(xi, weight)| (xi, weight * self.length_m))
     }
@@ -230,8 +231,8 @@ impl PreparedBeam {
         DMatrix::from_fn(fields.ncols(), fields.ncols(), |i, j| fields.column(i).dot(&weighted.column(j)))
     }
 
-    /// Displacement of the centre of gravity of a body per unit of root translation, root rotation and each strain
-    /// coordinate, in the section frame.
+    /// Displacement of the centre of gravity of a body on the link, per unit of root translation, root rotation and
+    /// each strain coordinate, in the section frame.
     pub(crate) fn centre_fields(&self, body: &RigidBody) -> Matrix3xX<f64> {
         let (fields, arm_m) = self.carrier(body);
         let turned = arm_m.cross_matrix() * fields.fixed_rows::<3>(3);
@@ -283,8 +284,8 @@ pub(crate) fn pull_on(
 }
 
 /// Slope `L ∫P_i` and deflection `L² ∬P_i` of a link at `xi` (0 to 1), if its curvature is the Legendre polynomial of
-/// this degree. Both are integrated from the root, where they are zero. The integrals follow from `(2i+1) ∫P_i =
-/// P_(i+1) - P_(i-1)` over `s = 2ξ-1`, with dξ = ds/2.
+/// this degree. Both are integrated from the root, where they are zero. The integrals follow from
+/// `(2i+1) ∫P_i = P_(i+1) - P_(i-1)` over `s = 2ξ-1`, with dξ = ds/2.
 fn shape(degree: usize, xi: f64, length_m: f64) -> (f64, f64) {
     let s = 2.0 * xi - 1.0;
     let integral = |i: usize| match i {

@@ -225,8 +225,8 @@ impl Chain {
         }
     }
 
-    /// Walks from base to tip and collects the elements and bodies. The forces of the springs are inserted on the
-    /// way.
+    /// Walks from base to tip and collects the elements and bodies. `springs` are the forces of the springs, which are
+    /// inserted on the way.
     fn walk(&self, pose_rad: &[f64], springs: Vec<EndLoad>) -> Walk {
         let mut walk = Walk {
             items: Vec::new(),

@@ -128,7 +128,7 @@ pub(crate) struct PlacedLink {
     pub end: Matrix6<f64>,
     /// End coordinates caused by the weight of the bodies on the link.
     pub end_under_bodies: Vector6<f64>,
-    /// End coordinates caused by a net weight of 1 N/m \[1/(N/m)\].
+    /// End coordinates caused by a weight less buoyancy of 1 N per metre of the link \[1/(N/m)\].
     pub end_per_weight: Vector6<f64>,
     /// Sum of `1/λ` over the inner modes with root and end held \[s²\].
     pub inner_trace_s2: f64,
@@ -145,8 +145,9 @@ pub(crate) fn world_to_local(point_m: &Vector3<f64>, frame: &Matrix3<f64>) -> Ma
     out
 }
 
-/// Lower triangular `L` with `L Lᵀ = a`, for a positive semidefinite `a`. Columns of directions without compliance
-/// are zero. Zeros of a block-diagonal matrix stay exactly zero, so planes that do not couple stay uncoupled.
+/// The lower triangular matrix `L` with `L Lᵀ = a`, for a positive semidefinite `a`. Columns of directions without
+/// compliance are zero. Zeros of a block-diagonal matrix stay exactly zero, so planes that do not couple stay
+/// uncoupled.
 fn semidefinite_cholesky(a: &Matrix6<f64>) -> Matrix6<f64> {
     let mut lower = Matrix6::zeros();
     for j in 0..6 {

@@ -22,7 +22,7 @@ pub(crate) trait Lanes:
     fn load(from: &Eight) -> Self;
     /// Writes the eight numbers to memory.
     fn store(self) -> Eight;
-    /// The numbers of a list at eight indices.
+    /// The numbers of the list `from` at the eight indices `at`.
     ///
     /// # Panics
     /// If an index is beyond the end of the list.

@@ -50,7 +50,8 @@ impl Posed<'_> {
         out
     }
 
-    /// Motion of the last frame per unit of every strain coordinate, including the motion by passive joints.
+    /// Motion of the last frame per unit of every strain coordinate, base to tip. The unit of a driving joint includes
+    /// the motion of the passive joints that a linkage turns with it.
     pub fn tip_twists(&self) -> Vec<Twist> {
         let mut twists: Vec<Twist> = self.elements().flat_map(|e| e.twists.iter().copied()).collect();
         for (driver, passive, factor) in self.linked_coordinates() {

@@ -29,7 +29,7 @@ enum Shared<const N: usize> {
 
 /// The inboard pieces of eight chains, in which the chains differ.
 pub(crate) trait Inner<V: Lanes, const N: usize> {
-    /// Adds the pieces to a pass, from the tip inward. If any of them is compliant, the last one must be.
+    /// Adds the inboard pieces to a pass, from the tip inward. If any of them is compliant, the last one must be.
     fn add_to(&self, walk: &mut Walk<V, N>);
 }
 
@@ -77,8 +77,8 @@ impl<const N: usize> Default for Outboard<N> {
 }
 
 impl<const N: usize> Outboard<N> {
-    /// Replaces the shared part by the steps of a chain, tip first. Bodies between two compliant elements are added
-    /// up, and rigid links become bodies, so that a pass has as few steps as possible.
+    /// Replaces the shared part by `steps`, the steps of a chain, tip first. Bodies between two compliant elements are
+    /// added up, and rigid links become bodies, so that a pass has as few steps as possible.
     pub(crate) fn refill<'a>(&mut self, steps: impl Iterator<Item = Step<'a, N>>) {
         self.start = SMatrix::zeros();
         self.steps.clear();
@@ -126,7 +126,8 @@ fn entry<V: Copy, const N: usize>(of: &Inertia<V, N>, i: usize, j: usize) -> V {
     if i >= j { of[i][j] } else { of[j][i] }
 }
 
-/// One pass: computes the apparent inertia from the tip to the base, with one `λ` in each lane.
+/// One pass from the tip to the base for eight chains, with one `λ` in each lane: computes the apparent inertia and
+/// counts negative pivots.
 #[inline(always)]
 pub(crate) fn pass<V: Lanes, const N: usize>(
     outboard: &Outboard<N>,

@@ -73,8 +73,8 @@ impl Posed<'_> {
         1.0 / (largest.sqrt() * TAU)
     }
 
-    /// All modes of small vibrations about a static state, from the eigenvalue problem in flexibility form `C^½ M C^½ ψ
-    /// = ψ/ω²`.
+    /// All modes of small vibrations about a static state, from the eigenvalue problem in flexibility form
+    /// `C^½ M C^½ ψ = ψ/ω²`.
     pub fn solve_modes(&self, statics: &Statics) -> Modes {
         let (a, roots) = self.flexibility_form(statics);
         if roots.is_empty() {
@@ -301,8 +301,9 @@ impl PlaneEnergy {
         }
     }
 
-    /// Adds twice the kinetic energy of one Gauss point of a link, of its translation or of its rotation. A rotation
-    /// counts as in a plane if it is about the normal of the plane.
+    /// Adds twice the kinetic energy of one Gauss point of a link, of its translation or (if `rotation`) of its
+    /// rotation. `rate` is the velocity in the section frame `frame`, `density` the mass or inertia per length. A
+    /// rotation counts as motion in a plane if it is about the normal of the plane.
     fn add_line(
         &mut self,
         frame: &nalgebra::Matrix3<f64>,

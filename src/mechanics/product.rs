@@ -120,7 +120,8 @@ impl LaneWork for Sums<'_> {
     }
 }
 
-/// Adds the products of up to eight rows with `K` columns. In `to`, successive columns start `stride` numbers apart.
+/// Adds the products of up to eight rows of the left factor with `K` columns of the right factor to `to`. In `to`,
+/// successive columns start `stride` numbers apart.
 #[inline(always)]
 fn add_block<V: Lanes, const K: usize>(
     to: &mut [f64],

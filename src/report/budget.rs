@@ -188,8 +188,9 @@ impl PickBudget {
 /// Changes per kilogram below this are rounding errors \[mm/kg or Hz/kg\].
 const NOTHING: f64 = 1e-6;
 
-/// The change of deflection and lowest mode in words: `lowers the deflection by 0.021 mm/kg and raises the mode by 0.40
-/// Hz/kg`. The numbers are rates, because a kilogram may be more than the piece weighs.
+/// The change of deflection and lowest mode in words:
+/// `lowers the deflection by 0.021 mm/kg and raises the mode by 0.40 Hz/kg`. The numbers are rates, because a kilogram
+/// may be more than the piece weighs.
 fn effect(gain: &Gain) -> String {
     let part = |change: f64, what: &str, unit: &str| {
         if change.abs() < NOTHING {
@@ -291,8 +292,8 @@ fn opposed(budgets: &[PickBudget]) -> bool {
     budgets.iter().any(|b| b.bound.is_some_and(|b| b.loads_oppose))
 }
 
-/// The budget as a block of the terminal's summary, within `width` columns: the budget of the knee and the bounds
-/// of all picks.
+/// The stiffness budget as a block of the terminal's summary, within `width` columns: the budget of the knee and the
+/// bounds of all picks.
 pub fn budget_text(budgets: &[PickBudget], width: usize) -> String {
     let Some(pick) = shown(budgets) else { return String::new() };
     let mut out = format!("What one more kilogram buys at each joint and link: {}\n", pick.title());
@@ -308,7 +309,7 @@ pub fn budget_text(budgets: &[PickBudget], width: usize) -> String {
     out
 }
 
-/// The budget as a section of `summary.md`; empty if there is none.
+/// The stiffness budgets of the picks as a section of `summary.md`; empty if there are none.
 pub fn budget_markdown(budgets: &[PickBudget]) -> String {
     if budgets.is_empty() {
         return String::new();
@@ -328,7 +329,7 @@ pub fn budget_markdown(budgets: &[PickBudget]) -> String {
     out
 }
 
-/// The budget as a section of the study page; `None` if there is none.
+/// The stiffness budgets of the picks as a section of the study page; `None` if there are none.
 pub fn budget_extra(budgets: &[PickBudget]) -> Option<PageSection> {
     let mut tables: Vec<(String, Table)> = budgets
         .iter()
@@ -348,7 +349,7 @@ pub fn budget_extra(budgets: &[PickBudget]) -> Option<PageSection> {
     })
 }
 
-/// The budget as the content of `budget.csv`.
+/// The stiffness budgets of the picks as the content of `budget.csv`.
 pub fn budget_csv(budgets: &[PickBudget]) -> String {
     let header = [
         "pick",

@@ -186,8 +186,8 @@ pub fn choices(front: &FrontTable, row: usize) -> Vec<String> {
     marked_choices(front, row, &Caveats::default())
 }
 
-/// The choices of a row in words, as [`choices`] gives them, with the caveats of their parts in brackets: `CFRP
-/// (representative)`, `F11-10 (from memory)`.
+/// The choices of a row in words, as [`choices`] gives them, with the caveats of their parts in brackets:
+/// `CFRP (representative)`, `F11-10 (from memory)`.
 pub fn marked_choices(front: &FrontTable, row: usize, caveats: &Caveats) -> Vec<String> {
     let cell = |name: &str| front.column(name).map(|c| front.rows[row][c].as_str()).filter(|c| !c.is_empty());
     let piece = |column: &String| {

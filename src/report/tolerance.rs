@@ -228,7 +228,8 @@ pub fn percentile(sorted: &[f64], percent: u32) -> f64 {
     sorted[below] + (place - below as f64) * (sorted[above] - sorted[below])
 }
 
-/// [`PERCENTILES`] of tip deflection \[mm\], mass \[kg\] and lowest mode \[Hz\] over some samples.
+/// [`PERCENTILES`] of tip deflection \[mm\], mass \[kg\] and lowest mode \[Hz\] of a design over `samples`, its
+/// objectives in each sample.
 pub fn percentiles(samples: &[Design]) -> [[f64; 3]; 3] {
     Objective::ALL.map(|objective| {
         let mut values: Vec<f64> = samples.iter().map(|d| objective.of(d)).collect();

@@ -184,7 +184,8 @@ impl BearingLimits {
         load.moment_nm + self.flange_offset_m * load.radial_n
     }
 
-    /// Radial force plus the force that is equivalent to the moment: `F_r + 2 M / d_p` \[N\].
+    /// Radial force of a load plus the force that is equivalent to its moment at the bearing's centre:
+    /// `F_r + 2 M / d_p` \[N\].
     #[inline]
     fn across_n(&self, load: &BearingLoad) -> f64 {
         load.radial_n + self.force_per_moment_per_m * self.moment_nm(load)
@@ -215,8 +216,8 @@ impl BearingLimits {
             & (self.dynamic_load_n(&demand.at_rest) <= self.life_n)
     }
 
-    /// The largest factor by which every load may be multiplied so that the bearing still passes its checks. Infinite
-    /// if all loads are zero.
+    /// The largest factor by which every load of `demand` may be multiplied so that the bearing still passes its
+    /// checks. Infinite if all loads are zero.
     pub fn multiple_of(&self, demand: &BearingDemand) -> f64 {
         let times = |limit: f64, asked: f64| if asked > 0.0 { limit / asked } else { f64::INFINITY };
         times(self.running_moment_nm, self.moment_nm(&demand.running))

@@ -77,7 +77,8 @@ impl BlankRatings {
         Self::under(&RATINGS[1], bearing)
     }
 
-    /// The blank ratings of a bearing. `names` are the names of the four ratings in the order of [`RATINGS`].
+    /// The blank ratings of a bearing. `names` are the names under which its four ratings are reported, in the order of
+    /// [`RATINGS`].
     fn under(names: &[&'static str; 4], bearing: Bearing) -> Option<Self> {
         let ratings = bearing.ratings;
         let loads_n = [ratings.static_load_rating_n, ratings.dynamic_load_rating_n];

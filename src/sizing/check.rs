@@ -216,9 +216,9 @@ impl Check {
         }
     }
 
-    /// The margin as a factor on the torque, which makes different checks comparable. A life is proportional to a
-    /// power of the torque (cube for a strain-wave gear, 10/3 for a bearing), so the root of its margin is taken. The
-    /// number of stops does not depend on the torque; its margin is returned as it is. A size that fits does so at
+    /// Margin of the check as a factor on the torque, which makes different checks comparable. A life is proportional
+    /// to a power of the torque (cube for a strain-wave gear, 10/3 for a bearing), so the root of its margin is taken.
+    /// The number of stops does not depend on the torque; its margin is returned as it is. A size that fits does so at
     /// any torque, so its margin is infinite.
     pub fn torque_margin(&self) -> Option<f64> {
         let margin = self.margin()?;

@@ -55,7 +55,7 @@ fn gear_mean(gear: &Gear, demand: &JointDemand) -> Check {
     )
 }
 
-/// L10 life of the gear, L_rated (T_rated / T_mean)^p (n_rated / n_mean), compared with the required life.
+/// Check of the L10 life of the gear: L_rated (T_rated / T_mean)^p (n_rated / n_mean), compared with the required life.
 fn gear_life(gear: &Gear, motion: &JointMotion, demand: &JointDemand) -> Check {
     let life_h = limit::gear_life_h(gear, motion, demand.mean_torque_cubed_nm3);
     let check = check(
@@ -120,7 +120,8 @@ fn motor_peak(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Chec
     )
 }
 
-/// Root mean square of the motor's torque over the cycle, compared with its continuous torque at the cruising speed.
+/// Check of the motor's heat: root mean square of its torque over the cycle, compared with its continuous torque at the
+/// cruising speed.
 fn motor_rms(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check {
     let input_rpm = input_speed_rpm(drive.gear, motion);
     let continuous_nm = motor_curve::continuous_torque_nm(drive.motor, input_rpm);

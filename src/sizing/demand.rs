@@ -246,7 +246,8 @@ pub fn stop_torque_nm(static_torque_nm: f64, linear_torque_nm: f64, stop_factor:
     static_torque_nm + stop_factor * linear_torque_nm
 }
 
-/// Cube of the cubic mean torque \[(N m)³\]: T_mean³ = Σ |T_i|³ n_i t_i / Σ n_i t_i (Eq 18.2 of the vendor).
+/// Cube of the cubic mean torque over a duty cycle \[(N m)³\]: T_mean³ = Σ |T_i|³ n_i t_i / Σ n_i t_i (Eq 18.2 of the
+/// vendor). `weights` are those of the cycle.
 #[inline]
 pub fn cubic_mean_cubed_nm3(weights: MeanTorqueWeights, static_torque_nm: f64, linear_torque_nm: f64) -> f64 {
     let cube = |x: f64| x * x * x;

@@ -72,7 +72,8 @@ impl<V: Lanes> EightLoad<V> {
         Self { moment: self.moment.sqrt() + lever_m * radial, radial, axial_n: self.axial_n }
     }
 
-    /// Radial force plus the force that is equivalent to the moment \[N\], computed as in [`BearingLimits`].
+    /// Radial force plus the force that is equivalent to the moment \[N\], in each lane, computed as in
+    /// [`BearingLimits`].
     #[inline(always)]
     fn across(&self, limits: &BearingLimits) -> V {
         self.radial + V::splat(limits.force_per_moment_per_m) * self.moment_at_centre(limits)
@@ -171,7 +172,8 @@ impl<V: Lanes> Pair<V> {
 }
 
 impl<V: Lanes> EightDemands<V> {
-    /// The demands on a joint with this motion, from static torques \[N m\] and outboard inertias \[kg m²\].
+    /// The demands on a joint with the motion `motion` in eight arms, from their static torques \[N m\] and the
+    /// inertias of everything outboard about the axis \[kg m²\].
     #[inline(always)]
     pub(crate) fn new(motion: &JointMotion, static_torque_nm: V, outboard_inertia_kgm2: V) -> Self {
         let statically = static_torque_nm.abs();
@@ -256,7 +258,6 @@ impl<V: Lanes> EightDemands<V> {
 impl DriveTable<'_> {
     /// For each lane (arm) in the mask `wanted`, the index of the lightest drive that meets its demand, and the bit
     /// mask of the lanes that have such a drive.
-    /// have one.
     ///
     /// The search for the first step of the ladder that may meet a demand begins at `step`, and stores there the step
     /// that it found. Successive demands are similar, so the next search is short.

@@ -101,8 +101,9 @@ pub struct Relaxation {
 }
 
 impl Relaxation {
-    /// The factor on the payload that has the same effect, if the fraction `payload_share` of the torque comes from
-    /// the payload. `None` if speed is reduced, or if even an arm without payload would not meet the limits.
+    /// The factor on the payload that reduces the torque as much as this relaxation does. `payload_share` is the
+    /// fraction of the torque that comes from the payload. `None` if speed is reduced, or if even an arm without
+    /// payload would not meet the limits.
     pub fn payload_factor(&self, payload_share: f64) -> Option<f64> {
         let factor = 1.0 - (1.0 - self.factor) / payload_share;
         (self.kind == RelaxationKind::Torque && factor >= 0.0).then_some(factor)
@@ -268,8 +269,8 @@ impl<'c> DriveTable<'c> {
         Rejection { joint: self.joint().to_string(), part, checks }
     }
 
-    /// The drive whose smallest margin is the largest, among the drives for which every check could be made, and its
-    /// check with the smallest margin.
+    /// The nearest drive and its check with the smallest margin. It is the drive whose smallest margin is the largest,
+    /// among the drives for which every check could be made.
     fn nearest(&self, demand: &JointDemand) -> Option<(Drive<'c>, Check)> {
         let mut best: Option<(f64, Drive<'c>, Check)> = None;
         for drive in self.all_drives().filter(|drive| self.knows_torsion(drive.gear)) {

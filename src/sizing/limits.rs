@@ -316,7 +316,7 @@ pub(super) fn gear_life_cubed_nm3(gear: &Gear, motion: &JointMotion) -> Rating {
     }
 }
 
-/// x^exponent. The first power returns the number itself, without any rounding.
+/// The number `x` raised to the power `exponent`. The first power returns the number itself, without any rounding.
 fn power(x: f64, exponent: f64) -> f64 {
     if exponent == 1.0 { x } else { libm::pow(x, exponent) }
 }

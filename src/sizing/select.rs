@@ -210,7 +210,7 @@ impl<'c> DriveTable<'c> {
         }
     }
 
-    /// Builds the ladder from the legal drives: those that can be the lightest one for some demand.
+    /// Builds the ladder: the legal drives that can be the lightest one for some demand, lightest first.
     fn raise_ladder(&mut self) {
         for (index, limits) in self.limits.iter().enumerate() {
             // a drive is left out if a lighter one has all limits at least as large
@@ -252,7 +252,7 @@ impl<'c> DriveTable<'c> {
         self.bearing.with_gear(gear, self.gear_mass)
     }
 
-    /// Whether the torsion curve of a gear is known, or this joint does not need it.
+    /// Whether the joint does not need the torsion curve of a gear, or the curve of `gear` is known.
     pub(super) fn knows_torsion(&self, gear: &Gear) -> bool {
         !self.needs_torsion || gear.missing_of_torsion().is_empty()
     }

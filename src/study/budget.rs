@@ -159,7 +159,7 @@ impl Shares {
         self.0.iter().find(|(n, _)| n == name).map(|(_, share)| *share)
     }
 
-    /// The row for the bearing of a joint or the guide of a prismatic joint; `None` if it is rigid.
+    /// The row of the budget for the bearing of a joint or the guide of a prismatic joint; `None` if it is rigid.
     fn bearing_row(&self, element: &Element) -> Option<BudgetRow> {
         let piece = match element {
             Element::Joint(joint) => format!("{}.bearing", joint.name),

@@ -87,8 +87,8 @@ pub fn capacity_of(study: &Study, id: Option<&str>, catalogs: &Catalogs) -> Resu
     Ok(capacity(&space, catalogs, arm.slot_options()))
 }
 
-/// The capacity of the design with these options, one for each slot of the arm, tip first. `space` is the space to
-/// which the options belong.
+/// The capacity of the design with these options, one for each slot of the arm (joint or link, in the order in which
+/// the arm is built), tip first. `space` is the space to which the options belong.
 pub(crate) fn capacity(space: &DesignSpace, catalogs: &Catalogs, options: &[u32]) -> Capacity {
     let upright = space.down;
     let at_pose = |&case: &usize| {

@@ -157,8 +157,8 @@ struct Look {
     lacks_ties: bool,
 }
 
-/// Searches for missing designs. It uses the independent bounds of `verify` if they can handle the study, else those
-/// of the exact search.
+/// Searches for designs that are missing from the front. It uses the independent bounds of `verify` if they can handle
+/// the study, else those of the exact search.
 fn look_for_missing(
     study: &Study,
     judge: &Judge,

@@ -42,7 +42,8 @@ pub fn why_infeasible(
     format!("{head}\n  {}", reasons.join("\n  "))
 }
 
-/// The reasons for a space that the exact search does not cover: only its joints can be examined.
+/// The reasons for a space that the exact search does not cover because of `unknown`: joints without a sufficient
+/// drive. Which limits stand in the way is not searched for.
 fn obstacles_alone(without_limits: &DesignSpace, catalogs: &Catalogs, unknown: &str) -> Vec<String> {
     let mut reasons = joint_obstacles(without_limits, catalogs);
     reasons.push(format!(
@@ -85,7 +86,7 @@ fn limits_in_the_way(limited: &Limited) -> Vec<String> {
     reasons
 }
 
-/// A relaxation of limits in words: how much is missing at each limit, and the values that suffice.
+/// In words: how much is missing at each limit of a relaxation, and the values of the limits that suffice.
 fn relaxation_words(relaxation: &Relaxation, constraints: &Constraints) -> String {
     let words = |(quantity, reached): &(Quantity, f64)| {
         let missing = quantity.shortfall_words(constraints, *reached);

@@ -153,7 +153,7 @@ fn easier_sections(
     Err(Box::new(nearest))
 }
 
-/// The reason why no drive of a table meets the demand, in words; `None` if one does.
+/// The reason why no drive of a table meets `demand`, in words; `None` if a drive does.
 pub(crate) fn obstacle_at(table: &DriveTable, demand: &JointDemand) -> Option<String> {
     match table.is_empty() {
         true => Some(no_legal_drive(table, demand)),

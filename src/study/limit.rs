@@ -90,7 +90,8 @@ impl Quantity {
         }
     }
 
-    /// Unit of this quantity in a study file, and the factor from the library's unit to it.
+    /// Unit of this quantity in a study file, and the factor that converts from the library's unit (m, Hz, kg, EUR) to
+    /// it.
     fn unit(self) -> (&'static str, f64) {
         match self {
             Self::Deflection => ("mm", 1e3),

@@ -84,7 +84,8 @@ impl NearFront {
     }
 }
 
-/// The three objectives rounded to twelve digits, as bit patterns. Designs with equal keys count as ties.
+/// The three objectives of a design, rounded to twelve digits, as bit patterns. Designs for which these are equal count
+/// as ties.
 fn key(o: &Objectives) -> [u64; 3] {
     o.minimized().map(|x| rounded(x).to_bits())
 }

@@ -76,6 +76,7 @@ pub fn run_study(
 /// Evaluates the designs of one shard, which is a range of design numbers. Returns the candidates of the shard and the
 /// range. The search continues from the saved state in `resume`, and saves its own states there. `watch` is as in
 /// [`run_study`].
+///
 /// # Errors
 /// A message if the saved state belongs to another search.
 pub fn sweep_shard(
@@ -113,7 +114,7 @@ pub fn sweep_shard(
 /// Time between two checks whether the state of a search is due to be saved.
 const LOOK_EVERY: Duration = Duration::from_millis(10);
 
-/// Evaluates the candidates of a sweep by the full model and finds the fronts.
+/// Evaluates the candidates of a sweep (a search that visits every design) by the full model and finds the fronts.
 pub fn judge_swept(study: &Study, problem: &ArmProblem, outcome: SweepOutcome) -> StudyOutcome {
     // a design may be a candidate of two fronts, and is evaluated once
     let all = outcome.groups.iter().flatten().chain(&outcome.front).map(|c| c.number);
@@ -289,7 +290,8 @@ pub fn run_exact(
     searched_by(&search, study, catalogs, extent, watch)
 }
 
-/// The same as [`run_exact`], but the search continues from the state in `resume`, and saves its own states there.
+/// Runs an exact search as [`run_exact`] does, but continues from the state in `resume`, and saves its own states
+/// there.
 ///
 /// # Errors
 /// A message if the saved state belongs to another search.
@@ -329,7 +331,8 @@ pub(super) fn judge(problem: &ArmProblem, candidates: &[Candidate]) -> Front {
     front_of(&by_full_model(problem, candidates.iter().map(|c| c.number).collect()), candidates)
 }
 
-/// Evaluates the designs with these numbers with the full model, each once. Infeasible designs are left out.
+/// Evaluates the designs with the given numbers by the full model, each once. Designs that it finds infeasible are left
+/// out.
 pub(super) fn by_full_model(problem: &ArmProblem, mut numbers: Vec<u128>) -> HashMap<u128, Evaluated> {
     numbers.sort_unstable();
     numbers.dedup();

@@ -73,8 +73,8 @@ impl WorstPose {
         if by.is_finite() { by } else { 0.0 }
     }
 
-    /// The entry of `run.json` for this objective. `unit` is the unit in the keys, and `of_unit` the factor from the
-    /// library's unit to it.
+    /// The worst pose for one objective, as an entry of `run.json`. `unit` is the unit in the names of keys, and
+    /// `of_unit` the factor from the library's unit to it.
     fn to_json(&self, driven: &[DrivenJoint], unit: &str, of_unit: f64) -> Value {
         let mut out = Map::new();
         out.insert(format!("judged_{unit}"), json!(of_unit * self.judged));

@@ -59,7 +59,8 @@ impl Turn {
         Self { low_deg: low_mm, high_deg: high_mm, is_full: false, degree }
     }
 
-    /// The value in the range that is nearest to `angle_deg`, rounded to tenths of a degree, or an end of the range.
+    /// The value in the range that is nearest to `angle_deg`, rounded to tenths of a degree (or of a millimetre, for a
+    /// travel), or an end of the range.
     fn within(self, angle_deg: f64) -> f64 {
         let turned = match self.is_full {
             // the upper end is kept, because 180 reads better than -180
@@ -197,7 +198,8 @@ impl PoseRanges {
         out
     }
 
-    /// The largest difference between two poses in a joint that influences the score \[deg\].
+    /// The largest difference between the poses `one` and `other` in a joint that influences the score \[deg\]. A
+    /// travel is converted to degrees.
     fn apart_deg(&self, one: &Scored, other: &Scored) -> f64 {
         let apart = |&joint: &usize| {
             let by = (one.pose_deg[joint] - other.pose_deg[joint]).abs();

@@ -58,8 +58,8 @@ impl Limited<'_> {
         }
     }
 
-    /// The relaxations that admit a design, each of as few limits as possible. The flag is false if time ran out
-    /// before all were tried.
+    /// The relaxations (sets of limits with changed values) that admit a design, each of as few limits as possible. The
+    /// flag is false if time ran out before all were tried.
     pub(super) fn relaxations(&self) -> (Vec<Relaxation>, bool) {
         let limits = Quantity::limited(&self.space.constraints);
         let mut is_all = true;

@@ -130,7 +130,8 @@ impl Stream {
         ((self.generator.next_u64() >> 11) + 1) as f64 / (1u64 << 53) as f64
     }
 
-    /// The next factor. Its logarithm is a normally distributed number, by the method of Box and Muller.
+    /// The next random factor on the rating. Its logarithm is a normally distributed number, by the method of Box and
+    /// Muller.
     fn factor(&mut self) -> f64 {
         let (radius, angle) = ((-2.0 * libm::log(self.uniform())).sqrt(), TAU * self.uniform());
         libm::exp(self.sigma * radius * libm::cos(angle))

@@ -105,7 +105,7 @@ impl Effect {
 }
 
 impl Arm {
-    /// The effects that describe a test and not the product. `analyze` and studies leave them out.
+    /// The effects of this arm that describe a test and not the product. `analyze` and studies leave them out.
     pub fn ignored_effects(&self) -> Vec<&Effect> {
         self.effects.iter().filter(|e| e.is_of_test()).collect()
     }

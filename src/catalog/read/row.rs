@@ -112,8 +112,8 @@ impl<'a> Row<'a> {
         self.cell(column).filter(|text| !text.is_empty())
     }
 
-    /// The columns that are listed as unverified. `all` and `all except ...` stand for the filled cells with
-    /// properties of the part.
+    /// The columns of this row that are listed as unverified. In the list, `all` and `all except ...` stand for the
+    /// filled cells with properties of the part.
     fn unverified_fields(&self) -> Vec<String> {
         let (all, named) = column_list(self.text("unverified_fields"));
         if !all {
@@ -262,8 +262,8 @@ fn did_you_mean(word: &str, known: &[&str]) -> String {
     closest(word, known).map(|near| format!("did you mean \"{near}\"? ")).unwrap_or_default()
 }
 
-/// A list of columns: whether it begins with `all`, and the columns that it names (after `all except`, if it begins
-/// so).
+/// What a list of columns in a cell says: whether it begins with `all`, and the columns that it names (after
+/// `all except`, if it begins so).
 fn column_list(text: &str) -> (bool, Vec<&str>) {
     let mut words = text.split([' ', ',', ';']).filter(|w| !w.is_empty()).peekable();
     let all = words.next_if_eq(&"all").is_some();

@@ -43,7 +43,8 @@ const GROW_WITH_RATIO: &[Figure] = &[
     ("k2_nm_per_rad", |g| g.k2_nm_per_rad),
 ];
 
-/// Warns of gears that break the trend of their series, and of curves that disagree with the rated efficiency.
+/// Warns of gears whose ratings break the trend of their series, and of efficiency curves that disagree with the rated
+/// efficiency.
 pub(crate) fn check(catalogs: &Catalogs, log: &Log) {
     let by_size = families(&catalogs.gears, |g| g.ratio, |g| f64::from(g.size));
     let by_ratio = families(&catalogs.gears, |g| f64::from(g.size), |g| g.ratio);

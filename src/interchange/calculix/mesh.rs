@@ -164,7 +164,7 @@ fn cells(y_m: Vec<f64>, z_m: Vec<f64>, has: impl Fn(usize, usize) -> bool + 'sta
     }
 }
 
-/// A grid around a round tube. The second direction goes from the outside to the inside.
+/// A grid around a round tube. The first direction goes around the tube, the second from the outside to the inside.
 fn ring(diameter_m: f64, wall_m: f64) -> Grid {
     Grid {
         bricks: (ROUND, 1),

@@ -32,9 +32,9 @@ pub struct Compared {
     pub part: String,
     /// Number of measured values.
     pub count: usize,
-    /// Root mean square with the model as given.
+    /// Root mean square of the residuals with the model as given, after calibration \[standard deviations\].
     pub before: f64,
-    /// Root mean square with the effects found.
+    /// Root mean square of the residuals with the effects that were found \[standard deviations\].
     pub after: f64,
 }
 
@@ -211,7 +211,8 @@ impl CampaignPage {
         })
     }
 
-    /// Pictures that locate the difference: by load, branch, mode and bench joint; by joint angle; by pose.
+    /// Pictures that show where the model and the readings differ: by load, branch, mode and bench joint; by joint
+    /// angle; by pose.
     fn located_figures(&self) -> Vec<Figure> {
         let of_part = |p: &&Compared| !Self::is_channel(p) && !p.part.starts_with("pose");
         let mut parts: Vec<Compared> = self.parts.iter().filter(of_part).cloned().collect();

@@ -206,7 +206,7 @@ pub(crate) fn objective_column(objective: Objective) -> &'static str {
     }
 }
 
-/// Names of the columns of choices that every table has, in the order of the first table.
+/// Names of the columns with choices that the tables of all designs have, in the order of the first table.
 fn choice_columns<'a>(rows: &[Row<'a>]) -> Vec<&'a str> {
     let Some(first) = rows.first() else { return Vec::new() };
     let end = first.table.column("tip_deflection_mm").unwrap_or(0);
@@ -323,8 +323,8 @@ fn sampled<'a>(rows: &[Row<'a>], room: usize, kept: &[String]) -> Vec<Row<'a>> {
     by_mass(front.into_iter().chain(own).collect())
 }
 
-/// At most `room` of the designs. Named designs and those at the edge of a view are kept, the others are taken at
-/// even steps in the order of mass.
+/// At most `room` of the designs `rows`. Designs named in `kept` and those at the edge of a view stay; the others are
+/// taken at even steps in the order of mass.
 fn thinned<'a>(rows: Vec<Row<'a>>, room: usize, kept: &[String]) -> Vec<Row<'a>> {
     if rows.len() <= room {
         return rows;
