@@ -161,7 +161,7 @@ impl LinkPiece {
 /// A straight tube of constant section.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Beam {
-    /// Elastic properties and density.
+    /// Elastic properties and density of the material.
     pub material: LinkMaterial,
     /// Cross-section.
     pub section: Section,

@@ -101,8 +101,8 @@ impl<'r> Watch<'r> {
         Self { started, record, log }
     }
 
-    /// Looks at a search again and again until `finished` is set, and records `now`, its state, at each look. Each
-    /// time, `see` is called with the elapsed time to show the progress.
+    /// Looks at a search again and again until `finished` is set. Each time, `see` is called with the elapsed time to
+    /// show the progress, and `now`, the state of the search, is added to the record if a line is due.
     fn look(&self, finished: &AtomicBool, now: impl Fn() -> Progress, mut see: impl FnMut(Duration)) {
         let (mut next, mut last_gap) = (Duration::ZERO, None);
         while !finished.load(Ordering::Relaxed) {

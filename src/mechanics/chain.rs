@@ -340,7 +340,8 @@ impl Walk {
         self.frames.push(ElementFrame { at_m: self.at_m, rotation: self.rotation, hinge });
     }
 
-    /// Adds a link, preceded by the compliance of the frame at its root.
+    /// Adds a link; the compliance of the frame at its root comes before it. `piece` is the index of the link in the
+    /// chain.
     fn link(&mut self, piece: usize, link: &LinkPiece, beam: Option<&PreparedBeam>) {
         self.frame(&link.name, &link.root_frame);
         let vector = self.rotation * link.vector_m;

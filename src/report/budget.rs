@@ -228,7 +228,8 @@ const FULL: [&str; 9] = [
 const NARROW: [&str; 9] =
     ["piece", "mass kg", "% of tip", "mm/kg", "Hz/kg", "", "next: kg", "mm/kg", "Hz/kg"];
 
-/// The stiffness budget of a pick as a table with these headers. A column with an empty header is left out.
+/// The stiffness budget of a pick as a table, with `headers` as the headers of its columns. A column with an empty
+/// header is left out.
 fn budget_table(pick: &PickBudget, headers: [&str; 9]) -> Table {
     let shown: Vec<usize> = (0..headers.len()).filter(|&i| !headers[i].is_empty()).collect();
     let words = |i: usize| i == 0 || i == 5;

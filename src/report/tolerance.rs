@@ -55,7 +55,7 @@ pub struct Scattered {
 }
 
 impl Scattered {
-    /// The results as CSV, one row per design of the front.
+    /// The results of the front under scatter as CSV, one row per design of the front.
     pub fn to_csv(&self) -> String {
         let mut columns = vec![
             "design_id".to_string(),
@@ -149,7 +149,7 @@ impl Scattered {
         }
     }
 
-    /// The results as a section of the page.
+    /// The results of the front under scatter, as a section of the page.
     pub fn section(&self) -> PageSection {
         let mut words = self.sentences();
         words.push("Parts are not sized again, and only designs of this front are compared.".into());
@@ -161,7 +161,7 @@ impl Scattered {
         }
     }
 
-    /// The results as a section of `summary.md`.
+    /// The results of the front under scatter, as a section of `summary.md`.
     pub fn to_markdown(&self) -> String {
         let lines: Vec<String> = self.sentences().iter().map(|s| format!("- {s}\n")).collect();
         format!(
@@ -171,7 +171,7 @@ impl Scattered {
         )
     }
 
-    /// The results for `run.json`.
+    /// The results of the front under scatter, as an entry of `run.json`.
     pub fn to_json(&self) -> Value {
         let scatter: serde_json::Map<String, Value> =
             self.parts.iter().map(|(name, part)| ((*name).to_string(), json!(part))).collect();

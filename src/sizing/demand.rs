@@ -141,7 +141,8 @@ impl JointMotion {
         self.stated.map_or([0.0; 2], |stated| [stated.peak_torque_nm, stated.mean_torque_cubed_nm3])
     }
 
-    /// The demand on a joint with known static and linear torque \[N m\]. Their signs do not matter.
+    /// The demand on a joint with this motion, whose static and linear torque \[N m\] are known. The signs of the
+    /// torques do not matter.
     #[inline]
     pub fn demand_of_torques(&self, static_torque_nm: f64, linear_torque_nm: f64) -> JointDemand {
         let static_torque_nm = static_torque_nm.abs();

@@ -85,8 +85,8 @@ impl DutyCycle {
         weights
     }
 
-    /// Weights of the squares of the motor's torque: the fraction of the cycle's time that each kind of phase takes.
-    /// A cycle of zero duration counts as standing still.
+    /// Weights of the squared torques in the mean square of the motor's torque: the fraction of the cycle's time that
+    /// each kind of phase takes. A cycle of zero duration counts as standing still.
     pub fn heat_weights(&self) -> HeatWeights {
         let total_s: f64 = self.phases.iter().map(|p| p.duration_s).sum();
         if total_s <= 0.0 {

@@ -15,7 +15,7 @@ pub(super) fn gear_fits(gear: &Gear, fit: &FitRequirement, room: &LinkRoom) -> i
         .flatten()
 }
 
-/// The checks of the sizes of a motor, and of the length of motor and gear together.
+/// The checks of the diameter and the bore of a motor, and of the length of motor and gear together.
 pub(super) fn motor_fits(
     drive: &Drive,
     fit: &FitRequirement,

@@ -166,7 +166,7 @@ impl StatedHeat {
         torque + 2.0 * inertia_s2 * mixed + inertia_s2 * inertia_s2 * self.acceleration_rad2_s4
     }
 
-    /// These sums if every acceleration is multiplied by `factor`.
+    /// The sums of this duty if every acceleration of the joint is multiplied by `factor`.
     fn slowed(self, factor: f64) -> Self {
         Self {
             mixed_nm_rad_s2: self.mixed_nm_rad_s2.map(|x| x * factor),

@@ -32,7 +32,7 @@ pub struct BallastFlags {
     front: usize,
 }
 
-/// Name of the file that lists these designs.
+/// Name of the file that lists the designs with ballast.
 pub(crate) const FILE: &str = "ballast.csv";
 
 const COLUMNS: [&str; 13] = [
@@ -52,7 +52,7 @@ const COLUMNS: [&str; 13] = [
 ];
 
 /// Finds the designs of a front that have a heavy part only for its weight. None are reported for a study with linkages
-/// or springs, where the torque on a joint is not known here.
+/// or springs, because the effect of extra weight on the joint torques is not known here.
 pub fn ballast_flags(problem: &ArmProblem, front: &Front) -> BallastFlags {
     // with linkages the torque on a driving joint is not known here, and with springs extra weight may also unload a
     // joint

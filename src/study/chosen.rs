@@ -102,9 +102,9 @@ fn middle(problem: &ArmProblem) -> Vec<u32> {
     out
 }
 
-/// The option nearest in mass to the median option that meets the link's own limits, or the median option if none does.
-/// `by_mass` lists the options of the link `piece` from the lightest to the heaviest; `outboard` are the options chosen
-/// outboard of it.
+/// The option that is nearest to the median one in the order of mass and meets the link's own limits, or the median
+/// option if none does. `by_mass` lists the options of the link `piece` from the lightest to the heaviest; `outboard`
+/// are the options chosen outboard of it.
 fn nearest_to_median(problem: &ArmProblem, outboard: &[u32], piece: usize, by_mass: &[u32]) -> u32 {
     let median = by_mass.len() / 2;
     let mut order: Vec<usize> = (0..by_mass.len()).collect();

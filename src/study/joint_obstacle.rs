@@ -125,6 +125,9 @@ pub(crate) fn first_fit_at(problem: &ArmProblem, outboard: &[u32], piece: usize)
 
 /// Sections with which the joint at which the arm is `stuck` gets a drive, so that the arm can be built further inward.
 /// Starting from `sections`, one link at a time is given each of its sections.
+///
+/// # Errors
+/// If there are no such sections: the demand for which the nearest drive has the largest margin.
 fn easier_sections(
     problem: &ArmProblem,
     sections: &[u32],

@@ -153,7 +153,7 @@ fn watched<T>(watch: impl FnOnce(&AtomicBool) + Send, work: impl FnOnce() -> T) 
 /// The result of an exact search.
 #[derive(Debug, Clone)]
 pub struct ExactStudy {
-    /// The study, reduced to the link options that occur in the designs found. Its tables are then small.
+    /// The study, reduced to the link options that occur in the designs found.
     pub study: Study,
     /// The fronts. Those of single materials are searched only if the front of all designs is whole.
     pub outcome: StudyOutcome,

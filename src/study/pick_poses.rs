@@ -161,7 +161,8 @@ impl PicksInPoses {
         self.ranges.iter().map(|(joint, _, _)| joint.clone()).collect()
     }
 
-    /// A sentence for each pick and each objective that is worse than in the judged cases by more than the threshold.
+    /// A sentence for each pick and each objective (deflection, lowest mode) that is worse in some pose than in the
+    /// judged cases by more than [`WORSE`].
     fn worse(&self) -> Vec<String> {
         let driven = self.driven();
         let of_pick = |of: &PickPoses| {

@@ -45,12 +45,12 @@ pub(crate) fn gear(row: &Row) -> Option<Gear> {
     })
 }
 
-/// The kind of a row. A blank cell means a strain-wave gear.
+/// The kind of gear that a row describes. A blank cell means a strain-wave gear.
 fn kind(row: &Row) -> GearKind {
     GearKind::from_word(row.text("kind")).unwrap_or(GearKind::StrainWave)
 }
 
-/// The life equation of a row. Blank cells are filled with the values of its kind.
+/// The life equation of the gear that a row describes. Blank cells are filled with the values of its kind.
 fn life(row: &Row, kind: GearKind) -> LifeLaw {
     let usual = LifeLaw::usual(kind);
     LifeLaw {

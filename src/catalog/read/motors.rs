@@ -5,7 +5,7 @@ use super::row::Row;
 use crate::catalog::motor::{Motor, MotorKind};
 use std::f64::consts::PI;
 
-/// The motor of a row; `None` if its name, type or source is blank or not valid.
+/// The motor that a row describes; `None` if its name, type or source is blank or not valid.
 pub(crate) fn motor(row: &Row) -> Option<Motor> {
     check(row);
     Some(Motor {

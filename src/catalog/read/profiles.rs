@@ -4,7 +4,7 @@ use super::row::Row;
 use crate::catalog::profile::{Profile, ProfileShape};
 use std::f64::consts::PI;
 
-/// The profile of a row; `None` if its name, shape, source or a dimension is blank or not valid.
+/// The profile that a row describes; `None` if its name, shape, source or a dimension is blank or not valid.
 pub(crate) fn profile(row: &Row) -> Option<Profile> {
     check(row);
     Some(Profile {

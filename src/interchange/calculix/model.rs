@@ -224,7 +224,8 @@ impl Builder<'_> {
         out
     }
 
-    /// Adds a link as a mesh, or as a rigid body if it cannot deform.
+    /// Adds a link as a mesh of bricks, or as a rigid body if it cannot deform or cannot be meshed. `own` has its mass
+    /// and its place.
     fn link(&mut self, element: &ElasticElement, own: &OwnMass) {
         let link = self.snapshot.link(own.piece).cloned();
         let flexible = link.as_ref().and_then(|link| {

@@ -162,8 +162,8 @@ fn sentence(question: Question, limit: f64, answers: &[Answer]) -> String {
     capital(&(out + "."))
 }
 
-/// What the reference front, which cannot win, reaches for this question, as words. Empty if it is no better than the
-/// winner.
+/// Words on the answer of the reference front, which cannot win, to the question: the value that it reaches. Empty if
+/// this is no better than the value of `winner`.
 fn mixed(question: Question, winner: &Design, answers: &[Answer]) -> String {
     let sought = question.sought();
     let better = |a: &&Answer| {

@@ -13,7 +13,7 @@ const WIDTH: usize = 80;
 const LABEL: usize = 24;
 
 impl Comparison {
-    /// A table of the best values of each front.
+    /// A table of the best value of each objective that each front reaches, without any limit.
     pub fn reach_table(&self) -> Table {
         reach_table(&self.reach, &self.labels())
     }

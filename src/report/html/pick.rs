@@ -421,7 +421,7 @@ const CHECKS: [CheckKind; 22] = [
     CheckKind::DriveLength,
 ];
 
-/// A drive as JSON: torques, parts and the margin of every check.
+/// The sizing of one joint for the template: torques, parts and the margin of every check.
 fn drive(row: &JointSizingRow) -> Value {
     let number = |v: f64| significant(v, 4);
     let open = |v: Option<f64>| v.map_or("unknown".to_string(), number);
