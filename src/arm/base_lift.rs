@@ -13,13 +13,15 @@ pub struct BaseLift {
 }
 
 impl BaseLift {
-    /// Tilt about a horizontal axis under the moment about it \[rad\].
+    /// Tilt of the base about a horizontal axis \[rad\] under the moment about this axis \[N m\]. It is zero up to the
+    /// preload.
     pub fn angle_rad(&self, moment_nm: f64) -> f64 {
         let beyond_nm = (moment_nm.abs() - self.preload_nm).max(0.0);
         (beyond_nm / self.stiffness_nm_per_rad).copysign(moment_nm)
     }
 
-    /// The same relation of tilt and moment as a torsion curve. Its first two segments are rigid.
+    /// The tilt as a function of the moment, written as the torsion curve of a gear, so that code for gears can use it.
+    /// The first two segments are rigid; the third begins at the preload.
     pub(crate) fn as_windup(&self) -> Windup {
         Windup {
             k1_nm_per_rad: f64::INFINITY,

@@ -29,7 +29,8 @@ pub struct Bearing {
 }
 
 impl Bearing {
-    /// The bearing inside a gear of the catalog; `None` for a component set, which has none.
+    /// The bearing inside a gear of the catalog; `None` for a component set, which has no bearing. `which` says whether
+    /// the gear is bought as a housed unit or as a component set.
     ///
     /// A number that the catalog does not have stays unknown. A bearing of unknown tilting stiffness is taken as
     /// rigid.
@@ -43,8 +44,8 @@ impl Bearing {
         })
     }
 
-    /// The bearing of a housed gear as a separate part, for use with a component set. Its mass is the difference
-    /// between the masses of the housed unit and of the component set.
+    /// The bearing of a housed gear as a separate part, for use with a component set. Its mass is the mass of the
+    /// housed unit less the mass of the component set. `None` if one of the two is unknown.
     fn as_part(gear: &Gear) -> Option<Self> {
         let mass_kg = gear.mass_housed_unit_kg? - gear.mass_component_set_kg?;
         Some(Self { mass_kg, ..Self::of_gear(gear, GearMass::HousedUnit)? })
@@ -55,7 +56,7 @@ impl Bearing {
         self.tilt_stiffness_nm_per_rad.map_or(0.0, |stiffness| 1.0 / stiffness)
     }
 
-    /// The same bearing with its tilting stiffness multiplied by a factor.
+    /// This bearing with its tilting stiffness multiplied by `factor`. A rigid bearing stays rigid.
     pub(crate) fn stiffened(self, factor: f64) -> Self {
         Self { tilt_stiffness_nm_per_rad: self.tilt_stiffness_nm_per_rad.map(|k| k * factor), ..self }
     }
@@ -86,7 +87,7 @@ impl Bearing {
         })
     }
 
-    /// The bearing of a housed gear that a file names.
+    /// The bearing of the housed gear whose name is the value of `node`. Faults if the catalogs have no such gear.
     fn named(node: &Node, catalogs: &Catalogs) -> Option<Self> {
         let gear = match catalogs.gear(node.string()?) {
             Ok(gear) => gear,
@@ -103,7 +104,7 @@ impl Bearing {
         })
     }
 
-    /// The bearing as files write it.
+    /// The bearing as an arm file writes it: an object of stiffness, ratings, mass and lever.
     pub(crate) fn to_json(self) -> Value {
         json!({
             "tilt_stiffness_nm_per_rad": self.tilt_stiffness_nm_per_rad,
@@ -127,7 +128,8 @@ pub enum BearingSource {
 }
 
 impl BearingSource {
-    /// The output bearing of the joint if it has this gear; `None` if it has no bearing.
+    /// The output bearing of the joint if `gear` is its gear, bought as `which` says (housed unit or component set).
+    /// `None`: the joint has no bearing.
     pub fn with_gear(&self, gear: &Gear, which: GearMass) -> Option<Bearing> {
         match self {
             BearingSource::OfGear => Bearing::of_gear(gear, which),
@@ -135,7 +137,8 @@ impl BearingSource {
         }
     }
 
-    /// The bearing that the file states; `None` if it states none, or if the gear decides.
+    /// The bearing that the file states. `None` if the file states that there is none, or if the bearing comes from the
+    /// gear.
     pub fn stated(&self) -> Option<Bearing> {
         match self {
             BearingSource::OfGear => None,

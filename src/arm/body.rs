@@ -42,7 +42,7 @@ impl RigidBody {
         Some((Self { mass_kg: mass_kg?, cg_m: cg_m?, inertia_kgm2: inertia_kgm2? }, rotates?))
     }
 
-    /// The body as files write it.
+    /// The body as files write it: mass, centre of gravity, and the inertia tensor as three rows.
     pub(crate) fn to_json(self) -> Value {
         let rows: Vec<Vec<f64>> =
             self.inertia_kgm2.row_iter().map(|row| row.iter().copied().collect()).collect();
@@ -60,12 +60,12 @@ pub struct JointBodies {
 }
 
 impl JointBodies {
-    /// Mass of all bodies \[kg\].
+    /// Mass of all bodies of the joint \[kg\].
     pub fn mass_kg(&self) -> f64 {
         total_kg(&self.fixed) + total_kg(&self.rotating)
     }
 
-    /// All bodies; those outboard of the springs come last.
+    /// All bodies of the joint: first those inboard of the springs, then those outboard.
     pub fn iter(&self) -> impl Iterator<Item = &RigidBody> {
         self.fixed.iter().chain(&self.rotating)
     }
@@ -75,7 +75,8 @@ impl JointBodies {
         self.to_json_that("rotates")
     }
 
-    /// The bodies as files write them, with the key `moves` set to true for those outboard of the springs.
+    /// The bodies as files write them. `moves` is the key (`rotates` or `travels`) that is true for bodies outboard of
+    /// the springs. `None` if there are no bodies.
     pub(crate) fn to_json_that(&self, moves: &str) -> Option<Value> {
         let rotating = self.rotating.iter().map(|body| {
             let mut value = body.to_json();
@@ -108,7 +109,8 @@ pub(crate) fn read_prismatic_bodies(object: &Object) -> Option<JointBodies> {
     read_bodies_that(object, &PRISMATIC_BODY, "travels")
 }
 
-/// Reads bodies. Those with the key `moves` set to true are outboard of the springs.
+/// Reads the key `bodies` of a joint, whose keys are those of `shape`. Bodies in which the key named by `moves` is true
+/// are outboard of the springs.
 fn read_bodies_that(object: &Object, shape: &Shape, moves: &str) -> Option<JointBodies> {
     let mut out = JointBodies::default();
     for (body, is_outboard) in read(object, shape, moves)? {

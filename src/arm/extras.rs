@@ -38,7 +38,8 @@ pub enum ExtrasSource {
     Stated(Extras),
 }
 
-/// Mass of the housing relative to the mass of the parts in it: 20 % over 65 %.
+/// Mass of the housing relative to the mass of the parts that it contains: 20 % over 65 %, from published fractions of
+/// the mass of a joint.
 const HOUSING_SHARE: f64 = 0.31;
 /// Mass of the brake relative to the mass of motor and component set: 10 % over 65 %.
 const BRAKE_SHARE: f64 = 0.15;
@@ -108,7 +109,7 @@ impl Extras {
         .rounded()
     }
 
-    /// The masses rounded to the gram, so that printed masses and computed masses are equal.
+    /// These masses rounded to the gram, so that the masses that are printed are those that are computed with.
     fn rounded(self) -> Self {
         let gram = |kg: f64| (kg * 1e3).round() / 1e3;
         Self {
@@ -139,7 +140,7 @@ impl Extras {
         })
     }
 
-    /// The extras as files write them.
+    /// The masses as an arm file writes them, one key for each mass.
     pub(crate) fn to_json(self) -> Value {
         json!({
             "housing_kg": self.housing_kg,
@@ -161,7 +162,8 @@ impl ExtrasSource {
         cable_kg: 0.0,
     });
 
-    /// The extras of a joint with this gear and motor.
+    /// The extras of a joint with this gear and motor: estimated from both, or as the file states them. `which` says
+    /// which mass of the gear counts, component set or housed unit.
     pub fn with_parts(&self, gear: &Gear, motor: &Motor, which: GearMass) -> Extras {
         match self {
             ExtrasSource::Usual => Extras::usual(gear, motor, which),
@@ -169,7 +171,8 @@ impl ExtrasSource {
         }
     }
 
-    /// The extras that the file states; all zero if they are estimated from the parts.
+    /// The extras that the file states. All masses are zero if the file leaves them to be estimated from gear and
+    /// motor.
     pub fn stated(&self) -> Extras {
         match self {
             ExtrasSource::Usual => Extras::default(),

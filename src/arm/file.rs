@@ -64,7 +64,7 @@ pub fn read_arm_document(document: Document, catalogs: &Catalogs) -> Result<Arm,
     document.finish(arm)
 }
 
-/// Reads an arm from a node of a larger document.
+/// Reads an arm from the object `node`, which may be a part of a larger document.
 pub(crate) fn arm(node: &Node, catalogs: &Catalogs) -> Option<Arm> {
     let root = node.shaped(&ARM)?;
     let name = root.or("name", "arm".to_string(), |n| n.string().map(String::from));
@@ -81,7 +81,8 @@ pub(crate) fn arm(node: &Node, catalogs: &Catalogs) -> Option<Arm> {
     Some(arm)
 }
 
-/// Reads the springs of an arm, and adds its counterweights as bodies to the elements that carry them.
+/// Reads the springs of an arm from `root`, and adds its counterweights as bodies to the elements of `chain` that carry
+/// them.
 fn read_balance(root: &Object, chain: &mut [Element]) -> Option<Vec<Spring>> {
     let named: Vec<Named> = chain.iter().map(|e| (e.name(), matches!(e, Element::Joint(_)))).collect();
     let (springs, counterweights) = (read_springs(root, &named), read_counterweights(root, &named));
@@ -143,7 +144,7 @@ fn read_chain(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> 
     Some(read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect())
 }
 
-/// The problem of an element without a known type, and the advice how to mend it.
+/// Fault of an element whose type is missing or unknown: the problem, and the advice how to mend it.
 pub(crate) const NO_TYPE: (&str, &str) = (
     "has no \"type\" of \"joint\", \"prismatic\" or \"link\"",
     "add \"type\": \"joint\" (it turns), \"prismatic\" (it slides) or \"link\"",
@@ -269,7 +270,8 @@ fn gear_windup(gear: &Gear, node: &Node) -> Option<Windup> {
     })
 }
 
-/// The mass of a joint \[kg\]: the number that the file states, else gear plus motor from the catalog, else zero.
+/// The mass of a joint \[kg\]: the number that the file states, else the masses of gear and motor from the catalog. It
+/// is zero if the file names neither.
 pub(crate) fn read_joint_mass(object: &Object, catalogs: &Catalogs) -> Option<f64> {
     let which = read_gear_mass(object)?;
     if let Some(mass) = object.optional("mass_kg") {
@@ -342,7 +344,7 @@ fn read_parameters(node: &Node) -> Option<Vec<(String, Vec<f64>)>> {
     read.into_iter().collect()
 }
 
-/// The number by which a channel is stored, read from the channel's word.
+/// The number that stands for a measuring channel in the list of parameters, read from the word for the channel.
 fn read_channel(node: &Node) -> Option<f64> {
     let word = node.string()?;
     match Channel::from_word(word) {

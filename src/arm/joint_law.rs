@@ -31,8 +31,8 @@ pub struct Segment {
 }
 
 impl Windup {
-    /// A curve with the same slope in all segments. The break points are arbitrary, because the slope does not change
-    /// there.
+    /// A torsion curve with the same stiffness in all three segments. The break points are arbitrary, because the slope
+    /// does not change there.
     pub fn straight(stiffness_nm_per_rad: f64) -> Self {
         let k = stiffness_nm_per_rad;
         Self { k1_nm_per_rad: k, k2_nm_per_rad: k, k3_nm_per_rad: k, t1_nm: 1.0, t2_nm: 2.0 }
@@ -72,13 +72,14 @@ impl Windup {
         }
     }
 
-    /// Whether the curve is at least as stiff as another one at every torque up to `most_nm` \[N m\].
+    /// Whether the tangent stiffness of this curve is at least that of `other` at every torque up to `most_nm` \[N m\].
+    /// Both change only at break points, so only these are compared.
     pub fn never_softer(&self, other: &Self, most_nm: f64) -> bool {
         let starts = [0.0, self.t1_nm, self.t2_nm, other.t1_nm, other.t2_nm];
         starts.into_iter().all(|t| t > most_nm || self.slope_beyond(t) >= other.slope_beyond(t))
     }
 
-    /// Tangent stiffness just above a torque \[N m/rad\].
+    /// Tangent stiffness just above `torque_nm`, where the next segment begins if this is a break point \[N m/rad\].
     fn slope_beyond(&self, torque_nm: f64) -> f64 {
         match torque_nm {
             t if t < self.t1_nm => self.k1_nm_per_rad,
@@ -87,7 +88,7 @@ impl Windup {
         }
     }
 
-    /// The curve with all stiffnesses multiplied by a factor. The break points stay.
+    /// This curve with all three stiffnesses multiplied by `factor`. The break points stay.
     #[must_use]
     pub fn stiffened(&self, factor: f64) -> Self {
         Self {
@@ -149,7 +150,7 @@ impl Curve {
         }
     }
 
-    /// The curve with all stiffnesses multiplied by a factor. The break points stay.
+    /// This curve with all of its stiffnesses multiplied by `factor`. The break points stay.
     #[must_use]
     pub fn stiffened(&self, factor: f64) -> Curve {
         match self {
@@ -160,8 +161,8 @@ impl Curve {
         }
     }
 
-    /// The curve as three segments. They have equal stiffness if the curve is a straight line. `None` for a rigid
-    /// joint.
+    /// The curve written as three segments, which have equal stiffness if the curve is a straight line. `None` for a
+    /// rigid joint.
     pub fn as_windup(&self) -> Option<Windup> {
         match *self {
             Curve::Rigid => None,
@@ -176,7 +177,8 @@ impl Curve {
         }
     }
 
-    /// The curve that a calculation with this joint model uses.
+    /// This curve, simplified to what a calculation with the joint model `model` uses: only the slope K2, all three
+    /// segments, or three segments with K1 in vibrations.
     pub fn reduced(&self, model: JointModel) -> Curve {
         match model {
             JointModel::K2 => self.middle_slope(),
@@ -188,7 +190,8 @@ impl Curve {
         }
     }
 
-    /// The curve of the paper's model: the single stiffness K2 of a gear.
+    /// The curve of the paper's model: a straight line with the stiffness K2 of the gear. Rigid and straight curves are
+    /// returned as they are.
     pub fn middle_slope(&self) -> Curve {
         match self {
             Curve::Windup(windup) | Curve::WindupK1(windup) => Curve::Linear(windup.k2_nm_per_rad),
@@ -243,15 +246,15 @@ pub struct FurtherTwist {
 }
 
 impl FurtherTwist {
-    /// Angle \[rad\] that this term adds under the total torque \[N m\].
+    /// Angle of torsion \[rad\] that this further term adds under the total torque on the joint \[N m\].
     pub fn angle_rad(&self, torque_nm: f64) -> f64 {
         let p = torque_nm / self.torque_nm;
         let ([a, b], [c, d]) = (self.odd_rad, self.even_rad);
         a * p * p.abs() + b * p.powi(3) + c * p.abs() + d * p * p
     }
 
-    /// Tangent compliance \[rad/(N m)\] of this term at a torque \[N m\]. It is negative where the term makes the
-    /// joint stiffer.
+    /// Tangent compliance \[rad/(N m)\] of this further term at a torque \[N m\]. It is negative where the term makes
+    /// the joint stiffer.
     pub fn tangent_compliance_rad_per_nm(&self, torque_nm: f64) -> f64 {
         let p = torque_nm / self.torque_nm;
         let ([a, b], [c, d]) = (self.odd_rad, self.even_rad);
@@ -303,8 +306,8 @@ impl From<Curve> for JointLaw {
 }
 
 impl JointLaw {
-    /// The law at an angle of the joint \[rad\]. Before this call, a law whose compliance varies with the angle
-    /// stands for its mean over all angles.
+    /// This law with the compliance that it has at the joint angle `angle_rad`. Needed if the compliance varies with
+    /// the angle: the law itself then has the mean over all angles.
     #[must_use]
     pub fn at_angle(&self, angle_rad: f64) -> Self {
         if self.waves == [0.0; 4] {
@@ -358,7 +361,8 @@ impl JointLaw {
         }
     }
 
-    /// Whether the joint has lost motion, friction play or a further term in addition to its torsion curve.
+    /// Whether the joint has lost motion, friction play or a further angle found in readings, in addition to its
+    /// torsion curve.
     pub fn has_play(&self) -> bool {
         self.lost_motion.is_some() || self.hysteresis_rad > 0.0 || self.further.is_some()
     }
@@ -386,9 +390,9 @@ impl JointLaw {
         (compliance > 0.0).then(|| 1.0 / compliance)
     }
 
-    /// Angle of torsion \[rad\] at a torque \[N m\], given the state of the friction play, which is updated. The
-    /// state is a torque \[N m\] that follows the torque on the joint; the two differ by at most the spring stiffness
-    /// times the half width.
+    /// Angle of torsion \[rad\] at a torque \[N m\], with friction play. `state` is what the play remembers of earlier
+    /// torques, and is updated. It is a torque \[N m\] that follows the torque on the joint; the two differ by at most
+    /// the spring stiffness times the half width.
     pub fn play_angle_rad(&self, torque_nm: f64, state: &mut f64) -> f64 {
         let angle = self.angle_rad(torque_nm);
         let Some(stiffness) = self.play_stiffness_nm_per_rad() else { return angle };
@@ -397,7 +401,8 @@ impl JointLaw {
         angle + (*state - torque_nm) / stiffness
     }
 
-    /// State of the friction play \[N m\] after the torque has risen from rest to `torque_nm`.
+    /// The state of the friction play \[N m\], for [`play_angle_rad`](Self::play_angle_rad), after the torque has risen
+    /// from rest to `torque_nm`.
     pub fn play_at_rest_nm(&self, torque_nm: f64) -> f64 {
         torque_nm
             - sense(torque_nm) * self.play_stiffness_nm_per_rad().unwrap_or_default() * self.hysteresis_rad

@@ -18,7 +18,7 @@ impl JointTorque {
         self.offset_nm + self.sin_nm * sin + self.cos_nm * cos
     }
 
-    /// The difference of two torques: this one minus `other`.
+    /// The difference between two torques as functions of the angle: this torque minus `other`.
     pub fn beyond(&self, other: &Self) -> Self {
         Self {
             offset_nm: self.offset_nm - other.offset_nm,

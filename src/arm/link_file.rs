@@ -48,8 +48,8 @@ pub(super) fn read_link(object: &Object, materials: &[NamedMaterial], catalogs: 
 /// Name under which the equivalent material of a section with stated stiffnesses is listed.
 const STATED_MATERIAL: &str = "(stated stiffness)";
 
-/// Reads a tube with its section. The material is read from the object `of_material`: the tube itself, or the link
-/// that contains it.
+/// Reads a tube with its section, from the object `object`. The material is read from the object `of_material`, which
+/// is the same object, or the link that contains it.
 pub(super) fn read_tube(
     (object, of_material): (&Object, &Object),
     section: &Node,

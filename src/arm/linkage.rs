@@ -2,7 +2,7 @@
 
 use super::structure::{JointAngle, Piece, Structure};
 
-/// The connection of a passive joint to one of the joints that drive it.
+/// The connection between a passive joint and one of the joints that drive it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Linkage {
     /// Name of the driving joint.

@@ -122,7 +122,7 @@ impl Water {
         })
     }
 
-    /// Reads a water object. If it gives no density of the payload, that of steel is taken.
+    /// Reads a water object. If it gives no density of the payload, the density of steel is taken.
     pub fn read(node: &Node) -> Option<Self> {
         let object = node.shaped(&WATER)?;
         let density_kg_m3 = object.required("density_kg_m3").and_then(|n| n.positive());
@@ -151,7 +151,7 @@ pub(crate) fn vector(node: &Node) -> Option<Vector3<f64>> {
     node.numbers::<3>().map(Vector3::from)
 }
 
-/// Reads one of the words of an enumeration.
+/// Reads a word that stands for one of the values of the enumeration `T`.
 pub(crate) fn word<T: Words>(node: &Node) -> Option<T> {
     let text = node.string()?;
     T::from_word(text)

@@ -85,7 +85,7 @@ pub trait Words: Sized + Copy + 'static {
     /// All values with their words.
     const WORDS: &'static [(&'static str, Self)];
 
-    /// The value of a word; `None` if no value has this word.
+    /// The value that is written as `word`; `None` if no value of the enumeration is.
     fn from_word(word: &str) -> Option<Self> {
         Self::WORDS.iter().find(|(w, _)| *w == word).map(|(_, v)| *v)
     }
@@ -253,8 +253,8 @@ impl Element {
     }
 }
 
-/// Largest number of joints and links of an arm. The time for modes grows with the third power of this number; 2000
-/// take seconds.
+/// Largest number of joints and links of an arm. The time for modes grows with the third power of this number; an arm
+/// of 2000 elements takes seconds.
 pub(crate) const MOST_ELEMENTS: usize = 2_000;
 
 impl Arm {
@@ -363,7 +363,7 @@ impl Arm {
 }
 
 impl Joint {
-    /// Mass of gear, motor, bearing and extras \[kg\]. It is a point on the axis.
+    /// Mass of gear, motor, bearing and extras \[kg\]. It is a point mass on the axis.
     pub fn total_mass_kg(&self) -> f64 {
         self.mass_kg + self.bearing.map_or(0.0, |bearing| bearing.mass_kg) + self.extras.total_kg()
     }

@@ -17,7 +17,7 @@ use nalgebra::Vector3;
 /// Number of links into which a taper is divided.
 const SLICES: usize = 12;
 
-/// Number of elements that an item of a chain in the file becomes.
+/// Number of elements of the arm that one item of the chain in the file becomes. A link with pieces becomes several.
 pub(crate) fn elements_of(item: &Node) -> usize {
     match item.value().get("pieces").and_then(|pieces| pieces.as_array()) {
         Some(pieces) => pieces.iter().map(|piece| slices(piece.get("end_section").is_some())).sum(),
@@ -47,7 +47,8 @@ impl Factors {
         self == Self { stiffness: 1.0, mass: 1.0 }
     }
 
-    /// Multiplies moduli and density of a tube by the factors, and appends the factors to the name of its material.
+    /// The tube with its moduli and its density multiplied by the factors. The factors are appended to the name of its
+    /// material, so that they show wherever the material is printed.
     fn apply(self, body: LinkBody) -> LinkBody {
         match body {
             LinkBody::Tube { material_name, material, section } if !self.is_none() => LinkBody::Tube {
@@ -71,8 +72,8 @@ pub(crate) fn without_factors(material_name: &str) -> &str {
     material_name.split(MARK).next().unwrap_or(material_name)
 }
 
-/// A remark on links whose moduli and density have stated factors; `None` if there are none. Each item of `tubes` is
-/// the name of the material and the name of the link.
+/// A sentence for reports that names the links whose moduli and density have stated factors; `None` if there are none.
+/// Each item of `tubes` is the name of the material and the name of the link.
 pub(crate) fn factors_sentence<'a>(tubes: impl Iterator<Item = (&'a str, &'a str)>) -> Option<String> {
     let stated: Vec<&str> =
         tubes.filter(|(material, _)| material.contains(MARK)).map(|(_, link)| link).collect();
@@ -106,7 +107,7 @@ pub(crate) fn read_links(
     Some(vec![Link { body: factors.apply(link.body), ..link }])
 }
 
-/// One piece of a link: its length \[m\], its tube (with the section at the start), and its section at the end if it
+/// One piece of a link: length \[m\], tube with the section at the start, and the section at the end if the piece
 /// tapers.
 struct LinkPart {
     length_m: f64,
@@ -177,7 +178,7 @@ fn read_part(
 }
 
 impl LinkPart {
-    /// Length \[m\] and tube of every slice of this piece.
+    /// Length \[m\] and tube of each slice into which this piece of a link is divided, from its root to its end.
     fn slices(&self) -> Vec<(f64, LinkBody)> {
         let count = slices(self.end_section.is_some());
         let middle = |slice: usize| (slice as f64 + 0.5) / count as f64;
@@ -193,8 +194,8 @@ impl LinkPart {
     }
 }
 
-/// The section at the fraction `part` (0 to 1) between two sections of the same shape. `None` if the shapes differ,
-/// or if sections of this shape cannot taper.
+/// The section at the fraction `part` of the way (0 to 1) from the section `from` to the section `to`. `None` if their
+/// shapes differ, or if sections of this shape cannot taper.
 fn between(from: &Section, to: &Section, part: f64) -> Option<Section> {
     let mix = |a: f64, b: f64| a + (b - a) * part;
     match (*from, *to) {
@@ -221,8 +222,8 @@ fn between(from: &Section, to: &Section, part: f64) -> Option<Section> {
     }
 }
 
-/// The links of the slices, one after the other. Each body goes to the slice that is nearest to its centre of
-/// gravity.
+/// The links that the slices of a link become, one after the other. `along` is the direction of the link, and each
+/// slice has a length \[m\] and a tube. Each body goes to the slice that is nearest to its centre of gravity.
 fn one_behind_the_other(
     name: &str,
     along: &Vector3<f64>,

@@ -11,9 +11,9 @@ use serde_json::{Map, Value, json};
 /// How a driven joint moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Motion {
-    /// It turns about its axis; poses have its angle \[deg\].
+    /// The joint turns about its axis; poses have its angle \[deg\].
     Turns,
-    /// It slides along its axis; poses have its travel \[mm\].
+    /// The joint slides along its axis; poses have its travel \[mm\].
     Slides,
 }
 
@@ -26,7 +26,7 @@ impl Motion {
         }
     }
 
-    /// Converts an entry of a pose to radians or metres.
+    /// Converts an entry of a pose from degrees to radians, or from millimetres to metres.
     pub fn si(self, entry: f64) -> f64 {
         match self {
             Motion::Turns => entry.to_radians(),
@@ -91,7 +91,7 @@ pub(crate) fn pose_example(driven: &[DrivenJoint]) -> String {
     format!("\"pose\": {{{}}}", entries.join(", "))
 }
 
-/// The pose that is given by keys and values. Joints that are not named stay at 0.
+/// The pose that is given by keys such as `j2_deg` and their values. Joints that are not named stay at 0.
 ///
 /// # Errors
 /// The key that belongs to no joint, with advice what to write.
@@ -110,7 +110,7 @@ pub(crate) fn pose_of_keys<'a>(
     Ok(pose)
 }
 
-/// Advice what to write in place of a key that belongs to no joint.
+/// Advice what to write instead of `key`, a key in a pose that belongs to no joint.
 fn unknown_key(key: &str, driven: &[DrivenJoint], keys: &[String]) -> String {
     // the name of a joint with a wrong unit, or without any unit
     let stem = key.rsplit_once('_').filter(|(_, unit)| matches!(*unit, "deg" | "mm" | "m" | "rad"));

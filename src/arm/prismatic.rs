@@ -30,9 +30,9 @@ pub struct Prismatic {
     pub guide: Guide,
     /// Whether a carriage or a ram travels.
     pub moves: Moves,
-    /// Mass that travels \[kg\]. It is a point at the moved point, outboard of all springs.
+    /// Mass that travels \[kg\]. It is a point mass at the moved point, outboard of all springs.
     pub mass_kg: f64,
-    /// Mass that stays where the joint begins \[kg\]. It is a point inboard of all springs.
+    /// Mass that stays where the joint begins \[kg\]. It is a point mass inboard of all springs.
     pub fixed_mass_kg: f64,
     /// Rigid bodies on the joint. Bodies that stay are measured from where the joint begins, bodies that travel from
     /// the moved point.
@@ -62,11 +62,11 @@ impl Moves {
 /// Rotational stiffnesses of a guide, as moment per tilt \[N m/rad\]; `None` means rigid about this axis.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Guide {
-    /// Stiffness in roll, about the travel.
+    /// Stiffness in roll, about the travel \[N m/rad\].
     pub roll_nm_per_rad: Option<f64>,
-    /// Stiffness in pitch, about the y axis of the section frame whose x axis is the travel.
+    /// Stiffness in pitch, about the y axis of the section frame whose x axis is the travel \[N m/rad\].
     pub pitch_nm_per_rad: Option<f64>,
-    /// Stiffness in yaw, about the z axis of the same section frame.
+    /// Stiffness in yaw, about the z axis of the same section frame \[N m/rad\].
     pub yaw_nm_per_rad: Option<f64>,
 }
 
@@ -83,7 +83,7 @@ impl Guide {
         Vector3::from(self.stiffnesses().map(|k| k.map_or(0.0, |k| 1.0 / k)))
     }
 
-    /// The same guide with its stiffnesses multiplied by a factor.
+    /// This guide with all three stiffnesses multiplied by `factor`.
     #[must_use]
     pub fn stiffened(self, factor: f64) -> Self {
         let [roll_nm_per_rad, pitch_nm_per_rad, yaw_nm_per_rad] =

@@ -30,7 +30,7 @@ pub struct LinkMaterial {
 }
 
 impl LinkMaterial {
-    /// The material with E and G multiplied by a factor.
+    /// This material with E and G multiplied by `factor`. Density and Poisson's ratio stay.
     #[must_use]
     pub fn stiffened(&self, factor: f64) -> LinkMaterial {
         LinkMaterial {
@@ -87,8 +87,8 @@ pub enum Section {
     Stated(StatedSection),
 }
 
-/// A section given by its stiffnesses and its mass. Its geometric properties follow together with a fictitious
-/// [`material`](Self::material).
+/// A section given by its stiffnesses and its mass. Its area and second moments of area are computed such that, with a
+/// fictitious [`material`](Self::material), stiffnesses and mass are as stated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StatedSection {
     /// Outer width \[m\], used for pictures, buoyancy and the lever of a bearing.
@@ -205,7 +205,7 @@ impl Section {
         }
     }
 
-    /// If the wall of a tube fills the whole section, the solid bar that it then is; else the section itself.
+    /// The section itself, or the solid bar that a tube is if its wall fills the whole section.
     #[must_use]
     pub fn closed(self) -> Section {
         if matches!(self, Section::IBeam { .. } | Section::Stated(_)) {

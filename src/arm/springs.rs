@@ -66,7 +66,7 @@ pub struct SpringLaw {
     pub force_n: f64,
     /// Stiffness \[N/m\].
     pub stiffness_n_per_m: f64,
-    /// Length at which the stiffness adds nothing to the force \[m\].
+    /// Length at which the force is `force_n`, because the stiffness adds nothing to it \[m\].
     pub free_length_m: f64,
 }
 
@@ -143,7 +143,8 @@ pub enum Drawn {
 const NO_LENGTH_M: f64 = 1e-9;
 
 impl Spring {
-    /// Length and force, or torque, of the spring in a pose; `None` if an element to which it is fixed is missing.
+    /// Length and force of the spring in a pose, or its torque. `frames` are the frames of the elements in this pose,
+    /// base to tip. `None` if an element to which the spring is fixed is missing.
     pub(crate) fn drawn(&self, frames: &[ElementFrame]) -> Option<Drawn> {
         match &self.kind {
             SpringKind::Line { ends, law } => {
@@ -159,7 +160,8 @@ impl Spring {
         }
     }
 
-    /// Forces and moments that the spring puts on the arm in a pose. The force on a point of the world is left out.
+    /// Forces and moments that the spring puts on the arm in a pose. `frames` are the frames of the elements, base to
+    /// tip. A force on a point of the world is left out, because it does not load the arm.
     fn loads(&self, frames: &[ElementFrame]) -> Vec<EndLoad> {
         match (&self.kind, self.drawn(frames)) {
             (SpringKind::Line { ends, .. }, Some(Drawn::Line { length_m, force_n, ends_m })) => {
@@ -188,7 +190,7 @@ impl Spring {
         }
     }
 
-    /// The parts of the arm on which the spring acts, whatever the pose.
+    /// The parts of the arm on which the spring acts. They are the same in every pose.
     pub(crate) fn sides(&self) -> Vec<Side> {
         match &self.kind {
             SpringKind::Line { ends, .. } => ends.iter().filter_map(SpringEnd::side).collect(),
@@ -216,7 +218,8 @@ impl Spring {
 }
 
 impl SpringEnd {
-    /// Position of the end in the world \[m\]; `None` if the chain has no such element.
+    /// Position of this end in the world \[m\]; `None` if the chain has no such element. `frames` are the frames of the
+    /// elements in the pose, base to tip.
     fn at_m(&self, frames: &[ElementFrame]) -> Option<Vector3<f64>> {
         match self.on {
             SpringPlace::World | SpringPlace::Base => Some(self.point_m),
@@ -236,7 +239,7 @@ impl SpringEnd {
     }
 }
 
-/// Forces and moments that the springs put on the arm in a pose.
+/// Forces and moments that all springs put on the arm in a pose. `frames` are the frames of the elements, base to tip.
 pub(crate) fn end_loads(springs: &[Spring], frames: &[ElementFrame]) -> Vec<EndLoad> {
     springs.iter().flat_map(|spring| spring.loads(frames)).collect()
 }

@@ -69,7 +69,7 @@ fn read_line(object: &Object, elements: &[Named]) -> Option<SpringKind> {
     Some(SpringKind::Line { ends: [from, to], law: law? })
 }
 
-/// Reads force and stiffness of a spring between two points. At least one of them must be given.
+/// Reads the law of a spring between two points. Force or stiffness must be given, or both.
 fn read_law(object: &Object) -> Option<SpringLaw> {
     let (has_force, has_stiffness) = (object.has("force_n"), object.has("stiffness_n_per_m"));
     if !has_force && !has_stiffness {
@@ -143,7 +143,7 @@ fn read_counterweight(node: &Node, elements: &[Named]) -> Option<(usize, RigidBo
     Some((at?, RigidBody { mass_kg: mass_kg?, cg_m: cg_m?, inertia_kgm2: Matrix3::zeros() }))
 }
 
-/// The list of bodies of an element, to which a counterweight is added.
+/// The list of bodies of one element of the chain. A counterweight on the element is added to it.
 pub(crate) enum BodiesOf<'a> {
     /// The bodies of a joint.
     Joint(&'a mut JointBodies),

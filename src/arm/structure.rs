@@ -39,8 +39,8 @@ pub struct Structure {
 pub struct FrameCompliance(pub Matrix3<f64>);
 
 impl FrameCompliance {
-    /// The compliance as rotational springs in series about its principal axes. Each item is the axis in the frame
-    /// and the compliance about it \[rad/(N m)\]; axes without compliance are left out.
+    /// This compliance as rotational springs in series about its principal axes. Each item is an axis in the frame and
+    /// the compliance about it \[rad/(N m)\]. Axes without compliance are left out.
     pub fn springs(&self) -> Vec<(Vector3<f64>, f64)> {
         if self.0 == Matrix3::zeros() {
             return Vec::new();
@@ -106,9 +106,9 @@ impl JointPiece {
 /// How the angle of a joint follows from the pose.
 #[derive(Debug, Clone, PartialEq)]
 pub enum JointAngle {
-    /// It is the entry of the pose with this index.
+    /// The angle is the entry of the pose with this index.
     Driven(usize),
-    /// It is a sum of factors times entries of the pose. Each item is the index of the entry and its factor.
+    /// The angle is a sum of factors times entries of the pose. Each item is the index of the entry and its factor.
     Coupled(Vec<(usize, f64)>),
 }
 
@@ -161,7 +161,7 @@ impl LinkPiece {
 /// A straight tube of constant section.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Beam {
-    /// Elastic properties and density.
+    /// Elastic properties and density of the material.
     pub material: LinkMaterial,
     /// Cross-section.
     pub section: Section,
@@ -170,13 +170,13 @@ pub struct Beam {
 }
 
 impl Arm {
-    /// The structure of the arm for a calculation with this joint model, with the effects of the product applied.
-    /// Effects that describe a test are left out ([`Arm::ignored_effects`] lists them).
+    /// The structure of the arm, with the effects of the product applied, for a calculation with the joint model
+    /// `joints`. Effects that describe a test are left out ([`Arm::ignored_effects`] lists them).
     pub fn structure(&self, joints: JointModel) -> Structure {
         self.subject(joints).structure
     }
 
-    /// The structure of the arm in a load case, which gives the joint model. If the case states water, it replaces
+    /// The structure of the arm in a load case; the case states the joint model. If the case states water, it replaces
     /// the water of an effect.
     pub fn structure_in(&self, case: &LoadCase) -> Structure {
         let mut structure = self.structure(case.joints);
@@ -184,7 +184,7 @@ impl Arm {
         structure
     }
 
-    /// The structure of the arm without any effect.
+    /// The structure of the arm without any effect, for a calculation with the joint model `joints`.
     pub fn nominal_structure(&self, joints: JointModel) -> Structure {
         let driven = self.driven_joint_names();
         let entry = |name: &str| driven.iter().position(|d| *d == name).unwrap_or_default();
@@ -232,7 +232,7 @@ impl Structure {
         joints.into_iter().map(|(_, joint)| joint).collect()
     }
 
-    /// A structure of these pieces on a rigid base, upright and in air.
+    /// A structure that consists of `pieces`, on a rigid base, upright and in air.
     pub(crate) fn nominal(gravity_m_s2: f64, pieces: Vec<Piece>) -> Self {
         Self {
             gravity_m_s2,
@@ -247,7 +247,8 @@ impl Structure {
     }
 }
 
-/// A joint as the mechanics needs it, without any effect.
+/// A joint of the arm file in the form that the mechanics uses, without any effect. `driven` are the names of the
+/// driven joints, base to tip; `model` is the joint model.
 fn joint_piece(joint: &Joint, driven: &[&str], model: JointModel) -> JointPiece {
     let index = |name: &str| driven.iter().position(|d| *d == name);
     let angle = match &joint.coupled {
@@ -268,7 +269,7 @@ fn joint_piece(joint: &Joint, driven: &[&str], model: JointModel) -> JointPiece 
     }
 }
 
-/// A link as the mechanics needs it, without any effect.
+/// A link of the arm file in the form that the mechanics uses, without any effect.
 pub(crate) fn link_piece(link: &Link) -> LinkPiece {
     let (beam, point_mass_kg) = match &link.body {
         LinkBody::Tube { material, section, .. } => {

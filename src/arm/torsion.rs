@@ -55,19 +55,19 @@ pub(super) fn bar(b: f64, h: f64) -> Torsion {
     Torsion { constant_m4, shear_per_m3: bar_shear_m(b, h) / constant_m4 }
 }
 
-/// Torsion constant `J` of a thin closed wall by Bredt's formula \[m⁴\].
+/// Torsion constant `J` of a thin closed wall by Bredt's formula \[m⁴\]: outer sides b, h and wall t \[m\].
 fn bredt(b: f64, h: f64, t: f64) -> f64 {
     let (bm, hm) = (b - t, h - t);
     2.0 * t * bm * bm * hm * hm / (bm + hm)
 }
 
-/// Shear stress of a thin closed wall, divided by G and by the twist angle per length \[m\].
+/// Largest shear stress in a thin closed wall, divided by the shear modulus and by the twist angle per length \[m\].
 fn bredt_shear_m(b: f64, h: f64, t: f64) -> f64 {
     let (bm, hm) = (b - t, h - t);
     bm * hm / (bm + hm)
 }
 
-/// Torsion constant `J` of the same wall if it were cut open \[m⁴\].
+/// Torsion constant `J` of the wall of a tube that is cut open lengthwise \[m⁴\]: outer sides b, h and wall t \[m\].
 fn open(b: f64, h: f64, t: f64) -> f64 {
     2.0 / 3.0 * t.powi(3) * ((b - t) + (h - t))
 }
@@ -76,15 +76,16 @@ fn open(b: f64, h: f64, t: f64) -> f64 {
 const ODD_FIFTH_POWERS: f64 = 1.004_523_762_795_139_5;
 const ODD: [f64; 5] = [1.0, 3.0, 5.0, 7.0, 9.0];
 
-/// Torsion constant `J` of a solid rectangle \[m⁴\]. The sum over n⁻⁵ is taken exactly and only `1 - tanh` is summed
-/// as a series, which converges after few terms.
+/// Torsion constant `J` of a solid bar of sides b, h \[m\] \[m⁴\]. The sum over n⁻⁵ is taken exactly and only
+/// `1 - tanh` is summed as a series, which converges after few terms.
 fn bar_constant(b: f64, h: f64) -> f64 {
     let (b, h) = (b.min(h), b.max(h));
     let rest: f64 = ODD.iter().map(|n| 2.0 / (n.powi(5) * (libm::exp(n * PI * h / b) + 1.0))).sum();
     h * b.powi(3) * (1.0 / 3.0 - 64.0 / PI.powi(5) * b / h * (ODD_FIFTH_POWERS - rest))
 }
 
-/// Largest shear stress of a solid rectangle, divided by G and by the twist angle per length \[m\].
+/// Largest shear stress of a solid bar of sides b, h \[m\], divided by the shear modulus and by the twist angle per
+/// length \[m\].
 fn bar_shear_m(b: f64, h: f64) -> f64 {
     let (b, h) = (b.min(h), b.max(h));
     let series: f64 = ODD.iter().map(|n| 1.0 / (n * n * libm::cosh(n * PI * h / (2.0 * b)))).sum();

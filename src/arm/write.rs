@@ -97,7 +97,7 @@ impl Joint {
 }
 
 impl Curve {
-    /// The key and the value with which files write the curve.
+    /// The key (`stiffness_nm_per_rad` or `windup`) and the value with which files write the curve.
     pub fn to_json(&self) -> (&'static str, Value) {
         match self {
             Curve::Rigid => ("stiffness_nm_per_rad", Value::Null),
@@ -136,7 +136,7 @@ impl Link {
 }
 
 impl Section {
-    /// The section as files write it.
+    /// The section as files write it: the word for its shape, and its sizes \[m\].
     pub fn to_json(&self) -> Value {
         match self {
             Section::RectangularTube { width_m, height_m, wall_m } => json!({
@@ -168,7 +168,7 @@ impl Section {
 }
 
 impl Effect {
-    /// The effect as files write it.
+    /// The effect as files write it: name, place, parameters and source.
     pub fn to_json(&self) -> Value {
         let parameters: Map<String, Value> = self
             .parameters

@@ -67,8 +67,8 @@ impl EfficiencyPoint {
 }
 
 impl Catalogs {
-    /// Efficiency at rated torque and an input speed \[rpm\], interpolated between the points of this gear's own
-    /// curve.
+    /// Efficiency of `gear` at rated torque and at an input speed \[rpm\], interpolated between the points of the
+    /// gear's own curve.
     ///
     /// `None` if the catalog has no curve of this gear, or if the speed is outside the curve. The caller may then
     /// use [`Gear::efficiency`] (at 2000 rpm) and should say so. The four HFUC sizes 14 to 25 at 100:1 have a
@@ -77,8 +77,8 @@ impl Catalogs {
         interpolate(&self.efficiency_curve(gear, EfficiencyKind::AgainstInputSpeed), input_speed_rpm)
     }
 
-    /// Factor on the efficiency if the torque is a fraction `torque_over_rated` of the rated torque, interpolated
-    /// between points.
+    /// Factor on the efficiency at rated torque for another torque, which is the fraction `torque_over_rated` of the
+    /// rated torque. It is interpolated between points.
     ///
     /// `None` if the catalog has no factor of this series, or if the fraction is outside its range (0.1 to 1 in the
     /// built-in file).
@@ -111,7 +111,8 @@ impl Catalogs {
         Some(rated * at_speed.unwrap_or(1.0) * at_load.unwrap_or(1.0))
     }
 
-    /// The points of a gear's curve of one kind, in ascending order of x; empty if the catalog has none.
+    /// The points of the efficiency curve of `gear` of the kind `kind`, in ascending order of x. Each point is x and
+    /// the value. Empty if the catalog has no such curve.
     pub(super) fn efficiency_curve(&self, gear: &Gear, kind: EfficiencyKind) -> Vec<[f64; 2]> {
         let aliases = self.series_aliases.iter().filter(|(_, series)| **series == gear.series);
         let names: Vec<&str> = aliases.map(|(alias, _)| alias.as_str()).collect();
@@ -127,13 +128,14 @@ const MODEL: &str = "HFUC-25-100";
 /// Input speed at which the rated efficiency is stated \[rpm\].
 const RATED_RPM: f64 = 2000.0;
 
-/// Linear interpolation between points sorted by x. Beyond the ends the value is constant; `None` without points.
+/// Value of a curve at `x`, by linear interpolation between its points, which are sorted by x. Beyond the ends the
+/// value is constant; `None` without points.
 fn level(curve: &[[f64; 2]], x: f64) -> Option<f64> {
     let (first, last) = (curve.first()?, curve.last()?);
     interpolate(curve, x.clamp(first[0], last[0]))
 }
 
-/// Linear interpolation between points sorted by x; `None` outside them.
+/// Value of a curve at `x`, by linear interpolation between its points, which are sorted by x; `None` outside them.
 fn interpolate(curve: &[[f64; 2]], x: f64) -> Option<f64> {
     let after = curve.iter().position(|point| point[0] >= x)?;
     let [x1, y1] = curve[after];

@@ -79,8 +79,8 @@ impl fmt::Display for GearKind {
     }
 }
 
-/// The life equation of a gear: L10 = rated life (T_rated / T_mean)^exponent (rated speed / n_mean). For cells that
-/// a row leaves blank, the values of the [`GearKind`] are taken; `None` if that has none either.
+/// The life equation of a gear: L10 = rated life (T_rated / T_mean)^exponent (rated speed / n_mean). Where a row leaves
+/// a cell blank, the value of its [`GearKind`] is taken; the number is `None` if the kind has none either.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LifeLaw {
     /// L10 life at rated torque and at [`Self::rated_speed_rpm`] \[h\].
@@ -92,7 +92,7 @@ pub struct LifeLaw {
 }
 
 impl LifeLaw {
-    /// The life equation of a kind if the row leaves all of its cells blank.
+    /// The life equation of a gear of this kind whose row leaves all cells of the equation blank.
     pub fn usual(kind: GearKind) -> Self {
         Self {
             rated_h: kind.usual_life_h(),
@@ -195,7 +195,8 @@ pub struct Gear {
 }
 
 impl Gear {
-    /// Mass of the gear in the version that a study asks for \[kg\].
+    /// Mass of the gear \[kg\] as it is bought: as a component set or as a housed unit (`which`). `None` if this mass
+    /// is blank.
     pub fn mass_kg(&self, which: GearMass) -> Option<f64> {
         match which {
             GearMass::ComponentSet => self.mass_component_set_kg,

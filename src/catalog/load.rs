@@ -126,7 +126,8 @@ fn stray_file(folder: &Path, name: &str) -> Option<Fault> {
     })
 }
 
-/// Catalogs from all sources. A row of a later source replaces a row of the same name.
+/// The catalogs that consist of the rows of all `sources`. A row of a later source replaces a row of the same name.
+/// Fails with all faults of all sources.
 fn from_sources(sources: &[Source], warnings: Vec<Fault>) -> Result<Catalogs, Faults> {
     let log = Log::default();
     log.warnings.borrow_mut().extend(warnings);
@@ -180,8 +181,8 @@ fn add_file(catalogs: &mut Catalogs, source: &Source, rows: &[Row]) {
     });
 }
 
-/// Adds the parts of a file's rows. A part whose name exists replaces the earlier one. Returns how many parts were
-/// replaced.
+/// Adds the parts of a file's rows to `parts`. A part whose name exists replaces the earlier one. `read` makes a part
+/// of a row, and `name` gives its name. Returns how many parts were replaced.
 fn add<T>(parts: &mut Vec<T>, rows: &[Row], read: fn(&Row) -> Option<T>, name: fn(&T) -> String) -> usize {
     let mut places: std::collections::BTreeMap<String, usize> =
         parts.iter().enumerate().map(|(i, part)| (name(part).to_lowercase(), i)).collect();

@@ -1,9 +1,8 @@
 //! Finding a part by its name, or by an unambiguous part of the name.
 //!
-//! Upper and lower case do not matter. A text is first compared with whole names, then with the beginnings of
-//! names, then with the beginnings of words in names (`S355` in `Structural steel S355`). It must not end within a
-//! number: `F11-1` does not mean `F11-10`. The first of these comparisons that finds any part must find only one.
-//! number: `F11-1` does not mean `F11-10`. The first of these that fits any part must fit only one.
+//! Upper and lower case do not matter. A text is first compared with whole names, then with the beginnings of names,
+//! then with the beginnings of words in names (`S355` in `Structural steel S355`). It must not end within a number:
+//! `F11-1` does not mean `F11-10`. The first of these comparisons that finds any part must find only one.
 
 use super::Catalogs;
 use super::gear::Gear;
@@ -89,8 +88,8 @@ impl Catalogs {
         find(PartKind::Gear, &self.gears, own.as_deref().unwrap_or(name), |g| &g.id)
     }
 
-    /// The name with the series replaced, if the name uses another name of a series. `None` if it does not, or if a
-    /// gear has the name as it is written.
+    /// The name with another name of a series, such as `CSF`, replaced by the name of the series itself. `None` if
+    /// there is nothing to replace, or if a gear has `name` as it is written.
     fn alias_resolved(&self, name: &str) -> Option<String> {
         let (alias, rest) = name.trim().split_once('-')?;
         if self.gears.iter().any(|gear| gear.id.eq_ignore_ascii_case(name.trim())) {
@@ -150,7 +149,8 @@ fn find<'p, T>(
     Err(PartError::Unknown { kind, name: name.into(), nearest: nearest(&wanted, ids) })
 }
 
-/// Whether `id` begins with `name` in such a way that `name` does not end within a number of `id`.
+/// Whether `id` begins with `name`, and `name` does not end within a number of `id`: `F11-1` is no beginning of
+/// `F11-10`.
 fn begins(id: &str, name: &str) -> bool {
     let Some(rest) = id.strip_prefix(name).filter(|_| !name.is_empty()) else { return false };
     let mut rest = rest.chars();
@@ -161,7 +161,7 @@ fn begins(id: &str, name: &str) -> bool {
     !(within_number && name.ends_with(|c: char| c.is_ascii_digit()))
 }
 
-/// Whether a word of `id` begins with `name`.
+/// Whether some word of `id` begins with `name`, as in [`begins`].
 fn has_word(id: &str, name: &str) -> bool {
     let starts = id.char_indices().filter(|(i, _)| {
         id[..*i].chars().next_back().is_some_and(|before| !before.is_alphanumeric() && before != '.')

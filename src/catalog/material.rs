@@ -70,7 +70,7 @@ pub struct Material {
     pub density_kg_m3: f64,
     /// Poisson's ratio.
     pub poisson: Option<f64>,
-    /// Yield strength of a metal, or strength of a composite \[Pa\].
+    /// Yield strength of a metal, or tensile strength of a composite \[Pa\].
     pub strength_pa: Option<f64>,
     /// Compressive strength along the link \[Pa\]; `None` if it equals the tensile strength or is unknown.
     pub compressive_strength_pa: Option<f64>,

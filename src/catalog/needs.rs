@@ -31,8 +31,9 @@ fn blank(figures: &[(Option<f64>, &'static str, &'static str)]) -> Vec<Lack> {
 }
 
 impl Gear {
-    /// The numbers that are missing for the gear to be chosen for a joint. `mass` says which mass is needed. Empty
-    /// if every check of the gear can be made.
+    /// The numbers that the row of the gear leaves blank and that must be known before the gear can be chosen for a
+    /// joint. `mass` says which mass is needed, of the component set or of the housed unit. Empty if every check of the
+    /// gear can be made.
     ///
     /// ```
     /// use armwright::catalog::{Catalogs, GearMass};
@@ -79,8 +80,9 @@ impl Gear {
 }
 
 impl Motor {
-    /// The numbers that are missing for the motor to be chosen for a joint; empty if every check of the motor can
-    /// be made. For an actuator's motor the columns are those of `actuators.csv`.
+    /// The numbers that the row of the motor leaves blank and that must be known before the motor can be chosen for a
+    /// joint. Empty if every check of the motor can be made. For the motor of an actuator the columns are those of
+    /// `actuators.csv`.
     pub fn lacks(&self) -> Vec<Lack> {
         let of_actuator = self.kind == super::motor::MotorKind::OfActuator;
         let inertia = if of_actuator { "inertia_output_kgm2" } else { "rotor_inertia_kgm2" };

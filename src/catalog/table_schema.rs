@@ -5,7 +5,7 @@ use super::schema::{CatalogFile, Cell, Column};
 use serde_json::{Value, json};
 
 impl CatalogFile {
-    /// The Table Schema of the file.
+    /// The columns of the file as a Table Schema, in JSON.
     pub fn table_schema(self) -> Value {
         json!({
             "$schema": "https://datapackage.org/profiles/2.0/tableschema.json",

@@ -152,7 +152,8 @@ pub(super) fn run(args: &AnalyzeArgs, catalogs: &Catalogs) -> Result<String, Fai
     })
 }
 
-/// One line with the effects that the analysis ignores, because they describe a test and not the arm.
+/// One line with the names of the effects that the analysis ignores, because they describe a test and not the arm.
+/// Empty if there are none.
 fn ignored_text(ignored: &[String]) -> String {
     match ignored {
         [] => String::new(),

@@ -6,7 +6,7 @@ use super::write::say;
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Files that are written in addition to a front, and the names of files that could not be made.
+/// Files that are written in addition to a front, and the names of those that could not be made.
 #[derive(Default)]
 pub(super) struct Beside {
     /// Name and contents of each file.
@@ -16,8 +16,8 @@ pub(super) struct Beside {
 }
 
 impl Beside {
-    /// Calls `make` and returns its result. If `make` panics, the panic is recorded in `missing`, and the result is
-    /// `None`.
+    /// Calls `make`, which computes the file or files named `what`, and returns its result. If `make` panics, the panic
+    /// is recorded in `missing` and the result is `None`, so that the other files are still written.
     pub(super) fn make<T>(&mut self, what: &str, make: impl FnOnce() -> T) -> Option<T> {
         // `make` only reads the results of the search, so a panic leaves nothing half changed behind
         let made = catch_unwind(AssertUnwindSafe(|| {
@@ -27,21 +27,22 @@ impl Beside {
         made.map_err(|panic| self.missing.push(format!("{what}: {}", words_of(&*panic)))).ok()
     }
 
-    /// Makes a file and adds it. If making it panics, it is recorded as missing instead.
+    /// Adds the file `name` with the contents that `make` computes. If `make` panics, the file is recorded in `missing`
+    /// instead.
     pub(super) fn file(&mut self, name: &str, make: impl FnOnce() -> Vec<u8>) {
         let bytes = self.make(name, make);
         self.files.extend(bytes.map(|bytes| (name.to_string(), bytes)));
     }
 }
 
-/// The message of a panic, as an internal error.
+/// The message of a caught panic, as the text of an internal error.
 pub(super) fn words_of(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
     format!("internal error: {}", text.unwrap_or("it has no message"))
 }
 
-/// The reason why a file of the result was not written: a file of this name that is not part of the result exists
-/// already.
+/// The reason why the file `name` of the result was not written: a file of this name exists that is not part of a
+/// result, and it must not be overwritten.
 pub(super) fn another_stands(name: &str) -> String {
     format!("{name}: a file that is no part of the result stands there")
 }

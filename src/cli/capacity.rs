@@ -69,8 +69,9 @@ fn is_arm_file(path: &str) -> bool {
     file["chain"].is_array() && file["poses"].is_null()
 }
 
-/// The largest payload of an arm file at rest. The joints are compared with the limits that the user gives, or with
-/// those of an import.json in the same folder, or with those of the named gears and motors.
+/// The largest payload of an arm file at rest. The torques of the joints are compared with the limits that the user
+/// gives; without them with the limits of an import.json in the same folder; without this with the limits of the named
+/// gears and motors.
 fn of_arm(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     if args.design.is_some() {
         return Err(Failure::Usage(format!("{} is an arm file; --design is for studies", args.study)));

@@ -243,7 +243,7 @@ fn word<T>(
     read(text).map(Some).ok_or_else(known)
 }
 
-/// How far a row of a catalog can be trusted, as a letter. [`LEGEND`] explains the letters.
+/// How far a row of a catalog can be trusted, as one letter of [`LEGEND`], which is printed below the table.
 fn trust(provenance: &Provenance) -> String {
     let letter = match provenance.confidence {
         Confidence::Verified => "V",
@@ -455,8 +455,8 @@ fn wrapped(text: &str) -> String {
     out
 }
 
-/// A rating times a factor, with four significant digits and without trailing zeros. It is blank if the rating is
-/// unknown.
+/// A rating multiplied by `factor` (for example to convert its unit), with four significant digits and without trailing
+/// zeros. Empty if the rating is unknown.
 fn rating(x: Option<f64>, factor: f64) -> String {
     let Some(x) = x.map(|x| x * factor) else { return String::new() };
     if x == 0.0 {

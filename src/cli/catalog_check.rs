@@ -149,7 +149,7 @@ fn unchoosable(catalogs: &Catalogs) -> String {
     if lines.is_empty() { lines } else { format!("\nParts that cannot be used for a blank figure:\n{lines}") }
 }
 
-/// The verbs that cannot use a part with these blank ratings, and why.
+/// The verbs that cannot use a part with the blank ratings `lacks`, and the checks for which the ratings are needed.
 fn verbs(lacks: &[Lack]) -> String {
     let of_arm: Vec<Lack> =
         lacks.iter().copied().filter(|lack| matches!(lack.purpose, "torsion" | "mass")).collect();

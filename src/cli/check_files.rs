@@ -53,7 +53,7 @@ pub(super) fn report(files: &[PathBuf], as_json: bool, catalogs: &Catalogs) -> A
     Answer { text, exit: exit_of(&found) }
 }
 
-/// The exit code for the most serious problem found.
+/// The exit code for the most serious problem among the files and folders in `found`.
 fn exit_of(found: &[Found]) -> Exit {
     let has = |is: fn(&Problem) -> bool| found.iter().any(|f| f.outcome.as_ref().err().is_some_and(is));
     if has(|p| matches!(p, Problem::Faulty(_))) {
@@ -67,8 +67,8 @@ fn exit_of(found: &[Found]) -> Exit {
     }
 }
 
-/// The file or folder that must be read as a whole: the folder of a campaign for one of its readings, the folder of a
-/// catalog for one of its files, and the folder of a result for one of its files. Otherwise it is the file itself.
+/// What must be read as a whole to check `file`: the folder of a campaign for one of its readings, the folder of a
+/// catalog for one of its files, the folder of a result for one of its files. Otherwise it is the file itself.
 fn unit_of(file: &Path) -> PathBuf {
     let name = file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let folder = folder_of(file);
@@ -136,8 +136,8 @@ fn look_at_file(path: &Path, catalogs: &Catalogs) -> Look {
     }
 }
 
-/// The kind of file whose keys match most keys of a document, or "cases" for a list of cases. Of several kinds with
-/// equally many, the first.
+/// The kind of file to which a document belongs: the one whose keys match most keys of the document, or "cases" for a
+/// list of cases. If several kinds match equally many keys, it is the first of them.
 fn kind_of(value: &Value) -> Option<&'static str> {
     let Value::Object(map) = value else {
         let is_case = |item: &Value| item.as_object().is_some_and(|map| map.keys().any(|key| CASE.has(key)));
@@ -156,8 +156,8 @@ fn kind_of(value: &Value) -> Option<&'static str> {
     best.1
 }
 
-/// Checks a cases file with the `arm.json` of the same folder. If there is none, only the entries of the poses are
-/// compared with those of the first pose.
+/// Checks the cases file `document` against the arm file `arm.json` in the same folder. If there is none, the poses are
+/// only compared with the first pose: all must have entries for the same joints.
 fn check_cases(document: Document, path: &Path, catalogs: &Catalogs) -> Result<(), Problem> {
     let beside = folder_of(path).join("arm.json");
     let arm: Option<Arm> = if beside.is_file() { Some(read_arm(&beside, catalogs)?) } else { None };
@@ -192,7 +192,7 @@ fn result_words(manifest: &str) -> &'static str {
     }
 }
 
-/// Checks that the files of a result have the hashes that were written with them.
+/// Checks that the files of a result still have the hashes that `manifest`, the file that lists them, has for them.
 fn unchanged(folder: &Path, manifest: &str) -> Result<(), Problem> {
     let path = folder.join(manifest);
     let text = std::fs::read_to_string(&path).map_err(|e| Problem::Unreadable(e.to_string()))?;

@@ -8,13 +8,15 @@ use std::path::{Path, PathBuf};
 
 /// Keys of run.json that differ from run to run: times, the machine, and the hashes of files that contain times.
 const OF_A_RUN: [&str; 5] = ["elapsed_s", "designs_per_s", "threads", "platform", "files"];
-/// Marks before and after a text about times.
+/// Marks around the text in summary.md and report.html that states how long a run took. The text between the marks is
+/// left out of the comparison, because it differs from run to run.
 const TIMING: [&str; 2] = ["<!-- timing -->", "<!-- /timing -->"];
-/// Beginnings of commands after which the folder of results is named.
+/// Commands in summary.md and report.html after which the folder of results is named. The name is left out of the
+/// comparison, because each result is in a folder of its own.
 const COMMANDS: [&str; 5] =
     ["armwright design ", "armwright analyze ", "armwright compare ", "armwright front check ", " --cases "];
 
-/// Compares two folders of results. If they are the same, returns a sentence that says so.
+/// Compares the folders of results `a` and `b`. If both results are the same, returns a sentence that says so.
 ///
 /// # Errors
 /// The folders differ, with the names of the files that differ; or one of them cannot be read.
@@ -64,7 +66,7 @@ fn files_of(folder: &Path) -> Result<BTreeSet<String>, Failure> {
     Ok(names)
 }
 
-/// The bytes of a file without the parts that depend on the time, the machine and the name of the folder.
+/// The bytes of the file `name`, without the parts that depend on the time, the machine and the name of the folder.
 fn neutral(folder: &Path, name: &str) -> Result<Vec<u8>, Failure> {
     let bytes = fs_err::read(folder.join(name)).map_err(|e| Failure::File(e.to_string()))?;
     Ok(match name {

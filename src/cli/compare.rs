@@ -186,7 +186,7 @@ fn read_front(file: &Path) -> Result<FrontTable, Failure> {
     FrontTable::read(file).map_err(|error: FrontTableError| Failure::File(error.to_string()))
 }
 
-/// The front of all designs of one result, followed by the front of each material.
+/// The front of all designs of a result as the reference, followed by the front of each material.
 fn materials_of(dir: &Path) -> Result<Vec<Contender>, Failure> {
     front_file(dir)?;
     let results = Results::open(dir)?;
@@ -213,7 +213,8 @@ fn is_one_study(results: &[PathBuf]) -> bool {
     first.is_some() && results.iter().all(|r| study(r) == first)
 }
 
-/// A label for every path: as few of its last components as are needed to tell it from the others.
+/// A label for the front of each path: as few of the last components of the path as are needed so that all labels
+/// differ.
 fn labels(results: &[PathBuf]) -> Vec<String> {
     let most = results.iter().map(|r| r.components().count()).max().unwrap_or(1);
     let at = |parts: usize| results.iter().map(|r| last_parts(r, parts)).collect::<Vec<_>>();

@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::Path;
 
-/// A study with the corrections of an arm file applied.
+/// A study with the corrections of the arm file at `path` applied. `text` is the file of the study.
 ///
 /// # Errors
 /// The file cannot be read, or no effect and no calibrated value of it applies to the study.
@@ -43,7 +43,8 @@ pub(super) fn from_arm_file(
     Err(Failure::Usage(format!("{name} changes nothing in the study \"{}\": {why}", study.name)))
 }
 
-/// A study with the effects and calibrated values of a measured arm applied.
+/// A study with the effects of `arm` and the calibrated values `calibrated` (name and factor each) applied. `text` is
+/// the file of the study.
 ///
 /// # Errors
 /// The corrected study is faulty.
@@ -68,8 +69,8 @@ fn calibrated(file: &Value) -> Vec<(String, f64)> {
     list.iter().filter_map(|c| Some((c["value"].as_str()?.to_string(), c["factor"].as_f64()?))).collect()
 }
 
-/// A text on which corrections were applied and which were not. Corrections with the same reason are in one line. The
-/// text is empty if there are no corrections.
+/// A text that says which corrections were applied and which were not. Corrections with the same reason are in one
+/// line. The text is empty if there are no corrections.
 pub(super) fn to_text(corrections: &[Correction]) -> String {
     let mut out = String::new();
     for (applied, head) in [(true, "corrections applied"), (false, "corrections not applied")] {

@@ -48,7 +48,7 @@ impl Exit {
         Self::Locked,
     ];
 
-    /// The exit code of the process, and its meaning in a few words.
+    /// The exit code with which the process ends, and its meaning in a few words.
     const fn row(self) -> (u8, &'static str) {
         match self {
             Self::Done => (0, "done"),

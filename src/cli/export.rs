@@ -106,7 +106,7 @@ pub(super) fn run(args: &ExportArgs, catalogs: &Catalogs) -> Result<String, Fail
     ))
 }
 
-/// The text about an export: what the files leave out, and the notes.
+/// The text about an export: what the files leave out, each with its part of the tip deflection, and the notes.
 fn said(exported: &Export) -> String {
     let left_out = exported.left_out.iter().map(|left| {
         format!(

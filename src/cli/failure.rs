@@ -44,7 +44,7 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// The exit status for this reason.
+    /// The exit status with which the program ends after this failure.
     pub fn exit(&self) -> Exit {
         match self {
             Failure::Internal(_) => Exit::Internal,

@@ -44,8 +44,8 @@ use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// A function that writes files as a result and replaces the result written before. It returns the names of files
-/// that it did not write, because files that are not part of a result have the same names.
+/// A function that writes files as a result and replaces the result that was written before. It returns the names of
+/// files that it did not write, because files with these names exist that are not part of a result.
 pub(super) type Keep<'a> = dyn Fn(&[(String, Vec<u8>)]) -> Result<Vec<String>, Failure> + Sync + 'a;
 
 /// A finished search whose files are written.
@@ -75,7 +75,7 @@ pub(super) struct Written {
     pub elapsed_s: f64,
 }
 
-/// Entry in `run.json` for all files that are still missing while only the front is written.
+/// Text for `run.json` while only the front is written: the names of all files that are still missing.
 const NOTHING_ELSE: &str =
     "what goes with the front: budget.csv, summary.md, report.html, plots, ties and supplements";
 
@@ -107,7 +107,7 @@ pub(super) struct Finished<'a> {
     pub text: &'a str,
     /// Corrections of a measured arm.
     pub corrections: &'a [Correction],
-    /// The problem with the options that the designs of the front use, or with all options.
+    /// The problem with all options of the study, or only with the options that the designs of the front use.
     pub problem: &'a ArmProblem<'a>,
     /// The space with all options of the study.
     pub whole: &'a DesignSpace,
@@ -127,7 +127,8 @@ pub(super) struct Finished<'a> {
 }
 
 impl<'a> Finished<'a> {
-    /// The result of a visit to every design of a study, on one computer or in shards.
+    /// The result of a search that visited every design of a study, on one computer or in shards. `dir` is the folder
+    /// of results, `elapsed_s` the time that the search took \[s\].
     pub(super) fn visit(
         asked: &'a Asked,
         (problem, outcome): (&'a ArmProblem<'a>, &'a StudyOutcome),
@@ -209,7 +210,7 @@ impl Finished<'_> {
         })
     }
 
-    /// Computes the supplements that the user asked for, and adds their files.
+    /// Computes the supplements that the user asked for, such as near designs, and adds their files to `beside`.
     ///
     /// # Errors
     /// The user stopped the computation.
@@ -231,7 +232,8 @@ impl Finished<'_> {
         Ok(supplements)
     }
 
-    /// Makes the tables, the picture, the summary and the page. Returns the contents of `run.json`.
+    /// Makes the tables, the picture, the summary and the page, and adds them to `beside`. Returns the contents of
+    /// `run.json`.
     fn fill(&self, summary: &SummaryInput, supplements: &[Supplement], beside: &mut Beside) -> Value {
         for (file, of) in self.file_names().iter().zip(&self.outcome.by_material) {
             if !of.ties_listed {
@@ -280,7 +282,7 @@ impl Finished<'_> {
         files
     }
 
-    /// The short name of each material, for names of files.
+    /// A short name for each material, which is a part of the names of its files.
     fn file_names(&self) -> Vec<String> {
         file_names(self.outcome.by_material.iter().map(|of| of.name.as_str()))
     }
@@ -343,7 +345,8 @@ impl Finished<'_> {
         self.study.space.effects.iter().map(counted).collect()
     }
 
-    /// The page for a browser.
+    /// The page of the result for a browser. `picture` is the picture of the front, `sections` are those of the
+    /// supplements, and `run` is the content of `run.json`.
     fn page(&self, summary: &SummaryInput, picture: String, sections: Vec<PageSection>, run: &Value) -> Page {
         let mut page = study_page(self.study, self.problem, self.catalogs, summary);
         page.extras.extend(sections);
@@ -461,7 +464,7 @@ pub(super) fn pretty(value: &Value) -> Vec<u8> {
     serde_json::to_vec_pretty(value).expect("a value of numbers and strings serializes")
 }
 
-/// A count as a JSON number. Above 2^64 it is rounded to a floating-point number.
+/// A count as a JSON number. From 2^64 on it is rounded to a floating-point number.
 fn count(n: u128) -> Value {
     u64::try_from(n).map_or_else(|_| json!(n as f64), |n| json!(n))
 }

@@ -14,7 +14,7 @@ pub(super) struct Lock {
 }
 
 impl Lock {
-    /// Takes the lock of `folder`; `path` is the file of the lock. A lock file that a dead process left behind is
+    /// Takes the lock of `folder`, which is the lock file at `path`. A lock file that a dead process left behind is
     /// taken over.
     ///
     /// # Errors

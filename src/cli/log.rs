@@ -41,7 +41,8 @@ impl Log {
         self.form == LogForm::Text && !self.is_quiet && std::io::stderr().is_terminal()
     }
 
-    /// Prints how far a search is: a line of text, or a JSON object with the name of the event and its numbers.
+    /// Prints how far a search is: the text `words`, or a JSON object with the name `event` and `numbers`, as the form
+    /// of the log says.
     pub(super) fn progress(self, event: &str, words: &str, numbers: Value) {
         if self.is_quiet {
             return;

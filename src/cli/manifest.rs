@@ -51,7 +51,8 @@ impl Earlier {
         })
     }
 
-    /// Whether a file of this name belongs to the earlier result.
+    /// Whether a file of this name belongs to the earlier result. `manifest` is the name of the file that lists the
+    /// others, and belongs to the result as well.
     pub(super) fn has(&self, name: &str, manifest: &str) -> bool {
         match self {
             Earlier::Nothing => false,
@@ -60,7 +61,7 @@ impl Earlier {
         }
     }
 
-    /// The names of the listed files.
+    /// The names of the files of the earlier result that are listed.
     pub(super) fn names(&self) -> impl Iterator<Item = &String> {
         let listed = match self {
             Earlier::Listed(files) => Some(files.keys()),
@@ -70,8 +71,8 @@ impl Earlier {
     }
 }
 
-/// The listed files with their hashes; `None` if there is no list. Names that lead out of the folder are left out, so
-/// that no file outside of it is touched.
+/// The files that `manifest` lists, with their hashes; `None` if it has no list. Names that lead out of the folder are
+/// left out, so that no file outside of it is touched.
 pub(super) fn listed(manifest: &Value) -> Option<BTreeMap<String, String>> {
     let files = manifest.get("files")?.as_object()?;
     let listed = files.iter().filter(|(name, _)| stays_inside(name));
@@ -88,7 +89,7 @@ pub(super) fn hash(bytes: &[u8]) -> String {
     blake3::hash(bytes).to_hex().to_string()
 }
 
-/// The files of a result, with their list added to the file `manifest`. This file comes last.
+/// The files of a result, with the list of their hashes added to the file named `manifest`, which comes last.
 ///
 /// # Errors
 /// The manifest is not among the files, or it is not a JSON object.

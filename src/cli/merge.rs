@@ -189,7 +189,7 @@ impl Shards {
         }
     }
 
-    /// The study, the candidates of each shard, and the sum of the times of all shards \[s\].
+    /// The study, what was found in each shard, and the sum of the times of all shards \[s\].
     fn contents(&self, catalogs: &Catalogs) -> Result<(Asked, Vec<Swept>, f64), Failure> {
         let mut asked: Option<Asked> = None;
         let (mut swept, mut elapsed_s) = (Vec::new(), 0.0);
@@ -209,7 +209,8 @@ impl Shards {
 /// Depth down to which folders are searched for shards.
 const DEEPEST: usize = 3;
 
-/// The folders of shards in a folder, in the order of their names. If the folder is itself one, it is the only entry.
+/// The folders of shards inside `folder`, in the order of their names, down to `depth` levels. If the folder is itself
+/// a shard, it is the only entry.
 fn shards_in(folder: &Path, depth: usize) -> Result<Vec<PathBuf>, Failure> {
     if folder.join(SHARD).is_file() {
         return Ok(vec![folder.to_path_buf()]);
@@ -241,8 +242,8 @@ impl Found {
         Ok(Self { dir, manifest, shard, range })
     }
 
-    /// The differences that show that another shard is of another search, in words; empty if both are of the same
-    /// search.
+    /// Differences between this shard and `other` that show that they belong to different searches, in words. Empty if
+    /// both are of the same search.
     fn unlike(&self, other: &Self) -> Vec<String> {
         let (here, there) = (self.dir.display(), other.dir.display());
         let differs = |key: &&&str| self.manifest[**key] != other.manifest[**key];
@@ -262,7 +263,7 @@ impl Found {
         out
     }
 
-    /// The command that computes another shard of the same search.
+    /// The command that computes the shard with this number in the same search as this one.
     fn command_of(&self, number: u32) -> String {
         let words = self.manifest["command"].as_array().into_iter().flatten().filter_map(Value::as_str);
         let words: Vec<String> = words.map(shell_word).collect();
@@ -295,7 +296,7 @@ impl Found {
     }
 }
 
-/// A word in the form that a POSIX shell reads as this word: in quotes if needed.
+/// A word as it must be written in a POSIX shell to be read unchanged: in quotes if it has special characters.
 pub(super) fn shell_word(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+%@".contains(c);
     match !word.is_empty() && word.chars().all(is_plain) {

@@ -34,7 +34,7 @@ pub(super) struct Progress {
 }
 
 impl Progress {
-    /// The state of an exhaustive search after so many designs. It knows its front only at its end.
+    /// The state of an exhaustive search that has visited `designs` designs. Its front is known only at its end.
     fn visited(designs: u64) -> Self {
         Self { designs, gap: None, front_size: None, boxes_open: None }
     }
@@ -50,7 +50,8 @@ impl Progress {
 }
 
 impl Progress {
-    /// The state as a JSON object, one line of the record.
+    /// The state of the search as a JSON object, which is one line of the record. `elapsed_s` is the time since the
+    /// start of the search \[s\].
     fn to_json(self, elapsed_s: f64) -> Value {
         let Self { designs, gap, front_size, boxes_open } = self;
         json!({
@@ -75,7 +76,7 @@ impl Record {
         Ok(Self { path: path.to_path_buf(), file })
     }
 
-    /// Adds a line to the record.
+    /// Adds a line with the state of the search after `elapsed_s` \[s\] to the record.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -100,7 +101,8 @@ impl<'r> Watch<'r> {
         Self { started, record, log }
     }
 
-    /// Looks at a search again and again until `finished` is set. Each time, `see` is called with the elapsed time.
+    /// Looks at a search again and again until `finished` is set. Each time, `see` is called with the elapsed time to
+    /// show the progress, and `now`, the state of the search, is added to the record if a line is due.
     fn look(&self, finished: &AtomicBool, now: impl Fn() -> Progress, mut see: impl FnMut(Duration)) {
         let (mut next, mut last_gap) = (Duration::ZERO, None);
         while !finished.load(Ordering::Relaxed) {
@@ -119,7 +121,7 @@ impl<'r> Watch<'r> {
         }
     }
 
-    /// Shows how many of all designs have been visited.
+    /// Shows how many of `total` designs have been visited, until `finished` is set.
     pub(super) fn designs(&self, total: u128, visited: &(dyn Fn() -> u64 + Sync), finished: &AtomicBool) {
         let now = || Progress::visited(visited());
         if self.log.draws() {
@@ -142,7 +144,7 @@ impl<'r> Watch<'r> {
         say("searched", self.started.elapsed());
     }
 
-    /// Shows the state of an exact search: its gap, its front and its boxes.
+    /// Shows the state of an exact search (gap, front and boxes) until `finished` is set. `known` returns the state.
     pub(super) fn search(&self, known: &(dyn Fn() -> Known + Sync), finished: &AtomicBool) {
         let now = || Progress::known(&known());
         let line = |elapsed: Duration| search_line(&known(), elapsed);
@@ -160,7 +162,7 @@ impl<'r> Watch<'r> {
     }
 }
 
-/// Calls `say` every ten seconds of elapsed time.
+/// A function that calls `say` at most every ten seconds of elapsed time. It is itself called with the elapsed time.
 fn in_lines(say: impl Fn(Duration)) -> impl FnMut(Duration) {
     let mut next = LINE_EVERY;
     move |elapsed| {

@@ -110,8 +110,8 @@ pub(crate) fn run(
     Ok(Answer { text, exit })
 }
 
-/// The text of the verdict in the folder; `None` unless it is from this campaign with these catalogs and this
-/// version, and unless all its files are unchanged.
+/// The text of the verdict that the folder `out` has already. `None` unless the verdict is from this campaign with
+/// these catalogs and this version, and all of its files are unchanged.
 fn kept_before(out: &Path, campaign: &Campaign, hash_of_catalogs: &str) -> Option<String> {
     let verdict: Value = serde_json::from_slice(&std::fs::read(out.join(VERDICT)).ok()?).ok()?;
     let same = verdict["campaign_blake3"] == campaign.hash.as_str()
@@ -180,7 +180,7 @@ fn keep(
     Ok((files, terminal))
 }
 
-/// Adds the result of the second run of the study to the verdict, with the files of that run.
+/// Adds the results of `rerun`, the two runs of the study, to the verdict, and their files to `files`.
 fn add(files: &mut Files, rerun: Rerun) {
     change_verdict(files, "study", rerun.json);
     let texts = files.iter_mut().filter(|(name, _)| name == TEXT);
@@ -188,7 +188,7 @@ fn add(files: &mut Files, rerun: Rerun) {
     files.extend(rerun.files);
 }
 
-/// Sets a key of `verdict.json`.
+/// Sets the key `key` of `verdict.json`, which is one of `files`, to `value`.
 fn change_verdict(files: &mut Files, key: &str, value: Value) {
     for (_, bytes) in files.iter_mut().filter(|(name, _)| name == VERDICT) {
         let mut verdict: Value = serde_json::from_slice(bytes).expect("it was written as JSON");

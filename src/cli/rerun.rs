@@ -43,7 +43,7 @@ pub(super) struct Rerun {
 }
 
 impl Rerun {
-    /// The answer if the study was not run, or if a run found no design.
+    /// The result if the study was not run, or if a run found no design. `why` gives the reason in words.
     fn without(study: &str, status: &str, why: &str) -> Self {
         Self {
             text: format!("\nstudy {study}: {why}\n"),
@@ -116,7 +116,8 @@ pub(super) fn rerun(
     Ok(rerun)
 }
 
-/// The files of a run with their manifest, and with their paths in the folder of the campaign's result.
+/// The files of one run with their manifest, under their paths in the folder of the campaign's result. `folder` is
+/// `nominal` or `corrected`.
 fn placed(files: &[(String, Vec<u8>)], folder: &str) -> Result<Files, Failure> {
     let whole = sealed(files.to_vec(), RUN)?;
     Ok(whole.into_iter().map(|(name, bytes)| (format!("study/{folder}/{name}"), bytes)).collect())
@@ -171,7 +172,7 @@ fn told(name: &str, corrected: &Asked, found: &[Written], changes: &Changes) -> 
     }
 }
 
-/// A warning for the reader if a front is not complete.
+/// A warning for the reader if one of the two fronts is not complete.
 fn lacking_words(found: &[Written]) -> String {
     let lacks = |written: &Written| match (written.status, written.gap) {
         (_, Some(gap)) if gap > 0.0 => gap_words(gap),

@@ -94,8 +94,8 @@ impl ResultFolder {
         Ok(foreign.into_iter().map(|(name, _)| name).collect())
     }
 
-    /// Removes the saved states of unfinished searches. They are kept if the user stopped the search, or if its
-    /// result could not be written.
+    /// Removes the saved states of unfinished searches when a search has ended as `end` says. They are kept if the user
+    /// stopped the search, or if its result could not be written.
     ///
     /// # Errors
     /// A saved state cannot be removed.
@@ -115,7 +115,7 @@ impl ResultFolder {
         states.filter(|_| is_over).try_for_each(|path| remove(&path))
     }
 
-    /// Whether a file of this name with this content exists already.
+    /// Whether the folder already has a file of this name with exactly this content.
     fn has(&self, name: &str, bytes: &[u8]) -> bool {
         let path = self.folder.join(name);
         !path.is_symlink() && std::fs::read(path).is_ok_and(|there| there == bytes)
@@ -228,7 +228,8 @@ fn remove_listed(folder: &Path, name: &str) -> io::Result<()> {
     Ok(())
 }
 
-/// Whether something that is not a file of the earlier result exists under this name.
+/// Whether something exists under the name `name` that is not a file of the earlier result, so that it must not be
+/// replaced.
 fn is_foreign(folder: &Path, name: &str, earlier: &Earlier, manifest: &str) -> bool {
     let path = folder.join(name);
     let is_folder = path.is_dir() && !path.is_symlink();

@@ -11,8 +11,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// How many times a folder is read again if its files do not fit together, and after which time. It may be that a
-/// result is being replaced.
+/// How many times a folder is read again if its files do not fit together, and the time between two attempts. The
+/// reason may be that another process is just replacing the result.
 const AGAIN: (u32, Duration) = (3, Duration::from_millis(200));
 
 /// The result of a study, as it is in a folder.
@@ -123,8 +123,8 @@ impl Results {
         FrontTable::parse(&file, &self.read(name)?).map_err(|e| Failure::File(e.to_string()))
     }
 
-    /// The contents of a table whose first column has names of designs. Names of an early version are replaced by the
-    /// names of today.
+    /// The contents of the table `name`, whose first column has names of designs. If the result is of an early version,
+    /// the names are replaced by those that this version uses.
     ///
     /// # Errors
     /// The same errors as of [`Results::read`].
@@ -149,8 +149,8 @@ impl Results {
         if self.has_earlier_ids() { number_of_earlier(id) } else { number_of(id) }
     }
 
-    /// Whether the names of designs have no `x` in front. This is so in results of early versions, which listed no
-    /// files.
+    /// Whether the names of designs lack the `x` in front that this version writes. It is so in results of early
+    /// versions, which listed no files.
     fn has_earlier_ids(&self) -> bool {
         self.files.is_none()
     }

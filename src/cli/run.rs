@@ -106,7 +106,8 @@ impl RunArgs {
         Ok(planned(&asked.study).into_iter().filter(|name| !stays || name != "study.json").collect())
     }
 
-    /// Name of the folder of results if the user gives none.
+    /// Name of the folder of results if the user gives none. It names the study, the mass limit and whether there are
+    /// effects.
     fn folder(&self, study: &Study) -> String {
         let up_to = self.mass_max_kg.map_or(String::new(), |kg| format!("-up-to-{kg}-kg"));
         let effects = if self.effects.is_some() { "-with-effects" } else { "" };
@@ -123,7 +124,8 @@ pub(super) fn planned(study: &Study) -> Vec<String> {
     always.into_iter().chain(FILES).map(String::from).chain(of_materials).collect()
 }
 
-/// The study with a limit on the mass of the arm \[kg\]. If it has a limit that is as low or lower, nothing changes.
+/// The study with the limit `most_kg` on the mass of the arm \[kg\], and the text of its file. If the study already has
+/// a limit that is as low or lower, nothing changes.
 fn up_to_mass(
     most_kg: f64,
     study: Study,

@@ -116,8 +116,8 @@ pub(super) fn run_shard(
     Ok(Answer { text, exit: Exit::Done })
 }
 
-/// A sentence for the user if the folder has the same shard already, complete and from the same inputs; otherwise
-/// `None`.
+/// If the folder has the same shard already, complete and from the same inputs: a sentence that says so. Otherwise
+/// `None`. `manifest` describes the shard that is asked for.
 fn already_done(dir: &Path, manifest: &Value) -> Option<String> {
     let done = read_manifest(dir).ok()?;
     let same = |key: &str| done[key] == manifest[key];

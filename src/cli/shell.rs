@@ -33,7 +33,7 @@ pub(crate) struct ManArgs {
     out: PathBuf,
 }
 
-/// The completion script for a shell.
+/// The script with which a shell completes verbs, flags and file names, made from the description of the command line.
 pub(super) fn completions(args: &CompletionsArgs, mut command: Command) -> String {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut command, NAME, &mut script);

@@ -98,7 +98,8 @@ fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32]) -> String {
     out
 }
 
-/// The slot of a joint, the number of its piece, and the arm outboard of it. Fails if this arm breaks a limit.
+/// The slot (place in the order in which the arm is built) of the joint named `joint`, the index of its piece, and the
+/// arm outboard of it. Fails if this arm breaks a limit.
 fn before(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<(usize, usize, Partial), Failure> {
     let piece = problem
         .space()
@@ -174,7 +175,7 @@ fn demand_line(joint: &str, demand: &JointDemand, table: &DriveTable) -> String 
     )
 }
 
-/// The room that the link leaves for gear and motor, in words; empty if the study does not limit their sizes.
+/// The space that the link leaves for gear and motor, in words; empty if the study does not limit their sizes.
 fn room_words(room: &LinkRoom) -> String {
     let part = |part: &str, m: f64| match m.is_finite() {
         true => format!("; the link leaves {:.1} mm to the {part}", m * 1e3),

@@ -31,7 +31,7 @@ pub(super) const PARTS: Texts = &[
     (PAGE, include_str!("starters/parts.md")),
 ];
 
-/// The files in which name and folder are filled in.
+/// The files `texts` with `name`, the name of the new study or arm, and `folder`, its folder, filled in.
 pub(super) fn filled(texts: Texts, name: &str, folder: &str) -> Vec<(String, Vec<u8>)> {
     // between quotation marks the name is a JSON string, so special characters in it are escaped
     let quoted = serde_json::Value::from(name).to_string();

@@ -110,7 +110,7 @@ impl SupplementArgs {
         self.tolerance.is_some()
     }
 
-    /// How near the near designs must be, and how many are listed; `None` if the user asks for none.
+    /// How much worse near designs may be, and how many are listed; `None` if the user asks for none.
     pub(super) fn slack(&self) -> Option<Slack> {
         self.within.map(|part| Slack { part, most: self.within_most as usize })
     }

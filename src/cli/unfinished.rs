@@ -17,11 +17,13 @@ use std::time::{Duration, Instant};
 
 /// Shortest time between two saved states.
 const KEEP_EVERY: Duration = Duration::from_secs(2);
-/// Saving states may take at most the fraction 1/`SHARE` of the running time.
+/// Saving states may take at most the fraction 1/`SHARE` of the running time. Otherwise the time between two saves is
+/// made longer.
 const SHARE: u32 = 200;
 /// Ending of the name of a file with a state.
 pub(super) const ENDING: &str = ".unfinished";
-/// Keys in which two searches of one study may differ, each with the word for it in messages.
+/// Keys that must be equal in the saved state and in the search that is to be continued. Each comes with the word for
+/// it in messages.
 const SAME: [(&str, &str); 4] = [
     ("study_hash", "study"),
     ("catalogs_hash", "catalogs"),
@@ -94,7 +96,7 @@ impl Unfinished {
         Ok(())
     }
 
-    /// The error for a state that is damaged.
+    /// The error that is reported if the saved state is damaged.
     pub(super) fn damaged(&self) -> Failure {
         Failure::File(format!(
             "{}: the state of the unfinished search is damaged; give --fresh to discard it and begin anew",
@@ -116,7 +118,8 @@ impl Unfinished {
         Resume { from: self.from.as_deref(), keeper: self }
     }
 
-    /// The time at which the search would have started if this process had done all of it.
+    /// The time at which the search would have started if this process had done all of it. The time of earlier
+    /// processes is thus counted.
     pub(super) fn started(&self) -> Instant {
         self.started.checked_sub(self.earlier).unwrap_or(self.started)
     }
@@ -146,7 +149,7 @@ impl KeepState for Unfinished {
     }
 }
 
-/// The line of JSON and the state in the bytes of a file; `None` if the file is damaged.
+/// The line of JSON and the saved state, taken from the bytes of a file; `None` if the file is damaged.
 fn parts(bytes: &[u8]) -> Option<(Value, &[u8])> {
     let end = bytes.iter().position(|byte| *byte == b'\n')?;
     let head: Value = serde_json::from_slice(&bytes[..end]).ok()?;

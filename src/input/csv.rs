@@ -31,13 +31,13 @@ pub(crate) struct Csv {
 }
 
 impl Csv {
-    /// Divides text into records. Lines that begin with `comment` are left out.
+    /// Divides a text into records. Lines that begin with the byte `comment` are left out.
     pub(crate) fn parse(bytes: &[u8], comment: Option<u8>) -> Self {
         Self::parse_up_to(MOST_ROWS, bytes, comment)
     }
 
-    /// The same as [`Csv::parse`] with another largest number of rows. If the text has more, this is recorded in
-    /// `unreadable`.
+    /// Divides a text into records as [`Csv::parse`] does, but with `most` as the largest number of rows. If the text
+    /// has more rows, this is recorded in `unreadable`.
     pub(crate) fn parse_up_to(most: usize, bytes: &[u8], comment: Option<u8>) -> Self {
         let bytes = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
         let mut reader = ReaderBuilder::new()
@@ -80,7 +80,7 @@ pub(crate) fn other_separators(header: &[String], least: usize) -> impl Iterator
     words.into_iter().filter(move |(separator, _)| occurs(*separator)).map(|(_, word)| word)
 }
 
-/// Whether an earlier column of the header has the same name as this one.
+/// Whether an earlier column of the header has the same name as the column with the index `column`.
 pub(crate) fn is_repeated(header: &[String], column: usize) -> bool {
     header[..column].contains(&header[column])
 }

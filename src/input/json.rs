@@ -404,7 +404,7 @@ fn edit_distance(a: &str, b: &str) -> usize {
     row[b.len()]
 }
 
-/// Line, counted from 1, of the value at `path` in a JSON text that is valid.
+/// Line, counted from 1, at which the value at `path` stands in a valid JSON text; `None` if there is no such value.
 fn line_of(text: &str, path: &str) -> Option<usize> {
     let offset = Locator { bytes: text.as_bytes(), at: 0 }.find(&segments(path))?;
     Some(1 + text.as_bytes()[..offset].iter().filter(|&&b| b == b'\n').count())

@@ -96,7 +96,7 @@ pub enum Rule {
 }
 
 impl Shape {
-    /// A kind of object in which keys that are not in the table are faults.
+    /// A kind of object with the given name, description, keys and rules. Keys that are not among `keys` are faults.
     pub const fn new(
         name: &'static str,
         about: &'static str,
@@ -142,7 +142,7 @@ pub(crate) const SCHEMA_ADDRESS: Key = optional(
     "Where an editor finds the schema of this file; ignored.",
 );
 
-/// The words of a table of pairs of a word and a value.
+/// The words of a table whose entries are pairs of a word and a value, in the same order.
 pub(crate) const fn words_of<T, const N: usize>(pairs: &[(&'static str, T)]) -> [&'static str; N] {
     let mut words = [""; N];
     let mut i = 0;

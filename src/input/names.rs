@@ -23,7 +23,8 @@ pub(crate) fn unfit_name(text: &str) -> Option<Unfit> {
     unfit_character(text, |_| true).or_else(|| would_run(text))
 }
 
-/// A fault for the first hidden character among those for which `counts` is true; `None` if there is none.
+/// A fault for the first hidden character of a text; `None` if there is none. Only characters for which `counts` is
+/// true are examined.
 fn unfit_character(text: &str, counts: impl Fn(char) -> bool) -> Option<Unfit> {
     let hidden = text.chars().filter(|c| counts(*c)).find(|c| is_hidden(*c))?;
     let what = if hidden.is_control() {

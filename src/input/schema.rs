@@ -70,7 +70,7 @@ fn collect(kind: &Kind, found: &mut Vec<&'static Shape>) {
     }
 }
 
-/// Adds the entries of one JSON object to another.
+/// Adds the entries of the JSON object `from` to the JSON object `into`.
 fn merge(into: &mut Value, from: Value) {
     if let (Value::Object(into), Value::Object(from)) = (into, from) {
         into.extend(from);
@@ -104,7 +104,7 @@ fn value(kind: &Kind) -> Value {
     }
 }
 
-/// A name in the form that it has inside a reference.
+/// The name of a definition in the form that it has inside a JSON reference.
 fn pointer(name: &str) -> String {
     name.replace(' ', "%20")
 }
@@ -136,7 +136,7 @@ fn property(key: &Key) -> Value {
     out
 }
 
-/// Description of a key, with its unit and its default.
+/// Description of a key with its unit and its default, in sentences.
 fn sentence(key: &Key) -> String {
     let unit = if key.unit == "-" { String::new() } else { format!(" [{}]", key.unit) };
     let default = key.default.map(|text| format!(" Default: {text}."));
@@ -184,7 +184,7 @@ fn row(key: &Key) -> String {
     format!("| `{}` | {} | {} | {default} | {} |\n", key.name, words(&key.kind), key.unit, key.about)
 }
 
-/// Description of a kind of value.
+/// Description in words of the values that are allowed.
 fn words(kind: &Kind) -> String {
     let codes = |words: &[&str]| words.iter().map(|w| format!("`{w}`")).collect::<Vec<_>>().join(", ");
     match kind {
@@ -209,7 +209,7 @@ fn words(kind: &Kind) -> String {
     }
 }
 
-/// Description of a rule.
+/// A rule on which keys may or must occur together, in words.
 fn in_words(rule: &Rule) -> String {
     let list = |keys: &[&str], last: &str| {
         let codes: Vec<String> = keys.iter().map(|key| format!("`{key}`")).collect();

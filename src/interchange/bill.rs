@@ -66,7 +66,7 @@ pub(crate) fn bill(arm: &Arm, catalogs: &Catalogs) -> Vec<Row> {
     rows
 }
 
-/// The bill as `bom.csv` has it.
+/// The bill of materials as CSV, the content of `bom.csv`.
 pub(crate) fn bill_csv(rows: &[Row]) -> Vec<u8> {
     let header = [
         "item",
@@ -98,7 +98,8 @@ pub(crate) fn bill_csv(rows: &[Row]) -> Vec<u8> {
     csv_text(&header, cells)
 }
 
-/// The row of a part that is in no catalog. Its data come from the arm file.
+/// The row of the bill for a part that is in no catalog and is used at the element `at`. Its data come from the arm
+/// file.
 fn stated(at: &str, part: String, kind: &'static str, mass_kg: f64) -> Row {
     Row {
         count: 1,
@@ -113,7 +114,8 @@ fn stated(at: &str, part: String, kind: &'static str, mass_kg: f64) -> Row {
     }
 }
 
-/// The row of a part of a catalog.
+/// The row of the bill for a catalog part that is used at the element `at`. `from` is where the catalog has its numbers
+/// from.
 fn bought(at: &str, part: &str, kind: &'static str, mass_kg: f64, from: &Provenance) -> Row {
     let (source, confidence) = (from.source.clone(), from.confidence.to_string());
     Row { source, confidence, ..stated(at, part.into(), kind, mass_kg) }

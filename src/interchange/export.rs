@@ -78,7 +78,7 @@ pub(crate) struct Export {
     pub expected: Value,
 }
 
-/// Exports an arm to a format.
+/// Exports an arm as files of the format that is asked for.
 pub(crate) fn export(asked: &Asked, catalogs: &Catalogs) -> Export {
     let mut out = match asked.format {
         Format::Calculix => to_calculix(asked),
@@ -104,7 +104,7 @@ pub(crate) fn export(asked: &Asked, catalogs: &Catalogs) -> Export {
 }
 
 impl Export {
-    /// The record of the export, the content of `export.json`.
+    /// What the export consists of and what the other program should compute, as JSON: the content of `export.json`.
     pub(crate) fn to_json(&self, asked: &Asked) -> Value {
         let names: Vec<&str> = self.files.iter().map(|(name, _)| name.as_str()).collect();
         json!({
@@ -235,7 +235,8 @@ fn to_mjcf(asked: &Asked, catalogs: &Catalogs) -> Export {
     }
 }
 
-/// Half width of the backlash \[rad\] by name of the joint. Empty if backlash is not asked for.
+/// Half width of the backlash of each gear \[rad\] by name of the joint. Empty if backlash is not asked for. The joints
+/// with backlash are named in `notes`.
 fn plays(asked: &Asked, catalogs: &Catalogs, notes: &mut Vec<String>) -> BTreeMap<String, f64> {
     if !asked.backlash {
         return BTreeMap::new();
@@ -257,7 +258,8 @@ fn plays(asked: &Asked, catalogs: &Catalogs, notes: &mut Vec<String>) -> BTreeMa
     plays
 }
 
-/// Inertia and peak torque of the motors by name of the joint, as far as the catalogs know them.
+/// Inertia and peak torque of the motors by name of the joint. Where the catalogs do not know the rotor inertia,
+/// [`STAND_IN_KGM2`] is used and the joint is named in `notes`.
 fn motors(arm: &Arm, catalogs: &Catalogs, notes: &mut Vec<String>) -> BTreeMap<String, Motor> {
     let mut out = BTreeMap::new();
     let mut unknown = Vec::new();

@@ -121,7 +121,7 @@ fn read_hinge(node: &Node, catalogs: &Catalogs) -> Option<GivenSprings> {
     Some(GivenSprings::Hinge { curve: curve?, bearing, gear: gear?, motor: motor? })
 }
 
-/// A template of a stiffness file, in which all joints are rigid.
+/// A stiffness file for these joints to fill in, in which all joints are rigid.
 pub(crate) fn blank(joints: &[MovingJoint]) -> Value {
     let rigid = |joint: &MovingJoint| match joint.slides {
         true => json!({"stiffness_n_per_m": null, "guide": {}}),

@@ -33,12 +33,12 @@ pub(crate) struct Robot<'a> {
 
 /// How a joint on the path to the tip moves.
 enum Moves<'t> {
-    /// It does not move and is held at this angle \[rad\] or travel \[m\].
+    /// The joint does not move. It is held at this angle \[rad\] or travel \[m\].
     Not(f64),
-    /// It is a driven joint with its own angle or travel.
+    /// The joint is driven, with an angle or travel of its own.
     Driven,
-    /// It follows another joint: its angle is a factor times the angle of a driven joint, plus a constant \[rad\].
-    /// The fields are the name of that joint, the factor and the constant.
+    /// The joint follows another joint: its angle is a factor times the angle of a driven joint, plus a constant
+    /// \[rad\]. The fields are the name of the driven joint, the factor and the constant.
     With(&'t str, f64, f64),
 }
 
@@ -107,18 +107,19 @@ impl<'a> Robot<'a> {
         moving.map(|joint| MovingJoint { name: &joint.name, slides: slides(joint) }).collect()
     }
 
-    /// Whether a joint follows another one.
+    /// Whether the angle of a joint follows another joint (`<mimic>`).
     fn follows(&self, joint: &urdf_rs::Joint) -> bool {
         matches!(self.motion_of(&joint.name), Moves::With(..))
     }
 
-    /// Whether a joint follows a joint that slides.
+    /// Whether the angle of a joint follows the travel of a joint that slides.
     fn follows_a_slide(&self, joint: &urdf_rs::Joint) -> bool {
         let Moves::With(driver, ..) = self.motion_of(&joint.name) else { return false };
         self.tree.joints.iter().any(|other| other.name == driver && slides(other))
     }
 
-    /// How a joint moves. A joint that mimics a mimicking joint follows the joint at the end of this sequence.
+    /// How the joint `name` moves. If it mimics a joint that itself mimics another one, it follows the joint at the end
+    /// of this sequence.
     fn motion_of(&self, name: &str) -> Moves<'_> {
         let (mut factor, mut offset_rad) = (1.0, 0.0);
         let on_way: BTreeSet<&str> = self.tree.path_to(self.tip).iter().map(|j| j.name.as_str()).collect();
@@ -143,7 +144,7 @@ impl<'a> Robot<'a> {
         Moves::Not(offset_rad)
     }
 
-    /// The arm, and the report of its import.
+    /// The arm, with the elastic properties `given` at its joints, and the report of its import.
     pub(crate) fn arm(&self, given: &[GivenJoint]) -> (Arm, ImportReport) {
         let mut walk = Walk {
             tree: &self.tree,
@@ -184,13 +185,13 @@ struct Walk<'t> {
     tree: &'t UrdfTree,
     /// Names of the URDF links on the path, without the root.
     on_way: BTreeSet<&'t str>,
-    /// Frame of the present URDF link in the world, at zero joint angles.
+    /// Frame in the world, at zero joint angles, of the URDF link that the walk has reached.
     at: Isometry3<f64>,
-    /// Position in the world at which the present link of the arm begins \[m\].
+    /// Position in the world at which the link of the arm that is being built begins \[m\].
     start_m: Vector3<f64>,
     /// Name of the present link of the arm.
     name: String,
-    /// Bodies of the present link of the arm, with positions from its begin.
+    /// Bodies of the link of the arm that is being built. Their positions are measured from where the link begins.
     bodies: Vec<RigidBody>,
     /// Names that elements of the arm already have.
     taken: BTreeSet<String>,
@@ -199,7 +200,7 @@ struct Walk<'t> {
 }
 
 impl<'t> Walk<'t> {
-    /// Begins a link of the arm with a URDF link and the side branches that hang on it.
+    /// Begins a link of the arm with the URDF link `link` and the side branches that hang on it.
     fn begin(&mut self, link: &str) {
         self.start_m = self.at.translation.vector;
         self.name = self.free_name(link);
@@ -216,7 +217,8 @@ impl<'t> Walk<'t> {
         free
     }
 
-    /// Passes a joint of the path, to the URDF link behind it.
+    /// Passes a joint on the path to the tip, and goes on to the URDF link behind it. `motion` says how the joint
+    /// moves; a joint that does is added to the arm, with its elastic properties in `given`.
     fn pass(&mut self, joint: &'t urdf_rs::Joint, motion: Moves, given: &[GivenJoint]) {
         let axis = Unit::new_normalize(Vector3::from(joint.axis.xyz.0));
         let child = joint.child.link.as_str();
@@ -244,8 +246,8 @@ impl<'t> Walk<'t> {
         self.begin(child);
     }
 
-    /// Ends the present link of the arm at the present position. A link without length and without bodies is left
-    /// out.
+    /// Ends the link of the arm that was begun, at the position that the walk has reached. A link without length and
+    /// without bodies is left out.
     fn end_link(&mut self) {
         let vector_m = self.at.translation.vector - self.start_m;
         let bodies = std::mem::take(&mut self.bodies);
@@ -260,8 +262,9 @@ impl<'t> Walk<'t> {
         }));
     }
 
-    /// Adds the body of a URDF link at the place `at`, and of all side branches that hang on it. `by` is the joint
-    /// that holds the link if it is itself in a side branch.
+    /// Adds the body of the URDF link `link`, whose frame is `at`, and the bodies of all side branches that hang on it,
+    /// to the link of the arm that is being built. `by` is the joint that holds the link if it is itself in a side
+    /// branch.
     fn lump(&mut self, link: &str, at: Isometry3<f64>, by: Option<&urdf_rs::Joint>) {
         let tree = self.tree;
         let Some(found) = tree.link(link) else { return };

@@ -16,8 +16,8 @@ pub(crate) struct LeftOut {
     pub at: String,
     /// Reason why it is left out, and what to do instead.
     pub why: String,
-    /// The part of the tip deflection that is lost with this property: its component along the whole deflection,
-    /// divided by the whole. All these parts and the remaining one add up to 1.
+    /// The part of the tip deflection that is lost with this property: the component of the lost displacement along the
+    /// whole deflection, divided by the whole. The parts of all properties and the remaining part add up to 1.
     pub tip_share: f64,
 }
 
@@ -38,13 +38,14 @@ pub(crate) struct Remainder {
 }
 
 impl Remainder {
-    /// The arm as it is, before anything is removed.
+    /// The arm as it is in a case, before anything is removed.
     pub(crate) fn new(structure: Structure, case: &LoadCase) -> Self {
         let tip_m = Snapshot::new(structure.clone(), case, case.links).tip_m();
         Self { structure, case: case.clone(), tip_m, left_out: Vec::new() }
     }
 
-    /// Component of a displacement along the whole displacement of the tip, divided by the latter.
+    /// Component of the displacement `part_m` \[m\] along the whole displacement of the tip, divided by the whole
+    /// displacement.
     fn share(&self, part_m: &Vector3<f64>) -> f64 {
         match self.tip_m.norm_squared() {
             0.0 => 0.0,
@@ -52,7 +53,8 @@ impl Remainder {
         }
     }
 
-    /// Removes a property by `change`, and records the change of the tip deflection that this causes.
+    /// Removes a property from the structure by the function `change`, and records how much of the tip deflection is
+    /// lost with it. `what`, `at` and `why` say what the property is, where it is and why it is removed.
     fn remove(&mut self, what: &'static str, at: &str, why: &str, change: impl FnOnce(&mut Structure)) {
         let before_m = Snapshot::new(self.structure.clone(), &self.case, self.case.links).tip_m();
         change(&mut self.structure);
@@ -80,7 +82,8 @@ impl Remainder {
         }
     }
 
-    /// Removes the compliance of every link.
+    /// Removes the compliance of every link, one by one, so that the loss of each is recorded. `why` is the reason for
+    /// the record.
     pub(crate) fn without_flexible_links(&mut self, why: &str) {
         let names: Vec<String> = self
             .structure
@@ -98,7 +101,7 @@ impl Remainder {
         }
     }
 
-    /// Removes the compliance of one link.
+    /// Removes the compliance of the link `name`. `why` is the reason for the record.
     pub(crate) fn without_flexible_link(&mut self, name: &str, why: &str) {
         self.remove("link_compliance", name, why, |structure| {
             for piece in &mut structure.pieces {
@@ -112,7 +115,8 @@ impl Remainder {
         });
     }
 
-    /// Removes the force and the moment at the tip, and returns the remaining case.
+    /// Removes the force and the moment at the tip, and returns the case without them. `why` is the reason for the
+    /// record.
     pub(crate) fn without_tip_load(&mut self, why: &str) -> LoadCase {
         let bare =
             LoadCase { tip_force_n: Vector3::zeros(), tip_moment_nm: Vector3::zeros(), ..self.case.clone() };

@@ -13,8 +13,8 @@ use crate::arm::structure::JointAngle;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeMap;
 
-/// Mass and moment of inertia that a body without any gets, and which is added to the moments of all bodies
-/// \[kg, kg m²\]. MuJoCo accepts no moving body without mass and inertia.
+/// Mass \[kg\] and moment of inertia \[kg m²\] that a body without any gets; the moment is also added to those of all
+/// bodies. MuJoCo accepts no moving body without mass and inertia.
 const LEAST: f64 = 1e-9;
 
 /// Inertia at the joint that is used if the rotor inertia is unknown \[kg m²\]. With no inertia between them, the
@@ -38,7 +38,7 @@ pub(crate) struct Mjcf {
     pub balanced: bool,
 }
 
-/// Writes an arm in a case as MJCF.
+/// Writes an arm in a case as MJCF. `motors` has inertia and peak torque of the motors by name of the joint.
 pub(crate) fn mjcf(
     name: &str,
     snapshot: &Snapshot,
@@ -90,7 +90,8 @@ pub(crate) fn mjcf(
     Mjcf { text: xml.finish(), balanced }
 }
 
-/// Opens the element of a body. It stays open, because the bodies outboard of it are nested inside.
+/// Opens the XML element of a body. It stays open, because the bodies outboard of it are nested inside. `before_m` is
+/// the origin of the body that contains it \[m\].
 fn body(xml: &mut Xml, node: &Node, before_m: &Vector3<f64>, motors: &BTreeMap<String, Motor>) {
     xml.open("body", &[("name", node.name.clone()), ("pos", triple(&(node.origin_m - before_m)))]);
     for hinge in &node.hinges {
@@ -194,8 +195,8 @@ fn actuators(xml: &mut Xml, snapshot: &Snapshot, motors: &BTreeMap<String, Motor
     xml.close();
 }
 
-/// Writes the pose of the case twice: with all springs undeflected, for the comparison of frequencies and torques,
-/// and deflected.
+/// Writes the pose of the case as two keyframes. In the first all springs are undeflected, for the comparison of
+/// frequencies and torques; in the second they are deflected by the load of the case.
 fn keyframes(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
     let pose_rad: Vec<f64> = snapshot.case.pose_deg.iter().map(|deg| deg.to_radians()).collect();
     let angle = |name: &str| {

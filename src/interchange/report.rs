@@ -45,8 +45,8 @@ impl ImportReport {
         }
     }
 
-    /// Records a joint of the arm, with the elastic properties that the stiffness file states; `None` if it states
-    /// none.
+    /// Records a joint of the arm. `springs` are the elastic properties that the stiffness file states for it; `None`
+    /// if it states none.
     pub(super) fn joint(
         &mut self,
         joint: &Joint,
@@ -101,8 +101,8 @@ impl ImportReport {
         }));
     }
 
-    /// Records a joint on the path to the tip that does not move, and the angle \[rad\] or travel \[m\] at which it
-    /// is held.
+    /// Records a joint on the path to the tip that does not move. `held_at` is the angle \[rad\] or travel \[m\] at
+    /// which it is held. `link` is the link of the arm with which the URDF link behind the joint is merged.
     pub(super) fn joined(&mut self, joint: &Joint, link: &str, held_at: f64) {
         self.joined.push(json!({
             "joint": joint.name, "type": word(joint), "link": joint.child.link, "onto": link,
@@ -111,7 +111,8 @@ impl ImportReport {
         }));
     }
 
-    /// Records a link of a side branch, whose body is added to a link of the arm.
+    /// Records a link of a side branch, whose body is added to the link `onto` of the arm. `by` is the joint that holds
+    /// the link.
     pub(super) fn lumped(&mut self, link: &Link, onto: &str, by: &Joint) {
         self.lumped.push(json!({
             "link": link.name, "onto": onto, "mass_kg": link.inertial.mass.value, "joint": by.name, "type": word(by),

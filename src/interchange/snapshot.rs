@@ -16,7 +16,8 @@ const REST_NM: f64 = 1e-9;
 /// Number of natural frequencies in the expected results.
 const MODES: usize = 6;
 
-/// The state of a spring at the load of a case.
+/// The working point of one spring: its load, its deflection and its compliance at the load of a case. A spring belongs
+/// to one coordinate of an elastic element, such as the torsion of a joint or the tilt of a bearing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Working {
     /// Generalized force on the coordinate \[N m\].
@@ -28,12 +29,13 @@ pub(crate) struct Working {
 }
 
 impl Working {
-    /// Whether the spring does not deflect at all.
+    /// Whether the spring has no compliance: neither a deflection nor a tangent compliance at the load of the case.
     pub(crate) fn is_rigid(&self) -> bool {
         self.tangent_rad_per_nm == 0.0 && self.deflection_rad == 0.0
     }
 
-    /// Tangent stiffness \[N m/rad\]; the secant stiffness if the tangent compliance is zero.
+    /// Tangent stiffness at the load of the case \[N m/rad\]. Where the tangent compliance is zero, it is the secant
+    /// stiffness, because the tangent stiffness would be infinite.
     pub(crate) fn tangent_nm_per_rad(&self) -> f64 {
         match self.tangent_rad_per_nm > 0.0 {
             true => 1.0 / self.tangent_rad_per_nm,
@@ -41,7 +43,8 @@ impl Working {
         }
     }
 
-    /// Secant stiffness \[N m/rad\]; the tangent stiffness if the spring is unloaded.
+    /// Secant stiffness (load over deflection) \[N m/rad\]. If the spring is unloaded it is the tangent stiffness,
+    /// because load over deflection is then undefined.
     pub(crate) fn secant_nm_per_rad(&self) -> f64 {
         let secant = self.load_nm / self.deflection_rad;
         match self.load_nm.abs() > REST_NM && secant.is_finite() && secant > 0.0 {
@@ -50,8 +53,8 @@ impl Working {
         }
     }
 
-    /// Rest position of a linear spring that has the tangent stiffness and the same deflection under the load
-    /// \[rad\].
+    /// Rest position \[rad\] of a linear spring that replaces this one: it has the tangent stiffness, and deflects as
+    /// much under the load of the case.
     pub(crate) fn rest_rad(&self) -> f64 {
         self.deflection_rad - self.load_nm / self.tangent_nm_per_rad()
     }
@@ -68,7 +71,8 @@ pub(crate) struct Snapshot {
 }
 
 impl Snapshot {
-    /// An arm in a case. The model of the links may be another one than that of the case.
+    /// An arm in a case. `links` is the model of its links, which may be another one than the model that the case
+    /// states.
     pub(crate) fn new(structure: Structure, case: &LoadCase, links: LinkModel) -> Self {
         let chain = Chain::new(&structure, links);
         Self { case: LoadCase { links, ..case.clone() }, structure, chain }
@@ -84,7 +88,7 @@ impl Snapshot {
         self.chain.pose_rad(&vec![0.0; self.case.pose_deg.len()], &self.case.payload, Vector3::zeros())
     }
 
-    /// Displacement of the tip in the case, in world axes \[m\].
+    /// Displacement of the tip in the case, from its position in the weightless arm, in world axes \[m\].
     pub(crate) fn tip_m(&self) -> Vector3<f64> {
         self.posed().statics().tip_displacement_m
     }
@@ -102,7 +106,8 @@ impl Snapshot {
         self.structure.joints().filter(|joint| joint.is_driven()).map(|joint| joint.name.as_str()).collect()
     }
 
-    /// The state of the spring of each coordinate, as one list for each element, base to tip.
+    /// The working points (load, deflection and compliance) of the springs of all coordinates, as one list for each
+    /// element, base to tip.
     pub(crate) fn working_points(&self) -> Vec<Vec<Working>> {
         let posed = self.posed();
         let statics = posed.statics();

@@ -27,7 +27,7 @@ pub(crate) enum Role {
     Motor,
     /// A spring acts on the hinge.
     Spring(Working),
-    /// The hinge is free within this half width \[rad\]: backlash of a gear.
+    /// The hinge turns freely within this half width \[rad\], which is the backlash of a gear.
     Play(f64),
 }
 
@@ -63,7 +63,8 @@ pub(crate) struct Node {
     pub rods: Vec<(Vector3<f64>, Vector3<f64>, f64)>,
 }
 
-/// Mass, centre of gravity and inertia about it of a rigid body, from its inertia matrix about the world's origin.
+/// Mass, centre of gravity, and inertia about the centre of gravity of a rigid body, computed from its inertia matrix
+/// about the world's origin.
 pub(crate) fn mass_properties(inertia: &Matrix6<f64>) -> (f64, Vector3<f64>, Matrix3<f64>) {
     let mass_kg = inertia[(0, 0)];
     if mass_kg == 0.0 {
@@ -131,7 +132,8 @@ impl Builder<'_> {
         self.nodes.last_mut().expect("the base is opened first")
     }
 
-    /// Adds the hinges of a joint, a bearing or a frame.
+    /// Adds the hinges of a joint, a bearing or a frame. `workings` are the working points of its springs, one for each
+    /// coordinate.
     fn springs(&mut self, element: &ElasticElement, workings: &[Working]) {
         let is_joint = matches!(element.yielding, Yielding::Joint(_));
         let yields = self.options.springs && workings.iter().any(|working| !working.is_rigid());
@@ -168,7 +170,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Adds a link with mass along it, as one body or in pieces.
+    /// Adds a link with mass along it, as one rigid body, or as rigid pieces with springs between them if the options
+    /// ask for it.
     fn link(&mut self, link: Option<&LinkPiece>, own: &OwnMass) {
         let Some(link) = link else { return };
         let vector_m = own.frame.column(0) * link.vector_m.norm();
@@ -186,7 +189,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Adds a link as rigid pieces with springs between them.
+    /// Adds a link as rigid pieces with springs between them. `own` has its root and its section frame; `radius_m` is
+    /// the radius with which it is drawn \[m\].
     fn pieces(&mut self, link: &LinkPiece, beam: &Beam, own: &OwnMass, radius_m: f64) {
         let count = self.options.pieces;
         let length_m = link.vector_m.norm();
@@ -220,7 +224,8 @@ impl Builder<'_> {
     }
 }
 
-/// The hinge or slide that makes the motion `twist` (velocity, angular velocity).
+/// The hinge that turns about, or slides along, the axis of the motion `twist` (velocity, angular velocity). `element`
+/// is the name of the elastic element, and `at_m` the position of the hinge \[m\].
 fn hinge(twist: &Twist, name: String, element: &str, at_m: Vector3<f64>, role: Role) -> Hinge {
     let turn = angular(twist);
     let slides = turn == Vector3::zeros();
@@ -228,7 +233,7 @@ fn hinge(twist: &Twist, name: String, element: &str, at_m: Vector3<f64>, role: R
     Hinge { name, element: element.into(), axis, at_m, slides, role }
 }
 
-/// Inertia matrix about the world's origin of the piece of a link between two points.
+/// Inertia matrix, about the world's origin, of the part of a link between the points `from_m` and `to_m` \[m\].
 fn piece_inertia(
     link: &LinkPiece,
     beam: &Beam,
@@ -249,7 +254,8 @@ fn piece_inertia(
     body_inertia(mass_kg, &((from_m + to_m) / 2.0), &inertia)
 }
 
-/// The springs between two pieces of a link: slides along the axes of the section, and hinges about them.
+/// The springs between two pieces of a link: slides along the axes of the section, and hinges about them. They are at
+/// `at_m` \[m\] and belong to the piece with the index `piece`.
 fn piece_hinges(
     link: &LinkPiece,
     beam: &Beam,

@@ -33,7 +33,7 @@ pub(crate) fn slides(joint: &Joint) -> bool {
     matches!(joint.joint_type, JointType::Prismatic)
 }
 
-/// Position and attitude that an `<origin>` states.
+/// Position \[m\] and attitude that an `<origin>` states, as a transformation.
 pub(crate) fn isometry(pose: &Pose) -> Isometry3<f64> {
     let [roll, pitch, yaw] = pose.rpy.0;
     let turn = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
@@ -102,7 +102,7 @@ impl UrdfTree {
         self.links.iter().filter(is_end).map(|link| link.name.as_str()).collect()
     }
 
-    /// All faults: name of the link or joint, problem, and advice.
+    /// All faults of the robot, each with the name of the link or joint, the problem and the advice.
     fn problems(&self) -> Vec<(String, String, &'static str)> {
         let mut out = Vec::new();
         if self.links.is_empty() {

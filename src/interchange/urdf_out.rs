@@ -41,7 +41,8 @@ pub(crate) fn urdf(arm: &Arm, snapshot: &Snapshot) -> String {
     xml.finish()
 }
 
-/// Name of a link in the URDF, which must differ from the names of joints.
+/// Name of the URDF link for a body, which must differ from the names of joints. `number` counts the bodies from the
+/// base.
 fn link_name(number: usize, node: &Node) -> String {
     if number == 0 { "base".into() } else { format!("{}_link", node.name) }
 }
@@ -68,7 +69,8 @@ fn ends(xml: &mut Xml, parent: &str, child: &str, xyz_m: &Vector3<f64>) {
     xml.leaf("origin", &[("xyz", triple(xyz_m)), ("rpy", "0 0 0".into())]);
 }
 
-/// Writes a joint. An arm file states no ranges of joints, so the joint is continuous.
+/// Writes the joint between the bodies `parent` and `node`, which have the URDF names `from` and `to`. An arm file
+/// states no ranges of joints, so the joint is continuous.
 fn joint(xml: &mut Xml, snapshot: &Snapshot, (from, parent): (&str, &Node), (to, node): (&str, &Node)) {
     xml.open("joint", &[("name", node.name.clone()), ("type", "continuous".into())]);
     ends(xml, from, to, &(node.origin_m - parent.origin_m));

@@ -29,8 +29,8 @@ use nalgebra::{DMatrix, Matrix3, Matrix3xX, Matrix6xX, SMatrix, Vector3};
 pub(crate) const CURVATURES: usize = 4;
 /// Number of polynomials of shear in each plane, of twist and of stretch.
 pub(crate) const OTHERS: usize = 3;
-/// Points (0 to 1) and weights of Gauss-Legendre quadrature. With eight points it is exact up to degree 15; the
-/// integrands here have degree 10 at most.
+/// Points (0 to 1) and weights of Gauss-Legendre quadrature over the length of a link. With eight points it is exact
+/// for polynomials up to degree 15; the integrands here have degree 10 at most.
 const GAUSS: [(f64, f64); 8] = [
     (0.019_855_071_751_231_9, 0.050_614_268_145_188_1),
     (0.101_666_761_293_186_6, 0.111_190_517_226_687_2),
@@ -75,8 +75,8 @@ pub(crate) struct LineInertia {
 }
 
 impl LineInertia {
-    /// The inertia per length that belongs to each component of motion, in the section frame: displacement along x,
-    /// y, z \[kg/m\], rotation about x, y, z \[kg m\].
+    /// Mass and rotary inertia per length, one number for each component of motion in the section frame: displacement
+    /// along x, y, z \[kg/m\], rotation about x, y, z \[kg m\].
     fn densities(&self) -> [f64; 6] {
         [
             self.along_kg_per_m,
@@ -89,7 +89,7 @@ impl LineInertia {
     }
 }
 
-/// Weight of the rigid bodies that are mounted on a link, in its section frame.
+/// Weight of the rigid bodies that are mounted on a link, as loads in the section frame of the link.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct CarriedWeight {
     /// Work of the weight per unit of each strain coordinate (columns) if gravity acts along x, y or z (rows)
@@ -97,7 +97,8 @@ pub(crate) struct CarriedWeight {
     pub fields: Matrix3xX<f64>,
     /// Sum of the weights \[N\].
     pub weight_n: f64,
-    /// Sum of weight times position of the centre of gravity, from the root of the link \[N m\].
+    /// Sum over the bodies of weight times position of the centre of gravity, measured from the root of the link \[N
+    /// m\].
     pub moment_nm: Vector3<f64>,
 }
 
@@ -107,7 +108,7 @@ impl Default for CarriedWeight {
     }
 }
 
-/// A link prepared for any pose: everything about it that does not depend on where it is.
+/// A link prepared for any pose: its stiffness, mass and displacement fields, none of which depends on the pose.
 #[derive(Debug, Clone)]
 pub(crate) struct PreparedBeam {
     /// Length of the link \[m\].
@@ -120,7 +121,7 @@ pub(crate) struct PreparedBeam {
     /// Displacement (rows 0-2) and rotation (rows 3-5) of the end of the link per unit of each strain coordinate, in
     /// the section frame.
     pub end_fields: Matrix6xX<f64>,
-    /// Integral over the length of the displacement per unit of each strain coordinate, in the section frame
+    /// Displacement integrated over the length of the link, per unit of each strain coordinate, in the section frame
     /// \[m² per unit\].
     pub area_fields: Matrix3xX<f64>,
     /// Inertia matrix over translation of the root (0-2), rotation of the root (3-5) and strain coordinates (from 6),
@@ -135,8 +136,8 @@ pub(crate) struct PreparedBeam {
 }
 
 impl PreparedBeam {
-    /// Prepares a link. Returns `None` if the link has no length, or if it is a rigid offset without a harness along
-    /// it.
+    /// Prepares the link of a structure for the link model `model`. Returns `None` if the link has no length, or if it
+    /// is a rigid offset without a harness along it.
     pub(crate) fn new(link: &LinkPiece, structure: &Structure, model: LinkModel) -> Option<Self> {
         let length_m = link.vector_m.norm();
         if length_m == 0.0 || (link.beam.is_none() && link.harness_kg_per_m == 0.0) {
@@ -188,13 +189,14 @@ impl PreparedBeam {
         out
     }
 
-    /// The inertia per length that belongs to each component of motion, in the section frame: displacement along x,
-    /// y, z \[kg/m\], rotation about x, y, z \[kg m\].
+    /// Mass and rotary inertia per length of this link, one number for each component of motion in the section frame:
+    /// displacement along x, y, z \[kg/m\], rotation about x, y, z \[kg m\].
     pub(crate) fn line_densities(&self) -> [f64; 6] {
         self.line.densities()
     }
 
-    /// The Gauss points (0 to 1), each with its weight times the length of the link \[m\].
+    /// The Gauss points of the link (0 at its root, 1 at its end), each with its weight times the length of the link
+    /// \[m\].
     pub(crate) fn quadrature(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         GAUSS.iter().map(|&(xi, weight)| (xi, weight * self.length_m))
     }
@@ -209,8 +211,8 @@ impl PreparedBeam {
         tube + stack(&(*down * *weight_n), &moment_nm)
     }
 
-    /// Adds a rigid body to the link. The body moves with that point of the axis that is nearest to its centre of
-    /// gravity.
+    /// Adds inertia and weight of a rigid body to the link. The body moves with the point of the axis that is nearest
+    /// to its centre of gravity.
     fn add_body(&mut self, body: &RigidBody, gravity_m_s2: f64) {
         self.inertia += self.inertia_of(body);
         let weight_n = body.mass_kg * gravity_m_s2;
@@ -219,7 +221,8 @@ impl PreparedBeam {
         self.bodies.moment_nm += weight_n * (self.frame.transpose() * body.cg_m);
     }
 
-    /// Inertia matrix of a body over root translation, root rotation and strain coordinates, in the section frame.
+    /// Inertia matrix of a body on the link, over root translation, root rotation and strain coordinates, in the
+    /// section frame.
     pub(crate) fn inertia_of(&self, body: &RigidBody) -> DMatrix<f64> {
         let turn = self.frame.transpose();
         let (fields, arm_m) = self.carrier(body);
@@ -228,23 +231,24 @@ impl PreparedBeam {
         DMatrix::from_fn(fields.ncols(), fields.ncols(), |i, j| fields.column(i).dot(&weighted.column(j)))
     }
 
-    /// Displacement of the centre of gravity of a body per unit of root translation, root rotation and each strain
-    /// coordinate, in the section frame.
+    /// Displacement of the centre of gravity of a body on the link, per unit of root translation, root rotation and
+    /// each strain coordinate, in the section frame.
     pub(crate) fn centre_fields(&self, body: &RigidBody) -> Matrix3xX<f64> {
         let (fields, arm_m) = self.carrier(body);
         let turned = arm_m.cross_matrix() * fields.fixed_rows::<3>(3);
         fields.fixed_rows::<3>(0) - turned
     }
 
-    /// The point of the axis with which a body moves: the fields at this point (see [`Self::fields`]), and the vector
-    /// from it to the centre of gravity of the body \[m\], in the section frame.
+    /// The point of the axis with which a body on the link moves: the displacement fields at this point (see
+    /// [`Self::fields`]), and the vector from the point to the centre of gravity of the body \[m\], in the section
+    /// frame.
     pub(crate) fn carrier(&self, body: &RigidBody) -> (Matrix6xX<f64>, Vector3<f64>) {
         let cg_m = self.frame.transpose() * body.cg_m;
         let xi = (cg_m.x / self.length_m).clamp(0.0, 1.0);
         (self.fields(xi), cg_m - Vector3::x() * (xi * self.length_m))
     }
 
-    /// Computes inertia matrix and area fields by quadrature over the length.
+    /// Computes the inertia matrix and the area fields of the link by quadrature over its length.
     fn integrate(&mut self) {
         let n = 6 + self.coordinates.len();
         let densities = self.line_densities();
@@ -263,9 +267,9 @@ impl PreparedBeam {
     }
 }
 
-/// The point of the axis of a link at which a spring acts (0 to 1), and the spring's force and moment about this
-/// point in the section frame. The root of the link is at `root_m` \[m\], and `frame` is the section frame in the
-/// world.
+/// The point of the axis of a link at which a spring acts (0 at the root, 1 at the end), and the spring's force and
+/// moment about this point in the section frame. The root of the link is at `root_m` \[m\], `frame` is the section
+/// frame in the world, and `load` is the force of the spring in the world.
 pub(crate) fn pull_on(
     length_m: f64,
     root_m: &Vector3<f64>,
@@ -279,8 +283,9 @@ pub(crate) fn pull_on(
     (xi, stack(&force_n, &(frame.tr_mul(&load.moment_nm) + arm_m.cross(&force_n))))
 }
 
-/// Slope `L ∫P_i` and deflection `L² ∬P_i` at `xi`, integrated from the root, where both are zero. The integrals
-/// follow from `(2i+1) ∫P_i = P_(i+1) - P_(i-1)` over `s = 2ξ-1`, with dξ = ds/2.
+/// Slope `L ∫P_i` and deflection `L² ∬P_i` of a link at `xi` (0 to 1), if its curvature is the Legendre polynomial of
+/// this degree. Both are integrated from the root, where they are zero. The integrals follow from
+/// `(2i+1) ∫P_i = P_(i+1) - P_(i-1)` over `s = 2ξ-1`, with dξ = ds/2.
 fn shape(degree: usize, xi: f64, length_m: f64) -> (f64, f64) {
     let s = 2.0 * xi - 1.0;
     let integral = |i: usize| match i {
@@ -315,8 +320,8 @@ pub(crate) fn section_frame(vector_m: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::from_columns(&[x, z.cross(&x), z])
 }
 
-/// Compliance of each strain coordinate of a link, in the order of [`PreparedBeam::compliances`]. Empty for a rigid
-/// link.
+/// Compliance (squared coordinate per twice the strain energy) of each strain coordinate of a link, in the order of
+/// [`PreparedBeam::compliances`]. Empty for a rigid link.
 pub(crate) fn compliances(link: &LinkPiece, model: LinkModel) -> Vec<f64> {
     let length_m = link.vector_m.norm();
     let coordinates = link.beam.map_or_else(Vec::new, |beam| coordinates(&beam, length_m, model));
@@ -330,7 +335,7 @@ pub(crate) fn strains(link: &LinkPiece, model: LinkModel) -> Vec<(Strain, usize)
     coordinates.into_iter().map(|(strain, degree, _)| (strain, degree)).collect()
 }
 
-/// The inertia per length of a link that belongs to each component of displacement and rotation, as in
+/// Mass and rotary inertia per length of a link, one number for each component of displacement and rotation, as in
 /// [`PreparedBeam::line_densities`].
 pub(crate) fn line_densities(link: &LinkPiece, structure: &Structure, model: LinkModel) -> [f64; 6] {
     line_inertia(link, structure, model).densities()
@@ -351,7 +356,8 @@ pub(crate) fn line_stiffnesses(beam: &Beam) -> [f64; 5] {
     ]
 }
 
-/// The strain coordinates of a tube: kind of strain, degree of the polynomial, and compliance.
+/// The strain coordinates that a tube has in the link model `model`: kind of strain, degree of the polynomial, and
+/// compliance.
 fn coordinates(beam: &Beam, length_m: f64, model: LinkModel) -> Vec<(Strain, usize, f64)> {
     let [bending_y, bending_z, shear, torsion, stretch] = line_stiffnesses(beam);
     let bending = [(Strain::CurvatureZ, CURVATURES, bending_y), (Strain::CurvatureY, CURVATURES, bending_z)];
@@ -375,7 +381,8 @@ fn coordinates(beam: &Beam, length_m: f64, model: LinkModel) -> Vec<(Strain, usi
         .collect()
 }
 
-/// Mass and rotary inertia per length of a link, including its harness and the added mass of water.
+/// Mass and rotary inertia per length of a link, including its harness and the added mass of the water around it. In
+/// the link model `bending`, rotary inertia about axes across the link is zero.
 fn line_inertia(link: &LinkPiece, structure: &Structure, model: LinkModel) -> LineInertia {
     let Some(beam) = link.beam else {
         return LineInertia {

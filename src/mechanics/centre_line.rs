@@ -88,8 +88,8 @@ impl Posed<'_> {
         out
     }
 
-    /// Displacement of a point inside a link caused by the strain coordinates of this link alone, in world axes
-    /// \[m\]. `xi` is the position of the point along the link, from 0 to 1.
+    /// Displacement \[m\] of a point inside a link, in world axes, caused by the strain coordinates `q` of this link
+    /// alone. `xi` is the position of the point along the link, from 0 to 1.
     fn inside(
         &self,
         element: &ElasticElement,
@@ -118,7 +118,8 @@ impl Walk {
         Station { piece: piece.to_string(), at_m, moved_m: displacement_at(&self.motion, &at_m), axis }
     }
 
-    /// Adds the motion that an elastic element causes, if there is one.
+    /// Adds the motion that an elastic element causes to the motion so far; nothing for `None`. The item is the element
+    /// and the values of its strain coordinates.
     fn yields(&mut self, element: Option<(&ElasticElement, &Vec<f64>)>) {
         if let Some((element, q)) = element {
             self.motion += element.twists.iter().zip(q).map(|(twist, q)| twist * *q).sum::<Twist>();

@@ -70,7 +70,7 @@ pub(super) enum Prepared {
     Link(LinkPiece, Option<PreparedBeam>),
 }
 
-/// How the strain coordinates of an element follow from the generalized forces on them.
+/// How the strain coordinates of an element (its deflections) follow from the generalized forces on them.
 #[derive(Debug, Clone)]
 pub enum Yielding {
     /// In proportion to the force; one compliance for each coordinate.
@@ -92,9 +92,10 @@ pub struct ElasticElement {
     pub name: String,
     /// Position in the world \[m\]: of the joint, the bearing or the frame, or of the root of the link.
     pub at_m: Vector3<f64>,
-    /// Motion of everything outboard per unit of each strain coordinate.
+    /// Motion of everything outboard per unit of each strain coordinate, as a vector of velocity and angular velocity
+    /// at the world's origin.
     pub twists: Vec<Twist>,
-    /// How the strain coordinates follow from the generalized forces on them.
+    /// How the strain coordinates (the deflections of the element) follow from the generalized forces on them.
     pub yielding: Yielding,
     /// Torque on the coordinate of a joint that comes neither from weight nor from the load, such as that of a
     /// counterbalance \[N m\]; 0 for other elements.
@@ -169,8 +170,8 @@ pub struct Posed<'a> {
 }
 
 impl Chain {
-    /// Prepares the pieces of an arm with this model of its links. [`Arm::structure`](crate::arm::Arm::structure)
-    /// makes the structure of an arm.
+    /// Prepares the pieces of an arm for any pose, with the link model `links`.
+    /// [`Arm::structure`](crate::arm::Arm::structure) makes the structure of an arm.
     pub fn new(structure: &Structure, links: LinkModel) -> Self {
         let pieces = structure
             .pieces
@@ -224,8 +225,8 @@ impl Chain {
         }
     }
 
-    /// Walks from base to tip and collects the elements and bodies. The forces of the springs are inserted on the
-    /// way.
+    /// Walks from base to tip and collects the elements and bodies. `springs` are the forces of the springs, which are
+    /// inserted on the way.
     fn walk(&self, pose_rad: &[f64], springs: Vec<EndLoad>) -> Walk {
         let mut walk = Walk {
             items: Vec::new(),
@@ -251,7 +252,8 @@ impl Chain {
         walk
     }
 
-    /// Forces of the springs on the arm in a pose. A first walk without springs finds the positions of their ends.
+    /// Forces of the springs on the arm in a pose. They depend on where their ends are, so a first walk from base to
+    /// tip without springs finds these positions.
     fn spring_loads(&self, pose_rad: &[f64]) -> Vec<EndLoad> {
         match self.springs.is_empty() {
             true => Vec::new(),
@@ -259,8 +261,8 @@ impl Chain {
         }
     }
 
-    /// The springs in a pose given in radians, each with its name. Springs whose ends are not in the chain are left
-    /// out.
+    /// The springs in the pose `pose_rad` \[rad, m\], each with its name. Springs whose ends are not in the chain are
+    /// left out.
     pub fn springs_in(&self, pose_rad: &[f64]) -> Vec<(&str, Drawn)> {
         let frames = self.walk(pose_rad, Vec::new()).frames;
         let drawn = |spring: &'_ Spring| spring.drawn(&frames);
@@ -281,7 +283,8 @@ impl Chain {
         }
     }
 
-    /// The payload as a rigid body at the tip. In water, buoyancy is subtracted from its weight.
+    /// The payload as a rigid body at the tip, where the walk from base to tip has ended. In water, buoyancy is
+    /// subtracted from its weight.
     fn payload_body(&self, payload: &Payload, walk: &Walk) -> Body {
         let rotation = walk.rotation.matrix();
         let buoyancy = self.water.map_or(0.0, |w| w.density_kg_m3 / w.payload_density_kg_m3);
@@ -311,8 +314,8 @@ pub(super) struct Walk {
 }
 
 impl Walk {
-    /// Adds a joint. The mass of the joint is inboard of its springs, so its own deflection does not move it. The
-    /// springs of its bearing come before its torsion spring.
+    /// Adds a joint at the angle `angle_rad`. The mass of the joint is inboard of its springs, so its own deflection
+    /// does not move it. The springs of its bearing come before its torsion spring.
     fn joint(&mut self, index: usize, joint: &JointPiece, angle_rad: f64) {
         self.point_mass(joint.mass_kg, self.at_m);
         self.bodies(&joint.bodies.fixed);
@@ -337,7 +340,8 @@ impl Walk {
         self.frames.push(ElementFrame { at_m: self.at_m, rotation: self.rotation, hinge });
     }
 
-    /// Adds a link, preceded by the compliance of the frame at its root.
+    /// Adds a link; the compliance of the frame at its root comes before it. `piece` is the index of the link in the
+    /// chain.
     fn link(&mut self, piece: usize, link: &LinkPiece, beam: Option<&PreparedBeam>) {
         self.frame(&link.name, &link.root_frame);
         let vector = self.rotation * link.vector_m;
@@ -356,7 +360,8 @@ impl Walk {
         self.at_m = end_m;
     }
 
-    /// The elastic element of the link that ends at `end_m` \[m\].
+    /// The elastic element of a link. `piece` is the index of the link in the chain, and its end is at `end_m` in the
+    /// world \[m\].
     fn beam_element(
         &self,
         piece: usize,
@@ -383,8 +388,8 @@ impl Walk {
         }
     }
 
-    /// The distributed mass of a link whose section frame is `frame`, and the forces that springs put on a tube along
-    /// its length.
+    /// The distributed mass of a link, and the forces that springs put on a tube along its length. `frame` is the
+    /// section frame of the link in the world.
     fn own_mass(&self, piece: usize, link: &LinkPiece, beam: &PreparedBeam, frame: &Matrix3<f64>) -> OwnMass {
         let mut own = own_mass(piece, beam, frame, &self.at_m, &self.gravity.1);
         let on_tube = |load: &&EndLoad| link.beam.is_some() && load.on == Side::Moving(piece);
@@ -403,8 +408,8 @@ impl Walk {
         self.items.extend(loads.map(|load| Item::Load(wrench_of(load))).collect::<Vec<_>>());
     }
 
-    /// Adds two rotational springs with the same compliance \[rad/(N m)\] about two axes through the present
-    /// position.
+    /// Adds two rotational springs with the same compliance \[rad/(N m)\] about two axes through the position that the
+    /// walk has reached.
     fn tilt(&mut self, name: String, axes: &[Vector3<f64>; 2], compliance: f64) {
         self.items.push(Item::Elastic(ElasticElement {
             name,
@@ -429,7 +434,7 @@ impl Walk {
         }));
     }
 
-    /// Adds the springs of a compliant frame at the present position; nothing if the frame is rigid.
+    /// Adds the springs of a compliant frame at the position that the walk has reached; nothing if the frame is rigid.
     fn frame(&mut self, name: &str, frame: &FrameCompliance) {
         let (axes, compliances): (Vec<_>, Vec<_>) = frame.springs().into_iter().unzip();
         if axes.is_empty() {
@@ -446,7 +451,8 @@ impl Walk {
         }));
     }
 
-    /// Adds rigid bodies whose positions are given from the present position.
+    /// Adds rigid bodies. Their centres of gravity are given from the position that the walk has reached, in the
+    /// carried frame.
     pub(super) fn bodies(&mut self, bodies: &[RigidBody]) {
         for body in bodies {
             let turn = self.rotation.matrix();
@@ -487,7 +493,8 @@ pub(crate) fn across(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
     [first, axis.cross(&first)]
 }
 
-/// Transforms the inertia and weight of a link from its section frame to the world.
+/// The distributed mass and weight of a link in the world, computed from those in its section frame. `root_m` is the
+/// root of the link \[m\], `frame` its section frame and `down` the direction of gravity.
 fn own_mass(
     piece: usize,
     beam: &PreparedBeam,

@@ -31,7 +31,8 @@ pub(crate) struct CondensedLink {
     pub inertia: [Inertia12; 3],
     /// Displacement (rows 0-2) and rotation (rows 3-5) of the end per unit of each end coordinate: the matrix `L`.
     pub end: Matrix6<f64>,
-    /// End coordinates caused by a uniform load of 1 N/m along each axis of the section \[1/(N/m)\].
+    /// End coordinates caused by a uniform load along the link of 1 N/m, in the direction of each axis of the section
+    /// \[1/(N/m)\].
     pub end_per_line_load: SMatrix<f64, 6, 3>,
     /// End coordinates caused by the weight of the bodies on the link, if gravity acts along each axis of the
     /// section.
@@ -110,8 +111,8 @@ impl CondensedLink {
     }
 }
 
-/// End coordinates per unit of force and moment at the point `xi` of the axis. `spread` has the strain coordinates
-/// per unit of each end coordinate.
+/// End coordinates per unit of force and moment at the point `xi` (0 to 1) of the axis. `spread` has the strain
+/// coordinates of the link per unit of each end coordinate.
 fn end_per_pull(beam: &PreparedBeam, spread: &DMatrix<f64>, xi: f64) -> Matrix6<f64> {
     let fields = beam.fields(xi).columns_range(6..).into_owned();
     let per_end = fields * spread;
@@ -123,11 +124,11 @@ fn end_per_pull(beam: &PreparedBeam, spread: &DMatrix<f64>, xi: f64) -> Matrix6<
 pub(crate) struct PlacedLink {
     /// The coefficients `M₀, M₁, M₂` of the effective inertia, over the twist of the root and the end coordinates.
     pub inertia: [Inertia12; 3],
-    /// Twist of everything outboard per unit of each end coordinate.
+    /// Motion of everything outboard of the link per unit of each end coordinate.
     pub end: Matrix6<f64>,
     /// End coordinates caused by the weight of the bodies on the link.
     pub end_under_bodies: Vector6<f64>,
-    /// End coordinates caused by a net weight of 1 N/m \[1/(N/m)\].
+    /// End coordinates caused by a weight less buoyancy of 1 N per metre of the link \[1/(N/m)\].
     pub end_per_weight: Vector6<f64>,
     /// Sum of `1/λ` over the inner modes with root and end held \[s²\].
     pub inner_trace_s2: f64,
@@ -144,8 +145,9 @@ pub(crate) fn world_to_local(point_m: &Vector3<f64>, frame: &Matrix3<f64>) -> Ma
     out
 }
 
-/// Lower triangular `L` with `L Lᵀ = a`, for a positive semidefinite `a`. Columns of directions without compliance
-/// are zero. Zeros of a block-diagonal matrix stay exactly zero, so planes that do not couple stay uncoupled.
+/// The lower triangular matrix `L` with `L Lᵀ = a`, for a positive semidefinite `a`. Columns of directions without
+/// compliance are zero. Zeros of a block-diagonal matrix stay exactly zero, so planes that do not couple stay
+/// uncoupled.
 fn semidefinite_cholesky(a: &Matrix6<f64>) -> Matrix6<f64> {
     let mut lower = Matrix6::zeros();
     for j in 0..6 {
@@ -164,7 +166,7 @@ fn semidefinite_cholesky(a: &Matrix6<f64>) -> Matrix6<f64> {
     lower
 }
 
-/// `L⁻ᵀ`, with zeros for the directions without compliance.
+/// The matrix `L⁻ᵀ` for the lower triangular matrix `L`. Rows and columns of directions without compliance are zero.
 fn inverse_transpose(lower: &Matrix6<f64>) -> DMatrix<f64> {
     let mut inverse = DMatrix::zeros(6, 6);
     for column in 0..6 {

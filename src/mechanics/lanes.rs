@@ -22,7 +22,7 @@ pub(crate) trait Lanes:
     fn load(from: &Eight) -> Self;
     /// Writes the eight numbers to memory.
     fn store(self) -> Eight;
-    /// The numbers of a list at eight indices.
+    /// The numbers of the list `from` at the eight indices `at`.
     ///
     /// # Panics
     /// If an index is beyond the end of the list.
@@ -62,7 +62,8 @@ pub(crate) fn splat_all<V: Lanes, const K: usize>(numbers: [f64; K]) -> [V; K] {
     out
 }
 
-/// Subtracts `factor` times `list` from `from`, number by number. Both have the same length.
+/// Subtracts `factor` times each number of `list` from the number of `from` at the same place. Both lists have the same
+/// length.
 #[inline(always)]
 pub(crate) fn subtract_multiple<V: Lanes>(from: &mut [f64], factor: f64, list: &[f64]) {
     let (eights, rest) = from.as_chunks_mut::<LANES>();

@@ -15,15 +15,15 @@ use nalgebra::{DMatrix, DVector};
 pub struct Transferred {
     /// Name of the driving joint.
     pub driver: String,
-    /// Motion of everything outboard of the passive joint per radian of deflection of the driving joint.
+    /// Motion of everything outboard of the passive joint, per radian by which the driving joint deflects.
     pub twist: Twist,
-    /// Work on this motion of the loads and of the passive joint's own torque. It acts as a torque on the driving
+    /// Work of the loads, and of the passive joint's own torque, on this motion. It acts as a torque on the driving
     /// joint \[N m\].
     pub torque_nm: f64,
 }
 
 impl Posed<'_> {
-    /// Motions and torques that the linkages transfer to the driving joints, under weight and tip force.
+    /// For each linkage, the motion and the torque that it transfers to the driving joint under weight and tip force.
     pub fn transferred(&self) -> Vec<Transferred> {
         let linkages = self.chain.linkages();
         let mut out = Vec::new();
@@ -50,7 +50,8 @@ impl Posed<'_> {
         out
     }
 
-    /// Motion of the last frame per unit of every strain coordinate, including the motion by passive joints.
+    /// Motion of the last frame per unit of every strain coordinate, base to tip. The unit of a driving joint includes
+    /// the motion of the passive joints that a linkage turns with it.
     pub fn tip_twists(&self) -> Vec<Twist> {
         let mut twists: Vec<Twist> = self.elements().flat_map(|e| e.twists.iter().copied()).collect();
         for (driver, passive, factor) in self.linked_coordinates() {
@@ -60,7 +61,8 @@ impl Posed<'_> {
         twists
     }
 
-    /// The given shape with the rotations of the passive joints added, which follow from those of the driving joints.
+    /// The strain coordinates `shape`, with the rotations of the passive joints added that follow from the rotations of
+    /// the driving joints.
     pub(crate) fn with_passive(&self, shape: &DVector<f64>) -> DVector<f64> {
         let mut out = shape.clone();
         for (driver, passive, factor) in self.linked_coordinates() {
@@ -69,7 +71,8 @@ impl Posed<'_> {
         out
     }
 
-    /// The given mass matrix `M` with the linkages taken into account: `Tᵀ M T`.
+    /// The mass matrix `Tᵀ M T` of the arm with linkages, given the mass matrix `M` of the arm without them. `T` turns
+    /// each passive joint together with its driving joint.
     pub(crate) fn with_linkages(&self, mut mass: DMatrix<f64>) -> DMatrix<f64> {
         for (driver, passive, factor) in self.linked_coordinates() {
             let column = mass.column(passive) * factor;
@@ -80,8 +83,8 @@ impl Posed<'_> {
         mass
     }
 
-    /// For each linkage: index of the coordinate of the driving joint, index of that of the passive joint, and
-    /// factor.
+    /// For each linkage: index of the strain coordinate of the driving joint, index of the strain coordinate of the
+    /// passive joint, and the factor between the two rotations.
     fn linked_coordinates(&self) -> Vec<(usize, usize, f64)> {
         let coordinate = |name: &str| {
             let before = self.elements().take_while(|e| e.name != name);

@@ -54,7 +54,8 @@ impl<const N: usize> BlockLink<N> {
 struct Pass {
     /// Whether all pivots except the last are positive.
     inner_sound: bool,
-    /// The last pivot. It is positive where `λ` is below the lowest eigenvalue, and negative just above it.
+    /// The last pivot, which is the pivot of the innermost coordinate. It is positive where `λ` is below the lowest
+    /// eigenvalue, and negative just above it.
     last: f64,
     /// Product of all pivots except the last.
     inner_product: f64,
@@ -63,7 +64,7 @@ struct Pass {
 }
 
 impl Pass {
-    /// Whether all eigenvalues are above `λ`.
+    /// Whether all eigenvalues are above the trial value `λ`, which means that every pivot is positive.
     fn below_all(&self) -> bool {
         self.inner_sound && self.last > 0.0
     }
@@ -75,16 +76,17 @@ impl Pass {
 /// larger if a pole is near. The last three steps show how large `C` is, so the limit applies to the error estimated
 /// from them.
 pub(super) const SHOWN_ERROR: f64 = 1e-13;
-/// Largest last step of an accepted root, relative to `1/λ`. A larger step could hide another mode between the last
-/// two points.
+/// Largest last step of an accepted root, relative to `1/λ`. A larger step could jump over another mode between the
+/// last two points.
 pub(super) const LAST_STEP: f64 = 5e-8;
-/// Stands in for the steps before the first one, relative to `1/λ`. It is so small that no root is accepted before
-/// real steps have shown how large `C` is, unless a step is practically zero.
+/// Stands in for the size of the steps before the first one, relative to `1/λ`. It is so small that no root is accepted
+/// before real steps have shown how large `C` is, unless a step is practically zero.
 pub(super) const UNKNOWN_STEP: f64 = 1e-9;
 /// The value of [`LAST_STEP`] that is used when one chain is solved by itself. It is stricter, because one more pass
 /// then costs little.
 const CAREFUL_LAST_STEP: f64 = 1e-11;
-/// Number of passes after which the quick method gives up and the careful method takes over.
+/// Number of passes (evaluations at one trial value) after which the quick method gives up and the careful method takes
+/// over.
 const QUICK_PASSES: usize = 12;
 /// Number of passes after which the careful method returns its best value so far.
 const MOST_PASSES: usize = 300;
@@ -103,7 +105,8 @@ pub(crate) fn lowest_eigenvalue<const N: usize>(steps: &[Step<'_, N>], trace_s2:
     quick_root(steps, trace_s2).unwrap_or_else(|| careful_root(steps, trace_s2))
 }
 
-/// Secant method on the last pivot. `None` if a step leads beyond a pole or convergence is too slow.
+/// The lowest eigenvalue \[1/s²\] by the secant method on the last pivot. `trace_s2` is an upper bound of its
+/// reciprocal. `None` if a step leads beyond a pole or convergence is too slow.
 fn quick_root<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> Option<f64> {
     let mut x = trace_s2;
     let mut before: Option<(f64, f64)> = None;
@@ -172,7 +175,8 @@ pub(crate) fn frequency_hz(eigenvalue: f64) -> f64 {
     eigenvalue.sqrt() / TAU
 }
 
-/// One pass: computes the apparent inertia from the tip to the base at `λ` and collects the pivots.
+/// One pass from the tip to the base at the trial value `lambda`: computes the apparent inertia and collects the
+/// pivots.
 #[inline]
 fn pass<const N: usize>(steps: &[Step<'_, N>], lambda: f64) -> Pass {
     let mut apparent = SMatrix::<f64, N, N>::zeros();
@@ -192,7 +196,8 @@ fn pass<const N: usize>(steps: &[Step<'_, N>], lambda: f64) -> Pass {
     out
 }
 
-/// Takes the apparent inertia through a compliant link, from its end to its root.
+/// Changes the apparent inertia from its value at the end of a compliant link to its value at the root, for the trial
+/// value `lambda`. The pivots of the link are added to `out`.
 #[inline]
 fn through_link<const N: usize>(
     link: &BlockLink<N>,
@@ -233,7 +238,7 @@ fn through_link<const N: usize>(
 }
 
 impl Pass {
-    /// Records a pivot. The one before it now counts among the inner pivots.
+    /// Records the pivot of the next coordinate. The pivot before it now counts among the inner pivots.
     #[inline]
     fn next(&mut self, pivot: f64) {
         self.inner_sound &= self.last > 0.0;

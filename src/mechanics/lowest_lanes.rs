@@ -27,9 +27,9 @@ enum Shared<const N: usize> {
     Link(Box<BlockLink<N>>),
 }
 
-/// The inboard pieces, which differ between the eight chains.
+/// The inboard pieces of eight chains, in which the chains differ.
 pub(crate) trait Inner<V: Lanes, const N: usize> {
-    /// Adds the pieces to a pass, from the tip inward. If any of them is compliant, the last one must be.
+    /// Adds the inboard pieces to a pass, from the tip inward. If any of them is compliant, the last one must be.
     fn add_to(&self, walk: &mut Walk<V, N>);
 }
 
@@ -62,7 +62,7 @@ pub(crate) struct LanePass<V> {
 pub(crate) struct Roots<V> {
     /// Lowest eigenvalue in each wanted lane \[1/s²\].
     pub eigenvalue: V,
-    /// Bit mask: wanted lanes in which no root was found.
+    /// Bit mask: lanes that were asked for, but in which no root was found.
     pub unsure: u8,
 }
 
@@ -77,8 +77,8 @@ impl<const N: usize> Default for Outboard<N> {
 }
 
 impl<const N: usize> Outboard<N> {
-    /// Replaces the shared part by the steps of a chain, tip first. Bodies between two compliant elements are added
-    /// up, and rigid links become bodies, so that a pass has as few steps as possible.
+    /// Replaces the shared part by `steps`, the steps of a chain, tip first. Bodies between two compliant elements are
+    /// added up, and rigid links become bodies, so that a pass has as few steps as possible.
     pub(crate) fn refill<'a>(&mut self, steps: impl Iterator<Item = Step<'a, N>>) {
         self.start = SMatrix::zeros();
         self.steps.clear();
@@ -98,7 +98,8 @@ impl<const N: usize> Outboard<N> {
 }
 
 impl<const N: usize> LaneLink<N> {
-    /// Stores eight links with their lanes interleaved.
+    /// Stores eight links in one value, with the eight numbers of each entry side by side, so that one instruction
+    /// handles them.
     pub(crate) fn new(links: [&BlockLink<N>; LANES]) -> Self {
         Self {
             root: std::array::from_fn(|k| side_by_side(|lane| &links[lane].root[k])),
@@ -109,7 +110,7 @@ impl<const N: usize> LaneLink<N> {
     }
 }
 
-/// Eight matrices as one matrix of eights.
+/// Eight matrices, stored as one matrix that has the eight numbers of each entry side by side.
 pub(crate) fn side_by_side<'a, const N: usize>(
     of: impl Fn(usize) -> &'a SMatrix<f64, N, N>,
 ) -> LaneMatrix<N> {
@@ -125,7 +126,8 @@ fn entry<V: Copy, const N: usize>(of: &Inertia<V, N>, i: usize, j: usize) -> V {
     if i >= j { of[i][j] } else { of[j][i] }
 }
 
-/// One pass: computes the apparent inertia from the tip to the base, with one `λ` in each lane.
+/// One pass from the tip to the base for eight chains, with one `λ` in each lane: computes the apparent inertia and
+/// counts negative pivots.
 #[inline(always)]
 pub(crate) fn pass<V: Lanes, const N: usize>(
     outboard: &Outboard<N>,
@@ -221,7 +223,8 @@ macro_rules! at_lambda {
 pub(crate) struct Walk<V, const N: usize> {
     lambda: V,
     apparent: Inertia<V, N>,
-    /// Bit mask of the lanes with at least one negative pivot; the next field has those with at least two.
+    /// Bit mask of the lanes with at least one negative pivot. The next field is the bit mask of the lanes with at
+    /// least two.
     negative: u8,
     twice_negative: u8,
     /// Product of all pivots so far.
@@ -236,7 +239,7 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
         Self { lambda, apparent, negative: 0, twice_negative: 0, product: V::splat(1.0) }
     }
 
-    /// Records a pivot.
+    /// Records the pivot of one coordinate in each lane: its sign, and its product with the pivots before.
     #[inline(always)]
     fn pivot(&mut self, pivot: V) {
         let negative = pivot.less(V::zero());
@@ -257,14 +260,15 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
         add_lower!(self.apparent, |i, j| mass * V::splat(inertia[(i, j)]));
     }
 
-    /// Adds a rigid link.
+    /// Adds a rigid link, one for each of the eight chains. Only its inertia over the motion of the root counts.
     #[inline(always)]
     pub(crate) fn rigid(&mut self, link: &LaneLink<N>) {
         add_lower!(self.apparent, |i, j| V::load(&link.root[0][i][j]));
     }
 
-    /// Eliminates one strain coordinate, given its pivot and its row. The apparent inertia for everything inboard
-    /// grows by `λ row rowᵀ / pivot`. `scale` is `λ / pivot`, for a joint multiplied by its compliance.
+    /// Eliminates one strain coordinate, given its pivot and its row of the matrix, one per lane. The apparent inertia
+    /// for everything inboard grows by `λ row rowᵀ / pivot`. `scale` is `λ / pivot`; for a joint it is multiplied by
+    /// the compliance of the joint.
     #[inline(always)]
     fn yield_by(&mut self, pivot: V, row: &[V; N], scale: V) {
         for i in 0..N {

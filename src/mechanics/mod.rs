@@ -43,7 +43,7 @@ use nalgebra::{Matrix6, Vector3, Vector6};
 
 /// Translation and rotation of a body as one vector `(v, ω)`, taken at the world's origin.
 pub type Twist = Vector6<f64>;
-/// Force and moment as one vector `(F, M)`, taken at the world's origin.
+/// Force and moment as one vector `(F, M)`; the moment is taken about the world's origin.
 pub type Wrench = Vector6<f64>;
 
 /// Twist of a rotation by 1 rad about a unit vector `axis` through `point` \[m\].
@@ -56,7 +56,7 @@ pub fn force_wrench(force: &Vector3<f64>, point: &Vector3<f64>) -> Wrench {
     stack(force, &point.cross(force))
 }
 
-/// Displacement of the point of a body that is at `point` \[m\] when the body moves by a twist.
+/// Displacement \[m\] of the point of a body that is at `point` \[m\], when the body makes the small motion `twist`.
 pub fn displacement_at(twist: &Twist, point: &Vector3<f64>) -> Vector3<f64> {
     linear(twist) + angular(twist).cross(point)
 }

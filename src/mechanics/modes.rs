@@ -24,7 +24,8 @@ pub struct Mode {
     pub strain_energy: Vec<(String, f64)>,
     /// Displacement of the tip \[m\], with the mode scaled to a strain energy of ½ J.
     pub tip_shape_m: Vector3<f64>,
-    /// Value of each strain coordinate at the same scale, as one list for each element, base to tip.
+    /// Value of each strain coordinate, as one list for each element, base to tip, with the mode scaled to a strain
+    /// energy of ½ J.
     pub coordinates: Vec<Vec<f64>>,
 }
 
@@ -37,7 +38,8 @@ pub struct Modes {
     pub(crate) shapes: DMatrix<f64>,
 }
 
-/// Relative threshold: a `1/ω²` below this fraction of the largest one is a zero with rounding errors.
+/// Relative threshold: a computed `1/ω²` that is smaller than this fraction of the largest one counts as zero. It is
+/// then a zero with rounding errors.
 const SINGULAR: f64 = 1e-13;
 /// Fraction of the kinetic energy in one plane of the world above which a mode counts as planar.
 const PLANAR: f64 = 0.99;
@@ -59,7 +61,8 @@ impl Posed<'_> {
             .collect()
     }
 
-    /// The lowest natural frequency \[Hz\]. It is infinite if no compliant element moves a mass.
+    /// The lowest natural frequency \[Hz\] of small vibrations about a static state. It is infinite if no compliant
+    /// element moves a mass.
     pub fn lowest_frequency_hz(&self, statics: &Statics) -> f64 {
         // eigenvalues without eigenvectors take less time, and a front needs only them
         let a = self.flexibility_form(statics).0;
@@ -70,7 +73,8 @@ impl Posed<'_> {
         1.0 / (largest.sqrt() * TAU)
     }
 
-    /// All modes, from the eigenvalue problem in flexibility form `C^½ M C^½ ψ = ψ/ω²`.
+    /// All modes of small vibrations about a static state, from the eigenvalue problem in flexibility form
+    /// `C^½ M C^½ ψ = ψ/ω²`.
     pub fn solve_modes(&self, statics: &Statics) -> Modes {
         let (a, roots) = self.flexibility_form(statics);
         if roots.is_empty() {
@@ -87,7 +91,8 @@ impl Posed<'_> {
         Modes { inverse_squares: order.iter().map(|&i| eigen.eigenvalues[i].max(0.0)).collect(), shapes }
     }
 
-    /// The matrix `C^½ M C^½`, and the diagonal of `C^½`.
+    /// The matrix `C^½ M C^½`, and the diagonal of `C^½`. `C` has the tangent compliances of the static state, `M` is
+    /// the mass matrix.
     fn flexibility_form(&self, statics: &Statics) -> (DMatrix<f64>, DVector<f64>) {
         let roots = DVector::from_iterator(
             statics.tangent_compliances.iter().map(Vec::len).sum(),
@@ -109,8 +114,8 @@ impl Posed<'_> {
         })
     }
 
-    /// Mass matrix over all strain coordinates, base to tip. Each entry is a product of the composite inertia
-    /// outboard of an element with the twist of this element and the twist of one inboard of it.
+    /// Mass matrix over all strain coordinates, base to tip. An entry for two elements is computed from the inertia of
+    /// everything outboard of the outer element and the twists (motions per unit) of both.
     pub fn mass_matrix(&self) -> DMatrix<f64> {
         let twists: Vec<Twist> = self.elements().flat_map(|e| e.twists.iter().copied()).collect();
         let mut mass = DMatrix::zeros(twists.len(), twists.len());
@@ -133,7 +138,7 @@ impl Posed<'_> {
         self.with_linkages(mass)
     }
 
-    /// The mode with this shape and frequency, described for output.
+    /// The mode of this frequency in the form for output. `shape` has its strain coordinates.
     fn describe(&self, statics: &Statics, shape: &DVector<f64>, frequency_hz: f64) -> Mode {
         Mode {
             frequency_hz,
@@ -144,7 +149,7 @@ impl Posed<'_> {
         }
     }
 
-    /// The strain coordinates of a shape, divided into one list for each element.
+    /// The strain coordinates `shape` of all elements, divided into one list for each element, base to tip.
     fn by_element(&self, shape: &DVector<f64>) -> Vec<Vec<f64>> {
         let mut rest = shape.iter().copied();
         self.elements().map(|e| rest.by_ref().take(e.twists.len()).collect()).collect()
@@ -156,8 +161,9 @@ impl Posed<'_> {
         displacement_at(&motion, &self.tip_m)
     }
 
-    /// Fraction of the strain energy in each element, base to tip. The energy of an element is the sum of `q²/c` over
-    /// its coordinates.
+    /// Fraction of the strain energy of a mode in each element, base to tip. `shape` has the strain coordinates q of
+    /// the mode. The energy of an element is proportional to the sum of `q²/c` over its coordinates with their
+    /// compliances c.
     fn strain_energy(&self, statics: &Statics, shape: &DVector<f64>) -> Vec<(String, f64)> {
         let mut coordinate = shape.iter();
         let mut parts: Vec<(String, f64)> = self
@@ -178,7 +184,8 @@ impl Posed<'_> {
         parts
     }
 
-    /// The plane of the world in which the mode moves, or `None` if the motion is in no single plane.
+    /// The plane of the world in which a mode moves, given its strain coordinates `shape`. `None` if less than 99 % of
+    /// its kinetic energy is in one plane.
     fn plane(&self, shape: &DVector<f64>) -> Option<&'static str> {
         const PLANES: [(&str, usize); 3] = [("xz", 1), ("xy", 2), ("yz", 0)];
         let mut energy = PlaneEnergy::default();
@@ -218,8 +225,9 @@ impl Modes {
     }
 }
 
-/// Fills in the rows and columns of the mass matrix that belong to an element. Its first coordinate has the index
-/// `start`.
+/// Fills in the rows and columns of the mass matrix that belong to an element. `outboard` is the inertia of everything
+/// outboard of it, `start` the index of its first coordinate, and `twists` are the motions per unit of the coordinates
+/// inboard of it.
 fn add_element(
     mass: &mut DMatrix<f64>,
     element: &ElasticElement,
@@ -250,8 +258,8 @@ fn add_element(
     }
 }
 
-/// Twice the kinetic energy of a shape at unit angular frequency: in total, and of the motion in the plane normal to
-/// each world axis.
+/// Twice the kinetic energy of a vibration at unit angular frequency: in total, and of the motion in the plane normal
+/// to each world axis.
 #[derive(Default)]
 struct PlaneEnergy {
     total: f64,
@@ -259,7 +267,7 @@ struct PlaneEnergy {
 }
 
 impl PlaneEnergy {
-    /// Adds the kinetic energy of a rigid body.
+    /// Adds twice the kinetic energy of a rigid body that makes the motion `motion`.
     fn add_body(&mut self, body: &super::chain::Body, motion: &Twist) {
         let velocity = displacement_at(motion, &body.cg_m);
         let spin = super::angular(motion);
@@ -272,7 +280,8 @@ impl PlaneEnergy {
         }
     }
 
-    /// Adds the kinetic energy of a link, integrated over its Gauss points.
+    /// Adds twice the kinetic energy of a link, integrated over its Gauss points. `motion` is the motion of the link as
+    /// a rigid body, `rates` are the rates of its strain coordinates.
     fn add_link(&mut self, posed: &Posed, own: &super::chain::OwnMass, motion: &Twist, rates: &[f64]) {
         let Some(beam) = posed.chain.beam(own.piece) else { return };
         let turn = own.frame.transpose();
@@ -292,8 +301,9 @@ impl PlaneEnergy {
         }
     }
 
-    /// Adds twice the kinetic energy of one Gauss point of a link, of its translation or of its rotation. A rotation
-    /// counts as in a plane if it is about the normal of the plane.
+    /// Adds twice the kinetic energy of one Gauss point of a link, of its translation or (if `rotation`) of its
+    /// rotation. `rate` is the velocity in the section frame `frame`, `density` the mass or inertia per length. A
+    /// rotation counts as motion in a plane if it is about the normal of the plane.
     fn add_line(
         &mut self,
         frame: &nalgebra::Matrix3<f64>,

@@ -25,8 +25,8 @@ pub struct GuideLoad {
 }
 
 impl GuideLoad {
-    /// Force and moment that a wrench about the world's origin puts on the guide of joint `name`, whose axes are
-    /// `frame` and whose springs are at `at_m` \[m\].
+    /// Force and moment on the guide of the joint `name`, given as the `wrench` of everything outboard about the
+    /// world's origin. The axes of the guide are the columns of `frame`, and its springs are at `at_m` \[m\].
     pub(super) fn of(name: &str, wrench: &Wrench, frame: &Matrix3<f64>, at_m: &Vector3<f64>) -> Self {
         let force_n = linear(wrench);
         let moment_nm = angular(wrench) - at_m.cross(&force_n);
@@ -40,8 +40,8 @@ pub(crate) fn guide_name(joint: &str) -> String {
 }
 
 impl Walk {
-    /// Adds a prismatic joint at a travel \[m\]: first the mass that stays, then the springs of guide and drive, then
-    /// the mass that travels.
+    /// Adds a prismatic joint, moved out by `travel_m` \[m\]: first the mass that stays, then the springs of guide and
+    /// drive, then the mass that travels. `index` is its place in the chain.
     pub(super) fn prismatic(&mut self, index: usize, joint: &PrismaticPiece, travel_m: f64) {
         self.point_mass(joint.fixed_mass_kg, self.at_m);
         self.bodies(&joint.bodies.fixed);
@@ -71,7 +71,8 @@ impl Walk {
     }
 }
 
-/// The springs of a guide. Axes about which the guide is rigid are left out.
+/// The springs of a guide as an elastic element. `frame` has the axes of the guide and `springs_m` is the point of the
+/// springs, in the world. Axes about which the guide is rigid are left out.
 fn guide(joint: &PrismaticPiece, frame: &Matrix3<f64>, springs_m: &Vector3<f64>) -> ElasticElement {
     let axes = frame.column_iter().zip(joint.guide_rad_per_nm.iter());
     let (twists, compliances) = axes

@@ -21,8 +21,8 @@ pub(crate) fn transposed_product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<
     out
 }
 
-/// Adds `AᵀB` to a matrix. If tall factors are divided into blocks of rows and the blocks are added one after the
-/// other, the sums are equal to those of the whole factors.
+/// Adds `AᵀB` to the matrix `out`. Tall matrices A and B may be divided into blocks of rows that are added one after
+/// the other; the sums are then the same to the last bit.
 ///
 /// # Panics
 /// If the sizes of the matrices do not fit.
@@ -39,7 +39,7 @@ pub(crate) struct Panels {
 }
 
 impl Panels {
-    /// Stores a matrix as a left factor.
+    /// Stores the matrix A so that it can be the left factor of a product A B.
     pub(crate) fn of_rows(a: &DMatrix<f64>) -> Self {
         let (rows, terms) = a.shape();
         let mut eights = vec![[0.0; LANES]; rows.div_ceil(LANES) * terms];
@@ -76,7 +76,7 @@ impl Panels {
         }
     }
 
-    /// Stores the transpose of a matrix as a left factor.
+    /// Stores the matrix A so that its transpose can be the left factor of a product AᵀB.
     pub(crate) fn of_columns(a: DMatrixView<f64>) -> Self {
         let (terms, rows) = a.shape();
         let mut eights = vec![[0.0; LANES]; rows.div_ceil(LANES) * terms];
@@ -120,7 +120,8 @@ impl LaneWork for Sums<'_> {
     }
 }
 
-/// Adds the products of up to eight rows with `K` columns. In `to`, successive columns start `stride` numbers apart.
+/// Adds the products of up to eight rows of the left factor with `K` columns of the right factor to `to`. In `to`,
+/// successive columns start `stride` numbers apart.
 #[inline(always)]
 fn add_block<V: Lanes, const K: usize>(
     to: &mut [f64],

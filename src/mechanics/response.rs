@@ -61,7 +61,8 @@ pub fn frequency_response(
         .collect()
 }
 
-/// The denominator of one mode, `1 - (ω/ω_k)² + 2 i ζ ω/ω_k`; `inverse_square` is `1/ω_k²` \[s²\].
+/// The denominator of one mode in the sum of the response, `1 - (ω/ω_k)² + 2 i ζ ω/ω_k`. `inverse_square` is `1/ω_k²`
+/// \[s²\].
 fn resistance(inverse_square: f64, frequency_hz: f64, damping_ratio: f64) -> Complex<f64> {
     let ratio = TAU * frequency_hz * inverse_square.sqrt();
     Complex::new(1.0 - ratio * ratio, 2.0 * damping_ratio * ratio)

@@ -53,7 +53,8 @@ pub struct JointLoad {
 }
 
 impl JointLoad {
-    /// Force and moment that a wrench about the world's origin puts on a joint with this axis at this position.
+    /// Force and moment that everything outboard puts on a joint, given as the `wrench` about the world's origin.
+    /// `axis` is the unit vector along the axis of the joint, and `at_m` its position \[m\].
     fn of(wrench: &Wrench, axis: &Vector3<f64>, at_m: &Vector3<f64>) -> Self {
         let force_n = linear(wrench);
         let moment_nm = angular(wrench) - at_m.cross(&force_n);
@@ -118,8 +119,9 @@ impl Posed<'_> {
         force_wrench(&self.tip_force_n, &self.tip_m) + stack(&Vector3::zeros(), &self.tip_moment_nm)
     }
 
-    /// Computes the deflection of one element under the outboard wrench. Records its strain coordinates, its tangent
-    /// compliance and the tip displacement that it causes. Then adds the element's own weight to the wrench.
+    /// Computes the deflection of one element under `wrench`, the load of everything outboard. Records its strain
+    /// coordinates, its tangent compliance and the tip displacement that it causes in `out`. Then adds the element's
+    /// own weight to `wrench`. `transferred` are the torques that linkages put on driving joints.
     fn yield_to(
         &self,
         element: &ElasticElement,

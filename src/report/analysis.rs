@@ -61,12 +61,13 @@ pub struct Analysis {
     pub response: Option<Vec<Response>>,
     /// Names of effects on the bending of links, if the case has rigid links and so ignores them.
     unbent: Vec<String>,
-    /// Name and state of each balance spring in the pose of the case.
+    /// Name of each balance spring, with its length and force, or its torque, in the pose of the case.
     springs: Vec<(String, Drawn)>,
 }
 
 impl Analysis {
-    /// Computes the results of the arm in this case. `modes` is the number of modes.
+    /// Computes the results of the arm in the load case `case`: statics, the `modes` lowest modes, and the response to
+    /// `harmonic`, a harmonic force at the tip, if it is given.
     pub fn of(arm: &Arm, case: LoadCase, modes: usize, harmonic: Option<&Harmonic>) -> Self {
         let structure = arm.structure_in(&case);
         let chain = Chain::new(&structure, case.links);
@@ -133,7 +134,7 @@ impl Analysis {
         out
     }
 
-    /// Adds the forces of drives and the loads on guides, if the arm has prismatic joints.
+    /// Adds the forces of drives and the loads on guides to the object `out`, if the arm has prismatic joints.
     fn guides_json(&self, out: &mut Value) {
         if self.statics.guide_loads.is_empty() {
             return;
@@ -162,13 +163,14 @@ impl Analysis {
         }
     }
 
-    /// The joints, each with the load on its output bearing at rest.
+    /// The joints, each with the load on its output bearing while the joint is at rest.
     fn carried(&self) -> impl Iterator<Item = (&str, &JointLoad)> {
         let joints = self.statics.joint_torques_nm.iter().map(|(name, _)| name.as_str());
         joints.zip(&self.statics.bearing_loads)
     }
 
-    /// The joints that have an output bearing, each with the bearing and the load on it at rest.
+    /// The joints that have an output bearing, each with the bearing and the load on the bearing with the joint at
+    /// rest.
     fn on_bearings<'a>(&'a self, arm: &'a Arm) -> impl Iterator<Item = (&'a str, OnBearing<'a>)> {
         let bearing = |name: &str| {
             let at = arm.chain.iter().position(|element| element.name() == name)?;

@@ -42,7 +42,7 @@ pub(crate) fn plot(
     out
 }
 
-/// Two blocks of lines next to each other. The right block starts at the column `width`.
+/// Two blocks of lines, printed side by side. The right block starts at the column `width`.
 pub(crate) fn beside(left: &[String], right: &[String], width: usize) -> String {
     let blank = String::new();
     let line = |i: usize| {
@@ -53,7 +53,8 @@ pub(crate) fn beside(left: &[String], right: &[String], width: usize) -> String 
     (0..left.len().max(right.len())).map(line).collect()
 }
 
-/// A bar whose length is this fraction of the width, and at least one character.
+/// A bar of block characters for the fraction `share` (0 to 1): its length is this fraction of `width`, but at least
+/// one character.
 pub(crate) fn bar(share: f64, width: usize) -> String {
     "\u{2588}".repeat(((share.clamp(0.0, 1.0) * width as f64).round() as usize).max(1))
 }

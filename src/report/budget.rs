@@ -17,7 +17,7 @@ pub struct Gain {
 }
 
 impl Gain {
-    /// Whether the added mass lowers the deflection or raises the lowest mode.
+    /// Whether one more kilogram lowers the deflection or raises the lowest mode by more than rounding errors.
     pub fn helps(&self) -> bool {
         self.mm_per_kg < -NOTHING || self.hz_per_kg > NOTHING
     }
@@ -30,7 +30,7 @@ pub struct NextPart {
     pub name: String,
     /// Mass of the piece with the new part \[kg\].
     pub mass_kg: f64,
-    /// Change of the design per kilogram that the new part adds.
+    /// Change of deflection and lowest mode per kilogram that the new part adds.
     pub gain: Gain,
 }
 
@@ -68,8 +68,8 @@ pub struct BudgetRow {
     /// Share of the tip deflection in the worst case that this piece causes, from 0 to 1; negative if the piece
     /// reduces the deflection.
     pub share: f64,
-    /// Changes per kilogram if mass and stiffness of the piece grow in proportion; `None` for a bearing, which
-    /// grows with its joint.
+    /// Changes of deflection and lowest mode per kilogram if mass and stiffness of the piece grow in proportion; `None`
+    /// for a bearing, which grows with its joint.
     pub in_place: Option<Gain>,
     /// The heavier part that lowers the deflection most per kilogram; `None` if no part helps.
     pub next_part: Option<NextPart>,
@@ -81,9 +81,11 @@ pub struct PickBound {
     /// Lower bound: no design of the study that is at least as stiff and has at least as high a lowest mode
     /// weighs less \[kg\].
     pub mass_kg: f64,
-    /// Approximate mass if parts could be blended between catalog options \[kg\]; it is at most the bound.
+    /// Approximate mass of an equally good arm if parts could be blended between catalog options \[kg\]. It is at most
+    /// `mass_kg`, the bound.
     pub mixture_kg: f64,
-    /// Whether the torque of some joint may have either sign, which weakens the bound.
+    /// Whether the torque of some joint may have either sign within the options that the bound considers. The bound
+    /// then takes the more favourable sign and is weaker.
     pub loads_oppose: bool,
 }
 
@@ -105,18 +107,18 @@ pub struct PickBudget {
 }
 
 impl PickBudget {
-    /// How much heavier the pick is than a design of the given mass, relative to that mass \[%\].
+    /// How much heavier the pick is than a design with the mass `mass_kg` \[kg\], in percent of this mass.
     fn above_percent(&self, mass_kg: f64) -> f64 {
         100.0 * (self.mass_kg / mass_kg - 1.0)
     }
 
-    /// The share of the tip deflection that joints and their bearings cause, from 0 to 1.
+    /// The fraction of the tip deflection that joints and their bearings cause together, from 0 to 1.
     fn joints_share(&self) -> f64 {
         self.rows.iter().filter(|r| r.kind != PieceKind::Link).map(|r| r.share).sum()
     }
 
-    /// The joint (or link) at which one more kilogram reduces the tip deflection most, with the changes per
-    /// kilogram.
+    /// Among the pieces of this kind (joints, or links), the one at which one more kilogram reduces the tip deflection
+    /// most, with the changes per kilogram.
     fn best(&self, kind: PieceKind) -> Option<(&BudgetRow, Gain)> {
         let of_kind = self.rows.iter().filter(|r| r.kind == kind).filter_map(|r| Some((r, r.in_place?)));
         of_kind.min_by(|a, b| a.1.mm_per_kg.total_cmp(&b.1.mm_per_kg))
@@ -126,7 +128,7 @@ impl PickBudget {
         format!("{} ({})", self.names.join(", "), self.design_id)
     }
 
-    /// The advice in a sentence: at which piece mass should be added first.
+    /// A sentence that says at which joint or link of this pick mass should be added first.
     fn advice(&self) -> String {
         let lead = format!(
             "{}: joints give {} of the tip's deflection",
@@ -156,7 +158,8 @@ impl PickBudget {
         }
     }
 
-    /// A sentence that names the piece where the lowest mode rises most; empty if it is the piece already named.
+    /// A sentence that names the piece where one more kilogram raises the lowest mode most. Empty if this is `told`,
+    /// the piece that was named before.
     fn mode_advice(&self, told: &BudgetRow) -> String {
         let rises = self.rows.iter().filter_map(|r| Some((r, r.in_place?.hz_per_kg)));
         let best = rises.max_by(|a, b| a.1.total_cmp(&b.1));
@@ -168,7 +171,7 @@ impl PickBudget {
         )
     }
 
-    /// The pick with its mass and bounds, as an object for `run.json`.
+    /// The pick with its mass and its lower bounds on mass, as an object for `run.json`.
     pub fn to_json(&self) -> serde_json::Value {
         serde_json::json!({
             "names": self.names,
@@ -185,8 +188,9 @@ impl PickBudget {
 /// Changes per kilogram below this are rounding errors \[mm/kg or Hz/kg\].
 const NOTHING: f64 = 1e-6;
 
-/// A change in words: `lowers the deflection by 0.021 mm/kg and raises the mode by 0.40 Hz/kg`. The numbers
-/// are rates, because a kilogram may be more than the piece weighs.
+/// The change of deflection and lowest mode in words:
+/// `lowers the deflection by 0.021 mm/kg and raises the mode by 0.40 Hz/kg`. The numbers are rates, because a kilogram
+/// may be more than the piece weighs.
 fn effect(gain: &Gain) -> String {
     let part = |change: f64, what: &str, unit: &str| {
         if change.abs() < NOTHING {
@@ -203,7 +207,7 @@ fn shown(budgets: &[PickBudget]) -> Option<&PickBudget> {
     budgets.iter().find(|b| b.names.contains(&"knee")).or(budgets.last())
 }
 
-/// A change with its sign, in at most seven characters if its magnitude is below 1000.
+/// A change per kilogram with its sign, in at most seven characters if its magnitude is below 1000.
 fn signed(value: f64) -> String {
     let text = if value.abs() < 0.1 { fixed(value, 4) } else { significant(value, 3) };
     let rises = value > 0.0 && text.bytes().any(|b| (b'1'..=b'9').contains(&b));
@@ -224,7 +228,8 @@ const FULL: [&str; 9] = [
 const NARROW: [&str; 9] =
     ["piece", "mass kg", "% of tip", "mm/kg", "Hz/kg", "", "next: kg", "mm/kg", "Hz/kg"];
 
-/// The budget of a pick as a table under these headers. A column with an empty header is left out.
+/// The stiffness budget of a pick as a table, with `headers` as the headers of its columns. A column with an empty
+/// header is left out.
 fn budget_table(pick: &PickBudget, headers: [&str; 9]) -> Table {
     let shown: Vec<usize> = (0..headers.len()).filter(|&i| !headers[i].is_empty()).collect();
     let words = |i: usize| i == 0 || i == 5;
@@ -254,7 +259,7 @@ fn budget_table(pick: &PickBudget, headers: [&str; 9]) -> Table {
     table
 }
 
-/// Mass of each pick and how far it is above its lower bound; `None` if a bound is not known.
+/// A table of the mass of each pick and of how far it is above its lower bound. `None` if a bound is not known.
 fn bounds_table(budgets: &[PickBudget]) -> Option<Table> {
     let mut table = Table::new(vec![
         Column::left("pick"),
@@ -288,8 +293,8 @@ fn opposed(budgets: &[PickBudget]) -> bool {
     budgets.iter().any(|b| b.bound.is_some_and(|b| b.loads_oppose))
 }
 
-/// The budget as a block of the terminal's summary, within `width` columns: the budget of the knee and the bounds
-/// of all picks.
+/// The stiffness budget as a block of the terminal's summary, within `width` columns: the budget of the knee and the
+/// bounds of all picks.
 pub fn budget_text(budgets: &[PickBudget], width: usize) -> String {
     let Some(pick) = shown(budgets) else { return String::new() };
     let mut out = format!("What one more kilogram buys at each joint and link: {}\n", pick.title());
@@ -305,7 +310,7 @@ pub fn budget_text(budgets: &[PickBudget], width: usize) -> String {
     out
 }
 
-/// The budget as a section of `summary.md`; empty if there is none.
+/// The stiffness budgets of the picks as a section of `summary.md`; empty if there are none.
 pub fn budget_markdown(budgets: &[PickBudget]) -> String {
     if budgets.is_empty() {
         return String::new();
@@ -325,7 +330,7 @@ pub fn budget_markdown(budgets: &[PickBudget]) -> String {
     out
 }
 
-/// The budget as a section of the study page; `None` if there is none.
+/// The stiffness budgets of the picks as a section of the study page; `None` if there are none.
 pub fn budget_extra(budgets: &[PickBudget]) -> Option<PageSection> {
     let mut tables: Vec<(String, Table)> = budgets
         .iter()
@@ -345,7 +350,7 @@ pub fn budget_extra(budgets: &[PickBudget]) -> Option<PageSection> {
     })
 }
 
-/// The budget as the content of `budget.csv`.
+/// The stiffness budgets of the picks as the content of `budget.csv`.
 pub fn budget_csv(budgets: &[PickBudget]) -> String {
     let header = [
         "pick",

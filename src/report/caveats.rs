@@ -35,8 +35,8 @@ impl Caveats {
         self.of_part(name).map_or(name.to_string(), |caveat| format!("{name} ({caveat})"))
     }
 
-    /// One sentence for the terminal about the parts of picks. `picks` has the row and the name of each pick. Empty
-    /// if no part has a caveat.
+    /// One sentence for the terminal that names the parts with caveats and the picks that use them. Each item of
+    /// `picks` is the row of the front and the name of a pick. Empty if no part has a caveat.
     pub(crate) fn sentence(&self, front: &FrontTable, picks: &[(usize, String)]) -> String {
         let mut used: Vec<(&str, Vec<String>)> = Vec::new();
         for (row, name) in picks {
@@ -62,7 +62,7 @@ impl Caveats {
     }
 }
 
-/// The names of the parts of a row.
+/// The names of the parts (materials, profiles, gears and motors) of the design in the row `row`.
 fn parts(front: &FrontTable, row: usize) -> impl Iterator<Item = &str> {
     let named = front.columns.iter().zip(&front.rows[row]);
     named

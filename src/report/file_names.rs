@@ -34,7 +34,7 @@ pub fn file_name(name: &str) -> String {
     unique_file_name(name, &mut HashSet::new())
 }
 
-/// A file name that differs from all in `taken`. It is added to `taken`.
+/// A file name for `name` that differs from all names in `taken`. It is added to `taken`.
 pub(crate) fn unique_file_name(name: &str, taken: &mut HashSet<String>) -> String {
     let plain = not_empty_and_short(name);
     let numbered = (2..).map(|number: u64| format!("{plain}-{number}"));

@@ -175,8 +175,8 @@ impl Grain {
         Self { axes, low: ends.map(|e| e.0), step }
     }
 
-    /// All designs of a front as small dots without a name. If several fall on the same place, only the first is
-    /// drawn.
+    /// All designs of a front as small dots without a name in the legend. If several fall on the same place of the
+    /// picture, only the first is drawn.
     fn cloud(&self, front: &Drawn, index: usize) -> Series {
         let mut seen = HashSet::new();
         let cell =
@@ -186,8 +186,8 @@ impl Grain {
         Series { marker_px: 1.6, ..Series::scatter("", front.style(index), points) }
     }
 
-    /// The edge of a front on this panel, as a line with markers: for every mass, the best value of the other
-    /// objective.
+    /// The edge of a front on this panel, as a line with markers: for every mass, the best value of the objective that
+    /// the panel shows over mass.
     fn edge(&self, front: &Drawn, index: usize) -> Series {
         let over = self.axes[1].0;
         let mut rising: Vec<&Design> = front.designs.iter().collect();
@@ -234,7 +234,8 @@ impl Drawn<'_> {
     }
 }
 
-/// Coordinate of a design along an axis, up to a scale factor and an offset.
+/// Coordinate of a design along the axis of an objective, up to a scale factor and an offset. On a logarithmic axis it
+/// is the logarithm of the value.
 fn place((objective, scale): (Objective, Scale), design: &Design) -> f64 {
     let value = objective.of(design);
     if scale == Scale::Log { libm::log(value) } else { value }

@@ -80,12 +80,12 @@ impl FrontTable {
         Ok(Self { columns, rows })
     }
 
-    /// Index of a column; `None` if there is no such column.
+    /// Index of the column `name`; `None` if there is no such column.
     pub fn column(&self, name: &str) -> Option<usize> {
         self.columns.iter().position(|c| c == name)
     }
 
-    /// The values of a column as numbers; `None` for a blank cell.
+    /// The values of the column `name` as numbers, one for each row; `None` for a blank cell.
     pub fn numbers(&self, name: &str) -> Vec<Option<f64>> {
         match self.column(name) {
             Some(i) => self.rows.iter().map(|r| r[i].parse().ok()).collect(),

@@ -48,7 +48,7 @@ impl Objective {
         }
     }
 
-    /// The value of this objective for a design, with the sign chosen so that smaller is better.
+    /// The value of this objective for a design, negated for the lowest mode, so that smaller is always better.
     pub fn minimized(self, design: &Design) -> f64 {
         if self == Self::Mode { -self.of(design) } else { self.of(design) }
     }
@@ -103,8 +103,8 @@ fn better(objective: Objective, a: &Design, b: &Design) -> Ordering {
     by(objective).then(others).then(cost(a).total_cmp(&cost(b))).then_with(|| name(a).cmp(&name(b)))
 }
 
-/// The knee: the design nearest to the ideal point, which has the best value of every objective. Distances are
-/// measured in logarithms, and each objective is scaled by its range over the front.
+/// The knee: the design nearest to the ideal point, which has the best value of every objective on the front. Distances
+/// are measured in logarithms, and each objective is scaled by its range over the front.
 pub fn knee(designs: &[Design]) -> Option<&Design> {
     let scales = Objective::ALL.map(|o| Scale::of(o, designs));
     let distance = |d: &Design| scales.iter().map(|s| s.regret(d).powi(2)).sum::<f64>();
@@ -132,15 +132,16 @@ impl Scale {
         scale
     }
 
-    /// The objective with the sign chosen so that smaller is better; its logarithm if all values of the front are
-    /// positive.
+    /// The value of the objective for a design, with the sign chosen so that smaller is better. It is the logarithm if
+    /// all values of the front are positive.
     fn value(&self, design: &Design) -> f64 {
         let value = self.objective.of(design);
         let value = if self.logarithmic { libm::log(value) } else { value };
         if self.objective == Objective::Mode { -value } else { value }
     }
 
-    /// Distance of the objective from its best value: 0 for the best design of the front, 1 for the worst.
+    /// How far a design is from the best value of the objective, relative to the range over the front: 0 for the best
+    /// design, 1 for the worst.
     fn regret(&self, design: &Design) -> f64 {
         if self.range > 0.0 { (self.value(design) - self.ideal) / self.range } else { 0.0 }
     }
@@ -155,7 +156,7 @@ pub struct Pick {
     pub design: Design,
 }
 
-/// The row and the joined names of each pick.
+/// For each pick, its row in the table and its names in one text.
 pub(crate) fn rows_and_names(picks: &[Pick]) -> Vec<(usize, String)> {
     picks.iter().map(|pick| (pick.design.row, pick.names.join(", "))).collect()
 }
@@ -185,7 +186,8 @@ pub fn choices(front: &FrontTable, row: usize) -> Vec<String> {
     marked_choices(front, row, &Caveats::default())
 }
 
-/// [`choices`] with the caveats of their parts in brackets: `CFRP (representative)`, `F11-10 (from memory)`.
+/// The choices of a row in words, as [`choices`] gives them, with the caveats of their parts in brackets:
+/// `CFRP (representative)`, `F11-10 (from memory)`.
 pub fn marked_choices(front: &FrontTable, row: usize, caveats: &Caveats) -> Vec<String> {
     let cell = |name: &str| front.column(name).map(|c| front.rows[row][c].as_str()).filter(|c| !c.is_empty());
     let piece = |column: &String| {

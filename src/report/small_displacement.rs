@@ -38,8 +38,9 @@ mod tests {
         assert_eq!(too_far(0.04, 1.0), None);
     }
 
-    /// The rotation of a spring that holds a load on a lever of 1 m at an angle above the horizontal: by the linear
-    /// model, and where the spring balances the load on the rotated lever \[rad\].
+    /// The rotation \[rad\] of a spring that holds a load on a lever of 1 m at an angle above the horizontal. The first
+    /// number is from the linear model; the second is the rotation at which the spring balances the load on the rotated
+    /// lever.
     fn turns_rad(compliance_rad: f64, above_rad: f64) -> [f64; 2] {
         let mut turn_rad = 0.0;
         // a fixed-point iteration: the torque follows from the rotated lever

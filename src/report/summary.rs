@@ -252,7 +252,7 @@ fn compromise(input: &SummaryInput, found: &Found, knee: &Design) -> String {
     out + "."
 }
 
-/// Numbers of designs of the overall front: those of each single material, and those of mixed materials.
+/// For each single material, and for mixed materials, the number of designs of the overall front that consist of it.
 fn owners(input: &SummaryInput) -> Vec<(String, usize)> {
     let of_row: Vec<Vec<&str>> =
         (0..input.overall.rows.len()).map(|r| materials(&input.overall, r)).collect();
@@ -352,7 +352,7 @@ fn material_cells(name: &str, front: &[Design], share: String, cost: String) -> 
     head.into_iter().chain(reach).chain([share, cost]).collect()
 }
 
-/// Words that say how many other designs have the same objectives; empty if there are none.
+/// Words that say how many other designs have the same objectives as the pick; empty if there are none.
 fn ties(pick: &Pick, designs: &[Design]) -> String {
     let same = |d: &&Design| Objective::ALL.iter().all(|o| o.of(d) == o.of(&pick.design));
     match designs.iter().filter(same).count() {

@@ -19,7 +19,7 @@ pub struct Supplement {
 }
 
 impl Supplement {
-    /// An addition that consists of a fact for `run.json` alone.
+    /// An addition that consists of one entry of `run.json` and nothing else.
     pub fn fact(key: &'static str, value: Value) -> Self {
         Self { run: Some((key, value)), ..Self::default() }
     }

@@ -74,7 +74,7 @@ impl Table {
         table
     }
 
-    /// The same table with numbers rounded to at most this many significant digits. Whole numbers are not changed.
+    /// This table with numbers rounded to at most `digits` significant digits. Whole numbers are not changed.
     #[must_use]
     pub fn rounded(mut self, digits: usize) -> Self {
         for cell in self.rows.iter_mut().flatten() {

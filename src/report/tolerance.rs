@@ -55,7 +55,7 @@ pub struct Scattered {
 }
 
 impl Scattered {
-    /// The results as CSV, one row per design of the front.
+    /// The results of the front under scatter as CSV, one row per design of the front.
     pub fn to_csv(&self) -> String {
         let mut columns = vec![
             "design_id".to_string(),
@@ -149,7 +149,7 @@ impl Scattered {
         }
     }
 
-    /// The results as a section of the page.
+    /// The results of the front under scatter, as a section of the page.
     pub fn section(&self) -> PageSection {
         let mut words = self.sentences();
         words.push("Parts are not sized again, and only designs of this front are compared.".into());
@@ -161,7 +161,7 @@ impl Scattered {
         }
     }
 
-    /// The results as a section of `summary.md`.
+    /// The results of the front under scatter, as a section of `summary.md`.
     pub fn to_markdown(&self) -> String {
         let lines: Vec<String> = self.sentences().iter().map(|s| format!("- {s}\n")).collect();
         format!(
@@ -171,7 +171,7 @@ impl Scattered {
         )
     }
 
-    /// The results for `run.json`.
+    /// The results of the front under scatter, as an entry of `run.json`.
     pub fn to_json(&self) -> Value {
         let scatter: serde_json::Map<String, Value> =
             self.parts.iter().map(|(name, part)| ((*name).to_string(), json!(part))).collect();
@@ -188,14 +188,15 @@ impl Scattered {
         json!({"scatter": scatter, "samples": self.samples, "seed": self.seed, "picks": picks})
     }
 
-    /// Every pick, as its index in [`PICKS`], with the design that is picked with the catalog ratings.
+    /// For every pick, its index in [`PICKS`] and the design that is picked with the catalog ratings.
     fn picks(&self) -> impl Iterator<Item = (usize, &Fate)> {
         PICKS.iter().enumerate().filter_map(|(name, word)| {
             Some((name, self.fates.iter().find(|fate| fate.picks.contains(word))?))
         })
     }
 
-    /// A sentence that names the designs that replace a pick, most often first; `None` if no design does.
+    /// A sentence that names the designs that replace the pick with the index `name` in some samples, most often first.
+    /// `fate` is the design that is picked with the catalog ratings. `None` if no design replaces it.
     fn displaced(&self, name: usize, fate: &Fate) -> Option<String> {
         let mut others: Vec<&Fate> =
             self.fates.iter().filter(|f| f.picked[name] > 0 && f.design.row != fate.design.row).collect();
@@ -219,7 +220,7 @@ impl Scattered {
     }
 }
 
-/// The value below which a percentage of the sorted values lies. Between two values it is interpolated.
+/// The value below which `percent` percent of the values in `sorted` lie. Between two values it is interpolated.
 pub fn percentile(sorted: &[f64], percent: u32) -> f64 {
     let place = f64::from(percent) / 100.0 * (sorted.len().saturating_sub(1)) as f64;
     let below = place.floor() as usize;
@@ -227,7 +228,8 @@ pub fn percentile(sorted: &[f64], percent: u32) -> f64 {
     sorted[below] + (place - below as f64) * (sorted[above] - sorted[below])
 }
 
-/// [`PERCENTILES`] of tip deflection \[mm\], mass \[kg\] and lowest mode \[Hz\] over some samples.
+/// [`PERCENTILES`] of tip deflection \[mm\], mass \[kg\] and lowest mode \[Hz\] of a design over `samples`, its
+/// objectives in each sample.
 pub fn percentiles(samples: &[Design]) -> [[f64; 3]; 3] {
     Objective::ALL.map(|objective| {
         let mut values: Vec<f64> = samples.iter().map(|d| objective.of(d)).collect();

@@ -16,7 +16,8 @@ pub(crate) fn tube_size(shape: &str, [width, height, wall]: [&str; 3]) -> String
     }
 }
 
-/// The same for a section. `outer` and `wall` convert a length in metres to a text in millimetres.
+/// Outer size and wall of a section in words, as [`tube_size`] writes them. `outer` and `wall` convert a length in
+/// metres to a text in millimetres.
 pub(crate) fn section_size(
     section: &Section,
     outer: impl Fn(f64) -> String,

@@ -39,8 +39,9 @@ pub struct BearingLoad {
     pub axial_n: f64,
 }
 
-/// The loads that a study puts on the bearing of a joint. Each number is the largest over the sizing cases and over the
-/// ramps or stops of single joints; the numbers of one load may come from different cases, which is on the safe side.
+/// The loads on the output bearing of a joint that a study asks for. Each number is the largest over the sizing cases
+/// and over the ramps or stops of single joints. The numbers of one load may come from different cases, which is on the
+/// safe side.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BearingDemand {
     /// Loads from gravity, payload and tip force alone, with all joints at rest.
@@ -69,7 +70,7 @@ pub struct BearingLimits {
 }
 
 impl BearingLoad {
-    /// The larger of the two loads, component by component.
+    /// The larger of this load and `other`, component by component. The result may be larger than both.
     pub fn max(self, other: Self) -> Self {
         Self {
             moment_nm: self.moment_nm.max(other.moment_nm),
@@ -78,13 +79,13 @@ impl BearingLoad {
         }
     }
 
-    /// The same forces, but they attach further out along the axis by a lever \[m\]. The radial force adds to the
+    /// This load if its forces attach further out along the axis by `lever_m` \[m\]. The radial force then adds to the
     /// moment.
     pub fn with_lever(self, lever_m: f64) -> Self {
         Self { moment_nm: self.moment_nm + lever_m * self.radial_n, ..self }
     }
 
-    /// The load with all three components multiplied by a factor.
+    /// This load with all three components multiplied by `factor`.
     pub fn scaled(self, factor: f64) -> Self {
         Self {
             moment_nm: self.moment_nm * factor,
@@ -100,7 +101,7 @@ impl BearingDemand {
         *self == Self::default()
     }
 
-    /// The larger of the two demands, component by component.
+    /// The larger of this demand and `other`, component by component.
     pub fn max(self, other: Self) -> Self {
         Self {
             at_rest: self.at_rest.max(other.at_rest),
@@ -109,7 +110,7 @@ impl BearingDemand {
         }
     }
 
-    /// The demand if all forces attach further out along the axis by a lever \[m\].
+    /// This demand if all forces attach further out along the axis by `lever_m` \[m\].
     pub fn with_lever(self, lever_m: f64) -> Self {
         Self {
             at_rest: self.at_rest.with_lever(lever_m),
@@ -118,9 +119,8 @@ impl BearingDemand {
         }
     }
 
-    /// An upper bound of the demand when all accelerations are multiplied by a factor of at most 1. The norm of a
-    /// load is a convex function of the accelerations, so interpolation between rest and full acceleration
-    /// overestimates it.
+    /// An upper bound of this demand when all accelerations are multiplied by `factor`, at most 1. The norm of a load
+    /// is a convex function of the accelerations, so interpolation between rest and full acceleration overestimates it.
     pub fn slowed(self, factor: f64) -> Self {
         let between = |at_rest: f64, moving: f64| at_rest + factor * (moving - at_rest).max(0.0);
         let load = |moving: BearingLoad| BearingLoad {
@@ -131,7 +131,7 @@ impl BearingDemand {
         Self { at_rest: self.at_rest, running: load(self.running), in_stop: load(self.in_stop) }
     }
 
-    /// The demand with every load multiplied by a factor.
+    /// This demand with every load multiplied by `factor`.
     pub fn scaled(self, factor: f64) -> Self {
         Self {
             at_rest: self.at_rest.scaled(factor),
@@ -177,19 +177,22 @@ impl BearingLimits {
         }
     }
 
-    /// Moment across the axis at the centre of the bearing \[N m\].
+    /// Moment across the axis at the centre of the bearing \[N m\], for a `load` that is given at the face of the
+    /// flange.
     #[inline]
     pub fn moment_nm(&self, load: &BearingLoad) -> f64 {
         load.moment_nm + self.flange_offset_m * load.radial_n
     }
 
-    /// Radial force plus the force that is equivalent to the moment: `F_r + 2 M / d_p` \[N\].
+    /// Radial force of a load plus the force that is equivalent to its moment at the bearing's centre:
+    /// `F_r + 2 M / d_p` \[N\].
     #[inline]
     fn across_n(&self, load: &BearingLoad) -> f64 {
         load.radial_n + self.force_per_moment_per_m * self.moment_nm(load)
     }
 
-    /// Static equivalent load P₀ \[N\].
+    /// Static equivalent load P₀ of a load on the bearing \[N\]: radial force, force equivalent to the moment, and 0.44
+    /// times the axial force.
     #[inline]
     pub fn static_load_n(&self, load: &BearingLoad) -> f64 {
         self.across_n(load) + AXIAL_SHARE * load.axial_n
@@ -204,7 +207,7 @@ impl BearingLimits {
         (across_n + 0.45 * load.axial_n).max(0.67 * (across_n + load.axial_n))
     }
 
-    /// Whether no load of the demand exceeds its limit.
+    /// Whether the bearing meets `demand`: no load of the demand exceeds its limit.
     #[inline]
     pub fn hold(&self, demand: &BearingDemand) -> bool {
         (self.moment_nm(&demand.running) <= self.running_moment_nm)
@@ -213,8 +216,8 @@ impl BearingLimits {
             & (self.dynamic_load_n(&demand.at_rest) <= self.life_n)
     }
 
-    /// The largest factor by which every load may be multiplied so that the bearing still passes its checks. Infinite
-    /// if all loads are zero.
+    /// The largest factor by which every load of `demand` may be multiplied so that the bearing still passes its
+    /// checks. Infinite if all loads are zero.
     pub fn multiple_of(&self, demand: &BearingDemand) -> f64 {
         let times = |limit: f64, asked: f64| if asked > 0.0 { limit / asked } else { f64::INFINITY };
         times(self.running_moment_nm, self.moment_nm(&demand.running))
@@ -223,7 +226,8 @@ impl BearingLimits {
             .min(times(self.life_n, self.dynamic_load_n(&demand.at_rest)))
     }
 
-    /// The weaker limits of two bearings, one by one. A demand that one of the two bearings withstands meets them.
+    /// The weaker of the limits of this bearing and of `other`, one by one. If one of the two bearings meets a demand,
+    /// the demand is within these limits.
     pub fn max(&self, other: &Self) -> Self {
         Self {
             flange_offset_m: self.flange_offset_m.min(other.flange_offset_m),
@@ -235,7 +239,8 @@ impl BearingLimits {
         }
     }
 
-    /// The stricter limits of two bearings, one by one. A demand that meets them is withstood by both bearings.
+    /// The stricter of the limits of this bearing and of `other`, one by one. If a demand is within these limits, both
+    /// bearings meet it.
     pub fn min(&self, other: &Self) -> Self {
         Self {
             flange_offset_m: self.flange_offset_m.max(other.flange_offset_m),
@@ -247,8 +252,8 @@ impl BearingLimits {
         }
     }
 
-    /// Whether no limit of this bearing is stricter than that of `other`, so that it withstands every demand that
-    /// `other` withstands.
+    /// Whether no limit of this bearing is stricter than the same limit of `other`. This bearing then meets every
+    /// demand that `other` meets.
     #[inline]
     pub fn cover(&self, other: &Self) -> bool {
         (self.flange_offset_m <= other.flange_offset_m)
@@ -260,13 +265,14 @@ impl BearingLimits {
     }
 }
 
-/// Life of a bearing of dynamic rating C \[N\] under an equivalent load \[N\] at a mean speed \[rad/s\], in hours.
+/// Life of a bearing \[h\] with the dynamic load rating C = `rating_n` \[N\] under the equivalent load `load_n` \[N\],
+/// at a mean speed of the joint \[rad/s\].
 pub(super) fn life_h(rating_n: f64, load_n: f64, mean_speed_rad_s: f64) -> f64 {
     RATED_TURNS / turns_per_h(mean_speed_rad_s) * libm::pow(rating_n / (LOAD_FACTOR * load_n), 10.0 / 3.0)
 }
 
-/// The equivalent load \[N\] under which a bearing of dynamic rating C \[N\] reaches exactly this life \[h\] at this
-/// mean speed \[rad/s\].
+/// The equivalent load \[N\] under which a bearing with the dynamic load rating C = `rating_n` \[N\] reaches exactly
+/// the life `life_h` \[h\] at a mean speed of the joint \[rad/s\].
 fn load_of_life_n(rating_n: f64, mean_speed_rad_s: f64, life_h: f64) -> f64 {
     rating_n / LOAD_FACTOR * libm::pow(RATED_TURNS / (turns_per_h(mean_speed_rad_s) * life_h), 0.3)
 }

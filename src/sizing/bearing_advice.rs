@@ -47,7 +47,8 @@ impl DriveTable<'_> {
         ))
     }
 
-    /// The gear with its failed check, or `None` if its bearing passes.
+    /// `gear` with the failed check of its output bearing that has the smallest margin, or `None` if its bearing
+    /// passes.
     fn overloaded<'t>(&self, gear: &'t Gear, demand: &JointDemand) -> Option<Overloaded<'t>> {
         let bearing = self.bearing_of(gear);
         let failed = not_holding(gear_checks(gear, bearing.as_ref(), self.motion(), demand));

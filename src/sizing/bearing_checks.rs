@@ -62,8 +62,9 @@ const RATINGS: [[&str; 4]; 2] = [
 ];
 
 impl BlankRatings {
-    /// The blank ratings of the output bearing of a joint with this gear. `None` if all ratings are known or the
-    /// joint has no bearing.
+    /// The blank ratings of the output bearing of a joint with this gear. `source` says where the bearing comes from,
+    /// `which` whether the gear is a housed unit or a component set. `None` if all ratings are known or the joint has
+    /// no bearing.
     pub fn of(source: &BearingSource, gear: &Gear, which: GearMass) -> Option<Self> {
         match source {
             BearingSource::OfGear => Self::under(&RATINGS[0], Bearing::of_gear(gear, which)?),
@@ -76,7 +77,8 @@ impl BlankRatings {
         Self::under(&RATINGS[1], bearing)
     }
 
-    /// The blank ratings of a bearing. `names` are the names of the four ratings in the order of [`RATINGS`].
+    /// The blank ratings of a bearing. `names` are the names under which its four ratings are reported, in the order of
+    /// [`RATINGS`].
     fn under(names: &[&'static str; 4], bearing: Bearing) -> Option<Self> {
         let ratings = bearing.ratings;
         let loads_n = [ratings.static_load_rating_n, ratings.dynamic_load_rating_n];
@@ -97,8 +99,8 @@ impl BlankRatings {
     }
 }
 
-/// The rating that a separate bearing of the joint (key `bearing`) needs to pass a failed check, as a phrase. `None`
-/// if the check is not about the bearing.
+/// The rating that a separate bearing of the joint (key `bearing`) needs so that the failed `check` passes, as a
+/// phrase. `None` if the check is not about the bearing.
 pub(super) fn bearing_that_holds(check: &Check) -> Option<String> {
     let times = check.torque_margin().map(|margin| (100.0 / margin).ceil() / 100.0);
     let rating = match check.kind {

@@ -130,8 +130,8 @@ impl CheckKind {
         }
     }
 
-    /// Exponent p in "margin ∝ torque^-p". It is 1 except for lives; a gear whose row states another life exponent
-    /// overrides it in [`Check::torque_exponent`].
+    /// Exponent p of the torque in this check: its margin is proportional to torque^-p. It is 1 except for lives. A
+    /// gear whose catalog row states another life exponent overrides it in [`Check::torque_exponent`].
     pub fn torque_exponent(self) -> f64 {
         match self {
             CheckKind::GearLife => 3.0,
@@ -152,8 +152,8 @@ impl CheckKind {
         matches!(self, GearWidth | MotorWidth | GearBore | MotorBore | DriveLength)
     }
 
-    /// Whether a blank rating that this check needs excludes the drive. It does not for an output bearing and for
-    /// sizes: these are then left unchecked. Nor does it for buckling and ratcheting torques, which few vendors
+    /// Whether a drive is excluded if the rating that this check needs is blank. It is not for an output bearing and
+    /// for sizes: these are then left unchecked. Nor is it for buckling and ratcheting torques, which few vendors
     /// state; both lie above the momentary peak torque, which must be known.
     pub fn needs_its_rating(self) -> bool {
         !self.is_bearing()
@@ -195,12 +195,13 @@ pub struct Check {
     pub allowed: Option<f64>,
     /// Result of the check.
     pub state: CheckState,
-    /// Exponent p in "margin ∝ torque^-p": 1 for most checks, for lives the exponent of the life formula.
+    /// Exponent p of the torque: the margin is proportional to torque^-p. It is 1 for most checks, and for lives the
+    /// exponent of the life formula.
     pub torque_exponent: f64,
 }
 
 impl Check {
-    /// A check that cannot be made because a rating is blank.
+    /// A check of the kind `kind` that cannot be made because `rating` is blank.
     pub(super) fn not_made(kind: CheckKind, rating: MissingRating) -> Self {
         let torque_exponent = kind.torque_exponent();
         Self { kind, needed: None, allowed: None, state: CheckState::NotChecked(rating), torque_exponent }
@@ -215,9 +216,9 @@ impl Check {
         }
     }
 
-    /// The margin as a factor on the torque, which makes different checks comparable. A life is proportional to a
-    /// power of the torque (cube for a strain-wave gear, 10/3 for a bearing), so the root of its margin is taken. The
-    /// number of stops does not depend on the torque; its margin is returned as it is. A size that fits does so at
+    /// Margin of the check as a factor on the torque, which makes different checks comparable. A life is proportional
+    /// to a power of the torque (cube for a strain-wave gear, 10/3 for a bearing), so the root of its margin is taken.
+    /// The number of stops does not depend on the torque; its margin is returned as it is. A size that fits does so at
     /// any torque, so its margin is infinite.
     pub fn torque_margin(&self) -> Option<f64> {
         let margin = self.margin()?;
@@ -236,7 +237,7 @@ impl Check {
         Some(self.needed? - self.allowed?)
     }
 
-    /// Whether the check does not exclude the drive: its limit is met, or it could not be made and
+    /// Whether the check lets the drive pass: its limit is met, or it could not be made and
     /// [`CheckKind::needs_its_rating`] is false.
     pub fn holds(&self) -> bool {
         match self.state {
@@ -271,7 +272,7 @@ impl fmt::Display for Check {
     }
 }
 
-/// Number of decimals with which a number has about three significant digits.
+/// Number of decimals that print `x` with about three significant digits.
 pub(super) fn digits_of(x: f64) -> usize {
     match x.abs() {
         x if x >= 100.0 => 0,
@@ -281,15 +282,16 @@ pub(super) fn digits_of(x: f64) -> usize {
     }
 }
 
-/// Number of decimals with which the larger of two numbers has about three significant digits, or more if both would
-/// print the same.
+/// Number of decimals that print the larger of `a` and `b` with about three significant digits. It is larger if both
+/// numbers would look the same.
 fn digits_that_differ(a: f64, b: f64) -> usize {
     let least = digits_of(a.abs().max(b.abs()));
     (least..12).find(|&n| format!("{a:.n$}") != format!("{b:.n$}")).unwrap_or(least)
 }
 
-/// Compares `load` with `threshold`, the same numbers as in the search. `needed` and `allowed` state the comparison
-/// in units for people. They only go into the output: after conversion, rounding could change the result.
+/// A check of the kind `kind`, which passes if `load` is at most `threshold`; these are the same numbers as in the
+/// search. `needed` and `allowed` state the comparison in units for people and are only printed: they have been
+/// converted, and rounding could change the result.
 pub(super) fn check(kind: CheckKind, needed: Rating, allowed: Rating, load: f64, threshold: Rating) -> Check {
     let state = match threshold {
         Ok(threshold) if load <= threshold => CheckState::Holds,
@@ -300,7 +302,7 @@ pub(super) fn check(kind: CheckKind, needed: Rating, allowed: Rating, load: f64,
     Check { kind, needed: needed.ok(), allowed: allowed.ok(), state, torque_exponent }
 }
 
-/// A check for which needed and allowed value are also the numbers that are compared.
+/// A check whose printed values are also the numbers that are compared: it passes if `needed` is at most `allowed`.
 pub(super) fn plain(kind: CheckKind, needed: f64, allowed: Rating) -> Check {
     check(kind, Ok(needed), allowed, needed, allowed)
 }

@@ -55,7 +55,7 @@ fn gear_mean(gear: &Gear, demand: &JointDemand) -> Check {
     )
 }
 
-/// L10 life of the gear, L_rated (T_rated / T_mean)^p (n_rated / n_mean), compared with the required life.
+/// Check of the L10 life of the gear: L_rated (T_rated / T_mean)^p (n_rated / n_mean), compared with the required life.
 fn gear_life(gear: &Gear, motion: &JointMotion, demand: &JointDemand) -> Check {
     let life_h = limit::gear_life_h(gear, motion, demand.mean_torque_cubed_nm3);
     let check = check(
@@ -94,8 +94,8 @@ pub fn motor_checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -
     checks
 }
 
-/// Static torque at the motor, T / (N η), compared with its continuous torque at rest. If a brake holds the joint,
-/// any torque is allowed.
+/// Check of the motor at rest: static torque T / (N η) at the motor, compared with its continuous torque at rest. If a
+/// brake holds the joint, any torque is allowed.
 fn motor_hold(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check {
     let rated = motor_curve::standing_torque_nm(drive.motor);
     check(
@@ -107,7 +107,8 @@ fn motor_hold(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Chec
     )
 }
 
-/// Peak torque of the motor, (T + T_lin) / (N η) + J_in N α, compared with what the motor allows for a short time.
+/// Check of the motor in a ramp: its peak torque (T + T_lin) / (N η) + J_in N α, compared with what the motor allows
+/// for a short time.
 fn motor_peak(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check {
     let peak_nm = demand.peak_torque_nm();
     check(
@@ -119,7 +120,8 @@ fn motor_peak(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Chec
     )
 }
 
-/// Root mean square of the motor's torque over the cycle, compared with its continuous torque at the cruising speed.
+/// Check of the motor's heat: root mean square of its torque over the cycle, compared with its continuous torque at the
+/// cruising speed.
 fn motor_rms(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check {
     let input_rpm = input_speed_rpm(drive.gear, motion);
     let continuous_nm = motor_curve::continuous_torque_nm(drive.motor, input_rpm);
@@ -135,12 +137,13 @@ pub fn checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Vec<
     all
 }
 
-/// Whether no check excludes the drive, see [`Check::holds`].
+/// Whether all `checks` let the drive pass, see [`Check::holds`].
 pub fn all_hold(checks: &[Check]) -> bool {
     checks.iter().all(Check::holds)
 }
 
-/// The binding check: the one with the smallest torque margin among those that could be made.
+/// The binding check: of those among `checks` that could be made, the one with the smallest torque margin (allowed over
+/// needed torque).
 pub fn binding(checks: &[Check]) -> Option<&Check> {
     let made = checks.iter().filter_map(|c| Some((c.torque_margin()?, c)));
     made.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, check)| check)

@@ -55,7 +55,7 @@ pub struct JointMotion {
 }
 
 impl JointMotion {
-    /// The same motion, adapted to a joint that has a brake or a duty of its own.
+    /// This motion, adapted to a joint that has a brake or a duty of its own.
     ///
     /// A stated duty replaces the duty cycle of the study: mean torque, mean speed and motor heat follow from its
     /// phases. Its first ramp sets the acceleration. The speed of the joint is the largest speed of the duty, or
@@ -80,29 +80,29 @@ impl JointMotion {
         }
     }
 
-    /// The same motion without the stated duty, whose torques are the same for every arm. The remaining demand is
-    /// proportional to static torque and inertia.
+    /// This motion without the duty that the study states in numbers, whose torques are the same for every arm. The
+    /// demand that remains is proportional to static torque and inertia.
     pub(crate) fn without_stated(self) -> Self {
         Self { stated: None, ..self }
     }
 
-    /// Duration of an emergency stop from the largest speed \[s\].
+    /// Duration of an emergency stop from the largest speed of the joint to rest \[s\].
     pub fn stop_time_s(&self) -> f64 {
         self.ramp_time_s / self.stop_factor
     }
 
-    /// Mean speed over the duty cycle, output side \[rad/s\].
+    /// Mean speed of the joint over the duty cycle, on the output side of the gear \[rad/s\].
     pub fn mean_speed_rad_s(&self) -> f64 {
         self.speed_rad_s * self.mean_speed_fraction
     }
 
-    /// The same motion with another reading of Eq 8. A vertical axis needs the exact one: it has no static torque.
+    /// This motion with `linear_reading` as the reading of Eq 8. A joint with a vertical axis needs the exact reading,
+    /// because it has no static torque.
     pub fn with_linear_reading(self, linear_reading: LinearReading) -> Self {
         Self { linear_reading, ..self }
     }
 
-    /// The same motion with speed, acceleration and emergency deceleration multiplied by `factor`. The ramp time
-    /// stays.
+    /// This motion with speed, acceleration and emergency deceleration multiplied by `factor`. The ramp time stays.
     pub fn slowed(self, factor: f64) -> Self {
         Self {
             speed_rad_s: self.speed_rad_s * factor,
@@ -134,13 +134,15 @@ impl JointMotion {
         self.demand_of_torques(static_torque_nm, linear_torque_nm)
     }
 
-    /// Largest torque \[N m\] and cube of the mean torque \[(N m)³\] of the stated duty; both 0 without one.
+    /// Largest torque \[N m\] and cube of the mean torque \[(N m)³\] of the duty that the study states for the joint.
+    /// Both are 0 if it states none.
     #[inline]
     pub(super) fn stated_torques(&self) -> [f64; 2] {
         self.stated.map_or([0.0; 2], |stated| [stated.peak_torque_nm, stated.mean_torque_cubed_nm3])
     }
 
-    /// The demand on a joint with known static and linear torque \[N m\]. Their signs do not matter.
+    /// The demand on a joint with this motion, whose static and linear torque \[N m\] are known. The signs of the
+    /// torques do not matter.
     #[inline]
     pub fn demand_of_torques(&self, static_torque_nm: f64, linear_torque_nm: f64) -> JointDemand {
         let static_torque_nm = static_torque_nm.abs();
@@ -191,8 +193,8 @@ impl JointDemand {
         (self.static_torque_nm + self.linear_torque_nm).max(self.stated_peak_nm)
     }
 
-    /// The same demand with the weights of the motor's heat multiplied by a factor. Callers use a factor near 1 so
-    /// that rounding does not change the result.
+    /// This demand with the weights of the motor's heat multiplied by `factor`. Callers use a factor near 1, so that a
+    /// comparison does not depend on rounding.
     pub(crate) fn with_heat_times(self, factor: f64) -> Self {
         Self { heat_weights: self.heat_weights.times(factor), ..self }
     }
@@ -202,17 +204,17 @@ impl JointDemand {
         libm::cbrt(self.mean_torque_cubed_nm3)
     }
 
-    /// The same demand with these loads on the output bearing.
+    /// This demand with `bearing` as the loads on the output bearing.
     pub fn with_bearing(self, bearing: BearingDemand) -> Self {
         Self { bearing, ..self }
     }
 
-    /// The same demand with these largest diameters of gear and motor.
+    /// This demand with `room` as the largest diameters of gear and motor.
     pub fn with_room(self, room: LinkRoom) -> Self {
         Self { room, ..self }
     }
 
-    /// The same demand with every torque, force and moment multiplied by `factor`.
+    /// This demand with every torque, force and moment multiplied by `factor`.
     pub fn scaled(self, factor: f64) -> Self {
         Self {
             static_torque_nm: self.static_torque_nm * factor,
@@ -238,13 +240,15 @@ pub fn linear_torque_nm(motion: &JointMotion, static_torque_nm: f64, outboard_in
     }
 }
 
-/// Torque in an emergency stop \[N m\]: T + (a_stop / a) T_lin.
+/// Torque in an emergency stop \[N m\]: T + (a_stop / a) T_lin. `stop_factor` is a_stop / a, the ratio of emergency
+/// deceleration to normal acceleration.
 #[inline]
 pub fn stop_torque_nm(static_torque_nm: f64, linear_torque_nm: f64, stop_factor: f64) -> f64 {
     static_torque_nm + stop_factor * linear_torque_nm
 }
 
-/// Cube of the cubic mean torque \[(N m)³\]: T_mean³ = Σ |T_i|³ n_i t_i / Σ n_i t_i (Eq 18.2 of the vendor).
+/// Cube of the cubic mean torque over a duty cycle \[(N m)³\]: T_mean³ = Σ |T_i|³ n_i t_i / Σ n_i t_i (Eq 18.2 of the
+/// vendor). `weights` are those of the cycle.
 #[inline]
 pub fn cubic_mean_cubed_nm3(weights: MeanTorqueWeights, static_torque_nm: f64, linear_torque_nm: f64) -> f64 {
     let cube = |x: f64| x * x * x;

@@ -27,8 +27,8 @@ pub(super) fn known(rating: Option<f64>, name: &'static str) -> Rating {
     rating.ok_or(MissingRating(name))
 }
 
-/// A rating of a gear, or an error with its name if it is blank. Some kinds of gear, such as direct drives, have no
-/// ratings of their own; for these a blank rating counts as `none`.
+/// The rating of a gear, or an error with its name if it is blank. Some kinds of gear, such as direct drives, have no
+/// ratings of their own; for these a blank rating counts as the value `none`.
 pub(super) fn if_any(gear: &Gear, rating: Option<f64>, none: f64, name: &'static str) -> Rating {
     match rating {
         None if gear.kind.has_no_ratings_of_its_own() => Ok(none),
@@ -138,7 +138,7 @@ impl Drive<'_> {
         if_any(self.gear, self.gear.efficiency, 1.0, "efficiency_rated_2000rpm")
     }
 
-    /// Output torque per newton metre at the motor: N η.
+    /// Torque at the joint per newton metre of torque at the motor: N η, ratio times efficiency.
     pub(super) fn gain(&self) -> Rating {
         Ok(self.ratio() * self.efficiency()?)
     }

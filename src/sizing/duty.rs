@@ -58,13 +58,13 @@ impl DutyCycle {
         }
     }
 
-    /// Ratio of mean speed to largest speed, pauses included.
+    /// Ratio of the mean speed over the cycle, pauses included, to the largest speed.
     pub fn mean_speed_fraction(&self) -> f64 {
         let total: f64 = self.phases.iter().map(|p| p.duration_s).sum();
         if total > 0.0 { self.travel_s() / total } else { 0.0 }
     }
 
-    /// Weights of the cubic mean torque. A cycle without motion gets the static torque as its mean.
+    /// Weights of the cubic mean torque over this cycle. A cycle without motion gets the static torque as its mean.
     pub fn mean_torque_weights(&self) -> MeanTorqueWeights {
         let travel_s = self.travel_s();
         if travel_s <= 0.0 {
@@ -85,8 +85,8 @@ impl DutyCycle {
         weights
     }
 
-    /// Weights of the squares of the motor's torque: the fraction of the cycle's time that each kind of phase takes.
-    /// A cycle of zero duration counts as standing still.
+    /// Weights of the squared torques in the mean square of the motor's torque: the fraction of the cycle's time that
+    /// each kind of phase takes. A cycle of zero duration counts as standing still.
     pub fn heat_weights(&self) -> HeatWeights {
         let total_s: f64 = self.phases.iter().map(|p| p.duration_s).sum();
         if total_s <= 0.0 {
@@ -117,14 +117,14 @@ impl DutyCycle {
             .map(|kind| self.phases.iter().filter(|p| p.kind == kind).map(|p| p.duration_s).sum())
     }
 
-    /// Travel of the whole cycle divided by the largest speed \[s\].
+    /// Angle through which the joint turns in the whole cycle, divided by its largest speed \[s\].
     fn travel_s(&self) -> f64 {
         self.phases.iter().map(Phase::travel_s).sum()
     }
 }
 
 impl Phase {
-    /// Travel of the phase divided by the largest speed \[s\].
+    /// Angle through which the joint turns in this phase, divided by its largest speed \[s\].
     fn travel_s(&self) -> f64 {
         let speed = match self.kind {
             PhaseKind::Accelerate | PhaseKind::Decelerate => 0.5,
@@ -158,18 +158,18 @@ impl MeanTorqueWeights {
 /// each kind of phase takes.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct HeatWeights {
-    /// Fraction of the time in which the joint speeds up.
+    /// Fraction of the time in which the joint speeds up, with the sum of static and linear torque.
     pub sum: f64,
     /// Fraction of the time in which the joint moves under the static torque.
     pub steady: f64,
-    /// Fraction of the time in which the joint slows down.
+    /// Fraction of the time in which the joint slows down, with the difference of static and linear torque.
     pub difference: f64,
     /// Fraction of the time in which the motor holds the static torque at rest; 0 if a brake holds the joint.
     pub standing: f64,
 }
 
 impl HeatWeights {
-    /// All weights multiplied by a factor.
+    /// These weights, all multiplied by `factor`.
     pub(crate) fn times(self, factor: f64) -> Self {
         Self {
             sum: self.sum * factor,

@@ -24,7 +24,8 @@ pub(crate) struct EightDemands<V> {
     /// Largest outer diameters of gear and motor that the links leave room for \[m\]; `None` if the study does not
     /// ask for this check.
     room: Option<[V; 2]>,
-    /// T + T_lin \[N m\]. The next field has max(T - T_lin, 0) and max(T_lin - T, 0) \[N m\].
+    /// T + T_lin, the torque while speeding up \[N m\]. The next field has max(T - T_lin, 0) and max(T_lin - T, 0) \[N
+    /// m\], which are needed while slowing down.
     up_nm: V,
     down_nm: [V; 2],
     heat_weights: HeatWeights,
@@ -39,8 +40,8 @@ pub(crate) struct EightBearing<V> {
     in_stop: EightLoad<V>,
 }
 
-/// A load on the bearing in eight arms: moment across the axis, radial force (both as squares or as norms) and axial
-/// force \[N\].
+/// A load on the bearing in eight arms: moment across the axis \[N m\], radial force \[N\] and axial force \[N\].
+/// Moment and radial force are first collected as squares, then as norms.
 #[derive(Clone, Copy)]
 struct EightLoad<V> {
     moment: V,
@@ -54,8 +55,8 @@ impl<V: Lanes> EightLoad<V> {
         Self { moment: V::zero(), radial: V::zero(), axial_n: V::zero() }
     }
 
-    /// Replaces each component by the given one where that is larger. Radial force and moment are given as squares of
-    /// their norms.
+    /// Replaces each component of this load by the given one in the lanes where that is larger. `radial` and `moment`
+    /// are squares of norms.
     #[inline(always)]
     fn max_of_squares(&mut self, radial: V, axial_n: V, moment: V) {
         self.radial = self.radial.max(radial);
@@ -63,15 +64,16 @@ impl<V: Lanes> EightLoad<V> {
         self.moment = self.moment.max(moment);
     }
 
-    /// Takes the roots of the squares. The forces attach further out along the axis by a lever \[m\], so they add to
-    /// the moment.
+    /// This load with moment and radial force as norms, after their squares were collected. The forces attach further
+    /// out along the axis by `lever_m` \[m\], so the radial force adds to the moment.
     #[inline(always)]
     fn with_lever(self, lever_m: V) -> Self {
         let radial = self.radial.sqrt();
         Self { moment: self.moment.sqrt() + lever_m * radial, radial, axial_n: self.axial_n }
     }
 
-    /// Radial force plus the force that is equivalent to the moment \[N\], computed as in [`BearingLimits`].
+    /// Radial force plus the force that is equivalent to the moment \[N\], in each lane, computed as in
+    /// [`BearingLimits`].
     #[inline(always)]
     fn across(&self, limits: &BearingLimits) -> V {
         self.radial + V::splat(limits.force_per_moment_per_m) * self.moment_at_centre(limits)
@@ -100,8 +102,8 @@ impl<V: Lanes> EightBearing<V> {
         // no less than rest does
     }
 
-    /// Takes into account a load at rest together with the load s ± d of a ramp, and s ± `stop_factor` d of an
-    /// emergency stop. Of the two signs the larger squared norm is `|s|² + |d|² + 2 |s·d|`.
+    /// Takes into account the load s at rest together with the load d that a ramp adds: s ± d in the ramp, and s ±
+    /// `stop_factor` d in an emergency stop. Of the two signs the larger squared norm is `|s|² + |d|² + 2 |s·d|`.
     #[inline(always)]
     pub(crate) fn moving(&mut self, at_rest: &[V; 5], ramp: &[V; 5], stop_factor: V) {
         let (radial, moment) = (Pair::new(at_rest, ramp, 0), Pair::new(at_rest, ramp, 3));
@@ -111,7 +113,7 @@ impl<V: Lanes> EightBearing<V> {
         self.in_stop.max_of_squares(radial.largest(), rest_n + stop_factor * ramp_n, moment.largest());
     }
 
-    /// The loads as norms, if all forces attach further out along the axis by a lever \[m\].
+    /// The loads on the bearing as norms, if all forces attach further out along the axis by `lever_m` \[m\].
     #[inline(always)]
     pub(crate) fn with_lever(self, lever_m: V) -> Self {
         Self {
@@ -121,7 +123,7 @@ impl<V: Lanes> EightBearing<V> {
         }
     }
 
-    /// Bit mask of the lanes in which a load exceeds a limit of the bearing.
+    /// Bit mask of the lanes (arms) in which a load exceeds one of `limits`, the limits of a bearing.
     #[inline(always)]
     fn broken_by(&self, limits: &BearingLimits) -> u8 {
         let across = self.at_rest.across(limits);
@@ -147,7 +149,8 @@ struct Pair<V> {
 }
 
 impl<V: Lanes> Pair<V> {
-    /// Squared norms over the components `first` and `first + 1`: of the load at rest, of the ramp, and the mixed term.
+    /// Squared norms over the components `first` and `first + 1` of `at_rest` (s) and `ramp` (d): |s|², |d|² and the
+    /// mixed term 2 |s·d|.
     #[inline(always)]
     fn new(at_rest: &[V; 5], ramp: &[V; 5], first: usize) -> Self {
         let (s, d) = ([at_rest[first], at_rest[first + 1]], [ramp[first], ramp[first + 1]]);
@@ -155,13 +158,13 @@ impl<V: Lanes> Pair<V> {
         Self { rest: s[0] * s[0] + s[1] * s[1], ramp: d[0] * d[0] + d[1] * d[1], both: both + both }
     }
 
-    /// The same squared norms if the load d of the ramp is multiplied by a factor.
+    /// These squared norms if the load d of the ramp is multiplied by `factor`.
     #[inline(always)]
     fn times(self, factor: V) -> Self {
         Self { rest: self.rest, ramp: self.ramp * factor * factor, both: self.both * factor }
     }
 
-    /// The larger of `|s + d|²` and `|s - d|²`.
+    /// The larger of `|s + d|²` and `|s - d|²`, where s is the load at rest and d the load that a ramp adds.
     #[inline(always)]
     fn largest(self) -> V {
         self.rest + self.ramp + self.both
@@ -169,7 +172,8 @@ impl<V: Lanes> Pair<V> {
 }
 
 impl<V: Lanes> EightDemands<V> {
-    /// The demands on a joint with this motion, from static torques \[N m\] and outboard inertias \[kg m²\].
+    /// The demands on a joint with the motion `motion` in eight arms, from their static torques \[N m\] and the
+    /// inertias of everything outboard about the axis \[kg m²\].
     #[inline(always)]
     pub(crate) fn new(motion: &JointMotion, static_torque_nm: V, outboard_inertia_kgm2: V) -> Self {
         let statically = static_torque_nm.abs();
@@ -198,20 +202,21 @@ impl<V: Lanes> EightDemands<V> {
         }
     }
 
-    /// The same demands with these loads on the output bearings; `None`: the bearings are not checked.
+    /// These demands with `bearing` as the loads on the output bearings; `None`: the bearings are not checked.
     #[inline(always)]
     pub(crate) fn with_bearing(self, bearing: Option<EightBearing<V>>) -> Self {
         Self { bearing, ..self }
     }
 
-    /// The same demands with the largest outer diameters of gear and motor that fit \[m\]; `None`: sizes are not
+    /// These demands with `room` as the largest outer diameters of gear and motor that fit \[m\]; `None`: sizes are not
     /// checked.
     #[inline(always)]
     pub(crate) fn with_room(self, room: Option<[V; 2]>) -> Self {
         Self { room, ..self }
     }
 
-    /// Bit mask: those lanes of `of` in which a drive with these limits meets the demand.
+    /// Bit mask of the lanes (arms) in which a drive with these limits meets the demand. Only the lanes in the mask
+    /// `of` are tested.
     #[inline(always)]
     pub(crate) fn held_by(&self, limits: &DriveLimits, of: u8) -> u8 {
         let held = of
@@ -234,7 +239,8 @@ impl<V: Lanes> EightDemands<V> {
         if held == 0 { held } else { held & !V::splat(1.0).less(self.share_squared(&limits.heat)) }
     }
 
-    /// [`MotorHeat::share_squared`] for each lane.
+    /// Mean square of the motor's torque over its continuous torque, computed as [`MotorHeat::share_squared`] in each
+    /// lane.
     #[inline(always)]
     fn share_squared(&self, heat: &MotorHeat) -> V {
         let (weights, own) = (&self.heat_weights, V::splat(heat.own_share));
@@ -250,8 +256,8 @@ impl<V: Lanes> EightDemands<V> {
 }
 
 impl DriveTable<'_> {
-    /// For each wanted lane the index of the lightest drive that meets the demand, and the bit mask of the lanes that
-    /// have one.
+    /// For each lane (arm) in the mask `wanted`, the index of the lightest drive that meets its demand, and the bit
+    /// mask of the lanes that have such a drive.
     ///
     /// The search for the first step of the ladder that may meet a demand begins at `step`, and stores there the step
     /// that it found. Successive demands are similar, so the next search is short.

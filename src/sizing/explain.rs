@@ -13,21 +13,21 @@ use std::fmt;
 /// The part that a rejection is about.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RejectedPart {
-    /// A gear that fails a check with any motor.
+    /// A gear that fails a check whatever the motor.
     Gear {
         /// Name of the gear.
         gear: String,
     },
-    /// A gear that passes its own checks, but no motor passes behind it. The checks listed are those with the nearest
-    /// motor, whose smallest margin is the largest.
+    /// A gear that passes its own checks, but that has no motor which passes too. The checks listed are those with the
+    /// nearest motor: the motor whose smallest margin is the largest.
     GearWithoutMotor {
         /// Name of the gear.
         gear: String,
         /// Name of the nearest motor, whose smallest margin is the largest.
         nearest_motor: String,
     },
-    /// A motor that fails behind some of the gears that pass. The checks listed are those behind the gear with
-    /// which its smallest margin is the largest.
+    /// A motor that fails behind some of the gears that pass their own checks. The checks listed are those with the
+    /// nearest gear: the gear with which the smallest margin of the motor is the largest.
     Motor {
         /// Name of the motor.
         motor: String,
@@ -101,8 +101,9 @@ pub struct Relaxation {
 }
 
 impl Relaxation {
-    /// The factor on the payload that has the same effect, if the fraction `payload_share` of the torque comes from
-    /// the payload. `None` if speed is reduced, or if even an arm without payload would not meet the limits.
+    /// The factor on the payload that reduces the torque as much as this relaxation does. `payload_share` is the
+    /// fraction of the torque that comes from the payload. `None` if speed is reduced, or if even an arm without
+    /// payload would not meet the limits.
     pub fn payload_factor(&self, payload_share: f64) -> Option<f64> {
         let factor = 1.0 - (1.0 - self.factor) / payload_share;
         (self.kind == RelaxationKind::Torque && factor >= 0.0).then_some(factor)
@@ -157,7 +158,7 @@ impl fmt::Display for Shortfall {
     }
 }
 
-/// A gear that passes its own checks, with a motor and the checks that this motor fails.
+/// A gear that passes its own checks, combined with a motor, and the checks that this motor fails.
 struct Trial<'c> {
     drive: Drive<'c>,
     worst_margin: f64,
@@ -165,9 +166,9 @@ struct Trial<'c> {
 }
 
 impl<'c> DriveTable<'c> {
-    /// Why parts were rejected. The list has every gear that fails by itself, every gear that passes but has no motor
-    /// that does, and every motor that fails behind some gear that passes. Gears come first; gears and motors are
-    /// each in the order of the catalog.
+    /// Why parts were rejected for `demand`. The list has every gear that fails by itself, every gear that passes but
+    /// has no motor that passes behind it, and every motor that fails behind some gear that passes. Gears come first;
+    /// gears and motors are each in the order of the catalog.
     pub fn explain(&self, demand: &JointDemand) -> Vec<Rejection> {
         let (mut rejections, trials) = (Vec::new(), self.trials(demand));
         for gear in self.gears() {
@@ -209,8 +210,8 @@ impl<'c> DriveTable<'c> {
         checks
     }
 
-    /// The smallest margin of the nearest drive, as a factor on torque, for a demand that no drive meets. 0 if no drive
-    /// could be checked.
+    /// The smallest margin of the nearest drive, as a factor on torque, for a demand that no drive meets. The nearest
+    /// drive is the one whose smallest margin is the largest. 0 if no drive could be checked.
     pub(crate) fn nearest_margin(&self, demand: &JointDemand) -> f64 {
         self.nearest(demand).and_then(|(_, check)| check.torque_margin()).unwrap_or(0.0)
     }
@@ -268,8 +269,8 @@ impl<'c> DriveTable<'c> {
         Rejection { joint: self.joint().to_string(), part, checks }
     }
 
-    /// The drive whose smallest margin is the largest, among the drives for which every check could be made, and its
-    /// check with the smallest margin.
+    /// The nearest drive and its check with the smallest margin. It is the drive whose smallest margin is the largest,
+    /// among the drives for which every check could be made.
     fn nearest(&self, demand: &JointDemand) -> Option<(Drive<'c>, Check)> {
         let mut best: Option<(f64, Drive<'c>, Check)> = None;
         for drive in self.all_drives().filter(|drive| self.knows_torsion(drive.gear)) {
@@ -286,7 +287,8 @@ impl<'c> DriveTable<'c> {
         best.map(|(_, drive, check)| (drive, check))
     }
 
-    /// The largest factor below 1, in whole percents, with which some drive meets the demand.
+    /// The largest factor below 1, in whole percents, such that some drive meets `demand` with its torque or its speed
+    /// (`kind`) multiplied by the factor. `None` if not even 1 % suffices.
     fn relaxation(&self, kind: RelaxationKind, demand: &JointDemand) -> Option<Relaxation> {
         (1..100).rev().find_map(|percent| {
             let factor = f64::from(percent) / 100.0;
@@ -298,8 +300,9 @@ impl<'c> DriveTable<'c> {
         })
     }
 
-    /// The lightest drive that meets the demand if the motion is slowed by a factor. All pairs are tried, not only
-    /// those of the table: a pair that was excluded as too fast may pass at the lower speed.
+    /// The lightest drive that meets `demand` if speed and acceleration are multiplied by `factor`. All pairs of gear
+    /// and motor are tried, not only those of the table: a pair that was excluded as too fast may pass at the lower
+    /// speed.
     fn lightest_when_slowed(&self, factor: f64, demand: &JointDemand) -> Option<Drive<'c>> {
         let motion = self.motion().slowed(factor);
         let slower = motion
@@ -316,14 +319,14 @@ impl<'c> DriveTable<'c> {
     }
 }
 
-/// The trial whose smallest margin is the largest. Equal ones are ranked by the number of failed checks, then by their
-/// order.
+/// The pair of gear and motor whose smallest margin is the largest. Equal ones are ranked by the number of failed
+/// checks, then by their order.
 fn nearest_trial<'t, 'c: 't>(trials: impl Iterator<Item = &'t Trial<'c>>) -> Option<&'t Trial<'c>> {
     let nearness = |t: &Trial| (t.worst_margin, std::cmp::Reverse(t.failed.len()));
     trials.reduce(|best, t| if nearness(t) > nearness(best) { t } else { best })
 }
 
-/// The checks that exclude a part. The smallest margin comes first; checks that could not be made come last.
+/// Those of `checks` that exclude a part. The smallest margin comes first; checks that could not be made come last.
 pub(super) fn not_holding(checks: Vec<Check>) -> Vec<Check> {
     let mut failed: Vec<_> = checks.into_iter().filter(|c| !c.holds()).collect();
     let key = |c: &Check| c.torque_margin().unwrap_or(f64::INFINITY);

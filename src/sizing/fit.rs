@@ -53,7 +53,8 @@ pub struct LinkRoom {
     pub motor_m: f64,
 }
 
-/// Outer diameters of a drive, as far as the study limits them. Zero if it does not, or if the catalog is blank.
+/// Outer diameters of gear and motor of a drive \[m\]. A diameter is zero if the study does not limit it, or if the
+/// catalog leaves it blank.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DriveWidths {
     /// Outer diameter of the gear \[m\].
@@ -72,12 +73,12 @@ impl LinkRoom {
     /// No limit on any size.
     pub const ANY: Self = Self { gear_m: f64::INFINITY, motor_m: f64::INFINITY };
 
-    /// The larger of two limits, one by one.
+    /// The larger of the diameters of this room and of `other`, one by one.
     pub(crate) fn max(self, other: Self) -> Self {
         Self { gear_m: self.gear_m.max(other.gear_m), motor_m: self.motor_m.max(other.motor_m) }
     }
 
-    /// The smaller of two limits, one by one.
+    /// The smaller of the diameters of this room and of `other`, one by one.
     pub(crate) fn min(self, other: Self) -> Self {
         Self { gear_m: self.gear_m.min(other.gear_m), motor_m: self.motor_m.min(other.motor_m) }
     }
@@ -93,23 +94,24 @@ impl DriveWidths {
         }
     }
 
-    /// Whether both parts fit into this room.
+    /// Whether gear and motor fit into `room`: neither diameter exceeds the largest one that the link allows.
     #[inline]
     pub fn fit(&self, room: &LinkRoom) -> bool {
         (self.gear_m <= room.gear_m) & (self.motor_m <= room.motor_m)
     }
 
-    /// The smaller of two widths, one by one.
+    /// The smaller of the diameters of this drive and of `other`, one by one.
     pub(super) fn min(&self, other: &Self) -> Self {
         Self { gear_m: self.gear_m.min(other.gear_m), motor_m: self.motor_m.min(other.motor_m) }
     }
 
-    /// The larger of two widths, one by one.
+    /// The larger of the diameters of this drive and of `other`, one by one.
     pub(super) fn max(&self, other: &Self) -> Self {
         Self { gear_m: self.gear_m.max(other.gear_m), motor_m: self.motor_m.max(other.motor_m) }
     }
 
-    /// Whether these parts are no wider than the others, so that they fit wherever the others fit.
+    /// Whether neither part of this drive is wider than the same part of `other`, so that this drive fits wherever
+    /// `other` fits.
     #[inline]
     pub(super) fn cover(&self, other: &Self) -> bool {
         (self.gear_m <= other.gear_m) & (self.motor_m <= other.motor_m)
@@ -154,17 +156,18 @@ impl FitRequirement {
             && (self.motor != MotorPlace::Behind || bore_holds(motor.envelope.hollow_bore_m))
     }
 
-    /// Smallest bore that passes, reduced by the tolerance for rounding \[m\].
+    /// Smallest bore that passes \[m\], reduced by the tolerance for rounding; `None` if bores are not limited.
     pub(super) fn least_bore_m(&self) -> Option<f64> {
         self.cable_bore_min_m.map(|least_m| least_m * (1.0 - ROUNDING))
     }
 
-    /// Largest length that passes, increased by the tolerance for rounding \[m\].
+    /// Largest length that passes \[m\], increased by the tolerance for rounding; `None` if the length is not limited.
     pub(super) fn most_length_m(&self) -> Option<f64> {
         self.drive_length_max_m.map(|most_m| most_m * (1.0 + ROUNDING))
     }
 
-    /// Length of a drive along the axis \[m\]; `None` if the catalog has no length for a part that counts.
+    /// Length of a drive along the axis \[m\]. The motor counts only if it is behind the gear. `None` if the catalog
+    /// has no length for a part that counts.
     pub(super) fn length_m(&self, gear: &Gear, motor: &Motor) -> Option<f64> {
         match self.motor {
             MotorPlace::Behind => Some(gear.envelope.length_m? + motor.envelope.length_m?),

@@ -5,7 +5,7 @@ use super::drive::{Drive, Rating, known};
 use super::fit::{FitRequirement, LinkRoom, MotorPlace};
 use crate::catalog::gear::Gear;
 
-/// The checks of the sizes of a gear; none where the study sets no limit.
+/// The checks of the diameter and the bore of a gear; none where the study sets no limit.
 pub(super) fn gear_fits(gear: &Gear, fit: &FitRequirement, room: &LinkRoom) -> impl Iterator<Item = Check> {
     let width = known(gear.envelope.outer_diameter_m, "gear outer_diameter_mm");
     let bore = known(gear.envelope.hollow_bore_m, "gear hollow_bore_mm");
@@ -15,7 +15,7 @@ pub(super) fn gear_fits(gear: &Gear, fit: &FitRequirement, room: &LinkRoom) -> i
         .flatten()
 }
 
-/// The checks of the sizes of a motor, and of the length of motor and gear together.
+/// The checks of the diameter and the bore of a motor, and of the length of motor and gear together.
 pub(super) fn motor_fits(
     drive: &Drive,
     fit: &FitRequirement,

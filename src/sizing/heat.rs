@@ -37,17 +37,20 @@ use super::demand::{JointDemand, JointMotion, input_speed_rpm};
 use super::drive::Drive;
 use super::motor_curve;
 
-/// Ratios of the motor's torque to its continuous torque T_c, for a motor behind its gear. The smaller the numbers,
-/// the more the drive withstands.
+/// Numbers of a drive from which the ratio of the motor's torque to its continuous torque T_c follows for any demand.
+/// The smaller the numbers, the larger the demand that the drive meets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotorHeat {
-    /// Where the motor drives: ratio for each newton metre at the joint, 1 / (N η T_c) \[1/(N m)\].
+    /// Where the motor drives the load: ratio of motor torque to T_c for each newton metre at the joint, 1 / (N η T_c)
+    /// \[1/(N m)\].
     pub driving_per_nm: f64,
-    /// Where the load drives the motor: ratio for each newton metre at the joint, η / (N T_c) \[1/(N m)\].
+    /// Where the load drives the motor: ratio of motor torque to T_c for each newton metre at the joint, η / (N T_c)
+    /// \[1/(N m)\].
     pub driven_per_nm: f64,
-    /// Ratio for the inertia of rotor and gear input while the joint accelerates: J_in N α / T_c.
+    /// Ratio to T_c of the torque that accelerates rotor and gear input while the joint accelerates: J_in N α / T_c.
     pub own_share: f64,
-    /// Mean square of the ratio over the duty that the study states for the joint; 0 without one.
+    /// Mean square of the ratio of motor torque to T_c over the duty that the study states for the joint; 0 without
+    /// such a duty.
     pub stated_share_squared: f64,
 }
 
@@ -56,7 +59,7 @@ impl MotorHeat {
     pub const NONE: Self =
         Self { driving_per_nm: 0.0, driven_per_nm: 0.0, own_share: 0.0, stated_share_squared: 0.0 };
 
-    /// The numbers of a drive under a motion, or the name of the rating that is blank.
+    /// The numbers of `drive` in a joint with the motion `motion`, or the name of the rating that is blank.
     pub(super) fn of(drive: &Drive, motion: &JointMotion) -> Result<Self, super::MissingRating> {
         if !motion.checks_motor_heat {
             return Ok(Self::NONE);
@@ -77,8 +80,8 @@ impl MotorHeat {
         Ok(Self { stated_share_squared: stated, ..heat })
     }
 
-    /// Mean square of the motor's torque over the cycle, divided by the square of its continuous torque. The motor
-    /// passes if it is at most 1.
+    /// Mean square of the motor's torque over the cycle under `demand`, divided by the square of its continuous torque.
+    /// The motor passes if it is at most 1.
     #[inline]
     pub fn share_squared(&self, demand: &JointDemand) -> f64 {
         let (statically, linear, weights) =
@@ -94,8 +97,8 @@ impl MotorHeat {
             + weights.difference * (down * down)
     }
 
-    /// The largest factor on the torques of a demand with which the motor passes. The result may be too large by
-    /// rounding, but never too small. At the factor k the mean square is A k² + 2 B k + C.
+    /// The largest factor on the torques of `demand` with which the motor passes. The result may be too large by
+    /// rounding, but never too small. With the factor k, the mean square of the torque ratio is A k² + 2 B k + C.
     pub(crate) fn multiple_of(&self, demand: &JointDemand) -> f64 {
         /// Relative allowance for rounding of the root.
         const ALLOWANCE: f64 = 1e-12;
@@ -118,12 +121,14 @@ impl MotorHeat {
         }
     }
 
-    /// The smaller of two drives' numbers, one by one: a drive with them passes wherever one of the two does.
+    /// The smaller of the numbers of this drive and of `other`, one by one. If one of the two drives passes under a
+    /// demand, a drive with these numbers passes too.
     pub(crate) fn least(&self, other: &Self) -> Self {
         self.each(other, f64::min)
     }
 
-    /// The larger of two drives' numbers, one by one.
+    /// The larger of the numbers of this drive and of `other`, one by one. A drive with these numbers passes only where
+    /// both drives pass.
     pub(crate) fn greatest(&self, other: &Self) -> Self {
         self.each(other, f64::max)
     }
@@ -137,7 +142,8 @@ impl MotorHeat {
         }
     }
 
-    /// Whether no number is larger than that of another drive, so that this drive passes wherever the other does.
+    /// Whether no number of this drive is larger than the same number of `other`. This drive then passes wherever
+    /// `other` does.
     #[inline]
     pub(crate) fn covers(&self, other: &Self) -> bool {
         (self.driving_per_nm <= other.driving_per_nm)

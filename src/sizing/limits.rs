@@ -103,7 +103,7 @@ impl DriveLimits {
         })
     }
 
-    /// Whether the drive passes every check of a demand.
+    /// Whether the drive passes every check of `demand`: no torque, load or size exceeds its threshold.
     #[inline]
     pub fn hold(&self, demand: &JointDemand) -> bool {
         // `&` instead of `&&`, so that the compiler emits no branches
@@ -116,8 +116,8 @@ impl DriveLimits {
             & (self.heat.share_squared(demand) <= 1.0)
     }
 
-    /// For each limit the weaker of two drives' values: the larger one, of heat and widths the smaller one. A demand
-    /// that one of the two drives meets is within these limits.
+    /// For each limit the weaker of the values of this drive and of `other`: the larger one, but for heat and widths
+    /// the smaller one. If one of the two drives meets a demand, the demand is within these limits.
     pub(crate) fn max(&self, other: &Self) -> Self {
         Self {
             static_torque_nm: self.static_torque_nm.max(other.static_torque_nm),
@@ -130,8 +130,8 @@ impl DriveLimits {
         }
     }
 
-    /// For each limit the stricter of two drives' values: the smaller one, of heat and widths the larger one. Both
-    /// drives meet every demand that is within these limits.
+    /// For each limit the stricter of the values of this drive and of `other`: the smaller one, but for heat and widths
+    /// the larger one. Both drives meet every demand that is within these limits.
     pub(crate) fn min(&self, other: &Self) -> Self {
         Self {
             static_torque_nm: self.static_torque_nm.min(other.static_torque_nm),
@@ -144,8 +144,8 @@ impl DriveLimits {
         }
     }
 
-    /// The largest factor on a demand with which the drive still passes, or slightly more by rounding. Infinite if
-    /// the demand is zero. Sizes are not checked, because no factor on the loads changes them.
+    /// The largest factor on the loads of `demand` with which the drive still passes, or slightly more by rounding.
+    /// Infinite if the demand is zero. Sizes are not checked, because no factor on the loads changes them.
     pub(crate) fn multiple_of(&self, demand: &JointDemand) -> f64 {
         let times = |limit: f64, asked: f64| if asked > 0.0 { limit / asked } else { f64::INFINITY };
         times(self.static_torque_nm, demand.static_torque_nm)
@@ -156,8 +156,8 @@ impl DriveLimits {
             .min(self.heat.multiple_of(demand))
     }
 
-    /// Whether every limit is at least as large as the limit of `other`. Then this drive meets every demand that
-    /// `other` meets.
+    /// Whether no limit of this drive is stricter than the same limit of `other`. This drive then meets every demand
+    /// that `other` meets.
     #[inline]
     pub fn cover(&self, other: &Self) -> bool {
         (self.static_torque_nm >= other.static_torque_nm)
@@ -177,7 +177,8 @@ fn speeds_hold(drive: &Drive, motion: &JointMotion) -> Result<bool, MissingRatin
     Ok(gear_max && gear_mean && input_rpm <= motor_max_speed_rpm(drive.motor)?)
 }
 
-/// A limit of a gear. It is infinite if gears of this kind have no such limit and the catalog row states none.
+/// The limit `rating` of a gear. It is infinite if it is blank and gears of this kind have no such limit; otherwise a
+/// blank is an error with the name of the rating.
 fn limit(gear: &Gear, rating: Option<f64>, name: &'static str) -> Rating {
     if_any(gear, rating, f64::INFINITY, name)
 }
@@ -263,7 +264,7 @@ pub(super) fn stops_allowed(gear: &Gear, motion: &JointMotion) -> Option<f64> {
     Some(WAVES / waves_in_a_stop.max(1.0))
 }
 
-/// Whether a gear has no limit of this kind, so that the check is left out.
+/// Whether a gear has no limit for the check `kind`, so that the check is left out.
 pub(super) fn is_unlimited(gear: &Gear, kind: CheckKind) -> bool {
     let limit = match kind {
         CheckKind::GearPeak => gear_peak_nm(gear),
@@ -302,7 +303,7 @@ fn life_product(gear: &Gear, motion: &JointMotion) -> Rating {
     Ok(rated_h * rated_power * (rated_rpm / mean_input_speed_rpm(gear, motion)))
 }
 
-/// Life of a gear under a mean torque, which is given by its cube \[h\].
+/// Life of a gear \[h\] under a mean torque, whose cube is `mean_cubed_nm3` \[(N m)³\].
 pub(super) fn gear_life_h(gear: &Gear, motion: &JointMotion, mean_cubed_nm3: f64) -> Rating {
     Ok(life_product(gear, motion)? / power(mean_cubed_nm3, gear.life.exponent / 3.0))
 }
@@ -315,7 +316,7 @@ pub(super) fn gear_life_cubed_nm3(gear: &Gear, motion: &JointMotion) -> Rating {
     }
 }
 
-/// x^exponent. The first power returns the number itself, without any rounding.
+/// The number `x` raised to the power `exponent`. The first power returns the number itself, without any rounding.
 fn power(x: f64, exponent: f64) -> f64 {
     if exponent == 1.0 { x } else { libm::pow(x, exponent) }
 }

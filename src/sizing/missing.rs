@@ -32,8 +32,8 @@ impl DriveTable<'_> {
         (!named.is_empty()).then(|| format!("{}{more}", named.join("; ")))
     }
 
-    /// Missing ratings of the gears and of the user's own motors, for messages that also name the nearest drive.
-    /// `None` if only built-in motors lack ratings.
+    /// In words, the parts that cannot be checked and the ratings that they lack, for messages that also name the
+    /// nearest drive. `None` if only built-in motors lack ratings.
     pub fn also_missing_figures(&self) -> Option<String> {
         let gears = self.gears().iter().any(|gear| !gear.lacks(self.gear_mass()).is_empty());
         let own = self.motors().iter().any(|m| !m.provenance.is_built_in() && !m.lacks().is_empty());

@@ -45,8 +45,8 @@ pub(super) fn largest_speed_rpm(motor: &Motor) -> Option<f64> {
     motor.curve.last().map(|point| point.speed_rpm)
 }
 
-/// A torque of the curve at a speed \[N m\]: linear between the points that state it, constant outside of them.
-/// `None` if no point states it.
+/// The torque that `torque_nm` takes from the points of the motor's curve, at a speed \[N m\]: linear between the
+/// points that state it, constant outside of them. `None` if no point states it.
 fn at(motor: &Motor, torque_nm: impl Fn(&MotorCurvePoint) -> Option<f64>, speed_rpm: f64) -> Option<f64> {
     let points: Vec<[f64; 2]> =
         motor.curve.iter().filter_map(|point| Some([point.speed_rpm, torque_nm(point)?])).collect();

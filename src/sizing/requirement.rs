@@ -55,7 +55,7 @@ impl MotionRequirement {
         self.tip_speed_m_s / self.ramp_time_s
     }
 
-    /// Ratio of emergency deceleration to normal acceleration.
+    /// Ratio of the deceleration of the tip in an emergency stop to its normal acceleration.
     pub fn stop_factor(&self) -> f64 {
         match self.emergency_deceleration_m_s2 {
             Some(deceleration) => deceleration / self.tip_acceleration_m_s2(),

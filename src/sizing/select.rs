@@ -19,7 +19,7 @@ pub struct DriveFilter {
     pub gear_mass: GearMass,
     /// Where the output bearing of the joint comes from.
     pub bearing: BearingSource,
-    /// Where the masses other than gear, motor and bearing come from.
+    /// Where the masses of a joint other than gear, motor and bearing come from: stated, or estimated from the parts.
     pub extras: ExtrasSource,
     /// Whether a gear must have a torsion curve. It must if the arm's deflection is computed.
     pub needs_torsion: bool,
@@ -40,7 +40,7 @@ pub struct DriveFilter {
 }
 
 impl DriveFilter {
-    /// Allows everything in the catalogs.
+    /// A filter that allows all parts of the catalogs. `gear_mass` says which mass of a gear counts.
     pub fn everything(gear_mass: GearMass) -> Self {
         Self {
             gear_mass,
@@ -57,7 +57,7 @@ impl DriveFilter {
         }
     }
 
-    /// Whether a gear may be used.
+    /// Whether the filter allows this gear for the joint.
     pub fn allows_gear(&self, gear: &Gear) -> bool {
         if gear.kind == GearKind::Actuator {
             return allows(&self.actuator_ids, &gear.id);
@@ -68,7 +68,7 @@ impl DriveFilter {
             && allows(&self.gear_ids, &gear.id)
     }
 
-    /// Whether a motor may be used.
+    /// Whether the filter allows this motor for the joint.
     pub fn allows_motor(&self, motor: &Motor) -> bool {
         if motor.kind == MotorKind::OfActuator {
             return allows(&self.actuator_ids, &motor.id);
@@ -106,18 +106,19 @@ pub struct DriveTable<'c> {
     pairs: Vec<Pair>,
     masses_kg: Vec<f64>,
     limits: Vec<DriveLimits>,
-    /// Indices of the drives that can be the lightest one for some demand: no lighter drive has all limits at least
-    /// as large.
+    /// Indices of the drives that can be the lightest one for some demand, lightest first. A drive is left out if a
+    /// lighter one has no stricter limit.
     ladder: Vec<u32>,
     ladder_limits: Vec<DriveLimits>,
-    /// Entry i has, for each limit, the largest value among the steps 0 to i of the ladder. No step before the first
-    /// entry that meets a demand can meet it, so the search for the lightest drive starts there.
+    /// For each step of the ladder, the largest value of each limit among the drives up to this step. If these limits
+    /// do not meet a demand, no drive up to this step does, so the search for the lightest drive starts behind it.
     ladder_reach: Vec<DriveLimits>,
-    /// For each group of [`FLIGHT`] successive steps, the largest value of each limit.
+    /// For each group of [`FLIGHT`] successive steps of the ladder, the largest value of each limit.
     ladder_flights: Vec<DriveLimits>,
 }
 
-/// Number of steps of the ladder that are skipped together if even their largest limits do not meet the demand.
+/// Number of successive steps of the ladder that are skipped together if even their largest limits do not meet a
+/// demand.
 const FLIGHT: usize = 8;
 
 /// The ladder: the drives that can be the lightest one for some demand, lightest first.
@@ -130,7 +131,8 @@ pub(super) struct Ladder<'t> {
 }
 
 impl<'t> Ladder<'t> {
-    /// The steps from `start` on, in groups of [`FLIGHT`], with the largest limits of each group.
+    /// The steps of the ladder from `start` on, in groups of [`FLIGHT`]: the largest limits of each group, and the
+    /// range of its steps.
     #[inline(always)]
     pub(super) fn flights_from(self, start: usize) -> impl Iterator<Item = (&'t DriveLimits, Range<usize>)> {
         let flights = self.flights.iter().enumerate().skip(start / FLIGHT);
@@ -188,7 +190,8 @@ impl<'c> DriveTable<'c> {
         table
     }
 
-    /// Fills the table with the legal pairs.
+    /// Fills the table with the legal pairs of gear and motor (fast enough, and with all ratings that a check needs),
+    /// sorted by mass.
     fn fill(&mut self) {
         let mut legal = Vec::new();
         for (drive, pair) in self.all_pairs().filter(|(drive, _)| self.knows_torsion(drive.gear)) {
@@ -207,7 +210,7 @@ impl<'c> DriveTable<'c> {
         }
     }
 
-    /// Builds the ladder from the legal drives: those that can be the lightest one for some demand.
+    /// Builds the ladder: the legal drives that can be the lightest one for some demand, lightest first.
     fn raise_ladder(&mut self) {
         for (index, limits) in self.limits.iter().enumerate() {
             // a drive is left out if a lighter one has all limits at least as large
@@ -244,12 +247,12 @@ impl<'c> DriveTable<'c> {
         &self.bearing
     }
 
-    /// The output bearing of the joint if it has this gear; `None` if there is none.
+    /// The output bearing of the joint if `gear` is its gear; `None` if the joint then has no bearing.
     pub(super) fn bearing_of(&self, gear: &Gear) -> Option<Bearing> {
         self.bearing.with_gear(gear, self.gear_mass)
     }
 
-    /// Whether the torsion curve of a gear is known, or this joint does not need it.
+    /// Whether the joint does not need the torsion curve of a gear, or the curve of `gear` is known.
     pub(super) fn knows_torsion(&self, gear: &Gear) -> bool {
         !self.needs_torsion || gear.missing_of_torsion().is_empty()
     }
@@ -269,12 +272,12 @@ impl<'c> DriveTable<'c> {
         self.gear_mass
     }
 
-    /// Gears that the filter allows, legal or not.
+    /// Gears that the filter allows, whether or not they are in a legal drive.
     pub fn gears(&self) -> &[&'c Gear] {
         &self.gears
     }
 
-    /// Motors that the filter allows, legal or not.
+    /// Motors that the filter allows, whether or not they are in a legal drive.
     pub fn motors(&self) -> &[&'c Motor] {
         &self.motors
     }
@@ -289,24 +292,24 @@ impl<'c> DriveTable<'c> {
         self.pairs.is_empty()
     }
 
-    /// The drive at an index.
+    /// The drive with the index `index` in the table.
     pub fn drive(&self, index: usize) -> Drive<'c> {
         self.drive_of(self.pairs[index])
     }
 
-    /// Mass of the drive at an index, including extras \[kg\].
+    /// Mass of the drive with the index `index`, including extras \[kg\].
     #[inline]
     pub fn mass_kg(&self, index: usize) -> f64 {
         self.masses_kg[index]
     }
 
-    /// Thresholds of the drive at an index.
+    /// Thresholds of torque, load and size of the drive with the index `index`.
     #[inline]
     pub fn limits(&self, index: usize) -> &DriveLimits {
         &self.limits[index]
     }
 
-    /// Whether there is a drive at an index and it meets a demand.
+    /// Whether the table has a drive at `index` and this drive meets `demand`.
     #[inline]
     pub(crate) fn holds(&self, index: usize, demand: &JointDemand) -> bool {
         self.limits.get(index).is_some_and(|limits| limits.hold(demand))
@@ -317,13 +320,13 @@ impl<'c> DriveTable<'c> {
         (0..self.len()).find(|&i| parts(&self.drive(i)) == (gear_id, motor_id))
     }
 
-    /// Indices of the drives that can be the lightest one for some demand. For each of them, no lighter drive has all
-    /// limits at least as large.
+    /// Indices of the drives that can be the lightest one for some demand, lightest first. A drive is left out if a
+    /// lighter one has no stricter limit.
     pub fn first_fit_candidates(&self) -> &[u32] {
         &self.ladder
     }
 
-    /// Index of the lightest drive that meets a demand, which is the paper's choice; `None` if no drive does.
+    /// Index of the lightest drive that meets `demand`; `None` if no drive does. The paper chooses drives in this way.
     #[inline]
     pub fn first_fit(&self, demand: &JointDemand) -> Option<usize> {
         let start = self.first_step_within_reach(demand);
@@ -341,8 +344,8 @@ impl<'c> DriveTable<'c> {
         }
     }
 
-    /// The first step of the ladder that may meet a demand. The stride is doubled until it is passed, then the
-    /// interval is bisected: most demands are met near the beginning.
+    /// The first step of the ladder up to which some drive may meet `demand`. Most demands are met near the beginning,
+    /// so the stride is doubled until the step is passed, and then the interval is bisected.
     #[inline]
     fn first_step_within_reach(&self, demand: &JointDemand) -> usize {
         let reach = &self.ladder_reach;
@@ -353,14 +356,14 @@ impl<'c> DriveTable<'c> {
         low + reach[low..high.min(reach.len())].partition_point(|reach| !reach.hold(demand))
     }
 
-    /// Indices of all drives that meet a demand, lightest first.
+    /// Indices of all drives that meet `demand`, lightest first.
     #[inline]
     pub fn all_fits<'t>(&'t self, demand: &'t JointDemand) -> impl Iterator<Item = usize> + 't {
         let holding = self.limits.iter().enumerate().filter(|(_, limits)| limits.hold(demand));
         holding.map(|(index, _)| index)
     }
 
-    /// Every pair that the filter allows, legal or not.
+    /// Every pair of gear and motor that the filter allows, even if it turns too fast or lacks a rating.
     pub(super) fn all_drives(&self) -> impl Iterator<Item = Drive<'c>> + '_ {
         self.all_pairs().map(|(drive, _)| drive)
     }

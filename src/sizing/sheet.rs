@@ -24,7 +24,7 @@ pub struct JointSizingRow {
     pub rotary_torque_motor_nm: Option<f64>,
     /// Rotary torque referred to the joint, N times as large \[N m\].
     pub rotary_torque_output_nm: Option<f64>,
-    /// Eq 12 on one side: the sum of static, linear and rotary torque at the joint \[N m\].
+    /// Sum of static, linear and rotary torque, all referred to the joint \[N m\] (Eq 12).
     pub total_torque_nm: Option<f64>,
     /// Torque of the motor while the joint accelerates, with the losses of the gear \[N m\].
     pub motor_peak_torque_nm: Option<f64>,
@@ -41,7 +41,8 @@ pub struct JointSizingRow {
     /// Efficiency of the gear at the mean speed and torque of the cycle, from representative curves. For information
     /// only: the checks use the rated efficiency.
     pub cycle_efficiency: Option<f64>,
-    /// The margin of the motor's heat if the gear has the efficiency `cycle_efficiency`.
+    /// Margin of the motor's heat (continuous torque divided by root mean square torque) if the gear has the efficiency
+    /// `cycle_efficiency`.
     pub motor_rms_margin_at_cycle_efficiency: Option<f64>,
     /// Largest moment across the axis at the centre of the output bearing while a joint is in its ramp \[N m\]. Like
     /// all numbers of the bearing, it is `None` if the joint has no bearing.
@@ -71,8 +72,8 @@ pub struct JointSizingRow {
     pub motor: String,
     /// Label of the check with the smallest torque margin.
     pub binds: Option<&'static str>,
-    /// Torque margin of this check: allowed over needed; of a life the root of it, see [`Check::torque_margin`].
-    /// `None` also if nothing is needed.
+    /// Torque margin of the binding check: allowed over needed torque. For a life it is a root of the ratio of lives,
+    /// see [`Check::torque_margin`]. `None` also if nothing is needed.
     pub margin: Option<f64>,
     /// L10 life of the wave-generator bearing \[h\].
     pub life_h: Option<f64>,
@@ -91,7 +92,8 @@ pub struct JointSizingRow {
 }
 
 impl JointSizingRow {
-    /// The row of a joint with its drive under a motion and a demand.
+    /// The row of the joint named `joint` with this drive, under its motion and its demand. `mass_passed_inward_kg` is
+    /// the mass of everything outboard and of the drive \[kg\].
     pub fn new(
         joint: &str,
         drive: &Drive,
@@ -148,8 +150,8 @@ impl JointSizingRow {
 }
 
 impl JointSizingRow {
-    /// The same row, completed by the efficiency that the gear has at the mean speed and torque of the cycle, and by
-    /// the margin of the motor's heat at this efficiency.
+    /// This row, completed by the efficiency that the gear has at the mean speed and torque of the cycle, and by the
+    /// margin of the motor's heat at this efficiency.
     pub fn at_efficiency(
         self,
         efficiency: f64,
@@ -281,7 +283,7 @@ fn digits(x: f64, n: usize) -> String {
     format!("{x:.n$}")
 }
 
-/// A number with n decimals, or a question mark if a blank rating leaves it unknown.
+/// A number with `n` decimals, or a question mark if it is unknown because a rating is blank.
 fn or_open(x: Option<f64>, n: usize) -> String {
     x.map_or("?".to_string(), |x| digits(x, n))
 }

@@ -106,7 +106,7 @@ impl StatedDuty {
         self.phases.iter().enumerate().map(of_phase).collect()
     }
 
-    /// The demand of this duty on a drive. If the joint has a brake, phases at rest do not heat the motor.
+    /// What this duty asks of any drive. If the joint has a brake, phases at rest do not heat the motor.
     pub(super) fn demand(&self, has_brake: bool) -> StatedDemand {
         let mut heat = StatedHeat::default();
         for (phase, acceleration) in self.phases.iter().zip(self.accelerations_rad_s2()) {
@@ -135,7 +135,7 @@ impl StatedPhase {
 }
 
 impl StatedDemand {
-    /// The same duty with every acceleration multiplied by a factor.
+    /// What this duty asks of a drive if every acceleration is multiplied by `factor`.
     pub(super) fn slowed(self, factor: f64) -> Self {
         Self { heat: self.heat.slowed(factor), ..self }
     }
@@ -143,13 +143,14 @@ impl StatedDemand {
 
 /// The motor's torque over a stated duty, as sums from which the mean square of any drive follows. A phase that takes
 /// the fraction w of the time, with torque T and acceleration α, adds w (T p + α c)². Here p is the ratio of motor
-/// torque to continuous torque for each newton metre at the joint, and c the same for each rad/s² of the joint.
+/// torque to continuous torque for each newton metre at the joint, and c is this ratio for each rad/s² of the joint.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct StatedHeat {
     /// Sum of w T² \[(N m)²\]: first over the phases in which the motor drives, then over those in which the load
     /// drives it.
     torque_nm2: [f64; 2],
-    /// Sum of w T α in the same two groups \[N m rad/s²\].
+    /// Sum of w T α over the phases in which the motor drives, then over those in which the load drives it \[N m
+    /// rad/s²\].
     mixed_nm_rad_s2: [f64; 2],
     /// Sum of w α² over all phases \[rad²/s⁴\].
     acceleration_rad2_s4: f64,
@@ -165,7 +166,7 @@ impl StatedHeat {
         torque + 2.0 * inertia_s2 * mixed + inertia_s2 * inertia_s2 * self.acceleration_rad2_s4
     }
 
-    /// The same duty with every acceleration multiplied by a factor.
+    /// The sums of this duty if every acceleration of the joint is multiplied by `factor`.
     fn slowed(self, factor: f64) -> Self {
         Self {
             mixed_nm_rad_s2: self.mixed_nm_rad_s2.map(|x| x * factor),

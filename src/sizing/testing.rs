@@ -265,7 +265,7 @@ pub(crate) fn any_link_m() -> impl Strategy<Value = [f64; 2]> {
     (0.05..0.2f64, 0.0..1.0f64).prop_map(|(width_m, clear)| [width_m, clear * width_m])
 }
 
-/// Loads on a bearing whose moment while running is as given \[N m\]; the others are in a fixed ratio to it.
+/// Loads on a bearing whose moment while running is `moment_nm` \[N m\]; the other loads are in a fixed ratio to it.
 pub(crate) fn bearing_loads(moment_nm: f64) -> BearingDemand {
     let load = |times: f64| BearingLoad {
         moment_nm: times * moment_nm,

@@ -62,7 +62,7 @@ fn joints(root: &Node) -> Option<Vec<TorqueLimit>> {
     Some(read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect())
 }
 
-/// The torque limits that follow from the gears and motors that an arm names.
+/// The torque limits of joints at rest that follow from the ratings of the gears and motors that an arm names.
 pub(crate) fn limits_of_parts(arm: &Arm, catalogs: &Catalogs) -> Vec<TorqueLimit> {
     let of_joint = |joint: &crate::arm::Joint| {
         let gear = joint.gear.as_ref().and_then(|name| catalogs.gear(name).ok());
@@ -82,7 +82,8 @@ pub(crate) fn limits_of_parts(arm: &Arm, catalogs: &Catalogs) -> Vec<TorqueLimit
     arm.joints().filter(|joint| joint.coupled.is_none()).flat_map(of_joint).flatten().collect()
 }
 
-/// The largest payload of an arm, in each of its cases and in all of them.
+/// The largest payload of an arm at rest, in each of its cases and in all of them, with which no joint exceeds its
+/// limit in `limits`.
 pub(crate) fn arm_capacity(arm: &Arm, cases: &[LoadCase], limits: &[TorqueLimit]) -> Capacity {
     let mut table: Vec<AtPose> = cases
         .iter()
@@ -107,7 +108,8 @@ pub(crate) fn arm_capacity(arm: &Arm, cases: &[LoadCase], limits: &[TorqueLimit]
     Capacity { limit, pose, table }
 }
 
-/// The largest payload in one case, with the joint that limits it.
+/// The largest payload in one case, and the joint that limits it. The torques are linear in the payload's mass, so two
+/// masses suffice to find it.
 fn limit(arm: &Arm, case: &LoadCase, limits: &[TorqueLimit]) -> Limit {
     let chain = Chain::new(&arm.structure_in(case), case.links);
     let torques_nm = |payload_kg: f64| {

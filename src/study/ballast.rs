@@ -25,14 +25,14 @@ struct Flagged {
     by_segment: bool,
 }
 
-/// The designs of a front with a heavy part that they have only for its weight.
+/// The designs of a front that have a heavy part only for its weight (ballast).
 #[derive(Debug, Clone, PartialEq)]
 pub struct BallastFlags {
     flagged: Vec<Flagged>,
     front: usize,
 }
 
-/// Name of the file that lists these designs.
+/// Name of the file that lists the designs with ballast.
 pub(crate) const FILE: &str = "ballast.csv";
 
 const COLUMNS: [&str; 13] = [
@@ -51,7 +51,8 @@ const COLUMNS: [&str; 13] = [
     "lighter_lowest_mode_hz",
 ];
 
-/// Finds the designs of a front with a heavy part that they have only for its weight.
+/// Finds the designs of a front that have a heavy part only for its weight. None are reported for a study with linkages
+/// or springs, because the effect of extra weight on the joint torques is not known here.
 pub fn ballast_flags(problem: &ArmProblem, front: &Front) -> BallastFlags {
     // with linkages the torque on a driving joint is not known here, and with springs extra weight may also unload a
     // joint
@@ -113,7 +114,7 @@ impl BallastFlags {
         FrontTable { columns: COLUMNS.map(String::from).into(), rows }.to_csv()
     }
 
-    /// Number of these designs and the reason, in one sentence.
+    /// Number of designs with ballast and the reason why they are on the front, in one sentence.
     pub fn sentence(&self) -> String {
         let are = if self.len() == 1 { "is" } else { "are" };
         let presses = match self.flagged.iter().all(|f| f.by_segment) {

@@ -75,7 +75,7 @@ fn overloaded(joint: &SpaceJoint, front: &FrontTable) -> Option<String> {
     ))
 }
 
-/// The bearings on the front that lack ratings.
+/// The bearings of `joints` that lack ratings in some design of the front, so that a check could not be made.
 fn unchecked<'s>(
     joints: impl Iterator<Item = &'s SpaceJoint>,
     catalogs: &Catalogs,

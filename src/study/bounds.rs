@@ -26,8 +26,9 @@ impl MassBounds<'_> {
         space.link_options() <= MOST_TABULATED
     }
 
-    /// A lower bound on the mass of every design that is as good as the design with the number `known` in the whole
-    /// space. `None` if it cannot be computed.
+    /// A lower bound on the mass of every design that is as good as a known design in deflection and lowest mode.
+    /// `known` is the number of this design in the whole space, `objectives` are its objectives. `None` if the bound
+    /// cannot be computed.
     pub(super) fn below(&self, known: u128, objectives: &Objectives) -> Option<MassBound> {
         match self {
             // the linear program covers neither linkages nor springs nor some effects

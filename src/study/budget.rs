@@ -35,8 +35,8 @@ const STEP: f64 = 1e-3;
 /// Largest mass that a *next part* may add, as a fraction of the arm's mass.
 const MOST_OF_ARM: f64 = 0.25;
 
-/// The stiffness budgets of the picks of a front. `problem` has the options of the whole space or of an excerpt;
-/// `whole` is the whole space.
+/// The stiffness budgets of the picks of a front. `table` is the front; `problem` has the options of the whole space or
+/// of an excerpt; `whole` is the whole space.
 pub fn budgets(
     problem: &ArmProblem,
     whole: &DesignSpace,
@@ -128,7 +128,8 @@ fn budget(
     Some(rows.concat())
 }
 
-/// Change of deflection and lowest mode from one design to another, per kilogram of added mass.
+/// Change of deflection \[mm/kg\] and of the lowest mode \[Hz/kg\] from the design `from` to the heavier design `to`,
+/// per kilogram of added mass.
 fn gain(from: &Objectives, to: &Objectives) -> Gain {
     let kg = to.mass_kg - from.mass_kg;
     Gain {
@@ -158,7 +159,7 @@ impl Shares {
         self.0.iter().find(|(n, _)| n == name).map(|(_, share)| *share)
     }
 
-    /// The row for the bearing of a joint or the guide of a prismatic joint; `None` if it is rigid.
+    /// The row of the budget for the bearing of a joint or the guide of a prismatic joint; `None` if it is rigid.
     fn bearing_row(&self, element: &Element) -> Option<BudgetRow> {
         let piece = match element {
             Element::Joint(joint) => format!("{}.bearing", joint.name),
@@ -177,8 +178,8 @@ impl Shares {
     }
 }
 
-/// Change of deflection and lowest mode per kilogram, if mass and stiffness of a piece grow in proportion; by a
-/// central difference.
+/// Change of deflection and lowest mode per kilogram if mass and stiffness of the element with the index `piece` grow
+/// in proportion. It is a central difference, with the element made lighter and heavier by [`STEP`].
 fn in_place(arm: &Arm, piece: usize, cases: &[LoadCase]) -> Gain {
     let mass_kg = arm.chain[piece].mass_kg();
     let with = |step: f64| Objectives {
@@ -188,8 +189,8 @@ fn in_place(arm: &Arm, piece: usize, cases: &[LoadCase]) -> Gain {
     gain(&with(-STEP), &with(STEP))
 }
 
-/// Increases mass and stiffness of a piece by the relative step, and the tilting stiffness of a joint's bearing too.
-/// What effects add to the piece stays as it is.
+/// Increases mass and stiffness of `piece` by the fraction `step`, and also the tilting stiffness of a joint's bearing.
+/// `element` is the piece without effects: what effects add to the piece stays as it is.
 fn grow(piece: &mut Piece, element: &Element, step: f64) {
     let factor = 1.0 + step;
     match piece {

@@ -13,7 +13,7 @@ use crate::space::problem::ArmProblem;
 use crate::space::station::Walk;
 use serde_json::{Value, json};
 
-/// Largest payload that is tried \[kg\]. An arm that still passes has no limit.
+/// Largest payload that is tried \[kg\]. An arm that still passes with it is reported as having no limit.
 const MOST_KG: f64 = 1e6;
 /// Relative tolerance of the bisection for the largest payload.
 const TOLERANCE: f64 = 1e-10;
@@ -59,7 +59,8 @@ impl Limit {
 }
 
 impl Capacity {
-    /// The capacity as JSON, as `armwright capacity --json` prints it.
+    /// The capacity as JSON, as `armwright capacity --json` prints it: the limit in all poses together, and one entry
+    /// for each pose.
     pub fn to_json(&self) -> Value {
         let rows: Vec<Value> = self
             .table
@@ -74,8 +75,8 @@ impl Capacity {
     }
 }
 
-/// The capacity of the design with this `design_id`. Without an id, it is that of a design with links of median mass
-/// and the lightest drives.
+/// The capacity of the design with the `design_id` given as `id`. Without an id, it is the capacity of a design with
+/// links of median mass and the lightest drives.
 ///
 /// # Errors
 /// The study has no such design, or a drive of the design does not meet even the study's own payload.
@@ -86,8 +87,8 @@ pub fn capacity_of(study: &Study, id: Option<&str>, catalogs: &Catalogs) -> Resu
     Ok(capacity(&space, catalogs, arm.slot_options()))
 }
 
-/// The capacity of the design with these options, one for each slot of the arm, tip first. `space` is the space to
-/// which the options belong.
+/// The capacity of the design with these options, one for each slot of the arm (joint or link, in the order in which
+/// the arm is built), tip first. `space` is the space to which the options belong.
 pub(crate) fn capacity(space: &DesignSpace, catalogs: &Catalogs, options: &[u32]) -> Capacity {
     let upright = space.down;
     let at_pose = |&case: &usize| {
@@ -105,8 +106,9 @@ pub(crate) fn capacity(space: &DesignSpace, catalogs: &Catalogs, options: &[u32]
     Capacity { limit: limit(space, catalogs, options, &space.sizing_cases), pose, table }
 }
 
-/// The largest payload in some cases, by bisection. A heavier payload could pass again where it counteracts a tip
-/// force; only the first payload that fails counts.
+/// The largest payload in the cases with the indices `cases`, by bisection; all other cases are computed without
+/// payload. A heavier payload could pass again where it counteracts a tip force; only the first payload that fails
+/// counts.
 fn limit(space: &DesignSpace, catalogs: &Catalogs, options: &[u32], cases: &[usize]) -> Limit {
     let overload = |payload_kg: f64| {
         let mut loaded = space.clone();

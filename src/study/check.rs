@@ -25,9 +25,11 @@ use std::time::Instant;
 
 /// Relative allowance for rounding when a gap is claimed.
 const ROUNDING: f64 = 1e-6;
-/// Largest relative difference between a number in a row and the same number by the full model.
+/// Largest relative difference that is allowed between an objective that a row states and the same objective by the
+/// full model.
 const AGREE: f64 = 1e-9;
-/// Two designs count as close enough to represent each other if they differ by at most this fraction of the gap.
+/// Part of the claimed gap by which two designs may differ so that one of them may represent the other. The search for
+/// missing designs then reports only one of such designs.
 const APART: f64 = 0.45;
 /// Largest number of faults of one kind that are listed one by one.
 const LISTED: usize = 10;
@@ -137,8 +139,8 @@ struct Claimed<'f> {
 }
 
 impl Claimed<'_> {
-    /// The objectives of the rows, improved by the claimed gap. A design that none of them dominates is missing from
-    /// the front.
+    /// The objectives of the rows, improved by the claimed gap. A design is missing from the front if none of these
+    /// dominates it.
     fn objectives(&self) -> Vec<Objectives> {
         let by = if self.gap > 0.0 { 1.0 + self.gap + ROUNDING } else { 1.0 };
         self.front.iter().map(|d| d.design.objectives.better_by(by)).collect()
@@ -155,8 +157,8 @@ struct Look {
     lacks_ties: bool,
 }
 
-/// Searches for missing designs. It uses the independent bounds of `verify` if they can handle the study, else those
-/// of the exact search.
+/// Searches for designs that are missing from the front. It uses the independent bounds of `verify` if they can handle
+/// the study, else those of the exact search.
 fn look_for_missing(
     study: &Study,
     judge: &Judge,
@@ -189,7 +191,8 @@ fn look_for_missing(
     Look { designs, completeness, lacks_ties }
 }
 
-/// Evaluates the designs with these numbers (in the whole study) by the verifier's own model.
+/// Evaluates the designs with these numbers, which count in the whole study, by the verifier's own model. Designs that
+/// do not meet their limits by this model are left out.
 fn judged(study: &Study, judge: &Judge, catalogs: &Catalogs, numbers: &[u128]) -> Vec<Judged> {
     let Some(space) = study.space.excerpt(catalogs, numbers) else { return Vec::new() };
     let problem = ArmProblem::new(&space, catalogs);
@@ -197,8 +200,8 @@ fn judged(study: &Study, judge: &Judge, catalogs: &Catalogs, numbers: &[u128]) -
     numbers.iter().filter_map(design).collect()
 }
 
-/// Checks every row with the verifier's own drives, thresholds and model: the design must meet its limits and have
-/// the stated objectives.
+/// Checks every row with the verifier's own drives, thresholds and model: the design must meet its limits and have the
+/// objectives that the row states. Faults are added to `faults`.
 fn judge_rows(judge: &Judge, rows: &[Row], problem: &ArmProblem, faults: &mut Vec<String>) {
     let fault = |row: &Row| {
         let id = id_of(problem.whole_number(row.design.design.number));
@@ -220,7 +223,8 @@ fn candidate(problem: &ArmProblem, whole: u128) -> Option<Candidate> {
     Some(Candidate { number, objectives })
 }
 
-/// Compares every row with the row that the full model gives for its design.
+/// Compares every row of `table` with the row in `expected`, which the full model gives for the same design. Designs
+/// that others dominate, so that they are not in `front`, are faults too.
 fn compare_rows(
     expected: &FrontTable,
     table: &FrontTable,
@@ -268,7 +272,8 @@ fn broken_limits(study: &Study, front: &Front, problem: &ArmProblem, faults: &mu
     );
 }
 
-/// Designs found by the search that belong on the front, but are neither on it nor close enough to one of its rows.
+/// The designs among `found` that are missing: they belong on the front, but are neither on it nor close enough to one
+/// of its rows. Each is described in a sentence.
 fn missing(
     study: &Study,
     judge: &Judge,
@@ -315,7 +320,8 @@ fn missing(
     names.into_iter().map(sentence).collect()
 }
 
-/// Appends the first few of many faults, and the number of the others.
+/// Appends the first few of the faults `found` to `faults`, and then the number of the others. `what` names them in the
+/// plural.
 fn list(faults: &mut Vec<String>, found: Vec<String>, what: &str) {
     let more = found.len().saturating_sub(LISTED);
     faults.extend(found.into_iter().take(LISTED));

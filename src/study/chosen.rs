@@ -17,8 +17,8 @@ use crate::space::design_space::{DesignSpace, SpacePiece};
 use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::SizedJoint;
 
-/// The design with this number: as an arm with every part resolved to numbers, and the cases in which it is judged.
-/// `None` if the study has no such design.
+/// The design with this number in the study: the arm with every part resolved to numbers, and the cases in which it is
+/// judged. `None` if the study has no such design.
 pub(crate) fn arm_of_number(
     study: &Study,
     number: u128,
@@ -30,8 +30,8 @@ pub(crate) fn arm_of_number(
     Some((arm, problem.load_cases()))
 }
 
-/// The design with this `design_id`: as an arm with every part resolved to numbers, and the cases in which it is
-/// judged.
+/// The design with the `design_id` given as `id`: the arm with every part resolved to numbers, and the cases in which
+/// it is judged.
 ///
 /// # Errors
 /// The study has no design with this id.
@@ -60,8 +60,8 @@ pub fn sizing_of(
 /// Largest number of options of a link among which the option of median mass is chosen.
 const MOST_OPTIONS: u32 = 4096;
 
-/// A design space and the options of one design in it: the design with this id, or without an id a design with links
-/// of median mass.
+/// A design space and the options of one design in it, one for each open piece, tip first. It is the design with the
+/// `design_id` given as `id`, or without an id a design with links of median mass.
 ///
 /// # Errors
 /// The study has no design with this id.
@@ -86,8 +86,8 @@ fn no_design(id: &str, study: &Study) -> Refusal {
     Refusal::Unknown(format!("the study \"{}\" has no design \"{id}\"", study.name))
 }
 
-/// The options of a design: of every open link the option of median mass, of every joint with `all_fits` the lightest
-/// drive that meets the demand.
+/// The options of a design with links of median mass, tip first: of every open link the option of median mass, of every
+/// joint with `all_fits` the lightest drive that meets the demand.
 fn middle(problem: &ArmProblem) -> Vec<u32> {
     let mut out = Vec::new();
     for (piece, what) in problem.space().pieces.iter().enumerate().rev() {
@@ -102,8 +102,9 @@ fn middle(problem: &ArmProblem) -> Vec<u32> {
     out
 }
 
-/// The option nearest to the median that meets the link's own limits, or the median if none does. `by_mass` lists the
-/// options from the lightest to the heaviest.
+/// The option that is nearest to the median one in the order of mass and meets the link's own limits, or the median
+/// option if none does. `by_mass` lists the options of the link `piece` from the lightest to the heaviest; `outboard`
+/// are the options chosen outboard of it.
 fn nearest_to_median(problem: &ArmProblem, outboard: &[u32], piece: usize, by_mass: &[u32]) -> u32 {
     let median = by_mass.len() / 2;
     let mut order: Vec<usize> = (0..by_mass.len()).collect();
@@ -115,7 +116,8 @@ fn nearest_to_median(problem: &ArmProblem, outboard: &[u32], piece: usize, by_ma
     order.into_iter().map(|rank| by_mass[rank]).find(holds).unwrap_or(by_mass[median])
 }
 
-/// The reason why no design results at a slot. `slot` is the slot at which [`ArmProblem::walk`] ended.
+/// The reason why the options `chosen` give no design. `slot` is the place of the joint or link at which
+/// [`ArmProblem::walk`], which builds the arm from the tip inward, ended.
 pub(crate) fn why_not_held(problem: &ArmProblem, chosen: &[u32], slot: usize) -> Refusal {
     let mut last = Partial::default();
     let _ = problem.walk(chosen, |_, partial| last = partial.clone());
@@ -135,7 +137,8 @@ pub(crate) fn why_not_held(problem: &ArmProblem, chosen: &[u32], slot: usize) ->
     }
 }
 
-/// The reason why the chosen drive is too weak at a joint, for a joint at which another drive would meet the demand.
+/// The reason why the drive chosen at the joint `piece` does not meet `demand`. `None` unless the joint has a choice of
+/// drives and another drive would meet the demand.
 fn too_weak(
     problem: &ArmProblem,
     chosen: &[u32],

@@ -9,8 +9,9 @@ use crate::input::json::Object;
 use crate::report::number::significant;
 use crate::space::design_space::{DesignSpace, DriveChoice, SpacePiece};
 
-/// Adds the compliance of connections to the catalog data of a given gear and of the bearing. Stiffnesses that the
-/// study states in numbers are taken to include it. A gear that the search chooses gets it later, when it is known.
+/// Adds the compliance of connections, as the fraction `share` of the catalog compliance, to a given gear and to the
+/// bearing. Stiffnesses that the study states in numbers are taken to include it. A gear that the search chooses gets
+/// it later, when it is known.
 pub(super) fn with_connections(
     share: f64,
     object: &Object,
@@ -35,8 +36,8 @@ pub(super) fn with_connections(
     (drive, bearing)
 }
 
-/// The compliance of connections as a fraction of the gear's, for the joint of the study with the largest fraction.
-/// 0 if all connections are rigid.
+/// The compliance of connections as a fraction of the compliance of the gear, for the joint of the study where this
+/// fraction is largest. 0 if all connections are rigid.
 pub(super) fn connection_share(space: &DesignSpace) -> f64 {
     let shares = space.pieces.iter().map(|piece| match piece {
         SpacePiece::Joint(joint) => joint.connection_share,
@@ -71,7 +72,8 @@ mod tests {
     use crate::study::read::read_study;
     use serde_json::{Value, json};
 
-    /// Objectives and remarks of an arm with one rigid link on one joint.
+    /// Objectives and remarks of an arm with one rigid link on one joint, in a study with the fraction `share` for
+    /// connections. `joint` has further keys of the joint.
     fn arm(share: f64, joint: Value) -> (Objectives, String) {
         let mut study = json!({"name": "one joint", "connection_share": share,
             "chain": [{"type": "joint", "name": "j1", "axis": [0, 1, 0]},

@@ -39,7 +39,8 @@ pub(super) fn creep_remarks(space: &DesignSpace, catalogs: &Catalogs) -> Vec<Str
     links_of.into_iter().filter_map(sentence).chain(factors).collect()
 }
 
-/// A remark on links of a material that creeps; `None` if it does not creep or is in no catalog.
+/// A remark on the links named in `links`, whose material creeps; `None` if the material does not creep or is in no
+/// catalog.
 pub(crate) fn creep_sentence(catalogs: &Catalogs, material: &str, links: &str) -> Option<String> {
     let material = without_factors(material);
     let row = catalogs.materials.iter().find(|row| row.name == material)?;

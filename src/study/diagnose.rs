@@ -14,9 +14,9 @@ use std::time::{Duration, Instant};
 /// Longest time for the search for changes of the limits.
 const LONGEST: Duration = Duration::from_secs(60);
 
-/// The reason in words. If at some joint no drive meets the demand, it names every such joint. Otherwise it names
-/// every limit that by itself excludes all designs, with a value that would suffice, or else the fewest limits that
-/// together do so.
+/// The reason why no design meets the study, in words. If at some joint no drive meets the demand, it names every such
+/// joint. Otherwise it names every limit that by itself excludes all designs, with a value that would suffice. If there
+/// is no such limit, it names the smallest sets of limits that together exclude all designs.
 ///
 /// This takes several searches. They end at the deadline, after a minute, or when `stop` is set; the words then say
 /// so.
@@ -42,7 +42,8 @@ pub fn why_infeasible(
     format!("{head}\n  {}", reasons.join("\n  "))
 }
 
-/// The reasons for a space that the exact search does not cover: only its joints can be examined.
+/// The reasons for a space that the exact search does not cover because of `unknown`: joints without a sufficient
+/// drive. Which limits stand in the way is not searched for.
 fn obstacles_alone(without_limits: &DesignSpace, catalogs: &Catalogs, unknown: &str) -> Vec<String> {
     let mut reasons = joint_obstacles(without_limits, catalogs);
     reasons.push(format!(
@@ -51,7 +52,8 @@ fn obstacles_alone(without_limits: &DesignSpace, catalogs: &Catalogs, unknown: &
     reasons
 }
 
-/// The limits that exclude all designs, or the joints at which no drive meets the demand.
+/// The reasons why no design is feasible, in words: joints at which no drive meets the demand, or else the limits that
+/// exclude all designs. `without_limits` is the space with all limits removed.
 fn reasons(limited: &Limited, without_limits: &DesignSpace) -> Vec<String> {
     let catalogs = limited.catalogs;
     match limited.holds_without_limits() {
@@ -68,7 +70,7 @@ fn reasons(limited: &Limited, without_limits: &DesignSpace) -> Vec<String> {
 const OUT_OF_TIME: &str = "the search for the smallest relaxation was stopped before it was done; a smaller one, or \
                            another, may help too";
 
-/// The limits that have to be changed, in words.
+/// The limits that have to be changed so that a design is feasible, in words.
 fn limits_in_the_way(limited: &Limited) -> Vec<String> {
     let constraints = &limited.space.constraints;
     let (relaxations, is_all) = limited.relaxations();
@@ -84,7 +86,7 @@ fn limits_in_the_way(limited: &Limited) -> Vec<String> {
     reasons
 }
 
-/// A relaxation of limits in words: how much is missing at each limit, and the values that suffice.
+/// In words: how much is missing at each limit of a relaxation, and the values of the limits that suffice.
 fn relaxation_words(relaxation: &Relaxation, constraints: &Constraints) -> String {
     let words = |(quantity, reached): &(Quantity, f64)| {
         let missing = quantity.shortfall_words(constraints, *reached);

@@ -21,9 +21,9 @@ use serde_json::{Value, json};
 pub struct Correction {
     /// Name of the correction, such as `bearing_tilt at j3` or `j2.stiffness x 1.02`.
     pub what: String,
-    /// Whether it applies to the study.
+    /// Whether the correction applies to the study.
     pub applied: bool,
-    /// What it changes, or the reason why it does not apply.
+    /// What the correction changes, or the reason why it does not apply.
     pub words: String,
 }
 
@@ -87,8 +87,8 @@ fn unfit(space: &DesignSpace, effect: &Effect) -> Option<(String, String, String
     }
 }
 
-/// Whether a negative extra mass, together with all others at the same place, removes more than `mass_kg`, the mass
-/// at this place.
+/// Whether `effect`, a negative extra mass, removes more than there is: together with all other extra masses at the
+/// same place it exceeds `mass_kg`, the mass at this place.
 fn takes_too_much(space: &DesignSpace, effect: &Effect, mass_kg: f64) -> bool {
     let added_kg = |effects: Vec<Effect>| DesignSpace { effects, ..space.clone() }.effects_mass_kg();
     let of_place = |other: &&Effect| other.effect == effect.effect && other.at == effect.at;
@@ -96,7 +96,8 @@ fn takes_too_much(space: &DesignSpace, effect: &Effect, mass_kg: f64) -> bool {
         && mass_kg + added_kg(space.effects.iter().filter(of_place).cloned().collect()) < 0.0
 }
 
-/// The study's own effects that describe a test. They have no influence on its results.
+/// The effects that the study itself has and that describe a test, as corrections that are not applied. They have no
+/// influence on its results.
 pub fn left_out(study: &Study) -> Vec<Correction> {
     let of_test = study.space.effects.iter().filter(|effect| effect.is_of_test());
     of_test.map(|effect| Correction { what: effect.label(), applied: false, words: OF_TEST.into() }).collect()
@@ -104,8 +105,8 @@ pub fn left_out(study: &Study) -> Vec<Correction> {
 
 const OF_TEST: &str = "it describes how the arm was tested, not the arm";
 
-/// Applies the corrections of a measured arm to the file of a study: the effects of `arm`, and its calibrated factors
-/// such as `("j2.stiffness", 1.02)`.
+/// Applies the corrections of a measured arm to the file of a study. They are the effects of `arm`, and the factors in
+/// `calibrated`, such as `("j2.stiffness", 1.02)`.
 pub fn apply_corrections(
     file: &Value,
     study: &Study,
@@ -174,7 +175,9 @@ impl CorrectedStudy {
 }
 
 impl CorrectedStudy {
-    /// Writes a calibrated value of a prismatic joint into the file. The study gives the numbers of such a joint.
+    /// Writes the calibrated value of a prismatic joint, which is its number in the study times `factor`, into the
+    /// file. `index` is the place of the joint in the chain; `quantity` names the number; `what` is the label of the
+    /// correction.
     fn calibrate_prismatic(
         &mut self,
         piece: &SpacePiece,
@@ -205,7 +208,8 @@ fn parameters(effect: &Effect) -> String {
     each.collect::<Vec<_>>().join("; ")
 }
 
-/// Replaces the stiffness in the entry of a joint by a torsion curve.
+/// Writes the torsion curve `curve` into `entry`, the entry of a joint in a study file, in place of the stiffness
+/// there.
 fn write_curve(entry: &mut Value, curve: &Curve) {
     if let Some(entry) = entry.as_object_mut() {
         entry.shift_remove("stiffness_nm_per_rad");

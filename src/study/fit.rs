@@ -76,7 +76,7 @@ pub(super) fn joints_that_ask(space: &DesignSpace) -> impl Iterator<Item = &Spac
     })
 }
 
-/// The limits in words, each with the names of the joints for which it holds.
+/// The limits on sizes in words, each with the names of the joints to which it applies.
 fn phrases(asking: &[&SpaceJoint]) -> Vec<String> {
     let mm = |m: f64| significant(m * 1e3, 4);
     let mut phrases: Vec<(String, Vec<&str>)> = Vec::new();

@@ -8,8 +8,8 @@ use serde_json::json;
 /// Name of the effect that adds cables and hoses to a link.
 const EFFECT: &str = harness_mass::KIND.name;
 
-/// A harness with this mass per length \[kg/m\] along every link, as a list of effects. A link with a harness effect
-/// of its own in the study keeps that one.
+/// The effects that add cables and hoses of `kg_per_m` \[kg/m\] along every link. A link that already has such an
+/// effect in `own`, the study's effects, keeps that one.
 pub(super) fn harness_effects(pieces: &[SpacePiece], kg_per_m: f64, own: &[Effect]) -> Vec<Effect> {
     let has_own = |link: &str| own.iter().any(|effect| effect.effect == EFFECT && effect.at == link);
     let links = pieces.iter().filter_map(|piece| match piece {
@@ -32,7 +32,7 @@ pub(super) fn has_harness(space: &DesignSpace) -> bool {
     space.effects.iter().any(|effect| effect.effect == EFFECT)
 }
 
-/// The mass of the harness along every link, in a sentence; `None` without one.
+/// The mass of cables and hoses along all links, in a sentence; `None` if the study states none.
 pub(super) fn harness_remark(space: &DesignSpace, kg_per_m: f64) -> Option<String> {
     let without = space.effects.iter().filter(|effect| effect.effect != EFFECT).cloned().collect();
     let without = DesignSpace { effects: without, ..space.clone() };

@@ -12,12 +12,12 @@ use crate::space::design_space::{DesignSpace, DriveChoice, SpacePiece};
 use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::SizedJoint;
 
-/// Largest number of sections of a link among which the one that demands least of a joint is sought.
+/// Largest number of sections of a link that are tried to find the one with which the demand on a joint is least.
 const MOST_SECTIONS: u32 = 64;
 
 /// Messages for every joint at which no drive meets the demand, from the tip inward. Each joint is examined with the
-/// lightest links, and with those sections of single links that demand least of it. For the joints inboard of it, a
-/// joint without a drive is taken as rigid and without mass.
+/// lightest links. Then links are given other sections one at a time, to find those with which the demand on the joint
+/// is least. When the joints inboard of it are examined, a joint without a drive is taken as rigid and without mass.
 pub(super) fn joint_obstacles(space: &DesignSpace, catalogs: &Catalogs) -> Vec<String> {
     let mut space = few_sections(space);
     let mut found = Vec::new();
@@ -84,14 +84,15 @@ fn lightest_sections(space: &DesignSpace) -> Vec<u32> {
     space.pieces.iter().map(lightest).collect()
 }
 
-/// The first joint, from the tip inward, at which no drive meets the demand.
+/// The first joint, from the tip inward, at which no drive meets the demand, with this demand.
 struct Stuck {
     slot: usize,
     piece: usize,
     demand: JointDemand,
 }
 
-/// Builds the arm with these sections and the lightest sufficient drives. `None` if every joint gets a drive.
+/// Builds the arm with the given sections (one index for each piece) and, at each joint, the lightest drive that meets
+/// the demand. Returns the joint at which no drive does; `None` if every joint gets a drive.
 fn stuck_at(problem: &ArmProblem, sections: &[u32]) -> Option<Stuck> {
     let mut options = Vec::new();
     for (piece, what) in problem.space().pieces.iter().enumerate().rev() {
@@ -108,8 +109,8 @@ fn stuck_at(problem: &ArmProblem, sections: &[u32]) -> Option<Stuck> {
     Some(Stuck { slot, piece: problem.piece_of_slot(slot), demand: problem.demand_at(&last, slot) })
 }
 
-/// Index of the lightest drive that meets the demand at a joint, given the options outboard of it; 0 if no drive
-/// does.
+/// Index of the lightest drive that meets the demand at the joint `piece`; 0 if no drive does. `outboard` are the
+/// options of the pieces outboard of the joint, tip first.
 pub(crate) fn first_fit_at(problem: &ArmProblem, outboard: &[u32], piece: usize) -> u32 {
     let mut index = 0;
     let _ = problem.walk(outboard, |slot, arm| {
@@ -122,7 +123,8 @@ pub(crate) fn first_fit_at(problem: &ArmProblem, outboard: &[u32], piece: usize)
     index
 }
 
-/// Sections with which the arm gets further inward than at `stuck`. One link at a time is given each of its sections.
+/// Sections with which the joint at which the arm is `stuck` gets a drive, so that the arm can be built further inward.
+/// Starting from `sections`, one link at a time is given each of its sections.
 ///
 /// # Errors
 /// If there are no such sections: the demand for which the nearest drive has the largest margin.
@@ -154,7 +156,7 @@ fn easier_sections(
     Err(Box::new(nearest))
 }
 
-/// The reason why no drive of a table meets the demand, in words; `None` if one does.
+/// The reason why no drive of a table meets `demand`, in words; `None` if a drive does.
 pub(crate) fn obstacle_at(table: &DriveTable, demand: &JointDemand) -> Option<String> {
     match table.is_empty() {
         true => Some(no_legal_drive(table, demand)),
@@ -195,7 +197,7 @@ fn no_legal_drive(table: &DriveTable, demand: &JointDemand) -> String {
     }
 }
 
-/// A shortfall in words, with the ratings that other parts lack.
+/// The shortfall of the nearest drive in words, followed by the ratings that other parts lack.
 fn in_words(table: &DriveTable, shortfall: &Shortfall) -> String {
     format!("{shortfall}{}", missing_words(table))
 }

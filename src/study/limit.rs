@@ -21,7 +21,7 @@ impl Quantity {
     const ALL: [Self; 6] =
         [Self::Deflection, Self::Mode, Self::Mass, Self::Stress, Self::Slenderness, Self::Cost];
 
-    /// The quantities that the constraints limit.
+    /// The quantities on which `constraints` has a limit.
     pub(super) fn limited(constraints: &Constraints) -> Vec<Self> {
         Self::ALL.into_iter().filter(|quantity| quantity.asked(constraints).is_some()).collect()
     }
@@ -39,7 +39,7 @@ impl Quantity {
         }
     }
 
-    /// Replaces the limit on this quantity in the constraints; `None` removes it.
+    /// Sets the limit on this quantity in `constraints`; `None` removes it.
     pub(super) fn set(self, constraints: &mut Constraints, limit: Option<f64>) {
         match self {
             Self::Deflection => constraints.tip_deflection_max_m = limit,
@@ -51,7 +51,8 @@ impl Quantity {
         }
     }
 
-    /// The value of this quantity for a complete design; `None` if a strength or a cost is unknown.
+    /// The value of this quantity for a complete design: `arm` is the arm as the search adds it up, `objectives` are
+    /// its objectives. `None` if a strength or a cost is unknown.
     pub(super) fn of(self, problem: &ArmProblem, arm: &Partial, objectives: &Objectives) -> Option<f64> {
         match self {
             Self::Deflection => Some(objectives.tip_deflection_m),
@@ -73,7 +74,7 @@ impl Quantity {
         }
     }
 
-    /// Whether the limit is a lower limit.
+    /// Whether the limit is a lower limit, as for the lowest mode and the safety factor.
     pub(super) fn is_least(self) -> bool {
         matches!(self, Self::Mode | Self::Stress)
     }
@@ -89,7 +90,8 @@ impl Quantity {
         }
     }
 
-    /// Unit of this quantity in a study file, and the factor from the library's unit to it.
+    /// Unit of this quantity in a study file, and the factor that converts from the library's unit (m, Hz, kg, EUR) to
+    /// it.
     fn unit(self) -> (&'static str, f64) {
         match self {
             Self::Deflection => ("mm", 1e3),
@@ -100,8 +102,8 @@ impl Quantity {
         }
     }
 
-    /// The keys of a study file that limit this quantity and exclude a design with the value `reached`. Each comes
-    /// with a value that would admit the design.
+    /// The keys of a study file that limit this quantity and that a design with the value `reached` violates. Each key
+    /// comes with a value that would admit the design.
     fn enough(self, constraints: &Constraints, reached: f64) -> Vec<(&'static str, f64)> {
         let round = |x: f64| toward(x, !self.is_least());
         let key = match self {
@@ -115,7 +117,7 @@ impl Quantity {
         vec![(key, round(reached * self.unit().1))]
     }
 
-    /// In words: the limit, the value that is reached, and the difference.
+    /// The stated limit, the value `reached` by a design, and the difference between the two, in words.
     pub(super) fn shortfall_words(self, constraints: &Constraints, reached: f64) -> String {
         let (unit, scale) = self.unit();
         let words = |x: f64| match unit {
@@ -132,7 +134,8 @@ impl Quantity {
         )
     }
 
-    /// In words: the keys that have to be changed, each with a value that suffices, such as `"mass_max_kg" to 31.7`.
+    /// The keys of the study file that have to be changed to admit a design with the value `reached`, each with a value
+    /// that suffices, such as `"mass_max_kg" to 31.7`.
     pub(super) fn enough_words(self, constraints: &Constraints, reached: f64) -> String {
         let keys = self.enough(constraints, reached).into_iter();
         keys.map(|(key, value)| format!("\"{key}\" to {value}")).collect::<Vec<_>>().join(" and ")
@@ -153,8 +156,8 @@ pub(super) fn short(x: f64) -> String {
     significant(x, 4)
 }
 
-/// Rounds a number to five significant digits, up or down. Rounding in the right direction keeps a sufficient value
-/// sufficient.
+/// Rounds a number to five significant digits, up if `up` is true, else down. Limits are rounded to the side that
+/// admits more designs, so that a value that suffices still does so after rounding.
 pub(super) fn toward(x: f64, up: bool) -> f64 {
     let scale = 10f64.powi(4 - libm::log10(x.abs().max(f64::MIN_POSITIVE)).floor() as i32);
     let scaled = x * scale;

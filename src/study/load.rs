@@ -9,7 +9,7 @@ use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use std::path::Path;
 
-/// The name of a study in messages, and its text.
+/// The text of the study `name`, built in or from a file, and the name of the study in messages.
 fn study_text(name: &str) -> Result<(String, String), Refusal> {
     if let Some(text) = named(name) {
         return Ok((format!("{name} (built in)"), text.to_string()));

@@ -41,7 +41,8 @@ pub struct NearFront {
     pub capped: bool,
 }
 
-/// Finds the near designs of an exhaustive search; `None` if the user stopped it.
+/// Finds the near designs of an exhaustive search, by a second search of the same space. `slack` says how much worse
+/// they may be. `None` if the user stopped it.
 pub fn near_front(
     problem: &ArmProblem,
     catalogs: &Catalogs,
@@ -58,7 +59,8 @@ pub fn near_front(
 }
 
 impl NearFront {
-    /// Evaluates the near designs that a search found with the full model, and makes the table.
+    /// Evaluates the near designs `found` by a search with the full model, and makes the table. Designs that are not
+    /// near by the full model are left out.
     pub fn of(
         problem: &ArmProblem,
         catalogs: &Catalogs,
@@ -82,12 +84,14 @@ impl NearFront {
     }
 }
 
-/// The three objectives rounded to twelve digits, as bit patterns. Designs with equal keys count as ties.
+/// The three objectives of a design, rounded to twelve digits, as bit patterns. Designs for which these are equal count
+/// as ties.
 fn key(o: &Objectives) -> [u64; 3] {
     o.minimized().map(|x| rounded(x).to_bits())
 }
 
-/// Groups near designs with equal objectives. The group with the smallest shortfall comes first.
+/// Groups near designs with equal objectives. Each item of `near` is the shortfall and the design. The group with the
+/// smallest shortfall comes first.
 fn grouped(near: Vec<(f64, Evaluated)>) -> Vec<Vec<(f64, Evaluated)>> {
     let mut groups: BTreeMap<[u64; 3], Vec<(f64, Evaluated)>> = BTreeMap::new();
     for (shortfall, design) in near {
@@ -140,8 +144,9 @@ fn table(
     table
 }
 
-/// The nearest design of the front, by its number, and by which fraction the given design is worse in each objective.
-/// Among equally near designs, the one with the smallest differences is taken.
+/// The number of the design of the front that is nearest to `design`, and the fractions by which `design` is worse in
+/// deflection, mass and lowest mode. Nearest is the one with the smallest largest fraction; among equals, the one with
+/// the smallest differences.
 fn nearest(front: &Front, design: &Objectives) -> (u128, [f64; 3]) {
     let shortfall = |worse: &[f64; 3]| worse.iter().fold(0.0f64, |most, part| most.max(*part));
     let apart = |worse: &[f64; 3]| worse.iter().fold(0.0f64, |most, part| most.max(part.abs()));
@@ -152,7 +157,8 @@ fn nearest(front: &Front, design: &Objectives) -> (u128, [f64; 3]) {
     .unwrap_or_default()
 }
 
-/// The choice of `other` that differs from that of `one`, if exactly one choice differs.
+/// The entry of `other` that differs from the entry of `one` at the same place, if exactly one entry differs. Entries
+/// are the choices of a design in words.
 fn only_difference<'w>(one: &[String], other: &'w [String]) -> Option<&'w str> {
     let mut different = one.iter().zip(other).filter(|(a, b)| a != b);
     let (_, word) = different.next()?;
@@ -190,7 +196,7 @@ impl NearFront {
         out
     }
 
-    /// Number of groups with more than one design of equal objectives.
+    /// Number of groups of near designs with equal objectives. Groups of a single design do not count.
     fn tied_groups(&self) -> usize {
         let Some(column) = self.table.column("tie_group") else { return 0 };
         let groups: Vec<&str> = self.table.rows.iter().map(|r| r[column].as_str()).collect();

@@ -7,7 +7,7 @@ use crate::arm::bearing::BearingSource;
 use crate::arm::extras::ExtrasSource;
 use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint, SpacePiece};
 
-/// The omissions of a study as sentences; empty if no joint has a gear.
+/// Sentences on the physics and the checks that the results of a study do not include; empty if no joint has a gear.
 pub(super) fn omissions(space: &DesignSpace) -> Vec<String> {
     let with_gear: Vec<&SpaceJoint> = joints(space).filter(|joint| has_gear(joint)).collect();
     if with_gear.is_empty() {

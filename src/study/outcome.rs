@@ -25,7 +25,8 @@ use std::time::{Duration, Instant};
 pub struct Judged {
     /// Number and objectives of the design.
     pub design: Evaluated,
-    /// Number of the group of designs with equal objectives to which it belongs on the front, from 1.
+    /// Number of the tie group of the design, from 1: all designs of the front with the same objectives have the same
+    /// number.
     pub tie_group: usize,
 }
 
@@ -72,8 +73,9 @@ pub fn run_study(
     judge_swept(study, &problem, swept)
 }
 
-/// Evaluates the designs of one shard, which is a range of design numbers. Returns its candidates and the range. It
-/// continues from the saved state in `resume`, and saves its own states there. `watch` is as in [`run_study`].
+/// Evaluates the designs of one shard, which is a range of design numbers. Returns the candidates of the shard and the
+/// range. The search continues from the saved state in `resume`, and saves its own states there. `watch` is as in
+/// [`run_study`].
 ///
 /// # Errors
 /// A message if the saved state belongs to another search.
@@ -112,7 +114,7 @@ pub fn sweep_shard(
 /// Time between two checks whether the state of a search is due to be saved.
 const LOOK_EVERY: Duration = Duration::from_millis(10);
 
-/// Evaluates the candidates of a sweep by the full model and finds the fronts.
+/// Evaluates the candidates of a sweep (a search that visits every design) by the full model and finds the fronts.
 pub fn judge_swept(study: &Study, problem: &ArmProblem, outcome: SweepOutcome) -> StudyOutcome {
     // a design may be a candidate of two fronts, and is evaluated once
     let all = outcome.groups.iter().flatten().chain(&outcome.front).map(|c| c.number);
@@ -131,7 +133,8 @@ pub fn judge_swept(study: &Study, problem: &ArmProblem, outcome: SweepOutcome) -
     }
 }
 
-/// Runs `work` while `watch` runs on another thread. The watcher's flag is set when the work ends, even by a panic.
+/// Runs `work` and returns its result, while `watch` runs on another thread. The flag that `watch` gets is set when the
+/// work ends, even by a panic, because the program would otherwise wait for the watcher forever.
 fn watched<T>(watch: impl FnOnce(&AtomicBool) + Send, work: impl FnOnce() -> T) -> T {
     struct EndOnDrop<'f>(&'f AtomicBool);
     impl Drop for EndOnDrop<'_> {
@@ -150,7 +153,7 @@ fn watched<T>(watch: impl FnOnce(&AtomicBool) + Send, work: impl FnOnce() -> T) 
 /// The result of an exact search.
 #[derive(Debug, Clone)]
 pub struct ExactStudy {
-    /// The study, reduced to the link options that occur in the designs that were found.
+    /// The study, reduced to the link options that occur in the designs found.
     pub study: Study,
     /// The fronts. Those of single materials are searched only if the front of all designs is whole.
     pub outcome: StudyOutcome,
@@ -210,15 +213,15 @@ impl Searched {
         }
     }
 
-    /// The numbers of all designs that were found.
+    /// The numbers, in the whole space, of all designs that were found: those of the fronts and the near designs.
     fn numbers(&self) -> Vec<u128> {
         let fronts = std::iter::once(&self.whole).chain(self.by_material.iter().map(|(_, of)| of));
         let near = self.near.iter().flat_map(|near| near.nearest.iter().map(|n| n.candidate.number));
         fronts.flat_map(|of| of.front.iter().map(|c| c.number)).chain(near).collect()
     }
 
-    /// Evaluates the designs with the full model, after conversion to the numbers of an excerpt of the space: the
-    /// fronts, and at most `most` near designs.
+    /// Evaluates the designs that were found with the full model: all those of the fronts, and at most `most` near
+    /// designs. `problem` is an excerpt of the space, so the numbers of the designs are converted to it.
     fn judged(&self, problem: &ArmProblem, most: Option<usize>) -> (StudyOutcome, Option<NearDesigns>) {
         let here = |candidate: &Candidate| {
             let options = problem.options_of_whole(candidate.number)?;
@@ -287,7 +290,8 @@ pub fn run_exact(
     searched_by(&search, study, catalogs, extent, watch)
 }
 
-/// The same as [`run_exact`], but the search continues from the state in `resume`, and saves its own states there.
+/// Runs an exact search as [`run_exact`] does, but continues from the state in `resume`, and saves its own states
+/// there.
 ///
 /// # Errors
 /// A message if the saved state belongs to another search.
@@ -327,14 +331,16 @@ pub(super) fn judge(problem: &ArmProblem, candidates: &[Candidate]) -> Front {
     front_of(&by_full_model(problem, candidates.iter().map(|c| c.number).collect()), candidates)
 }
 
-/// Evaluates the designs with these numbers with the full model, each once. Infeasible designs are left out.
+/// Evaluates the designs with the given numbers by the full model, each once. Designs that it finds infeasible are left
+/// out.
 pub(super) fn by_full_model(problem: &ArmProblem, mut numbers: Vec<u128>) -> HashMap<u128, Evaluated> {
     numbers.sort_unstable();
     numbers.dedup();
     numbers.into_par_iter().filter_map(|n| Some((n, evaluate(problem, n)?))).collect()
 }
 
-/// The candidates that no other one dominates, with their tie groups.
+/// The designs of `candidates` that no other one dominates by the full model, with their tie groups. `judged` are the
+/// designs by number as the full model evaluates them; candidates that are not in it are infeasible.
 fn front_of(judged: &HashMap<u128, Evaluated>, candidates: &[Candidate]) -> Front {
     let judged: Vec<&Evaluated> = candidates.iter().filter_map(|c| judged.get(&c.number)).collect();
     let points: Vec<[f64; 3]> = judged.iter().map(|d| d.objectives.minimized()).collect();

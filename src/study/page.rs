@@ -39,7 +39,8 @@ pub fn study_page<'a>(
     }
 }
 
-/// A pick with its arm and drives.
+/// What the page shows of a pick: its arm, its cases and the sizing of its drives. `None` if the pick is no design of
+/// the problem.
 fn picked(
     study: &Study,
     problem: &ArmProblem,

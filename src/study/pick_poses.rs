@@ -25,7 +25,7 @@ const WORSE: f64 = 0.02;
 const LEFT_OUT: &str = "Not modelled in these poses: an arm that passes through itself, its base or the floor. Drives and stresses are \
                         checked in the sizing poses only. The poses were found by a search; worse ones are not excluded.";
 
-/// A pick, its reach and its worst poses.
+/// A pick, its reach, and the poses in which its deflection and its lowest mode are worst.
 #[derive(Debug, Clone, PartialEq)]
 struct PickPoses {
     pick: Pick,
@@ -66,14 +66,15 @@ pub fn picks_in_poses(problem: &ArmProblem, front: &FrontTable) -> PicksInPoses 
 }
 
 impl WorstPose {
-    /// By which fraction the worst pose is worse than the judged cases; 0 if either value is not a finite number.
+    /// The fraction by which the objective in the worst pose is worse than in the judged cases; 0 if either value is
+    /// not a finite number.
     fn worse(&self) -> f64 {
         let by = (self.value - self.judged).abs() / self.judged;
         if by.is_finite() { by } else { 0.0 }
     }
 
-    /// The entry of `run.json` for this objective. `unit` is the unit in the keys, and `of_unit` the factor from the
-    /// library's unit to it.
+    /// The worst pose for one objective, as an entry of `run.json`. `unit` is the unit in the names of keys, and
+    /// `of_unit` the factor from the library's unit to it.
     fn to_json(&self, driven: &[DrivenJoint], unit: &str, of_unit: f64) -> Value {
         let mut out = Map::new();
         out.insert(format!("judged_{unit}"), json!(of_unit * self.judged));
@@ -86,7 +87,7 @@ impl WorstPose {
     }
 }
 
-/// The objective in words.
+/// The objective in words, as sentences on worst poses name it.
 fn name_of(objective: Objective) -> &'static str {
     if objective == Objective::Mode { "lowest mode" } else { "tip deflection" }
 }
@@ -103,7 +104,8 @@ impl PickPoses {
         [(Objective::Deflection, 1e3, &self.worst.deflection), (Objective::Mode, 1.0, &self.worst.mode)]
     }
 
-    /// Those of the two that are worse than the judged cases by more than the threshold.
+    /// The worst poses, of the two for deflection and for mode, in which the objective is worse than in the judged
+    /// cases by more than [`WORSE`].
     fn worse(&self) -> impl Iterator<Item = (Objective, f64, &WorstPose)> {
         self.both().into_iter().filter(|(_, _, pose)| pose.worse() > WORSE)
     }
@@ -159,7 +161,8 @@ impl PicksInPoses {
         self.ranges.iter().map(|(joint, _, _)| joint.clone()).collect()
     }
 
-    /// A sentence for each pick and each objective that is worse than in the judged cases by more than the threshold.
+    /// A sentence for each pick and each objective (deflection, lowest mode) that is worse in some pose than in the
+    /// judged cases by more than [`WORSE`].
     fn worse(&self) -> Vec<String> {
         let driven = self.driven();
         let of_pick = |of: &PickPoses| {

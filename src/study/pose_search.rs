@@ -9,13 +9,14 @@
 use crate::arm::pose::{DrivenJoint, Motion};
 use rayon::prelude::*;
 
-/// Largest number of corners. If there are more, this many are selected by Halton's sequence.
+/// Largest number of corner poses at which the score is computed. If there are more, this many are selected by Halton's
+/// sequence.
 const MOST_CORNERS: usize = 1024;
 /// Number of poses between the corners.
 const SPREAD: usize = 512;
-/// Number of poses from which a compass search starts.
+/// Number of poses from which a compass search (moves along one joint at a time) starts.
 const STARTS: usize = 6;
-/// Two starting poses differ by at least this angle in some joint \[deg\].
+/// Smallest distance between two starting poses: they differ by at least this angle in some joint \[deg\].
 const APART_DEG: f64 = 40.0;
 /// Number of coarse searches that are continued with fine steps.
 const FOLLOWED: usize = 2;
@@ -37,13 +38,13 @@ struct Turn {
     high_deg: f64,
     /// Whether the range is a full turn, so that both ends are the same angle.
     is_full: bool,
-    /// The step that corresponds to one degree: 1 for an angle, 1/360 of the range for a travel \[mm\].
+    /// The step that corresponds to one degree of an angle: 1 for an angle, 1/360 of the range for a travel \[mm\].
     degree: f64,
 }
 
 impl Turn {
-    /// The range of an angle. If it is more than a full turn, it is reduced to that full turn which is nearest to
-    /// -180 to 180.
+    /// The range of an angle. If it is more than a full turn, it is reduced to the full turn within it that is nearest
+    /// to the range from -180 to 180.
     fn new([low_deg, high_deg]: [f64; 2]) -> Self {
         if high_deg - low_deg < 360.0 {
             return Self { low_deg, high_deg, is_full: false, degree: 1.0 };
@@ -52,13 +53,14 @@ impl Turn {
         Self { low_deg, high_deg: low_deg + 360.0, is_full: true, degree: 1.0 }
     }
 
-    /// The range of a travel \[mm\].
+    /// The range of a travel \[mm\], from the smallest to the largest.
     fn travel([low_mm, high_mm]: [f64; 2]) -> Self {
         let degree = (high_mm - low_mm) / 360.0;
         Self { low_deg: low_mm, high_deg: high_mm, is_full: false, degree }
     }
 
-    /// The value in the range that is nearest to `angle_deg`, rounded to tenths of a degree, or an end of the range.
+    /// The value in the range that is nearest to `angle_deg`, rounded to tenths of a degree (or of a millimetre, for a
+    /// travel), or an end of the range.
     fn within(self, angle_deg: f64) -> f64 {
         let turned = match self.is_full {
             // the upper end is kept, because 180 reads better than -180
@@ -70,8 +72,8 @@ impl Turn {
         ((turned * 10.0).round() / 10.0).clamp(self.low_deg, self.high_deg)
     }
 
-    /// The values at corners: multiples of 90 degrees and the ends of the range, sorted from zero outward; of a
-    /// travel its middle and its ends.
+    /// The values of a joint at corner poses, sorted from zero outward. For an angle they are multiples of 90 degrees
+    /// and the ends of the range, for a travel the middle and the ends.
     fn corners_deg(self) -> Vec<f64> {
         if self.degree != 1.0 {
             return vec![self.low_deg, self.within(0.5 * (self.low_deg + self.high_deg)), self.high_deg];
@@ -106,7 +108,8 @@ pub(super) struct PoseRanges {
 }
 
 impl PoseRanges {
-    /// All joints with these ranges \[deg or mm\].
+    /// The ranges of all joints \[deg or mm\]. Until [`that_matter`](Self::that_matter) is called, every joint counts
+    /// as one that influences the score.
     pub(super) fn new(ranges: &[[f64; 2]], joints: &[DrivenJoint]) -> Self {
         let turn = |(range, joint): (&[f64; 2], &DrivenJoint)| match joint.motion {
             Motion::Turns => Turn::new(*range),
@@ -116,9 +119,9 @@ impl PoseRanges {
         Self { free: (0..turns.len()).collect(), turns }
     }
 
-    /// The same ranges without the joints that do not influence the score, such as a vertical first joint under
-    /// weight alone. Such joints stay as near to zero as their ranges allow. `values` gives the numbers whose change
-    /// is tested, at a pose.
+    /// These ranges, searched only over the joints that influence `values`: numbers of the arm at a pose, such as the
+    /// score. A joint is left out if turning it changes no number, as a vertical first joint under weight alone. It
+    /// then stays as near to zero as its range allows.
     pub(super) fn that_matter<const N: usize>(mut self, values: impl Fn(&[f64]) -> [f64; N]) -> Self {
         const TURNED_DEG: [f64; 2] = [31.7, 123.4];
         let differs =
@@ -158,14 +161,16 @@ impl PoseRanges {
         (0..count).map(corner).chain((1..=SPREAD).map(|index| self.spread(index))).collect()
     }
 
-    /// The pose within the ranges that is nearest to the given one.
+    /// The pose within the ranges that is nearest to `pose_deg`. Joints that do not influence the score are set as near
+    /// to zero as their ranges allow.
     pub(super) fn nearest(&self, pose_deg: &[f64]) -> Vec<f64> {
         let mut out = self.home();
         self.free.iter().for_each(|&joint| out[joint] = self.turns[joint].within(pose_deg[joint]));
         out
     }
 
-    /// The best pose that compass searches reach from the best of these poses; `None` if `from` is empty.
+    /// The best pose that compass searches find which start from the best of the poses `from`; `None` if `from` is
+    /// empty. First coarse steps are used; the best results are then continued with fine steps.
     pub(super) fn climb(&self, from: &[Scored], score: impl Fn(&[f64]) -> f64 + Sync) -> Option<Scored> {
         let mut climbed: Vec<Scored> = self
             .starts(from)
@@ -180,7 +185,7 @@ impl PoseRanges {
         followed.into_iter().reduce(|best, other| if other.score > best.score { other } else { best })
     }
 
-    /// The best of some poses that are at least [`APART_DEG`] apart.
+    /// The poses of `from` with the highest scores that are at least [`APART_DEG`] apart, at most [`STARTS`] of them.
     fn starts(&self, from: &[Scored]) -> Vec<Scored> {
         let mut order: Vec<&Scored> = from.iter().collect();
         order.sort_by(|a, b| b.score.total_cmp(&a.score));
@@ -193,7 +198,8 @@ impl PoseRanges {
         out
     }
 
-    /// The largest difference between two poses in a joint that influences the score \[deg\].
+    /// The largest difference between the poses `one` and `other` in a joint that influences the score \[deg\]. A
+    /// travel is converted to degrees.
     fn apart_deg(&self, one: &Scored, other: &Scored) -> f64 {
         let apart = |&joint: &usize| {
             let by = (one.pose_deg[joint] - other.pose_deg[joint]).abs();
@@ -203,7 +209,8 @@ impl PoseRanges {
         self.free.iter().map(apart).fold(0.0, f64::max)
     }
 
-    /// A compass search from one pose. Each step size is used until no move with it improves the score.
+    /// The result of a compass search from the pose `start`. Each of `steps_deg` \[deg\] is used until no move with
+    /// this step improves the score. With `in_pairs`, two joints are turned at once where no single joint improves it.
     fn climbed(
         &self,
         start: Scored,
@@ -225,7 +232,8 @@ impl PoseRanges {
         here
     }
 
-    /// Turns each joint, one after the other, in the direction that improves the score; `None` if no turn does.
+    /// Turns each joint by `step_deg`, one after the other, in the direction that improves the score. Turns that
+    /// improve it are kept. `None` if no turn does.
     fn turned_once(&self, from: &Scored, step_deg: f64, score: &impl Fn(&[f64]) -> f64) -> Option<Scored> {
         let mut best: Option<Scored> = None;
         for &joint in &self.free {
@@ -240,7 +248,8 @@ impl PoseRanges {
         best
     }
 
-    /// The first turn of two joints at once that improves the score; `None` if there is none.
+    /// Turns two joints by `step_deg` at once, and returns the first such pose that improves the score; `None` if there
+    /// is none.
     fn turned_in_pair(&self, from: &Scored, step_deg: f64, score: &impl Fn(&[f64]) -> f64) -> Option<Scored> {
         let pairs =
             self.free.iter().enumerate().flat_map(|(i, &a)| self.free[i + 1..].iter().map(move |&b| [a, b]));
@@ -249,7 +258,8 @@ impl PoseRanges {
             .find_map(|([a, b], [x, y])| self.moved(from, &[(a, x * step_deg), (b, y * step_deg)], score))
     }
 
-    /// The pose after the given joints were turned, if its score is higher; else `None`.
+    /// The pose after joints of `from` were turned, if its score is higher; else `None`. Each item of `by_deg` is the
+    /// index of a joint and the angle \[deg\].
     fn moved(
         &self,
         from: &Scored,
@@ -267,7 +277,7 @@ impl PoseRanges {
         (score > from.score + RISE * from.score.abs()).then_some(Scored { pose_deg, score })
     }
 
-    /// The pose of Halton's sequence with this index, in whole degrees.
+    /// The pose with the index `index` in Halton's sequence, within the ranges and in whole degrees.
     fn spread(&self, index: usize) -> Vec<f64> {
         let mut pose_deg = self.home();
         for (place, &joint) in self.free.iter().enumerate() {
@@ -284,7 +294,7 @@ impl PoseRanges {
     }
 }
 
-/// The number of Halton's low-discrepancy sequence with this index and base, from 0 to 1.
+/// The number with this index in Halton's low-discrepancy sequence to this base. It is between 0 and 1.
 fn halton(mut index: usize, base: usize) -> f64 {
     let (mut part, mut sum) = (1.0, 0.0);
     while index > 0 {

@@ -163,8 +163,8 @@ fn limits(constraints: &Constraints) -> Limits {
     }
 }
 
-/// The parts of the design with this number, base to tip. Tubes are given by their positions in the study's complete
-/// lists. `None` if the design does not meet its limits by the search's rules.
+/// The parts of the design with the number `design` in `problem`, base to tip. Tubes are given by their positions in
+/// the study's complete lists. `None` if the design does not meet its limits by the search's rules.
 pub fn picks(problem: &ArmProblem, catalogs: &Catalogs, design: u128) -> Option<Vec<Pick>> {
     let chosen = options(problem.level_sizes(), design)?;
     let parts = problem.parts(&chosen)?;
@@ -189,8 +189,8 @@ pub fn picks(problem: &ArmProblem, catalogs: &Catalogs, design: u128) -> Option<
     Some(picks)
 }
 
-/// The number in the whole study of the design with these parts; `None` if the search's tables lack one of its
-/// drives.
+/// The number, in the whole study, of the design with the parts `picks`. `whole_sizes` are the numbers of options of
+/// the levels of the whole study. `None` if the search's tables lack one of its drives.
 pub fn number_of_picks(
     problem: &ArmProblem,
     catalogs: &Catalogs,
@@ -214,7 +214,7 @@ pub fn number_of_picks(
     Some(number(whole_sizes, &chosen))
 }
 
-/// The drives and tubes of a design in words, for messages on designs without a number.
+/// The drives and tubes of the design with the parts `picks` in words, for messages on designs without a number.
 pub fn words(space: &DesignSpace, catalogs: &Catalogs, picks: &[Pick]) -> String {
     let word = |(piece, pick): (&SpacePiece, &Pick)| match (piece, *pick) {
         (SpacePiece::Joint(joint), Pick::Drive { gear, motor }) => {

@@ -208,7 +208,8 @@ fn number_materials(pieces: &mut [SpacePiece]) {
     }
 }
 
-/// What open pieces are chosen from, and defaults of joints.
+/// What the file states for the whole study and not for one piece: the parts from which open pieces are chosen, and
+/// defaults for joints.
 struct Open<'a> {
     catalogs: &'a Catalogs,
     drives: &'a Drives,
@@ -352,8 +353,8 @@ fn read_space_prismatic(node: &Node) -> Option<SpacePrismatic> {
     Some(SpacePrismatic::new(joint?, range_mm?))
 }
 
-/// The source of the bearing of a joint. A component set has no bearing, so a joint that is sized with component sets
-/// must state its bearing.
+/// Whether the bearing of a joint is the stated one or the one of its gear. A component set has no bearing, so a joint
+/// that is sized with component sets must state its bearing.
 fn bearing_source(
     object: &Object,
     stated: Stated,
@@ -379,7 +380,8 @@ fn bearing_source(
     }
 }
 
-/// Reports keys that another key makes meaningless as faults, because no key of a file is ignored silently.
+/// Reports those of `keys` that `object` has as faults, because another key makes them meaningless. No key of a file is
+/// ignored silently.
 fn stray(object: &Object, keys: &[&str], problem: &str, hint: &str) {
     for node in keys.iter().filter_map(|key| object.optional(key)) {
         node.fault::<()>(problem, hint);

@@ -16,10 +16,10 @@ use crate::space::problem::ArmProblem;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-/// Relative width of the interval at which the bisection of a limit ends.
+/// Relative difference between the two ends of the interval at which the bisection of a limit ends.
 const CLOSE: f64 = 2e-6;
-/// Start of the bisection if the stated limit is zero, as a fraction of the value reached. Bisection takes geometric
-/// means, which zero would make useless.
+/// Lower end of the bisection if the stated limit is zero, as a fraction of the value that a design reaches. Bisection
+/// takes geometric means, so it must not start at zero.
 const LEAST: f64 = 1e-12;
 /// A gap so large that any design satisfies it. A search with this gap ends with the first design.
 const ANY: f64 = 1e9;
@@ -28,7 +28,7 @@ const ANY: f64 = 1e9;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Relaxation {
     pub limits: Vec<(Quantity, f64)>,
-    /// Whether a smaller relaxation is known not to suffice. It is not known if time ran out.
+    /// Whether it is known that a smaller relaxation does not suffice. It is not known if time ran out.
     pub is_smallest: bool,
 }
 
@@ -58,8 +58,8 @@ impl Limited<'_> {
         }
     }
 
-    /// The relaxations that admit a design, each of as few limits as possible. The flag is false if time ran out
-    /// before all were tried.
+    /// The relaxations (sets of limits with changed values) that admit a design, each of as few limits as possible. The
+    /// flag is false if time ran out before all were tried.
     pub(super) fn relaxations(&self) -> (Vec<Relaxation>, bool) {
         let limits = Quantity::limited(&self.space.constraints);
         let mut is_all = true;
@@ -79,8 +79,8 @@ impl Limited<'_> {
         (Vec::new(), is_all)
     }
 
-    /// The smallest relaxation of some limits together. The first limit is relaxed as little as possible with the
-    /// others dropped, then the second, and so on.
+    /// The smallest relaxation of the limits in `set` together. The first limit is relaxed as little as possible with
+    /// the others of the set dropped, then the second, and so on.
     fn relaxed(&self, set: &[Quantity]) -> Answer<Relaxation> {
         let mut constraints = self.space.constraints;
         set.iter().for_each(|quantity| quantity.set(&mut constraints, None));
@@ -100,8 +100,8 @@ impl Limited<'_> {
         Answer::Yes(Relaxation { limits, is_smallest })
     }
 
-    /// The best value of a quantity under some limits. The flag is false if time ran out before it was known that
-    /// none is better.
+    /// The best value of `quantity` that a design reaches under `constraints`. The flag is false if time ran out before
+    /// it was known that no design reaches a better value.
     fn best(&self, constraints: &Constraints, quantity: Quantity) -> Answer<(f64, bool)> {
         if let Some(objective) = quantity.objective() {
             return self.find(constraints, quantity, |search| search.toward(objective));
@@ -112,8 +112,8 @@ impl Limited<'_> {
         }
     }
 
-    /// The value nearest to the stated limit that some design reaches. It lies between the stated limit, which no
-    /// design meets, and the value `reached`. The flag is false if time ran out.
+    /// The value of `quantity` nearest to its stated limit that some design reaches. It lies between the stated limit,
+    /// which no design meets, and `reached`, the value of a known design. The flag is false if time ran out.
     fn bisected(&self, constraints: &Constraints, quantity: Quantity, reached: f64) -> (f64, bool) {
         // the cost of a limit rises from the stated limit to the value reached; for lower limits it is the reciprocal
         let cost = |value: f64| if quantity.is_least() { value.recip() } else { value };
@@ -132,8 +132,8 @@ impl Limited<'_> {
         (cost(enough), true)
     }
 
-    /// The best value of a quantity among the designs that an exact search finds under some limits, and whether the
-    /// search was completed. `how` sets the aim of the search.
+    /// The best value of `quantity` among the designs that an exact search finds under `constraints`, and whether the
+    /// search was completed. `how` sets the aim of the search, such as the best design or any design.
     fn find(
         &self,
         constraints: &Constraints,
@@ -157,8 +157,8 @@ impl Limited<'_> {
     }
 }
 
-/// The value of a quantity for a design of the whole space, by the full model; `None` if the design does not meet the
-/// limits.
+/// The value of `quantity` by the full model for a design, given by its number in the whole space; `None` if the design
+/// does not meet the limits.
 fn reached(problem: &ArmProblem, design: u128, quantity: Quantity) -> Option<f64> {
     let options = problem.options_of_whole(design)?;
     let judged = evaluate(problem, number(problem.level_sizes(), &options))?;
@@ -169,7 +169,7 @@ fn reached(problem: &ArmProblem, design: u128, quantity: Quantity) -> Option<f64
     quantity.of(problem, &arm, &judged.objectives)
 }
 
-/// All subsets with `size` elements, in the order of the list.
+/// All subsets of `list` with `size` elements. The elements of each are in the order of the list.
 fn subsets<T: Copy>(list: &[T], size: usize) -> Vec<Vec<T>> {
     match (size, list) {
         (0, _) => vec![Vec::new()],

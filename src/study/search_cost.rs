@@ -45,7 +45,7 @@ pub(crate) struct SearchCost {
 }
 
 impl SearchCost {
-    /// Estimates both times for a study with this number of designs.
+    /// Estimates the times of both searches for a study with `designs` designs.
     pub(crate) fn of(space: &DesignSpace, catalogs: &Catalogs, designs: f64) -> Self {
         let each = (space.pieces.len() * space.cases.len()) as f64;
         let exhaustive_core_s = designs * each * VISIT_S;
@@ -59,7 +59,7 @@ impl SearchCost {
         }
     }
 
-    /// Both times and the choice in a sentence; `None` if the exact search was not estimated.
+    /// Both estimated times and the search that is chosen, in a sentence; `None` if the exact search was not estimated.
     pub(crate) fn words(&self) -> Option<String> {
         let seconds = |s: f64| format!("{} s", significant(s, 1));
         let exact_core_s = self.exact_core_s?;
@@ -72,7 +72,8 @@ impl SearchCost {
         ))
     }
 
-    /// Whether the exact search is the better choice.
+    /// Whether the exact search is estimated to be cheaper by the factor [`CHEAPER`], or an exhaustive search is ruled
+    /// out.
     pub(crate) fn speaks_for_exact(&self) -> bool {
         match self.exact_core_s {
             Some(exact_core_s) => exact_core_s * CHEAPER < self.exhaustive_core_s,
@@ -86,7 +87,8 @@ struct Trial {
     designs: f64,
     /// Fraction of the designs that are feasible.
     held: f64,
-    /// Number of boxes of the exact searches for the front and for the fronts of single materials.
+    /// Number of boxes (sets of designs) that the exact searches for the front and for the fronts of single materials
+    /// bounded.
     boxes: f64,
 }
 
@@ -112,8 +114,8 @@ impl Trial {
     }
 }
 
-/// Estimated number of boxes for a space with this number of designs, extrapolated by the exponent that two smaller
-/// spaces show.
+/// Estimated number of boxes of an exact search in a space with `designs` designs. It is extrapolated with the exponent
+/// that the trials in two smaller spaces show.
 fn grown(small: &Trial, large: &Trial, designs: f64) -> f64 {
     let growth = libm::log(large.boxes.max(1.0) / small.boxes.max(1.0));
     let of_designs = libm::log(large.designs / small.designs);
@@ -122,7 +124,7 @@ fn grown(small: &Trial, large: &Trial, designs: f64) -> f64 {
     large.boxes.max(1.0) * libm::pow((designs / large.designs).max(1.0), power)
 }
 
-/// The space with at most `most` designs. Every second option of the piece with the most options is dropped,
+/// The space thinned to at most `most` designs. Every second option of the piece with the most options is dropped,
 /// repeatedly.
 fn thinned(space: &DesignSpace, catalogs: &Catalogs, most: f64) -> DesignSpace {
     let mut space = space.clone();
@@ -134,7 +136,7 @@ fn thinned(space: &DesignSpace, catalogs: &Catalogs, most: f64) -> DesignSpace {
     space
 }
 
-/// Drops every second option of the piece with the most options; `false` if no piece has two.
+/// Drops every second option of the piece with the most options. Returns false if no piece has two options.
 fn drop_half(space: &mut DesignSpace, catalogs: &Catalogs) -> bool {
     let largest = space.pieces.iter_mut().max_by_key(|piece| options(piece, catalogs));
     let Some(largest) = largest.filter(|piece| options(piece, catalogs) > 1) else { return false };
@@ -166,7 +168,7 @@ fn options(piece: &SpacePiece, catalogs: &Catalogs) -> usize {
     }
 }
 
-/// Names of the gears and of the motors that a joint may use.
+/// Names of the gears and names of the motors that the filter allows.
 fn allowed(filter: &DriveFilter, catalogs: &Catalogs) -> [Vec<String>; 2] {
     let gears = catalogs.gears.iter().filter(|gear| filter.allows_gear(gear)).map(|gear| gear.id.clone());
     let motors =

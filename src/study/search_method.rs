@@ -29,7 +29,7 @@ pub struct SearchWish {
     pub has_time_limit: bool,
 }
 
-/// Largest number of designs for which an exhaustive search is accepted. It would take years with more.
+/// Largest number of designs for which an exhaustive search is accepted. With more designs it would take years.
 const MOST_CONCEIVABLE: u128 = 1_000_000_000_000_000;
 
 impl SearchWish {
@@ -86,7 +86,7 @@ impl SearchWish {
     }
 }
 
-/// The method that is estimated to cost less, with both times in words.
+/// The search method that is estimated to cost less processor time, with both estimated times in words.
 fn cheaper(study: &Study, catalogs: &Catalogs, designs: f64) -> (SearchMethod, Option<String>) {
     let cost = SearchCost::of(&study.space, catalogs, designs);
     let method = if cost.speaks_for_exact() { SearchMethod::Exact } else { SearchMethod::Exhaustive };

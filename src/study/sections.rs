@@ -141,7 +141,8 @@ fn read_rectangular_bar(node: &Node) -> Option<Vec<Named>> {
     Some(outlines.into_iter().map(bar).collect())
 }
 
-/// Reads `width_mm` and `height_mm`. The result has every pair of them, or squares if no height is given.
+/// Reads `width_mm` and `height_mm` as outer sizes \[mm\]. The result has every pair of a width and a height, or
+/// squares if no height is given.
 fn read_outlines(object: &Object) -> Option<Vec<(f64, f64)>> {
     let widths = object.required("width_mm").and_then(|n| read_grid(&n));
     if object.optional("height_mm").is_none_or(|n| n.value().as_str() == Some("=width")) {
@@ -257,7 +258,7 @@ fn read_grid(node: &Node) -> Option<Vec<f64>> {
     Some((0..=points as usize).map(|i| from + i as f64 * step).collect())
 }
 
-/// Whether a profile of a family is sold in a material. It is if the name of the family occurs in the name of the
+/// Whether profiles of the family `family` are sold in `material`: the name of the family occurs in the name of the
 /// material.
 fn sold_in(family: &str, material: &Material) -> bool {
     let name = material.name.to_lowercase();
@@ -270,8 +271,8 @@ fn sold_in(family: &str, material: &Material) -> bool {
 /// The word in the names of stainless steels, which is also the name of their family of profiles.
 const STAINLESS: &str = "stainless";
 
-/// A remark if a link of catalog profiles offers stainless steel, but no profile that is sold in it. Profiles of
-/// structural steel are not.
+/// A remark if `link` may be of stainless steel and of catalog profiles, but none of the profiles is sold in stainless
+/// steel. Profiles of structural steel are not sold in it.
 fn stainless_without_profiles(materials: &[&Material], sections: &Sections, link: &str) -> Option<String> {
     let families: HashSet<&str> =
         sections.sections.iter().filter_map(|(_, profile)| Some(profile.as_ref()?.family.as_str())).collect();
@@ -286,8 +287,8 @@ fn stainless_without_profiles(materials: &[&Material], sections: &Sections, link
     })
 }
 
-/// Each material combined with each section. Materials that lack a rating that a constraint needs are left out and
-/// listed in `aside`.
+/// Each material combined with each section. Materials that lack a rating that a constraint needs are left out, and a
+/// message on each is added to `aside`.
 pub(super) fn options(
     materials: &[&Material],
     sections: &Sections,

@@ -65,7 +65,8 @@ pub struct Swept {
     pub groups: Vec<Vec<Candidate>>,
 }
 
-/// The sweep of a whole space, joined from its shards, which together must cover it.
+/// The result of an exhaustive search of a whole space, joined from the results of its shards, which together must
+/// cover the space.
 pub fn joined(shards: Vec<Swept>, designs_total: u128) -> SweepOutcome {
     let materials = shards.iter().map(|shard| shard.groups.len()).max().unwrap_or_default();
     let (mut front, mut groups, mut designs_evaluated) = (Vec::new(), vec![Vec::new(); materials], 0u64);
@@ -88,8 +89,8 @@ pub fn joined(shards: Vec<Swept>, designs_total: u128) -> SweepOutcome {
     }
 }
 
-/// The parts of `0..total` that no range covers, and the first number that two ranges have in common; `None` if there
-/// is none.
+/// The ranges of design numbers in `0..total` that none of `ranges` covers, and the first number that two of `ranges`
+/// have in common (`None` if there is none).
 pub fn gaps(mut ranges: Vec<Range<u128>>, total: u128) -> (Vec<Range<u128>>, Option<u128>) {
     ranges.retain(|range| !range.is_empty());
     ranges.sort_unstable_by_key(|range| range.start);

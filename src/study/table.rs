@@ -13,7 +13,7 @@ use crate::space::design_space::{DriveChoice, LinkOption, SpacePiece};
 use crate::space::levels::OutwardIn;
 use crate::space::problem::{ArmProblem, Partial};
 
-/// The table of a front.
+/// A front as a table: one row for each design, with its choices, objectives and margins.
 pub fn front_table(problem: &ArmProblem, catalogs: &Catalogs, front: &Front) -> FrontTable {
     FrontTable {
         columns: columns(problem, catalogs),
@@ -123,8 +123,9 @@ fn number(x: f64) -> String {
     format!("{x}")
 }
 
-/// The sizing of every joint with a drive from the catalogs, chosen or given, tip first. The error is the slot at
-/// which no drive meets the demand.
+/// The sizing of every joint of the design with the options `chosen` that has a drive from the catalogs, chosen or
+/// given, tip first. The error is the slot (place in the order in which the arm is built) at which no drive meets the
+/// demand.
 pub(crate) fn sizing_rows(
     problem: &ArmProblem,
     catalogs: &Catalogs,
@@ -157,7 +158,8 @@ fn joint_name<'p>(problem: &'p ArmProblem, piece: usize) -> &'p str {
     }
 }
 
-/// The sizing row of a joint whose drive is now known; `None` if no row is open.
+/// Completes the sizing row of a joint whose drive is now known. `open` is the joint's slot, its demand and the mass
+/// outboard of it \[kg\]; `with_it` is the arm up to this joint with its drive. `None` if no row is open.
 fn close(
     problem: &ArmProblem,
     catalogs: &Catalogs,
@@ -174,7 +176,8 @@ fn close(
     Some(at_cycle_efficiency(row, catalogs, &drive, table.motion(), &demand))
 }
 
-/// Adds the efficiency of the gear at the mean speed and torque of the cycle to a row, if the ratings are known.
+/// Adds to `row` the efficiency of the gear at the mean speed and mean torque of the duty cycle, if the catalogs have
+/// the data. Otherwise the row is returned unchanged.
 fn at_cycle_efficiency(
     row: JointSizingRow,
     catalogs: &Catalogs,

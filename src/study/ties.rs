@@ -41,7 +41,7 @@ pub fn ties(problem: &ArmProblem, front: &Front) -> Ties {
     Ties { rows, front: front.len(), designs }
 }
 
-/// The rows of one design in `ties.csv`, and the number of designs that it represents.
+/// The rows of one design in `ties.csv`, and the number of designs with the same objectives that it represents.
 fn ties_of(problem: &ArmProblem, judged: &Judged) -> Option<(Vec<Vec<String>>, f64)> {
     let mut demands: Vec<(usize, JointDemand)> = Vec::new();
     let chosen = options(problem.level_sizes(), judged.design.number)?;
@@ -80,7 +80,8 @@ impl Ties {
         FrontTable { columns: COLUMNS.map(String::from).into(), rows: self.rows.clone() }.to_csv()
     }
 
-    /// Differences between these ties and the content of a file that should list them, in words.
+    /// Differences, in words, between these ties and the content of a `ties.csv` that should list them. Empty if there
+    /// are none.
     pub fn faults_of(&self, file: &[u8]) -> Vec<String> {
         let mut reader = csv::Reader::from_reader(file);
         let columns: Vec<String> =
@@ -103,7 +104,7 @@ impl Ties {
         lacks.chain(adds).collect()
     }
 
-    /// The number of designs that the front represents, in a sentence.
+    /// A sentence that says how many designs with the same objectives the rows of the front stand for.
     pub fn sentence(&self) -> String {
         format!(
             "The {} rows of the front stand for {} designs with the same objectives: at some joints several drives have \

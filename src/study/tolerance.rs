@@ -93,12 +93,12 @@ pub fn part(text: &str) -> Result<f64, String> {
 }
 
 impl Tolerance {
-    /// Names and scatter of the ratings that scatter.
+    /// Name and scatter (a fraction) of each kind of rating whose scatter is not zero.
     fn named(&self) -> impl Iterator<Item = (&'static str, f64)> {
         KINDS.iter().zip(self.parts).map(|((name, _), part)| (*name, part)).filter(|(_, part)| *part > 0.0)
     }
 
-    /// The scatter of a rating.
+    /// The scatter of the rating `figure` as a fraction; 0 if ratings of its kind do not scatter.
     fn of(&self, figure: &Rating) -> f64 {
         let [gear_stiffness, bearing_stiffness, modulus, mass] = self.parts;
         match figure {
@@ -130,7 +130,8 @@ impl Stream {
         ((self.generator.next_u64() >> 11) + 1) as f64 / (1u64 << 53) as f64
     }
 
-    /// The next factor. Its logarithm is a normally distributed number, by the method of Box and Muller.
+    /// The next random factor on the rating. Its logarithm is a normally distributed number, by the method of Box and
+    /// Muller.
     fn factor(&mut self) -> f64 {
         let (radius, angle) = ((-2.0 * libm::log(self.uniform())).sqrt(), TAU * self.uniform());
         libm::exp(self.sigma * radius * libm::cos(angle))
@@ -180,7 +181,8 @@ impl Trial<'_> {
     }
 }
 
-/// A design with the objectives of a sample. Its row is its index in the list.
+/// A copy of `design` with the objectives `o` of one sample. `row` is the index of the design in the list of all
+/// designs.
 fn with_objectives(design: &Design, row: usize, o: &Objectives) -> Design {
     Design {
         tip_deflection_mm: o.tip_deflection_m * 1e3,
@@ -191,7 +193,8 @@ fn with_objectives(design: &Design, row: usize, o: &Objectives) -> Design {
     }
 }
 
-/// Samples a front, whose rows are `designs`. `None` if the user stopped it.
+/// Samples a front: draws ratings of its parts and finds out which designs are then on the front. `designs` are the
+/// rows of the front. `None` if the user stopped it.
 pub fn scatter_front(
     problem: &ArmProblem,
     catalogs: &Catalogs,
@@ -235,7 +238,8 @@ pub fn scatter_front(
     Some(tally.told(designs, &nominal, sampling))
 }
 
-/// The space of the problem without its excerpt, so that designs have their numbers within it.
+/// The space of the problem, marked as if it were a whole space and not an excerpt, so that designs have their numbers
+/// within it.
 fn without_excerpt(problem: &ArmProblem) -> DesignSpace {
     let mut space = problem.space().clone();
     for piece in &mut space.pieces {
@@ -306,7 +310,7 @@ impl Tally {
     }
 }
 
-/// A percentage without the rounding error of its conversion from a fraction.
+/// A percentage, rounded so that it has no error from its conversion from a fraction.
 fn round(percent: f64) -> f64 {
     (percent * 1e9).round() / 1e9
 }

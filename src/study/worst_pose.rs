@@ -33,8 +33,8 @@ pub struct WorstPoses {
     pub mode: WorstPose,
 }
 
-/// Searches for the worst poses of an arm within ranges \[deg or mm\], one for each driven joint; passive joints
-/// follow. Each load of the cases is tried. `None` if there is no case.
+/// Searches for the worst poses of an arm. `ranges` has the range of each driven joint, base to tip \[deg or mm\];
+/// passive joints follow. The arm is tried with the load of each case. `None` if there is no case.
 pub fn worst_poses(arm: &Arm, cases: &[LoadCase], ranges: &[[f64; 2]]) -> Option<WorstPoses> {
     let judged = full_objectives(arm, cases);
     let found: Vec<[WorstPose; 2]> =
@@ -68,7 +68,8 @@ pub(super) fn loads(cases: &[LoadCase]) -> Vec<&LoadCase> {
     out
 }
 
-/// The worst poses under the load of one case: for the deflection, and for the lowest mode.
+/// The worst poses under the load of the case `load`: the one with the largest deflection, and the one with the lowest
+/// mode.
 fn worst_under(
     arm: &Arm,
     load: &LoadCase,

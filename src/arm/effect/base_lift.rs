@@ -29,7 +29,7 @@ pub(crate) const KIND: Kind = Kind {
     },
 };
 
-/// Starting points of a fit: feet that lift off at a small, medium or large part of the torque, on soft and on stiff
+/// Starting points of a fit: feet that lift off at 15 % to 85 % of the largest torque, each on soft and on stiffer
 /// ground.
 fn starts(setting: &Setting) -> Vec<Vec<f64>> {
     let preloads = [0.15, 0.35, 0.6, 0.85].map(|part| libm::log(part * setting.torque_nm));

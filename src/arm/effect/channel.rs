@@ -57,8 +57,8 @@ pub struct Reading {
     pub outlier_rows: Vec<usize>,
     /// Further factor on each component; channels with one component use the first number only.
     pub gain: [f64; 3],
-    /// Coefficients of the nonlinearity: deviation from a straight line at a reading of `bend_scale`, as a fraction
-    /// of the reading.
+    /// Coefficients of the nonlinearity. At a reading of `bend_scale`, each is the deviation from a straight line as a
+    /// fraction of this reading.
     pub bend: [f64; 2],
     /// The reading at which `bend` is the relative deviation from a straight line, in the unit of the channel's file.
     pub bend_scale: f64,
@@ -79,7 +79,8 @@ impl Default for Reading {
 }
 
 impl Reading {
-    /// The reading for an actual value `truth`. `component` is 0 to 2, `row` counts from 0.
+    /// The reading that the instrument shows for the actual value `truth`. `component` (0 to 2) is the direction of a
+    /// displacement, `row` is the row of the file, counted from 0.
     pub fn of(&self, truth: f64, component: usize, row: usize) -> f64 {
         let straight = self.factor * self.gain[component] * truth;
         let part = straight / self.bend_scale;

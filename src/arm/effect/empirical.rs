@@ -11,11 +11,13 @@ use crate::arm::joint_law::FurtherTwist;
 pub(crate) const ODD_TWIST: &str = "odd_twist_rad";
 /// Parameter: coefficients of a joint's further angle of torsion that do not change sign with the torque.
 pub(crate) const EVEN_TWIST: &str = "even_twist_rad";
-/// Parameter: reference torque of these coefficients, at which the angle is their sum.
+/// Parameter: reference torque of the coefficients of the further angle. At this torque the angle is the sum of all
+/// coefficients.
 pub(crate) const TORQUE: &str = "torque_nm";
 /// Parameter: coefficients of the nonlinearity of a channel.
 pub(crate) const BEND: &str = "bend";
-/// Parameter: the reading at which these coefficients are the relative deviation from a straight line.
+/// Parameter: the reading at which the coefficients of the nonlinearity are the relative deviation from a straight
+/// line.
 pub(crate) const BEND_SCALE: &str = "bend_scale";
 /// Parameter: a factor on the reading for each direction.
 pub(crate) const GAIN: &str = "gain";
@@ -32,7 +34,8 @@ const OF_CHANNEL: &[Parameter] = &[
     optional(GAIN, 3, 0.01, 100.0, 1.0),
 ];
 
-/// A parameter that may be left out. The default value changes nothing.
+/// A parameter of `count` numbers between `low` and `high` that may be left out. Left out, it has the value `default`,
+/// which changes nothing.
 const fn optional(name: &'static str, count: usize, low: f64, high: f64, default: f64) -> Parameter {
     let number = Parameter::number(name, low, high, default, Scale::Linear);
     Parameter { count, default: Some(default), ..number }
@@ -69,7 +72,8 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
     }
 }
 
-/// The sum of two further angles of torsion, written with the reference torque of the second one.
+/// The sum of the further angle of torsion `before`, if there is one, and `twist`. The result has the reference torque
+/// of `twist`.
 fn added(before: Option<FurtherTwist>, twist: FurtherTwist) -> FurtherTwist {
     let Some(before) = before else { return twist };
     let ratio = twist.torque_nm / before.torque_nm;

@@ -6,7 +6,8 @@ use super::kind::{Kind, Parameter, Scope};
 use super::subject::Subject;
 use serde_json::Value;
 
-/// The word with which files write the value of a parameter of an effect; `None` if they write the number itself.
+/// The word with which files write the value `number` of a parameter. Only the choice of a channel is written as a
+/// word; `None` for all other parameters.
 pub(crate) fn word_of(effect: &str, parameter: &str, number: f64) -> Option<&'static str> {
     let kind = kind(effect)?;
     let parameters = (kind.parameters)(*kind.places.first()?);
@@ -23,7 +24,7 @@ pub struct Effect {
     pub at: String,
     /// Parameters by name. A vector parameter has several numbers.
     pub parameters: Vec<(String, Vec<f64>)>,
-    /// Where the values come from, exactly as the file has it.
+    /// Where the values of the parameters come from: the key `source`, exactly as the file has it.
     pub source: Option<Value>,
 }
 
@@ -33,7 +34,8 @@ impl Effect {
         kind(&self.effect)
     }
 
-    /// The values of all parameters in the order of `parameters`, with defaults for those that are left out.
+    /// The values of all `parameters` of the effect in one list, in their order. A parameter that the file leaves out
+    /// has its default value.
     pub fn numbers(&self, parameters: &[Parameter]) -> Vec<f64> {
         parameters.iter().flat_map(|p| self.parameter(p)).collect()
     }
@@ -55,14 +57,16 @@ impl Effect {
         self.kind().is_some_and(|k| k.traits.changes_bending)
     }
 
-    /// Whether the effect describes the test and not the product. Every effect at a channel does.
+    /// Whether the effect describes the test (payload, measuring channel) and not the product. Every effect at a
+    /// channel does.
     pub fn is_of_test(&self) -> bool {
         self.kind().is_some_and(|k| k.scope == Scope::Test) || Channel::from_word(&self.at).is_some()
     }
 }
 
 impl Subject {
-    /// Applies an effect that has been checked for faults. An effect with an unknown name does nothing.
+    /// Applies an effect to the arm under test. The effect has been checked for faults before; one with an unknown name
+    /// does nothing.
     pub fn apply(&mut self, effect: &Effect) {
         let Some(kind) = effect.kind() else { return };
         let place = self.structure.place(&effect.at, kind.places).unwrap_or(kind.places[0]);

@@ -20,8 +20,9 @@ pub(crate) const KIND: Kind = Kind {
     traits: Traits { needs: Needs::TwistingJoint, starts, ..Traits::USUAL },
 };
 
-/// Half widths at which a fit starts. A joint whose friction play is as wide as its largest angle of torsion does not
-/// move, and the objective then has no slope to follow. So no start is wider than 0.3 of this angle.
+/// Half widths of the friction play at which a fit starts. A joint whose friction play is as wide as its largest angle
+/// of torsion does not move, and the objective then has no slope to follow. So no start is wider than 0.3 of this
+/// angle.
 fn starts(setting: &Setting) -> Vec<Vec<f64>> {
     const WIDEST: f64 = 0.3;
     let usual_rad = [0.25e-4, 1e-4, 3e-4].into_iter().filter(|h| *h < WIDEST * setting.twist_rad);

@@ -36,9 +36,10 @@ pub(crate) const KIND: Kind = Kind {
     },
 };
 
-/// Starting points as fractions of the largest torque on the joint, of either sign: for each number alone, and for
-/// the two that depend on the angle together. Natural frequencies jump where a torque passes a break point of the
-/// gear. A fit by descent cannot pass such a jump, so the starts cover the whole range.
+/// Starting points of a fit, as fractions of the largest torque on the joint, of either sign. Some vary one of the
+/// numbers a, b, c alone, others vary b and c (which depend on the angle) together. Natural frequencies jump where a
+/// torque passes a break point of the gear. A fit by descent cannot pass such a jump, so the starts cover the whole
+/// range.
 fn starts(setting: &Setting) -> Vec<Vec<f64>> {
     const PARTS: [f64; 6] = [-0.7, -0.35, -0.1, 0.1, 0.35, 0.7];
     let count = setting.values_at_one.len();

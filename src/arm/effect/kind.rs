@@ -49,7 +49,7 @@ pub enum Scale {
     Torque,
 }
 
-/// The value of a parameter at which the effect changes nothing.
+/// The value of a parameter at which its effect changes nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Absent {
     /// The value 0: an amplitude of zero, or no compliance.
@@ -120,7 +120,8 @@ pub struct Parameter {
 }
 
 impl Parameter {
-    /// A parameter with a single value that must be given.
+    /// A parameter with a single value that a file must give, between `low` and `high`. `typical` is a usual value,
+    /// `scale` says how a fit varies it.
     pub const fn number(name: &'static str, low: f64, high: f64, typical: f64, scale: Scale) -> Self {
         let absent = match scale {
             Scale::Linear | Scale::Stiffness | Scale::Torque => Absent::AtZero,
@@ -145,37 +146,40 @@ impl Parameter {
         }
     }
 
-    /// A parameter with three values that must be given.
+    /// A parameter with three values that a file must give, each between `low` and `high`. `typical` is a usual value.
     pub const fn vector(name: &'static str, low: f64, high: f64, typical: f64) -> Self {
         Self { count: 3, ..Self::number(name, low, high, typical, Scale::Linear) }
     }
 
-    /// The same parameter, expected within these narrower limits.
+    /// This parameter, expected by a fit between `low` and `high` instead of in its whole range.
     pub const fn expected(self, low: f64, high: f64) -> Self {
         Self { prior: (low, high), ..self }
     }
 
-    /// The same parameter, with another parameter as its lower limit.
+    /// This parameter, which must not be smaller than the parameter named `other`.
     pub const fn at_least(self, other: &'static str) -> Self {
         Self { not_below: Some(other), ..self }
     }
 
-    /// The same parameter, if the effect is absent at another value than its scale suggests.
+    /// This parameter, with `absent` as the value at which the effect changes nothing, in place of the value that
+    /// follows from its scale.
     pub const fn absent(self, absent: Absent) -> Self {
         Self { absent, ..self }
     }
 
-    /// The same parameter, with an expected size of `part` times this property of the arm or its readings.
+    /// This parameter, with an expected size of `part` times `measure`, a property of the arm or of its readings.
     pub const fn growing_with(self, measure: Measure, part: f64) -> Self {
         Self { grows_with: Some((measure, part)), ..self }
     }
 
-    /// The same parameter, searched for up to this value if arm and readings are of usual size.
+    /// This parameter, for which a search looks only up to `high` if arm and readings are of usual size. Files may give
+    /// larger values.
     pub const fn sought_up_to(self, high: f64) -> Self {
         Self { sought_up_to: Some(high), ..self }
     }
 
-    /// The same torque, searched for within these fractions of the largest torque on its joint.
+    /// This parameter, a torque, for which a search looks only between the fractions `low` and `high` of the largest
+    /// torque on its joint.
     pub const fn within_torque(self, low: f64, high: f64) -> Self {
         Self { torque_parts: Some((low, high)), ..self }
     }
@@ -222,7 +226,7 @@ pub enum Yields {
     Frame,
 }
 
-/// A parameter that a search fits: its name, and the index of one component, or `None` for all components.
+/// A parameter that a search fits: its name, and the index of one of its numbers, or `None` for all of its numbers.
 pub type Freed = (&'static str, Option<usize>);
 
 /// Prior probability of an effect that is seldom met, relative to a usual one, before any reading is considered.
@@ -247,20 +251,21 @@ pub struct Traits {
     pub is_sought: bool,
     /// The channels for which the search tries an effect of a channel; empty means all.
     pub sought_in: &'static [Channel],
-    /// The sets of parameters that the search fits, each as a candidate of its own. Empty means a single set: every
+    /// The sets of parameters that the search fits. Each set is a candidate of its own. Empty means a single set: every
     /// parameter without a default.
     pub variants: &'static [&'static [Freed]],
     /// Prior probability of the effect, relative to a usual effect at one place, before any reading is considered.
     pub odds: f64,
-    /// What the nominal model must be like for the search to try it.
+    /// What the nominal model must be like at a place so that the search tries the effect there.
     pub needs: Needs,
-    /// Starting points of fits. Each is a list of `u`, one for each fitted number.
+    /// Starting points of fits. Each is a list of values of the fit's variable `u` ([`Scale`]), one for each fitted
+    /// number.
     pub starts: fn(&Setting) -> Vec<Vec<f64>>,
     /// Whether the readings depend on the parameters so nonlinearly that a confidence interval must be computed from
     /// the profile of the objective.
     pub is_nonlinear: bool,
-    /// Whether screening, which is linear, keeps the parameters that say how the effect acts at their starting
-    /// points. Far from these the linear model is wrong.
+    /// Whether screening, which is a linear fit, holds those parameters at their starting points that say how the
+    /// effect acts (not how large it is). Far from the starting points the linear model is wrong.
     pub screens_at_starts: bool,
     /// Whether the effect replaces the torsion curve of a gear. Natural frequencies jump at its break points.
     pub is_gear_curve: bool,
@@ -279,12 +284,13 @@ pub struct Traits {
     pub yields: Option<Yields>,
     /// Name of the effect at the first joint that is identical with this one if that joint is vertical.
     pub same_at_vertical_first_joint: Option<&'static str>,
-    /// Checks values that are each within their limits for a contradiction. Returns the problem and the advice.
+    /// Finds a contradiction between the values of all parameters, each of which is within its limits. Returns the
+    /// problem and the advice; `None` if there is no contradiction.
     pub contradiction: fn(&[f64]) -> Option<(&'static str, &'static str)>,
 }
 
 impl Traits {
-    /// The properties that most effects have.
+    /// The properties that most effects have. The description of an effect states only what differs from them.
     pub const USUAL: Self = Self {
         is_sought: true,
         sought_in: &[],

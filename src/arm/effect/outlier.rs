@@ -5,7 +5,7 @@ use super::channel::Channel;
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
 use super::subject::Subject;
 
-/// The parameter with the numbers of the rows; any number of them.
+/// The parameter of the effect: the numbers of the rows that are gross errors. There may be any number of them.
 const ROWS: &[Parameter] =
     &[Parameter { count: 0, ..Parameter::number("rows", 1.0, 1e9, 1.0, Scale::Linear) }];
 

@@ -5,8 +5,8 @@ use crate::arm::prismatic::PrismaticPiece;
 use crate::arm::structure::{JointPiece, LinkPiece, Piece, Structure};
 
 impl Structure {
-    /// Which kind of place a name denotes in this arm; only the kinds in `allowed` are tried. `None` if it denotes
-    /// none of them.
+    /// Which kind of place the name `at` denotes in this arm. Only the kinds in `allowed` are tried; `None` if `at`
+    /// denotes none of them.
     pub fn place(&self, at: &str, allowed: &[Place]) -> Option<Place> {
         allowed.iter().copied().find(|place| match place {
             Place::Joint => self.joints().any(|j| j.name == at),
@@ -20,7 +20,7 @@ impl Structure {
         })
     }
 
-    /// The names of all places of a kind in this arm.
+    /// The names of all places of the kind `place` in this arm.
     pub fn places(&self, place: Place) -> Vec<String> {
         match place {
             Place::Joint => self.joints().map(|j| j.name.clone()).collect(),

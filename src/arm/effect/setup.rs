@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 pub struct Setup {
     /// Additional mass at the tip \[kg\].
     pub mass_kg: f64,
-    /// Centre of gravity of this mass from the tip, in the last frame \[m\].
+    /// Centre of gravity of the additional mass, measured from the tip in the last frame \[m\].
     pub cg_m: Vector3<f64>,
     /// Additional compliance of joints about their axes in these tests: name of the joint and compliance
     /// \[rad/(N m)\].
@@ -18,18 +18,19 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// Whether there is no difference: the tests of the channel are made with the arm as it is.
+    /// Whether the tests of the channel are made with the arm as it is, without additional mass or compliance.
     pub fn is_plain(&self) -> bool {
         self.mass_kg == 0.0 && self.servo_rad_per_nm.is_empty()
     }
 
-    /// Additional compliance of a joint about its axis in these tests \[rad/(N m)\].
+    /// Additional compliance of the joint named `joint` about its axis in these tests \[rad/(N m)\]; 0 if there is
+    /// none.
     pub fn servo_of(&self, joint: &str) -> f64 {
         self.servo_rad_per_nm.iter().filter(|(name, _)| name == joint).map(|(_, c)| c).sum()
     }
 
-    /// The structure of the arm in the tests of the channel. The additional mass is placed by two rigid offsets, one
-    /// forth and one back, so that the tip stays where it is.
+    /// The `structure` of an arm, changed to the arm in the tests of this channel. The additional mass is placed by two
+    /// rigid offsets, one forth and one back, so that the tip stays where it is.
     pub fn of(&self, structure: &Structure) -> Structure {
         let mut out = structure.clone();
         for (name, compliance) in &self.servo_rad_per_nm {

@@ -45,7 +45,8 @@ pub(crate) const KIND: Kind = Kind {
     },
 };
 
-/// Starting points: waves of the typical amplitude with a phase in each quarter of a turn.
+/// Starting points of a fit: waves of the typical amplitude, with the phase in each quarter of a turn. If two waves are
+/// fitted, all pairs of phases are tried.
 fn starts(setting: &Setting) -> Vec<Vec<f64>> {
     const PHASES: [f64; 4] = [-FRAC_PI_2, 0.0, FRAC_PI_2, PI];
     match setting.values_at_one.len() {

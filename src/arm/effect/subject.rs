@@ -30,7 +30,7 @@ pub struct Subject {
 }
 
 impl Subject {
-    /// An arm whose tests do not deviate from their description.
+    /// The arm `structure` under test, with tests that do not deviate from their description.
     pub fn new(structure: Structure) -> Self {
         Self {
             structure,
@@ -66,12 +66,13 @@ impl Subject {
         Channel::from_word(at).map(|c| &mut self.setups[c as usize])
     }
 
-    /// The structure of the arm in a test of a channel.
+    /// The structure of the arm in the tests of a channel, with the additional mass and compliance of these tests.
     pub fn structure_in(&self, channel: Channel) -> Structure {
         self.setups[channel as usize].of(&self.structure)
     }
 
-    /// The structure of the arm in a test of a channel at the time of a reading, which determines the moduli.
+    /// The structure of the arm in a test of `channel` at the time of one reading (`when`: row and temperature). The
+    /// moduli of the links depend on the time.
     pub fn structure_at(&self, channel: Channel, when: &Moment) -> Structure {
         let mut out = self.structure_in(channel);
         let factor = self.warming.factor(when);
@@ -84,7 +85,7 @@ impl Subject {
         out
     }
 
-    /// The actual payload for a stated one. A load case without a payload stays without one.
+    /// The actual payload, given the payload that a load case states. A load case without a payload stays without one.
     pub fn payload(&self, stated: &Payload) -> Payload {
         if stated.mass_kg == 0.0 {
             return *stated;

@@ -4,10 +4,10 @@
 use super::kind::{Kind, Needs, Parameter, Place, RARE, Scale, Scope, Setting, Traits};
 use super::subject::Subject;
 
-/// Name of the parameter for the change per kelvin. It needs the temperature of each reading.
+/// Name of the parameter for the relative change of the moduli per kelvin. It needs the temperature of each reading.
 pub(crate) const PER_K: &str = "per_k";
 
-/// Name of the parameter for the number of rows after which 63 % of the change is reached.
+/// Name of the parameter for the number of rows after which 63 % of the change of the moduli is reached.
 pub(crate) const ROWS: &str = "rows";
 
 const PARAMETERS: &[Parameter] = &[
@@ -46,7 +46,8 @@ pub(crate) const KIND: Kind = Kind {
     },
 };
 
-/// Starting points. If the moduli change with the order of the tests: early, in the middle, or until the end.
+/// Starting points of a fit. If the moduli change with the order of the tests, the starts let the change take place
+/// early, in the middle, or until the end of the tests.
 fn starts(setting: &Setting) -> Vec<Vec<f64>> {
     match setting.values_at_one.len() {
         1 => vec![vec![1.0]],

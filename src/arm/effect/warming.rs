@@ -18,9 +18,10 @@ const LEAST: f64 = 0.05;
 /// How the moduli of all links change in the course of the tests.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Warming {
-    /// Change of the factor on the moduli with the temperature \[1/K\].
+    /// Change of the factor on the moduli per kelvin of temperature \[1/K\].
     pub per_k: f64,
-    /// Change of the factor that is approached after many rows; 0 means no change with the order of the tests.
+    /// Change of the factor on the moduli that is approached after many rows; 0 means no change with the order of the
+    /// tests.
     pub change: f64,
     /// Number of rows after which 63 % of `change` is reached.
     pub rows: f64,
@@ -33,7 +34,7 @@ impl Default for Warming {
 }
 
 impl Warming {
-    /// Whether the moduli do not change.
+    /// Whether the moduli stay the same during all tests.
     pub fn is_none(&self) -> bool {
         self.per_k == 0.0 && self.change == 0.0
     }

@@ -4,7 +4,7 @@ use super::envelope::envelope;
 use super::row::Row;
 use crate::catalog::gear::{BearingRatings, Gear, GearKind, LifeLaw};
 
-/// The gear of a row; `None` if its name or source is blank or not valid.
+/// The gear that a row describes; `None` if its name or source is blank or not valid.
 pub(crate) fn gear(row: &Row) -> Option<Gear> {
     check(row);
     let (series, size, ratio) = (row.filled("series")?.to_string(), row.count("size")?, row.number("ratio")?);
@@ -45,12 +45,12 @@ pub(crate) fn gear(row: &Row) -> Option<Gear> {
     })
 }
 
-/// The kind of a row. A blank cell means a strain-wave gear.
+/// The kind of gear that a row describes. A blank cell means a strain-wave gear.
 fn kind(row: &Row) -> GearKind {
     GearKind::from_word(row.text("kind")).unwrap_or(GearKind::StrainWave)
 }
 
-/// The life equation of a row. Blank cells are filled with the values of its kind.
+/// The life equation of the gear that a row describes. Blank cells are filled with the values of its kind.
 fn life(row: &Row, kind: GearKind) -> LifeLaw {
     let usual = LifeLaw::usual(kind);
     LifeLaw {
@@ -137,8 +137,8 @@ fn order(row: &Row, columns: &[&'static str], strict: bool, hint: &str) {
     row.ascending(&figures, strict, hint);
 }
 
-/// Warns of numbers that are far from those of all known harmonic drives of that size. Such a number is often in
-/// the wrong unit.
+/// Warns of numbers of a row that are far from the numbers of all known harmonic drives of the same size. Such a number
+/// is often in the wrong unit.
 fn usual_figures(row: &Row) {
     let Some(size) = row.count("size").map(f64::from) else { return };
     let scaled = |column: &str, scale: f64, [low, high]: [f64; 2], unit: &str| {

@@ -3,7 +3,7 @@
 use super::row::Row;
 use crate::catalog::material::{Material, MaterialClass};
 
-/// The material of a row; `None` if its name, class, source or a required number is blank or not valid.
+/// The material that a row describes; `None` if its name, class, source or a required number is blank or not valid.
 pub(crate) fn material(row: &Row) -> Option<Material> {
     check(row);
     Some(Material {

@@ -7,8 +7,8 @@ use crate::catalog::motor::MotorCurvePoint;
 use crate::input::json::closest;
 use std::collections::BTreeMap;
 
-/// Gives the torque curves of a file to the motors. The points of a model replace all points that an earlier file
-/// had for it.
+/// Adds the torque curves of a file to the motors of `catalogs`. The points that the file has for a model replace all
+/// points that an earlier file had for it.
 pub(crate) fn attach(catalogs: &mut Catalogs, rows: &[Row]) {
     let mut curves: BTreeMap<&str, Vec<(&Row, MotorCurvePoint)>> = BTreeMap::new();
     for row in rows {

@@ -5,7 +5,7 @@ use super::row::Row;
 use crate::catalog::motor::{Motor, MotorKind};
 use std::f64::consts::PI;
 
-/// The motor of a row; `None` if its name, type or source is blank or not valid.
+/// The motor that a row describes; `None` if its name, type or source is blank or not valid.
 pub(crate) fn motor(row: &Row) -> Option<Motor> {
     check(row);
     Some(Motor {
@@ -42,7 +42,7 @@ fn check(row: &Row) {
     inertia(row);
 }
 
-/// Compares the rated power with rated torque times rated speed, P = T ω.
+/// Checks that the rated power of a row agrees with rated torque times rated speed, P = T ω.
 fn power(row: &Row) {
     let figures = (row.number("rated_torque_nm"), row.number("rated_speed_rpm"), row.number("rated_power_w"));
     if let (Some(torque_nm), Some(speed_rpm), Some(power_w)) = figures {

@@ -4,7 +4,7 @@ use super::row::Row;
 use crate::catalog::profile::{Profile, ProfileShape};
 use std::f64::consts::PI;
 
-/// The profile of a row; `None` if its name, shape, source or a dimension is blank or not valid.
+/// The profile that a row describes; `None` if its name, shape, source or a dimension is blank or not valid.
 pub(crate) fn profile(row: &Row) -> Option<Profile> {
     check(row);
     Some(Profile {
@@ -56,7 +56,8 @@ fn check(row: &Row) {
     }
 }
 
-/// Compares printed area, second moment and mass with those computed from the outline.
+/// Checks that the printed area, second moment of area and mass of a profile agree with those computed from its
+/// outline.
 fn printed_properties(row: &Row, shape: ProfileShape, outline: Outline) {
     let area_m2 = row.number("area_m2");
     if let Some(printed) = area_m2 {

@@ -17,7 +17,8 @@ pub(crate) struct Row<'a> {
 }
 
 impl<'a> Row<'a> {
-    /// A row of the file with this kind and this name in messages.
+    /// The row in the line `line` of a file of the kind `file`. `name` is the name of the file in messages; faults and
+    /// warnings go to `log`.
     pub(crate) fn new(
         file: CatalogFile,
         name: &'a str,
@@ -94,7 +95,8 @@ impl<'a> Row<'a> {
         self.check_column_list("derived_fields");
     }
 
-    /// Source of the row; `None` if it is blank or the confidence is not valid.
+    /// Where the numbers of the row come from: source, confidence, file and line. `None` if the source is blank or the
+    /// confidence is not valid.
     pub(crate) fn provenance(&self) -> Option<Provenance> {
         Some(Provenance {
             source: self.filled("source")?.to_string(),
@@ -110,8 +112,8 @@ impl<'a> Row<'a> {
         self.cell(column).filter(|text| !text.is_empty())
     }
 
-    /// The columns that are listed as unverified. `all` and `all except ...` stand for the filled cells with
-    /// properties of the part.
+    /// The columns of this row that are listed as unverified. In the list, `all` and `all except ...` stand for the
+    /// filled cells with properties of the part.
     fn unverified_fields(&self) -> Vec<String> {
         let (all, named) = column_list(self.text("unverified_fields"));
         if !all {
@@ -133,8 +135,8 @@ impl<'a> Row<'a> {
         }
     }
 
-    /// Reports numbers that do not ascend in the given order. Unknown numbers are skipped. With `strict`, equal
-    /// neighbours are reported too.
+    /// Reports those of the numbers in `figures` (column and value) that are smaller than the number before them.
+    /// Unknown numbers are skipped. With `strict`, a number that equals the one before is reported too.
     pub(crate) fn ascending(&self, figures: &[(&str, Option<f64>)], strict: bool, hint: &str) {
         let known: Vec<_> = figures.iter().filter_map(|(column, x)| Some((*column, (*x)?))).collect();
         for pair in known.windows(2) {
@@ -146,8 +148,9 @@ impl<'a> Row<'a> {
         }
     }
 
-    /// Compares a printed number with the same number computed from others of the row. A relative deviation of more
-    /// than `warn` gives a warning, of more than `refuse` a fault.
+    /// Compares `printed`, a number in the column `column`, with `computed`, the same number computed from others of
+    /// the row, which `from` names. A relative deviation of more than `warn` gives a warning, of more than `refuse` a
+    /// fault.
     pub(crate) fn agrees(
         &self,
         column: &str,
@@ -171,8 +174,8 @@ impl<'a> Row<'a> {
         }
     }
 
-    /// Compares a number with two ranges. Outside the physically possible range it is a fault, outside the usual
-    /// range a warning. Returns whether the number is possible.
+    /// Compares `x`, the number in the column `column`, with two ranges. Outside the physically possible range it is a
+    /// fault, outside the usual range a warning. Returns whether the number is possible.
     pub(crate) fn within(
         &self,
         column: &str,
@@ -217,7 +220,8 @@ fn check_cell(kind: Cell, text: &str) -> Result<(), Refusal> {
     }
 }
 
-/// The number in a cell of some kind; `None` if the cell is blank.
+/// The number that the text of a cell states, or the reason why a cell of this kind must not have this text. `None` if
+/// the cell is blank.
 fn read_number(kind: Cell, text: &str) -> Result<Option<f64>, Refusal> {
     const BLANK: &str = "leave the cell blank if the figure is unknown";
     if text.is_empty() {
@@ -258,8 +262,8 @@ fn did_you_mean(word: &str, known: &[&str]) -> String {
     closest(word, known).map(|near| format!("did you mean \"{near}\"? ")).unwrap_or_default()
 }
 
-/// A list of columns: whether it begins with `all`, and the columns that it names (after `all except`, if it begins
-/// so).
+/// What a list of columns in a cell says: whether it begins with `all`, and the columns that it names (after
+/// `all except`, if it begins so).
 fn column_list(text: &str) -> (bool, Vec<&str>) {
     let mut words = text.split([' ', ',', ';']).filter(|w| !w.is_empty()).peekable();
     let all = words.next_if_eq(&"all").is_some();

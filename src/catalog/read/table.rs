@@ -64,8 +64,8 @@ fn required(file: CatalogFile) -> String {
     names.join(",")
 }
 
-/// For each known column, its index in the header; `None` within the list if it is absent. `None` as a whole if the
-/// text is not separated by commas.
+/// For each known column, its place in the header; `None` for a column that the header does not have. The whole result
+/// is `None` if the text is not separated by commas.
 fn header_places(
     file: CatalogFile,
     name: &str,

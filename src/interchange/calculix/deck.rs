@@ -6,8 +6,8 @@ use nalgebra::Vector3;
 use std::fmt::Write;
 
 /// Stiffness of the springs that connect point masses to the ground \[N/m\]. CalculiX drops the coupling inertia
-/// between degrees of freedom that no stiffness connects. These springs connect them and are too soft to change
-/// anything else.
+/// between degrees of freedom that no stiffness connects. These springs connect the degrees of freedom, and are too
+/// soft to change anything else.
 const GROUNDING_N_PER_M: f64 = 1e-3;
 /// Range of Poisson's ratio E / (2 G) - 1 within which E and G can belong to an isotropic material.
 const ISOTROPIC: std::ops::Range<f64> = -0.9..0.49;
@@ -32,7 +32,7 @@ pub(crate) fn modes(model: &Model) -> usize {
     }
 }
 
-/// The text of the input deck of a model for this analysis.
+/// The text of the input deck for the analysis `step` of a model.
 pub(crate) fn deck(model: &Model, step: Step, heading: &str, gravity_m_s2: &Vector3<f64>) -> String {
     let mut out = format!("*HEADING\n{}\n", heading.replace('\n', " "));
     let mut element = 0;
@@ -83,8 +83,9 @@ fn bricks(out: &mut String, solid: &Solid, k: usize, element: &mut usize) {
     let _ = writeln!(out, "*SOLID SECTION, ELSET=LINK{k}, MATERIAL=M{k}{orientation}");
 }
 
-/// The elastic constants of a link, and whether they are orthotropic. If no isotropic material has these E and G,
-/// they belong to a layup. They are then written as engineering constants in the axes of the section.
+/// The elastic constants of a link as lines of the deck, and whether they are orthotropic. If no isotropic material has
+/// the E and G of the link, they belong to a layup. They are then written as engineering constants in the axes of the
+/// section.
 fn elastic(beam: &Beam) -> (String, bool) {
     let (e_pa, g_pa) = (
         beam.material.youngs_modulus_pa / beam.flexibility,
@@ -128,7 +129,8 @@ fn springs(out: &mut String, model: &Model, step: Step, element: &mut usize) {
     }
 }
 
-/// Writes a spring between a degree of freedom and the ground.
+/// Writes a spring of the given stiffness \[N/m, or N m/rad at a hinge\] between a degree of freedom of a node and the
+/// ground. `element` counts the elements of the deck.
 fn spring(out: &mut String, element: &mut usize, node: usize, direction: usize, stiffness: f64) {
     *element += 1;
     let _ = writeln!(

@@ -133,13 +133,13 @@ fn grid(section: &Section) -> Option<Grid> {
     })
 }
 
-/// Coordinates of the outer and inner faces of two opposite walls \[m\].
+/// Coordinates across a tube of the outer and inner faces of two opposite walls, in ascending order \[m\].
 fn walls(outer_m: f64, wall_m: f64) -> Vec<f64> {
     vec![-outer_m / 2.0, wall_m - outer_m / 2.0, outer_m / 2.0 - wall_m, outer_m / 2.0]
 }
 
-/// A grid of the rectangles between lines. `has` says which rectangles have material. Rectangles between walls are
-/// divided further.
+/// A grid of the rectangles between lines at `y_m` and `z_m` \[m\]. `has` says which rectangles have material.
+/// Rectangles between walls are divided further.
 fn cells(y_m: Vec<f64>, z_m: Vec<f64>, has: impl Fn(usize, usize) -> bool + 'static) -> Grid {
     let cut = |lines: &[f64]| {
         let rectangles = lines.len() - 1;
@@ -164,7 +164,7 @@ fn cells(y_m: Vec<f64>, z_m: Vec<f64>, has: impl Fn(usize, usize) -> bool + 'sta
     }
 }
 
-/// A grid around a round tube. The second direction goes from the outside to the inside.
+/// A grid around a round tube. The first direction goes around the tube, the second from the outside to the inside.
 fn ring(diameter_m: f64, wall_m: f64) -> Grid {
     Grid {
         bricks: (ROUND, 1),

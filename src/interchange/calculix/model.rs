@@ -136,8 +136,8 @@ impl Builder<'_> {
         self.model.nodes_m.len() - 1
     }
 
-    /// Adds a hinge for each compliant coordinate of an element. A passive joint also follows the hinges of its
-    /// driving joints.
+    /// Adds a hinge for each compliant coordinate of an element. `workings` are the states of its springs at the load
+    /// of the case. A passive joint also follows the hinges of its driving joints.
     fn springs(&mut self, element: &ElasticElement, workings: &[Working]) {
         for (i, (twist, working)) in element.twists.iter().zip(workings).enumerate() {
             if working.is_rigid() {
@@ -161,7 +161,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Makes a passive joint rotate with the hinges of its driving joints.
+    /// Makes the passive joint `passive` rotate with the hinges of its driving joints, by the factors of their
+    /// linkages.
     fn follow(&mut self, passive: &ElasticElement) {
         let posed = self.snapshot.posed();
         let linkages = posed.chain.linkages().iter().filter(|linkage| linkage.passive == passive.name);
@@ -172,12 +173,13 @@ impl Builder<'_> {
         }
     }
 
-    /// Adds a body as point masses that move with the present region.
+    /// Adds a body as point masses that move with the rigid region that is being built.
     fn body(&mut self, body: &Body) {
         self.rigid(body.mass_kg, &body.cg_m, &body.inertia_kgm2, "body");
     }
 
-    /// Adds a rigid body as point masses that move with the present region.
+    /// Adds a rigid body, given by mass, centre of gravity and inertia, as point masses that move with the rigid region
+    /// that is being built. `name` is for the list of bodies that no point masses can represent.
     fn rigid(&mut self, mass_kg: f64, cg_m: &Vector3<f64>, inertia_kgm2: &Matrix3<f64>, name: &str) {
         for (at_m, kg) in self.points(mass_kg, cg_m, inertia_kgm2, name) {
             let node = self.tied(at_m);
@@ -222,7 +224,8 @@ impl Builder<'_> {
         out
     }
 
-    /// Adds a link as a mesh, or as a rigid body if it cannot deform.
+    /// Adds a link as a mesh of bricks, or as a rigid body if it cannot deform or cannot be meshed. `own` has its mass
+    /// and its place.
     fn link(&mut self, element: &ElasticElement, own: &OwnMass) {
         let link = self.snapshot.link(own.piece).cloned();
         let flexible = link.as_ref().and_then(|link| {
@@ -268,7 +271,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Adds a body, given in world axes, that moves with the cross-section nearest to its centre of gravity.
+    /// Adds a body, given in world axes, to a meshed link. The body moves with the cross-section nearest to its centre
+    /// of gravity.
     fn body_on_link(&mut self, link: &Meshed, body: &RigidBody, name: &str) {
         let last = link.mesh.stations.len() - 1;
         let xi = link.own.frame.column(0).dot(&(body.cg_m - link.own.root_m)) / link.length_m;
@@ -288,8 +292,9 @@ impl Builder<'_> {
         }
     }
 
-    /// Makes a node move with a cross-section: with its mean displacement, and with the rotation that fits its nodes
-    /// best (least squares).
+    /// Makes a node move with a cross-section of a mesh, as the average of its nodes: with their mean displacement, and
+    /// with the rotation that fits their displacements best (least squares). `station` has the nodes of the
+    /// cross-section, counted from the node `first`.
     fn average(&mut self, node: usize, first: usize, station: &[usize]) {
         let places: Vec<(usize, Vector3<f64>)> =
             station.iter().map(|n| (first + n, self.model.nodes_m[first + n])).collect();
@@ -316,14 +321,14 @@ impl Builder<'_> {
         }
     }
 
-    /// Adds a node that moves with the present region.
+    /// Adds a node at `at_m` \[m\] that moves with the rigid region that is being built, and returns its index.
     fn tied(&mut self, at_m: Vector3<f64>) -> usize {
         let node = self.node(at_m);
         self.tie(node);
         node
     }
 
-    /// Makes a node move with the present region.
+    /// Makes a node move with the rigid region that is being built.
     fn tie(&mut self, node: usize) {
         let at_m = self.model.nodes_m[node];
         for d in 0..3 {
@@ -339,8 +344,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Adds an equation. Terms with the same degree of freedom are added up. If only the dependent term remains, its
-    /// degree of freedom is fixed.
+    /// Adds a linear equation between degrees of freedom. Terms with the same degree of freedom are added up. If only
+    /// the dependent term (the first one) remains, its degree of freedom is fixed.
     fn equation(&mut self, terms: Vec<Term>) {
         let mut joined: Vec<Term> = Vec::new();
         for (node, d, coefficient) in terms {

@@ -10,7 +10,7 @@ use crate::report::picks::{choices, designs, picks};
 use crate::report::table::{Column, Table};
 use serde::Serialize;
 
-/// The objectives of a design under one model.
+/// The objectives of a design under one of the two models of the arm.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(crate) struct Values {
     /// Tip deflection \[mm\].
@@ -40,7 +40,8 @@ pub(crate) struct Changed {
     /// Objectives of the design under the nominal and the corrected model. `None` if no catalog drive is strong
     /// enough or the design breaks a limit.
     pub values: [Option<Values>; 2],
-    /// What the design is picked for under the nominal and the corrected model.
+    /// What the design is picked for (lightest, stiffest, highest mode, knee) under the nominal and the corrected
+    /// model.
     pub picks: [Vec<&'static str>; 2],
     /// Parts of the design in words.
     pub choices: String,
@@ -57,11 +58,12 @@ pub(crate) struct PickChange {
     pub nominal_design_id: String,
     /// Objectives of this design under the nominal model.
     pub nominal: Option<Values>,
-    /// Objectives of this design under the corrected model; `None` if it is no longer feasible.
+    /// Objectives of the design that the nominal model picks, under the corrected model; `None` if it is no longer
+    /// feasible.
     pub nominal_under_corrected: Option<Values>,
     /// Name of the design that the corrected model picks.
     pub corrected_design_id: String,
-    /// Objectives of that design under the corrected model.
+    /// Objectives of the design that the corrected model picks, under the corrected model.
     pub corrected: Option<Values>,
 }
 
@@ -75,7 +77,8 @@ pub(crate) struct Changes {
 const PICKS: [&str; 4] = ["lightest", "stiffest", "highest mode", "knee"];
 
 impl Changes {
-    /// Compares two fronts of one study; `judge` computes the objectives of a design under a model.
+    /// Compares the nominal and the corrected front of one study (`fronts`, in this order). `judge` computes the
+    /// objectives of a design, given by its `design_id`, under a model.
     pub(crate) fn new(fronts: [&FrontTable; 2], judge: impl Fn(Model, &str) -> Option<Values>) -> Self {
         let mut out = Self { designs: Vec::new() };
         for (side, front) in fronts.into_iter().enumerate() {
@@ -117,7 +120,7 @@ impl Changes {
             .map(|on| self.designs.iter().filter(|d| d.on_front == on).count())
     }
 
-    /// The picks under both models; empty if a front is empty.
+    /// For each pick (lightest, and so on), the designs that the two models pick. Empty if a front is empty.
     pub(crate) fn picks(&self) -> Vec<PickChange> {
         let of = |side: usize, pick: &str| self.designs.iter().find(|d| d.picks[side].contains(&pick));
         PICKS
@@ -137,7 +140,7 @@ impl Changes {
             .collect()
     }
 
-    /// The counts and the picks, as text for a terminal.
+    /// The numbers of designs and the picks under both models, as text for a terminal.
     pub(crate) fn to_text(&self) -> String {
         let [stay, leave, enter] = self.counts();
         let mut table = Table::new(vec![

@@ -66,7 +66,7 @@ pub struct Comparison {
     pub moved: Vec<Moved>,
 }
 
-/// Compares fronts. Limits that are not given are chosen.
+/// Compares fronts by the best design of each under the limits in `thresholds`. If none is given, limits are chosen.
 pub fn compare(contenders: &[Contender], thresholds: &Thresholds) -> Comparison {
     let fronts: Vec<Vec<Design>> = contenders.iter().map(|c| designs(&c.front)).collect();
     let competing: Vec<&[Design]> = contenders
@@ -162,7 +162,8 @@ fn sentence(question: Question, limit: f64, answers: &[Answer]) -> String {
     capital(&(out + "."))
 }
 
-/// What the reference front reaches, as words; empty if that is no better than the winner.
+/// Words on the answer of the reference front, which cannot win, to the question: the value that it reaches. Empty if
+/// this is no better than the value of `winner`.
 fn mixed(question: Question, winner: &Design, answers: &[Answer]) -> String {
     let sought = question.sought();
     let better = |a: &&Answer| {
@@ -195,7 +196,7 @@ fn out_of_reach(question: Question, answers: &[Answer]) -> String {
     }
 }
 
-/// By how much a design is better than another, relative to the other: `12.3 %`.
+/// By how much `better` is better than `other` in the objective `sought`, in percent of the value of `other`: `12.3 %`.
 fn advantage(sought: Objective, better: &Design, other: &Design) -> String {
     let (a, b) = (sought.of(better), sought.of(other));
     let percent = 100.0 * ((a - b) / b).abs();

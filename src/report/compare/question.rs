@@ -23,7 +23,7 @@ impl Question {
     pub const ALL: [Self; 4] =
         [Self::LightestAtDeflection, Self::StiffestAtMass, Self::HighestModeAtMass, Self::LightestAtMode];
 
-    /// The objective that is made best.
+    /// The objective whose best value the question asks for.
     pub fn sought(self) -> Objective {
         match self {
             Self::LightestAtDeflection | Self::LightestAtMode => Objective::Mass,
@@ -32,7 +32,7 @@ impl Question {
         }
     }
 
-    /// The objective that is limited.
+    /// The objective that has a limit in the question.
     pub fn limited(self) -> Objective {
         match self {
             Self::LightestAtDeflection => Objective::Deflection,

@@ -13,7 +13,7 @@ const WIDTH: usize = 80;
 const LABEL: usize = 24;
 
 impl Comparison {
-    /// A table of the best values of each front.
+    /// A table of the best value of each objective that each front reaches, without any limit.
     pub fn reach_table(&self) -> Table {
         reach_table(&self.reach, &self.labels())
     }
@@ -181,7 +181,7 @@ fn reach_table(reach: &[Reach], labels: &[String]) -> Table {
     table
 }
 
-/// The same table without counts and cost, for a terminal.
+/// The table of the best values of each front, without counts and cost, so that it fits a terminal.
 fn short_reach_table(reach: &[Reach], labels: &[String]) -> Table {
     let mut columns = vec![Column::left("front")];
     for unit in ["kg", "mm", "Hz"] {
@@ -194,7 +194,7 @@ fn short_reach_table(reach: &[Reach], labels: &[String]) -> Table {
     short
 }
 
-/// Whether no competing front has a better value of the objective.
+/// Whether `own`, the best design of one front in the objective, has the best value among all competing fronts.
 fn is_best(objective: Objective, own: &Option<Design>, reach: &[Reach]) -> bool {
     let of = |r: &Reach| match objective {
         Objective::Mass => r.lightest.clone(),
@@ -206,7 +206,7 @@ fn is_best(objective: Objective, own: &Option<Design>, reach: &[Reach]) -> bool 
     reach.len() > 1 && own.as_ref().is_some_and(|d| objective.minimized(d) == best)
 }
 
-/// Value, name and cost of a design. A star marks the best value.
+/// Value of the objective, name and cost of a design, as three cells. A star before the value marks the best one.
 fn triple(objective: Objective, design: Option<&Design>, starred: bool) -> [String; 3] {
     let Some(d) = design else { return ["none".into(), String::new(), String::new()] };
     let star = if starred { "* " } else { "" };
@@ -242,7 +242,7 @@ fn answer_cells(question: Question, answer: &Answer) -> [String; 3] {
     triple(question.sought(), design, answer.winner)
 }
 
-/// Splits the limits of a question into groups whose tables fit the width.
+/// Splits the limits of a question into groups, each of which gives a table that fits the width.
 fn groups<'a>(rows: &[&'a Row], labels: &[String]) -> Vec<Vec<&'a Row>> {
     let mut out: Vec<Vec<&Row>> = Vec::new();
     for row in rows {
@@ -259,7 +259,7 @@ fn groups<'a>(rows: &[&'a Row], labels: &[String]) -> Vec<Vec<&'a Row>> {
     out
 }
 
-/// A sentence about the fronts that cannot meet a limit, and how near each comes.
+/// A sentence about the fronts that cannot meet the limit of `row`, and how near each comes to it.
 fn out_of_reach(row: &Row, labels: &[String]) -> String {
     let limited = row.question.limited();
     let missed: Vec<String> = row

@@ -19,7 +19,7 @@ pub struct Thresholds {
 }
 
 impl Thresholds {
-    /// The limits of a question.
+    /// The limits at which a question is asked.
     pub fn of(&self, question: Question) -> &[f64] {
         match question.limited() {
             Objective::Deflection => &self.deflection_mm,
@@ -33,8 +33,8 @@ impl Thresholds {
         self.deflection_mm.is_empty() && self.mass_kg.is_empty() && self.mode_hz.is_empty()
     }
 
-    /// These limits, if at least one is given. Otherwise round limits for these fronts (none may be empty) that
-    /// most fronts can meet and that still force a trade-off for most of them.
+    /// These limits, if at least one is given. Otherwise round limits are chosen for the given fronts, none of which
+    /// may be empty. Most fronts can meet them, and for most fronts they still force a trade-off.
     pub fn or_chosen(&self, fronts: &[&[Design]]) -> Self {
         if !self.is_empty() || fronts.is_empty() {
             return self.clone();
@@ -51,8 +51,9 @@ impl Thresholds {
     }
 }
 
-/// The range of useful limits: from the strictest limit that three of four fronts can meet, to the loosest limit
-/// that still constrains half of them. Beyond the latter the answer is simply the best design of the front.
+/// The range of useful limits on the objective `limited`. It starts at the strictest limit that three of four fronts
+/// can meet, and ends at the loosest limit that still constrains half of them. Beyond this end the answer is simply the
+/// best design of the front.
 fn overlap(limited: Objective, fronts: &[&[Design]]) -> (f64, f64) {
     let at_best_of = |o, front: &[Design]| best(o, front).map(|d| limited.minimized(d));
     let strictest = fronts.iter().filter_map(|f| at_best_of(limited, f)).collect();
@@ -70,7 +71,8 @@ fn asked(limited: Objective, sought: Objective) -> bool {
     Question::ALL.into_iter().any(|q| q.limited() == limited && q.sought() == sought)
 }
 
-/// The smallest of the values such that at least this fraction of the values is not larger; NaN without values.
+/// The smallest value v of `values` such that at least the fraction `share` of the values is at most v; NaN without
+/// values.
 fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     let index = (share * values.len() as f64).ceil() as usize;
@@ -118,8 +120,8 @@ fn decimal(digits: u32, power: i32) -> f64 {
     if power < 0 { digits / 10f64.powi(-power) } else { digits * 10f64.powi(power) }
 }
 
-/// Picks, from ascending numbers, those nearest to points that are evenly spread over the range on a logarithmic
-/// scale.
+/// From `found`, numbers in ascending order, those nearest to `count` points that are evenly spread from `low` to
+/// `high` on a logarithmic scale.
 fn spread(found: &[f64], low: f64, high: f64, count: usize) -> Vec<f64> {
     let place = |i: usize| low * libm::pow(high / low, (i as f64 + 0.5) / count as f64);
     let mut out: Vec<f64> = (0..count)
@@ -132,7 +134,8 @@ fn spread(found: &[f64], low: f64, high: f64, count: usize) -> Vec<f64> {
     out
 }
 
-/// The next number of two digits, rounded towards the looser limit.
+/// The nearest number with two significant digits that most fronts can meet as a limit. For a lower limit (lowest mode)
+/// it is `low` rounded down, for an upper limit `high` rounded up.
 fn nearest_round(low: f64, high: f64, limited: Objective) -> f64 {
     let (value, up) = if limited == Objective::Mode { (low, false) } else { (high, true) };
     let power = libm::log10(value).floor() as i32 - 1;

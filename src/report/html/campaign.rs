@@ -24,17 +24,17 @@ const LEAST_SCORE: f64 = -30.0;
 const THIRDS: usize = 3;
 const BEFORE_AFTER: [&str; 2] = ["before: the model as given, calibrated", "after: with what was found"];
 
-/// Root mean square of some residuals before and after \[standard deviations\]. "Before" is the calibrated model as
-/// given, "after" the model with what was found.
+/// Root mean square of the residuals (measured less predicted) of a group of readings, before and after \[standard
+/// deviations\]. "Before" means the calibrated model as given, "after" this model with the effects that were found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Compared {
-    /// Words that name the readings, such as a channel or a pose.
+    /// Words that name the group of readings, such as a channel or a pose.
     pub part: String,
     /// Number of measured values.
     pub count: usize,
-    /// Root mean square with the model as given.
+    /// Root mean square of the residuals with the model as given, after calibration \[standard deviations\].
     pub before: f64,
-    /// Root mean square with the effects found.
+    /// Root mean square of the residuals with the effects that were found \[standard deviations\].
     pub after: f64,
 }
 
@@ -89,7 +89,7 @@ pub struct Found {
 pub struct Weighed {
     /// Names of the model's effects, or `calibration only`.
     pub model: String,
-    /// Logarithm of the model's evidence, less that of the best model.
+    /// Logarithm of the model's evidence, less the logarithm of the evidence of the best model.
     pub score: f64,
     /// Sum of the squared residuals \[standard deviations squared\].
     pub chi_squared: f64,
@@ -121,7 +121,8 @@ pub struct CampaignPage {
     pub explained: bool,
     /// The driven joints, base to tip.
     pub joints: Vec<DrivenJoint>,
-    /// Difference by parts of the readings: channel, branch, load, mode, joint.
+    /// Root mean squares of the residuals before and after, for each part of the readings: channel, branch, load, mode,
+    /// joint.
     pub parts: Vec<Compared>,
     /// All measured values.
     pub readings: Vec<Reading>,
@@ -135,7 +136,8 @@ pub struct CampaignPage {
     pub weighed: Vec<Weighed>,
     /// Calibrated factors on nominal values.
     pub calibrated: Vec<Ranged>,
-    /// Held-out readings: their number, and the root mean square of their residuals before and after.
+    /// Held-out readings: their number, and the root mean square of their residuals before and after the effects were
+    /// added \[standard deviations\].
     pub kept_out: Option<(usize, f64, f64)>,
     /// Gross errors and wrongly declared standard deviations, in words.
     pub quality: Vec<String>,
@@ -194,12 +196,12 @@ impl CampaignPage {
         gallery.page("campaign.html", &self.name, content, &json!({}))
     }
 
-    /// Whether a part of the readings is a whole channel.
+    /// Whether a group of readings is a whole channel, so that its name is one word.
     fn is_channel(part: &Compared) -> bool {
         !part.part.contains([',', ' '])
     }
 
-    /// A picture of the difference between model and readings in each channel.
+    /// A picture of the root mean square of the residuals in each channel, before and after the effects were added.
     fn channels_figure(&self) -> Option<Figure> {
         let channels: Vec<Compared> = self.parts.iter().filter(|p| Self::is_channel(p)).cloned().collect();
         (!channels.is_empty()).then(|| {
@@ -209,7 +211,8 @@ impl CampaignPage {
         })
     }
 
-    /// Pictures that locate the difference: by load, branch, mode and bench joint; by joint angle; by pose.
+    /// Pictures that show where the model and the readings differ: by load, branch, mode and bench joint; by joint
+    /// angle; by pose.
     fn located_figures(&self) -> Vec<Figure> {
         let of_part = |p: &&Compared| !Self::is_channel(p) && !p.part.starts_with("pose");
         let mut parts: Vec<Compared> = self.parts.iter().filter(of_part).cloned().collect();
@@ -234,8 +237,8 @@ impl CampaignPage {
         filled.map(|(name, title, caption, rows)| gap_figure(name, title, caption, rows)).collect()
     }
 
-    /// The difference by channel before and after, as bars for a terminal of 80 columns. The lengths of the bars
-    /// are logarithmic.
+    /// The root mean square of the residuals by channel, before and after the effects were added, as bars for a
+    /// terminal of 80 columns. The lengths of the bars are logarithmic.
     pub fn terminal(&self) -> String {
         let rows = || self.parts.iter().filter(|p| Self::is_channel(p));
         let values = || rows().flat_map(|c| [c.before, c.after]).filter(|v| *v > 0.0);
@@ -253,7 +256,7 @@ impl CampaignPage {
         }
     }
 
-    /// Root mean squares for each pose, the largest first.
+    /// Root mean squares of the residuals in each pose, the largest first.
     fn by_pose(&self) -> Vec<Compared> {
         let name = |r: &Reading| r.pose_deg.as_ref().map(|p| pose_signs(&self.joints, p));
         let mut rows = self.split(|r| name(r).into_iter().collect());
@@ -262,7 +265,7 @@ impl CampaignPage {
         rows
     }
 
-    /// Root mean squares for each third of each joint's range.
+    /// Root mean squares of the residuals in each third of the range of each joint.
     fn by_joint(&self) -> Vec<Compared> {
         let range = |j: usize| {
             let angles = self.readings.iter().filter_map(|r| r.pose_deg.as_ref()?.get(j).copied());
@@ -298,8 +301,8 @@ impl CampaignPage {
         rows
     }
 
-    /// Root mean squares of the readings, grouped by the names that `names` gives them. A reading may belong to
-    /// several groups. Gross errors are left out.
+    /// Root mean squares of the residuals of groups of readings. `names` gives the names of the groups to which a
+    /// reading belongs; these may be several. Gross errors are left out.
     fn split(&self, names: impl Fn(&Reading) -> Vec<String>) -> Vec<Compared> {
         let mut out: Vec<Compared> = Vec::new();
         for reading in self.readings.iter().filter(|r| !r.gross) {
@@ -321,7 +324,8 @@ impl CampaignPage {
         out
     }
 
-    /// Residuals before and after, over the rows of the file; one picture per channel.
+    /// Pictures of the residuals before and after the effects were added, over the rows of the file; one picture per
+    /// channel.
     fn residual_figures(&self) -> Vec<Figure> {
         let mut channels: Vec<&'static str> = Vec::new();
         for reading in &self.readings {
@@ -445,7 +449,7 @@ impl CampaignPage {
         })
     }
 
-    /// Residuals of held-out readings, in their order.
+    /// A picture of the residuals of held-out readings, in the order of the readings; `None` without such readings.
     fn kept_out_figure(&self) -> Option<Figure> {
         let predicted: Vec<(usize, &Reading, f64)> = self
             .readings
@@ -497,7 +501,8 @@ impl CampaignPage {
     }
 }
 
-/// A picture with one row per group of readings: root mean square before and after.
+/// A picture with one row per group of readings: root mean square of the residuals before and after the effects were
+/// added.
 fn gap_figure(name: &str, title: &str, caption: &str, rows: Vec<Compared>) -> Figure {
     let row = |c: &Compared| Row {
         label: c.part.clone(),
@@ -540,7 +545,7 @@ fn test(test: &Test) -> Value {
     })
 }
 
-/// One end of an interval as text; "open" if the readings do not bound it.
+/// One end of an interval as text with `digits` significant digits; "open" if the readings do not bound it.
 fn end(value: Option<f64>, digits: usize) -> String {
     value.map_or("open".into(), |v| significant(v, digits))
 }

@@ -23,7 +23,7 @@ pub(crate) struct DocumentPage {
 }
 
 impl DocumentPage {
-    /// The page as HTML, with its pictures.
+    /// The page of the study as HTML, with its pictures.
     pub(crate) fn page(&self) -> Page {
         let mut gallery = Gallery::default();
         let figures: Vec<Value> = self.figures.iter().map(|f| gallery.show(f)).collect();

@@ -78,8 +78,8 @@ pub(crate) struct FrontData<'a> {
     pub groups: Vec<Group>,
     /// The designs that are drawn, lightest first.
     pub rows: Vec<Row<'a>>,
-    /// Numbers of designs before some were left out: on the front of all designs, and only on the front of their
-    /// group.
+    /// Numbers of designs before some were left out to save space: on the front of all designs, and only on the front
+    /// of their group.
     pub rows_total: [usize; 2],
     /// Axes of the choices that differ among the designs, base to tip, then of mass, tip deflection and lowest
     /// mode.
@@ -89,7 +89,8 @@ pub(crate) struct FrontData<'a> {
 }
 
 impl<'a> FrontData<'a> {
-    /// The data of these designs, in at most `most_bytes` bytes. The designs named in `kept` are drawn in any case.
+    /// The data of the designs `rows`, in at most `most_bytes` bytes: designs are left out until they fit. The designs
+    /// named in `kept` are drawn in any case.
     pub(crate) fn new(groups: Vec<Group>, rows: Vec<Row<'a>>, kept: &[String], most_bytes: usize) -> Self {
         let rows_total = counts(&rows);
         let mut room = MOST_ROWS;
@@ -185,7 +186,7 @@ impl Axis {
     }
 }
 
-/// Numbers of designs: on the front of all designs, and not on it.
+/// Numbers of designs among `rows`: on the front of all designs, and only on the front of their group.
 fn counts(rows: &[Row]) -> [usize; 2] {
     let front = rows.iter().filter(|r| r.on_front).count();
     [front, rows.len() - front]
@@ -205,7 +206,7 @@ pub(crate) fn objective_column(objective: Objective) -> &'static str {
     }
 }
 
-/// Names of the columns of choices that every table has, in the order of the first table.
+/// Names of the columns with choices that the tables of all designs have, in the order of the first table.
 fn choice_columns<'a>(rows: &[Row<'a>]) -> Vec<&'a str> {
     let Some(first) = rows.first() else { return Vec::new() };
     let end = first.table.column("tip_deflection_mm").unwrap_or(0);
@@ -236,7 +237,8 @@ fn label(column: &str) -> (String, &'static str) {
     (format!("{piece} {what}").trim().to_string(), unit)
 }
 
-/// If a height equals the width in every design, it is no choice of its own. A sentence then replaces its axis.
+/// A sentence that says that a height equals the width in every design; `None` if it does not. The height is then no
+/// choice of its own, and the sentence replaces its axis.
 fn same_as_width(column: &str, rows: &[Row], cells: &[&str]) -> Option<String> {
     let width = format!("{}_width_mm", column.strip_suffix("_height_mm")?);
     let same = rows.iter().zip(cells).all(|(row, c)| cell(row, &width) == *c);
@@ -311,8 +313,8 @@ fn natural(a: &str, b: &str) -> Ordering {
     pieces(a).cmp(&pieces(b)).then_with(|| a.cmp(b))
 }
 
-/// At most `room` designs, lightest first. The front of all designs gets at least four fifths of them, if it has
-/// that many.
+/// At most `room` designs, lightest first. The front of all designs gets at least four fifths of the places, if it has
+/// that many designs. Designs named in `kept` stay.
 fn sampled<'a>(rows: &[Row<'a>], room: usize, kept: &[String]) -> Vec<Row<'a>> {
     let (front, own): (Vec<Row>, Vec<Row>) = rows.iter().partition(|r| r.on_front);
     let room_of_front = room.saturating_sub(own.len().min(room / 5));
@@ -321,8 +323,8 @@ fn sampled<'a>(rows: &[Row<'a>], room: usize, kept: &[String]) -> Vec<Row<'a>> {
     by_mass(front.into_iter().chain(own).collect())
 }
 
-/// At most `room` of the designs. Named designs and those at the edge of a view are kept, the others are taken at
-/// even steps in the order of mass.
+/// At most `room` of the designs `rows`. Designs named in `kept` and those at the edge of a view stay; the others are
+/// taken at even steps in the order of mass.
 fn thinned<'a>(rows: Vec<Row<'a>>, room: usize, kept: &[String]) -> Vec<Row<'a>> {
     if rows.len() <= room {
         return rows;
@@ -347,7 +349,7 @@ fn by_mass(rows: Vec<Row>) -> Vec<Row> {
     weighed.into_iter().map(|(_, row)| row).collect()
 }
 
-/// Keeps `room` entries of a list, at even steps.
+/// Shortens a list to `room` entries, which are taken at even steps.
 fn thin(list: &mut Vec<usize>, room: usize) {
     let count = list.len();
     if count > room {
@@ -355,7 +357,8 @@ fn thin(list: &mut Vec<usize>, room: usize) {
     }
 }
 
-/// Indices of the designs that are best for their mass in one of the views, in each group.
+/// Indices of the designs that form the edge of a front in a view: in each group, those with the best deflection or the
+/// best mode among all designs of no more mass.
 fn edges(rows: &[Row]) -> Vec<usize> {
     let groups = rows.iter().map(|r| r.group).max().map_or(0, |g| g + 1);
     let mut out = Vec::new();

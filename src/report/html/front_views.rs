@@ -28,7 +28,7 @@ pub(crate) struct FrontViews<'a> {
 }
 
 impl FrontViews<'_> {
-    /// The values for the template of this section.
+    /// The values for the part of the page's template that shows the linked views. Pictures are added to `gallery`.
     pub(super) fn context(&self, gallery: &mut Gallery) -> Value {
         let data = &self.data;
         json!({
@@ -43,7 +43,8 @@ impl FrontViews<'_> {
         })
     }
 
-    /// Says how many designs are not drawn because the page would be too large; `None` if all are drawn.
+    /// A sentence that says how many designs are not drawn because the page would be too large; `None` if all are
+    /// drawn.
     fn left_out(&self) -> Option<String> {
         let ([front, own], [all_front, all_own]) = (self.data.rows_drawn(), self.data.rows_total);
         let part = |drawn: usize, all: usize, of: &str| {
@@ -121,7 +122,8 @@ fn named(picks: &[Pick]) -> Vec<(String, String)> {
     picks.iter().map(|p| (p.names.join(", "), p.design.design_id.clone())).collect()
 }
 
-/// The objectives of a design as page and terminal write them: name, value and unit.
+/// The objectives of a design in the form in which the page and the terminal print them: name, value with four
+/// significant digits, unit.
 pub(crate) fn headline(design: &Design) -> [(&'static str, String, &'static str); 3] {
     [
         ("tip deflection", significant(design.tip_deflection_mm, 4), "mm"),

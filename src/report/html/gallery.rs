@@ -33,7 +33,7 @@ pub(super) struct Gallery {
 }
 
 impl Gallery {
-    /// A figure in the form that templates need. Its files are added to the collection.
+    /// A figure in the form that templates need. Its picture and its numbers are added to the files of the page.
     pub(super) fn show(&mut self, figure: &Figure) -> Value {
         let name = unique_file_name(&figure.name, &mut self.names);
         self.files.push((format!("{name}.svg"), figure.svg.clone().into_bytes()));

@@ -81,29 +81,29 @@ impl PickedArm {
         self.pick.names.join(", ")
     }
 
-    /// The pick's name as a part of file names.
+    /// The first name of the pick, in the form in which it is a part of file names.
     fn slug(&self) -> String {
         file_name(self.pick.names[0])
     }
 
-    /// Results in the case with the largest tip deflection.
+    /// Results of the arm in the case with the largest tip deflection; `None` without cases.
     fn worst(&self) -> Option<Solved<'_>> {
         let solved = self.cases.iter().map(|case| solve(&self.arm, case));
         solved.max_by(|a, b| a.tip_mm.total_cmp(&b.tip_mm))
     }
 
-    /// Results in the case whose lowest mode is lowest.
+    /// Results of the arm in the case with the smallest lowest mode; `None` without cases.
     fn slowest(&self) -> Option<Solved<'_>> {
         let first = |s: &Solved| s.modes.first().map_or(f64::INFINITY, |m| m.0.frequency_hz);
         self.cases.iter().map(|case| solve(&self.arm, case)).min_by(|a, b| first(a).total_cmp(&first(b)))
     }
 
-    /// The part of the tip deflection that each element causes, in the worst case.
+    /// The part of the tip deflection that each element causes, in the case with the largest tip deflection.
     pub fn deflection_parts(&self) -> Vec<DeflectionPart> {
         self.worst().map_or(Vec::new(), |s| s.parts)
     }
 
-    /// The values of the card for its template.
+    /// The values for the template of the card that shows this pick. Pictures are added to `gallery`.
     pub(super) fn context(&self, gallery: &mut Gallery) -> Value {
         let (worst, slowest) = (self.worst(), self.slowest());
         let drawing = worst.as_ref().map(|s| gallery.show(&self.drawing(s)));
@@ -175,7 +175,7 @@ impl PickedArm {
         solved.modes.iter().enumerate().map(figure).collect()
     }
 
-    /// A drawing of the arm in the plane of a view.
+    /// A drawing of the arm in the plane of a view. `line` has the points of its centre line with their displacements.
     fn sketch(&self, solved: &Solved, line: &[Station], view: &View) -> ArmSketch {
         let links: Vec<&Link> = self.arm.links().collect();
         let own = |name: &str| -> Vec<(Place, Place)> {
@@ -342,7 +342,7 @@ fn parts_table(parts: &[DeflectionPart]) -> Table {
     table
 }
 
-/// The elements with most of a mode's strain energy, in words; `most` is the largest number of elements.
+/// The elements that have most of the strain energy of a mode, in words. At most `most` elements are named.
 fn energy_words(mode: &Mode, most: usize) -> String {
     let mut parts: Vec<&(String, f64)> = mode.strain_energy.iter().filter(|(_, e)| *e >= 0.01).collect();
     parts.sort_by(|a, b| b.1.total_cmp(&a.1));
@@ -369,8 +369,9 @@ struct View {
 }
 
 impl View {
-    /// The vertical plane through base and tip. It is the view from above instead, if `moving` moves mostly out of
-    /// that plane and `keep_upright` is false.
+    /// The plane in which an arm is drawn: the vertical plane through base and tip. It is the view from above instead,
+    /// if the points `moving` move mostly out of the vertical plane and `keep_upright` is false. `arm` has the points
+    /// of the centre line.
     fn of(moving: &[Station], arm: &[Station], keep_upright: bool) -> Self {
         let tip = arm.last().map_or(Vector3::zeros(), |s| s.at_m);
         let level = Vector3::new(tip.x, tip.y, 0.0);
@@ -420,7 +421,7 @@ const CHECKS: [CheckKind; 22] = [
     CheckKind::DriveLength,
 ];
 
-/// A drive as JSON: torques, parts and the margin of every check.
+/// The sizing of one joint for the template: torques, parts and the margin of every check.
 fn drive(row: &JointSizingRow) -> Value {
     let number = |v: f64| significant(v, 4);
     let open = |v: Option<f64>| v.map_or("unknown".to_string(), number);

@@ -21,9 +21,9 @@ const NAMES: [&str; 3] = ["before", "after", "after, pose held out"];
 /// Size of the position error at one stage of the model \[mm\].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Step {
-    /// Words that say what the stage adds to the model.
+    /// Words that name what the stage adds to the model.
     pub added: String,
-    /// Median error over the poses of the fit.
+    /// Median error over the poses to which the model was fitted.
     pub fitted_median: f64,
     /// Median error over held-out poses.
     pub median: f64,
@@ -44,7 +44,7 @@ pub struct Position {
     pub before_mm: [f64; 3],
     /// Error with the effects found.
     pub after_mm: [f64; 3],
-    /// Error with the effects found and parameters fitted without this pose.
+    /// Error of this position with the effects found and parameters fitted without its pose, by component \[mm\].
     pub kept_out_mm: [f64; 3],
 }
 
@@ -52,7 +52,7 @@ fn length(v: &[f64; 3]) -> f64 {
     v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// A picture of the error at each stage of the model.
+/// A picture of the position error (median, mean and largest) at each stage of the model.
 pub(crate) fn steps_figure(steps: &[Step]) -> Option<Figure> {
     let row = |s: &Step| Row {
         label: s.added.clone(),
@@ -87,7 +87,8 @@ pub(crate) fn steps_figure(steps: &[Step]) -> Option<Figure> {
     })
 }
 
-/// A picture of the distribution of errors: the percentage of positions whose error is at most a given size.
+/// A picture of the distribution of position errors: the percentage of positions whose error is at most a given size
+/// \[mm\], with calibration only, with the effects found, and held out.
 pub(crate) fn sizes_figure(positions: &[Position]) -> Option<Figure> {
     let sorted = |of: fn(&Position) -> &[f64; 3]| {
         let mut out: Vec<f64> = positions.iter().map(|p| length(of(p))).collect();
@@ -134,7 +135,7 @@ pub(crate) fn sizes_figure(positions: &[Position]) -> Option<Figure> {
     })
 }
 
-/// A picture of the errors along each axis of the instrument, over the rows of the file.
+/// A picture of the position errors along each axis of the instrument, over the rows of the file.
 pub(crate) fn axes_figure(positions: &[Position]) -> Option<Figure> {
     let panel = |axis: usize| {
         let points =
@@ -196,7 +197,8 @@ struct Bin {
     after_mm: f64,
 }
 
-/// Median errors in each bin of a joint's range. Bins with fewer than [`FEWEST`] positions are left out.
+/// Median position errors in each bin of the range of the joint with the index `joint`. Bins with fewer than [`FEWEST`]
+/// positions are left out.
 fn bins(positions: &[Position], joint: usize) -> Vec<Bin> {
     let angles = || positions.iter().filter_map(|p| p.pose_deg.get(joint).copied());
     let (low, high) = angles().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(a), h.max(a)));
@@ -224,7 +226,7 @@ fn bins(positions: &[Position], joint: usize) -> Vec<Bin> {
         .collect()
 }
 
-/// Pictures of the median error over the angle of each joint. The joints whose angle has the most effect come
+/// Pictures of the median position error over the angle of each joint. The joints whose angle has the most effect come
 /// first.
 pub(crate) fn angles_figure(joints: &[String], positions: &[Position]) -> Option<Figure> {
     let swing = |bins: &[Bin]| {

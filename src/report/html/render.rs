@@ -55,7 +55,7 @@ fn script_json(data: &Value) -> String {
     data.to_string().replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
 }
 
-/// Name of the anchor to which links on the page refer for a part.
+/// Name of the anchor of the part `name`, to which links on the page refer.
 pub(super) fn anchor(name: &str) -> String {
     let letters = name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' });
     format!("part-{}", letters.collect::<String>())

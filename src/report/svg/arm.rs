@@ -62,7 +62,8 @@ const TOP_PX: f64 = 40.0;
 const FOOT_PX: f64 = 56.0;
 
 impl ArmSketch {
-    /// A round factor by which the largest displacement looks about a tenth as large as the arm.
+    /// A factor, rounded, by which displacements are exaggerated so that the largest one looks about a tenth as large
+    /// as the arm.
     pub(crate) fn fitting_factor(&self) -> f64 {
         let places: Vec<Place> = self.stations().map(|(at, _)| at).collect();
         let span = |of: fn(&Place) -> f64| {
@@ -248,7 +249,7 @@ impl Tube {
     }
 }
 
-/// Unit vector perpendicular to a line, at one of its points.
+/// Unit vector perpendicular to the line through `points`, at the point with the index `i`.
 fn normal(points: &[(f64, f64)], i: usize) -> (f64, f64) {
     let (a, b) = (points[i.saturating_sub(1)], points[(i + 1).min(points.len() - 1)]);
     let (dx, dy) = (b.0 - a.0, b.1 - a.1);

@@ -48,12 +48,12 @@ pub(crate) struct StackedBars {
     pub bars: Vec<Bar>,
 }
 
-/// If the longest bar exceeds the shortest by this factor, the parts of the shortest cannot be seen.
+/// Ratio of the longest to the shortest bar above which the parts of the shortest bar would be too small to be seen.
 const FAR_APART: f64 = 8.0;
 
 impl StackedBars {
-    /// The same picture. If some bar would be too short to be seen, all bars get the same length, and each shows
-    /// fractions of its own total.
+    /// This picture in a readable form. If some bar would be too short to be seen, all bars get the same length, and
+    /// each shows fractions of its own total.
     #[must_use]
     pub(crate) fn readable(mut self) -> Self {
         let whole = |bar: &Bar| bar.values.iter().sum::<f64>();

@@ -172,7 +172,8 @@ impl Plot {
         head(&self.title, &self.description, self.width_px, self.height_px)
     }
 
-    /// Ends of an axis: its stated range, or else those of the data. Without any data they are 1 and 10.
+    /// Ends of an axis: its stated range, or else the smallest and largest value of the data. Without any data they are
+    /// 1 and 10. `along_x` says which axis it is.
     fn extent(&self, axis: &Axis, along_x: bool) -> (f64, f64) {
         let guides = self.guides.iter().filter(|g| g.vertical == along_x).map(|g| g.value);
         let points = self.series.iter().flat_map(|s| &s.points).filter(|p| self.shows(p));
@@ -223,7 +224,7 @@ impl Canvas {
         )
     }
 
-    /// Position of a point \[px\]; `None` if it is outside the frame.
+    /// Position of a point, given in data units, in the picture \[px\]; `None` if it is outside the frame.
     pub(super) fn inside(&self, point: (f64, f64)) -> Option<(f64, f64)> {
         if !usable(self.x.scale, point.0) || !usable(self.y.scale, point.1) {
             return None;

@@ -15,7 +15,7 @@ const WIDTH_PX: f64 = 900.0;
 /// Value of the mark on the axis.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Mark {
-    /// Where it is.
+    /// Value at which the mark is drawn, in the unit of the axis.
     pub value: f64,
     /// Ends of the interval around the value. An unknown end is drawn as an arrow at the frame.
     pub interval: Option<(Option<f64>, Option<f64>)>,

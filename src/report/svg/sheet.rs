@@ -98,7 +98,8 @@ impl Canvas {
         }
     }
 
-    /// Possible positions for a note of this size around a point, inside the frame. The nearest come first.
+    /// Possible positions for a note with the size (`width`, `height`) around the point (`x`, `y`), inside the frame
+    /// \[px\]. The nearest come first.
     fn candidates(&self, (x, y): (f64, f64), (width, height): (f64, f64)) -> Vec<Rect> {
         let inside = |b: &Rect| {
             b.left >= self.left + 4.0
@@ -127,8 +128,8 @@ struct Obstacles {
 }
 
 impl Obstacles {
-    /// Cost of a position for a note. Covering other notes and rings costs most, then covering points, then the
-    /// distance to the note's own ring.
+    /// Cost of the position `place` for a note. Covering other notes and rings costs most, then covering points, then
+    /// the distance to `own`, the ring of the note.
     fn cost(&self, place: &Rect, own: (f64, f64)) -> u64 {
         let boxes = self.boxes.iter().filter(|b| b.touches(place)).count() as u64;
         let rings =
@@ -167,7 +168,7 @@ impl Rect {
             && other.top < self.bottom
     }
 
-    /// The point of the rectangle that is nearest to a given point.
+    /// The point of the rectangle that is nearest to the point (`x`, `y`) \[px\].
     fn nearest(&self, (x, y): (f64, f64)) -> (f64, f64) {
         (x.clamp(self.left, self.right), y.clamp(self.top, self.bottom))
     }

@@ -114,7 +114,7 @@ fn stop_above(value: f64) -> f64 {
     candidates.filter(|s| *s >= value * (1.0 - 1e-9)).fold(times_power(1.0, power + 1), f64::min)
 }
 
-/// The range itself, or a wider one if it is empty or nearly so.
+/// The range from `low` to `high`, or a wider one if it is empty or nearly so.
 fn widen(low: f64, high: f64) -> (f64, f64) {
     let size = low.abs().max(high.abs());
     if high - low > 1e-9 * size {
