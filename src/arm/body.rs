@@ -70,13 +70,13 @@ impl JointBodies {
         self.fixed.iter().chain(&self.rotating)
     }
 
-    /// The bodies as files write them; `None` if there are none.
+    /// The rigid bodies of the joint (key `bodies` of the arm file) as a JSON list; `None` if the joint has none.
     pub(crate) fn to_json(&self) -> Option<Value> {
         self.to_json_that("rotates")
     }
 
-    /// The bodies as files write them. `moves` is the key (`rotates` or `travels`) that is true for bodies outboard of
-    /// the springs. `None` if there are no bodies.
+    /// The rigid bodies of the joint (key `bodies` of the arm file) as a JSON list. `moves` is the key (`rotates` or
+    /// `travels`) that is true for bodies outboard of the springs. `None` if the joint has none.
     pub(crate) fn to_json_that(&self, moves: &str) -> Option<Value> {
         let rotating = self.rotating.iter().map(|body| {
             let mut value = body.to_json();

@@ -85,8 +85,8 @@ impl Exact<'_> {
     }
 }
 
-/// Number of near designs up to which all are stored. If there are more, only the `most` nearest are kept, `most` being
-/// the number that was asked for.
+/// How many near designs may be stored before the list is cut back to the `most` nearest that were asked for: twice
+/// `most` and a buffer, so that the list is not cut back at every find.
 fn kept_at_most(most: usize) -> usize {
     2 * most + BUFFER
 }

@@ -147,7 +147,10 @@ pub(crate) fn pass<V: Lanes, const N: usize>(
     LanePass { below_all: !state.negative, near_first: !state.twice_negative, product: state.product }
 }
 
-/// Access to the entries of a link in lanes, whether the eight chains share the link or not.
+/// The matrices of a condensed link (inertia of the root and of the end coordinates, their coupling, twist of
+/// everything outboard per end coordinate), read entry by entry as one value per lane. The three inertias have one
+/// matrix for each `order`, the power of `λ`. Implemented for links that differ from lane to lane and for one link
+/// that all eight chains share.
 trait LinkNumbers<const N: usize> {
     fn root<V: Lanes>(&self, order: usize, i: usize, j: usize) -> V;
     fn cross<V: Lanes>(&self, order: usize, i: usize, j: usize) -> V;

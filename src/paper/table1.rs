@@ -112,7 +112,7 @@ fn third_spring_words(springs: &[Reading]) -> String {
     )
 }
 
-/// Runs the study and formats its results.
+/// Computes the numbers of the paper's Table 1 and writes them next to those of the paper, as a summary and as tables.
 ///
 /// # Errors
 /// The catalogs lack a part that the paper names.

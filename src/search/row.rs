@@ -124,7 +124,8 @@ pub(crate) struct RowCase {
     /// For each block of the eigenvalue problem, the number of inner slots that take part in its modes: all from the
     /// row level to the last compliant one. Slots inboard of that one stand still in every mode.
     pub ends: [usize; 2],
-    /// Whether the link of the row level is compliant with at least one of its options.
+    /// Whether at least one option of the row's link is elastic in this case. If none is, the link is rigid (or the row
+    /// level is not a link).
     pub links_yield: bool,
     /// Contribution of the given tubes to Dunkerley's sum (the sum of `1/λ` over the eigenvalues) of each block \[s²\].
     /// It counts the mass of each tube itself, without the mass outboard of it.
@@ -169,7 +170,8 @@ pub(crate) struct StressEight {
     pub round: u8,
 }
 
-/// Eight options of the row's link in one case.
+/// What eight options of the row's link contribute in one case: weight, tip displacement, inertia about the inner
+/// joints, and the terms for the lowest mode.
 pub(crate) struct CaseChunk {
     /// Weight of each option \[N\].
     pub weight_n: Eight,

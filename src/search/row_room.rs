@@ -37,8 +37,8 @@ impl RowRoom {
         rooms.filter_map(room).collect()
     }
 
-    /// The room for gear and for motor \[m\] in the eight designs of a chunk. `from` is the arm outboard of the row.
-    /// `None` if the room is not limited.
+    /// Largest outer diameters \[m\] that the link leaves for the gear and for the motor of this joint, for the eight
+    /// designs of a chunk. `from` is the arm outboard of the row. `None` if no link limits them.
     #[inline(always)]
     pub(crate) fn room<V: Lanes>(
         &self,
@@ -55,8 +55,8 @@ impl RowRoom {
     }
 }
 
-/// The room \[m\] for gear and for motor that each option of the link leaves, eight options in a chunk. The last chunk
-/// is filled up with copies of the last option.
+/// Largest outer diameters \[m\] that each option of the link leaves for the gear and for the motor, eight options in a
+/// chunk. The last chunk is filled up with copies of the last option.
 fn chunks(room: &RoomAtJoint) -> Vec<[Eight; 2]> {
     let of = |option: usize| room.rooms[option.min(room.rooms.len() - 1)];
     let eight = |chunk: usize| {

@@ -47,9 +47,9 @@ pub enum MotorPlace {
 /// no limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinkRoom {
-    /// Largest outer diameter of the gear \[m\].
+    /// Largest outer diameter that the gear may have \[m\]; infinite if there is no limit.
     pub gear_m: f64,
-    /// Largest outer diameter of the motor \[m\].
+    /// Largest outer diameter that the motor may have \[m\]; infinite if there is no limit.
     pub motor_m: f64,
 }
 

@@ -59,7 +59,7 @@ pub(crate) struct Mesh {
 struct Grid {
     /// Number of bricks in each direction.
     bricks: (usize, usize),
-    /// Whether the first direction is closed to a ring.
+    /// Whether the grid's first direction runs around the section, as in a round tube.
     closes: bool,
     /// Whether the brick with these indices has material.
     has: Box<dyn Fn(usize, usize) -> bool>,

@@ -77,10 +77,11 @@ pub fn claims(growths: &[Growth]) -> Vec<Claim> {
     )]
 }
 
-/// Runs the study.
+/// Computes Fig 3 of the paper (whether wall thickness or outer size is the better use of weight) with its table and
+/// claims.
 ///
 /// # Errors
-/// The catalog lacks the material.
+/// The material of the figure is not in the catalog.
 pub fn run(catalogs: &Catalogs) -> Result<PaperStudyOutput, PaperError> {
     let material = parts::material(catalogs, MATERIAL)?;
     let growths = growths(catalogs)?;

@@ -165,10 +165,10 @@ fn shear_of_axial_rows(curves: &[Curve]) -> Claim {
     )
 }
 
-/// Runs the study.
+/// Computes Fig 4 of the paper (deflection against weight of composite tubes) with its table and claims.
 ///
 /// # Errors
-/// The catalog lacks a material.
+/// A material of the figure is not in the catalog.
 pub fn run(catalogs: &Catalogs) -> Result<PaperStudyOutput, PaperError> {
     let curves = curves(catalogs)?;
     let figure = Figure {

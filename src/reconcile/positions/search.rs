@@ -34,9 +34,10 @@ impl Positions {
         self.take_if_confirmed(campaign, next, self.label(added))
     }
 
-    /// Replaces this model by `next` if the gain is worth the price and `next` predicts held-out poses better, and
-    /// returns whether it did. Effects of `next` that are no longer needed are dropped first. `added` is the label of
-    /// what `next` adds.
+    /// Replaces the current model of the positions by `next` if `next` has the higher score (ln of the likelihood, less
+    /// the prices of effects, transmission errors and undeclared sessions) and predicts held-out poses better. Effects
+    /// of `next` that are not worth their price are dropped first. `added` names what `next` adds. Returns whether the
+    /// model was replaced.
     pub(crate) fn take_if_confirmed(&mut self, campaign: &Campaign, mut next: Self, added: String) -> bool {
         next.settle(campaign);
         if next.score() <= self.score() {

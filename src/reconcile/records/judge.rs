@@ -84,9 +84,11 @@ impl<'a> Judged<'a> {
         self.curve.as_ref().map_or(&self.model.fitted, |c| &c.fitted)
     }
 
-    /// Result for the compliance, with hysteresis or lost motion in the fit if one was found. A fit without them
-    /// would add a part of them to the compliance. A torsion curve, in contrast, has stiffnesses of its own. If it
-    /// was found, the compliance is the mean over the record, from the linear fit.
+    /// Stated compliance of the joint, given as a stiffness with its interval. If hysteresis or lost motion was found,
+    /// the compliance comes from the fit that includes it; the linear fit would count part of that effect as
+    /// compliance. If a torsion curve was found, its segments have their own stiffnesses, and the compliance stated
+    /// here is that of the linear fit, a mean over the record. The linear fit is also taken where the interval of the
+    /// other fit does not exclude zero compliance.
     fn compliance_beside_laws(&self) -> Stated {
         let laws = self.curve.iter().flat_map(|c| &c.laws);
         let is_changed = !laws.clone().any(|l| matches!(l, Law::Segments(..))) && laws.count() > 0;

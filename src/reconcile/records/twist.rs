@@ -201,7 +201,8 @@ pub(crate) fn fill(rows: &JointRows, i: usize, shift_s: f64, row: &mut [f64]) ->
     true
 }
 
-/// Indices of the columns of the offsets and of the groups `groups`.
+/// Indices of the columns of the twist model that a fit uses: the constant offset of each record, then the columns of
+/// the terms in `groups` (time shift, compliance with friction, transmission errors).
 pub(crate) fn columns(rows: &JointRows, groups: &[Group]) -> Vec<usize> {
     let places = Places { records: rows.record_count() };
     let mut out = places.offsets();

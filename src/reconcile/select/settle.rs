@@ -108,7 +108,8 @@ struct Round {
 }
 
 impl Round {
-    /// The score of the best model, less a charge for each row that is left out \[ln of the evidence\].
+    /// The score of the best model, less [`SLIP`] for each reading that was left out of the fit as a gross error
+    /// \[ln of the evidence\].
     fn score(&self) -> f64 {
         self.selection.best.score - SLIP * self.noise.outliers.len() as f64
     }

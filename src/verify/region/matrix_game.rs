@@ -11,10 +11,12 @@
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
-/// The barrier parameter `μ`: its first value, the factor by which it is reduced from stage to stage, and the
-/// product of its last value with the number of rows and columns.
+/// Barrier parameter `μ` before the first stage, which already uses [`STAGE`] times this value. It is also how far `t`
+/// starts below the least row sum.
 const FIRST: f64 = 0.3;
+/// Factor by which `μ` is reduced from stage to stage.
 const STAGE: f64 = 0.2;
+/// The stages end at `μ` = this divided by the number of rows and columns together.
 const LAST: f64 = 3e-4;
 /// Largest number of Newton steps at each stage.
 const STEPS: usize = 4;
