@@ -82,7 +82,7 @@ fn moments(text: &str) -> Result<[f64; 3], String> {
     }
 }
 
-/// Frequencies of a response \[Hz\].
+/// Frequencies at which the response is computed \[Hz\].
 #[derive(Debug, Clone)]
 struct Frequencies(Vec<f64>);
 
@@ -106,14 +106,14 @@ fn non_negative(text: &str) -> Result<f64, String> {
 }
 
 impl AnalyzeArgs {
-    /// The harmonic force whose response is asked for.
+    /// The harmonic force whose response is to be computed; `None` if the user asks for no response.
     fn harmonic(&self) -> Option<Harmonic> {
         let force_n = Vector3::from(self.response_n?);
         Some(Harmonic { force_n, damping: self.damping, frequencies_hz: self.response_hz.0.clone() })
     }
 }
 
-/// Executes the verb.
+/// Runs `armwright analyze` and returns the text to print.
 pub(super) fn run(args: &AnalyzeArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let arm = read_arm(&args.arm, catalogs)?;
     let cases = match &args.cases {
@@ -134,7 +134,8 @@ pub(super) fn run(args: &AnalyzeArgs, catalogs: &Catalogs) -> Result<String, Fai
     })
 }
 
-/// Names the effects that an analysis ignores because they describe a test and not the arm.
+/// One line with the names of the effects that the analysis ignores, because they describe a test and not the arm.
+/// Empty if there are none.
 fn ignored_text(ignored: &[String]) -> String {
     match ignored {
         [] => String::new(),
@@ -144,7 +145,7 @@ fn ignored_text(ignored: &[String]) -> String {
     }
 }
 
-/// What is said of the arm's materials that creep, and of links with stated factors.
+/// Remarks on materials that creep, and on links whose stiffness and mass are multiplied by stated factors.
 fn creep_text(arm: &Arm, catalogs: &Catalogs) -> String {
     let tubes = arm.chain.iter().filter_map(|element| match element {
         Element::Link(Link { name, body: LinkBody::Tube { material_name, .. }, .. }) => {

@@ -1,4 +1,4 @@
-//! `armwright capacity`: the largest payload of a study's arm.
+//! `armwright capacity`: finds the largest payload of a study's arm or of an arm file.
 
 use super::failure::Failure;
 use crate::arm::file::read_arm;
@@ -42,7 +42,7 @@ pub(crate) struct CapacityArgs {
     json: bool,
 }
 
-/// Executes the verb.
+/// Runs `armwright capacity` and returns the text to print.
 pub(super) fn run(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     if is_arm_file(&args.study) {
         return of_arm(args, catalogs);
@@ -62,14 +62,16 @@ fn said(args: &CapacityArgs, name: &str, found: &Capacity) -> String {
     }
 }
 
-/// Whether the file is an arm and no study, which has poses.
+/// Whether the file is an arm file. A study has a chain too, but it also has poses.
 fn is_arm_file(path: &str) -> bool {
     let text = std::fs::read_to_string(path).unwrap_or_default();
     let file: Value = serde_json::from_str(&text).unwrap_or_default();
     file["chain"].is_array() && file["poses"].is_null()
 }
 
-/// The capacity of an arm file at rest.
+/// The largest payload of an arm file at rest. The torques of the joints are compared with the limits that the user
+/// gives; without them with the limits of an import.json in the same folder; without this with the limits of the named
+/// gears and motors.
 fn of_arm(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     if args.design.is_some() {
         return Err(Failure::Usage(format!("{} is an arm file; --design is for studies", args.study)));

@@ -1,4 +1,4 @@
-//! `armwright export`: an arm or a design as files of other programs.
+//! `armwright export`: writes an arm or a design as files for other programs.
 
 use super::design::resolve_design;
 use super::failure::Failure;
@@ -99,7 +99,7 @@ pub(super) fn run(args: &ExportArgs, catalogs: &Catalogs) -> Result<String, Fail
     ))
 }
 
-/// What is said of an export: what is left out, and the notes.
+/// The text about an export: what the files leave out, each with its part of the tip deflection, and the notes.
 fn said(exported: &Export) -> String {
     let left_out = exported.left_out.iter().map(|left| {
         format!(
@@ -114,7 +114,7 @@ fn said(exported: &Export) -> String {
     left_out.chain(notes).collect()
 }
 
-/// The arm, its cases, and the files that they come from.
+/// The arm, its cases, and the files from which they were read.
 fn source(args: &ExportArgs, catalogs: &Catalogs) -> Result<(Arm, Vec<LoadCase>, Vec<PathBuf>), Failure> {
     let path = PathBuf::from(&args.source);
     if let (false, Some((folder, id))) = (path.is_file(), args.source.rsplit_once('#')) {
@@ -161,7 +161,7 @@ fn case_of_flags(args: &ExportArgs, arm: &Arm) -> Result<LoadCase, Failure> {
     })
 }
 
-/// The case that is named, or the case that deflects most.
+/// The case that the user names. Without a name, it is the case with the largest tip deflection.
 fn chosen_case<'c>(args: &ExportArgs, arm: &Arm, cases: &'c [LoadCase]) -> Result<&'c LoadCase, Failure> {
     if let Some(name) = &args.case {
         let names: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
@@ -172,7 +172,7 @@ fn chosen_case<'c>(args: &ExportArgs, arm: &Arm, cases: &'c [LoadCase]) -> Resul
     let deflection_m = |case: &LoadCase| {
         Chain::new(&arm.structure_in(case), case.links).pose(case).statics().tip_displacement_m.norm()
     };
-    // of equals the first
+    // of cases with equal deflections, the first one is taken
     let worst = cases.iter().rev().max_by(|a, b| deflection_m(a).total_cmp(&deflection_m(b)));
     worst.ok_or_else(|| Failure::Usage("there is no case".into()))
 }

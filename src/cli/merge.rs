@@ -1,4 +1,5 @@
-//! `armwright merge` and `armwright status`: the shards of a search, whether they cover it, and their front.
+//! `armwright merge` and `armwright status`: join the shards of a search into its front, and list the shards that are
+//! there.
 
 use super::asked::Asked;
 use super::exit::{Answer, Exit};
@@ -57,23 +58,29 @@ pub(crate) struct StatusArgs {
     shards: Vec<PathBuf>,
 }
 
-/// A shard that was found.
+/// A shard that was found in a folder.
 struct Found {
+    /// Folder of the shard.
     dir: PathBuf,
+    /// Contents of `shard.json`.
     manifest: Value,
+    /// Number of the shard, and number of all shards.
     shard: Shard,
     /// Numbers of the designs that it visited; `None` of an exact search.
     range: Option<Range<u128>>,
 }
 
-/// All shards of one search, by their numbers.
+/// All shards of one search that were found.
 struct Shards {
+    /// The shards by their numbers, counted from 1.
     by_number: BTreeMap<u32, Found>,
+    /// Number of shards into which the search is divided.
     of: u32,
+    /// Number of designs in the space.
     designs_total: u128,
 }
 
-/// Executes `merge`.
+/// Runs `armwright merge`: writes the result, and returns the text to print.
 pub(super) fn merge(
     args: &MergeArgs,
     catalogs: &Catalogs,
@@ -196,10 +203,10 @@ pub(super) fn status(args: &StatusArgs) -> Result<String, Failure> {
 }
 
 impl Shards {
-    /// Finds the shards in some folders and checks that they belong together.
+    /// Finds the shards in some folders, and checks that they belong to one search.
     ///
     /// # Errors
-    /// There are none, one is damaged, or they are of different searches.
+    /// There are no shards, one is damaged, or they belong to different searches.
     fn read(folders: &[PathBuf]) -> Result<Self, Failure> {
         let all: Vec<Found> =
             shards_in_all(folders)?.into_iter().map(Found::read).collect::<Result<_, _>>()?;
@@ -213,19 +220,19 @@ impl Shards {
         }
         let designs_total = first.manifest["designs_total"].as_f64().unwrap_or_default() as u128;
         let of = first.shard.of;
-        // the same shard twice is one; whether both are the same was checked
+        // if two folders have the same shard, one of them is used; they were compared above
         let by_number = all.into_iter().map(|found| (found.shard.number, found)).collect();
         Ok(Self { by_number, of, designs_total })
     }
 
-    /// The commands that make the shards that are missing.
+    /// The commands that compute the missing shards.
     fn missing(&self) -> Vec<String> {
         let Some(like) = self.by_number.values().next() else { return Vec::new() };
         let numbers = (1..=self.of).filter(|number| !self.by_number.contains_key(number));
         numbers.map(|number| like.command_of(number)).collect()
     }
 
-    /// Checks that the ranges cover every design once.
+    /// Fails unless the shards cover every design exactly once.
     fn refuse_gaps(&self) -> Result<(), Failure> {
         let ranges = self.by_number.values().filter_map(|found| found.range.clone()).collect();
         match gaps(ranges, self.designs_total) {
@@ -288,7 +295,8 @@ impl Found {
         Ok(Self { dir, manifest, shard, range })
     }
 
-    /// What tells another shard from one of the same search, in words.
+    /// Differences between this shard and `other` that show that they belong to different searches, in words. Empty if
+    /// both are of the same search.
     fn unlike(&self, other: &Self) -> Vec<String> {
         let (here, there) = (self.dir.display(), other.dir.display());
         let differs = |key: &&&str| self.manifest[**key] != other.manifest[**key];
@@ -308,7 +316,7 @@ impl Found {
         out
     }
 
-    /// The command that makes another shard of the search.
+    /// The command that computes the shard with this number in the same search as this one.
     fn command_of(&self, number: u32) -> String {
         let words = self.manifest["command"].as_array().into_iter().flatten().filter_map(Value::as_str);
         let words: Vec<String> = words.map(shell_word).collect();
@@ -341,7 +349,7 @@ impl Found {
     }
 }
 
-/// A word as a POSIX shell reads it.
+/// A word as it must be written in a POSIX shell to be read unchanged: in quotes if it has special characters.
 pub(super) fn shell_word(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+%@".contains(c);
     match !word.is_empty() && word.chars().all(is_plain) {

@@ -1,5 +1,5 @@
-//! The command line: one file a verb. A verb returns the text it prints; [`print()`] is the one place
-//! that writes to standard output.
+//! The command line: each verb has a file of its own. A verb returns the text to print. Only [`print()`] writes to
+//! standard output.
 
 pub(crate) mod analyze;
 pub(crate) mod asked;

@@ -77,7 +77,7 @@ pub(crate) struct RunArgs {
 }
 
 impl RunArgs {
-    /// The study with the limit of mass and the effects that were asked for.
+    /// The study to be searched, with the mass limit and the effects that the user gives.
     fn asked(&self, catalogs: &Catalogs) -> Result<Asked, Failure> {
         let (study, text) = load_study(&self.study, catalogs)?;
         let (study, text) = match self.mass_max_kg {
@@ -90,10 +90,10 @@ impl RunArgs {
         }
     }
 
-    /// The files that the run will write, as far as they are known before it.
+    /// Names of the files that the run will write, as far as they are known before it.
     ///
     /// # Errors
-    /// One of them is an input and would change.
+    /// One of these files is an input and would be changed.
     fn planned(&self, dir: &Path, asked: &Asked) -> Result<Vec<String>, Failure> {
         let study = Path::new(&self.study);
         let inputs = [Some(study), self.effects.as_deref()];
@@ -112,7 +112,8 @@ impl RunArgs {
         Ok(planned(&asked.study).into_iter().filter(|name| !stays || name != "study.json").collect())
     }
 
-    /// Name of the folder of results, if none is given.
+    /// Name of the folder of results if the user gives none. It names the study, the mass limit and whether there are
+    /// effects.
     fn folder(&self, study: &Study) -> String {
         let up_to = self.mass_max_kg.map_or(String::new(), |kg| format!("-up-to-{kg}-kg"));
         let effects = if self.effects.is_some() { "-with-effects" } else { "" };
@@ -120,7 +121,7 @@ impl RunArgs {
     }
 }
 
-/// The files of a study's result, without those in `plots`.
+/// Names of the files of a study's result, without those in `plots`.
 pub(super) fn planned(study: &Study) -> Vec<String> {
     let materials = study.space.material_names();
     let of_materials = file_names(materials.iter().map(String::as_str)).into_iter();
@@ -129,7 +130,8 @@ pub(super) fn planned(study: &Study) -> Vec<String> {
     always.into_iter().chain(FILES).map(String::from).chain(of_materials).collect()
 }
 
-/// A study that asks for arms of at most this mass. If it has a lower limit already, nothing changes.
+/// The study with the limit `most_kg` on the mass of the arm \[kg\], and the text of its file. If the study already has
+/// a limit that is as low or lower, nothing changes.
 fn up_to_mass(
     most_kg: f64,
     study: Study,
@@ -146,13 +148,13 @@ fn up_to_mass(
     Ok((read_study(Document::parse(&name, &text)?, catalogs)?, text))
 }
 
-/// A limit of mass \[kg\].
+/// Reads a mass limit \[kg\].
 fn mass_limit(text: &str) -> Result<f64, String> {
     let kg = text.parse::<f64>().ok().filter(|kg| kg.is_finite() && *kg > 0.0);
     kg.ok_or_else(|| "a mass above zero, in kilograms".into())
 }
 
-/// Executes the verb.
+/// Runs `armwright run`: writes the result, and returns the text to print.
 pub(super) fn run(
     args: &RunArgs,
     catalogs: &Catalogs,
@@ -169,7 +171,7 @@ pub(super) fn run(
     let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(args.folder(&asked.study)));
     let planned = args.planned(&dir, &asked)?;
     let record = args.progress.as_deref().map(Record::create).transpose()?;
-    // a folder that cannot be written fails now, not after the search
+    // if the folder cannot be written, the run fails now and not after the search
     let folder = ResultFolder::open(&dir, RUN, &planned)?;
     let (how, supplements, record) = (&args.search, &args.supplements, record.as_ref());
     let keep = |files: &[(String, Vec<u8>)]| folder.publish(files);
@@ -218,7 +220,7 @@ fn run_part(
     answer
 }
 
-/// Runs one of the paper's studies, which are computed without a search.
+/// Runs one of the studies of the paper, which are computed without a search.
 fn run_paper(args: &RunArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(&args.study));
     let planned = [RUN, "summary.md", "report.html"];
@@ -243,10 +245,10 @@ fn run_paper(args: &RunArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     Ok(format!("{}\n{}", output.terminal, told(&dir, &files)))
 }
 
-/// Digits of the numbers in the tables of a page; files have all.
+/// Significant digits of the numbers in the tables of a page. The files have all digits.
 const PAGE_DIGITS: usize = 5;
 
-/// The page of a study of the paper: its pictures and tables.
+/// The page for a browser of a study of the paper, with its pictures and tables.
 fn paper_page(study: &str, files: &[(String, Vec<u8>)], run: &Value) -> DocumentPage {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     let ending = |end: &'static str| files.iter().filter_map(move |(n, b)| Some((n.strip_suffix(end)?, b)));
@@ -267,12 +269,12 @@ fn paper_page(study: &str, files: &[(String, Vec<u8>)], run: &Value) -> Document
     }
 }
 
-/// Says which files were written, in lines of at most 80 columns.
+/// A text that says which files were written, in lines of at most 80 columns.
 fn told(dir: &Path, files: &[(String, Vec<u8>)]) -> String {
     wrap(&format!("written to {}: {}", dir.display(), names(files)), TERMINAL, "")
 }
 
-/// Names of the files that were written; fronts by material and plots are only counted.
+/// Names of the files that were written. Fronts of materials and plots are only counted.
 fn names(files: &[(String, Vec<u8>)]) -> String {
     let kind = |name: &str| match name {
         n if n.starts_with(PLOTS) => 2,

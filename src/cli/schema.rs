@@ -27,10 +27,10 @@ pub(crate) struct SchemaArgs {
     markdown: bool,
 }
 
-/// The kinds of JSON files that people write.
+/// The kinds of JSON files that users write.
 pub(super) const FILES: [FileKind; 4] = [ARM_FILE, CASES_FILE, STUDY_FILE, CAMPAIGN_FILE];
 
-/// Head of the page with all keys.
+/// Beginning of the page with all keys.
 const PAGE_HEAD: &str = "# Keys of all files\n\nEvery key that the readers know, printed by `armwright schema --markdown`. \
     A key that is not here is a fault in a file. [arm-format.md](arm-format.md), [study-format.md](study-format.md) and \
     [reconcile.md](reconcile.md) explain how the keys work together. `armwright schema KIND` prints the same as a JSON Schema.\n";
@@ -43,7 +43,7 @@ const WRITTEN_HEAD: &str = "The following files are written by the program, for 
 /// Executes the verb.
 ///
 /// # Errors
-/// There is no such kind.
+/// There is no kind of file with this name.
 pub(super) fn run(args: &SchemaArgs) -> Result<String, Failure> {
     let file = |name: &str| FILES.iter().chain(&OUTPUTS).find(|file| file.name == name);
     match (args.kind.as_deref(), args.markdown) {
@@ -65,7 +65,7 @@ fn table_schema(name: &str) -> Option<Value> {
     catalog.map(CatalogFile::table_schema).or_else(written).or_else(effects)
 }
 
-/// Name of a catalog file without its ending.
+/// Name of a catalog file without `.csv`.
 fn stem(file: CatalogFile) -> &'static str {
     file.file_name().trim_end_matches(".csv")
 }

@@ -34,7 +34,7 @@ pub(super) fn shard_of(text: &str) -> Result<Shard, String> {
     }
 }
 
-/// More shards than this would be more files than work.
+/// Largest number of shards. With more of them there would be more files than work.
 pub(super) const MOST_SHARDS: u32 = 100_000;
 
 /// Searches a shard. `words` are those of the command line that tell which study, limits, catalogs and search.
@@ -229,7 +229,8 @@ impl Incumbents {
     }
 }
 
-/// Says so if the folder has this shard already, whole and from the same inputs.
+/// If the folder has the same shard already, complete and from the same inputs: a sentence that says so. Otherwise
+/// `None`. `manifest` describes the shard that is asked for.
 fn already_done(dir: &Path, manifest: &Value) -> Option<String> {
     let done = read_manifest(dir).ok()?;
     let same = |key: &str| done[key] == manifest[key];

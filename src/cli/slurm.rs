@@ -43,7 +43,7 @@ pub(crate) struct SlurmArgs {
     out: Option<PathBuf>,
 }
 
-/// Executes the verb.
+/// Runs `armwright slurm` and returns the script.
 pub(super) fn run(args: &SlurmArgs, catalogs: &Catalogs, overlay: Option<&Path>) -> Result<String, Failure> {
     let (study, _) = load_study(&args.study, catalogs)?;
     refuse_empty(&study, catalogs)?;

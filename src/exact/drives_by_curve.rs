@@ -16,7 +16,8 @@ use super::tree::Tree;
 use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, in_lanes};
 use std::sync::Arc;
 
-/// The drives of one curve and one bearing: mass \[kg\] and node of the lightest and of the heaviest.
+/// The drives with the same torsion curve and the same bearing: mass \[kg\] and node of the lightest and of the
+/// heaviest. `curve` is `None` for a rigid drive.
 struct CurveGroup {
     curve: Option<CurveBox>,
     tilt_rad_per_nm: [f64; 2],
@@ -25,8 +26,8 @@ struct CurveGroup {
 }
 
 impl CurveGroup {
-    /// Adds a drive. Among equal masses the lower node counts, so that the result does not depend on the order of the
-    /// drives.
+    /// Adds a drive, given by its mass \[kg\] and its node. Among equal masses the lower node is taken, so that the
+    /// result does not depend on the order of the drives.
     fn add(&mut self, drive: (f64, u32)) {
         if drive < self.lightest {
             self.lightest = drive;
@@ -41,7 +42,8 @@ impl CurveGroup {
 struct DrivesByCurve(Vec<CurveGroup>);
 
 impl DrivesByCurve {
-    /// The drives below a node that can carry the least demand.
+    /// The drives below a node, grouped by curve and bearing. Drives that cannot carry the least demand `asked` are
+    /// left out; `None` keeps all.
     fn new(tree: &Tree<DriveBox>, node: u32, asked: Option<&LeastDemand>) -> Self {
         let mut curves: Vec<CurveGroup> = Vec::new();
         let (mut open, mut last) = (vec![(node, asked)], 0);
@@ -206,7 +208,8 @@ impl PricedDrives {
     }
 }
 
-/// The feasible drives of a level, kept as long as neither the drives nor the demand on them change.
+/// The feasible drives of a level. They are reused from one box to the next as long as neither the drives nor the
+/// demand on them change.
 #[derive(Clone)]
 pub(super) struct FeasibleDrives {
     tree: Arc<Tree<DriveBox>>,
@@ -216,7 +219,8 @@ pub(super) struct FeasibleDrives {
 }
 
 impl FeasibleDrives {
-    /// The drives below a node that can carry the least demand. They are those of `before` if it was made of the same.
+    /// The drives below a node that carry the least demand `asked`. The groups are copied from `before`, those of the
+    /// parent box, if these were made of the same tree, node and demand.
     pub(super) fn new(
         tree: &Arc<Tree<DriveBox>>,
         node: u32,

@@ -1,34 +1,37 @@
-//! A matrix game: the weights of columns under which the least weighted row is as large as possible.
+//! A matrix game, solved by the simplex method: the weights of columns under which the least weighted row is as large
+//! as possible.
 
 use crate::mechanics::lanes::{LANES, LaneWork, Lanes, in_lanes, subtract_multiple};
 use std::ops::Range;
 
 /// Greatest number of simplex pivots.
 const MOST_PIVOTS: usize = 200;
-/// Numbers below this are rounding.
+/// Numbers below this count as rounding.
 const NOTHING: f64 = 1e-11;
 
-/// Tolerance of the sums over balanced columns. It differs from column to column, so that no two pivots are equal.
+/// A sum over balanced columns may exceed zero by this much. A small amount that differs from column to column is added
+/// to it, so that no two pivots of the simplex method are equal.
 const BALANCED: f64 = 1e-6;
 
-/// The solution of a game.
+/// The solution of a matrix game.
 pub(super) struct Game {
     /// Weights of the columns. None is negative, and they sum to one.
     pub weights: Vec<f64>,
-    /// Shares of the rows in the mixture that keeps the greatest column as low as possible. They sum to one.
+    /// Weights of the rows in the mixture that keeps the greatest column as low as possible. They sum to one.
     pub mix: Vec<f64>,
-    /// Value of the game: the least weighted row.
+    /// Value of the game: the weighted sum of the numbers of a row, for the row in which it is least.
     pub value: f64,
 }
 
-/// The weights of columns that make the least weighted row as large as possible. Each row has `width` numbers.
+/// Solves a matrix game: finds weights of the columns that make the weighted sum of the worst row as large as possible.
+/// `rows` holds the numbers of all rows one after the other, `width` numbers for each row.
 ///
-/// The simplex method solves the linear program of the other player: `max Σ z` with `Σ_j (a_ji + c) z_j <= 1` for
-/// every column `i` and `z >= 0`. Its dual values are the weights.
+/// The simplex method solves the linear program of the other player: `max Σ z` with `Σ_j (a_ji + c) z_j <= 1` for every
+/// column `i`, and `z >= 0`. The dual values of this program are the weights.
 ///
-/// Balanced columns are conditions on the mixture: `Σ_j a_ji z_j <= 0`. They come in pairs of opposite sign, so the
-/// sum must be zero. If such a pair were two ordinary columns, equal weights on both would guarantee the value zero
-/// and prove nothing.
+/// The columns in the range `balanced` are conditions on the mixture: `Σ_j a_ji z_j <= 0`. They come in pairs of
+/// opposite sign, so the sum must be zero. If such a pair were two ordinary columns, equal weights on both would
+/// guarantee the value zero and prove nothing.
 pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game {
     let count = rows.len() / width;
     let least = rows.iter().copied().fold(f64::INFINITY, f64::min);
@@ -67,7 +70,7 @@ pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game 
             if a > NOTHING { table[i * line + count] / a } else { f64::INFINITY }
         };
         let ratios = (0..width).map(|i| (i, ratio(i)));
-        // The program is bounded, so without a finite ratio this is rounding; the solution so far is used.
+        // The program is bounded, so a missing finite ratio is due to rounding. The solution so far is then used.
         let least = ratios.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, ratio)| ratio.is_finite());
         let Some((leave, _)) = least else { break };
         std::mem::swap(&mut basic[leave], &mut others[enter]);
@@ -89,7 +92,7 @@ pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game 
     Game { weights, mix, value }
 }
 
-/// The least number of a list.
+/// Computes the least number of a list.
 struct Least<'a>(&'a [f64]);
 
 impl LaneWork for Least<'_> {
@@ -110,7 +113,7 @@ impl LaneWork for Least<'_> {
 /// column takes its place.
 struct Pivot<'a> {
     table: &'a mut [f64],
-    /// Numbers in a line.
+    /// Number of entries in a line of the tableau.
     line: usize,
     leave: usize,
     enter: usize,
@@ -148,8 +151,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// The mixture satisfies the balanced pair. What it keeps the other columns below equals what the
-        /// weights guarantee, so no weights are better.
+        /// The mixture satisfies the balanced pair as an equation. The greatest of the other columns under the mixture
+        /// equals the value that the weights guarantee, so no weights are better.
         #[test]
         fn a_balanced_pair_is_a_condition_and_no_stake(rows in prop::collection::vec(-1.0f64..1.0, 3 * 6)) {
             let rows: Vec<f64> = rows.chunks(3).flat_map(|r| [r[0], r[1], r[2], -r[2]]).collect();
@@ -164,8 +167,8 @@ mod tests {
             prop_assert!((mixed(0).max(mixed(1)) - stakes).abs() < 1e-3, "{} {stakes}", mixed(0).max(mixed(1)));
         }
 
-        /// The value lies between what the weights guarantee and what some mixture of rows attains.
-        /// Fictitious play finds such mixtures independently.
+        /// The value of the game lies between the value that the weights guarantee and the value that some mixture of
+        /// rows attains. Fictitious play finds such mixtures independently.
         #[test]
         fn no_other_weights_are_better(rows in prop::collection::vec(-1.0f64..1.0, 4 * 6)) {
             let Game { weights, mix, value } = solve(&rows, 4, 0..0);

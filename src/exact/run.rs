@@ -26,22 +26,25 @@ use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-/// Stack that each worker of a thread pool needs \[bytes\]: regions of an exact search are nested calls, and a waiting worker runs
-/// those of others on its own stack. A program that builds its own pool gives its workers as much.
+/// Stack size that each worker thread needs \[bytes\]. Regions of an exact search are nested calls, and a worker that
+/// waits for others runs their tasks on its own stack. A program that builds its own thread pool has to give its
+/// workers this much.
 pub const WORKER_STACK_BYTES: usize = 64 << 20;
 
-/// Number of designs above which a space is searched in passes.
+/// Number of designs above which a space is searched in passes with less and less slack.
 const LARGE: f64 = 1e9;
-/// Number of designs above which a space is searched region by region.
+/// Number of designs above which a space is searched region by region and not box by box.
 pub const VAST: f64 = 1e14;
 /// Number of designs below which a region is searched box by box.
 const FEW: f64 = 1e6;
-/// Number of probes, divided by the square of the number of designs' common logarithm. A large space repays many
-/// probes, a small one none.
+/// Number of probes per squared decade of designs: a space of `10^n` designs gets `0.12 n²` probes. More probes pay
+/// only in a large space.
 const PROBES: f64 = 0.12;
-/// The factor that replaces [`PROBES`] where the genetic algorithm ([`evolve`]) follows.
+/// Number of probes per squared decade of designs if the genetic algorithm ([`evolve`]) follows. It is a third of
+/// [`PROBES`].
 const PROBES_TO_EVOLVE: f64 = 0.04;
-/// Default for the greatest number of designs that are listed with all their ties.
+/// Default of the greatest number of designs that are listed with all their ties. A tie is a design that differs only
+/// in drives of equal mass, torsion curve and bearing stiffness.
 const MOST_WITH_TIES: usize = 20_000;
 
 /// A search for the exact front. Other threads can watch and stop it.
@@ -72,7 +75,7 @@ pub struct Exact<'p> {
     space: &'p DesignSpace,
     catalogs: &'p Catalogs,
     pub(super) budget: Budget<'p>,
-    /// The slack of the last pass, after which the search is complete.
+    /// Gap that was asked for: the slack of the last pass (relative, 0 for the whole front).
     gap: f64,
     /// The only objective that counts; `None` if all three count.
     pub(super) only: Option<Objective>,
@@ -82,7 +85,8 @@ pub struct Exact<'p> {
     /// region is searched by boxes.
     regions_from: f64,
     regions_to: f64,
-    /// Greatest number of designs that are listed with all their ties.
+    /// Greatest number of designs that are listed with all their ties. If there are more, one design of each set of
+    /// ties is listed.
     most_with_ties: usize,
     pub(super) live: Live,
     journal: Journal<'p>,
@@ -90,14 +94,15 @@ pub struct Exact<'p> {
     joints: OnceLock<TabulatedJoints<'p>>,
 }
 
-/// How the passes of a search ended: the gap that was proved, and the bounds of what is open.
+/// How the passes of a search ended. `gap` is the gap that was proved (relative; `None` if no gap was proved). `open`
+/// holds the bounds of the boxes or regions that are not searched to the end; it is empty after a complete search.
 struct Ended {
     gap: Option<f64>,
     open: Vec<BoxBound>,
 }
 
 impl<'p> Exact<'p> {
-    /// A search of a space. It ends early when `stop` is set or the deadline has passed.
+    /// Prepares a search of a space. The search ends early when `stop` is set or the deadline has passed.
     pub fn new(
         space: &'p DesignSpace,
         catalogs: &'p Catalogs,
@@ -136,22 +141,23 @@ impl<'p> Exact<'p> {
         Self { regions_from: designs, regions_to: designs.min(FEW), ..self }
     }
 
-    /// Lists designs that differ only in drives of equal mass and curve if they are at most this many. The default is
-    /// 20,000. If there are more, one of each set of ties is listed.
+    /// Sets the greatest number of designs up to which every tie is listed. Ties are designs that differ only in drives
+    /// of equal mass and torsion curve. The default is 20,000. If there are more, one design of each set of ties is
+    /// listed.
     #[must_use]
     pub fn with_ties_up_to(self, designs: usize) -> Self {
         Self { most_with_ties: designs, ..self }
     }
 
-    /// Completes the search once for every design some known or found one is worse by at most this part in each
-    /// objective.
+    /// Sets the gap at which the search is complete (relative; 0 for the whole front). For every design of the space,
+    /// some design that is known or found is then worse by at most this fraction in each objective.
     #[must_use]
     pub fn to_gap(self, gap: f64) -> Self {
         Self { gap, ..self }
     }
 
-    /// Looks for a design that is best in one objective, and for no others. The front then has such a design. The search
-    /// goes box by box: the bounds of regions are about all three objectives.
+    /// Makes the search look only for a design that is best in one objective. The front then contains such a design.
+    /// The search goes box by box, because the bounds of regions are about all three objectives.
     #[must_use]
     pub fn toward(self, objective: Objective) -> Self {
         Self { only: Some(objective), regions_from: f64::INFINITY, ..self }
@@ -167,13 +173,13 @@ impl<'p> Exact<'p> {
     /// [`run`](Self::run) and [`run_of_material`](Self::run_of_material), in the same order.
     ///
     /// # Errors
-    /// The bytes are no state of an exact search, in words.
+    /// Returns a message if the bytes are not a saved state of an exact search.
     pub fn resumed(self, resume: Resume<'p>) -> Result<Self, String> {
         let journal = Journal::resumed(resume, &self.budget)?;
         Ok(Self { journal, ..self })
     }
 
-    /// What is known of the front of all designs now. The gap never rises.
+    /// The progress of the search for the front of all designs at this moment. The gap in it never rises.
     pub fn known(&self) -> Known {
         Known { boxes: self.budget.boxes(), ..self.live.known() }
     }
@@ -318,7 +324,7 @@ impl<'p> Exact<'p> {
                 pass_by_boxes(&self.budget, whole, state, (slack, first), live, keep)
             };
             if !open.is_empty() {
-                // What was told once stays true of the designs found since.
+                // A gap that was reported once stays proved for the designs found since.
                 let told = live.and_then(|live| live.known().gap);
                 let of_early = early.and_then(|early| early.into_state(state));
                 let of_open = gap(&open, &state.front()).map(|gap| gap.max(slack));
@@ -332,7 +338,7 @@ impl<'p> Exact<'p> {
         Ended { gap: done.last().map(|pass| pass.slack), open }
     }
 
-    /// Finds the first incumbents. Spaces that are searched by regions repay a genetic algorithm.
+    /// Finds the first incumbents by probes. If the space is searched by regions, a genetic algorithm improves them.
     fn first_incumbents(
         &self,
         whole: &Problem<'p>,

@@ -1,9 +1,10 @@
-//! MJCF, the files of MuJoCo.
+//! Export to MJCF, the model format of MuJoCo.
 //!
-//! A driven joint is two hinges in series: the motor's, with the inertia of rotor and gear (`armature`) and an actuator, and the
-//! gear's, with the spring and without armature. Both on one hinge would be another machine: its rotor would move with the
-//! output. The two tilts of a bearing are two more hinges. A torsion curve is its tangent at the load of the case; the spring's
-//! position of rest (`springref`) is such that it deflects at this load as much as the curve does.
+//! A driven joint becomes two hinges in series. The hinge of the motor has the inertia of rotor and gear (`armature`)
+//! and an actuator. The hinge of the gear has the spring and no armature. A single hinge with both would be wrong:
+//! its rotor would move with the output. The two tilts of a bearing become two more hinges. A torsion curve is
+//! replaced by its tangent at the load of the case. The rest position of the spring (`springref`) is chosen such that
+//! the spring deflects at this load as much as the curve does.
 
 use super::snapshot::Snapshot;
 use super::tree::{Hinge, Node, Role, TreeOptions, mass_properties, tree};
@@ -12,32 +13,32 @@ use crate::arm::structure::JointAngle;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeMap;
 
-/// Mass and moment of inertia of a body that has none, and the least moment of a body \[kg, kg m²\]. MuJoCo takes no moving
-/// body without both.
+/// Mass \[kg\] and moment of inertia \[kg m²\] that a body without any gets; the moment is also added to those of all
+/// bodies. MuJoCo accepts no moving body without mass and inertia.
 const LEAST: f64 = 1e-9;
 
 /// Inertia that stands in for a rotor that nobody knows, at the joint \[kg m²; kg where it slides\]. Without any, motor and gear would be two hinges of
 /// one axis with nothing between them, and the mass matrix singular. With motors held it changes nothing.
 pub(crate) const STAND_IN_KGM2: f64 = 0.1;
 
-/// What a motor adds to a joint.
+/// Inertia and torque of the motor of a joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Motor {
-    /// Inertia of rotor and gear, at the joint \[kg m²\].
+    /// Inertia of rotor and gear input, referred to the joint \[kg m²\].
     pub armature_kgm2: f64,
-    /// Peak torque of the motor, at the joint, without losses \[N m\].
+    /// Peak torque of the motor, referred to the joint without losses \[N m\]; `None` if it is unknown.
     pub peak_nm: Option<f64>,
 }
 
-/// The file and what is to be said of it.
+/// An MJCF file, with a remark.
 pub(crate) struct Mjcf {
-    /// The text.
+    /// The text of the file.
     pub text: String,
-    /// Whether an inertia is one that no solid has, so that MuJoCo must change it.
+    /// Whether some body has an inertia that no solid can have, so that MuJoCo must change it.
     pub balanced: bool,
 }
 
-/// Writes an arm in a case as MJCF.
+/// Writes an arm in a case as MJCF. `motors` has inertia and peak torque of the motors by name of the joint.
 pub(crate) fn mjcf(
     name: &str,
     snapshot: &Snapshot,
@@ -89,7 +90,8 @@ pub(crate) fn mjcf(
     Mjcf { text: xml.finish(), balanced }
 }
 
-/// Opens a body, which stays open for those that it carries.
+/// Opens the XML element of a body. It stays open, because the bodies outboard of it are nested inside. `before_m` is
+/// the origin of the body that contains it \[m\].
 fn body(xml: &mut Xml, node: &Node, before_m: &Vector3<f64>, motors: &BTreeMap<String, Motor>) {
     xml.open("body", &[("name", node.name.clone()), ("pos", triple(&(node.origin_m - before_m)))]);
     for hinge in &node.hinges {
@@ -148,7 +150,8 @@ fn joint(
     out
 }
 
-/// A passive joint follows the motors and the gears of its drivers: a tendon that stays at zero.
+/// Writes the couplings of passive joints. Each is a tendon of fixed length, so that the joint follows the motor and
+/// the gear of its driving joints.
 fn couplings(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
     let driven = snapshot.case_joints();
     let has_gear =
@@ -192,7 +195,8 @@ fn actuators(xml: &mut Xml, snapshot: &Snapshot, motors: &BTreeMap<String, Motor
     xml.close();
 }
 
-/// The pose of the case: with all springs straight, in which frequencies and torques are compared, and deflected.
+/// Writes the pose of the case as two keyframes. In the first all springs are undeflected, for the comparison of
+/// frequencies and torques; in the second they are deflected by the load of the case.
 fn keyframes(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
     let (driven, pose) = (snapshot.case_joints(), snapshot.pose_si());
     let angle = |name: &str| {
@@ -214,7 +218,7 @@ fn keyframes(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
     xml.close();
 }
 
-/// Whether a solid can have the inertia of a body: no principal moment exceeds the sum of the others.
+/// Whether a solid can have the inertia of this body: no principal moment exceeds the sum of the other two.
 fn is_solid(node: &Node) -> bool {
     let (_, _, inertia) = mass_properties(&node.inertia);
     let moments = (inertia + Matrix3::identity() * LEAST).symmetric_eigenvalues();

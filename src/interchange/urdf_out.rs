@@ -1,7 +1,7 @@
-//! URDF: the rigid arm, and a side file for what a URDF does not know, the stiffness of its joints.
+//! Export to URDF: the rigid arm, and a separate file with the stiffness of its joints, which a URDF cannot state.
 //!
-//! The side file is the stiffness file that an import reads, so that an exported arm comes back with the same torques and, its links
-//! being rigid, the same modes.
+//! The separate file is the stiffness file that an import reads. An exported arm that is imported again has the same
+//! torques and, since its links are rigid, the same modes.
 
 use super::snapshot::Snapshot;
 use super::tree::{Node, TreeOptions, mass_properties, tree};
@@ -11,7 +11,7 @@ use crate::arm::{Arm, Joint};
 use nalgebra::Vector3;
 use serde_json::{Map, Value, json};
 
-/// Writes an arm as URDF. The payload of the case is no part of it.
+/// Writes an arm as URDF. The payload of the case is not included.
 pub(crate) fn urdf(arm: &Arm, snapshot: &Snapshot) -> String {
     let nodes = tree(snapshot, &TreeOptions::default());
     let comment = format!(
@@ -41,7 +41,8 @@ pub(crate) fn urdf(arm: &Arm, snapshot: &Snapshot) -> String {
     xml.finish()
 }
 
-/// Links and joints have names of their own in a URDF.
+/// Name of the URDF link for a body, which must differ from the names of joints. `number` counts the bodies from the
+/// base.
 fn link_name(number: usize, node: &Node) -> String {
     if number == 0 { "base".into() } else { format!("{}_link", node.name) }
 }
@@ -94,12 +95,12 @@ fn joint(xml: &mut Xml, snapshot: &Snapshot, (from, parent): (&str, &Node), (to,
     xml.close();
 }
 
-/// Passive joints with several drivers, which no `<mimic>` can follow.
+/// Passive joints with several driving joints. A URDF cannot express them, because `<mimic>` follows a single joint.
 pub(crate) fn with_several_drivers(arm: &Arm) -> Vec<&Joint> {
     arm.joints().filter(|joint| joint.coupled.as_ref().is_some_and(|terms| terms.len() != 1)).collect()
 }
 
-/// The stiffness file of an arm.
+/// The stiffness file of an arm, for a later import.
 pub(crate) fn stiffness_file(arm: &Arm) -> Value {
     let turning = arm.joints().map(|joint| {
         let (key, curve) = joint.curve.to_json();

@@ -1,19 +1,20 @@
-//! Parts whose figures no document was seen for, or are typical of their class: it is said beside every pick that uses them.
+//! Caveats of parts: some ratings were not read from a document, or are typical values of a class of parts. Every
+//! pick that uses such a part is marked.
 
 use super::front_table::FrontTable;
 use super::words::{TERMINAL, wrap};
 use crate::catalog::{Catalogs, Provenance};
 use std::collections::BTreeMap;
 
-/// What is said beside parts, by their names.
+/// The caveats of parts, by the names of the parts.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Caveats(BTreeMap<String, &'static str>);
 
-/// Columns of a front that name parts, without the link or joint.
+/// Endings of the columns that name parts. The name of the link or joint comes before the ending.
 const PARTS: [&str; 4] = ["_material", "_profile", "_gear", "_motor"];
 
 impl Caveats {
-    /// Of all parts of a catalog.
+    /// Caveats of all parts of the catalogs.
     pub fn of(catalogs: &Catalogs) -> Self {
         let gears = catalogs.gears.iter().map(|p| (&p.id, &p.provenance));
         let motors = catalogs.motors.iter().map(|p| (&p.id, &p.provenance));
@@ -24,18 +25,18 @@ impl Caveats {
         Self(parts.filter_map(caveat).collect())
     }
 
-    /// `representative` or `from memory`; `None` for a part that a document was seen for.
+    /// Caveat of a part: `representative` or `from memory`; `None` if its ratings were read from a document.
     pub fn of_part(&self, name: &str) -> Option<&'static str> {
         self.0.get(name).copied()
     }
 
-    /// The name of a part, with the caveat behind it in brackets.
+    /// The name of a part, followed by its caveat in brackets.
     pub fn marked(&self, name: &str) -> String {
         self.of_part(name).map_or(name.to_string(), |caveat| format!("{name} ({caveat})"))
     }
 
-    /// One sentence for the terminal about the parts of picks, each with its row and its name; empty if documents were seen
-    /// for all.
+    /// One sentence for the terminal that names the parts with caveats and the picks that use them. Each item of
+    /// `picks` is the row of the front and the name of a pick. Empty if no part has a caveat.
     pub(crate) fn sentence(&self, front: &FrontTable, picks: &[(usize, String)]) -> String {
         let mut used: Vec<(&str, Vec<String>)> = Vec::new();
         for (row, name) in picks {
@@ -61,7 +62,7 @@ impl Caveats {
     }
 }
 
-/// The names of the parts of a row.
+/// The names of the parts (materials, profiles, gears and motors) of the design in the row `row`.
 fn parts(front: &FrontTable, row: usize) -> impl Iterator<Item = &str> {
     let named = front.columns.iter().zip(&front.rows[row]);
     named

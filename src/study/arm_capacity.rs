@@ -16,22 +16,22 @@ use crate::mechanics::statics::JointLoad;
 use crate::sizing::bearing::{BearingLimits, BearingLoad};
 use crate::space::bearing_loads::resolved;
 
-/// The most torque that a joint may bear at rest.
+/// The largest torque that a joint may hold at rest.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct TorqueLimit {
     /// Name of the joint.
     pub joint: String,
-    /// What limits it.
+    /// Name of the limit, such as the continuous torque of the motor.
     pub check: &'static str,
-    /// The torque \[N m\].
+    /// Largest permitted torque \[N m\].
     pub most_nm: f64,
 }
 
-/// Reads the limits of a file with `{"joints": [{"name": "j1", "max_torque_nm": 87}]}`, such as `import.json`. Joints without a number
-/// have no limit.
+/// Reads the torque limits of a file with `{"joints": [{"name": "j1", "max_torque_nm": 87}]}`, such as `import.json`.
+/// Joints without a number have no limit.
 ///
 /// # Errors
-/// All faults of the file.
+/// All faults of the file at once.
 pub(crate) fn read_limits(document: Document) -> Result<Vec<TorqueLimit>, Faults> {
     let root = document.root();
     let limits = match root.value().get("joints") {
@@ -66,7 +66,7 @@ fn joints(root: &Node) -> Option<Vec<TorqueLimit>> {
     Some(read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect())
 }
 
-/// The limits of the gears and motors that an arm names.
+/// The torque limits of joints at rest that follow from the ratings of the gears and motors that an arm names.
 pub(crate) fn limits_of_parts(arm: &Arm, catalogs: &Catalogs) -> Vec<TorqueLimit> {
     let of_joint = |joint: &crate::arm::Joint| {
         let gear = joint.gear.as_ref().and_then(|name| catalogs.gear(name).ok());
@@ -89,7 +89,8 @@ pub(crate) fn limits_of_parts(arm: &Arm, catalogs: &Catalogs) -> Vec<TorqueLimit
     arm.joints().filter(|joint| joint.coupled.is_none()).flat_map(of_joint).flatten().collect()
 }
 
-/// The largest payload of an arm in its cases.
+/// The largest payload of an arm at rest, in each of its cases and in all of them, with which no joint exceeds its
+/// limit in `limits`.
 pub(crate) fn arm_capacity(arm: &Arm, cases: &[LoadCase], limits: &[TorqueLimit]) -> Capacity {
     let mut table: Vec<AtPose> = cases
         .iter()
@@ -114,7 +115,8 @@ pub(crate) fn arm_capacity(arm: &Arm, cases: &[LoadCase], limits: &[TorqueLimit]
     Capacity { limit, pose, table }
 }
 
-/// The largest payload in a case.
+/// The largest payload in one case, and the joint that limits it. The torques are linear in the payload's mass, so two
+/// masses suffice to find it.
 fn limit(arm: &Arm, case: &LoadCase, limits: &[TorqueLimit]) -> Limit {
     let chain = Chain::new(&arm.structure_in(case), case.links);
     let torques_nm = |payload_kg: f64| {
@@ -233,7 +235,8 @@ mod tests {
 
     #[test]
     fn a_lever_holds_what_its_torque_allows() {
-        // 2 kg in the middle of 1 m and m at its end, on 50 N m: m = (50/9.81 - 1)/1; folded up nothing limits it
+        // 2 kg in the middle of 1 m and m at its end, with a limit of 50 N m: m = (50/9.81 - 1)/1; folded up, nothing
+        // limits m
         let text = r#"{"chain": [{"type": "joint", "name": "j", "axis": [0, 1, 0], "stiffness_nm_per_rad": null},
             {"type": "link", "name": "l", "vector_m": [1, 0, 0], "mass_kg": 2}]}"#;
         let arm = read_arm_document(Document::parse("a", text).expect("JSON"), &Catalogs::default())

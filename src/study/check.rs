@@ -1,4 +1,4 @@
-//! Finding fault with a finished front.
+//! Checks a finished front for faults: wrong rows, and missing designs.
 
 use super::definition::Study;
 use super::outcome::{Front, judge};
@@ -25,53 +25,57 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-/// Allowance for rounding in a gap.
+/// Relative allowance for rounding when a gap is claimed.
 const ROUNDING: f64 = 1e-6;
-/// Largest relative difference of a number in a row from what the full model gives.
+/// Largest relative difference that is allowed between an objective that a row states and the same objective by the
+/// full model.
 const AGREE: f64 = 1e-9;
-/// Two rows may stand for each other if they differ by at most this fraction of the gap.
+/// Part of the claimed gap by which two designs may differ so that one of them may represent the other. The search for
+/// missing designs then reports only one of such designs.
 const APART: f64 = 0.45;
-/// At most this many faults of one kind are listed one by one.
+/// Largest number of faults of one kind that are listed one by one.
 const LISTED: usize = 10;
 
-/// The result of checking a front.
+/// The result of checking a finished front.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrontCheck {
-    /// What is wrong, in words; empty if nothing is.
+    /// The faults, in words; empty if the front is correct.
     pub faults: Vec<String>,
-    /// Rows checked.
+    /// Number of rows that were checked.
     pub rows: usize,
-    /// How it was proved that no design is missing, apart from those among the faults; or why it was not.
+    /// How it was proved that no design is missing except those among the faults, or the reason why it was not
+    /// proved.
     pub completeness: Result<Completeness, String>,
 }
 
-/// A completed search for missing designs.
+/// Facts of a completed search for missing designs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Completeness {
-    /// Boxes bounded.
+    /// Number of boxes that were bounded.
     pub boxes: u64,
-    /// For every design some row is worse by at most this fraction in each objective; 0 if no design is missing.
+    /// The gap that was proved: for every design of the study some row is worse by at most this fraction in each
+    /// objective. 0 means that no design is missing.
     pub gap: f64,
-    /// Why the exact search's own bounds had to be used; `None` if independent bounds were used.
+    /// The reason why the bounds of the exact search itself had to be used; `None` if independent bounds were used.
     pub by_exact_search: Option<String>,
 }
 
-/// What a finished front claims.
+/// What a finished front claims to be.
 #[derive(Debug, Clone, Copy)]
 pub struct Claim<'t> {
-    /// Its rows.
+    /// The rows of the front.
     pub table: &'t FrontTable,
-    /// For every design some row is worse by at most this fraction in each objective; 0 if the front is whole. `None` if
-    /// no such claim is made.
+    /// The claimed gap: for every design of the study some row is worse by at most this fraction in each objective. 0
+    /// claims the whole front; `None` claims nothing.
     pub gap: Option<f64>,
-    /// Whether designs that differ only in drives of equal mass and torsion curve all have rows.
+    /// Whether every design has a row even if it differs from another only in drives of equal mass and torsion curve.
     pub ties_listed: bool,
-    /// If not, the content of the file that lists them.
+    /// The content of `ties.csv`, which lists such drives if `ties_listed` is false.
     pub ties_csv: &'t [u8],
 }
 
-/// Checks a front against its study. Every row is computed again by the full model, rows are compared with
-/// each other, and a search that starts from the rows looks for missing designs.
+/// Checks a front against its study. Every row is computed again by the full model and compared with the others. Then
+/// a search that starts from the rows looks for missing designs.
 pub fn check_front(
     study: &Study,
     catalogs: &Catalogs,
@@ -144,13 +148,13 @@ pub fn resume_check(
     Ok(FrontCheck { faults, rows: table.rows.len(), completeness })
 }
 
-/// A row of a front, and its parts as the verifier names them.
+/// A row of a front, with its parts in the verifier's terms.
 struct Row<'f> {
     design: &'f super::outcome::Judged,
     picks: Vec<Pick>,
 }
 
-/// A front with its claimed gap.
+/// A front with the gap that it claims.
 struct Claimed<'f> {
     front: &'f Front,
     gap: f64,
@@ -158,24 +162,26 @@ struct Claimed<'f> {
 }
 
 impl Claimed<'_> {
-    /// The objectives of the rows, improved by the gap: a design that they do not dominate is missing.
+    /// The objectives of the rows, improved by the claimed gap. A design is missing from the front if none of these
+    /// dominates it.
     fn objectives(&self) -> Vec<Objectives> {
         let by = if self.gap > 0.0 { 1.0 + self.gap + ROUNDING } else { 1.0 };
         self.front.iter().map(|d| d.design.objectives.better_by(by)).collect()
     }
 }
 
-/// The result of looking for missing designs.
+/// The result of the search for missing designs.
 struct Look {
-    /// Designs that may be missing.
+    /// Designs that may be missing from the front.
     designs: Vec<Judged>,
-    /// Whether it came to its end.
+    /// Facts of the search if it was completed, else the reason why not.
     completeness: Result<Completeness, String>,
-    /// Whether ties were left out because they are too many.
+    /// Whether designs with equal objectives were left out of `designs`, because there are too many.
     lacks_ties: bool,
 }
 
-/// Looks for missing designs, with the independent bounds of `verify` if they can handle the study.
+/// Searches for designs that are missing from the front. It uses the independent bounds of `verify` if they can handle
+/// the study, else those of the exact search.
 fn look_for_missing(
     study: &Study,
     judge: &Judge,
@@ -221,7 +227,8 @@ fn look_for_missing(
     Ok(Look { designs, completeness, lacks_ties })
 }
 
-/// Numbered designs of the whole study by the verifier's judge.
+/// Evaluates the designs with these numbers, which count in the whole study, by the verifier's own model. Designs that
+/// do not meet their limits by this model are left out.
 fn judged(study: &Study, judge: &Judge, catalogs: &Catalogs, numbers: &[u128]) -> Vec<Judged> {
     let Some(space) = study.space.excerpt(catalogs, numbers) else { return Vec::new() };
     let problem = ArmProblem::new(&space, catalogs);
@@ -229,7 +236,8 @@ fn judged(study: &Study, judge: &Judge, catalogs: &Catalogs, numbers: &[u128]) -
     numbers.iter().filter_map(design).collect()
 }
 
-/// Every row by the verifier's own drives and thresholds: does it hold, and has it the objectives that it should?
+/// Checks every row with the verifier's own drives, thresholds and model: the design must meet its limits and have the
+/// objectives that the row states. Faults are added to `faults`.
 fn judge_rows(judge: &Judge, rows: &[Row], problem: &ArmProblem, faults: &mut Vec<String>) {
     let fault = |row: &Row| {
         let id = id_of(problem.whole_number(row.design.design.number));
@@ -251,7 +259,8 @@ fn candidate(problem: &ArmProblem, whole: u128) -> Option<Candidate> {
     Some(Candidate { number, objectives })
 }
 
-/// Compares every row with what it should be.
+/// Compares every row of `table` with the row in `expected`, which the full model gives for the same design. Designs
+/// that others dominate, so that they are not in `front`, are faults too.
 fn compare_rows(
     expected: &FrontTable,
     table: &FrontTable,
@@ -299,8 +308,8 @@ fn broken_limits(study: &Study, front: &Front, problem: &ArmProblem, faults: &mu
     );
 }
 
-/// Designs found by the search that belong on the front but are neither on it nor close enough to one of its
-/// rows.
+/// The designs among `found` that are missing: they belong on the front, but are neither on it nor close enough to one
+/// of its rows. Each is described in a sentence.
 fn missing(
     study: &Study,
     judge: &Judge,
@@ -313,7 +322,7 @@ fn missing(
     let others: Vec<&Judged> = found.iter().filter(|d| !listed.contains(&d.picks[..])).collect();
     let own = claimed.objectives().into_iter().map(|o| o.minimized());
     let points: Vec<[f64; 3]> = own.chain(others.iter().map(|d| d.objectives.minimized())).collect();
-    // a tie that is not listed stands behind a row
+    // designs with equal objectives need no row of their own if ties are listed separately
     let behind: HashSet<Vec<Pick>> = match claimed.ties_listed {
         true => HashSet::new(),
         false => rows.iter().map(|row| judge.first_tie(&row.picks)).collect(),
@@ -347,7 +356,8 @@ fn missing(
     names.into_iter().map(sentence).collect()
 }
 
-/// Lists the first few of many faults, and their number.
+/// Appends the first few of the faults `found` to `faults`, and then the number of the others. `what` names them in the
+/// plural.
 fn list(faults: &mut Vec<String>, found: Vec<String>, what: &str) {
     let more = found.len().saturating_sub(LISTED);
     faults.extend(found.into_iter().take(LISTED));

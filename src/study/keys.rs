@@ -1,4 +1,4 @@
-//! The keys of study files: what the readers of this room know, and what `armwright schema study` prints.
+//! The keys of study files. The readers use these lists, and `armwright schema study` prints them.
 
 use super::choose_keys::CHOOSE;
 use super::drive_keys::DRIVES;
@@ -13,7 +13,7 @@ use crate::arm::keys::{
 use crate::input::key::{Kind, Rule, SCHEMA_ADDRESS, Shape, optional, required};
 use crate::input::schema::FileKind;
 
-/// A study file.
+/// The format of a study file.
 pub const STUDY_FILE: FileKind = FileKind {
     name: "study",
     about: "A named question about an arm: what is fixed, what may be chosen, and what the arm must do.",
@@ -24,7 +24,7 @@ const EXTRAS_VALUE: Kind = Kind::Either(&[Kind::Word(&["usual", "none"]), Kind::
 const FIT_VALUE: Kind = Kind::Either(&[Kind::Object(&FIT), Kind::Null]);
 const DUTY: Kind = Kind::NonEmpty(&Kind::Object(&STATED_PHASE));
 
-/// The whole study.
+/// The keys of a study.
 pub(super) static STUDY: Shape = Shape::new(
     "study",
     "A study.",
@@ -127,7 +127,7 @@ pub(super) static STUDY: Shape = Shape::new(
 
 const OF_GIVEN_DRIVE: [&str; 6] = ["stiffness_nm_per_rad", "windup", "gear", "motor", "gear_mass", "mass_kg"];
 
-/// A joint of a study.
+/// The keys of a joint of a study.
 pub(super) static JOINT: Shape = Shape::new(
     "joint",
     "A joint: its drive is searched for or given.",
@@ -236,7 +236,7 @@ pub(super) static JOINT: Shape = Shape::new(
     ],
 );
 
-/// A link of a study.
+/// The keys of a link of a study.
 pub(super) static LINK: Shape = Shape::new(
     "link",
     "A link: its tube is chosen or given, or it is a rigid offset.",
@@ -284,7 +284,7 @@ const LINK_RULES: [Rule; 7] = [
     Rule::Refuses("choose", &["material", "section", "mass_kg", "pieces", "stiffness_factor", "mass_factor"]),
 ];
 
-/// A pose of a study.
+/// The keys of a pose of a study.
 pub(super) static POSE: Shape = Shape::new(
     "pose",
     "A pose in which the arm is judged and sized.",
@@ -331,7 +331,7 @@ pub(super) static POSE: Shape = Shape::new(
     &POSE_RULES,
 );
 
-/// What the arm is in.
+/// The keys of an environment: the medium around the arm.
 pub(super) static ENVIRONMENT: Shape = Shape::new(
     "environment",
     "What the arm is in.",
@@ -342,7 +342,7 @@ pub(super) static ENVIRONMENT: Shape = Shape::new(
     &[],
 );
 
-/// What the tip must do.
+/// The keys of the motion that the tip must make.
 pub(super) static MOTION: Shape = Shape::new(
     "motion",
     "What the tip must do.",
@@ -389,7 +389,7 @@ pub(super) static MOTION: Shape = Shape::new(
     &[],
 );
 
-/// A phase of the cycle.
+/// The keys of a phase of the duty cycle.
 pub(super) static PHASE: Shape = Shape::new(
     "phase",
     "A phase of the cycle.",
@@ -412,7 +412,7 @@ pub(super) static PHASE: Shape = Shape::new(
     }],
 );
 
-/// A phase of a stated duty.
+/// The keys of a phase of a stated duty.
 pub(super) static STATED_PHASE: Shape = Shape::new(
     "duty phase",
     "A phase of a duty that is stated in numbers.",
@@ -455,7 +455,7 @@ pub(super) static FIT: Shape = Shape::new(
     &[],
 );
 
-/// Limits that every design must keep.
+/// The keys of the limits that every design must meet.
 pub(super) static CONSTRAINTS: Shape = Shape::new(
     "constraints",
     "Limits that every design must keep.",
@@ -514,7 +514,7 @@ pub(super) static CONSTRAINTS: Shape = Shape::new(
     &[Rule::Needs("servo_ratio", &["servo_bandwidth_hz"])],
 );
 
-/// Physics of links and joints.
+/// The keys of the models of links and joints.
 pub(super) static MODELS: Shape = Shape::new(
     "models",
     "Physics of links and joints.",

@@ -1,4 +1,4 @@
-//! Named questions: read, resolve, run.
+//! Studies: named questions about an arm, which are read, checked, searched and reported.
 
 pub(crate) mod alternatives;
 pub(crate) mod arm_capacity;

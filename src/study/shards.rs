@@ -1,7 +1,8 @@
 //! Shards of a search: the files of what each found, and how those of an exhaustive search become one front.
 //!
-//! A shard keeps the candidates of its range of design numbers. A candidate that another shard clearly dominates is dropped
-//! when they are joined, and the full model judges the rest, as after a search on one machine: the front has the same bytes.
+//! A shard keeps the candidates in its range of design numbers. When shards are joined, a candidate that one of
+//! another shard clearly dominates is dropped, and the full model evaluates the rest. This is the same as after a
+//! search on one machine, so the files of the front are equal byte by byte.
 
 use crate::exact::outcome::FoundInShard;
 use crate::pareto::objectives::Objectives;
@@ -9,8 +10,8 @@ use crate::search::sweep::{Candidate, Status, SweepOutcome, clear_dominated};
 use std::fmt::Write;
 use std::ops::Range;
 
-/// The candidates of a sweep as CSV: `all` or the number of a material, the number of the design, its objectives by the fast
-/// model in m, kg and Hz. Numbers have their shortest form that reads back to the same bits.
+/// The candidates of a sweep as CSV. The columns are `all` or the index of a material, the number of the design, and
+/// its objectives by the fast model in m, kg and Hz. Numbers have the shortest form that reads back to the same bits.
 pub fn candidates_csv(swept: &SweepOutcome) -> String {
     let mut out = String::from(HEADER);
     let groups = swept.groups.iter().enumerate().map(|(k, group)| (k.to_string(), group));
@@ -25,10 +26,10 @@ pub fn candidates_csv(swept: &SweepOutcome) -> String {
 
 const HEADER: &str = "front,number,tip_deflection_m,mass_kg,lowest_mode_hz\n";
 
-/// Reads [`candidates_csv`] of a study with so many materials.
+/// Reads the text of [`candidates_csv`] for a study with this number of materials.
 ///
 /// # Errors
-/// The number of the first line that is no candidate.
+/// The number of the first line that is not a candidate.
 pub fn read_candidates(text: &str, materials: usize) -> Result<(Vec<Candidate>, Vec<Vec<Candidate>>), usize> {
     let mut front = Vec::new();
     let mut groups = vec![Vec::new(); materials];
@@ -112,7 +113,7 @@ pub fn read_found(text: &str, fronts: usize) -> Result<Vec<FoundInShard>, usize>
 /// What one shard found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Swept {
-    /// Number of designs that hold and were judged.
+    /// Number of designs that no drive, link or limit excludes, so that their objectives were computed.
     pub designs_evaluated: u64,
     /// Candidates of the front of all designs.
     pub front: Vec<Candidate>,
@@ -120,7 +121,8 @@ pub struct Swept {
     pub groups: Vec<Vec<Candidate>>,
 }
 
-/// The sweep of a whole space from that of its shards, which must cover it.
+/// The result of an exhaustive search of a whole space, joined from the results of its shards, which together must
+/// cover the space.
 pub fn joined(shards: Vec<Swept>, designs_total: u128) -> SweepOutcome {
     let materials = shards.iter().map(|shard| shard.groups.len()).max().unwrap_or_default();
     let (mut front, mut groups, mut designs_evaluated) = (Vec::new(), vec![Vec::new(); materials], 0u64);
@@ -143,7 +145,8 @@ pub fn joined(shards: Vec<Swept>, designs_total: u128) -> SweepOutcome {
     }
 }
 
-/// The parts of `0..total` that no range covers, and the first number that two ranges share.
+/// The ranges of design numbers in `0..total` that none of `ranges` covers, and the first number that two of `ranges`
+/// have in common (`None` if there is none).
 pub fn gaps(mut ranges: Vec<Range<u128>>, total: u128) -> (Vec<Range<u128>>, Option<u128>) {
     ranges.retain(|range| !range.is_empty());
     ranges.sort_unstable_by_key(|range| range.start);

@@ -1,4 +1,4 @@
-//! Going through the boxes: each is discarded, halved, or a single design.
+//! The search through the boxes: each box is discarded, halved, or a single design.
 
 use super::boxes::Boxes;
 use super::branch_score::BranchScore;
@@ -8,11 +8,11 @@ use super::ledger::{Branch, Ledger};
 use super::parts_box::PartsBox;
 use super::upper_bound::UpperBound;
 
-/// A search, box by box, for designs that a front lacks.
+/// A search, box by box, for designs that belong on a front and are missing from it.
 pub(super) struct Search<'s> {
     pub boxes: &'s Boxes,
     pub front: &'s FrontIndex,
-    /// Only designs below this upper bound are looked for.
+    /// Only designs below this upper bound are searched for.
     pub upper: UpperBound,
     pub halt: &'s Halt<'s>,
     pub ledger: &'s Ledger<'s>,
@@ -39,7 +39,8 @@ impl Search<'_> {
         here.with(a).with(b)
     }
 
-    /// The level to halve. `Some(None)` if the box is a single design, `None` if the box is discarded.
+    /// The level at which the box `parts` is to be halved. `None` if the box is discarded, and `Some(None)` if it is a
+    /// single design.
     fn level_to_halve(&self, parts: &PartsBox) -> Option<Option<usize>> {
         let boxes = self.boxes;
         let members = boxes.members(parts)?;

@@ -10,11 +10,12 @@ use super::warming::Softening;
 use crate::arm::joint_law::FurtherTwist;
 use nalgebra::{Matrix3, Vector3};
 
-/// Coefficients of a joint's further twist that change sign with its torque.
+/// Parameter: coefficients of a joint's further angle of torsion that change sign with the torque.
 pub(crate) const ODD_TWIST: &str = "odd_twist_rad";
-/// Coefficients of a joint's further twist that do not.
+/// Parameter: coefficients of a joint's further angle of torsion that do not change sign with the torque.
 pub(crate) const EVEN_TWIST: &str = "even_twist_rad";
-/// Torque at which these coefficients are the twist.
+/// Parameter: reference torque of the coefficients of the further angle. At this torque the angle is the sum of all
+/// coefficients.
 pub(crate) const TORQUE: &str = "torque_nm";
 /// Changes of a joint's compliance in the course of the static and of the modal tests.
 pub(crate) const SOFTENING: [&str; 2] = ["static_softening", "modal_softening"];
@@ -24,9 +25,10 @@ pub(crate) const SOFTENING_ROWS: [&str; 2] = ["static_softening_rows", "modal_so
 pub(crate) const SOFTENING_REFERENCE: &str = "static_softening_reference";
 /// How far readings bend.
 pub(crate) const BEND: &str = "bend";
-/// The reading at which that is the bend.
+/// Parameter: the reading at which the coefficients of the nonlinearity are the relative deviation from a straight
+/// line.
 pub(crate) const BEND_SCALE: &str = "bend_scale";
-/// Factor of each direction.
+/// Parameter: a factor on the reading for each direction.
 pub(crate) const GAIN: &str = "gain";
 /// Further tilt of the base per moment about world x and about y.
 pub(crate) const LEAN: &str = "tilt_rad_per_nm";
@@ -68,7 +70,7 @@ const fn optional(name: &'static str, count: usize, low: f64, high: f64, default
     Parameter { count, default: Some(default), ..number }
 }
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "empirical",
     summary: "a law without a name, as found in readings: a further twist of a joint, or a reading that bends",
@@ -140,7 +142,8 @@ fn soften(numbers: &[f64], at: &str, subject: &mut Subject) {
     }
 }
 
-/// The sum of two further twists, with the torque of the second.
+/// The sum of the further angle of torsion `before`, if there is one, and `twist`. The result has the reference torque
+/// of `twist`.
 fn added(before: Option<FurtherTwist>, twist: FurtherTwist) -> FurtherTwist {
     let Some(before) = before else { return twist };
     let ratio = twist.torque_nm / before.torque_nm;
@@ -179,7 +182,7 @@ mod tests {
         apply(&[0.1, 0.02, 2.0, 1.0, 1.0, 1.0], "static", &mut subject);
         apply(&[0.0, 0.0, 1.0, 1.0, 1.1, 0.9], "static", &mut subject);
         let reading = &subject.channels[Channel::Static as usize];
-        // at the scale of 2 mm a reading of 2 mm bends by 12 % of it
+        // the scale is 2 mm: a reading of 2 mm deviates from a straight line by 12 %
         assert!(
             (reading.of(2.0, 0, 0) - 2.24).abs() < 1e-12 && (reading.of(-2.0, 0, 0) + 2.24).abs() < 1e-12
         );

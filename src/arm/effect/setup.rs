@@ -1,5 +1,6 @@
-//! Setups: what is special about the tests of one channel. Instruments hang on the arm in one kind of test only, and what
-//! holds a joint in one kind of test may yield more than what holds it in another.
+//! Setups: differences between the arm in the tests of one channel and the arm by itself. Instruments may hang on the
+//! arm in one kind of test only, and a servo that holds a joint in one kind of test may be softer than a brake in
+//! another.
 
 use super::warming::Softening;
 use crate::arm::structure::{FrameCompliance, LinkPiece, Piece, Structure};
@@ -24,11 +25,12 @@ impl Turned {
 /// What is special about the tests of one channel.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Setup {
-    /// Mass that hangs at the tip \[kg\].
+    /// Additional mass at the tip \[kg\].
     pub mass_kg: f64,
-    /// Centre of gravity of this mass from the tip, in the last frame \[m\].
+    /// Centre of gravity of the additional mass, measured from the tip in the last frame \[m\].
     pub cg_m: Vector3<f64>,
-    /// Joints that yield further about their axes: name and compliance \[rad/(N m)\].
+    /// Additional compliance of joints about their axes in these tests: name of the joint and compliance
+    /// \[rad/(N m)\].
     pub servo_rad_per_nm: Vec<(String, f64)>,
     /// Joints that soften in the course of the tests, by name.
     pub softening: Vec<(String, Softening)>,
@@ -61,13 +63,14 @@ impl Setup {
         }
     }
 
-    /// Further compliance of a joint about its axis \[rad/(N m)\].
+    /// Additional compliance of the joint named `joint` about its axis in these tests \[rad/(N m)\]; 0 if there is
+    /// none.
     pub fn servo_of(&self, joint: &str) -> f64 {
         self.servo_rad_per_nm.iter().filter(|(name, _)| name == joint).map(|(_, c)| c).sum()
     }
 
-    /// The arm as it is in a test of the channel. The mass hangs on two rigid offsets, to its centre of gravity and back, so
-    /// that the tip stays where it is.
+    /// The `structure` of an arm, changed to the arm in the tests of this channel. The additional mass is placed by two
+    /// rigid offsets, one forth and one back, so that the tip stays where it is.
     pub fn of(&self, structure: &Structure) -> Structure {
         let mut out = structure.clone();
         for (name, compliance) in &self.servo_rad_per_nm {
@@ -76,7 +79,7 @@ impl Setup {
             }
         }
         if self.mass_kg != 0.0 {
-            // a point mass sits at mid-length of its offset
+            // the point mass of an offset is at its mid-length, so the offset is twice as long as the way to the mass
             let there = offset("test_mass", 2.0 * self.cg_m, self.mass_kg);
             out.pieces.extend([there, offset("test_mass.back", -2.0 * self.cg_m, 0.0)]);
         }

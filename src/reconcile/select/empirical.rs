@@ -1,4 +1,5 @@
-//! Laws without a name as pieces of a model: found one after the other, each fitted in full together with all others.
+//! Laws without a name as effects of a model. They are found one after the other, each fitted in full together with all
+//! others.
 //!
 //! [`unnamed`](super::unnamed) asks whether a law competes with named effects, with the model made linear. Here a law
 //! becomes an effect of the arm, so that a corrected arm can have it: a further twist of a joint as a polynomial of its
@@ -20,13 +21,15 @@ use crate::reconcile::model::parameters::{Candidate, FreeParameter, Number};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
-/// Largest number of laws in one model.
+/// Largest number of laws without a name in one model.
 const MOST_LAWS: usize = 3;
-/// A law is taken if ln of the evidence, less the price of its place, rises by more than this.
+/// A law is accepted if the logarithm of the evidence, less the logarithm of the number of places where a law is
+/// tried, rises by more than this.
 const BETTER: f64 = 2.0;
-/// A joint with less of the largest torque on any joint is not tried.
+/// A joint is not tried if its largest torque is less than this fraction of the largest torque on any joint.
 const UNLOADED: f64 = 1e-3;
-/// Largest further twist that is looked for, as a multiple of the twist of the joint at the largest torque.
+/// Largest size of a law of a joint (a further twist) that is sought, as a multiple of the joint's nominal twist at
+/// its largest torque.
 const LARGEST: f64 = 3.0;
 
 /// Channels in whose tests a joint may soften, in the order of their parameters.
@@ -167,7 +170,7 @@ pub(crate) fn may_be(candidate: &Candidate) -> &'static str {
     }
 }
 
-/// The law in words.
+/// Description in words of the law that the candidate stands for.
 pub(crate) fn in_words(candidate: &Candidate) -> String {
     let at = &candidate.at;
     match candidate.free_parameters.first().map(|free| free.name) {
@@ -189,8 +192,8 @@ pub(crate) fn in_words(candidate: &Candidate) -> String {
     }
 }
 
-/// A fit, and the laws that earn their place in it, added one after the other. `search` has the laws among its candidates,
-/// from `first` on. `None` if no law does.
+/// Adds laws without a name to the model `from`, one after the other, as long as each raises the score by more than
+/// [`BETTER`]. The laws are the candidates of `search` from the index `first` on. `None` if no law does.
 pub(crate) fn with_laws<'a>(search: &Search<'a>, first: usize, from: &Scored) -> Option<(Scored, Fit<'a>)> {
     let mut best: Option<(Scored, Fit)> = None;
     for _ in 0..MOST_LAWS {
@@ -201,7 +204,8 @@ pub(crate) fn with_laws<'a>(search: &Search<'a>, first: usize, from: &Scored) ->
     best
 }
 
-/// The law that raises the evidence most, in the model fitted to the end.
+/// The fit of the model `from` with that law added which raises its score most; `None` if the rise is not more than
+/// [`BETTER`].
 fn next_law<'a>(search: &Search<'a>, first: usize, from: &Scored) -> Option<(Scored, Fit<'a>)> {
     let laws = (first..search.candidates.len()).filter(|law| !from.effects.contains(law));
     let starts: Vec<(usize, &Vec<f64>)> =
@@ -220,7 +224,8 @@ fn next_law<'a>(search: &Search<'a>, first: usize, from: &Scored) -> Option<(Sco
     (scored.score > from.score + BETTER).then_some((scored, fit))
 }
 
-/// The further twists of a joint, odd and even in its torque.
+/// Two laws of a joint as candidates: a further twist that is an odd function of the joint's torque, and one that is
+/// an even function. `torque_nm` is the largest torque on the joint, and `twist_rad` its twist there.
 fn twists(joint: &str, torque_nm: f64, twist_rad: f64) -> [Candidate; 2] {
     let most = LARGEST * twist_rad;
     let sized =
@@ -235,7 +240,8 @@ fn twists(joint: &str, torque_nm: f64, twist_rad: f64) -> [Candidate; 2] {
     ]
 }
 
-/// The laws of a channel's readings: they bend, or have a gain in each direction.
+/// The laws of a channel's readings as candidates: a nonlinear characteristic, and a gain for each direction if the
+/// channel has three components. `largest` is the largest reading, in its unit.
 fn readings(channel: Channel, largest: f64) -> Vec<Candidate> {
     // a base that turned shows in displacements only
     let still = if channel == Channel::Static {
@@ -260,7 +266,8 @@ fn readings(channel: Channel, largest: f64) -> Vec<Candidate> {
     out
 }
 
-/// A law with one free parameter, whose fits start where it changes nothing. Its numbers are still to be given.
+/// A candidate at the place `at` with one free parameter, which may be a vector. Its fits start at the value
+/// `absent`, at which the law changes nothing. The caller sets `numbers`.
 fn law(at: &str, parameter: Parameter, absent: f64) -> Candidate {
     let free = (0..parameter.count).map(|component| FreeParameter::new(&parameter, component, 1.0));
     let free_parameters: Vec<FreeParameter> = free.collect();
