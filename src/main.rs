@@ -1,4 +1,4 @@
-//! The `armwright` command: parse, call a verb, print one error.
+//! The `armwright` command: parses the command line, runs one subcommand, and prints at most one error.
 
 use armwright::command_line::{Answer, Cli, Exit, Failure, Log, print, printed, run};
 use clap::Parser;
@@ -13,7 +13,7 @@ fn main() -> ExitCode {
             without_panic(cli).and_then(|answer| print(&answer.text).map(|()| answer.exit))
         }
         Err(asked) if asked.use_stderr() => {
-            // wrong usage; where standard error cannot be written the exit code says it
+            // wrong usage; if standard error cannot be written, the exit code is all that the user gets
             let _ = asked.print();
             return ExitCode::from(Exit::Usage.code());
         }
@@ -29,7 +29,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// Executes a command line; a panic, whose message is on standard error by now, becomes an internal error.
+/// Executes a command line. If it panics, the panic message is on standard error already, and the result is an
+/// internal error.
 fn without_panic(cli: Cli) -> Result<Answer, Failure> {
     catch_unwind(AssertUnwindSafe(|| run(cli))).unwrap_or_else(|_| {
         let words = "this is a fault of armwright, please report it with the input and the lines above";

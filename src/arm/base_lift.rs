@@ -1,24 +1,27 @@
-//! Base lift: feet that stand on the floor by their preload, and lift off when the moment exceeds it.
+//! Base lift: a base whose feet are pressed to the floor by a preload, and lift off when the moment on the base
+//! exceeds it.
 
 use super::joint_law::Windup;
 
-/// A base that is rigid up to a moment about each horizontal axis, and yields beyond it.
+/// A base that is rigid up to a moment about each horizontal axis, and deflects elastically beyond it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BaseLift {
-    /// Stiffness beyond the preload \[N m/rad\].
+    /// Stiffness once the feet have lifted off \[N m/rad\].
     pub stiffness_nm_per_rad: f64,
     /// Moment about a horizontal axis at which the feet lift off \[N m\].
     pub preload_nm: f64,
 }
 
 impl BaseLift {
-    /// Tilt about a horizontal axis under the moment about it \[rad\].
+    /// Tilt of the base about a horizontal axis \[rad\] under the moment about this axis \[N m\]. It is zero up to the
+    /// preload.
     pub fn angle_rad(&self, moment_nm: f64) -> f64 {
         let beyond_nm = (moment_nm.abs() - self.preload_nm).max(0.0);
         (beyond_nm / self.stiffness_nm_per_rad).copysign(moment_nm)
     }
 
-    /// The same law as a torsion curve whose first two segments are rigid.
+    /// The tilt as a function of the moment, written as the torsion curve of a gear, so that code for gears can use it.
+    /// The first two segments are rigid; the third begins at the preload.
     pub(crate) fn as_windup(&self) -> Windup {
         Windup {
             k1_nm_per_rad: f64::INFINITY,
@@ -29,7 +32,7 @@ impl BaseLift {
         }
     }
 
-    /// Tilt per small further moment \[rad/(N m)\].
+    /// Tangent compliance at a moment: further tilt per small further moment \[rad/(N m)\].
     pub fn tangent_compliance_rad_per_nm(&self, moment_nm: f64) -> f64 {
         if moment_nm.abs() > self.preload_nm { 1.0 / self.stiffness_nm_per_rad } else { 0.0 }
     }

@@ -1,4 +1,4 @@
-//! The output bearing of a joint: how far it tilts, what it carries, what it weighs.
+//! The output bearing of a joint: its tilting stiffness, permissible moment, load ratings and mass.
 //!
 //! A bearing tilts about the two axes across the axis of the joint. The tilt is the moment across the axis over one
 //! stiffness, which is the same about both axes: `γ = M / K` (Harmonic Drive AG, engineering data SHG-2UH 1021387,
@@ -13,23 +13,27 @@ use serde_json::{Value, json};
 /// The output bearing of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Bearing {
-    /// Moment per tilt about each of the two axes across the axis of the joint \[N m/rad\]; `None` is rigid.
+    /// Tilting stiffness, the same about each of the two axes perpendicular to the axis of the joint \[N m/rad\];
+    /// `None` means rigid.
     pub tilt_stiffness_nm_per_rad: Option<f64>,
-    /// Largest moment across the axis that the bearing may carry while the joint turns \[N m\]; `None` is unknown.
+    /// Largest moment across the axis that the vendor permits while the joint turns \[N m\]; `None` means unknown.
     pub permissible_moment_nm: Option<f64>,
-    /// Mass of a bearing that is a part of its own \[kg\]. It is a point on the axis, inboard of the springs.
+    /// Mass of the bearing if it is a separate part, not contained in the mass of the gear \[kg\]. It is a point on
+    /// the axis, inboard of the springs.
     pub mass_kg: f64,
-    /// Lever along the axis from the centre of the bearing to where the link attaches \[m\]. `None` is not stated: it is
-    /// then the offset in the ratings and half the width of the link.
+    /// Lever along the axis from the centre of the bearing to the point where the link attaches \[m\]. `None` means
+    /// that it is not stated; it is then the offset in the ratings plus half the width of the link.
     pub offset_m: Option<f64>,
-    /// What the vendor rates the bearing for.
+    /// Ratings of the vendor for load and life.
     pub ratings: BearingRatings,
 }
 
 impl Bearing {
-    /// The bearing inside a gear of the catalog; `None` for a component set, which has none.
+    /// The bearing inside a gear of the catalog; `None` for a component set, which has no bearing. `which` says whether
+    /// the gear is bought as a housed unit or as a component set.
     ///
-    /// A number that the catalog does not have stays unknown. A bearing of unknown tilting stiffness counts as rigid.
+    /// A number that the catalog does not have stays unknown. A bearing of unknown tilting stiffness is taken as
+    /// rigid.
     pub fn of_gear(gear: &Gear, which: GearMass) -> Option<Self> {
         (which == GearMass::HousedUnit).then_some(Self {
             tilt_stiffness_nm_per_rad: gear.tilting_stiffness_nm_per_rad,
@@ -40,24 +44,24 @@ impl Bearing {
         })
     }
 
-    /// The bearing of a housed gear as a part of its own, beside a component set. It weighs what the housed unit weighs
-    /// more than the component set.
+    /// The bearing of a housed gear as a separate part, for use with a component set. Its mass is the mass of the
+    /// housed unit less the mass of the component set. `None` if one of the two is unknown.
     fn as_part(gear: &Gear) -> Option<Self> {
         let mass_kg = gear.mass_housed_unit_kg? - gear.mass_component_set_kg?;
         Some(Self { mass_kg, ..Self::of_gear(gear, GearMass::HousedUnit)? })
     }
 
-    /// Tilt per moment about each of the two axes \[rad/(N m)\]; 0 if the bearing is rigid.
+    /// Tilt per moment, about each of the two axes across the joint \[rad/(N m)\]; 0 if the bearing is rigid.
     pub fn tilt_rad_per_nm(&self) -> f64 {
         self.tilt_stiffness_nm_per_rad.map_or(0.0, |stiffness| 1.0 / stiffness)
     }
 
-    /// The same bearing with its tilting stiffness times a factor.
+    /// This bearing with its tilting stiffness multiplied by `factor`. A rigid bearing stays rigid.
     pub(crate) fn stiffened(self, factor: f64) -> Self {
         Self { tilt_stiffness_nm_per_rad: self.tilt_stiffness_nm_per_rad.map(|k| k * factor), ..self }
     }
 
-    /// Reads a bearing that is written as an object.
+    /// Reads a bearing that a file describes by its numbers.
     fn read(node: &Node) -> Option<Self> {
         let object = node.shaped(&BEARING)?;
         let positive =
@@ -83,7 +87,7 @@ impl Bearing {
         })
     }
 
-    /// The bearing of a part that a file names.
+    /// The bearing of the housed gear whose name is the value of `node`. Faults if the catalogs have no such gear.
     fn named(node: &Node, catalogs: &Catalogs) -> Option<Self> {
         let gear = match catalogs.gear(node.string()?) {
             Ok(gear) => gear,
@@ -100,7 +104,7 @@ impl Bearing {
         })
     }
 
-    /// The bearing as files write it.
+    /// The bearing as an arm file writes it: an object of stiffness, ratings, mass and lever.
     pub(crate) fn to_json(self) -> Value {
         json!({
             "tilt_stiffness_nm_per_rad": self.tilt_stiffness_nm_per_rad,
@@ -119,12 +123,13 @@ impl Bearing {
 pub enum BearingSource {
     /// From the gear: a housed unit has one, a component set has none.
     OfGear,
-    /// From the file. `None` is rigid and without mass.
+    /// Stated by the file. `None` means that the joint has no bearing of its own: it does not tilt and adds no mass.
     Stated(Option<Bearing>),
 }
 
 impl BearingSource {
-    /// The bearing of a joint with this gear.
+    /// The output bearing of the joint if `gear` is its gear, bought as `which` says (housed unit or component set).
+    /// `None`: the joint has no bearing.
     pub fn with_gear(&self, gear: &Gear, which: GearMass) -> Option<Bearing> {
         match self {
             BearingSource::OfGear => Bearing::of_gear(gear, which),
@@ -132,7 +137,8 @@ impl BearingSource {
         }
     }
 
-    /// The bearing that the file states; `None` where there is none or the gear decides.
+    /// The bearing that the file states. `None` if the file states that there is none, or if the bearing comes from the
+    /// gear.
     pub fn stated(&self) -> Option<Bearing> {
         match self {
             BearingSource::OfGear => None,
@@ -141,12 +147,13 @@ impl BearingSource {
     }
 }
 
-/// What a file says of the bearing of a joint.
+/// What a file states about the bearing of a joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Stated {
-    /// Nothing. The bearing is that of the gear, if the joint has one.
+    /// The file states nothing. The bearing of the gear is taken, if it has one.
     Nothing,
-    /// A bearing by its numbers or by the name of a part; or `null`: the joint does not tilt.
+    /// The file states a bearing by its numbers or by the name of a part. `None`: the file has `null`, the joint does
+    /// not tilt.
     Bearing(Option<Bearing>),
 }
 

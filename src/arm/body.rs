@@ -1,7 +1,8 @@
-//! Bodies: rigid parts that a link or a joint carries, with their mass, centre and inertia, as CAD programs give them.
+//! Bodies: rigid parts on a link or a joint, with mass, centre of gravity and inertia as CAD programs give them.
 //!
-//! The centre is measured from the start of the element and the inertia is taken about the centre; both are written in the
-//! carried frame, like the vector of a link. Bodies come on top of everything else that an element weighs.
+//! The centre of gravity is measured from the start of the element, and the inertia is taken about it. Both are
+//! written in the carried frame, as the vector of a link is. The mass of bodies is added to everything else that an
+//! element weighs.
 
 use super::keys::{JOINT_BODY, LINK_BODY};
 use super::prismatic_keys::PRISMATIC_BODY;
@@ -10,7 +11,7 @@ use crate::input::key::Shape;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use serde_json::{Value, json};
 
-/// Difference of two entries of an inertia tensor that counts as rounding, per largest entry.
+/// Difference of two entries of an inertia tensor that still counts as rounding, relative to the largest entry.
 const ROUNDING: f64 = 1e-6;
 
 /// A rigid body on a link or a joint.
@@ -18,15 +19,15 @@ const ROUNDING: f64 = 1e-6;
 pub struct RigidBody {
     /// Mass \[kg\].
     pub mass_kg: f64,
-    /// Centre of gravity from the start of the element, in the carried frame \[m\].
+    /// Position of the centre of gravity from the start of the element, in the carried frame \[m\].
     pub cg_m: Vector3<f64>,
     /// Inertia about the centre of gravity, in axes of the carried frame \[kg m²\].
     pub inertia_kgm2: Matrix3<f64>,
 }
 
 impl RigidBody {
-    /// Whether no solid can have this inertia: a principal moment is larger than the sum of the other two. Models of
-    /// robots often have such tensors, since a moment that does not matter was left at zero.
+    /// Whether no solid can have this inertia tensor, because a principal moment is larger than the sum of the other
+    /// two. Models of robots often have such tensors: a moment that their authors did not need was left at zero.
     pub fn is_impossible(&self) -> bool {
         let moments = SymmetricEigen::new(self.inertia_kgm2).eigenvalues;
         2.0 * moments.max() > moments.sum() + ROUNDING * moments.max()
@@ -41,7 +42,7 @@ impl RigidBody {
         Some((Self { mass_kg: mass_kg?, cg_m: cg_m?, inertia_kgm2: inertia_kgm2? }, rotates?))
     }
 
-    /// The body as files write it.
+    /// The body as files write it: mass, centre of gravity, and the inertia tensor as three rows.
     pub(crate) fn to_json(self) -> Value {
         let rows: Vec<Vec<f64>> =
             self.inertia_kgm2.row_iter().map(|row| row.iter().copied().collect()).collect();
@@ -59,22 +60,23 @@ pub struct JointBodies {
 }
 
 impl JointBodies {
-    /// Mass of all bodies \[kg\].
+    /// Mass of all bodies of the joint \[kg\].
     pub fn mass_kg(&self) -> f64 {
         total_kg(&self.fixed) + total_kg(&self.rotating)
     }
 
-    /// All bodies, those that rotate last.
+    /// All bodies of the joint: first those inboard of the springs, then those outboard.
     pub fn iter(&self) -> impl Iterator<Item = &RigidBody> {
         self.fixed.iter().chain(&self.rotating)
     }
 
-    /// The bodies as files write them; `None` if there are none.
+    /// The rigid bodies of the joint (key `bodies` of the arm file) as a JSON list; `None` if the joint has none.
     pub(crate) fn to_json(&self) -> Option<Value> {
         self.to_json_that("rotates")
     }
 
-    /// The same, where this key is true of those outboard of the springs.
+    /// The rigid bodies of the joint (key `bodies` of the arm file) as a JSON list. `moves` is the key (`rotates` or
+    /// `travels`) that is true for bodies outboard of the springs. `None` if the joint has none.
     pub(crate) fn to_json_that(&self, moves: &str) -> Option<Value> {
         let rotating = self.rotating.iter().map(|body| {
             let mut value = body.to_json();
@@ -86,28 +88,29 @@ impl JointBodies {
     }
 }
 
-/// Mass of some bodies \[kg\].
+/// Sum of the masses of some bodies \[kg\].
 pub(crate) fn total_kg(bodies: &[RigidBody]) -> f64 {
     bodies.iter().map(|body| body.mass_kg).sum()
 }
 
-/// Reads the key `bodies` of a link; none without the key.
+/// Reads the key `bodies` of a link; an empty list without the key.
 pub(crate) fn read_link_bodies(object: &Object) -> Option<Vec<RigidBody>> {
     let bodies = read(object, &LINK_BODY, "")?;
     Some(bodies.into_iter().map(|(body, _)| body).collect())
 }
 
-/// Reads the key `bodies` of a joint; none without the key.
+/// Reads the key `bodies` of a joint; no bodies without the key.
 pub(crate) fn read_joint_bodies(object: &Object) -> Option<JointBodies> {
     read_bodies_that(object, &JOINT_BODY, "rotates")
 }
 
-/// Reads the key `bodies` of a prismatic joint; none without the key.
+/// Reads the key `bodies` of a prismatic joint; no bodies without the key.
 pub(crate) fn read_prismatic_bodies(object: &Object) -> Option<JointBodies> {
     read_bodies_that(object, &PRISMATIC_BODY, "travels")
 }
 
-/// Reads bodies, of which the key `moves` is true of those outboard of the springs.
+/// Reads the key `bodies` of a joint, whose keys are those of `shape`. Bodies in which the key named by `moves` is true
+/// are outboard of the springs.
 fn read_bodies_that(object: &Object, shape: &Shape, moves: &str) -> Option<JointBodies> {
     let mut out = JointBodies::default();
     for (body, is_outboard) in read(object, shape, moves)? {
@@ -123,7 +126,7 @@ fn read(object: &Object, shape: &Shape, moves: &str) -> Option<Vec<(RigidBody, b
     })
 }
 
-/// Reads a tensor of inertia. It must be symmetric, and none of its principal moments may be negative.
+/// Reads an inertia tensor. It must be symmetric, and none of its principal moments may be negative.
 fn read_inertia(node: &Node) -> Option<Matrix3<f64>> {
     let rows: Vec<Option<[f64; 3]>> = node.array()?.iter().map(|row| row.numbers::<3>()).collect();
     let rows: Vec<[f64; 3]> = rows.into_iter().collect::<Option<_>>()?;

@@ -1,24 +1,24 @@
-//! The keys of cases files: what the reader knows, and what `armwright schema cases` prints.
+//! The keys of cases files. The reader uses this list, and `armwright schema cases` prints it.
 
 use super::keys::{PAYLOAD, VECTOR, WATER};
 use super::{JointModel, LinkModel, Words};
 use crate::input::key::{Kind, Rule, Shape, optional, words_of};
 use crate::input::schema::FileKind;
 
-/// A cases file.
+/// The format of a cases file.
 pub const CASES_FILE: FileKind = FileKind {
     name: "cases",
     about: "Load cases of an arm, for `armwright analyze --cases`.",
     root: Kind::NonEmpty(&Kind::Object(&CASE)),
 };
 
-/// Words of the models of links.
+/// The words for the link models in files.
 pub(crate) const LINK_MODELS: Kind = Kind::Word(&words_of::<LinkModel, 3>(LinkModel::WORDS));
 
-/// Words of the models of joints.
+/// The words for the joint models in files.
 pub(crate) const JOINT_MODELS: Kind = Kind::Word(&words_of::<JointModel, 3>(JointModel::WORDS));
 
-/// A load case.
+/// The keys of a load case.
 pub(crate) static CASE: Shape = Shape::new(
     "case",
     "A load case: a pose, a load and the models to use.",
@@ -48,6 +48,6 @@ pub(crate) static CASE: Shape = Shape::new(
     &POSE_RULES,
 );
 
-/// What holds for the keys of a pose.
+/// Rules for the keys of a pose: one of the two must be given, but not both.
 pub(crate) const POSE_RULES: [Rule; 2] =
     [Rule::Any(&["pose_deg", "pose"]), Rule::Refuses("pose_deg", &["pose"])];

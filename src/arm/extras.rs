@@ -1,11 +1,12 @@
-//! What a joint weighs beyond its gear and motor: housing, brake, encoders, flange, cables.
+//! Extras: masses of a joint other than gear and motor (housing, brake, encoders, flange, cables).
 //!
-//! A catalog row of a gear is a component set or a housed gear, and that of a frameless motor is a rotor and a stator. The
-//! rest of a joint has no catalog row. [`Extras::usual`] estimates it from published shares of a joint's mass (eyoubot,
-//! "Lightweight harmonic drive robot actuator": motor 30 to 40 %, reducer 25 to 35 %, housing 15 to 25 %, brake 5 to 15 %,
-//! encoders 3 to 5 %; the middle of each range over the 65 % of motor and reducer). The brake agrees with what Harmonic
-//! Drive's SHA actuators of sizes 20, 25 and 32 weigh more with a brake than without (0.10, 0.15 and 0.28 kg here). The
-//! flange is a disc of aluminium; that and the cables are representative figures without a source.
+//! The catalog row of a gear is a component set or a housed gear, and the row of a frameless motor is a rotor and a
+//! stator. The remaining parts of a joint have no catalog row. [`Extras::usual`] estimates them from published
+//! fractions of the mass of a joint (eyoubot, "Lightweight harmonic drive robot actuator": motor 30 to 40 %, reducer
+//! 25 to 35 %, housing 15 to 25 %, brake 5 to 15 %, encoders 3 to 5 %). The middle of each range is divided by the 65
+//! % of motor and reducer. The brake agrees with the mass that Harmonic Drive's SHA actuators of sizes 20, 25 and 32
+//! have more with a brake than without (0.10, 0.15 and 0.28 kg here). The flange is a disc of aluminium. Flange and
+//! cables are representative masses without a source.
 
 use super::keys::EXTRAS;
 use crate::catalog::gear::{Gear, GearKind, GearMass};
@@ -13,45 +14,49 @@ use crate::catalog::motor::{Motor, MotorKind};
 use crate::input::json::{Node, Object};
 use serde_json::{Value, json};
 
-/// Masses at the point of a joint, inboard of its springs \[kg\].
+/// Masses at the position of a joint, inboard of its springs \[kg\].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Extras {
-    /// Housing of the motor, or of gear and motor.
+    /// Mass of the housing of the motor, or of gear and motor \[kg\].
     pub housing_kg: f64,
-    /// Holding brake.
+    /// Mass of the holding brake \[kg\].
     pub brake_kg: f64,
-    /// Encoders.
+    /// Mass of the encoders \[kg\].
     pub encoder_kg: f64,
-    /// Flange that carries the next link.
+    /// Mass of the flange that carries the next link \[kg\].
     pub flange_kg: f64,
-    /// Cables and connectors within the joint.
+    /// Mass of cables and connectors within the joint \[kg\].
     pub cable_kg: f64,
 }
 
 /// Where the extras of a joint come from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ExtrasSource {
-    /// From the parts that are chosen ([`Extras::usual`]).
+    /// The masses are estimated from the gear and motor that are chosen ([`Extras::usual`]).
     Usual,
-    /// From the file.
+    /// The file states the masses.
     Stated(Extras),
 }
 
-/// Mass of the housing per mass of what it holds: 20 % over 65 %.
+/// Mass of the housing relative to the mass of the parts that it contains: 20 % over 65 %, from published fractions of
+/// the mass of a joint.
 const HOUSING_SHARE: f64 = 0.31;
-/// Mass of the brake per mass of motor and component set: 10 % over 65 %.
+/// Mass of the brake relative to the mass of motor and component set: 10 % over 65 %.
 const BRAKE_SHARE: f64 = 0.15;
-/// Mass of the encoders per mass of motor and component set: 4 % over 65 %.
+/// Mass of the encoders relative to the mass of motor and component set: 4 % over 65 %.
 const ENCODER_SHARE: f64 = 0.06;
 /// Smallest mass of the encoders \[kg\].
 const LEAST_ENCODER_KG: f64 = 0.05;
-/// Smallest mass of the housing of a frameless motor \[kg\]: castings do not shrink with what is in them.
+/// Smallest mass of the housing of a frameless motor \[kg\]. Castings do not become thinner in proportion to the
+/// parts in them.
 const LEAST_HOUSING_KG: f64 = 0.35;
-/// Mass of a flange per cube of its diameter \[kg/m³\]: a disc of aluminium, 0.08 of its diameter thick.
+/// Mass of a flange divided by the cube of its diameter \[kg/m³\]: a disc of aluminium whose thickness is 0.08 of its
+/// diameter.
 const FLANGE_KG_PER_M3: f64 = 170.0;
-/// Cables and connectors of one joint \[kg\].
+/// Mass of cables and connectors of one joint \[kg\].
 const CABLE_KG: f64 = 0.05;
-/// Outer diameter of a housed gear per size \[m\], where the catalog has none: size 20 is 0.093 m.
+/// Outer diameter of a housed gear divided by its size \[m\], for gears without a diameter in the catalog. A gear of
+/// size 20 has 0.093 m.
 const DIAMETER_PER_SIZE_M: f64 = 0.0046;
 
 /// Outer diameter of a gear \[m\]. Where the catalog has none, as of every component set, the size of a harmonic drive gives
@@ -65,7 +70,7 @@ fn diameter_m(gear: &Gear, which: GearMass) -> f64 {
 }
 
 impl Extras {
-    /// What a joint of these parts usually has. An actuator has all but its cables in it.
+    /// The usual extras of a joint with this gear and motor. An actuator contains all of them except its cables.
     ///
     /// ```
     /// use armwright::arm::Extras;
@@ -93,7 +98,7 @@ impl Extras {
         Self {
             housing_kg: motor_housing_kg + gear_housing_kg,
             brake_kg: BRAKE_SHARE * (set_kg + motor_kg),
-            // a motor with a housing has its encoder in its mass
+            // a motor with a housing has an encoder in its mass, so only the smallest mass is added
             encoder_kg: match frameless {
                 true => (ENCODER_SHARE * (set_kg + motor_kg)).max(LEAST_ENCODER_KG),
                 false => LEAST_ENCODER_KG,
@@ -104,7 +109,7 @@ impl Extras {
         .rounded()
     }
 
-    /// To the gram, so that the masses that are printed are those that are computed with.
+    /// These masses rounded to the gram, so that the masses that are printed are those that are computed with.
     fn rounded(self) -> Self {
         let gram = |kg: f64| (kg * 1e3).round() / 1e3;
         Self {
@@ -116,7 +121,7 @@ impl Extras {
         }
     }
 
-    /// Sum of all \[kg\].
+    /// Sum of all masses \[kg\].
     pub fn total_kg(&self) -> f64 {
         self.housing_kg + self.brake_kg + self.encoder_kg + self.flange_kg + self.cable_kg
     }
@@ -135,7 +140,7 @@ impl Extras {
         })
     }
 
-    /// The extras as files write them.
+    /// The masses as an arm file writes them, one key for each mass.
     pub(crate) fn to_json(self) -> Value {
         json!({
             "housing_kg": self.housing_kg,
@@ -157,7 +162,8 @@ impl ExtrasSource {
         cable_kg: 0.0,
     });
 
-    /// The extras of a joint with these parts.
+    /// The extras of a joint with this gear and motor: estimated from both, or as the file states them. `which` says
+    /// which mass of the gear counts, component set or housed unit.
     pub fn with_parts(&self, gear: &Gear, motor: &Motor, which: GearMass) -> Extras {
         match self {
             ExtrasSource::Usual => Extras::usual(gear, motor, which),
@@ -165,7 +171,8 @@ impl ExtrasSource {
         }
     }
 
-    /// The extras that the file states; none if the parts decide.
+    /// The extras that the file states. All masses are zero if the file leaves them to be estimated from gear and
+    /// motor.
     pub fn stated(&self) -> Extras {
         match self {
             ExtrasSource::Usual => Extras::default(),
@@ -174,13 +181,13 @@ impl ExtrasSource {
     }
 }
 
-/// Reads the key `extras` of a joint in an arm file; none without the key.
+/// Reads the key `extras` of a joint in an arm file; all masses are zero without the key.
 pub(crate) fn read_extras(object: &Object) -> Option<Extras> {
     object.or("extras", Extras::default(), Extras::read)
 }
 
-/// Reads the key `extras` of a study or of one of its joints: `"usual"`, `"none"`, or masses. `usually` is what holds
-/// without the key.
+/// Reads the key `extras` of a study or of one of its joints: `"usual"`, `"none"`, or masses. `usually` is the result
+/// if the key is missing.
 pub(crate) fn read_extras_source(object: &Object, usually: ExtrasSource) -> Option<ExtrasSource> {
     object.or("extras", usually, |n| match n.value() {
         Value::String(word) if word == "usual" => Some(ExtrasSource::Usual),

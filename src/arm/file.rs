@@ -6,7 +6,7 @@ use super::body::read_joint_bodies;
 use super::effect::channel::Channel;
 use super::effect::entry::Effect;
 use super::effect::servo_compliance;
-use super::element_keys::{read_axis, read_name};
+use super::element_keys::{read_axis, read_coupling, read_name};
 use super::extras::read_extras;
 use super::file_keys::{ARM, EFFECT, JOINT, LINK, MATERIAL};
 use super::joint_law::{Curve, Windup};
@@ -66,7 +66,7 @@ pub fn read_arm_document(document: Document, catalogs: &Catalogs) -> Result<Arm,
     document.finish(arm)
 }
 
-/// Reads an arm from a node of a larger document.
+/// Reads an arm from the object `node`, which may be a part of a larger document.
 pub(crate) fn arm(node: &Node, catalogs: &Catalogs) -> Option<Arm> {
     let root = node.shaped(&ARM)?;
     let name = root.or("name", "arm".to_string(), |n| n.string().map(String::from));
@@ -109,8 +109,8 @@ fn read_balance(root: &Object, chain: &mut [Element]) -> Option<Vec<Spring>> {
     springs
 }
 
-/// Reads the key `gravity_m_s2`: the acceleration along world -z, or a vector in the world; 0 is none. The result is the
-/// acceleration and its direction.
+/// Reads the key `gravity_m_s2`: the acceleration along world -z, or a vector in the world; 0 means no gravity.
+/// Returns the magnitude of the acceleration \[m/s²\] and its direction.
 pub(crate) fn read_gravity(object: &Object) -> Option<(f64, Vector3<f64>)> {
     let upright = -Vector3::z();
     object.or("gravity_m_s2", (DEFAULT_GRAVITY_M_S2, upright), |n| match n.value() {
@@ -183,7 +183,7 @@ impl From<Vec<Element>> for Item {
     }
 }
 
-/// What is wrong with an element of no known type, and what to try.
+/// Fault of an element whose type is missing or unknown: the problem, and the advice how to mend it.
 pub(crate) const NO_TYPE: (&str, &str) = (
     "has no \"type\" of \"joint\", \"prismatic\" or \"link\"",
     "add \"type\": \"joint\" (it turns), \"prismatic\" (it slides) or \"link\"",
@@ -220,7 +220,7 @@ fn read_joint(object: &Object, catalogs: &Catalogs) -> Option<(Joint, Option<Tra
     let bodies = read_joint_bodies(object);
     let coupled = object.or("coupled", None, |n| read_coupling(n).map(Some));
     let turns_with = read_turns_with(object);
-    let transmission = Transmission::read(object, catalogs);
+    let transmission = Transmission::read(object, catalogs, motor_side_kg(object, catalogs));
     let (curve, transmission) = (curve?, transmission?);
     let joint = Joint {
         name: name?,
@@ -239,7 +239,8 @@ fn read_joint(object: &Object, catalogs: &Catalogs) -> Option<(Joint, Option<Tra
     Some((joint, transmission))
 }
 
-/// The joint's output bearing: what the file states, else that of the gear it names, if the catalogs know it.
+/// The output bearing of a joint: the bearing that the file states, else the bearing of the named gear if the
+/// catalogs know this gear.
 pub(crate) fn read_joint_bearing(object: &Object, catalogs: &Catalogs) -> Option<Option<Bearing>> {
     if let Stated::Bearing(bearing) = read_bearing(object, catalogs)? {
         return Some(bearing);
@@ -253,7 +254,7 @@ pub(crate) fn read_joint_bearing(object: &Object, catalogs: &Catalogs) -> Option
     Some(gear.and_then(|gear| Bearing::of_gear(gear, which)))
 }
 
-/// The torsion curve of a joint: explicit numbers if there are any, else the curve of the gear in the catalog.
+/// The torsion curve of a joint: the numbers that the file states, else the curve of the named gear in the catalog.
 pub(crate) fn read_curve(object: &Object, catalogs: &Catalogs) -> Option<Curve> {
     match (object.optional("stiffness_nm_per_rad"), object.optional("windup"), object.optional("gear")) {
         (Some(stiffness), Some(_), _) => {
@@ -293,7 +294,7 @@ fn find_gear<'c>(node: &Node, catalogs: &'c Catalogs) -> Option<&'c Gear> {
         .ok()
 }
 
-/// The torsion curve of a gear in the catalog; `None` if a part of it is unknown.
+/// The torsion curve of a gear in the catalog; `None` if a slope or a break point is blank.
 pub(crate) fn windup_of(gear: &Gear) -> Option<Windup> {
     if let Some(stiffness_nm_per_rad) = gear.single_slope_nm_per_rad() {
         return Some(Windup::straight(stiffness_nm_per_rad));
@@ -360,7 +361,7 @@ pub(crate) fn motor_side_kg(object: &Object, catalogs: &Catalogs) -> Option<f64>
     Some(gear + motor)
 }
 
-/// Whether a joint's gear is a component set or a housed unit, the default.
+/// Reads which mass of a joint's gear counts: component set, or housed unit, which is the default.
 fn read_gear_mass(object: &Object) -> Option<GearMass> {
     object.or("gear_mass", GearMass::HousedUnit, |n| match n.string()? {
         "component_set" => Some(GearMass::ComponentSet),
@@ -376,13 +377,6 @@ fn find_motor_mass(node: &Node, catalogs: &Catalogs) -> Option<Option<f64>> {
 
 fn part_mass(node: &Node, mass_kg: Option<f64>) -> Option<f64> {
     mass_kg.or_else(|| node.fault("has no mass in the catalog", "give the joint's \"mass_kg\""))
-}
-
-/// Reads the drivers of a passive joint, each with its factor.
-pub(crate) fn read_coupling(node: &Node) -> Option<Vec<(String, f64)>> {
-    let read: Vec<_> =
-        node.entries()?.iter().map(|(name, n)| n.number().map(|f| (name.to_string(), f))).collect();
-    read.into_iter().collect()
 }
 
 /// Reads a list of effects. Whether each effect fits its arm is checked later.
@@ -416,7 +410,7 @@ fn read_parameters(node: &Node) -> Option<Vec<(String, Vec<f64>)>> {
     read.into_iter().collect()
 }
 
-/// The number of a channel that is given by its word.
+/// The number that stands for a measuring channel in the list of parameters, read from the word for the channel.
 fn read_channel(node: &Node) -> Option<f64> {
     let word = node.string()?;
     match Channel::from_word(word) {
@@ -428,7 +422,7 @@ fn read_channel(node: &Node) -> Option<f64> {
     }
 }
 
-/// Checks every effect of the arm against its kind.
+/// Checks the place and the parameters of every effect of the arm.
 fn check_effects(arm: &Arm, root: &Object) -> Option<()> {
     let Some(node) = root.optional("effects") else { return Some(()) };
     let structure = arm.nominal_structure(super::JointModel::default());

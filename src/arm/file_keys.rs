@@ -1,4 +1,4 @@
-//! The keys of arm files: what the reader knows, and what `armwright schema arm` prints.
+//! The keys of arm files. The reader uses this list, and `armwright schema arm` prints it.
 
 use super::effect::catalogue::NAMES as EFFECTS;
 use super::keys::{
@@ -10,13 +10,13 @@ use super::prismatic_keys::PRISMATIC;
 use crate::input::key::{Kind, Rule, SCHEMA_ADDRESS, Shape, optional, required};
 use crate::input::schema::FileKind;
 
-/// An arm file.
+/// The format of an arm file.
 pub const ARM_FILE: FileKind =
     FileKind { name: "arm", about: "An arm from base to tip.", root: Kind::Object(&ARM) };
 
 /// A list of effects.
 pub(crate) const EFFECT_LIST: Kind = Kind::List(&Kind::Object(&EFFECT));
-/// The whole arm.
+/// The keys of an arm.
 pub(crate) static ARM: Shape = Shape::new(
     "arm",
     "An arm: joints and links from base to tip.",
@@ -55,7 +55,7 @@ pub(crate) static ARM: Shape = Shape::new(
     &[],
 );
 
-/// A material of an arm file.
+/// The keys of a material.
 pub(crate) static MATERIAL: Shape = Shape::new(
     "material",
     "A material of the links.",
@@ -74,7 +74,7 @@ pub(crate) static MATERIAL: Shape = Shape::new(
     &[],
 );
 
-/// A joint of an arm file.
+/// The keys of a joint.
 pub(crate) static JOINT: Shape = Shape::new(
     "joint",
     "A joint: it turns everything after it about its axis.",
@@ -151,7 +151,7 @@ pub(crate) static JOINT: Shape = Shape::new(
     ],
 );
 
-/// A link of an arm file.
+/// The keys of a link.
 pub(crate) static LINK: Shape = Shape::new(
     "link",
     "A link: a tube or bar, or a rigid offset if it has no section.",
@@ -182,7 +182,7 @@ pub(crate) static LINK: Shape = Shape::new(
     &GIVEN_LINK_RULES,
 );
 
-/// What holds for the keys of a link with a given section.
+/// Rules for the keys of a link that is given, not chosen by the search.
 pub(crate) const GIVEN_LINK_RULES: [Rule; 6] = [
     Rule::Refuses("mass_kg", &["section"]),
     Rule::Refuses("pieces", &["section", "mass_kg", "stiffness_factor", "mass_factor"]),
@@ -197,7 +197,7 @@ pub(crate) const GIVEN_LINK_RULES: [Rule; 6] = [
     },
 ];
 
-/// An effect.
+/// The keys of an effect.
 pub(crate) static EFFECT: Shape = Shape::new(
     "effect",
     "Physics beyond the nominal model; docs/effects describes each.",

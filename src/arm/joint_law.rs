@@ -1,10 +1,10 @@
-//! Joint laws: how far a joint twists about its axis under a torque.
+//! Joint laws: the angle of torsion of a joint about its axis as a function of its torque.
 
 use super::JointModel;
 use super::effect::waves::transmission_waves;
 
-/// The three-segment torsion curve of a gear. It is odd in the torque and has the slope 1/K1 up to T1, 1/K2
-/// up to T2 and 1/K3 beyond.
+/// The torsion curve of a gear, in three straight segments. The angle changes its sign with the torque. The slope
+/// (angle per torque) is 1/K1 up to the torque T1, 1/K2 up to T2 and 1/K3 beyond.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Windup {
     /// Stiffness up to T1 \[N m/rad\].
@@ -13,9 +13,9 @@ pub struct Windup {
     pub k2_nm_per_rad: f64,
     /// Stiffness beyond T2 \[N m/rad\].
     pub k3_nm_per_rad: f64,
-    /// End of the first segment \[N m\].
+    /// Torque T1 at which the first segment ends \[N m\].
     pub t1_nm: f64,
-    /// End of the second segment \[N m\].
+    /// Torque T2 at which the second segment ends \[N m\].
     pub t2_nm: f64,
 }
 
@@ -24,20 +24,21 @@ pub struct Windup {
 pub struct Segment {
     /// Torque at which the segment begins \[N m\].
     pub from_nm: f64,
-    /// Torque at which it ends \[N m\]; infinite for the last segment.
+    /// Torque at which the segment ends \[N m\]; infinite for the last segment.
     pub to_nm: f64,
     /// Stiffness of the segment \[N m/rad\].
     pub stiffness_nm_per_rad: f64,
 }
 
 impl Windup {
-    /// A curve of one segment. Its break points lie anywhere, for they change nothing.
+    /// A torsion curve with the same stiffness in all three segments. The break points are arbitrary, because the slope
+    /// does not change there.
     pub fn straight(stiffness_nm_per_rad: f64) -> Self {
         let k = stiffness_nm_per_rad;
         Self { k1_nm_per_rad: k, k2_nm_per_rad: k, k3_nm_per_rad: k, t1_nm: 1.0, t2_nm: 2.0 }
     }
 
-    /// The three segments in ascending order of torque. A break point belongs to the segment below it.
+    /// The three segments in ascending order of torque. A torque at a break point belongs to the segment below it.
     #[inline]
     pub fn segments(&self) -> [Segment; 3] {
         let segment = |from_nm, to_nm, stiffness_nm_per_rad| Segment { from_nm, to_nm, stiffness_nm_per_rad };
@@ -48,7 +49,7 @@ impl Windup {
         ]
     }
 
-    /// Twist \[rad\] under the total torque \[N m\].
+    /// Angle of torsion \[rad\] under the total torque on the joint \[N m\].
     #[inline]
     pub fn angle_rad(&self, torque_nm: f64) -> f64 {
         let t = torque_nm.abs();
@@ -58,7 +59,7 @@ impl Windup {
         (first + second + third).copysign(torque_nm)
     }
 
-    /// Tangent stiffness \[N m/rad\] at a torque. At a break point it is that of the segment below.
+    /// Tangent stiffness \[N m/rad\] at a torque \[N m\]. At a break point it is the stiffness of the segment below.
     #[inline]
     pub fn tangent_nm_per_rad(&self, torque_nm: f64) -> f64 {
         let t = torque_nm.abs();
@@ -71,13 +72,14 @@ impl Windup {
         }
     }
 
-    /// Whether the curve is at least as stiff as another at every torque up to `most_nm`.
+    /// Whether the tangent stiffness of this curve is at least that of `other` at every torque up to `most_nm` \[N m\].
+    /// Both change only at break points, so only these are compared.
     pub fn never_softer(&self, other: &Self, most_nm: f64) -> bool {
         let starts = [0.0, self.t1_nm, self.t2_nm, other.t1_nm, other.t2_nm];
         starts.into_iter().all(|t| t > most_nm || self.slope_beyond(t) >= other.slope_beyond(t))
     }
 
-    /// Tangent stiffness just beyond a torque.
+    /// Tangent stiffness just above `torque_nm`, where the next segment begins if this is a break point \[N m/rad\].
     fn slope_beyond(&self, torque_nm: f64) -> f64 {
         match torque_nm {
             t if t < self.t1_nm => self.k1_nm_per_rad,
@@ -86,7 +88,7 @@ impl Windup {
         }
     }
 
-    /// The curve with all stiffnesses multiplied by a factor. Its break points stay.
+    /// This curve with all three stiffnesses multiplied by `factor`. The break points stay.
     #[must_use]
     pub fn stiffened(&self, factor: f64) -> Self {
         Self {
@@ -98,7 +100,7 @@ impl Windup {
     }
 }
 
-/// The torsion curve of a joint.
+/// The torsion curve of a joint: its angle of torsion as a function of its torque.
 ///
 /// ```
 /// use armwright::arm::{Curve, JointModel, Windup};
@@ -117,18 +119,19 @@ impl Windup {
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Curve {
-    /// No compliance.
+    /// No torsion under any torque.
     Rigid,
     /// A single stiffness \[N m/rad\].
     Linear(f64),
     /// The three-segment curve of a gear.
     Windup(Windup),
-    /// The three-segment curve of a gear that vibrates with its first slope at every torque.
+    /// The three-segment curve of a gear for deflections. In vibrations the gear has its first slope K1 at every
+    /// torque.
     WindupK1(Windup),
 }
 
 impl Curve {
-    /// Twist \[rad\] under the total torque \[N m\].
+    /// Angle of torsion \[rad\] under the total torque on the joint \[N m\].
     pub fn angle_rad(&self, torque_nm: f64) -> f64 {
         match self {
             Curve::Rigid => 0.0,
@@ -137,7 +140,7 @@ impl Curve {
         }
     }
 
-    /// Tangent compliance \[rad/(N m)\] at a torque \[N m\]: the twist per small further torque.
+    /// Tangent compliance \[rad/(N m)\] at a torque \[N m\]: further angle per small further torque.
     pub fn tangent_compliance_rad_per_nm(&self, torque_nm: f64) -> f64 {
         match self {
             Curve::Rigid => 0.0,
@@ -147,7 +150,7 @@ impl Curve {
         }
     }
 
-    /// The curve with all stiffnesses multiplied by a factor. Its break points stay.
+    /// This curve with all of its stiffnesses multiplied by `factor`. The break points stay.
     #[must_use]
     pub fn stiffened(&self, factor: f64) -> Curve {
         match self {
@@ -158,7 +161,8 @@ impl Curve {
         }
     }
 
-    /// The curve as three segments, which are equal if the curve is a line. `None` for a rigid joint.
+    /// The curve written as three segments, which have equal stiffness if the curve is a straight line. `None` for a
+    /// rigid joint.
     pub fn as_windup(&self) -> Option<Windup> {
         match *self {
             Curve::Rigid => None,
@@ -218,7 +222,8 @@ impl Curve {
         }
     }
 
-    /// The curve of the paper's model: the single stiffness K2 of a gear.
+    /// The curve of the paper's model: a straight line with the stiffness K2 of the gear. Rigid and straight curves are
+    /// returned as they are.
     pub fn middle_slope(&self) -> Curve {
         match self {
             Curve::Windup(windup) | Curve::WindupK1(windup) => Curve::Linear(windup.k2_nm_per_rad),
@@ -227,28 +232,29 @@ impl Curve {
     }
 }
 
-/// Least part of its mean compliance that a joint has at any angle.
+/// Smallest factor on a joint's mean compliance when the compliance varies with the angle. It keeps the compliance
+/// positive.
 const STIFFEST: f64 = 0.02;
 
-/// Torque below which a joint counts as unloaded \[N m\]: smaller torques are rounding errors.
+/// Torque below which a joint counts as unloaded \[N m\]. Smaller torques are rounding errors.
 const REST_NM: f64 = 1e-9;
 
-/// Sign of a torque; 0 at rest, where the sign would be that of a rounding error.
+/// Sign of a torque; 0 for an unloaded joint, whose torque is a rounding error.
 fn sense(torque_nm: f64) -> f64 {
     if torque_nm.abs() < REST_NM { 0.0 } else { torque_nm.signum() }
 }
 
-/// Lost motion: play that closes smoothly as the torque grows, `theta += h tanh(T/Tc)`.
+/// Lost motion: clearance that closes smoothly as the torque T grows. It adds the angle `h tanh(T/Tc)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LostMotion {
-    /// Half width h \[rad\].
+    /// Half width h of the clearance \[rad\].
     pub half_width_rad: f64,
-    /// Torque scale Tc \[N m\].
+    /// Torque scale Tc of the closing \[N m\].
     pub torque_nm: f64,
 }
 
 impl LostMotion {
-    /// Twist \[rad\] under the total torque \[N m\].
+    /// Angle \[rad\] that lost motion adds under the total torque \[N m\].
     pub fn angle_rad(&self, torque_nm: f64) -> f64 {
         self.half_width_rad * libm::tanh(torque_nm / self.torque_nm)
     }
@@ -259,27 +265,28 @@ impl LostMotion {
     }
 }
 
-/// A further twist found in readings, as a polynomial of the torque: with `p = T / torque_nm` it is
+/// A further angle of torsion found in readings, as a polynomial of the torque. With `p = T / torque_nm` it is
 /// `odd[0] p |p| + odd[1] p³ + even[0] |p| + even[1] p²`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FurtherTwist {
-    /// Coefficients that change sign with the torque \[rad\].
+    /// Coefficients of the terms that change sign with the torque \[rad\].
     pub odd_rad: [f64; 2],
-    /// Coefficients that do not \[rad\].
+    /// Coefficients of the terms that do not change sign with the torque \[rad\].
     pub even_rad: [f64; 2],
-    /// The torque at which the coefficients are the twist \[N m\].
+    /// Reference torque \[N m\]: at this torque p is 1, so the angle is the sum of the coefficients.
     pub torque_nm: f64,
 }
 
 impl FurtherTwist {
-    /// Twist \[rad\] under the total torque \[N m\].
+    /// Angle of torsion \[rad\] that this further term adds under the total torque on the joint \[N m\].
     pub fn angle_rad(&self, torque_nm: f64) -> f64 {
         let p = torque_nm / self.torque_nm;
         let ([a, b], [c, d]) = (self.odd_rad, self.even_rad);
         a * p * p.abs() + b * p.powi(3) + c * p.abs() + d * p * p
     }
 
-    /// Tangent compliance \[rad/(N m)\] at a torque \[N m\]. It is negative where the joint stiffens.
+    /// Tangent compliance \[rad/(N m)\] of this further term at a torque \[N m\]. It is negative where the term makes
+    /// the joint stiffer.
     pub fn tangent_compliance_rad_per_nm(&self, torque_nm: f64) -> f64 {
         let p = torque_nm / self.torque_nm;
         let ([a, b], [c, d]) = (self.odd_rad, self.even_rad);
@@ -287,7 +294,8 @@ impl FurtherTwist {
     }
 }
 
-/// The law of a joint: everything that twists about its axis, in series.
+/// The law of a joint: the angle of torsion about its axis as a function of torque, with everything that deflects in
+/// series.
 ///
 /// ```
 /// use armwright::arm::{Curve, JointLaw};
@@ -304,15 +312,15 @@ pub struct JointLaw {
     pub curve: Curve,
     /// Compliance of flange, shaft or bolts \[rad/(N m)\].
     pub connection_rad_per_nm: f64,
-    /// Lost motion.
+    /// Lost motion of the gear; `None` if there is none.
     pub lost_motion: Option<LostMotion>,
-    /// Half width of the friction play (hysteresis) \[rad\]; 0 if there is none. Where no history is known, |T| rises from
-    /// rest.
+    /// Half width of the friction play (hysteresis) \[rad\]; 0 if there is none. If the history of the torque is
+    /// unknown, it is taken to have risen from rest.
     pub hysteresis_rad: f64,
-    /// How the compliance of gear and connection varies with the angle of the joint: parts of it that follow the
+    /// How the compliance of gear and connection varies with the angle of the joint: relative amplitudes of the four
     /// [waves](transmission_waves) of the angle.
     pub waves: [f64; 4],
-    /// A further twist without a name, found in readings.
+    /// A further angle of torsion found in readings, which no named effect explains; `None` if there is none.
     pub further: Option<FurtherTwist>,
 }
 
@@ -330,7 +338,8 @@ impl From<Curve> for JointLaw {
 }
 
 impl JointLaw {
-    /// The law at an angle of the joint. A law whose compliance varies with the angle is its mean until then.
+    /// This law with the compliance that it has at the joint angle `angle_rad`. Needed if the compliance varies with
+    /// the angle: the law itself then has the mean over all angles.
     #[must_use]
     pub fn at_angle(&self, angle_rad: f64) -> Self {
         if self.waves == [0.0; 4] {
@@ -338,35 +347,39 @@ impl JointLaw {
         }
         let waves = transmission_waves(angle_rad);
         let varied: f64 = waves.iter().zip(&self.waves).map(|(wave, size)| wave * size).sum();
-        let softer = (1.0 + varied).max(STIFFEST);
+        Self { waves: [0.0; 4], ..self.softer((1.0 + varied).max(STIFFEST)) }
+    }
+
+    /// The law with the compliance of gear and connection multiplied by a factor.
+    #[must_use]
+    pub fn softer(&self, factor: f64) -> Self {
         Self {
-            curve: self.curve.stiffened(1.0 / softer),
-            connection_rad_per_nm: self.connection_rad_per_nm * softer,
-            waves: [0.0; 4],
+            curve: self.curve.stiffened(1.0 / factor),
+            connection_rad_per_nm: self.connection_rad_per_nm * factor,
             ..*self
         }
     }
 
-    /// Twist \[rad\] under the total torque \[N m\], without the friction play.
+    /// Angle of torsion \[rad\] under the total torque \[N m\], without friction play.
     pub fn angle_rad(&self, torque_nm: f64) -> f64 {
         let play = self.lost_motion.map_or(0.0, |lost| lost.angle_rad(torque_nm));
         let further = self.further.map_or(0.0, |twist| twist.angle_rad(torque_nm));
         self.curve.angle_rad(torque_nm) + self.connection_rad_per_nm * torque_nm + play + further
     }
 
-    /// Tangent compliance \[rad/(N m)\] at a torque \[N m\]. The friction play does not move in small oscillations and adds
-    /// nothing.
+    /// Tangent compliance \[rad/(N m)\] at a torque \[N m\]. Friction play adds nothing, because friction does not
+    /// slip in small oscillations.
     pub fn tangent_compliance_rad_per_nm(&self, torque_nm: f64) -> f64 {
         let play = self.lost_motion.map_or(0.0, |lost| lost.tangent_compliance_rad_per_nm(torque_nm));
         let named = self.curve.tangent_compliance_rad_per_nm(torque_nm) + self.connection_rad_per_nm + play;
         match self.further {
             None => named,
-            // a joint that stiffens is at most rigid
+            // the further term may make the joint stiffer, but at most rigid
             Some(twist) => (named + twist.tangent_compliance_rad_per_nm(torque_nm)).max(0.0),
         }
     }
 
-    /// Gear and connection as one curve, without play and friction.
+    /// The torsion curve of gear and connection in series, without lost motion and friction play.
     pub fn without_play(&self) -> Curve {
         let softened = |k: f64| 1.0 / (1.0 / k + self.connection_rad_per_nm);
         let series = |w: Windup| Windup {
@@ -384,26 +397,27 @@ impl JointLaw {
         }
     }
 
-    /// Whether the joint has lost motion, friction play or a further twist in addition to its curve.
+    /// Whether the joint has lost motion, friction play or a further angle found in readings, in addition to its
+    /// torsion curve.
     pub fn has_play(&self) -> bool {
         self.lost_motion.is_some() || self.hysteresis_rad > 0.0 || self.further.is_some()
     }
 
-    /// Whether the twist is not in proportion to the torque.
+    /// Whether the angle of torsion is not proportional to the torque.
     pub fn is_curved(&self) -> bool {
         self.has_play() || matches!(self.curve, Curve::Windup(_) | Curve::WindupK1(_))
     }
 
-    /// Twist \[rad\] after the torque has risen from rest to `torque_nm`. The friction play starts at 0 and holds the joint
-    /// back by up to its half width.
+    /// Angle of torsion \[rad\] after the torque has risen from rest to `torque_nm`. Friction holds the joint back by
+    /// up to the half width of the play.
     pub fn rising_angle_rad(&self, torque_nm: f64) -> f64 {
         self.play_angle_rad(torque_nm, &mut 0.0)
     }
 
-    /// Stiffness of the spring in the friction play \[N m/rad\]: the middle slope of the gear with the connection in series.
-    /// `None` without friction play, or if nothing twists that friction could hold back.
+    /// Stiffness of the spring in the friction play model \[N m/rad\]: the slope K2 of the gear in series with the
+    /// connection. `None` without friction play, or if the joint has no compliance for friction to hold back.
     pub(crate) fn play_stiffness_nm_per_rad(&self) -> Option<f64> {
-        // asked at every reading, and most joints have none
+        // checked first, because this is called for every reading and most joints have no friction play
         if self.hysteresis_rad <= 0.0 {
             return None;
         }
@@ -412,8 +426,9 @@ impl JointLaw {
         (compliance > 0.0).then(|| 1.0 / compliance)
     }
 
-    /// Twist \[rad\] at a torque, given the state of the friction play. The state is a torque \[N m\] that follows the torque
-    /// on the joint at a distance of at most k h; it is updated.
+    /// Angle of torsion \[rad\] at a torque \[N m\], with friction play. `state` is what the play remembers of earlier
+    /// torques, and is updated. It is a torque \[N m\] that follows the torque on the joint; the two differ by at most
+    /// the spring stiffness times the half width.
     pub fn play_angle_rad(&self, torque_nm: f64, state: &mut f64) -> f64 {
         let angle = self.angle_rad(torque_nm);
         let Some(stiffness) = self.play_stiffness_nm_per_rad() else { return angle };
@@ -422,13 +437,14 @@ impl JointLaw {
         angle + (*state - torque_nm) / stiffness
     }
 
-    /// State of the friction play \[N m\] after the torque has risen from rest to `torque_nm`.
+    /// The state of the friction play \[N m\], for [`play_angle_rad`](Self::play_angle_rad), after the torque has risen
+    /// from rest to `torque_nm`.
     pub fn play_at_rest_nm(&self, torque_nm: f64) -> f64 {
         torque_nm
             - sense(torque_nm) * self.play_stiffness_nm_per_rad().unwrap_or_default() * self.hysteresis_rad
     }
 
-    /// Whether the joint does not twist under any torque.
+    /// Whether the joint has no torsion under any torque.
     pub fn is_rigid(&self) -> bool {
         self.curve == Curve::Rigid
             && self.connection_rad_per_nm == 0.0
@@ -454,7 +470,7 @@ mod tests {
         assert!(
             (twist.angle_rad(80.0) - 1.8e-4).abs() < 1e-18 && (twist.angle_rad(-80.0) + 0.2e-4).abs() < 1e-18
         );
-        // a joint of 1e5 N m/rad that stiffens more than it yields is rigid
+        // a joint of 1e5 N m/rad with a negative further compliance larger than its own is taken as rigid
         let stiff = FurtherTwist { odd_rad: [-8e-3, 0.0], even_rad: [0.0; 2], torque_nm: 80.0 };
         let law = JointLaw { further: Some(stiff), ..Curve::Linear(1e5).into() };
         assert_eq!(law.tangent_compliance_rad_per_nm(80.0), 0.0);

@@ -1,13 +1,13 @@
-//! Joint torques: a torque that acts on a joint beside weight and load, such as that of a counterbalance.
+//! Joint torques: a torque on a joint in addition to weight and load, such as that of a counterbalance.
 
-/// A torque that acts on a joint and follows the joint's angle q: `offset + sin_nm sin q + cos_nm cos q`.
+/// A torque on a joint as a function of its angle q: `offset + sin_nm sin q + cos_nm cos q`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct JointTorque {
     /// Constant part \[N m\].
     pub offset_nm: f64,
-    /// Part that follows the sine of the angle \[N m\].
+    /// Amplitude of the part proportional to the sine of the angle \[N m\].
     pub sin_nm: f64,
-    /// Part that follows the cosine of the angle \[N m\].
+    /// Amplitude of the part proportional to the cosine of the angle \[N m\].
     pub cos_nm: f64,
 }
 
@@ -18,7 +18,7 @@ impl JointTorque {
         self.offset_nm + self.sin_nm * sin + self.cos_nm * cos
     }
 
-    /// What this torque is beyond another.
+    /// The difference between two torques as functions of the angle: this torque minus `other`.
     pub fn beyond(&self, other: &Self) -> Self {
         Self {
             offset_nm: self.offset_nm - other.offset_nm,
@@ -27,7 +27,7 @@ impl JointTorque {
         }
     }
 
-    /// Whether there is none.
+    /// Whether the torque is zero at every angle.
     pub fn is_none(&self) -> bool {
         *self == Self::default()
     }

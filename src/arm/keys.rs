@@ -1,32 +1,33 @@
-//! The keys of the parts of an arm, and of payload and water: what the readers know, and what `armwright schema` prints.
+//! The keys of the parts of an arm, of the payload and of water. The readers use these lists, and `armwright schema`
+//! prints them.
 
 use crate::input::key::{Key, Kind, Rule, Shape, optional, required};
 
-/// Three numbers.
+/// A vector of three numbers.
 pub(crate) const VECTOR: Kind = Kind::Array(3, &Kind::Number);
 
 /// A number greater than zero, or `null`.
 pub(crate) const POSITIVE_OR_NULL: Kind = Kind::Either(&[Kind::Positive, Kind::Null]);
 
-/// Gravity: a number along world -z, or a vector.
+/// Gravity: a number along world -z, or a vector in the world.
 pub(crate) const GRAVITY: Kind = Kind::Either(&[Kind::NonNegative, VECTOR]);
 
-/// Which mass of a gear counts.
+/// Which mass of a gear counts: component set or housed unit.
 pub(crate) const GEAR_MASS: Kind = Kind::Word(&["component_set", "housed_unit"]);
 
-/// A bearing, by its numbers or by the name of a housed gear.
+/// A bearing: its numbers, the name of a housed gear, or `null`.
 pub(crate) const BEARING_VALUE: Kind = Kind::Either(&[Kind::Object(&BEARING), Kind::Text, Kind::Null]);
 
-/// Bodies of a link.
+/// A list of rigid bodies on a link.
 pub(crate) const LINK_BODIES: Kind = Kind::List(&Kind::Object(&LINK_BODY));
 
-/// Bodies of a joint.
+/// A list of rigid bodies on a joint.
 pub(crate) const JOINT_BODIES: Kind = Kind::List(&Kind::Object(&JOINT_BODY));
 
-/// Driven joints with their factors.
+/// The driving joints of a passive joint, with their factors.
 pub(crate) const COUPLING: Kind = Kind::Map(&Kind::Number);
 
-/// The section of a given link.
+/// The section of a link that is given, not chosen by the search.
 pub(crate) const SECTION: Kind = Kind::Either(&[
     Kind::Object(&RECTANGULAR_TUBE),
     Kind::Object(&ROUND_TUBE),
@@ -36,7 +37,7 @@ pub(crate) const SECTION: Kind = Kind::Either(&[
     Kind::Object(&STATED),
 ]);
 
-/// A torsion curve.
+/// The keys of a torsion curve.
 pub(crate) static WINDUP: Shape = Shape::new(
     "windup",
     "The torsion curve of a joint in three segments; T is the whole torque on the joint.",
@@ -50,7 +51,7 @@ pub(crate) static WINDUP: Shape = Shape::new(
     &[],
 );
 
-/// An output bearing.
+/// The keys of an output bearing.
 pub(crate) static BEARING: Shape = Shape::new(
     "bearing",
     "An output bearing: it tilts about the two axes across the joint's.",
@@ -86,7 +87,7 @@ pub(crate) static BEARING: Shape = Shape::new(
 
 const TENSOR: Kind = Kind::Array(3, &VECTOR);
 
-/// A body of a link.
+/// The keys of a body of a link.
 pub(crate) static LINK_BODY: Shape = Shape::new(
     "body of a link",
     "A rigid part of a link.",
@@ -110,7 +111,7 @@ pub(crate) static LINK_BODY: Shape = Shape::new(
     &[],
 );
 
-/// A body of a joint.
+/// The keys of a body of a joint.
 pub(crate) static JOINT_BODY: Shape = Shape::new(
     "body of a joint",
     "A rigid part of a joint.",
@@ -147,7 +148,7 @@ const fn shape_key(word: &'static [&'static str]) -> Key {
     required("shape", Kind::Word(word), "-", "The shape.")
 }
 
-/// A rectangular tube.
+/// The keys of a rectangular tube.
 pub(crate) static RECTANGULAR_TUBE: Shape = Shape::new(
     "rectangular tube",
     "A rectangular tube.",
@@ -155,11 +156,11 @@ pub(crate) static RECTANGULAR_TUBE: Shape = Shape::new(
     &[],
 );
 
-/// A round tube.
+/// The keys of a round tube.
 pub(crate) static ROUND_TUBE: Shape =
     Shape::new("round tube", "A round tube.", &[shape_key(&["round_tube"]), DIAMETER, WALL], &[]);
 
-/// A rectangular bar.
+/// The keys of a solid rectangular bar.
 pub(crate) static RECTANGULAR_BAR: Shape = Shape::new(
     "rectangular bar",
     "A solid rectangular bar.",
@@ -167,11 +168,11 @@ pub(crate) static RECTANGULAR_BAR: Shape = Shape::new(
     &[],
 );
 
-/// A round bar.
+/// The keys of a solid round bar.
 pub(crate) static ROUND_BAR: Shape =
     Shape::new("round bar", "A solid round bar.", &[shape_key(&["round_bar"]), DIAMETER], &[]);
 
-/// An I section.
+/// The keys of an I section.
 pub(crate) static I_BEAM: Shape = Shape::new(
     "I beam",
     "An I section with its web upright.",
@@ -185,7 +186,7 @@ pub(crate) static I_BEAM: Shape = Shape::new(
     &[],
 );
 
-/// A section of stated stiffness.
+/// The keys of a section that states its stiffnesses and its mass.
 pub(crate) static STATED: Shape = Shape::new(
     "stated section",
     "A section by its stiffnesses and its mass; it is rigid in shear.",
@@ -324,13 +325,13 @@ pub(crate) const TRANSMISSION_RULES: [Rule; 4] = [
 pub(crate) const SPRINGS: Kind =
     Kind::List(&Kind::Either(&[Kind::Object(&SPRING), Kind::Object(&TORSION_SPRING)]));
 
-/// Counterweights of an arm or a study.
+/// A list of counterweights, of an arm or a study.
 pub(crate) const COUNTERWEIGHTS: Kind = Kind::List(&Kind::Object(&COUNTERWEIGHT));
 
 const SPRING_NAME: Key =
     optional("name", Kind::Name, "-", "spring 1, ...", "Name, unique among the springs.");
 
-/// A spring between two points.
+/// The keys of a spring between two points.
 pub(crate) static SPRING: Shape = Shape::new(
     "spring",
     "A spring between two points: its force is force_n + stiffness (length - free length).",
@@ -361,7 +362,7 @@ pub(crate) static SPRING: Shape = Shape::new(
     ],
 );
 
-/// An end of a spring.
+/// The keys of an end of a spring.
 pub(crate) static SPRING_END: Shape = Shape::new(
     "end of a spring",
     "An end of a spring.",
@@ -378,7 +379,7 @@ pub(crate) static SPRING_END: Shape = Shape::new(
     &[],
 );
 
-/// A spring about a joint.
+/// The keys of a spring about a joint.
 pub(crate) static TORSION_SPRING: Shape = Shape::new(
     "torsion spring",
     "A spring that turns a joint.",
@@ -391,7 +392,7 @@ pub(crate) static TORSION_SPRING: Shape = Shape::new(
     &[],
 );
 
-/// A counterweight.
+/// The keys of a counterweight.
 pub(crate) static COUNTERWEIGHT: Shape = Shape::new(
     "counterweight",
     "A point mass that balances the arm.",
@@ -409,10 +410,10 @@ pub(crate) static COUNTERWEIGHT: Shape = Shape::new(
     &[],
 );
 
-/// Pieces of a link.
+/// A list of pieces of a link.
 pub(crate) const PIECES: Kind = Kind::NonEmpty(&Kind::Object(&PIECE));
 
-/// What holes and inserts leave of a modulus.
+/// Factor on the moduli of a tube, for holes and inserts.
 pub(crate) const STIFFNESS_FACTOR: Key = optional(
     "stiffness_factor",
     Kind::Positive,
@@ -421,11 +422,11 @@ pub(crate) const STIFFNESS_FACTOR: Key = optional(
     "Factor on the moduli of a tube, for holes and inserts.",
 );
 
-/// What holes and inserts leave of a mass.
+/// Factor on the mass of a tube, for holes and inserts.
 pub(crate) const MASS_FACTOR: Key =
     optional("mass_factor", Kind::Positive, "-", "1", "Factor on the mass of a tube, for holes and inserts.");
 
-/// A piece of a link.
+/// The keys of a piece of a link.
 pub(crate) static PIECE: Shape = Shape::new(
     "piece",
     "A piece of a link: a step, or a taper.",
@@ -446,7 +447,7 @@ pub(crate) static PIECE: Shape = Shape::new(
     &[],
 );
 
-/// A payload.
+/// The keys of a payload.
 pub(crate) static PAYLOAD: Shape = Shape::new(
     "payload",
     "What the arm holds at its tip.",
@@ -464,7 +465,7 @@ pub(crate) static PAYLOAD: Shape = Shape::new(
     &[],
 );
 
-/// Water around the arm.
+/// The keys of the water around the arm.
 pub(crate) static WATER: Shape = Shape::new(
     "water",
     "Water around the arm; links are sealed tubes.",
@@ -488,7 +489,7 @@ pub(crate) static WATER: Shape = Shape::new(
     &[],
 );
 
-/// The keys of extras.
+/// The keys of the extras of a joint.
 pub(crate) static EXTRAS: Shape = Shape::new(
     "extras",
     "What a joint weighs beyond gear, motor and bearing: points on the axis, inboard of the springs.",

@@ -10,10 +10,11 @@ use crate::catalog::Catalogs;
 use crate::input::json::{Node, Object};
 use nalgebra::Vector3;
 
-/// Poisson's ratio of a material that states none.
+/// Poisson's ratio of a material that states none \[-\].
 pub(super) const DEFAULT_POISSON: f64 = 0.3;
 
-/// A material of the file with its name; `None` if it is faulty, in which case the fault is recorded.
+/// A material of the file with its name. The material is `None` if it is faulty; its faults are then already
+/// recorded.
 pub(crate) type NamedMaterial = (String, Option<LinkMaterial>);
 
 /// Reads the name of an element.
@@ -44,10 +45,11 @@ pub(super) fn read_link(object: &Object, materials: &[NamedMaterial], catalogs: 
     Some(Link { name: name?, vector_m: vector_m?, body: body?, bodies: bodies? })
 }
 
-/// Name of the material that stands for a section of stated stiffnesses.
+/// Name under which the equivalent material of a section with stated stiffnesses is listed.
 const STATED_MATERIAL: &str = "(stated stiffness)";
 
-/// Reads a tube with its section, and with its material from the object that has it.
+/// Reads a tube with its section, from the object `object`. The material is read from the object `of_material`, which
+/// is the same object, or the link that contains it.
 pub(super) fn read_tube(
     (object, of_material): (&Object, &Object),
     section: &Node,
@@ -111,7 +113,7 @@ fn find_material(
     })
 }
 
-/// Reads a section object.
+/// Reads a cross-section from its object in the file.
 pub(crate) fn read_section(node: &Node) -> Option<Section> {
     let shape = node.value().get("shape").and_then(|v| v.as_str());
     let section = match shape {

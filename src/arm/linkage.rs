@@ -9,11 +9,11 @@ use super::structure::{JointAngle, JointPiece, Structure};
 /// A joint that turns another.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Linkage {
-    /// Name of the joint that drives.
+    /// Name of the driving joint.
     pub driver: String,
     /// Name of the joint that it turns.
     pub passive: String,
-    /// Rotation of the passive joint per rotation of the driver.
+    /// Rotation of the passive joint divided by rotation of the driving joint.
     pub factor: f64,
 }
 

@@ -8,18 +8,18 @@ use crate::input::json::{Document, Faults, Node, Object};
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 
-/// The payload of an arm. Centre and inertia are written in the last frame.
+/// The payload of an arm. Centre of gravity and inertia are written in the last frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Payload {
     /// Mass \[kg\].
     pub mass_kg: f64,
-    /// Centre of gravity from the tip \[m\].
+    /// Position of the centre of gravity from the tip \[m\].
     pub cg_m: Vector3<f64>,
-    /// Principal moments of inertia about the centre of gravity \[kg m²\].
+    /// Moments of inertia about the centre of gravity, about the x, y and z axes of the last frame \[kg m²\].
     pub inertia_about_cg_kgm2: Vector3<f64>,
 }
 
-/// A case in which an arm is analysed.
+/// A load case: a pose with a load, in which an arm is analysed.
 ///
 /// ```
 /// use armwright::arm::{DrivenJoint, JointModel, LinkModel, LoadCase, Payload};
@@ -40,10 +40,10 @@ pub struct Payload {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadCase {
-    /// Name.
+    /// Name of the case.
     pub name: String,
-    /// One entry for each driven joint, base to tip, as files have it: an angle \[deg\], or the travel of a prismatic joint
-    /// \[mm\].
+    /// The pose in the units of files, with one entry for each driven joint, base to tip: an angle \[deg\], or the
+    /// travel of a prismatic joint \[mm\].
     pub pose_deg: Vec<f64>,
     /// The payload.
     pub payload: Payload,
@@ -51,11 +51,11 @@ pub struct LoadCase {
     pub tip_force_n: Vector3<f64>,
     /// Moment at the tip in world axes \[N m\].
     pub tip_moment_nm: Vector3<f64>,
-    /// Physics of the links.
+    /// Model of the links.
     pub links: LinkModel,
-    /// Physics of the joints.
+    /// Model of the joints.
     pub joints: JointModel,
-    /// The water around the arm in this case; `None` leaves it to the effects of the arm.
+    /// The water around the arm in this case. `None`: the effects of the arm decide whether there is water.
     pub water: Option<Water>,
 }
 
@@ -106,7 +106,7 @@ impl Payload {
 pub struct Water {
     /// Density of the water \[kg/m³\].
     pub density_kg_m3: f64,
-    /// Ratio of the added mass across a link to the mass of the water that it displaces.
+    /// Added mass across a link divided by the mass of the water that the link displaces.
     pub added_mass_coefficient: f64,
     /// Density of the payload, for its buoyancy \[kg/m³\].
     pub payload_density_kg_m3: f64,
@@ -122,7 +122,7 @@ impl Water {
         })
     }
 
-    /// Reads a water object. Where it gives no density of the payload, the payload is of steel.
+    /// Reads a water object. If it gives no density of the payload, the density of steel is taken.
     pub fn read(node: &Node) -> Option<Self> {
         let object = node.shaped(&WATER)?;
         let density_kg_m3 = object.required("density_kg_m3").and_then(|n| n.positive());
@@ -146,12 +146,12 @@ fn read_inertia(node: &Node) -> Option<Vector3<f64>> {
     }
 }
 
-/// A node as a vector of three numbers.
+/// Reads a vector of three numbers.
 pub(crate) fn vector(node: &Node) -> Option<Vector3<f64>> {
     node.numbers::<3>().map(Vector3::from)
 }
 
-/// A node as one of the words of a choice.
+/// Reads a word that stands for one of the values of the enumeration `T`.
 pub(crate) fn word<T: Words>(node: &Node) -> Option<T> {
     let text = node.string()?;
     T::from_word(text)

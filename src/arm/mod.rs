@@ -1,12 +1,12 @@
-//! Arms: an ordered chain of joints and links from base to tip, its load cases, and its effects beyond the nominal model.
+//! Arms: a chain of joints and links from base to tip, its load cases, and its effects beyond the nominal model.
 //!
-//! World z is up, and gravity points along -z. With all joint angles zero, every frame of the chain is parallel to the
-//! world's. The axis of a joint and the vector of a link are written in the *carried frame*: the frame that the joints
-//! before it carry along when they turn.
+//! World z is up. Gravity points along -z unless the arm states another direction. With all joint angles zero, every
+//! frame of the chain is parallel to the world's. The axis of a joint and the vector of a link are written in the
+//! *carried frame*, which turns with the joints inboard of the element.
 //!
 //! - [`Arm`] is an arm as its file describes it ([`read_arm`] reads it).
 //! - [`LoadCase`] is a pose with a load and the models to use.
-//! - [`Structure`] is the arm as the mechanics sees it: effects are applied, and names of parts are gone.
+//! - [`Structure`] is the arm as the mechanics needs it: effects are applied, names of catalog parts are left out.
 //! - [`effect`] has the effects, one file each.
 
 pub(crate) mod base_lift;
@@ -58,37 +58,37 @@ pub use transmission::{Stage, Stages};
 use crate::input::json::Fault;
 use nalgebra::{Unit, Vector3};
 
-/// The physics of links that a calculation uses.
+/// Which deformations of links a calculation takes into account.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum LinkModel {
-    /// No compliance. Tubes have their full mass and inertia.
+    /// None: links are rigid. Tubes keep their full mass and inertia.
     Rigid,
-    /// Euler-Bernoulli bending in both planes and nothing else (Eqs 1-6).
+    /// Euler-Bernoulli bending in both planes only (Eqs 1-6).
     Bending,
     /// Bending, shear, torsion, axial stretch and rotary inertia.
     #[default]
     Full,
 }
 
-/// The torsion curve of gears that a calculation uses.
+/// Which torsion curve of gears a calculation uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum JointModel {
-    /// The middle slope K2 alone, which is the paper's single number.
+    /// The slope K2 alone, as in the paper, which has a single stiffness.
     K2,
     /// The three-segment curve, for gears that have one.
     #[default]
     ThreeSegment,
-    /// The three-segment curve for deflections, and its first slope K1 for vibrations. These are the lowest frequencies that
-    /// a gear with rising slopes can have at any torque.
+    /// The three-segment curve for deflections, and its first slope K1 for vibrations. The frequencies are then the
+    /// lowest that a gear whose slopes rise with the torque can have at any torque.
     ThreeSegmentK1,
 }
 
-/// A choice that has a word for each value, in files and on the command line.
+/// An enumeration that has a word for each of its values, in files and on the command line.
 pub trait Words: Sized + Copy + 'static {
     /// All values with their words.
     const WORDS: &'static [(&'static str, Self)];
 
-    /// The value of a word; `None` if no value has this word.
+    /// The value that is written as `word`; `None` if no value of the enumeration is.
     fn from_word(word: &str) -> Option<Self> {
         Self::WORDS.iter().find(|(w, _)| *w == word).map(|(_, v)| *v)
     }
@@ -164,15 +164,15 @@ impl JointModel {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Arm {
-    /// Name.
+    /// Name of the arm.
     pub name: String,
     /// Gravitational acceleration \[m/s²\].
     pub gravity_m_s2: f64,
     /// Direction of gravity in the world, a unit vector: -z for an arm that stands upright.
     pub down: Vector3<f64>,
-    /// Joints and links from base to tip.
+    /// Joints and links, base to tip.
     pub chain: Vec<Element>,
-    /// Physics beyond the nominal model.
+    /// Effects beyond the nominal model.
     pub effects: Vec<Effect>,
     /// Springs that balance the arm.
     pub springs: Vec<Spring>,
@@ -181,36 +181,37 @@ pub struct Arm {
 /// One element of the chain.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Element {
-    /// A rotary joint.
+    /// A revolute joint.
     Joint(Joint),
     /// A prismatic joint.
     Prismatic(Prismatic),
-    /// A link or a rigid offset.
+    /// A link, elastic or a rigid offset.
     Link(Link),
 }
 
-/// A rotary joint.
+/// A revolute joint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Joint {
     /// Name, unique in the arm.
     pub name: String,
-    /// Axis in the carried frame.
+    /// Direction of the axis, in the carried frame.
     pub axis: Unit<Vector3<f64>>,
-    /// Torsion curve about the axis.
+    /// Torsion curve of the gear about the axis.
     pub curve: Curve,
-    /// Mass of the drive \[kg\]. It is a point on the axis, inboard of the torsion.
+    /// Mass of gear and motor \[kg\]. It is a point on the axis, inboard of the torsion spring.
     pub mass_kg: f64,
-    /// Output bearing. `None` is rigid and without mass.
+    /// Output bearing. `None`: the joint does not tilt and has no separate bearing mass.
     pub bearing: Option<Bearing>,
-    /// What the joint weighs beyond drive and bearing.
+    /// Masses of the joint other than gear, motor and bearing.
     pub extras: Extras,
-    /// Rigid bodies that the joint carries beyond all these.
+    /// Rigid bodies on the joint, in addition to all these masses.
     pub bodies: JointBodies,
-    /// Name of the gear, for information. The numbers above count.
+    /// Name of the gear, for information only. The calculation uses the numbers above.
     pub gear: Option<String>,
-    /// Name of the motor, for information.
+    /// Name of the motor, for information only.
     pub motor: Option<String>,
-    /// The angle of a passive joint: a sum of factors times the angles of driven joints. `None` for a driven joint.
+    /// Driving joints of a passive joint, each with its factor: the angle is the sum of factors times the angles of
+    /// these joints. `None` for a driven joint.
     pub coupled: Option<Vec<(String, f64)>>,
     /// Stages between motor, gear and joint, for information: their compliance is in the curve, their masses are bodies.
     pub stages: Stages,
@@ -219,23 +220,23 @@ pub struct Joint {
     pub turns_with: Vec<(String, f64)>,
 }
 
-/// A link: a hollow tube, or a rigid offset.
+/// A link: a tube or bar, or a rigid offset.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Link {
     /// Name, unique in the arm.
     pub name: String,
     /// Vector from the root of the link to its end \[m\], in the carried frame.
     pub vector_m: Vector3<f64>,
-    /// The tube or offset.
+    /// Whether the link is a tube or a rigid offset, with its properties.
     pub body: LinkBody,
-    /// Rigid bodies that the link carries.
+    /// Rigid bodies on the link.
     pub bodies: Vec<RigidBody>,
 }
 
-/// The body of a link.
+/// The structure of a link.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LinkBody {
-    /// A straight tube of constant section.
+    /// A straight tube or bar of constant section.
     Tube {
         /// Name of the material.
         material_name: String,
@@ -244,7 +245,7 @@ pub enum LinkBody {
         /// Cross-section.
         section: Section,
     },
-    /// A rigid connection.
+    /// A rigid connection without a section.
     Offset {
         /// Point mass at mid-length \[kg\].
         mass_kg: f64,
@@ -262,7 +263,8 @@ impl Element {
     }
 }
 
-/// Most joints and links of an arm. Modes take the third power of their number in time: 2000 take seconds.
+/// Largest number of joints and links of an arm. The time for modes grows with the third power of this number; an arm
+/// of 2000 elements takes seconds.
 pub(crate) const MOST_ELEMENTS: usize = 2_000;
 
 impl Arm {
@@ -300,7 +302,7 @@ impl Arm {
         self.chain.iter().filter(is_driven).map(Element::name).collect()
     }
 
-    /// The driven joints, base to tip, and how each moves.
+    /// The driven joints, base to tip, with the kind of motion of each.
     pub fn driven_joints(&self) -> Vec<DrivenJoint> {
         let driven = |e: &Element| match e {
             Element::Joint(joint) if joint.coupled.is_none() => Some(DrivenJoint::turning(&joint.name)),
@@ -312,13 +314,13 @@ impl Arm {
         self.chain.iter().filter_map(driven).collect()
     }
 
-    /// Mass of all links and drives \[kg\], without what effects add.
+    /// Mass of all elements \[kg\], without the masses that effects add.
     pub fn mass_kg(&self) -> f64 {
         self.chain.iter().map(Element::mass_kg).sum()
     }
 
-    /// Names of the elements with a body that no solid can be: its largest principal moment of inertia exceeds the sum of the
-    /// others.
+    /// Names of the elements with a body whose inertia no solid can have: its largest principal moment exceeds the
+    /// sum of the other two.
     pub fn impossible_bodies(&self) -> Vec<&str> {
         let is_impossible = |element: &&Element| match element {
             Element::Joint(joint) => joint.bodies.iter().any(RigidBody::is_impossible),
@@ -328,8 +330,8 @@ impl Arm {
         self.chain.iter().filter(is_impossible).map(Element::name).collect()
     }
 
-    /// The fault that gravity does not act along world -z; `None` if it does. The workflows on measurements take it for
-    /// granted. `file` is the name of the arm's file.
+    /// A fault if gravity does not act along world -z, else `None`. Comparison with measurements supports upright
+    /// arms only. `file` is the name of the arm's file.
     pub(crate) fn tilt_fault(&self, file: &str) -> Option<Fault> {
         (self.down != -Vector3::z()).then(|| Fault {
             file: file.into(),
@@ -341,8 +343,8 @@ impl Arm {
         })
     }
 
-    /// The fault that springs balance the arm; `None` if none do. The model of absolute positions lacks them. `file` is the
-    /// name of the arm's file.
+    /// A fault if the arm has springs, else `None`. The model of absolute positions does not include springs. `file`
+    /// is the name of the arm's file.
     pub(crate) fn springs_fault(&self, file: &str) -> Option<Fault> {
         (!self.springs.is_empty()).then(|| Fault {
             file: file.into(),
@@ -399,14 +401,14 @@ impl Arm {
 }
 
 impl Joint {
-    /// Mass of drive, bearing and extras \[kg\], which is a point on the axis.
+    /// Mass of gear, motor, bearing and extras \[kg\]. It is a point mass on the axis.
     pub fn total_mass_kg(&self) -> f64 {
         self.mass_kg + self.bearing.map_or(0.0, |bearing| bearing.mass_kg) + self.extras.total_kg()
     }
 }
 
 impl Element {
-    /// Mass of the element \[kg\].
+    /// Mass of the element with its bodies \[kg\].
     pub fn mass_kg(&self) -> f64 {
         match self {
             Element::Joint(joint) => joint.total_mass_kg() + joint.bodies.mass_kg(),

@@ -1,8 +1,8 @@
-//! Links of several pieces: steps, tapers, and factors for holes and inserts.
+//! Links that consist of several pieces: stepped or tapered links, and factors for holes and inserts.
 //!
-//! A link with `pieces` is as many links, one behind the other. A taper is divided into [`SLICES`] pieces of equal length with
-//! the section at their middle: where the height halves towards the end, the deflection under a load at the end is then 0.3 %
-//! too large (the error falls with the square of the number of slices).
+//! A link with `pieces` becomes as many links, one after the other. A taper is divided into [`SLICES`] links of equal
+//! length, each with the section at its middle. For a taper whose height halves towards the end, the deflection under
+//! an end load is then 0.3 % too large. This error falls with the square of the number of slices.
 
 use super::body::{RigidBody, read_link_bodies};
 use super::keys::PIECE;
@@ -14,10 +14,10 @@ use crate::catalog::Catalogs;
 use crate::input::json::{Node, Object};
 use nalgebra::Vector3;
 
-/// Number of slices of a taper.
+/// Number of links into which a taper is divided.
 const SLICES: usize = 12;
 
-/// How many elements an item of a chain becomes.
+/// Number of elements of the arm that one item of the chain in the file becomes. A link with pieces becomes several.
 pub(crate) fn elements_of(item: &Node) -> usize {
     match item.value().get("pieces").and_then(|pieces| pieces.as_array()) {
         Some(pieces) => pieces.iter().map(|piece| slices(piece.get("end_section").is_some())).sum(),
@@ -47,7 +47,8 @@ impl Factors {
         self == Self { stiffness: 1.0, mass: 1.0 }
     }
 
-    /// The tube with these factors; they stand in the name of its material.
+    /// The tube with its moduli and its density multiplied by the factors. The factors are appended to the name of its
+    /// material, so that they show wherever the material is printed.
     fn apply(self, body: LinkBody) -> LinkBody {
         match body {
             LinkBody::Tube { material_name, material, section } if !self.is_none() => LinkBody::Tube {
@@ -63,15 +64,16 @@ impl Factors {
     }
 }
 
-/// What follows the name of a material whose figures have factors.
+/// Text that follows the name of a material whose moduli and density are multiplied by factors.
 const MARK: &str = " (stiffness x ";
 
-/// The name of the material itself, without the factors that stand in its name.
+/// The name of the material without the factors that were appended to it.
 pub(crate) fn without_factors(material_name: &str) -> &str {
     material_name.split(MARK).next().unwrap_or(material_name)
 }
 
-/// What is said of links whose moduli and density someone has multiplied by a factor; `None` if there are none.
+/// A sentence for reports that names the links whose moduli and density have stated factors; `None` if there are none.
+/// Each item of `tubes` is the name of the material and the name of the link.
 pub(crate) fn factors_sentence<'a>(tubes: impl Iterator<Item = (&'a str, &'a str)>) -> Option<String> {
     let stated: Vec<&str> =
         tubes.filter(|(material, _)| material.contains(MARK)).map(|(_, link)| link).collect();
@@ -84,7 +86,7 @@ pub(crate) fn factors_sentence<'a>(tubes: impl Iterator<Item = (&'a str, &'a str
     })
 }
 
-/// Reads a link, as one or as its pieces.
+/// Reads a link: a single one, or one for each slice of its pieces.
 pub(crate) fn read_links(
     object: &Object,
     materials: &[NamedMaterial],
@@ -105,7 +107,8 @@ pub(crate) fn read_links(
     Some(vec![Link { body: factors.apply(link.body), ..link }])
 }
 
-/// One piece of a link: its length, its tube at the start, and its section at the end if it tapers.
+/// One piece of a link: length \[m\], tube with the section at the start, and the section at the end if the piece
+/// tapers.
 struct LinkPart {
     length_m: f64,
     body: LinkBody,
@@ -150,7 +153,7 @@ fn read_part(
     let object = node.shaped(&PIECE)?;
     let length = object.required("length_m").and_then(|n| n.positive());
     let factors = Factors::read(&object);
-    // the material of the link is that of its pieces, unless they state their own
+    // the material of the link is used for all pieces that do not state their own
     let of_material = if object.has("material") { &object } else { link };
     let tube = |section: &Node| read_tube((&object, of_material), section, None, materials, catalogs);
     let body = object.required("section").and_then(|n| tube(&n));
@@ -175,7 +178,7 @@ fn read_part(
 }
 
 impl LinkPart {
-    /// Length and tube of every slice.
+    /// Length \[m\] and tube of each slice into which this piece of a link is divided, from its root to its end.
     fn slices(&self) -> Vec<(f64, LinkBody)> {
         let count = slices(self.end_section.is_some());
         let middle = |slice: usize| (slice as f64 + 0.5) / count as f64;
@@ -191,7 +194,8 @@ impl LinkPart {
     }
 }
 
-/// The section between two of one shape; `None` for two shapes, or for one that does not taper.
+/// The section at the fraction `part` of the way (0 to 1) from the section `from` to the section `to`. `None` if their
+/// shapes differ, or if sections of this shape cannot taper.
 fn between(from: &Section, to: &Section, part: f64) -> Option<Section> {
     let mix = |a: f64, b: f64| a + (b - a) * part;
     match (*from, *to) {
@@ -218,7 +222,8 @@ fn between(from: &Section, to: &Section, part: f64) -> Option<Section> {
     }
 }
 
-/// The links of the slices, with each body on the slice that is nearest to its centre.
+/// The links that the slices of a link become, one after the other. `along` is the direction of the link, and each
+/// slice has a length \[m\] and a tube. Each body goes to the slice that is nearest to its centre of gravity.
 fn one_behind_the_other(
     name: &str,
     along: &Vector3<f64>,

@@ -1,9 +1,9 @@
-//! Poses: what each entry of a pose moves, and how files and the command line write it.
+//! Poses: the meaning of each entry of a pose, and how files and the command line write it.
 //!
-//! A pose has one entry for each driven joint, base to tip: the angle of a joint that turns \[deg\], the travel of a prismatic
-//! joint \[mm\]. Where every joint turns, files may give the angles as a list, `"pose_deg": [0, 30]`. An object with a
-//! unit in every key, `"pose": {"rail_mm": 250, "j2_deg": 30}`, may always stand, and must where a joint slides: a number in a
-//! list does not say its unit.
+//! A pose has one entry for each driven joint, base to tip: the angle of a joint that turns \[deg\], or the travel of
+//! a prismatic joint \[mm\]. If every joint turns, files may give the angles as a list, `"pose_deg": [0, 30]`. An
+//! object with a unit in every key, `"pose": {"rail_mm": 250, "j2_deg": 30}`, is always allowed. It is required if a
+//! joint slides, because a number in a list does not show its unit.
 
 use crate::input::json::{Node, Object, closest};
 use serde_json::{Map, Value, json};
@@ -11,14 +11,14 @@ use serde_json::{Map, Value, json};
 /// How a driven joint moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Motion {
-    /// It turns about its axis; poses have its angle \[deg\].
+    /// The joint turns about its axis; poses have its angle \[deg\].
     Turns,
-    /// It slides along its axis; poses have its travel \[mm\].
+    /// The joint slides along its axis; poses have its travel \[mm\].
     Slides,
 }
 
 impl Motion {
-    /// Unit of the entry in a pose, as it stands in keys.
+    /// Unit of an entry of a pose, as written in keys.
     pub fn unit(self) -> &'static str {
         match self {
             Motion::Turns => "deg",
@@ -26,7 +26,7 @@ impl Motion {
         }
     }
 
-    /// An entry of a pose in rad or m.
+    /// Converts an entry of a pose from degrees to radians, or from millimetres to metres.
     pub fn si(self, entry: f64) -> f64 {
         match self {
             Motion::Turns => entry.to_radians(),
@@ -35,7 +35,7 @@ impl Motion {
     }
 }
 
-/// A joint that has an entry in every pose.
+/// A driven joint: it has an entry in every pose.
 ///
 /// ```
 /// use armwright::arm::{DrivenJoint, Motion};
@@ -49,7 +49,7 @@ impl Motion {
 pub struct DrivenJoint {
     /// Name of the joint.
     pub name: String,
-    /// How it moves.
+    /// Whether the joint turns or slides.
     pub motion: Motion,
 }
 
@@ -59,18 +59,18 @@ impl DrivenJoint {
         Self { name: name.into(), motion: Motion::Turns }
     }
 
-    /// The key of its entry in a pose: `j2_deg`, `rail_mm`.
+    /// The key of this joint in a pose, such as `j2_deg` or `rail_mm`.
     pub fn key(&self) -> String {
         format!("{}_{}", self.name, self.motion.unit())
     }
 }
 
-/// A pose in rad and m.
+/// Converts a pose from the units of files (degrees, millimetres) to radians and metres.
 pub fn pose_si(driven: &[DrivenJoint], pose: &[f64]) -> Vec<f64> {
     driven.iter().zip(pose).map(|(joint, entry)| joint.motion.si(*entry)).collect()
 }
 
-/// A pose as files write it: the key and its value.
+/// A pose as files write it: the key (`pose_deg` or `pose`) and the value.
 pub fn pose_json(driven: &[DrivenJoint], pose: &[f64]) -> (&'static str, Value) {
     if !any_slides(driven) {
         return ("pose_deg", json!(pose));
@@ -85,16 +85,16 @@ pub fn any_slides(driven: &[DrivenJoint]) -> bool {
     driven.iter().any(|joint| joint.motion == Motion::Slides)
 }
 
-/// What to write for a pose, for messages.
+/// An example of a pose for messages.
 pub(crate) fn pose_example(driven: &[DrivenJoint]) -> String {
     let entries: Vec<String> = driven.iter().map(|joint| format!("\"{}\": 0", joint.key())).collect();
     format!("\"pose\": {{{}}}", entries.join(", "))
 }
 
-/// The entries of a pose given by their keys; joints that are not named stay at 0.
+/// The pose that is given by keys such as `j2_deg` and their values. Joints that are not named stay at 0.
 ///
 /// # Errors
-/// The key that no joint has, with what to write.
+/// The key that belongs to no joint, with advice what to write.
 pub(crate) fn pose_of_keys<'a>(
     driven: &[DrivenJoint],
     entries: impl Iterator<Item = (&'a str, f64)>,
@@ -110,9 +110,9 @@ pub(crate) fn pose_of_keys<'a>(
     Ok(pose)
 }
 
-/// What to write in place of a key that no joint has.
+/// Advice what to write instead of `key`, a key in a pose that belongs to no joint.
 fn unknown_key(key: &str, driven: &[DrivenJoint], keys: &[String]) -> String {
-    // the right joint with the wrong unit, or without any
+    // the name of a joint with a wrong unit, or without any unit
     let stem = key.rsplit_once('_').filter(|(_, unit)| matches!(*unit, "deg" | "mm" | "m" | "rad"));
     let stem = stem.map_or(key, |(stem, _)| stem);
     if let Some(joint) = driven.iter().find(|joint| joint.name == stem) {
@@ -129,7 +129,7 @@ fn unknown_key(key: &str, driven: &[DrivenJoint], keys: &[String]) -> String {
     }
 }
 
-/// Reads the pose of a case, `pose_deg` or `pose`; an arm of no driven joints needs none.
+/// Reads the pose of a case, from `pose_deg` or `pose`. An arm without driven joints needs neither.
 pub(crate) fn read_pose(object: &Object, driven: &[DrivenJoint]) -> Option<Vec<f64>> {
     match (object.optional("pose_deg"), object.optional("pose")) {
         (Some(_), Some(pose)) => pose.fault("and \"pose_deg\" are both given", "keep the one that holds"),
@@ -164,7 +164,7 @@ fn read_angles(node: &Node, driven: &[DrivenJoint]) -> Option<Vec<f64>> {
     angles.into_iter().collect()
 }
 
-/// Reads a pose whose entries have a joint and a unit in their keys.
+/// Reads a pose given as an object, with a joint and a unit in each key.
 fn read_entries(node: &Node, driven: &[DrivenJoint]) -> Option<Vec<f64>> {
     let entries = node.entries()?;
     let read: Vec<_> = entries.iter().map(|(key, n)| n.number().map(|entry| (*key, entry))).collect();

@@ -1,13 +1,14 @@
 //! Prismatic joints: a carriage on a rail, a column, a ram, a screw.
 //!
-//! The joint slides along its axis. Its *drive* (a screw or a rack and what holds it) is a spring along the travel. Its
-//! *guide* is three rotational springs: roll about the travel, pitch about the y and yaw about the z of a section frame whose
-//! x is the travel. Forces across the travel do not move the guide: what a pair of runner blocks gives under them is small
-//! beside what their tilt gives at the end of an overhang.
+//! The joint slides along its axis. Its *drive* (a screw or a rack with its supports) is a spring along the travel.
+//! Its *guide* is three rotational springs: roll about the travel, pitch about the y axis and yaw about the z axis of
+//! a section frame whose x axis is the travel. Forces across the travel do not deflect the guide: the deflection of a
+//! pair of runner blocks under such forces is small compared with the deflection that their tilt causes at the end of
+//! an overhang.
 //!
-//! Where the springs stand depends on what moves. The blocks of a `carriage` travel with it, so that the overhang outboard of
-//! them is the same at every travel. The blocks of a `ram` stay where the joint begins, and the ram reaches further out of
-//! them the further it travels.
+//! The position of the springs depends on what moves. The blocks of a `carriage` travel with it, so the overhang
+//! outboard of them is the same at every travel. The blocks of a `ram` stay where the joint begins, so the overhang
+//! grows with the travel.
 
 use super::body::{JointBodies, read_prismatic_bodies};
 use super::element_keys::{read_axis, read_name};
@@ -23,17 +24,18 @@ pub struct Prismatic {
     pub name: String,
     /// Direction of the travel in the carried frame.
     pub axis: Unit<Vector3<f64>>,
-    /// Stiffness along the travel \[N/m\]; `None` is rigid.
+    /// Stiffness of the drive along the travel \[N/m\]; `None` means rigid.
     pub stiffness_n_per_m: Option<f64>,
-    /// What the guide yields to.
+    /// Rotational stiffnesses of the guide.
     pub guide: Guide,
-    /// What travels.
+    /// Whether a carriage or a ram travels.
     pub moves: Moves,
-    /// Mass that travels \[kg\], a point at the moved point and outboard of all springs.
+    /// Mass that travels \[kg\]. It is a point mass at the moved point, outboard of all springs.
     pub mass_kg: f64,
-    /// Mass that stays where the joint begins \[kg\], a point inboard of all springs.
+    /// Mass that stays where the joint begins \[kg\]. It is a point mass inboard of all springs.
     pub fixed_mass_kg: f64,
-    /// Rigid bodies: those that stay are measured from where the joint begins, those that travel from the moved point.
+    /// Rigid bodies on the joint. Bodies that stay are measured from where the joint begins, bodies that travel from
+    /// the moved point.
     pub bodies: JointBodies,
 }
 
@@ -48,7 +50,7 @@ pub enum Moves {
 }
 
 impl Moves {
-    /// The word for this in files.
+    /// The word for this value in files.
     pub fn word(self) -> &'static str {
         match self {
             Moves::Carriage => "carriage",
@@ -57,31 +59,31 @@ impl Moves {
     }
 }
 
-/// Moment per tilt of a guide \[N m/rad\]; `None` is rigid.
+/// Rotational stiffnesses of a guide, as moment per tilt \[N m/rad\]; `None` means rigid about this axis.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Guide {
-    /// About the travel.
+    /// Stiffness in roll, about the travel \[N m/rad\].
     pub roll_nm_per_rad: Option<f64>,
-    /// About the y of the section frame whose x is the travel.
+    /// Stiffness in pitch, about the y axis of the section frame whose x axis is the travel \[N m/rad\].
     pub pitch_nm_per_rad: Option<f64>,
-    /// About the z of this frame.
+    /// Stiffness in yaw, about the z axis of the same section frame \[N m/rad\].
     pub yaw_nm_per_rad: Option<f64>,
 }
 
 const GUIDE_KEYS: [&str; 3] = ["roll_nm_per_rad", "pitch_nm_per_rad", "yaw_nm_per_rad"];
 
 impl Guide {
-    /// The stiffnesses: roll, pitch, yaw.
+    /// The stiffnesses in the order roll, pitch, yaw \[N m/rad\]; `None` means rigid.
     pub fn stiffnesses(&self) -> [Option<f64>; 3] {
         [self.roll_nm_per_rad, self.pitch_nm_per_rad, self.yaw_nm_per_rad]
     }
 
-    /// Tilt per moment: roll, pitch, yaw \[rad/(N m)\]; 0 where the guide is rigid.
+    /// The compliances in the order roll, pitch, yaw \[rad/(N m)\]; 0 where the guide is rigid.
     pub fn rad_per_nm(&self) -> Vector3<f64> {
         Vector3::from(self.stiffnesses().map(|k| k.map_or(0.0, |k| 1.0 / k)))
     }
 
-    /// The same guide with its stiffnesses times a factor.
+    /// This guide with all three stiffnesses multiplied by `factor`.
     #[must_use]
     pub fn stiffened(self, factor: f64) -> Self {
         let [roll_nm_per_rad, pitch_nm_per_rad, yaw_nm_per_rad] =
@@ -102,13 +104,13 @@ impl Guide {
     }
 }
 
-/// A stiffness; `null` is rigid.
+/// Reads a stiffness; `null` means rigid.
 fn positive_or_rigid(node: &Node) -> Option<Option<f64>> {
     if node.is_null() { Some(None) } else { node.positive().map(Some) }
 }
 
 impl Prismatic {
-    /// All that the joint weighs \[kg\].
+    /// Total mass of the joint with its bodies \[kg\].
     pub fn total_mass_kg(&self) -> f64 {
         self.mass_kg + self.fixed_mass_kg + self.bodies.mass_kg()
     }
@@ -148,7 +150,8 @@ impl Prismatic {
         })
     }
 
-    /// Reads how a prismatic joint yields: its stiffness along the travel, its guide, and what travels.
+    /// Reads the elastic properties of a prismatic joint: stiffness along the travel \[N/m\], guide, and whether
+    /// carriage or ram travels.
     pub(crate) fn read_springs(object: &Object) -> Option<(Option<f64>, Guide, Moves)> {
         let stiffness = match object.optional("stiffness_n_per_m") {
             Some(node) => positive_or_rigid(&node),
@@ -160,6 +163,15 @@ impl Prismatic {
         let guide = object.or("guide", Guide::default(), Guide::read);
         let moves = object.or("moves", Moves::default(), read_moves);
         Some((stiffness?, guide?, moves?))
+    }
+
+    /// How the joint yields, as [`read_springs`](Self::read_springs) reads it.
+    pub(crate) fn springs_to_json(&self) -> Value {
+        json!({
+            "stiffness_n_per_m": self.stiffness_n_per_m,
+            "guide": self.guide.to_json(),
+            "moves": self.moves.word(),
+        })
     }
 
     /// The joint as files write it.
@@ -180,7 +192,7 @@ impl Prismatic {
         value
     }
 
-    /// The joint as the mechanics sees it, without any effect. `entry` is the number of its entry in a pose.
+    /// The joint as the mechanics needs it, without any effect. `entry` is the index of the joint's travel in a pose.
     pub(crate) fn piece(&self, entry: usize) -> PrismaticPiece {
         PrismaticPiece {
             name: self.name.clone(),
@@ -207,36 +219,36 @@ fn read_moves(node: &Node) -> Option<Moves> {
     }
 }
 
-/// A prismatic joint as the mechanics sees it.
+/// A prismatic joint as the mechanics needs it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PrismaticPiece {
-    /// Name.
+    /// Name of the joint.
     pub name: String,
     /// Direction of the travel in the carried frame.
     pub axis: Unit<Vector3<f64>>,
-    /// Way along the travel per force \[m/N\]; 0 is rigid.
+    /// Compliance of the drive along the travel \[m/N\]; 0 means rigid.
     pub m_per_n: f64,
-    /// Tilt of the guide per moment: roll, pitch, yaw \[rad/(N m)\]; 0 is rigid.
+    /// Compliances of the guide in the order roll, pitch, yaw \[rad/(N m)\]; 0 means rigid.
     pub guide_rad_per_nm: Vector3<f64>,
-    /// What travels, which says where the springs of the guide stand.
+    /// Whether a carriage or a ram travels. It decides where the springs of the guide are.
     pub moves: Moves,
     /// Mass that travels \[kg\].
     pub mass_kg: f64,
     /// Mass that stays \[kg\].
     pub fixed_mass_kg: f64,
-    /// Rigid bodies, those that stay and those that travel.
+    /// Rigid bodies on the joint: those that stay and those that travel.
     pub bodies: JointBodies,
-    /// Number of its entry in a pose.
+    /// Index of the joint's travel in a pose.
     pub entry: usize,
 }
 
 impl PrismaticPiece {
-    /// All that the joint weighs \[kg\].
+    /// Total mass of the joint with its bodies \[kg\].
     pub fn total_mass_kg(&self) -> f64 {
         self.mass_kg + self.fixed_mass_kg + self.bodies.mass_kg()
     }
 
-    /// Whether the guide tilts about none of its axes.
+    /// Whether the guide is rigid about all three axes.
     pub fn guide_is_rigid(&self) -> bool {
         self.guide_rad_per_nm == Vector3::zeros()
     }

@@ -3,7 +3,7 @@
 use super::keys::{POSITIVE_OR_NULL, VECTOR};
 use crate::input::key::{Key, Kind, Shape, optional, required};
 
-/// Bodies of a prismatic joint.
+/// A list of bodies of a prismatic joint.
 const PRISMATIC_BODIES: Kind = Kind::List(&Kind::Object(&PRISMATIC_BODY));
 
 /// The place of the stiffness among them.
@@ -38,11 +38,11 @@ pub(crate) const KEYS: [Key; 9] = [
     optional("bodies", PRISMATIC_BODIES, "-", "[]", "Rigid parts with centre and inertia."),
 ];
 
-/// A prismatic joint of an arm file.
+/// The keys of a prismatic joint of an arm file.
 pub(crate) static PRISMATIC: Shape =
     Shape::new("prismatic joint", "A joint that slides everything after it along its axis.", &KEYS, &[]);
 
-/// The guide of a prismatic joint.
+/// The keys of the guide of a prismatic joint.
 pub(crate) static GUIDE: Shape = Shape::new(
     "guide",
     "The guide of a prismatic joint, rigid about an axis that is left away.",
@@ -60,7 +60,7 @@ pub(crate) static GUIDE: Shape = Shape::new(
     &[],
 );
 
-/// A body of a prismatic joint.
+/// The keys of a body of a prismatic joint.
 pub(crate) static PRISMATIC_BODY: Shape = Shape::new(
     "body of a prismatic joint",
     "A rigid part of a prismatic joint.",

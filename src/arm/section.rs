@@ -1,4 +1,4 @@
-//! Cross-sections of links, and the numbers of a material that the mechanics needs.
+//! Cross-sections of links, and the properties of a material that the mechanics needs.
 //!
 //! | symbol | formula | source |
 //! |---|---|---|
@@ -11,7 +11,7 @@
 //! | shear factor, I | in `i_beam` | Cowper 1966, thin-walled I section |
 //! | shear factor, bars | `10(1+nu)/(12+11nu)`, round `6(1+nu)/(7+6nu)` | Cowper 1966, solid sections |
 //!
-//! A bar is a tube whose wall is half its smaller side: `A` and `I` are the same formulas.
+//! A solid bar is treated as a tube whose wall is half its smaller side: the same formulas of `A` and `I` apply.
 
 use super::torsion;
 use std::f64::consts::PI;
@@ -25,12 +25,12 @@ pub struct LinkMaterial {
     pub shear_modulus_pa: f64,
     /// Density \[kg/m³\].
     pub density_kg_m3: f64,
-    /// Poisson's ratio. It is used in Cowper's shear factor only, and never follows from E and G.
+    /// Poisson's ratio. It is used only in Cowper's shear factor. It is never derived from E and G.
     pub poisson: f64,
 }
 
 impl LinkMaterial {
-    /// The material with E and G multiplied by a factor.
+    /// This material with E and G multiplied by `factor`. Density and Poisson's ratio stay.
     #[must_use]
     pub fn stiffened(&self, factor: f64) -> LinkMaterial {
         LinkMaterial {
@@ -44,7 +44,7 @@ impl LinkMaterial {
 /// A cross-section, hollow or solid. Height is along the z axis of the section, width along its y axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Section {
-    /// Rectangular tube with sharp corners.
+    /// Rectangular tube with sharp edges.
     RectangularTube {
         /// Outer width b \[m\].
         width_m: f64,
@@ -72,7 +72,7 @@ pub enum Section {
         /// Diameter \[m\].
         diameter_m: f64,
     },
-    /// I section, its web upright. Given links only: no study chooses it.
+    /// I section with its web upright. Only a given link can have it; no study chooses one.
     IBeam {
         /// Width b of the flanges \[m\].
         width_m: f64,
@@ -83,35 +83,37 @@ pub enum Section {
         /// Thickness of the flanges \[m\].
         flange_m: f64,
     },
-    /// A section by its stiffnesses and its mass. Given links only.
+    /// A section given by its stiffnesses and its mass. Only a given link can have it.
     Stated(StatedSection),
 }
 
-/// A section by its stiffnesses and its mass, with the [`material`](Self::material) that makes them of geometric properties.
+/// A section given by its stiffnesses and its mass. Its area and second moments of area are computed such that, with a
+/// fictitious [`material`](Self::material), stiffnesses and mass are as stated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StatedSection {
-    /// Outer width \[m\]: for pictures, water and levers.
+    /// Outer width \[m\], used for pictures, buoyancy and the lever of a bearing.
     pub width_m: f64,
     /// Outer height \[m\].
     pub height_m: f64,
-    /// E I for bending that moves the link along z \[N m²\].
+    /// Bending stiffness E I for bending that moves the link along z \[N m²\].
     pub ei_y_nm2: f64,
-    /// E I for bending that moves the link along y \[N m²\].
+    /// Bending stiffness E I for bending that moves the link along y \[N m²\].
     pub ei_z_nm2: f64,
-    /// G J \[N m²\].
+    /// Torsional stiffness G J \[N m²\].
     pub gj_nm2: f64,
-    /// E A \[N\]; infinite if it is not stated: the link does not stretch.
+    /// Axial stiffness E A \[N\]; infinite if it is not stated, so that the link does not stretch.
     pub ea_n: f64,
     /// Mass per length \[kg/m\].
     pub kg_per_m: f64,
 }
 
-/// Modulus of the material that stands for a stated section \[Pa\]: so stiff that nothing yields by shear.
+/// Modulus of the fictitious material of a stated section \[Pa\]. It is so large that shear deformation is
+/// negligible.
 const STATED_PA: f64 = 1e15;
 
 impl StatedSection {
-    /// The material of a density of 1 kg/m³ with which the section has its stiffnesses and its mass. Shear is in none of
-    /// them, so the link does not yield by it.
+    /// The fictitious material with which the section has its stated stiffnesses and mass. Its density is 1 kg/m³.
+    /// Shear stiffness is not among the stated ones, so it is taken as practically infinite.
     pub fn material(&self) -> LinkMaterial {
         let of_ea_pa = self.ea_n / self.kg_per_m;
         LinkMaterial {
@@ -148,11 +150,11 @@ pub struct SectionProperties {
     pub second_moment_z_m4: f64,
     /// Torsion constant J \[m⁴\].
     pub torsion_constant_m4: f64,
-    /// Largest shear stress of torsion per torque \[1/m³\].
+    /// Largest shear stress of torsion divided by the torque \[1/m³\].
     pub torsion_shear_per_m3: f64,
     /// Cowper's shear factor.
     pub shear_factor: f64,
-    /// Area within the outer contour, which displaces water \[m²\].
+    /// Area within the outer contour \[m²\]. It determines the water that the link displaces.
     pub outer_area_m2: f64,
 }
 
@@ -170,7 +172,7 @@ impl Section {
         }
     }
 
-    /// Wall thickness \[m\]. That of a section without a hollow is half its smaller side.
+    /// Wall thickness \[m\]. For a section without a hollow it is half the smaller side.
     pub fn wall_m(&self) -> f64 {
         match *self {
             Section::RectangularTube { wall_m, .. } | Section::RoundTube { wall_m, .. } => wall_m,
@@ -186,7 +188,7 @@ impl Section {
         matches!(self, Section::RoundTube { .. } | Section::RoundBar { .. })
     }
 
-    /// Whether the section has no hollow.
+    /// Whether the section is a solid bar.
     pub fn is_bar(&self) -> bool {
         matches!(self, Section::RectangularBar { .. } | Section::RoundBar { .. })
     }
@@ -203,7 +205,7 @@ impl Section {
         }
     }
 
-    /// The bar that a tube is if its wall fills the whole section, else the section itself.
+    /// The section itself, or the solid bar that a tube is if its wall fills the whole section.
     #[must_use]
     pub fn closed(self) -> Section {
         if matches!(self, Section::IBeam { .. } | Section::Stated(_)) {
@@ -284,8 +286,9 @@ fn rectangular_bar(b: f64, h: f64, nu: f64) -> SectionProperties {
     }
 }
 
-/// The torsion constant is that of three thin strips, the flanges and the web between their middles. Cowper's shear factor
-/// is that of shear along the web; it is taken for shear across it too, where bending of the flanges prevails.
+/// Properties of an I section. The torsion constant is the sum over three thin strips: the two flanges, and the web
+/// between their middles. Cowper's shear factor is for shear along the web. It is used for shear across the web as
+/// well, where bending of the flanges is far larger than shear.
 fn i_beam([b, h, web, flange]: [f64; 4], nu: f64) -> SectionProperties {
     let clear = h - 2.0 * flange;
     let middles = h - flange;
@@ -326,14 +329,14 @@ mod tests {
 
     #[test]
     fn an_i_section_has_the_moments_of_the_tables() {
-        // IPE 200: 100 x 200 mm, web 5.6 mm, flange 8.5 mm; the tables print 1943 and 142 cm4 and 28.5 cm2 with the fillets,
-        // which add up to 5.5 %
+        // IPE 200: 100 x 200 mm, web 5.6 mm, flange 8.5 mm. Tables list 1943 and 142 cm4 and 28.5 cm2 including the
+        // fillets, which are up to 5.5 % of these numbers
         let section = Section::IBeam { width_m: 0.1, height_m: 0.2, web_m: 0.0056, flange_m: 0.0085 };
         let p = section.properties(0.3);
         assert!((0.945..1.0).contains(&(p.second_moment_y_m4 / 1.943e-5)), "{p:?}");
         assert!((0.99..1.0).contains(&(p.second_moment_z_m4 / 1.42e-6)), "{p:?}");
         assert!((0.94..1.0).contains(&(p.area_m2 / 2.85e-3)), "{p:?}");
-        // most of the shear is in the web
+        // the web takes most of the shear
         let web_share = 0.0056 * (0.2 - 0.0085) / p.area_m2;
         assert!((0.75..1.1).contains(&(p.shear_factor / web_share)), "{p:?}, web {web_share}");
     }

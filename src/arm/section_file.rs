@@ -1,4 +1,4 @@
-//! Sections in an arm file that are neither tubes nor bars: I sections, and stiffnesses as stated.
+//! Reads sections that are neither tubes nor bars: I sections, and sections given by stiffnesses.
 
 use super::keys::{I_BEAM, STATED};
 use super::section::{Section, StatedSection};

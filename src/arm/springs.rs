@@ -1,9 +1,9 @@
-//! Springs that balance an arm, and what they do in a pose.
+//! Springs that balance an arm, and the forces that they put on it in a pose.
 //!
-//! A spring between two points a distance `L` apart pulls them together with `F = F₀ + k (L - L₀)`; a negative force pushes
-//! them apart, as a gas spring does. A torsion spring turns a joint back by `k (q - q₀)`. Both follow the pose as it is
-//! without deflection. How the deflection of the arm changes the force of a spring is left out, and so is the stiffness
-//! that a spring adds to modes.
+//! A spring between two points at a distance `L` pulls them together with `F = F₀ + k (L - L₀)`. A negative force
+//! pushes them apart, as a gas spring does. A torsion spring turns a joint back by the torque `k (q - q₀)`. Both are
+//! computed in the undeflected pose: the change of a spring's force by the deflection of the arm is neglected, and so
+//! is the stiffness that a spring adds in vibrations.
 
 use nalgebra::{Rotation3, Vector3};
 use serde_json::{Value, json};
@@ -13,27 +13,27 @@ use serde_json::{Value, json};
 pub struct Spring {
     /// Name, unique among the springs.
     pub name: String,
-    /// What the spring acts between.
+    /// Whether the spring acts between two points or about a joint, with its properties.
     pub kind: SpringKind,
 }
 
-/// What a spring acts between.
+/// Whether a spring acts between two points or about a joint, with its properties.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SpringKind {
-    /// Two points.
+    /// A spring between two points.
     Line {
-        /// Where the spring hangs and what it pulls.
+        /// The two points and what each is fixed to.
         ends: [SpringEnd; 2],
-        /// Its force.
+        /// Force as a function of length.
         law: SpringLaw,
     },
-    /// The two sides of a joint.
+    /// A spring between the two sides of a joint, which acts as a torque.
     Torsion {
-        /// Number of the joint in the chain, base to tip.
+        /// Index of the joint in the chain, base to tip.
         joint: usize,
         /// Stiffness \[N m/rad\].
         stiffness_nm_per_rad: f64,
-        /// Angle of the joint at which the spring has no torque \[deg\], as files have it.
+        /// Angle of the joint at which the torque of the spring is zero, in the unit of files \[deg\].
         free_deg: f64,
     },
 }
@@ -41,36 +41,37 @@ pub enum SpringKind {
 /// One end of a spring between two points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpringEnd {
-    /// What the end is fixed to.
+    /// What the end is fixed to: an element, the base or the world.
     pub on: SpringPlace,
-    /// The point, from the start of the element in the frame that it carries; of base and world in the world's frame \[m\].
+    /// Position of the end \[m\]: from the start of the element in the frame that moves with it, or in the world's
+    /// frame for base and world.
     pub point_m: Vector3<f64>,
 }
 
 /// What an end of a spring is fixed to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SpringPlace {
-    /// Something outside of the arm.
+    /// A point outside of the arm.
     World,
-    /// What carries the first element of the arm. It stands on whatever yields below the arm.
+    /// The body that carries the first element of the arm. It is outboard of any compliance of the base.
     Base,
-    /// An element of the chain by its number, base to tip; of a joint the side that turns.
+    /// An element of the chain by its index, base to tip. Of a joint, it is the side that turns.
     Element(usize),
 }
 
-/// The force of a spring between two points.
+/// The force of a spring between two points as a function of its length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpringLaw {
-    /// Force at the free length \[N\]; it pulls the ends together, or pushes them if it is negative.
+    /// Force at the free length \[N\]. If positive it pulls the ends together, if negative it pushes them apart.
     pub force_n: f64,
     /// Stiffness \[N/m\].
     pub stiffness_n_per_m: f64,
-    /// Length at which the stiffness has no part in the force \[m\].
+    /// Length at which the force is `force_n`, because the stiffness adds nothing to it \[m\].
     pub free_length_m: f64,
 }
 
 impl SpringPlace {
-    /// The word of files. `names` has the names of the elements, base to tip.
+    /// The word for this place in files. `names` are the names of the elements, base to tip.
     fn word<'a>(self, names: &[&'a str]) -> &'a str {
         match self {
             SpringPlace::World => "world",
@@ -81,68 +82,69 @@ impl SpringPlace {
 }
 
 impl SpringLaw {
-    /// The force at a length \[N\].
+    /// The force at a length \[N\]; positive if it pulls.
     pub fn force_at(&self, length_m: f64) -> f64 {
         self.force_n + self.stiffness_n_per_m * (length_m - self.free_length_m)
     }
 }
 
-/// Where an element of the chain is in a pose.
+/// Position and attitude of an element of the chain in a pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ElementFrame {
-    /// Start of the element in the world \[m\].
+    /// Position of the start of the element, in the world \[m\].
     pub at_m: Vector3<f64>,
-    /// Attitude of the frame that it carries; of a joint that after its rotation.
+    /// Rotation from the frame that moves with the element to the world; for a joint, the frame after its rotation.
     pub rotation: Rotation3<f64>,
-    /// Axis in the world and angle \[rad\] of a joint.
+    /// For a joint: unit vector along its axis in the world, and its angle \[rad\]. `None` for other elements.
     pub hinge: Option<(Vector3<f64>, f64)>,
 }
 
-/// A part of the arm that a spring loads.
+/// A part of the arm on which a spring acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Side {
-    /// What carries the first element.
+    /// The body that carries the first element.
     Base,
-    /// The side of a joint that does not turn.
+    /// The inboard side of a joint, which does not turn. The number is the index of the joint.
     Fixed(usize),
-    /// A link, or the side of a joint that turns.
+    /// A link, or the outboard side of a joint, which turns. The number is the index of the element.
     Moving(usize),
 }
 
-/// What a spring does to a part of the arm in a pose, in world axes.
+/// Force and moment that a spring puts on a part of the arm in a pose, in world axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct EndLoad {
     pub on: Side,
-    /// Where the force acts \[m\].
+    /// Point at which the force acts, in the world \[m\].
     pub at_m: Vector3<f64>,
     pub force_n: Vector3<f64>,
     pub moment_nm: Vector3<f64>,
 }
 
-/// How far a spring is drawn in a pose and what it does there.
+/// Length and force, or torque, of a spring in a pose.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Drawn {
-    /// Length \[m\] and force \[N\] of a spring between two points; a negative force pushes.
+    /// A spring between two points.
     Line {
-        /// Distance of the ends \[m\].
+        /// Distance between the ends \[m\].
         length_m: f64,
-        /// Force that pulls the ends together \[N\].
+        /// Force that pulls the ends together \[N\]; negative if it pushes.
         force_n: f64,
-        /// The ends in the world \[m\].
+        /// Positions of the two ends in the world \[m\].
         ends_m: [Vector3<f64>; 2],
     },
-    /// Torque of a torsion spring on the outboard side of its joint \[N m\].
+    /// A torsion spring.
     Torsion {
-        /// Torque about the axis of the joint \[N m\].
+        /// Torque on the outboard side of the joint, about its axis \[N m\].
         torque_nm: f64,
     },
 }
 
-/// Length below which the two ends of a spring have no direction \[m\].
+/// Length below which the direction of a spring is undefined, so that its force is taken as zero \[m\].
 const NO_LENGTH_M: f64 = 1e-9;
 
 impl Spring {
-    /// The spring in a pose; `None` if the chain lacks its elements.
+    /// Length and force of the spring in a pose, or its torque. `frames` are the frames of the elements in this pose,
+    /// base to tip. `None` if an element to which the spring is fixed is missing.
     pub(crate) fn drawn(&self, frames: &[ElementFrame]) -> Option<Drawn> {
         match &self.kind {
             SpringKind::Line { ends, law } => {
@@ -158,7 +160,8 @@ impl Spring {
         }
     }
 
-    /// What the spring does to the arm in a pose. What it does to the world outside is left out.
+    /// Forces and moments that the spring puts on the arm in a pose. `frames` are the frames of the elements, base to
+    /// tip. A force on a point of the world is left out, because it does not load the arm.
     fn loads(&self, frames: &[ElementFrame]) -> Vec<EndLoad> {
         match (&self.kind, self.drawn(frames)) {
             (SpringKind::Line { ends, .. }, Some(Drawn::Line { length_m, force_n, ends_m })) => {
@@ -187,7 +190,7 @@ impl Spring {
         }
     }
 
-    /// The parts of the arm that the spring loads, in any pose.
+    /// The parts of the arm on which the spring acts. They are the same in every pose.
     pub(crate) fn sides(&self) -> Vec<Side> {
         match &self.kind {
             SpringKind::Line { ends, .. } => ends.iter().filter_map(SpringEnd::side).collect(),
@@ -195,7 +198,7 @@ impl Spring {
         }
     }
 
-    /// The spring as files write it. `names` has the names of the elements, base to tip.
+    /// The spring as files write it. `names` are the names of the elements, base to tip.
     pub(crate) fn to_json(&self, names: &[&str]) -> Value {
         match &self.kind {
             SpringKind::Line { ends, law } => {
@@ -215,7 +218,8 @@ impl Spring {
 }
 
 impl SpringEnd {
-    /// The end in the world \[m\]; `None` if the chain has no such element.
+    /// Position of this end in the world \[m\]; `None` if the chain has no such element. `frames` are the frames of the
+    /// elements in the pose, base to tip.
     fn at_m(&self, frames: &[ElementFrame]) -> Option<Vector3<f64>> {
         match self.on {
             SpringPlace::World | SpringPlace::Base => Some(self.point_m),
@@ -225,7 +229,7 @@ impl SpringEnd {
         }
     }
 
-    /// The part of the arm that the end is fixed to; `None` for the world.
+    /// The part of the arm to which the end is fixed; `None` for the world.
     fn side(&self) -> Option<Side> {
         match self.on {
             SpringPlace::World => None,
@@ -235,7 +239,7 @@ impl SpringEnd {
     }
 }
 
-/// What the springs do to the arm in a pose.
+/// Forces and moments that all springs put on the arm in a pose. `frames` are the frames of the elements, base to tip.
 pub(crate) fn end_loads(springs: &[Spring], frames: &[ElementFrame]) -> Vec<EndLoad> {
     springs.iter().flat_map(|spring| spring.loads(frames)).collect()
 }

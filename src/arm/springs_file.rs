@@ -7,10 +7,10 @@ use super::springs::{Spring, SpringEnd, SpringKind, SpringLaw, SpringPlace};
 use crate::input::json::{Node, Object};
 use nalgebra::{Matrix3, Vector3};
 
-/// What an element of the chain is called, and whether it is a joint.
+/// Name of an element of the chain, and whether it is a joint.
 pub(crate) type Named<'a> = (&'a str, bool);
 
-/// Reads the key `springs`; none without the key. `elements` are those of the chain, base to tip.
+/// Reads the key `springs`; an empty list without the key. `elements` are the elements of the chain, base to tip.
 pub(crate) fn read_springs(object: &Object, elements: &[Named]) -> Option<Vec<Spring>> {
     object.or("springs", Vec::new(), |node| {
         let items = node.array()?;
@@ -69,7 +69,7 @@ fn read_line(object: &Object, elements: &[Named]) -> Option<SpringKind> {
     Some(SpringKind::Line { ends: [from, to], law: law? })
 }
 
-/// Force and stiffness of a spring between two points; one of them at least.
+/// Reads the law of a spring between two points. Force or stiffness must be given, or both.
 fn read_law(object: &Object) -> Option<SpringLaw> {
     let (has_force, has_stiffness) = (object.has("force_n"), object.has("stiffness_n_per_m"));
     if !has_force && !has_stiffness {
@@ -97,7 +97,7 @@ fn read_end(node: &Node, elements: &[Named]) -> Option<SpringEnd> {
     Some(SpringEnd { on: on?, point_m: point_m? })
 }
 
-/// An element of that name comes before the words `base` and `world`.
+/// Reads what an end of a spring is fixed to. If an element is named `base` or `world`, the element is meant.
 fn read_place(node: &Node, elements: &[Named]) -> Option<SpringPlace> {
     match (element(node, elements)?, node.string()?) {
         (Some(index), _) => Some(SpringPlace::Element(index)),
@@ -119,8 +119,8 @@ fn names(elements: &[Named]) -> String {
     elements.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
 }
 
-/// Reads the key `counterweights`, point masses as bodies of the elements that carry them; none without the key. A joint
-/// carries them on the side that turns.
+/// Reads the key `counterweights`; an empty list without the key. Each counterweight is a point mass, returned with
+/// the index of the element that carries it. Of a joint, it is the side that turns.
 pub(crate) fn read_counterweights(object: &Object, elements: &[Named]) -> Option<Vec<(usize, RigidBody)>> {
     object.or("counterweights", Vec::new(), |node| {
         let read: Vec<_> = node.array()?.iter().map(|n| read_counterweight(n, elements)).collect();
@@ -143,15 +143,15 @@ fn read_counterweight(node: &Node, elements: &[Named]) -> Option<(usize, RigidBo
     Some((at?, RigidBody { mass_kg: mass_kg?, cg_m: cg_m?, inertia_kgm2: Matrix3::zeros() }))
 }
 
-/// The bodies of an element, to which a counterweight is added.
+/// The list of bodies of one element of the chain. A counterweight on the element is added to it.
 pub(crate) enum BodiesOf<'a> {
-    /// Of a joint.
+    /// The bodies of a joint.
     Joint(&'a mut JointBodies),
-    /// Of a link.
+    /// The bodies of a link.
     Link(&'a mut Vec<RigidBody>),
 }
 
-/// Hangs counterweights on the elements that carry them.
+/// Adds each counterweight to the bodies of the element that carries it.
 pub(crate) fn hang<'a>(counterweights: Vec<(usize, RigidBody)>, mut bodies: Vec<BodiesOf<'a>>) {
     for (index, body) in counterweights {
         match &mut bodies[index] {

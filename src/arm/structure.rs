@@ -1,4 +1,5 @@
-//! Structures: the arm as the mechanics sees it. Effects are applied to its pieces, and names of parts are gone.
+//! Structures: the arm as the mechanics needs it. Effects are applied to its pieces, and names of catalog parts are
+//! left out.
 
 use super::base_lift::BaseLift;
 use super::body::{JointBodies, RigidBody, total_kg};
@@ -12,33 +13,34 @@ use super::springs::Spring;
 use super::{Arm, Element, Joint, JointModel, Link, LinkBody};
 use nalgebra::{Matrix3, SymmetricEigen, Unit, Vector3};
 
-/// Everything that the mechanics needs to know of an arm.
+/// Everything that the mechanics needs to know about an arm.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Structure {
     /// Gravitational acceleration \[m/s²\].
     pub gravity_m_s2: f64,
     /// Direction of gravity in the world, a unit vector.
     pub down: Vector3<f64>,
-    /// Tilt of the base about world x and y per moment \[rad/(N m)\].
+    /// Compliance of the base: tilt about world x and world y per moment \[rad/(N m)\]; 0 means rigid.
     pub base_tilt_rad_per_nm: f64,
-    /// Feet that lift off.
+    /// Feet of the base that can lift off; `None` if they cannot.
     pub base_lift: Option<BaseLift>,
-    /// Further compliance of the ground on which the arm stands, about the origin of the chain.
+    /// Further rotational compliance of the ground on which the arm stands, about the origin of the chain.
     pub base_frame: FrameCompliance,
-    /// The water in which the arm is.
+    /// The water in which the arm is; `None` in air.
     pub water: Option<Water>,
     /// Joints and links from base to tip.
     pub pieces: Vec<Piece>,
-    /// Springs that balance the arm; their elements are numbered as the pieces are.
+    /// Springs that balance the arm. They refer to elements by the index of the piece.
     pub springs: Vec<Spring>,
 }
 
-/// Rotation of a frame per moment \[rad/(N m)\], as a symmetric matrix over its three axes.
+/// Rotational compliance of a frame \[rad/(N m)\]: rotation per moment, as a symmetric matrix over three axes.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FrameCompliance(pub Matrix3<f64>);
 
 impl FrameCompliance {
-    /// The compliance as springs in series about the principal axes: each with its axis in the frame and its compliance.
+    /// This compliance as rotational springs in series about its principal axes. Each item is an axis in the frame and
+    /// the compliance about it \[rad/(N m)\]. Axes without compliance are left out.
     pub fn springs(&self) -> Vec<(Vector3<f64>, f64)> {
         if self.0 == Matrix3::zeros() {
             return Vec::new();
@@ -53,7 +55,7 @@ impl FrameCompliance {
 /// One piece of the chain.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Piece {
-    /// A rotary joint.
+    /// A revolute joint.
     Joint(JointPiece),
     /// A prismatic joint.
     Prismatic(PrismaticPiece),
@@ -62,7 +64,7 @@ pub enum Piece {
 }
 
 impl Piece {
-    /// Name.
+    /// Name of the piece.
     pub fn name(&self) -> &str {
         match self {
             Piece::Joint(joint) => &joint.name,
@@ -72,43 +74,43 @@ impl Piece {
     }
 }
 
-/// A rotary joint.
+/// A revolute joint as the mechanics needs it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointPiece {
-    /// Name.
+    /// Name of the joint.
     pub name: String,
     /// Axis in the carried frame.
     pub axis: Unit<Vector3<f64>>,
-    /// Law of the twist about the axis.
+    /// Angle of torsion about the axis as a function of torque.
     pub law: JointLaw,
-    /// Torque that acts on the joint beside weight and load.
+    /// Torque on the joint in addition to weight and load.
     pub torque: JointTorque,
-    /// Tilt about both axes across the axis of the joint, per moment \[rad/(N m)\]: that of the nominal bearing, and what
-    /// effects add in series.
+    /// Tilting compliance about both axes perpendicular to the joint's axis \[rad/(N m)\]: the nominal bearing, in
+    /// series with what effects add.
     pub tilt_rad_per_nm: f64,
-    /// Point mass on the axis, inboard \[kg\].
+    /// Point mass on the axis, inboard of the springs \[kg\].
     pub mass_kg: f64,
-    /// Rigid bodies that the joint carries.
+    /// Rigid bodies on the joint.
     pub bodies: JointBodies,
-    /// Source of the joint's angle.
+    /// How the angle of the joint follows from the pose.
     pub angle: JointAngle,
     /// How far it turns per turn of joints inboard of it while its own motor stands.
     pub turns_with: Vec<(String, f64)>,
 }
 
 impl JointPiece {
-    /// Whether its angle is an entry of the pose.
+    /// Whether the angle of the joint is an entry of the pose.
     pub fn is_driven(&self) -> bool {
         matches!(self.angle, JointAngle::Driven(_))
     }
 }
 
-/// Source of the angle of a joint.
+/// How the angle of a joint follows from the pose.
 #[derive(Debug, Clone, PartialEq)]
 pub enum JointAngle {
-    /// An entry of the pose, by its number.
+    /// The angle is the entry of the pose with this index.
     Driven(usize),
-    /// A sum of factors times entries of the pose.
+    /// The angle is a sum of factors times entries of the pose. Each item is the index of the entry and its factor.
     Coupled(Vec<(usize, f64)>),
 }
 
@@ -122,22 +124,23 @@ impl JointAngle {
     }
 }
 
-/// A link or a rigid offset.
+/// A link or a rigid offset as the mechanics needs it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinkPiece {
-    /// Name.
+    /// Name of the link.
     pub name: String,
     /// Vector from root to end in the carried frame \[m\].
     pub vector_m: Vector3<f64>,
-    /// The tube, if the link is one.
+    /// The tube, or `None` for a rigid offset.
     pub beam: Option<Beam>,
     /// Point mass at mid-length \[kg\].
     pub point_mass_kg: f64,
-    /// Rigid bodies that the link carries.
+    /// Rigid bodies on the link.
     pub bodies: Vec<RigidBody>,
-    /// Cables and hoses along the axis \[kg/m\].
+    /// Mass of cables and hoses along the link, per length \[kg/m\].
     pub harness_kg_per_m: f64,
-    /// Rotational compliance of the structure behind the joint, at the root of the link, in carried-frame axes.
+    /// Rotational compliance of the structure behind the joint. It acts at the root of the link, in axes of the
+    /// carried frame.
     pub root_frame: FrameCompliance,
 }
 
@@ -160,30 +163,30 @@ impl LinkPiece {
 /// A straight tube of constant section.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Beam {
-    /// Elastic properties.
+    /// Elastic properties and density of the material.
     pub material: LinkMaterial,
     /// Cross-section.
     pub section: Section,
-    /// Factor on every compliance: 1 for the tube itself, 0 for a rigid link.
+    /// Factor on every compliance of the tube: 1 for the tube as it is, 0 for a rigid link.
     pub flexibility: f64,
 }
 
 impl Arm {
-    /// The arm as the mechanics sees it, with the torsion curves of a joint model and with the effects of the product.
-    /// Effects that describe a test are left out ([`Arm::ignored_effects`] lists them).
+    /// The structure of the arm, with the effects of the product applied, for a calculation with the joint model
+    /// `joints`. Effects that describe a test are left out ([`Arm::ignored_effects`] lists them).
     pub fn structure(&self, joints: JointModel) -> Structure {
         self.subject(joints).structure
     }
 
-    /// The arm as the mechanics sees it in a load case. The case gives the joint model. If the case has water, it replaces the
-    /// water of an effect.
+    /// The structure of the arm in a load case; the case states the joint model. If the case states water, it replaces
+    /// the water of an effect.
     pub fn structure_in(&self, case: &LoadCase) -> Structure {
         let mut structure = self.structure(case.joints);
         structure.water = case.water.or(structure.water);
         structure
     }
 
-    /// The arm as the mechanics sees it, without any effect.
+    /// The structure of the arm without any effect, for a calculation with the joint model `joints`.
     pub fn nominal_structure(&self, joints: JointModel) -> Structure {
         let driven = self.driven_joint_names();
         let entry = |name: &str| driven.iter().position(|d| *d == name).unwrap_or_default();
@@ -205,7 +208,7 @@ impl Arm {
 }
 
 impl Structure {
-    /// Mass of all pieces \[kg\], with what effects add.
+    /// Mass of all pieces \[kg\], including the masses that effects add.
     pub fn mass_kg(&self) -> f64 {
         let mass_kg = |piece: &Piece| match piece {
             Piece::Joint(joint) => joint.mass_kg + joint.bodies.mass_kg(),
@@ -215,7 +218,7 @@ impl Structure {
         self.pieces.iter().map(mass_kg).sum()
     }
 
-    /// The driven joints in the order of their entries in a pose, and how each moves.
+    /// The driven joints in the order of their entries in a pose, with the kind of motion of each.
     pub fn driven_joints(&self) -> Vec<DrivenJoint> {
         let driven = |piece: &Piece| match piece {
             Piece::Joint(JointPiece { angle: JointAngle::Driven(entry), name, .. }) => {
@@ -231,7 +234,7 @@ impl Structure {
         joints.into_iter().map(|(_, joint)| joint).collect()
     }
 
-    /// A structure of pieces on a rigid base in air, upright.
+    /// A structure that consists of `pieces`, on a rigid base, upright and in air.
     pub(crate) fn nominal(gravity_m_s2: f64, pieces: Vec<Piece>) -> Self {
         Self {
             gravity_m_s2,
@@ -246,7 +249,8 @@ impl Structure {
     }
 }
 
-/// A joint without any effect.
+/// A joint of the arm file in the form that the mechanics uses, without any effect. `driven` are the names of the
+/// driven joints, base to tip; `model` is the joint model.
 fn joint_piece(joint: &Joint, driven: &[&str], model: JointModel) -> JointPiece {
     let index = |name: &str| driven.iter().position(|d| *d == name);
     let angle = match &joint.coupled {
@@ -268,7 +272,7 @@ fn joint_piece(joint: &Joint, driven: &[&str], model: JointModel) -> JointPiece 
     }
 }
 
-/// A link without any effect.
+/// A link of the arm file in the form that the mechanics uses, without any effect.
 pub(crate) fn link_piece(link: &Link) -> LinkPiece {
     let (beam, point_mass_kg) = match &link.body {
         LinkBody::Tube { material, section, .. } => {

@@ -4,33 +4,33 @@
 //! |---|---|---|
 //! | `J` thin tube | `2 t (b-t)² (h-t)² / ((b-t)+(h-t))` | Bredt, thin closed wall |
 //! | `τ/M` thin tube | `1 / (2 t (b-t)(h-t))` | Bredt: the mean over the wall |
-//! | `J` thick tube | `Bredt + c (2/3) t³ ((b-t)+(h-t))` | the open section's term; `c` makes the closed tube the bar |
+//! | `J` thick tube | `Bredt + c (2/3) t³ ((b-t)+(h-t))` | term of the open section; `c` gives the bar at full wall |
 //! | `J` bar | `h b³ (1/3 - (64/π⁵)(b/h) Σ tanh(nπh/2b)/n⁵)`, n odd, b ≤ h | Saint-Venant's series |
 //! | `τ J/M` bar | `b (1 - (8/π²) Σ 1/(n² cosh(nπh/2b)))`, n odd, b ≤ h | the same series, middle of the long side |
 //!
-//! Bredt's formula is used up to a wall of 0.15 of the smaller side, where it is 9.0 % low for a square tube and less for
-//! any other. From there on the added term fades in while the wall grows by a thirtieth, so that `J` has no step, which a
-//! derivative by the wall would see. Beyond that, `J` is within 7.0 % of the exact solution up to the solid bar (sides 1:1
-//! to 1:4), and it never falls as the wall grows. Bredt's shear stress is the mean over the wall; the outside of a wall of
-//! 0.15 bears up to 29 % more.
+//! Bredt's formula is used up to a wall of 0.15 of the smaller side. There it is 9.0 % low for a square tube, and
+//! less for any other. Beyond that the added term is faded in while the wall grows by a thirtieth; a step of `J`
+//! would disturb derivatives with respect to the wall. From there on `J` is within 7.0 % of the exact solution up to
+//! the solid bar (sides 1:1 to 1:4), and it never falls as the wall grows. Bredt's shear stress is the mean over the
+//! wall; at the outside of a wall of 0.15 the stress is up to 29 % higher.
 
 use std::f64::consts::PI;
 
-/// Wall over the smaller side, up to which the wall counts as thin.
+/// Ratio of wall to smaller side up to which the wall counts as thin.
 const THIN: f64 = 0.15;
-/// Wall over the smaller side, from which on the open section's term counts in full.
+/// Ratio of wall to smaller side from which on the term of the open section counts in full.
 const THICK: f64 = 0.155;
 
-/// How a section answers a torque.
+/// Torsional properties of a section.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Torsion {
     /// Torsion constant J \[m⁴\].
     pub constant_m4: f64,
-    /// Largest shear stress per torque \[1/m³\].
+    /// Largest shear stress divided by the torque \[1/m³\].
     pub shear_per_m3: f64,
 }
 
-/// Torsion of a rectangular tube of outer sides b, h \[m\] and wall t \[m\], thick or thin.
+/// Torsional properties of a rectangular tube, thick or thin, with outer sides b, h \[m\] and wall t \[m\].
 pub(super) fn tube(b: f64, h: f64, t: f64) -> Torsion {
     let thin = Torsion { constant_m4: bredt(b, h, t), shear_per_m3: 1.0 / (2.0 * (b - t) * (h - t) * t) };
     let side = b.min(h);
@@ -42,47 +42,50 @@ pub(super) fn tube(b: f64, h: f64, t: f64) -> Torsion {
     let (bar, bar_shear_m) = (bar_constant(b, h), bar_shear_m(b, h));
     let scale = (bar - bredt(b, h, closed)) / open(b, h, closed);
     let constant_m4 = thin.constant_m4 + share * scale * open(b, h, t);
-    // the outside of the wall is sheared as by Bredt and as by the open section, which adds its thickness
+    // at the outside of the wall the shear stress is Bredt's plus that of the open section, which is proportional to
+    // the wall
     let bend = (bar_shear_m - bredt_shear_m(b, h, closed)) / closed;
     let shear_m = bredt_shear_m(b, h, t) + share * bend * t;
     Torsion { constant_m4, shear_per_m3: shear_m / constant_m4 }
 }
 
-/// Torsion of a solid bar of sides b, h \[m\].
+/// Torsional properties of a solid bar of sides b, h \[m\].
 pub(super) fn bar(b: f64, h: f64) -> Torsion {
     let constant_m4 = bar_constant(b, h);
     Torsion { constant_m4, shear_per_m3: bar_shear_m(b, h) / constant_m4 }
 }
 
-/// `J` of a thin closed wall \[m⁴\].
+/// Torsion constant `J` of a thin closed wall by Bredt's formula \[m⁴\]: outer sides b, h and wall t \[m\].
 fn bredt(b: f64, h: f64, t: f64) -> f64 {
     let (bm, hm) = (b - t, h - t);
     2.0 * t * bm * bm * hm * hm / (bm + hm)
 }
 
-/// Shear stress of a thin closed wall per G and twist per length \[m\].
+/// Largest shear stress in a thin closed wall, divided by the shear modulus and by the twist angle per length \[m\].
 fn bredt_shear_m(b: f64, h: f64, t: f64) -> f64 {
     let (bm, hm) = (b - t, h - t);
     bm * hm / (bm + hm)
 }
 
-/// `J` of the same wall cut open \[m⁴\].
+/// Torsion constant `J` of the wall of a tube that is cut open lengthwise \[m⁴\]: outer sides b, h and wall t \[m\].
 fn open(b: f64, h: f64, t: f64) -> f64 {
     2.0 / 3.0 * t.powi(3) * ((b - t) + (h - t))
 }
 
-/// Sum of n⁻⁵ over the odd numbers, 31/32 ζ(5).
+/// Sum of n⁻⁵ over the odd n, which is 31/32 ζ(5).
 const ODD_FIFTH_POWERS: f64 = 1.004_523_762_795_139_5;
 const ODD: [f64; 5] = [1.0, 3.0, 5.0, 7.0, 9.0];
 
-/// `J` of a solid rectangle \[m⁴\]. Written as its sum less `1 - tanh`, the series ends after few terms.
+/// Torsion constant `J` of a solid bar of sides b, h \[m\] \[m⁴\]. The sum over n⁻⁵ is taken exactly and only
+/// `1 - tanh` is summed as a series, which converges after few terms.
 fn bar_constant(b: f64, h: f64) -> f64 {
     let (b, h) = (b.min(h), b.max(h));
     let rest: f64 = ODD.iter().map(|n| 2.0 / (n.powi(5) * (libm::exp(n * PI * h / b) + 1.0))).sum();
     h * b.powi(3) * (1.0 / 3.0 - 64.0 / PI.powi(5) * b / h * (ODD_FIFTH_POWERS - rest))
 }
 
-/// Largest shear stress of a solid rectangle per G and twist per length \[m\].
+/// Largest shear stress of a solid bar of sides b, h \[m\], divided by the shear modulus and by the twist angle per
+/// length \[m\].
 fn bar_shear_m(b: f64, h: f64) -> f64 {
     let (b, h) = (b.min(h), b.max(h));
     let series: f64 = ODD.iter().map(|n| 1.0 / (n * n * libm::cosh(n * PI * h / (2.0 * b)))).sum();
@@ -125,14 +128,15 @@ mod tests {
             for (i, pair) in constants.windows(2).enumerate() {
                 let growth = pair[1] / pair[0] - 1.0;
                 assert!(growth > 0.0, "{h}: falls after step {i}");
-                // the first steps double the wall
+                // in the first steps the wall doubles from step to step, so J grows faster there
                 assert!(i < 1000 || growth < 1.1e-3, "{h}: jumps by {growth} after step {i}");
             }
             assert!((constants[steps as usize - 1] / bar(h, 1.0).constant_m4 - 1.0).abs() < 1e-12, "{h}");
         }
     }
 
-    /// Prandtl's stress function by finite differences: within 8 % for thick walls, and Bredt's own error for thin ones.
+    /// Compares with Prandtl's stress function by finite differences: within 8 % for thick walls, and within the
+    /// known error of Bredt's formula for thin ones.
     #[test]
     fn thick_walls_are_within_8_percent_of_saint_venant() {
         for aspect in [1, 2, 4] {
@@ -148,21 +152,22 @@ mod tests {
         }
     }
 
-    /// `J` of a tube whose smaller side is 1, on a grid of `b` x `h` cells with a wall of `t` cells, and on one twice as
-    /// fine, extrapolated. The stress function is constant over the hollow, which is one unknown.
+    /// `J` of a tube whose smaller side is 1. It is computed on a grid of `b` x `h` cells with a wall of `t` cells
+    /// and on a grid twice as fine, and extrapolated. The stress function is constant over the hollow, which is
+    /// therefore one unknown.
     fn saint_venant(b: usize, h: usize, t: usize) -> f64 {
         let [coarse, fine] =
             [1, 2].map(|n| stress_function_volume(n * b, n * h, n * t) / (n * b).pow(4) as f64);
-        // a re-entrant corner limits the order to 4/3
+        // the re-entrant edges of the hollow limit the order of convergence to 4/3
         fine + (fine - coarse) / (libm::pow(2f64, 4.0 / 3.0) - 1.0)
     }
 
-    /// Twice the volume under the stress function of a section whose sides and wall have these numbers of unit cells. A
-    /// quarter of it is solved.
+    /// Twice the volume under the stress function of a section, whose sides and wall are given as numbers of unit
+    /// cells. By symmetry only a quarter of the section is solved.
     fn stress_function_volume(b: usize, h: usize, t: usize) -> f64 {
         let (half_b, half_h) = (b / 2, h / 2);
         let (hole_b, hole_h) = (half_b - t, half_h - t);
-        // nodes of the hollow share the first unknown; those on the outline are zero
+        // all nodes of the hollow share the first unknown; the stress function is zero at the nodes of the outline
         let unknown = |i: usize, j: usize| match (i == half_b || j == half_h, i <= hole_b && j <= hole_h) {
             (true, _) => None,
             (_, true) if hole_b > 0 => Some(0),
@@ -180,7 +185,8 @@ mod tests {
         4.0 * load.dot(&conjugate_gradients(&edges, &load))
     }
 
-    /// Solves the network of springs `edges` (from, to, stiffness; to nothing is to the ground) under a load.
+    /// Solves a network of springs `edges` (from, to, stiffness) under a load. A spring without `to` is fixed to the
+    /// ground.
     fn conjugate_gradients(edges: &[(usize, Option<usize>, f64)], load: &DVector<f64>) -> DVector<f64> {
         let times = |x: &DVector<f64>| {
             let mut out = DVector::zeros(x.len());

@@ -13,7 +13,7 @@
 //! of its mass on each.
 
 use super::body::{JointBodies, RigidBody};
-use super::file::{motor_side_kg, read_coupling};
+use super::element_keys::read_coupling;
 use super::joint_law::Curve;
 use super::keys::STAGE;
 use super::load::vector;
@@ -150,8 +150,9 @@ pub(crate) fn gear_is_at_motor(object: &Object) -> bool {
 }
 
 impl Transmission {
-    /// Reads it from the keys of a joint; `None` within if the joint has none of them.
-    pub(crate) fn read(object: &Object, catalogs: &Catalogs) -> Option<Option<Self>> {
+    /// Reads it from the keys of a joint; `None` within if the joint has none of them. `motor_kg` is the mass of what sits at the
+    /// motor \[kg\].
+    pub(crate) fn read(object: &Object, catalogs: &Catalogs, motor_kg: Option<f64>) -> Option<Option<Self>> {
         fits_beside(object)?;
         if !TRANSMISSION_KEYS.iter().any(|key| object.has(key)) {
             return Some(None);
@@ -166,7 +167,6 @@ impl Transmission {
         let stages = object.or("transmission", Vec::new(), |n| {
             n.array()?.iter().map(Stage::read).collect::<Vec<_>>().into_iter().collect()
         });
-        let motor_kg = motor_side_kg(object, catalogs);
         let gear_ratio = object.or("gear_ratio", gear_ratio(object, catalogs), |n| n.positive().map(Some))?;
         let is_told = gear_ratio.is_some() || gear_at_motor != Some(false) || object.has("drive");
         if !is_told && stages.iter().flatten().any(|stage| stage.rad_per_nm > 0.0) {

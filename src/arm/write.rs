@@ -10,8 +10,8 @@ use nalgebra::Vector3;
 use serde_json::{Map, Value, json};
 
 impl Arm {
-    /// The arm as its file has it. Every part is resolved to numbers; the names of parts stand next to them. Reading the
-    /// file gives the same arm to the last digit.
+    /// The arm as its file has it. Every part is written as numbers, with the name of the part for information.
+    /// Reading the file again gives the same arm to the last digit.
     pub fn to_json(&self) -> Value {
         let mut value = json!({
             "name": self.name,
@@ -27,7 +27,7 @@ impl Arm {
         value
     }
 
-    /// A number if the arm stands upright, else a vector in the world.
+    /// Gravity as a number if the arm stands upright, else as a vector in the world.
     fn gravity_json(&self) -> Value {
         match self.down == -Vector3::z() {
             true => json!(self.gravity_m_s2),
@@ -78,7 +78,7 @@ impl Joint {
                 map.insert(key.into(), json!(part));
             }
         }
-        // a gear's bearing would count if nothing were said of it
+        // without the key `bearing`, a reader would take the bearing of the gear; so `null` is written explicitly
         if self.bearing.is_some() || self.gear.is_some() {
             map.insert("bearing".into(), self.bearing.map_or(Value::Null, Bearing::to_json));
         }
@@ -101,7 +101,7 @@ impl Joint {
 }
 
 impl Curve {
-    /// The key and the value that files have for the curve.
+    /// The key (`stiffness_nm_per_rad` or `windup`) and the value with which files write the curve.
     pub fn to_json(&self) -> (&'static str, Value) {
         match self {
             Curve::Rigid => ("stiffness_nm_per_rad", Value::Null),
@@ -140,7 +140,7 @@ impl Link {
 }
 
 impl Section {
-    /// The section as files write it.
+    /// The section as files write it: the word for its shape, and its sizes \[m\].
     pub fn to_json(&self) -> Value {
         match self {
             Section::RectangularTube { width_m, height_m, wall_m } => json!({
@@ -172,7 +172,7 @@ impl Section {
 }
 
 impl Effect {
-    /// The effect as files write it.
+    /// The effect as files write it: name, place, parameters and source.
     pub fn to_json(&self) -> Value {
         let parameters: Map<String, Value> = self
             .parameters

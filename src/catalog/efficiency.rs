@@ -1,18 +1,19 @@
-//! Efficiency of gears away from the rated point, as far as curves were seen.
+//! Efficiency of gears away from the rated point, for gears whose curves are in the catalog.
 //!
-//! Two kinds of curve: efficiency at rated torque against input speed, for single gears, and the factor
-//! `K_e` on it against the ratio of torque to rated torque, for whole series. Both hold for grease
-//! lubrication at about 20 °C; a sealed housed unit is a few points lower.
+//! There are two kinds of curve. For single gears, it is the efficiency at rated torque against the input speed.
+//! For whole series, it is the factor `K_e` on that efficiency against the ratio of torque to rated torque. Both
+//! hold for grease lubrication at about 20 °C. The efficiency of a sealed housed unit is a few percentage points
+//! lower.
 
 use super::gear::{Gear, GearKind};
 use super::{Catalogs, Provenance};
 
-/// What a point of `gears_efficiency.csv` tells.
+/// The two kinds of curve in `gears_efficiency.csv`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EfficiencyKind {
-    /// Efficiency at rated torque; x is the input speed \[rpm\].
+    /// The value is the efficiency at rated torque, and x is the input speed \[rpm\].
     AgainstInputSpeed,
-    /// Factor on the efficiency at rated torque; x is torque over rated torque.
+    /// The value is a factor on the efficiency at rated torque, and x is the torque divided by the rated torque.
     FactorAgainstTorqueRatio,
 }
 
@@ -21,13 +22,13 @@ impl EfficiencyKind {
     pub const WORDS: [&'static str; 2] =
         ["efficiency_at_rated_torque_vs_input_speed", "efficiency_factor_Ke_vs_torque_ratio"];
 
-    /// The kind a word of the column means.
+    /// The kind that a word of the column means; `None` if it is not one of [`Self::WORDS`].
     pub fn from_word(word: &str) -> Option<Self> {
         let kinds = [EfficiencyKind::AgainstInputSpeed, EfficiencyKind::FactorAgainstTorqueRatio];
         Self::WORDS.iter().position(|w| w.eq_ignore_ascii_case(word)).map(|i| kinds[i])
     }
 
-    /// Unit of x as the column `x_unit` writes it.
+    /// Unit of x, as the column `x_unit` writes it.
     pub fn x_unit(self) -> &'static str {
         match self {
             EfficiencyKind::AgainstInputSpeed => "rpm",
@@ -39,24 +40,25 @@ impl EfficiencyKind {
 /// One point of an efficiency curve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EfficiencyPoint {
-    /// What x and value are.
+    /// Kind of the curve, which says what `x` and `value` are.
     pub kind: EfficiencyKind,
     /// Series as printed, e.g. `HFUC-2A` (component set) or `CSF/CSG` (both series).
     pub series: String,
-    /// Size; `None` for a curve of whole series.
+    /// Size of the gear; `None` for a curve of whole series.
     pub size: Option<u32>,
-    /// Ratio; `None` for a curve of whole series.
+    /// Reduction ratio of the gear; `None` for a curve of whole series.
     pub ratio: Option<f64>,
-    /// Input speed \[rpm\] or torque over rated torque.
+    /// Input speed \[rpm\], or torque divided by rated torque.
     pub x: f64,
-    /// Efficiency or factor.
+    /// Efficiency, or factor on the efficiency.
     pub value: f64,
-    /// Where the row comes from.
+    /// Source of the row.
     pub provenance: Provenance,
 }
 
 impl EfficiencyPoint {
-    /// Whether the point is one of this gear's component set.
+    /// Whether the point belongs to a curve of this gear. A series may be printed with the ending `-2A` of the
+    /// component set, or as several series. `also_sold_as` has other names of the gear's series.
     fn is_of(&self, gear: &Gear, also_sold_as: &[&str]) -> bool {
         let named = |name: &str| name == gear.series || also_sold_as.contains(&name);
         let series = self.series.trim_end_matches("-2A").split('/').any(named);
@@ -65,33 +67,39 @@ impl EfficiencyPoint {
 }
 
 impl Catalogs {
-    /// Efficiency at rated torque and an input speed, linear between the points of this gear's own curve.
+    /// Efficiency of `gear` at rated torque and at an input speed \[rpm\], interpolated between the points of the
+    /// gear's own curve.
     ///
-    /// `None` if no curve of this very gear was seen, or outside its speeds: use [`Gear::efficiency`]
-    /// (2000 rpm) and say so. The four HFUC sizes 14 to 25 at 100:1 have a built-in curve.
+    /// `None` if the catalog has no curve of this gear, or if the speed is outside the curve. The caller may then
+    /// use [`Gear::efficiency`] (at 2000 rpm) and should say so. The four HFUC sizes 14 to 25 at 100:1 have a
+    /// built-in curve.
     pub fn efficiency_at(&self, gear: &Gear, input_speed_rpm: f64) -> Option<f64> {
         interpolate(&self.efficiency_curve(gear, EfficiencyKind::AgainstInputSpeed), input_speed_rpm)
     }
 
-    /// Factor on the efficiency when the torque is this share of the rated torque, linear between points.
+    /// Factor on the efficiency at rated torque for another torque, which is the fraction `torque_over_rated` of the
+    /// rated torque. It is interpolated between points.
     ///
-    /// `None` if no factor of this series was seen, or outside its range (0.1 to 1 built in).
+    /// `None` if the catalog has no factor of this series, or if the fraction is outside its range (0.1 to 1 in the
+    /// built-in file).
     pub fn efficiency_factor_at(&self, gear: &Gear, torque_over_rated: f64) -> Option<f64> {
         interpolate(&self.efficiency_curve(gear, EfficiencyKind::FactorAgainstTorqueRatio), torque_over_rated)
     }
 
-    /// Efficiency of a gear at an input speed \[rpm\] and a share of its rated torque, by curves of its kind: representative,
-    /// not a vendor's figure. `None` without a rated efficiency, and for gears that are no strain-wave gears.
+    /// Efficiency of a gear at an input speed \[rpm\] and a fraction of its rated torque. It is computed from
+    /// curves of similar gears, so it is representative and not a rating of the vendor. `None` without a rated
+    /// efficiency, and for gears that are no strain-wave gears.
     ///
-    /// The curve against speed is the gear's own, or that of HFUC-25-100, scaled to the gear's efficiency at 2000 rpm; the
-    /// factor on it is that of CSF and CSG. Beyond their ends the curves go on level. Temperature is left out.
+    /// The curve against speed is the gear's own, or else that of HFUC-25-100, and is scaled to the gear's
+    /// efficiency at 2000 rpm. The factor for the torque is the gear's own, or else that of the HFUC-25-100 (series
+    /// CSF and CSG). Beyond their ends the curves are constant. The influence of temperature is left out.
     pub fn representative_efficiency(
         &self,
         gear: &Gear,
         input_speed_rpm: f64,
         torque_over_rated: f64,
     ) -> Option<f64> {
-        // the curves are those of harmonic drives
+        // the curves were measured on harmonic drives
         let rated = gear.efficiency.filter(|_| gear.kind == GearKind::StrainWave)?;
         let model = |of: &Gear, kind| Some(self.efficiency_curve(of, kind)).filter(|curve| !curve.is_empty());
         let other = self.gear(MODEL).ok();
@@ -103,7 +111,8 @@ impl Catalogs {
         Some(rated * at_speed.unwrap_or(1.0) * at_load.unwrap_or(1.0))
     }
 
-    /// The points of a gear's curve of a kind, by ascending x.
+    /// The points of the efficiency curve of `gear` of the kind `kind`, in ascending order of x. Each point is x and
+    /// the value. Empty if the catalog has no such curve.
     pub(super) fn efficiency_curve(&self, gear: &Gear, kind: EfficiencyKind) -> Vec<[f64; 2]> {
         let aliases = self.series_aliases.iter().filter(|(_, series)| **series == gear.series);
         let names: Vec<&str> = aliases.map(|(alias, _)| alias.as_str()).collect();
@@ -114,18 +123,19 @@ impl Catalogs {
     }
 }
 
-/// The gear whose curves stand for those of others.
+/// The gear whose curves are used for gears without their own.
 const MODEL: &str = "HFUC-25-100";
-/// Input speed of the rated efficiency \[rpm\].
+/// Input speed at which the rated efficiency is stated \[rpm\].
 const RATED_RPM: f64 = 2000.0;
 
-/// Linear between points sorted by x, level beyond them; `None` without points.
+/// Value of a curve at `x`, by linear interpolation between its points, which are sorted by x. Beyond the ends the
+/// value is constant; `None` without points.
 fn level(curve: &[[f64; 2]], x: f64) -> Option<f64> {
     let (first, last) = (curve.first()?, curve.last()?);
     interpolate(curve, x.clamp(first[0], last[0]))
 }
 
-/// Linear between points sorted by x; `None` outside them.
+/// Value of a curve at `x`, by linear interpolation between its points, which are sorted by x; `None` outside them.
 fn interpolate(curve: &[[f64; 2]], x: f64) -> Option<f64> {
     let after = curve.iter().position(|point| point[0] >= x)?;
     let [x1, y1] = curve[after];
@@ -166,12 +176,13 @@ mod tests {
         let at = |id: &str, rpm, torque| catalogs.representative_efficiency(gear(id), rpm, torque).unwrap();
         let rated = gear("SHG-32-100").efficiency.unwrap();
         assert_eq!(at("SHG-32-100", 2000.0, 1.0), rated);
-        // 0.82 of 0.78 at 1000 rpm, factor 0.9 at half the rated torque
+        // 0.82 / 0.78 is the ratio of the efficiencies at 1000 and 2000 rpm; the factor at half the rated torque is
+        // 0.9
         assert!((at("SHG-32-100", 1000.0, 0.5) - rated * 0.82 / 0.78 * 0.9).abs() < 1e-12);
         assert_eq!(at("SHG-32-100", 100.0, 2.0), at("SHG-32-100", 500.0, 1.0));
         // the vendor's example (1019658, page 25): 0.78 at 1000 rpm becomes 0.73 at 57 % of the rated torque
         let factor = at("HFUC-20-80", 1000.0, 0.57) / at("HFUC-20-80", 1000.0, 1.0);
-        // his factor is read off a chart whose steps are 0.01
+        // the vendor's factor is read off a chart with steps of 0.01
         assert!((0.78 * factor - 0.73).abs() < 0.01, "{factor}");
     }
 

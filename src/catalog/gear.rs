@@ -1,15 +1,15 @@
-//! Gears of any kind: strain-wave (harmonic drive), planetary, cycloidal, belt, spur, and what takes the place of a gear in
-//! a direct drive or an integrated actuator.
+//! Gears of any kind: strain-wave (harmonic drive), planetary, cycloidal, belt, spur, and the stand-ins for a gear
+//! in a direct drive or an integrated actuator.
 
 use super::Provenance;
 use super::envelope::Envelope;
 use super::motor::{Motor, MotorKind};
 use std::fmt;
 
-/// Kinds of gears, as the column `kind` names them.
+/// Kinds of gears, as in the column `kind`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GearKind {
-    /// Strain-wave gear (harmonic drive); what a blank cell means.
+    /// Strain-wave gear (harmonic drive). A blank cell means this kind.
     StrainWave,
     /// Planetary gear.
     Planetary,
@@ -19,9 +19,9 @@ pub enum GearKind {
     Belt,
     /// Spur or helical gear.
     Spur,
-    /// No gear at all: the motor turns the joint.
+    /// Direct drive: there is no gear, and the motor turns the joint.
     Direct,
-    /// The gear within an actuator of `actuators.csv`, whose ratings are those of the whole.
+    /// The gear inside an actuator of `actuators.csv`. The ratings there are those of the whole actuator.
     Actuator,
     /// Ball screw of a prismatic joint: its ratings are forces, its ratio is in rad/m.
     Screw,
@@ -30,17 +30,17 @@ pub enum GearKind {
 }
 
 impl GearKind {
-    /// Words of the column `kind` of `gears.csv`. An actuator stands in its own file.
+    /// Words of the column `kind` of `gears.csv`. Actuators have no word, because they are in their own file.
     pub const WORDS: [&'static str; 6] = ["strain_wave", "planetary", "cycloidal", "belt", "spur", "direct"];
 
-    /// The kind a word of the column means.
+    /// The kind that a word of the column means; `None` if it is not one of [`Self::WORDS`].
     pub fn from_word(word: &str) -> Option<Self> {
         use GearKind::{Belt, Cycloidal, Direct, Planetary, Spur, StrainWave};
         let kinds = [StrainWave, Planetary, Cycloidal, Belt, Spur, Direct];
         Self::WORDS.iter().position(|w| w.eq_ignore_ascii_case(word)).map(|place| kinds[place])
     }
 
-    /// The kind's word.
+    /// The word for this kind.
     pub fn word(self) -> &'static str {
         match self {
             GearKind::Screw => "screw",
@@ -54,31 +54,33 @@ impl GearKind {
         matches!(self, GearKind::Screw | GearKind::Rack)
     }
 
-    /// Whether ratings that a row leaves blank do not exist. A direct drive has no teeth; an actuator is rated as a whole, by
-    /// its motor's figures.
+    /// Whether a blank rating of such a gear means that there is no such limit. A direct drive has no teeth, and an
+    /// actuator is rated as a whole, by the numbers of its motor.
     pub fn has_no_ratings_of_its_own(self) -> bool {
         self.slides() || matches!(self, GearKind::Direct | GearKind::Actuator)
     }
 
-    /// Whether a gear of this kind has a life that its bearings set. That of a belt is checked if its row states one.
+    /// Whether the life of such a gear is limited by its bearings, so that it is always checked. The life of a
+    /// belt, a direct drive or an actuator is checked only if its row states one.
     pub fn wears_out(self) -> bool {
         !self.slides() && !matches!(self, GearKind::Belt | GearKind::Direct | GearKind::Actuator)
     }
 
-    /// The life that a blank cell stands for \[h\]: of strain-wave gears the usual 7000 h, for rated torque and 2000 rpm.
-    /// Source: Harmonic Drive LLC, CSF/CSG catalog (L10 of the CSF wave-generator bearing).
+    /// The rated life if the cell is blank \[h\]: 7000 h for strain-wave gears, at rated torque and 2000 rpm;
+    /// `None` for other kinds. Source: Harmonic Drive LLC, CSF/CSG catalog (L10 of the CSF wave-generator bearing).
     pub fn usual_life_h(self) -> Option<f64> {
         (self == GearKind::StrainWave).then_some(7_000.0)
     }
 
-    /// The input speed of the rated life that a blank cell stands for \[rpm\].
+    /// The input speed of the rated life if the cell is blank \[rpm\]; `None` for other kinds than strain-wave
+    /// gears.
     pub fn usual_life_speed_rpm(self) -> Option<f64> {
         (self == GearKind::StrainWave).then_some(2_000.0)
     }
 
-    /// The exponent of torque in the law of life that a blank cell stands for: 3 for the ball bearing of a wave generator
-    /// (Harmonic Drive LLC, CSF/CSG catalog), 10/3 for the roller bearings of other gears (ISO 281; that
-    /// makers of cycloidal gears use it is from memory).
+    /// The exponent of torque in the life equation if the cell is blank. It is 3 for the ball bearing of a wave
+    /// generator (Harmonic Drive LLC, CSF/CSG catalog), and 10/3 for the roller bearings of other gears (ISO 281;
+    /// that makers of cycloidal gears use it is from memory).
     pub fn usual_life_exponent(self) -> f64 {
         if self == GearKind::StrainWave { 3.0 } else { 10.0 / 3.0 }
     }
@@ -90,20 +92,20 @@ impl fmt::Display for GearKind {
     }
 }
 
-/// How long a gear lasts: L10 = rated life (T_rated / T_mean)^exponent (rated speed / n_mean). Cells that a row leaves blank
-/// are those of its [`GearKind`]; `None` is a figure that neither gives.
+/// The life equation of a gear: L10 = rated life (T_rated / T_mean)^exponent (rated speed / n_mean). Where a row leaves
+/// a cell blank, the value of its [`GearKind`] is taken; the number is `None` if the kind has none either.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LifeLaw {
-    /// L10 at rated torque and at [`Self::rated_speed_rpm`] \[h\].
+    /// L10 life at rated torque and at [`Self::rated_speed_rpm`] \[h\].
     pub rated_h: Option<f64>,
-    /// Input speed of that life \[rpm\].
+    /// Input speed at which the rated life is stated \[rpm\].
     pub rated_speed_rpm: Option<f64>,
-    /// Exponent of the torque.
+    /// Exponent of the torque ratio in the life equation.
     pub exponent: f64,
 }
 
 impl LifeLaw {
-    /// The law of a kind whose row leaves all blank.
+    /// The life equation of a gear of this kind whose row leaves all cells of the equation blank.
     pub fn usual(kind: GearKind) -> Self {
         Self {
             rated_h: kind.usual_life_h(),
@@ -113,17 +115,17 @@ impl LifeLaw {
     }
 }
 
-/// Which printed mass of a gear is used.
+/// The version of a gear whose printed mass is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GearMass {
-    /// Wave generator, flexspline and circular spline; no bearing, no housing.
+    /// Component set: wave generator, flexspline and circular spline, without bearing and housing.
     ComponentSet,
-    /// With cross-roller bearing and housing.
+    /// Housed unit: with cross-roller bearing and housing.
     HousedUnit,
 }
 
-/// What the vendor prints of a housed unit's output bearing, for the check of its moments, its static
-/// safety and its life. `None` is a figure the catalog does not give.
+/// Ratings of a housed unit's output bearing, for the checks of its moments, its static safety and its life. `None`
+/// means that the catalog does not give the number.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BearingRatings {
     /// Pitch circle diameter dp of the rollers \[m\].
@@ -136,22 +138,22 @@ pub struct BearingRatings {
     pub dynamic_load_rating_n: Option<f64>,
 }
 
-/// One gear: series, size and ratio. `None` is a figure the catalog does not give.
+/// One gear: series, size and ratio. `None` means that the catalog does not give the number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Gear {
-    /// `series-size-ratio`, e.g. `HFUC-58-100`.
+    /// Name of the gear: `series-size-ratio`, e.g. `HFUC-58-100`.
     pub id: String,
     /// Series, e.g. `CSG`.
     pub series: String,
-    /// Kind.
+    /// Kind of the gear.
     pub kind: GearKind,
-    /// Size as the maker counts it (of harmonic drives, about the pitch diameter in tenths of an inch).
+    /// Size number of the maker. For harmonic drives it is about the pitch diameter in tenths of an inch.
     pub size: u32,
     /// Reduction ratio N.
     pub ratio: f64,
-    /// How long it lasts.
+    /// Life equation of the gear.
     pub life: LifeLaw,
-    /// Torque for which the life is stated, of harmonic drives at 2000 rpm input \[N m\].
+    /// Torque for which the life is stated \[N m\]; for harmonic drives at 2000 rpm input.
     pub rated_torque_nm: Option<f64>,
     /// Limit for repeated peak torque \[N m\].
     pub repeated_peak_torque_nm: Option<f64>,
@@ -163,7 +165,7 @@ pub struct Gear {
     pub max_input_speed_rpm: Option<f64>,
     /// Limit for average input speed \[rpm\].
     pub average_input_speed_limit_rpm: Option<f64>,
-    /// Moment of inertia at the input (wave generator) \[kg m²\].
+    /// Moment of inertia at the gear's input (of the wave generator) \[kg m²\].
     pub inertia_input_kgm2: Option<f64>,
     /// Mass of the component set \[kg\].
     pub mass_component_set_kg: Option<f64>,
@@ -179,13 +181,13 @@ pub struct Gear {
     pub k2_nm_per_rad: Option<f64>,
     /// Torsion curve: stiffness beyond T2 \[N m/rad\].
     pub k3_nm_per_rad: Option<f64>,
-    /// Hysteresis loss \[arcmin\].
+    /// Hysteresis loss, as the vendor states it \[arcmin\].
     pub hysteresis_loss_arcmin: Option<f64>,
     /// Backlash: play without torque \[arcmin\].
     pub backlash_arcmin: Option<f64>,
     /// Lost motion at a few percent of the rated torque \[arcmin\].
     pub lost_motion_arcmin: Option<f64>,
-    /// Transmission accuracy \[arcmin\].
+    /// Transmission accuracy, as the vendor states it \[arcmin\].
     pub transmission_accuracy_arcmin: Option<f64>,
     /// Tilting stiffness of the output bearing (housed unit) \[N m/rad\].
     pub tilting_stiffness_nm_per_rad: Option<f64>,
@@ -201,12 +203,13 @@ pub struct Gear {
     pub envelope: Envelope,
     /// Efficiency at rated torque and 2000 rpm.
     pub efficiency: Option<f64>,
-    /// Where the row comes from.
+    /// Source of the row.
     pub provenance: Provenance,
 }
 
 impl Gear {
-    /// Mass of the gear in the build a study asks for \[kg\].
+    /// Mass of the gear \[kg\] as it is bought: as a component set or as a housed unit (`which`). `None` if this mass
+    /// is blank.
     pub fn mass_kg(&self, which: GearMass) -> Option<f64> {
         match which {
             GearMass::ComponentSet => self.mass_component_set_kg,
@@ -231,8 +234,8 @@ impl Gear {
         }
     }
 
-    /// Figures of the torsion curve that the catalog lacks, as their columns are called. Slopes that are equal, or K1 alone,
-    /// are a curve of one segment, which needs no break points.
+    /// Names of the columns with numbers of the torsion curve that the catalog lacks. If the slopes are equal, or
+    /// only K1 is given, the curve has one segment and needs no break points.
     pub fn missing_of_torsion(&self) -> Vec<&'static str> {
         let [k1, k2, k3] = [self.k1_nm_per_rad, self.k2_nm_per_rad, self.k3_nm_per_rad];
         if self.single_slope_nm_per_rad().is_some() {
@@ -245,13 +248,13 @@ impl Gear {
             ("t1_nm", self.t1_nm),
             ("t2_nm", self.t2_nm),
         ];
-        // K1 alone is enough where nothing of a curve is given
+        // if no number of the curve is given, K1 alone would be enough
         let wanted = if figures.iter().all(|(_, figure)| figure.is_none()) { 1 } else { figures.len() };
         figures[..wanted].iter().filter(|(_, figure)| figure.is_none()).map(|(name, _)| *name).collect()
     }
 
-    /// The slope of a torsion curve of one segment \[N m/rad\]: K1 if nothing else is given, or the slope that K1, K2 and K3
-    /// have in common where break points are blank.
+    /// The slope of a torsion curve with one segment \[N m/rad\]: K1 if nothing else is given, or the common value
+    /// of K1, K2 and K3 if a break point is blank. `None` for other curves.
     pub fn single_slope_nm_per_rad(&self) -> Option<f64> {
         let [k1, k2, k3] = [
             self.k1_nm_per_rad?,

@@ -1,4 +1,4 @@
-//! The built-in catalogs, and a user's folder laid over them.
+//! The built-in catalogs, and a user's folder of rows that replace or extend them.
 
 use super::read::log::Log;
 use super::read::row::Row;
@@ -9,22 +9,22 @@ use super::{BUILT_IN, Catalogs, Confidence, Provenance};
 use crate::input::json::{Fault, Faults, InputError, closest};
 use std::path::Path;
 
-/// What one file gave.
+/// The result of reading one catalog file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loaded {
-    /// Which file.
+    /// Kind of the file.
     pub file: CatalogFile,
-    /// Its name as used in messages.
+    /// Name of the file in messages.
     pub name: String,
-    /// Rows in it.
+    /// Number of rows in the file.
     pub rows: usize,
-    /// How many of them replaced a row of an earlier file.
+    /// Number of its rows that replaced a row of an earlier file.
     pub replaced: usize,
-    /// Rows of each confidence, in the order of [`Confidence::ALL`].
+    /// Number of its rows of each confidence, in the order of [`Confidence::ALL`].
     pub by_confidence: [usize; 4],
 }
 
-/// A file's name as used in messages, and its bytes.
+/// A catalog file that is to be read: its kind, its name in messages, and its content.
 struct Source {
     file: CatalogFile,
     name: String,
@@ -32,7 +32,7 @@ struct Source {
 }
 
 impl Catalogs {
-    /// The catalogs that come with the program.
+    /// The catalogs that are built into the program.
     ///
     /// ```
     /// use armwright::catalog::Catalogs;
@@ -43,16 +43,16 @@ impl Catalogs {
     /// assert!(catalogs.gear("HFUC-58-101").is_err(), "the error lists names that are near");
     /// ```
     pub fn builtin() -> Self {
-        // The files are compiled in and a test loads them, so that no user can see this fail.
+        // The files are compiled in, and a test loads them, so users never see this fail.
         from_sources(&builtin_sources(), Vec::new()).expect("the built-in catalogs are tested to be sound")
     }
 
-    /// The built-in catalogs with the rows of a user's folder laid over them: a row with a new name is
-    /// added, one whose name exists replaces it. The folder holds any of the files of [`CatalogFile`].
+    /// The built-in catalogs with the rows of a user's folder added. A row with a new name is added; a row whose
+    /// name exists replaces the earlier one. The folder must have at least one of the files of [`CatalogFile`].
     ///
     /// # Errors
-    /// [`InputError::Unreadable`] if the folder cannot be read; [`InputError::Faulty`] with every fault of
-    /// every file, or if the folder holds none of the files.
+    /// [`InputError::Unreadable`] if the folder cannot be read. [`InputError::Faulty`] with every fault of every
+    /// file, or if the folder has none of the files.
     pub fn load(overlay: Option<&Path>) -> Result<Self, InputError> {
         let Some(folder) = overlay else { return Ok(Self::builtin()) };
         let (own, warnings) = overlay_sources(folder)?;
@@ -71,7 +71,7 @@ fn builtin_sources() -> Vec<Source> {
     CatalogFile::ALL.map(source).into()
 }
 
-/// The catalog files of a folder, and warnings of `.csv` files with other names.
+/// The catalog files of a folder, and a warning for each `.csv` file with another name.
 fn overlay_sources(folder: &Path) -> Result<(Vec<Source>, Vec<Fault>), InputError> {
     let shown = folder.display().to_string();
     let unreadable = |source| InputError::Unreadable { file: shown.clone(), source };
@@ -126,7 +126,8 @@ fn stray_file(folder: &Path, name: &str) -> Option<Fault> {
     })
 }
 
-/// All sources, later ones over earlier ones.
+/// The catalogs that consist of the rows of all `sources`. A row of a later source replaces a row of the same name.
+/// Fails with all faults of all sources.
 fn from_sources(sources: &[Source], warnings: Vec<Fault>) -> Result<Catalogs, Faults> {
     let log = Log::default();
     log.warnings.borrow_mut().extend(warnings);
@@ -180,7 +181,8 @@ fn add_file(catalogs: &mut Catalogs, source: &Source, rows: &[Row]) {
     });
 }
 
-/// Adds the parts of a file's rows; one whose name exists takes the place of the earlier. Returns how many did.
+/// Adds the parts of a file's rows to `parts`. A part whose name exists replaces the earlier one. `read` makes a part
+/// of a row, and `name` gives its name. Returns how many parts were replaced.
 fn add<T>(parts: &mut Vec<T>, rows: &[Row], read: fn(&Row) -> Option<T>, name: fn(&T) -> String) -> usize {
     let mut places: std::collections::BTreeMap<String, usize> =
         parts.iter().enumerate().map(|(i, part)| (name(part).to_lowercase(), i)).collect();

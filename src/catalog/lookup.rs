@@ -1,8 +1,8 @@
-//! Finding a part by its name, or by as much of it as is unambiguous.
+//! Finding a part by its name, or by an unambiguous part of the name.
 //!
-//! A name is taken, upper and lower case alike, as the whole name; else as the beginning of names; else as
-//! a piece of names that begins a word (`S355` of `Structural steel S355`). It must not end within a
-//! number: `F11-1` does not mean `F11-10`. The first of these that fits any part must fit only one.
+//! Upper and lower case do not matter. A text is first compared with whole names, then with the beginnings of names,
+//! then with the beginnings of words in names (`S355` in `Structural steel S355`). It must not end within a number:
+//! `F11-1` does not mean `F11-10`. The first of these comparisons that finds any part must find only one.
 
 use super::Catalogs;
 use super::gear::Gear;
@@ -12,7 +12,7 @@ use super::profile::Profile;
 use crate::input::json::closest;
 use std::fmt;
 
-/// Kinds of parts one can ask for.
+/// Kinds of parts in the catalogs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PartKind {
     /// A gear.
@@ -36,27 +36,27 @@ impl fmt::Display for PartKind {
     }
 }
 
-/// Why a name does not name a part.
+/// Reason why a text does not identify a part.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum PartError {
-    /// No part has this name.
+    /// No part of this kind has a name that fits the text.
     #[error("no {kind} is called \"{name}\"; {}", near(.kind, .nearest))]
     Unknown {
-        /// Kind asked for.
+        /// Kind of part that was asked for.
         kind: PartKind,
-        /// Name asked for.
+        /// Name that was asked for.
         name: String,
-        /// Names that look like it, nearest first; may be empty.
+        /// Similar names, nearest first; may be empty.
         nearest: Vec<String>,
     },
-    /// Several parts have names with this in them.
+    /// The text fits the names of several parts.
     #[error("{kind} \"{name}\" may be any of: {}; give more of the name", some(.candidates))]
     Ambiguous {
-        /// Kind asked for.
+        /// Kind of part that was asked for.
         kind: PartKind,
-        /// Name asked for.
+        /// Name that was asked for.
         name: String,
-        /// All names it fits.
+        /// All names that the text fits.
         candidates: Vec<String>,
     },
 }
@@ -78,16 +78,18 @@ fn some(names: &[String]) -> String {
 }
 
 impl Catalogs {
-    /// The gear `SERIES-SIZE-RATIO`; the series may be another name of it: `CSF-58-100` is `HFUC-58-100`.
+    /// The gear with the name `SERIES-SIZE-RATIO`. Other names of the series may be used: `CSF-58-100` is
+    /// `HFUC-58-100`.
     ///
     /// # Errors
-    /// No gear has the name; the nearest names are given.
+    /// No gear has the name. The error lists similar names.
     pub fn gear(&self, name: &str) -> Result<&Gear, PartError> {
         let own = self.alias_resolved(name);
         find(PartKind::Gear, &self.gears, own.as_deref().unwrap_or(name), |g| &g.id)
     }
 
-    /// The name with the series in place of its other name, unless a gear has the name as it stands.
+    /// The name with another name of a series, such as `CSF`, replaced by the name of the series itself. `None` if
+    /// there is nothing to replace, or if a gear has `name` as it is written.
     fn alias_resolved(&self, name: &str) -> Option<String> {
         let (alias, rest) = name.trim().split_once('-')?;
         if self.gears.iter().any(|gear| gear.id.eq_ignore_ascii_case(name.trim())) {
@@ -97,26 +99,26 @@ impl Catalogs {
         Some(format!("{series}-{rest}"))
     }
 
-    /// The motor of a model, or of an unambiguous part of it: `J 8.2` is `J 8.2 (129-)`.
+    /// The motor with this model name, or with an unambiguous part of it: `J 8.2` is `J 8.2 (129-)`.
     ///
     /// # Errors
-    /// No motor has the name, or several have.
+    /// No motor has the name, or the text fits several.
     pub fn motor(&self, name: &str) -> Result<&Motor, PartError> {
         find(PartKind::Motor, &self.motors, name, |m| &m.id)
     }
 
-    /// The material of a name, or of an unambiguous part of it.
+    /// The material with this name, or with an unambiguous part of it.
     ///
     /// # Errors
-    /// No material has the name, or several have.
+    /// No material has the name, or the text fits several.
     pub fn material(&self, name: &str) -> Result<&Material, PartError> {
         find(PartKind::Material, &self.materials, name, |m| &m.name)
     }
 
-    /// The profile of a designation, or of an unambiguous part of it.
+    /// The profile with this designation, or with an unambiguous part of it.
     ///
     /// # Errors
-    /// No profile has the designation, or several have.
+    /// No profile has the designation, or the text fits several.
     pub fn profile(&self, name: &str) -> Result<&Profile, PartError> {
         find(PartKind::Profile, &self.profiles, name, |p| &p.designation)
     }
@@ -147,7 +149,8 @@ fn find<'p, T>(
     Err(PartError::Unknown { kind, name: name.into(), nearest: nearest(&wanted, ids) })
 }
 
-/// Whether `id` begins with `name`, and `name` does not end within a number of it.
+/// Whether `id` begins with `name`, and `name` does not end within a number of `id`: `F11-1` is no beginning of
+/// `F11-10`.
 fn begins(id: &str, name: &str) -> bool {
     let Some(rest) = id.strip_prefix(name).filter(|_| !name.is_empty()) else { return false };
     let mut rest = rest.chars();
@@ -158,7 +161,7 @@ fn begins(id: &str, name: &str) -> bool {
     !(within_number && name.ends_with(|c: char| c.is_ascii_digit()))
 }
 
-/// Whether a word of `id` begins with `name`.
+/// Whether some word of `id` begins with `name`, as in [`begins`].
 fn has_word(id: &str, name: &str) -> bool {
     let starts = id.char_indices().filter(|(i, _)| {
         id[..*i].chars().next_back().is_some_and(|before| !before.is_alphanumeric() && before != '.')
@@ -166,7 +169,8 @@ fn has_word(id: &str, name: &str) -> bool {
     starts.into_iter().any(|(i, _)| begins(&id[i..], name))
 }
 
-/// Up to four names like `wanted`: those that go on where it ends, then those a slip of the hand away.
+/// Up to four names similar to `wanted`. Names that continue it come first, then names that differ by a typing
+/// error.
 fn nearest(wanted: &str, mut ids: Vec<&str>) -> Vec<String> {
     let mut out: Vec<&str> = Vec::new();
     while out.len() < 4 {

@@ -3,7 +3,7 @@
 use super::Provenance;
 use std::fmt;
 
-/// Classes of materials.
+/// Classes of materials, as in the column `class`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MaterialClass {
     /// Metals and alloys.
@@ -12,11 +12,11 @@ pub enum MaterialClass {
     Composite,
     /// Metal-matrix composites.
     MetalMatrix,
-    /// Polymers, printed and filled ones too.
+    /// Polymers, including printed and filled ones.
     Polymer,
     /// Wood and wood products.
     Wood,
-    /// Anything else.
+    /// Any other material.
     Other,
 }
 
@@ -25,15 +25,15 @@ impl MaterialClass {
     pub const WORDS: [&'static str; 7] =
         ["metal", "composite", "metal-matrix", "polymer", "wood", "other", "MMC"];
 
-    /// The class a word means; `MMC` and `metal-matrix` are the same.
+    /// The class that a word means. `MMC` and `metal-matrix` mean the same.
     pub fn from_word(word: &str) -> Option<Self> {
         use MaterialClass::{Composite, Metal, MetalMatrix, Other, Polymer, Wood};
         let classes = [Metal, Composite, MetalMatrix, Polymer, Wood, Other, MetalMatrix];
         Self::WORDS.iter().position(|w| w.eq_ignore_ascii_case(word)).map(|place| classes[place])
     }
 
-    /// What a material of this class does under a load that stays, which the model leaves out; `None` if it does nothing
-    /// at the temperatures of a room.
+    /// A warning about time-dependent behaviour under constant load, which the model leaves out. `None` for classes
+    /// that show none at room temperature.
     pub fn caution(self) -> Option<&'static str> {
         match self {
             MaterialClass::Metal | MaterialClass::Composite | MaterialClass::MetalMatrix => None,
@@ -55,33 +55,33 @@ impl fmt::Display for MaterialClass {
     }
 }
 
-/// One material. `None` is a figure the catalog does not give.
+/// One material. `None` means that the catalog does not give the number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
-    /// Name; unique in the catalog.
+    /// Name of the material, which is unique in the catalog.
     pub name: String,
-    /// Class.
+    /// Class of the material.
     pub class: MaterialClass,
     /// Young's modulus along the link \[Pa\].
     pub youngs_modulus_pa: f64,
-    /// Shear modulus \[Pa\]; for unidirectional composites G12.
+    /// Shear modulus \[Pa\]; for unidirectional composites it is G12.
     pub shear_modulus_pa: Option<f64>,
     /// Density \[kg/m³\].
     pub density_kg_m3: f64,
     /// Poisson's ratio.
     pub poisson: Option<f64>,
-    /// Yield strength of a metal, strength of a composite \[Pa\].
+    /// Yield strength of a metal, or tensile strength of a composite \[Pa\].
     pub strength_pa: Option<f64>,
-    /// Strength in compression along the link \[Pa\]; `None` if it is that in tension or unknown.
+    /// Compressive strength along the link \[Pa\]; `None` if it equals the tensile strength or is unknown.
     pub compressive_strength_pa: Option<f64>,
-    /// What kind of strength `strength_pa` is.
+    /// Kind of strength that `strength_pa` states.
     pub strength_kind: String,
     /// Cost of the raw material \[EUR/kg\].
     pub cost_eur_per_kg: Option<f64>,
     /// Behaviour in sea water and in air, in words.
     pub corrosion_note: String,
-    /// Whether all fibres run along the link (its torsion and shear figures are then the lamina's).
+    /// Whether all fibres run along the link. The torsion and shear properties are then those of the lamina.
     pub unidirectional: bool,
-    /// Where the row comes from.
+    /// Source of the row.
     pub provenance: Provenance,
 }

@@ -1,8 +1,8 @@
-//! What can be bought: materials, profiles, gears, motors.
+//! Catalogs of parts that can be bought: materials, profiles, gears, motors.
 //!
-//! One CSV file a kind. A blank cell is unknown, never zero. Every row names its source and how far it
-//! can be trusted. [`Catalogs::builtin`] is what the program brings along, [`Catalogs::load`] adds the
-//! rows of a folder of the user's; [`Catalogs::gear`] and its sisters find a part by name.
+//! There is one CSV file for each kind. A blank cell means unknown, never zero. Every row states its source and its
+//! confidence. [`Catalogs::builtin`] are the catalogs that are built into the program. [`Catalogs::load`] adds the
+//! rows of a user's folder. [`Catalogs::gear`] and the similar functions find a part by its name.
 
 pub(crate) mod efficiency;
 pub(crate) mod envelope;
@@ -32,16 +32,16 @@ use crate::input::json::Fault;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// How far a catalog row can be trusted.
+/// The degree to which a catalog row can be trusted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Confidence {
-    /// Read in a vendor's or a library's document.
+    /// The numbers were read in a document of a vendor or from a library.
     Verified,
-    /// Read in a transcription by a third party.
+    /// The numbers were read in a third party's copy of such a document.
     ThirdParty,
-    /// Recalled, no document seen.
+    /// The numbers were recalled without a document.
     FromMemory,
-    /// A typical figure of the class, not of this part.
+    /// The numbers are typical of the class, not those of this part.
     Representative,
 }
 
@@ -55,11 +55,11 @@ impl Confidence {
         "from memory of vendor data, unverified",
     ];
 
-    /// All levels, from the most trusted to the least.
+    /// All degrees of confidence, from the most trusted to the least.
     pub const ALL: [Confidence; 4] =
         [Confidence::Verified, Confidence::ThirdParty, Confidence::FromMemory, Confidence::Representative];
 
-    /// The level a word of the column means.
+    /// The confidence that a word of the column means.
     pub fn from_word(word: &str) -> Option<Self> {
         let place = Self::WORDS.iter().position(|w| w.eq_ignore_ascii_case(word))?;
         Some(*Self::ALL.get(place).unwrap_or(&Confidence::FromMemory))
@@ -67,7 +67,7 @@ impl Confidence {
 }
 
 impl Provenance {
-    /// Whether the row is one that comes with the program.
+    /// Whether the row is built into the program.
     pub fn is_built_in(&self) -> bool {
         self.file.starts_with(BUILT_IN)
     }
@@ -93,7 +93,7 @@ impl Provenance {
     }
 }
 
-/// How the names of the program's own files begin.
+/// Beginning of the names of built-in files in messages.
 pub(crate) const BUILT_IN: &str = "built-in ";
 
 impl fmt::Display for Confidence {
@@ -102,27 +102,27 @@ impl fmt::Display for Confidence {
     }
 }
 
-/// Where a catalog row comes from.
+/// Source of a catalog row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Provenance {
-    /// Document or library.
+    /// Document or library from which the numbers come.
     pub source: String,
-    /// Trust in the core figures.
+    /// Confidence of the main numbers.
     pub confidence: Confidence,
-    /// Columns of this row that were not seen in a document.
+    /// Columns of this row whose numbers were not read in a document.
     pub unverified_fields: Vec<String>,
-    /// File and line the row was read from.
+    /// Name of the file from which the row was read.
     pub file: String,
-    /// Line in that file, from 1.
+    /// Line in that file, counted from 1.
     pub line: usize,
 }
 
-/// Everything that can be bought.
+/// All catalogs.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Catalogs {
-    /// Gears of every kind, and the gears within actuators.
+    /// Gears of every kind, including those inside actuators.
     pub gears: Vec<Gear>,
-    /// Motors, and the motors within actuators.
+    /// Motors, including those inside actuators.
     pub motors: Vec<Motor>,
     /// Link materials.
     pub materials: Vec<Material>,
@@ -130,21 +130,21 @@ pub struct Catalogs {
     pub profiles: Vec<Profile>,
     /// Points of efficiency curves of gears.
     pub efficiency: Vec<EfficiencyPoint>,
-    /// Other names of gear series: the name `CSF` to the series `HFUC`.
+    /// Other names of gear series: from a name such as `CSF` to the series `HFUC`.
     pub series_aliases: BTreeMap<String, String>,
-    /// Every row as it stands in its file, by file and line: the columns and their cells.
+    /// Every row as it is written in its file, by file and line.
     pub printed: BTreeMap<(String, usize), PrintedRow>,
-    /// How many rows each file gave.
+    /// One entry for each file that was read.
     pub loaded: Vec<Loaded>,
-    /// What is odd but no reason to refuse: figures far from the usual, ratings that fall with size.
+    /// Warnings that are no reason to refuse a file: unusual numbers, or ratings that decrease with size.
     pub warnings: Vec<Fault>,
 }
 
-/// The cells of a row with their columns, as they stand in the file; columns it lacks are blank.
+/// The cells of a row with their columns, as they are written in the file. Cells of absent columns are blank.
 pub type PrintedRow = Vec<(&'static str, String)>;
 
 impl Catalogs {
-    /// The row a part was read from, cell by cell; empty for parts that were not read from a file.
+    /// The row from which a part was read, cell by cell; empty for parts that were not read from a file.
     pub fn printed_row(&self, provenance: &Provenance) -> &[(&'static str, String)] {
         self.printed.get(&(provenance.file.clone(), provenance.line)).map_or(&[], Vec::as_slice)
     }

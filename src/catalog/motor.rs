@@ -4,7 +4,7 @@ use super::Provenance;
 use super::envelope::Envelope;
 use std::fmt;
 
-/// Families of motors, as the catalog's `type` column names them.
+/// Kinds of motors, as in the column `type` of the catalog.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MotorKind {
     /// AC servo motor with housing.
@@ -21,12 +21,12 @@ pub enum MotorKind {
     HydraulicOrbital,
     /// Stepper motor.
     Stepper,
-    /// The motor within an actuator of `actuators.csv`. No row of `motors.csv` is one.
+    /// The motor inside an actuator of `actuators.csv`. No row of `motors.csv` is of this kind.
     OfActuator,
 }
 
 impl MotorKind {
-    /// All kinds of `motors.csv`, in the order of [`Self::WORDS`].
+    /// All kinds that `motors.csv` may have, in the order of [`Self::WORDS`].
     pub const ALL: [MotorKind; 7] = [
         MotorKind::AcServo,
         MotorKind::BrushlessServo,
@@ -37,7 +37,8 @@ impl MotorKind {
         MotorKind::Stepper,
     ];
 
-    /// Words of the column `type`: the short word of each kind, then the long ones of the built-in file.
+    /// Words of the column `type`: first the short word of each kind, then the longer words of the built-in file in
+    /// the same order.
     pub const WORDS: [&'static str; 14] = [
         "ac-servo",
         "brushless-servo",
@@ -55,7 +56,7 @@ impl MotorKind {
         "stepper motor",
     ];
 
-    /// Words by which a filter asks for motors: two families, then the kinds. `electric` means servo motors.
+    /// Words by which a study can filter motors: two families, then the kinds. `electric` means servo motors.
     pub const CLASS_WORDS: [&'static str; 9] = [
         "electric",
         "hydraulic",
@@ -68,18 +69,19 @@ impl MotorKind {
         "stepper",
     ];
 
-    /// The kind's short word, e.g. `frameless-servo`.
+    /// The short word for this kind, e.g. `frameless-servo`.
     pub fn word(self) -> &'static str {
         Self::WORDS[..Self::ALL.len()].get(self as usize).copied().unwrap_or("of-actuator")
     }
 
-    /// The kind a word of the column `type` means.
+    /// The kind that a word of the column `type` means; `None` if it is not one of [`Self::WORDS`].
     pub fn from_word(word: &str) -> Option<Self> {
         let place = Self::WORDS.iter().position(|w| w.eq_ignore_ascii_case(word))?;
         Some(Self::ALL[place % Self::ALL.len()])
     }
 
-    /// The kinds a class word means: `electric`, `hydraulic`, or one kind.
+    /// The kinds that a filter word means: those of the family `electric` or `hydraulic`, or one kind. `None` for
+    /// another word.
     pub fn of_class(word: &str) -> Option<Vec<Self>> {
         match word.to_lowercase().as_str() {
             "electric" => Some(Self::ALL.into_iter().filter(|kind| kind.is_servo()).collect()),
@@ -106,45 +108,46 @@ impl fmt::Display for MotorKind {
     }
 }
 
-/// One point of a motor's torque against its speed, as `motor_curves.csv` has it.
+/// One point of a motor's torque curve, as in `motor_curves.csv`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotorCurvePoint {
-    /// Speed \[rpm\].
+    /// Speed of the motor \[rpm\].
     pub speed_rpm: f64,
-    /// Torque that the motor gives without end at this speed \[N m\].
+    /// Torque that the motor can give continuously at this speed \[N m\].
     pub continuous_torque_nm: Option<f64>,
-    /// Torque that it gives for a short time at this speed \[N m\]; of a stepper, at which it loses no step.
+    /// Torque that the motor can give for a short time at this speed \[N m\]. For a stepper, it is the largest
+    /// torque without loss of steps.
     pub peak_torque_nm: Option<f64>,
 }
 
-/// One motor. `None` is a figure the catalog does not give.
+/// One motor. `None` means that the catalog does not give the number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motor {
-    /// Model as the vendor prints it; unique in the catalog.
+    /// Model name as the vendor prints it, which is unique in the catalog.
     pub id: String,
-    /// Family.
+    /// Kind of the motor.
     pub kind: MotorKind,
-    /// Vendor.
+    /// Vendor of the motor.
     pub vendor: String,
-    /// Torque the motor holds continuously \[N m\].
+    /// Torque that the motor can give continuously \[N m\].
     pub rated_torque_nm: Option<f64>,
-    /// Torque the motor gives for a short time \[N m\].
+    /// Torque that the motor can give for a short time \[N m\].
     pub peak_torque_nm: Option<f64>,
     /// Speed at rated torque \[rpm\].
     pub rated_speed_rpm: Option<f64>,
-    /// Largest speed \[rpm\].
+    /// Largest speed of the motor \[rpm\].
     pub max_speed_rpm: Option<f64>,
     /// Rotor inertia \[kg m²\].
     pub rotor_inertia_kgm2: Option<f64>,
-    /// Mass \[kg\].
+    /// Mass of the motor \[kg\].
     pub mass_kg: Option<f64>,
-    /// Torque against speed, by ascending speed; empty if only the single figures are known.
+    /// Torque curve, by ascending speed; empty if only the single ratings above are known.
     pub curve: Vec<MotorCurvePoint>,
     /// Rated power \[W\].
     pub rated_power_w: Option<f64>,
-    /// Outer size; of a frameless motor, that of rotor and stator.
+    /// Outer size; for a frameless motor, that of rotor and stator.
     pub envelope: Envelope,
-    /// Where the row comes from.
+    /// Source of the row.
     pub provenance: Provenance,
 }
 

@@ -1,26 +1,26 @@
-//! What a part lacks: the figures that sizing a joint cannot do without, and what each of them is for.
+//! Numbers that sizing a joint needs and a part's row leaves blank, each with its purpose.
 
 use super::gear::{Gear, GearKind, GearMass};
 use super::motor::Motor;
 use std::fmt;
 
-/// A figure that a part lacks.
+/// A number that a part's row leaves blank.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Lack {
-    /// Column of the figure.
+    /// Column of the number.
     pub figure: &'static str,
-    /// What it is for.
+    /// The check or property for which the number is needed.
     pub purpose: &'static str,
 }
 
 impl fmt::Display for Lack {
-    /// `rated_life_h (life)`.
+    /// Writes the column and its purpose: `rated_life_h (life)`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} ({})", self.figure, self.purpose)
     }
 }
 
-/// The lacks in one line: `no rated_life_h (life), no k1_nm_per_rad (torsion)`.
+/// The missing numbers in one line: `no rated_life_h (life), no k1_nm_per_rad (torsion)`.
 pub(crate) fn words(lacks: &[Lack]) -> String {
     lacks.iter().map(|lack| format!("no {lack}")).collect::<Vec<_>>().join(", ")
 }
@@ -31,7 +31,9 @@ fn blank(figures: &[(Option<f64>, &'static str, &'static str)]) -> Vec<Lack> {
 }
 
 impl Gear {
-    /// What the gear lacks to be chosen for a joint with this mass; empty if every check of the gear can be made.
+    /// The numbers that the row of the gear leaves blank and that must be known before the gear can be chosen for a
+    /// joint. `mass` says which mass is needed, of the component set or of the housed unit. Empty if every check of the
+    /// gear can be made.
     ///
     /// ```
     /// use armwright::catalog::{Catalogs, GearMass};
@@ -55,7 +57,7 @@ impl Gear {
         lacks
     }
 
-    /// The ratings that the checks of a gear with teeth, or of a belt, need.
+    /// The missing ratings that the checks of a gear with teeth, or of a belt, need.
     fn lacking_ratings(&self) -> Vec<Lack> {
         let mut lacks = blank(&[
             (self.repeated_peak_torque_nm, "repeated_peak_torque_nm", "peak"),
@@ -78,8 +80,9 @@ impl Gear {
 }
 
 impl Motor {
-    /// What the motor lacks to be chosen for a joint; empty if every check of the motor can be made. Of an actuator's motor
-    /// the columns are those of `actuators.csv`.
+    /// The numbers that the row of the motor leaves blank and that must be known before the motor can be chosen for a
+    /// joint. Empty if every check of the motor can be made. For the motor of an actuator the columns are those of
+    /// `actuators.csv`.
     pub fn lacks(&self) -> Vec<Lack> {
         let of_actuator = self.kind == super::motor::MotorKind::OfActuator;
         let inertia = if of_actuator { "inertia_output_kgm2" } else { "rotor_inertia_kgm2" };

@@ -1,4 +1,4 @@
-//! Hollow profiles one can buy.
+//! Hollow profiles that can be bought.
 
 use super::Provenance;
 use std::fmt;
@@ -18,7 +18,7 @@ impl ProfileShape {
     /// Words of the column `shape`.
     pub const WORDS: [&'static str; 3] = ["square", "rectangular", "round"];
 
-    /// The shape a word means.
+    /// The shape that a word means; `None` if it is not one of [`Self::WORDS`].
     pub fn from_word(word: &str) -> Option<Self> {
         let shapes = [ProfileShape::Square, ProfileShape::Rectangular, ProfileShape::Round];
         Self::WORDS.iter().position(|w| w.eq_ignore_ascii_case(word)).map(|place| shapes[place])
@@ -32,35 +32,35 @@ impl fmt::Display for ProfileShape {
 }
 
 impl Profile {
-    /// Words of the column `material_family`. `steel` is structural steel; stainless steel is sold in other
-    /// sizes and is a family of its own.
+    /// Words of the column `material_family`. `steel` is structural steel. Stainless steel is a family of its own,
+    /// because it is sold in other sizes.
     pub const MATERIAL_FAMILIES: [&'static str; 5] =
         ["steel", "aluminium", "titanium", "composite", "stainless"];
 }
 
-/// One hollow profile. Corner radii are kept for information; mechanics uses sharp corners.
+/// One hollow profile. The mechanics takes its edges as sharp; the radii are stored for information only.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
-    /// Designation; unique within a material family.
+    /// Designation, which is unique within a material family.
     pub designation: String,
-    /// Shape.
+    /// Shape of the profile.
     pub shape: ProfileShape,
-    /// One of [`Self::MATERIAL_FAMILIES`]: the family of materials it is sold in.
+    /// Family of materials in which the profile is sold: one of [`Self::MATERIAL_FAMILIES`].
     pub material_family: String,
-    /// Outer width (diameter of a round tube) \[m\].
+    /// Outer width \[m\]; for a round tube, the diameter.
     pub width_m: f64,
-    /// Outer height (diameter of a round tube) \[m\].
+    /// Outer height \[m\]; for a round tube, the diameter.
     pub height_m: f64,
     /// Wall thickness \[m\].
     pub wall_m: f64,
-    /// Outer corner radius \[m\].
+    /// Outer corner radius \[m\]; `None` if it is unknown.
     pub corner_radius_m: Option<f64>,
-    /// Printed cross-section area \[m²\].
+    /// Cross-section area as printed \[m²\]; `None` if it is unknown.
     pub area_m2: Option<f64>,
-    /// Printed second moment of area about the horizontal axis \[m⁴\].
+    /// Second moment of area about the horizontal axis as printed \[m⁴\]; `None` if it is unknown.
     pub second_moment_m4: Option<f64>,
-    /// Printed mass per length \[kg/m\].
+    /// Mass per length as printed \[kg/m\]; `None` if it is unknown.
     pub mass_per_length_kg_m: Option<f64>,
-    /// Where the row comes from.
+    /// Source of the row.
     pub provenance: Provenance,
 }

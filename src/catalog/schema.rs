@@ -1,5 +1,5 @@
-//! The columns of the catalog files: names with units, what a cell may hold, which must be there, which
-//! are figures.
+//! The columns of the catalog files: names with units, allowed content of cells, whether a column is required, and
+//! whether it is a property of the part.
 
 use super::Confidence;
 use super::efficiency::EfficiencyKind;
@@ -8,7 +8,7 @@ use super::material::MaterialClass;
 use super::motor::MotorKind;
 use super::profile::{Profile, ProfileShape};
 
-/// The files a catalog folder can hold.
+/// The files that a catalog folder can contain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum CatalogFile {
     /// `gears.csv`
@@ -27,12 +27,12 @@ pub enum CatalogFile {
     Profiles,
 }
 
-/// What a cell may hold. A blank cell is unknown, unless the column is required.
+/// Allowed content of a cell. A blank cell means unknown, unless the column is required.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cell {
     /// Any text.
     Text,
-    /// One of some words, upper or lower case.
+    /// One of some words, in upper or lower case.
     Word(&'static [&'static str]),
     /// A whole number greater than zero.
     Count,
@@ -51,11 +51,11 @@ pub enum Cell {
 pub struct Column {
     /// Name in the header line, with the unit.
     pub name: &'static str,
-    /// What its cells may hold.
+    /// Allowed content of the column's cells.
     pub cell: Cell,
-    /// Whether a file without it is refused and its cells must be filled.
+    /// Whether the column must be present and all of its cells filled.
     pub required: bool,
-    /// Whether it is a property of the part (not its name, its source or a remark).
+    /// Whether the column is a property of the part, and not its name, its source or a remark.
     pub figure: bool,
 }
 
@@ -250,7 +250,7 @@ const PROFILES: &[Column] = &[
 ];
 
 impl CatalogFile {
-    /// All files, in the order they are read.
+    /// All files, in the order in which they are read.
     pub const ALL: [CatalogFile; 7] = [
         CatalogFile::Gears,
         CatalogFile::Efficiency,
@@ -274,7 +274,7 @@ impl CatalogFile {
         }
     }
 
-    /// The file's columns, in the order of the built-in file.
+    /// The columns of the file, in the order of the built-in file.
     pub fn columns(self) -> &'static [Column] {
         match self {
             CatalogFile::Gears => GEARS,
@@ -287,7 +287,7 @@ impl CatalogFile {
         }
     }
 
-    /// The columns that together name a row; no two rows of a file agree in all of them.
+    /// The columns that together identify a row. No two rows of a file are equal in all of them.
     pub fn key(self) -> &'static [&'static str] {
         match self {
             CatalogFile::Gears => &["series", "size", "ratio"],
@@ -299,7 +299,7 @@ impl CatalogFile {
         }
     }
 
-    /// The text of the built-in file.
+    /// The content of the built-in file.
     pub(super) fn builtin_text(self) -> &'static str {
         match self {
             CatalogFile::Gears => include_str!("../../catalogs/gears.csv"),

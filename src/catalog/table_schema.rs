@@ -5,7 +5,7 @@ use super::schema::{CatalogFile, Cell, Column};
 use serde_json::{Value, json};
 
 impl CatalogFile {
-    /// The Table Schema of the file.
+    /// The columns of the file as a Table Schema, in JSON.
     pub fn table_schema(self) -> Value {
         json!({
             "$schema": "https://datapackage.org/profiles/2.0/tableschema.json",
@@ -34,7 +34,7 @@ fn field(column: &Column) -> Value {
     json!({"name": column.name, "type": kind, "description": figure, "constraints": constraints})
 }
 
-/// A pattern for some words, in which letters may be upper or lower case.
+/// A regular expression that matches some words in upper or lower case.
 fn any_case(words: &[&str]) -> String {
     let word = |word: &&str| -> String {
         let letter = |c: char| match c.is_ascii_alphabetic() {

@@ -1,12 +1,12 @@
 //! `armwright analyze`: statics, modes and response of an arm file.
 
 use super::failure::Failure;
-use super::values::{choice, entries, number_list, numbers};
+use super::pose_flags::PoseArgs;
+use super::values::{choice, numbers};
 use crate::arm::effect::entry::Effect;
 use crate::arm::file::read_arm;
 use crate::arm::load::{LoadCase, Payload, read_load_cases};
 use crate::arm::pieces::factors_sentence;
-use crate::arm::pose::{DrivenJoint, any_slides, pose_of_keys};
 use crate::arm::{Arm, Element, JointModel, Link, LinkBody, LinkModel};
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
@@ -29,12 +29,8 @@ use std::path::PathBuf;
 pub(crate) struct AnalyzeArgs {
     /// Arm file (JSON)
     arm: PathBuf,
-    /// One angle per joint, base to tip [deg]; default all zero
-    #[arg(long, value_name = "Q1,Q2,...", allow_hyphen_values = true, value_parser = pose)]
-    pose_deg: Option<Pose>,
-    /// Angles and travels by joint, each with its unit; default all zero. For arms with prismatic joints
-    #[arg(long, value_name = "RAIL_mm=250,J2_deg=30,...", conflicts_with = "pose_deg", value_parser = pose_entries)]
-    pose: Option<PoseEntries>,
+    #[command(flatten)]
+    pose: PoseArgs,
     /// Payload mass [kg]
     #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_parser = non_negative)]
     payload_kg: f64,
@@ -77,20 +73,6 @@ pub(crate) struct AnalyzeArgs {
     json: bool,
 }
 
-#[derive(Debug, Clone)]
-struct Pose(Vec<f64>);
-
-fn pose(text: &str) -> Result<Pose, String> {
-    number_list(text).map(Pose)
-}
-
-#[derive(Debug, Clone)]
-struct PoseEntries(Vec<(String, f64)>);
-
-fn pose_entries(text: &str) -> Result<PoseEntries, String> {
-    entries(text).map(PoseEntries)
-}
-
 /// Three moments of inertia, none negative.
 fn moments(text: &str) -> Result<[f64; 3], String> {
     let moments = numbers::<3>(text)?;
@@ -100,7 +82,7 @@ fn moments(text: &str) -> Result<[f64; 3], String> {
     }
 }
 
-/// Frequencies of a response \[Hz\].
+/// Frequencies at which the response is computed \[Hz\].
 #[derive(Debug, Clone)]
 struct Frequencies(Vec<f64>);
 
@@ -124,14 +106,14 @@ fn non_negative(text: &str) -> Result<f64, String> {
 }
 
 impl AnalyzeArgs {
-    /// The harmonic force whose response is asked for.
+    /// The harmonic force whose response is to be computed; `None` if the user asks for no response.
     fn harmonic(&self) -> Option<Harmonic> {
         let force_n = Vector3::from(self.response_n?);
         Some(Harmonic { force_n, damping: self.damping, frequencies_hz: self.response_hz.0.clone() })
     }
 }
 
-/// Executes the verb.
+/// Runs `armwright analyze` and returns the text to print.
 pub(super) fn run(args: &AnalyzeArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let arm = read_arm(&args.arm, catalogs)?;
     let cases = match &args.cases {
@@ -152,7 +134,8 @@ pub(super) fn run(args: &AnalyzeArgs, catalogs: &Catalogs) -> Result<String, Fai
     })
 }
 
-/// Names the effects that an analysis ignores because they describe a test and not the arm.
+/// One line with the names of the effects that the analysis ignores, because they describe a test and not the arm.
+/// Empty if there are none.
 fn ignored_text(ignored: &[String]) -> String {
     match ignored {
         [] => String::new(),
@@ -193,7 +176,7 @@ fn pretty(value: &Value) -> String {
 fn case_of_flags(args: &AnalyzeArgs, arm: &Arm) -> Result<LoadCase, Failure> {
     Ok(LoadCase {
         name: "case".into(),
-        pose_deg: pose_of_flags(args, &arm.driven_joints())?,
+        pose_deg: args.pose.entries(&arm.driven_joints())?,
         payload: Payload {
             mass_kg: args.payload_kg,
             cg_m: args.payload_cg_m.into(),
@@ -205,32 +188,4 @@ fn case_of_flags(args: &AnalyzeArgs, arm: &Arm) -> Result<LoadCase, Failure> {
         joints: args.joints,
         water: None,
     })
-}
-
-/// The pose that the options give, every joint at 0 by default.
-fn pose_of_flags(args: &AnalyzeArgs, driven: &[DrivenJoint]) -> Result<Vec<f64>, Failure> {
-    if let Some(PoseEntries(given)) = &args.pose {
-        let given = given.iter().map(|(key, entry)| (key.as_str(), *entry));
-        return pose_of_keys(driven, given).map_err(|(key, hint)| {
-            Failure::Usage(format!("--pose: \"{key}\" is no entry of a pose: {hint}"))
-        });
-    }
-    let Some(Pose(angles_deg)) = &args.pose_deg else { return Ok(vec![0.0; driven.len()]) };
-    if any_slides(driven) {
-        let keys: Vec<String> = driven.iter().map(|joint| format!("{}=0", joint.key())).collect();
-        return Err(Failure::Usage(format!(
-            "--pose-deg has angles, and the arm has prismatic joints: write --pose {} with your numbers",
-            keys.join(",")
-        )));
-    }
-    if angles_deg.len() != driven.len() {
-        let names: Vec<&str> = driven.iter().map(|joint| joint.name.as_str()).collect();
-        return Err(Failure::Usage(format!(
-            "--pose-deg has {} angles, the arm has {} driven joints: {}",
-            angles_deg.len(),
-            driven.len(),
-            names.join(", ")
-        )));
-    }
-    Ok(angles_deg.clone())
 }

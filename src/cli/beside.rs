@@ -1,22 +1,25 @@
-//! What goes with a front: made piece by piece, so that a piece that fails costs no other.
+//! Files that are written in addition to a front. Each is made separately, so that the others are still written if
+//! one fails.
 
 use super::manifest::Files;
 use super::write::say;
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Files that go with a front, and the pieces that could not be made.
+/// Files that are written in addition to a front, and the names of those that could not be made.
 #[derive(Default)]
 pub(super) struct Beside {
+    /// Name and contents of each file.
     pub files: Files,
-    /// What is missing, and why.
+    /// One entry for each file that could not be made: its name and the reason.
     pub missing: Vec<String>,
 }
 
 impl Beside {
-    /// What `make` returns. If it panics, that is noted and there is nothing.
+    /// Calls `make`, which computes the file or files named `what`, and returns its result. If `make` panics, the panic
+    /// is recorded in `missing` and the result is `None`, so that the other files are still written.
     pub(super) fn make<T>(&mut self, what: &str, make: impl FnOnce() -> T) -> Option<T> {
-        // a piece only reads what was found, so that nothing half-done is seen afterwards
+        // `make` only reads the results of the search, so a panic leaves nothing half changed behind
         let made = catch_unwind(AssertUnwindSafe(|| {
             fail_if_wanted(what);
             make()
@@ -24,32 +27,35 @@ impl Beside {
         made.map_err(|panic| self.missing.push(format!("{what}: {}", words_of(&*panic)))).ok()
     }
 
-    /// Adds a file, unless making it panics.
+    /// Adds the file `name` with the contents that `make` computes. If `make` panics, the file is recorded in `missing`
+    /// instead.
     pub(super) fn file(&mut self, name: &str, make: impl FnOnce() -> Vec<u8>) {
         let bytes = self.make(name, make);
         self.files.extend(bytes.map(|bytes| (name.to_string(), bytes)));
     }
 }
 
-/// The message of a panic.
+/// The message of a caught panic, as the text of an internal error.
 pub(super) fn words_of(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
     format!("internal error: {}", text.unwrap_or("it has no message"))
 }
 
-/// Why a file is missing where it would have replaced one that is no part of the result.
+/// The reason why the file `name` of the result was not written: a file of this name exists that is not part of a
+/// result, and it must not be overwritten.
 pub(super) fn another_stands(name: &str) -> String {
     format!("{name}: a file that is no part of the result stands there")
 }
 
-/// Warns of what is missing.
+/// Prints a warning for each file that was not written.
 pub(super) fn say_missing(missing: &[String]) {
     for what in missing {
         say(&format!("warning: not written: {what}\n"));
     }
 }
 
-/// Fails where a test wants it (`ARMWRIGHT_FAULT=panic:summary.md`), in builds with debug assertions.
+/// Panics if a test asks for it with the environment variable `ARMWRIGHT_FAULT=panic:summary.md`. Only builds with
+/// debug assertions do so.
 #[cfg(debug_assertions)]
 fn fail_if_wanted(what: &str) {
     let wanted = std::env::var("ARMWRIGHT_FAULT").unwrap_or_default();

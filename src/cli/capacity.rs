@@ -1,4 +1,4 @@
-//! `armwright capacity`: the largest payload of a study's arm.
+//! `armwright capacity`: finds the largest payload of a study's arm or of an arm file.
 
 use super::failure::Failure;
 use crate::arm::file::read_arm;
@@ -24,7 +24,7 @@ use std::path::{Path, PathBuf};
                         armwright capacity ur5e/arm.json --cases poses.json\n\n\
                         The drives are those of the design at the study's own payload; the payload keeps its centre and moments. Of an arm \
                         file, which says nothing of motion, the static torques are judged: by the limits of --limits, or of import.json beside \
-                        it, or by the catalog's gears and motors that it names."
+                        it, or by the catalog's gears and motors that it names. Output bearings are judged at rest by their ratings."
 )]
 pub(crate) struct CapacityArgs {
     /// A built-in study, a study file or an arm file
@@ -43,7 +43,7 @@ pub(crate) struct CapacityArgs {
     json: bool,
 }
 
-/// Executes the verb.
+/// Runs `armwright capacity` and returns the text to print.
 pub(super) fn run(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     if is_arm_file(&args.study) {
         return of_arm(args, catalogs);
@@ -79,7 +79,9 @@ fn is_arm_file(path: &str) -> bool {
     file["chain"].is_array() && file["poses"].is_null()
 }
 
-/// The capacity of an arm file at rest.
+/// The largest payload of an arm file at rest. The torques of the joints are compared with the limits that the user
+/// gives; without them with the limits of an import.json in the same folder; without this with the limits of the named
+/// gears and motors.
 fn of_arm(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     if args.design.is_some() {
         return Err(Failure::Usage(format!("{} is an arm file; --design is for studies", args.study)));
@@ -100,7 +102,7 @@ fn of_arm(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Failure> {
         None if beside.is_file() => read_limits(Document::read(&beside)?)?,
         None => limits_of_parts(&arm, catalogs),
     };
-    if limits.is_empty() {
+    if limits.is_empty() && !has_rated_bearings(&arm) {
         return Err(Failure::Usage(format!(
             "nothing is known of the torques that the joints of {} may bear: give --limits FILE with {{\"joints\": [{{\"name\": \"{}\", \
              \"max_torque_nm\": 87}}]}}, or name gears and motors of the catalogs in the arm file",

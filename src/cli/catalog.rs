@@ -95,10 +95,11 @@ pub(crate) struct ShowArgs {
     pub csv: bool,
 }
 
-/// Runs the verb and returns what it says.
+/// Runs `armwright catalog` and returns the text to print.
 ///
 /// # Errors
-/// The catalogs are faulty, a filter is not known or does not belong to the parts asked for, no such part.
+/// The catalogs are faulty, a filter is unknown or does not belong to the parts that are listed, or there is no such
+/// part.
 pub(crate) fn run(args: &CatalogArgs, overlay: Option<&Path>) -> Result<String, Failure> {
     match &args.verb {
         CatalogVerb::Check => check(overlay).map_err(Failure::catalog),
@@ -106,10 +107,10 @@ pub(crate) fn run(args: &CatalogArgs, overlay: Option<&Path>) -> Result<String, 
     }
 }
 
-/// The parts asked for as a table or CSV, or one part with all its fields.
+/// The parts that the user asks for as a table or as CSV, or one part with all its columns.
 ///
 /// # Errors
-/// A filter is not known or does not belong to the parts asked for; no such part.
+/// A filter is unknown or does not belong to the parts that are listed, or there is no such part.
 pub(crate) fn show(catalogs: &Catalogs, args: &ShowArgs) -> Result<String, Failure> {
     if let Some(name) = &args.part {
         return show_part(catalogs, args.parts, name);
@@ -159,7 +160,7 @@ pub(crate) fn show(catalogs: &Catalogs, args: &ShowArgs) -> Result<String, Failu
     }
 }
 
-/// Refuses a filter that belongs to another kind of part: it is a mistake, and to ignore it would mislead.
+/// Refuses a filter that belongs to another kind of part. Such a filter is a mistake, and ignoring it would mislead.
 fn refuse_stray_filters(parts: Parts, args: &ShowArgs) -> Result<(), Failure> {
     let given = [
         ("--series", args.series.is_some(), &[Parts::Gears][..]),
@@ -242,7 +243,7 @@ fn word<T>(
     read(text).map(Some).ok_or_else(known)
 }
 
-/// How far a row is trusted, as a letter; [`LEGEND`] explains it.
+/// How far a row of a catalog can be trusted, as one letter of [`LEGEND`], which is printed below the table.
 fn trust(provenance: &Provenance) -> String {
     let letter = match provenance.confidence {
         Confidence::Verified => "V",
@@ -253,11 +254,11 @@ fn trust(provenance: &Provenance) -> String {
     letter.into()
 }
 
-/// Printed below a table of parts.
+/// Explanation that is printed below a table of parts.
 const LEGEND: &str =
     "a blank cell is unknown; trust: V verified, T third party, M from memory, R representative";
 
-/// A column of a table: its head with the unit, and what it shows of a part.
+/// A column of a table of parts: its head (name and unit), and a function that gives the text for a part.
 type Field<T> = (&'static str, fn(&T) -> String);
 
 const GEAR_FIELDS: &[Field<Gear>] = &[
@@ -361,7 +362,7 @@ fn rows_as_csv<'r>(
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// Every field of one part.
+/// The text with every column of one part.
 fn show_part(catalogs: &Catalogs, parts: Option<Parts>, name: &str) -> Result<String, Failure> {
     let kinds = match parts {
         Some(parts) => vec![parts],
@@ -374,7 +375,8 @@ fn show_part(catalogs: &Catalogs, parts: Option<Parts>, name: &str) -> Result<St
             Err(error) => errors.push(error),
         }
     }
-    // A name that several parts of one kind share says more than one that other kinds do not know.
+    // A name that belongs to several parts of one kind is a more useful error than a name that other kinds do not
+    // have.
     let ambiguous = errors.iter().position(|e| matches!(e, PartError::Ambiguous { .. }));
     let near =
         errors.iter().position(|e| matches!(e, PartError::Unknown { nearest, .. } if !nearest.is_empty()));
@@ -430,10 +432,10 @@ fn all_fields(catalogs: &Catalogs, file: CatalogFile, provenance: &Provenance) -
     out
 }
 
-/// Width that tables and paragraphs keep.
+/// Largest width of tables and paragraphs, in characters.
 const TERMINAL_COLUMNS: usize = 110;
 
-/// A paragraph broken between words, continued with an indent.
+/// A paragraph broken into lines between words. All lines after the first are indented.
 fn wrapped(text: &str) -> String {
     let mut out = String::new();
     let mut width = 0;
@@ -453,7 +455,8 @@ fn wrapped(text: &str) -> String {
     out
 }
 
-/// A rating times a factor, in four significant digits without trailing zeros; blank if unknown.
+/// A rating multiplied by `factor` (for example to convert its unit), with four significant digits and without trailing
+/// zeros. Empty if the rating is unknown.
 fn rating(x: Option<f64>, factor: f64) -> String {
     let Some(x) = x.map(|x| x * factor) else { return String::new() };
     if x == 0.0 {
@@ -463,7 +466,7 @@ fn rating(x: Option<f64>, factor: f64) -> String {
     if !(-4..7).contains(&magnitude) {
         return format!("{x:.3e}");
     }
-    // Digits before the point are kept whole: 10117 stays 10117.
+    // Digits before the decimal point are never rounded away: 10117 stays 10117.
     let decimals = (3 - magnitude).max(0) as usize;
     let text = format!("{x:.decimals$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }

@@ -1,4 +1,5 @@
-//! `armwright catalog check`: what the catalogs hold, what they leave blank, and what cannot be chosen for it.
+//! `armwright catalog check`: the number of rows in the catalogs, their blank ratings, and the parts that cannot be
+//! chosen because of a blank rating.
 
 use super::catalog_table::{TextTable, cell, provenances};
 use crate::arm::bearing::BearingSource;
@@ -13,10 +14,10 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Loads the catalogs and reports what is in them: rows, confidence, blank ratings, warnings.
+/// Loads the catalogs and reports their rows, the confidence in them, blank ratings and warnings.
 ///
 /// # Errors
-/// Every fault of every file.
+/// All faults of all files.
 pub(crate) fn check(overlay: Option<&Path>) -> Result<String, InputError> {
     let catalogs = Catalogs::load(overlay)?;
     let mut out = files_table(&catalogs.loaded);
@@ -28,7 +29,7 @@ pub(crate) fn check(overlay: Option<&Path>) -> Result<String, InputError> {
     match catalogs.warnings.as_slice() {
         [] => out.push_str("\nNo faults, no warnings.\n"),
         warnings => {
-            // A String takes any text.
+            // Writing to a String cannot fail.
             let _ = writeln!(out, "\nNo faults. Warnings ({}):", warnings.len());
             warnings.iter().for_each(|warning| {
                 let _ = writeln!(out, "  {warning}");
@@ -49,7 +50,7 @@ fn files_table(loaded: &[Loaded]) -> String {
     table.to_text()
 }
 
-/// Columns that sizing reads, by kind of part.
+/// Columns that sizing reads, for each catalog file.
 const SIZING_COLUMNS: [(CatalogFile, &[&str]); 4] = [
     (
         CatalogFile::Gears,
@@ -111,11 +112,11 @@ fn blanks_table(catalogs: &Catalogs) -> String {
     table.to_text()
 }
 
-/// Number of parts that a line names.
+/// Number of parts whose names are listed in one line; further parts are only counted.
 const NAMED: usize = 3;
 
-/// Parts that `size` and `run` cannot choose and parts that an arm file cannot name, by what they lack; empty if there are
-/// none.
+/// A list of the parts that `size` and `run` cannot choose and that an arm file cannot name, by the ratings that are
+/// blank. It is empty if there are no such parts.
 fn unchoosable(catalogs: &Catalogs) -> String {
     let mut by_lacks: BTreeMap<(String, String), Vec<(usize, &str)>> = BTreeMap::new();
     let mut add = |from: &Provenance, id, lacks: Vec<Lack>| {
@@ -124,7 +125,7 @@ fn unchoosable(catalogs: &Catalogs) -> String {
         }
     };
     for gear in &catalogs.gears {
-        // a component set has no mass of a housed unit, and the other way round
+        // a gear sold as a component set has no mass of a housed unit, and vice versa
         let mass = match gear.mass_housed_unit_kg {
             None if gear.mass_component_set_kg.is_some() => GearMass::ComponentSet,
             _ => GearMass::HousedUnit,
@@ -151,7 +152,7 @@ fn unchoosable(catalogs: &Catalogs) -> String {
     if lines.is_empty() { lines } else { format!("\nParts that cannot be used for a blank figure:\n{lines}") }
 }
 
-/// Which verbs cannot use a part with these lacks.
+/// The verbs that cannot use a part with the blank ratings `lacks`, and the checks for which the ratings are needed.
 fn verbs(lacks: &[Lack]) -> String {
     let of_arm: Vec<Lack> =
         lacks.iter().copied().filter(|lack| matches!(lack.purpose, "torsion" | "mass")).collect();

@@ -1,16 +1,16 @@
-//! The rows of the catalogs by their files, and tables of text to show them in.
+//! The rows of each catalog file, and tables of text in which they are shown.
 
 use crate::catalog::gear::{Gear, GearKind};
 use crate::catalog::motor::{Motor, MotorKind};
 use crate::catalog::schema::CatalogFile;
 use crate::catalog::{Catalogs, Provenance};
 
-/// The gears that are sold as such, or those within actuators.
+/// The gears that are sold alone, or (if `actuators`) those that are part of an actuator.
 pub(super) fn gears_of(catalogs: &Catalogs, actuators: bool) -> impl Iterator<Item = &Gear> {
     catalogs.gears.iter().filter(move |gear| (gear.kind == GearKind::Actuator) == actuators)
 }
 
-/// The motors that are sold as such.
+/// The motors that are sold alone.
 pub(super) fn motors_of(catalogs: &Catalogs) -> impl Iterator<Item = &Motor> {
     catalogs.motors.iter().filter(|motor| motor.kind != MotorKind::OfActuator)
 }
@@ -34,7 +34,7 @@ pub(super) fn cell<'r>(row: &'r [(&'static str, String)], column: &str) -> &'r s
     row.iter().find(|(name, _)| *name == column).map_or("", |(_, text)| text)
 }
 
-/// A table of text: headers (`name|unit`) above columns, numbers aligned to the right.
+/// A table of text with headers (`name|unit`) above the columns. Columns of numbers are aligned to the right.
 pub(super) struct TextTable {
     pub head: Vec<String>,
     pub rows: Vec<Vec<String>>,
@@ -61,7 +61,7 @@ impl TextTable {
         lines.iter().fold(String::new(), |out, line| out + &aligned(line, &columns) + "\n")
     }
 
-    /// Width of a column, and whether it holds numbers.
+    /// Width of the column `i` of these lines in characters, and whether all cells of the column are numbers or blank.
     fn column(&self, i: usize, lines: &[Vec<String>]) -> (usize, bool) {
         let width = lines.iter().map(|line| line[i].chars().count()).max().unwrap_or(0);
         (width, self.rows.iter().all(|row| row[i].is_empty() || row[i].parse::<f64>().is_ok()))

@@ -1,4 +1,4 @@
-//! `armwright check`: what files are and all their faults; or whether two folders of results are the same.
+//! `armwright check`: the kind and all faults of files, or whether two folders of results are the same.
 
 use super::check_files;
 use super::check_same::same;
@@ -32,10 +32,10 @@ pub(crate) struct CheckArgs {
     same: Option<Vec<PathBuf>>,
 }
 
-/// Executes the verb.
+/// Runs `armwright check` and returns the text to print.
 ///
 /// # Errors
-/// Two folders of results are not the same, or cannot be read.
+/// The two folders of results are not the same, or one cannot be read.
 pub(super) fn run(args: &CheckArgs, catalogs: &Catalogs) -> Result<Answer, Failure> {
     match args.same.as_deref() {
         Some([a, b]) => same(a, b).map(Answer::from),

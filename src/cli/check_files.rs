@@ -1,4 +1,4 @@
-//! What files and folders are, and all of their faults.
+//! Finds out of which kind files and folders are, and finds all their faults.
 
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
@@ -17,23 +17,27 @@ use crate::study::read_study;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// What was found of one file or folder.
+/// What was found out about one file or folder.
 struct Found {
+    /// Path of the file or folder.
     place: PathBuf,
-    /// What it is, in words.
+    /// Kind of the file or folder in words, such as "study".
     what: &'static str,
+    /// Why the file is not sound; `Ok` if it is sound.
     outcome: Result<(), Problem>,
 }
 
-/// Why a file is not sound.
+/// Why a file or folder is not sound.
 enum Problem {
+    /// An input file has faults.
     Faulty(Faults),
-    /// A result is not what was written.
+    /// The files of a result differ from those that were written.
     Changed(String),
+    /// A file cannot be read.
     Unreadable(String),
 }
 
-/// What each file is, and all faults of all of them.
+/// Reports the kind of each file or folder, and all faults of all of them.
 pub(super) fn report(files: &[PathBuf], as_json: bool, catalogs: &Catalogs) -> Answer {
     let mut found: Vec<Found> = Vec::new();
     for file in files {
@@ -49,7 +53,7 @@ pub(super) fn report(files: &[PathBuf], as_json: bool, catalogs: &Catalogs) -> A
     Answer { text, exit: exit_of(&found) }
 }
 
-/// The code of the worst of the findings.
+/// The exit code for the most serious problem among the files and folders in `found`.
 fn exit_of(found: &[Found]) -> Exit {
     let has = |is: fn(&Problem) -> bool| found.iter().any(|f| f.outcome.as_ref().err().is_some_and(is));
     if has(|p| matches!(p, Problem::Faulty(_))) {
@@ -63,7 +67,8 @@ fn exit_of(found: &[Found]) -> Exit {
     }
 }
 
-/// The file or folder that is read as one: a campaign with its readings, a catalog with its folder, a result with its files.
+/// What must be read as a whole to check `file`: the folder of a campaign for one of its readings, the folder of a
+/// catalog for one of its files, the folder of a result for one of its files. Otherwise it is the file itself.
 fn unit_of(file: &Path) -> PathBuf {
     let name = file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let folder = folder_of(file);
@@ -131,7 +136,8 @@ fn look_at_file(path: &Path, catalogs: &Catalogs) -> Look {
     }
 }
 
-/// The kind of file that knows most of the keys of a document, or of the objects in its list; of several, the first.
+/// The kind of file to which a document belongs: the one whose keys match most keys of the document, or "cases" for a
+/// list of cases. If several kinds match equally many keys, it is the first of them.
 fn kind_of(value: &Value) -> Option<&'static str> {
     let Value::Object(map) = value else {
         let is_case = |item: &Value| item.as_object().is_some_and(|map| map.keys().any(|key| CASE.has(key)));
@@ -150,7 +156,8 @@ fn kind_of(value: &Value) -> Option<&'static str> {
     best.1
 }
 
-/// Checks cases with the `arm.json` beside them; without one, whether their poses are equally long.
+/// Checks the cases file `document` against the arm file `arm.json` in the same folder. If there is none, the poses are
+/// only compared with the first pose: all must have entries for the same joints.
 fn check_cases(document: Document, path: &Path, catalogs: &Catalogs) -> Result<(), Problem> {
     let beside = folder_of(path).join("arm.json");
     let arm: Option<Arm> = if beside.is_file() { Some(read_arm(&beside, catalogs)?) } else { None };
@@ -161,7 +168,7 @@ fn check_cases(document: Document, path: &Path, catalogs: &Catalogs) -> Result<(
     read_load_cases(document, &joints).map(drop).map_err(Problem::Faulty)
 }
 
-/// The joints that the first pose has entries for, where no arm says which there are.
+/// The joints for which the first pose has entries. They are used if there is no arm file that names the joints.
 fn joints_of_first_pose(document: &Document) -> Vec<DrivenJoint> {
     let root = document.root();
     let first = &root.value()[0];
@@ -185,7 +192,7 @@ fn result_words(manifest: &str) -> &'static str {
     }
 }
 
-/// Checks that the files of a result are those that were written.
+/// Checks that the files of a result still have the hashes that `manifest`, the file that lists them, has for them.
 fn unchanged(folder: &Path, manifest: &str) -> Result<(), Problem> {
     let path = folder.join(manifest);
     let text = std::fs::read_to_string(&path).map_err(|e| Problem::Unreadable(e.to_string()))?;

@@ -1,4 +1,4 @@
-//! Whether two folders of results are the same, outside the places that tell of time and machine.
+//! Compares two folders of results, without the numbers that depend on the time and on the machine.
 
 use super::failure::Failure;
 use super::manifest::SHARD;
@@ -6,18 +6,20 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Keys of run.json that differ from run to run, and the hashes of files that tell of them.
+/// Keys of run.json that differ from run to run: times, the machine, and the hashes of files that contain times.
 const OF_A_RUN: [&str; 5] = ["elapsed_s", "designs_per_s", "threads", "platform", "files"];
-/// What stands around timings.
+/// Marks around the text in summary.md and report.html that states how long a run took. The text between the marks is
+/// left out of the comparison, because it differs from run to run.
 const TIMING: [&str; 2] = ["<!-- timing -->", "<!-- /timing -->"];
-/// Commands that name the folder of results.
+/// Commands in summary.md and report.html after which the folder of results is named. The name is left out of the
+/// comparison, because each result is in a folder of its own.
 const COMMANDS: [&str; 5] =
     ["armwright design ", "armwright analyze ", "armwright compare ", "armwright front check ", " --cases "];
 
-/// Says that two folders are the same.
+/// Compares the folders of results `a` and `b`. If both results are the same, returns a sentence that says so.
 ///
 /// # Errors
-/// They are not, with the files that differ; or one cannot be read.
+/// The folders differ, with the names of the files that differ; or one of them cannot be read.
 pub(super) fn same(a: &Path, b: &Path) -> Result<String, Failure> {
     let names = files_of(a)?;
     let others = files_of(b)?;
@@ -41,8 +43,8 @@ pub(super) fn same(a: &Path, b: &Path) -> Result<String, Failure> {
     }
 }
 
-/// Names of all files of a folder and the folders in it. Left out are those that begin with a dot, and folders of shards: they
-/// are results of their own.
+/// Names of all files of a folder and of the folders in it. Names that begin with a dot are left out. Folders of
+/// shards are left out too, because each is a result by itself.
 fn files_of(folder: &Path) -> Result<BTreeSet<String>, Failure> {
     let mut names = BTreeSet::new();
     let mut open = vec![PathBuf::new()];
@@ -64,7 +66,7 @@ fn files_of(folder: &Path) -> Result<BTreeSet<String>, Failure> {
     Ok(names)
 }
 
-/// The bytes of a file without what tells of time, machine and folder.
+/// The bytes of the file `name`, without the parts that depend on the time, the machine and the name of the folder.
 fn neutral(folder: &Path, name: &str) -> Result<Vec<u8>, Failure> {
     let bytes = fs_err::read(folder.join(name)).map_err(|e| Failure::File(e.to_string()))?;
     Ok(match name {
@@ -93,7 +95,7 @@ fn without_timing(bytes: Vec<u8>, folder: Option<&str>) -> Vec<u8> {
     text.into_bytes()
 }
 
-/// The folder as it was typed when the results were written, from the commands of its summary.
+/// The folder of results as the user typed it when the results were written, taken from a command in the summary.
 fn typed_as(folder: &Path) -> Option<String> {
     let summary = std::fs::read_to_string(folder.join("summary.md")).ok()?;
     summary.lines().find_map(|line| line.strip_prefix(COMMANDS[2])).map(String::from)

@@ -1,4 +1,4 @@
-//! `armwright compare`: fronts side by side.
+//! `armwright compare`: compares fronts with each other.
 
 use super::compare_remarks::{remarks, said_by};
 use super::failure::Failure;
@@ -53,11 +53,11 @@ pub(crate) struct CompareArgs {
     pub json: bool,
 }
 
-/// Limits as given on the command line.
+/// Numbers from the command line at which fronts are compared.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Limits(pub Vec<f64>);
 
-/// Comma-separated numbers greater than zero.
+/// Reads numbers greater than zero, separated by commas.
 fn limits(text: &str) -> Result<Limits, String> {
     let list = number_list(text)?;
     match list.iter().find(|x| **x <= 0.0) {
@@ -66,7 +66,7 @@ fn limits(text: &str) -> Result<Limits, String> {
     }
 }
 
-/// Executes the verb.
+/// Runs `armwright compare` and returns the text to print.
 ///
 /// # Errors
 /// A folder or file is missing, is not a result, or cannot be written.
@@ -125,10 +125,10 @@ fn files(comparison: &Comparison, contenders: &[Contender]) -> Vec<(String, Vec<
     out
 }
 
-/// What is compared.
+/// The fronts to compare.
 struct Loaded {
     contenders: Vec<Contender>,
-    /// Whether they are several runs of one study.
+    /// Whether the fronts are several runs of one study.
     one_study: bool,
 }
 
@@ -150,7 +150,8 @@ fn load(results: &[PathBuf]) -> Result<Loaded, Failure> {
     Ok(Loaded { contenders, one_study: results.len() > 1 && is_one_study(results) })
 }
 
-/// The front of a result folder or a front file. A front without a `run.json` beside it does not say what made it.
+/// The front of a result folder or of a front file. If there is no `run.json` in its folder, the front is read
+/// without information on the run.
 fn front_at(path: &Path) -> Result<FrontTable, Failure> {
     if path.is_dir() {
         return match Results::around(&front_file(path)?)? {
@@ -170,7 +171,7 @@ fn front_at(path: &Path) -> Result<FrontTable, Failure> {
     }
 }
 
-/// The overall front of a result folder.
+/// The file with the front of all designs in a result folder.
 fn front_file(dir: &Path) -> Result<PathBuf, Failure> {
     let file = dir.join("front.csv");
     if file.is_file() {
@@ -187,7 +188,7 @@ fn read_front(file: &Path) -> Result<FrontTable, Failure> {
     FrontTable::read(file).map_err(|error: FrontTableError| Failure::File(error.to_string()))
 }
 
-/// The fronts of the materials of one result, after the overall front.
+/// The front of all designs of a result as the reference, followed by the front of each material.
 fn materials_of(dir: &Path) -> Result<Vec<Contender>, Failure> {
     front_file(dir)?;
     let results = Results::open(dir)?;
@@ -195,19 +196,19 @@ fn materials_of(dir: &Path) -> Result<Vec<Contender>, Failure> {
     for (name, file) in listed_materials(&results.run) {
         out.push(Contender::new(&name, results.front(&front_of_material(&file))?));
     }
-    // the only front there is competes with nobody and answers for itself
+    // if there are no fronts of materials, the front of all designs is compared like any other
     out[0].reference = out.len() > 1;
     Ok(out)
 }
 
-/// Every material of `run.json`, with what stands for it in the names of files.
+/// Every material of `run.json`, with the short name that is used in names of files.
 fn listed_materials(run: &Value) -> Vec<(String, String)> {
     let entries = run["materials"].as_array().cloned().unwrap_or_default();
     let text = |entry: &Value, key: &str| entry[key].as_str().map(String::from);
     entries.iter().filter_map(|e| Some((text(e, "name")?, text(e, "slug")?))).collect()
 }
 
-/// Whether all are result folders of the same study.
+/// Whether all paths are result folders of the same study.
 fn is_one_study(results: &[PathBuf]) -> bool {
     let study = |path: &PathBuf| Results::open(path).ok()?.run["study"].as_str().map(String::from);
     let first = results.first().and_then(study);
@@ -222,7 +223,7 @@ pub(super) fn labels(results: &[PathBuf]) -> Vec<String> {
     (1..=most).map(at).find(differ).unwrap_or_else(|| numbered(at(most)))
 }
 
-/// The last components of a path; `front.` and `.csv` are removed from a file name.
+/// The last `parts` components of a path. For a file, `front.` and `.csv` are removed from its name.
 fn last_parts(path: &Path, parts: usize) -> String {
     let full: Vec<String> = path.components().map(|c| c.as_os_str().to_string_lossy().into_owned()).collect();
     let mut kept = full[full.len().saturating_sub(parts)..].to_vec();

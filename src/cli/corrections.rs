@@ -1,4 +1,5 @@
-//! The corrections of a measured arm: read from an arm file, applied to a study, and reported.
+//! Applies the corrections of a measured arm to a study, and reports which of them apply. They come from an arm file
+//! or from a verdict.
 
 use super::asked::Asked;
 use super::failure::Failure;
@@ -16,10 +17,10 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::Path;
 
-/// A study with the corrections of an arm file applied.
+/// A study with the corrections of the arm file at `path` applied. `text` is the file of the study.
 ///
 /// # Errors
-/// The file cannot be read, or none of its effects and calibrated values applies.
+/// The file cannot be read, or no effect and no calibrated value of it applies to the study.
 pub(super) fn from_arm_file(
     path: &Path,
     study: &Study,
@@ -42,10 +43,11 @@ pub(super) fn from_arm_file(
     Err(Failure::Usage(format!("{name} changes nothing in the study \"{}\": {why}", study.name)))
 }
 
-/// A study with the effects and calibrated values of a measured arm applied.
+/// A study with the effects of `arm` and the calibrated values `calibrated` (name and factor each) applied. `text` is
+/// the file of the study.
 ///
 /// # Errors
-/// The corrected study does not read.
+/// The corrected study is faulty.
 pub(super) fn corrected(
     study: &Study,
     text: &str,
@@ -61,13 +63,14 @@ pub(super) fn corrected(
     Ok(Asked { study, text, corrections: corrected.corrections })
 }
 
-/// Name and factor of each calibrated value in the provenance of an arm file.
+/// Name and factor of each calibrated value, from the provenance of an arm file.
 fn calibrated(file: &Value) -> Vec<(String, f64)> {
     let list = file["provenance"]["calibrated"].as_array().map_or(&[][..], Vec::as_slice);
     list.iter().filter_map(|c| Some((c["value"].as_str()?.to_string(), c["factor"].as_f64()?))).collect()
 }
 
-/// Which corrections were applied and which were not, one line per reason; empty if there are none.
+/// A text that says which corrections were applied and which were not. Corrections with the same reason are in one
+/// line. The text is empty if there are no corrections.
 pub(super) fn to_text(corrections: &[Correction]) -> String {
     let mut out = String::new();
     for (applied, head) in [(true, "corrections applied"), (false, "corrections not applied")] {
@@ -88,7 +91,7 @@ pub(super) fn to_text(corrections: &[Correction]) -> String {
     out
 }
 
-/// The same for programs.
+/// The corrections as JSON: what each one is, whether it was applied, and why.
 pub(super) fn to_json(corrections: &[Correction]) -> Value {
     corrections.iter().map(|c| json!({"what": c.what, "carried": c.applied, "words": c.words})).collect()
 }

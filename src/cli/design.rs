@@ -1,4 +1,5 @@
-//! `armwright design`: writes a design of a result as an arm file and its cases.
+//! `armwright design`: writes a design of a result as an arm file, with a cases file of the cases in which it was
+//! judged.
 
 use super::failure::Failure;
 use super::finished::{catalogs_hash, pretty};
@@ -31,20 +32,20 @@ pub(crate) struct DesignArgs {
     out: Option<PathBuf>,
 }
 
-/// A design of a result with every part resolved.
+/// A design of a result, with its arm and cases in numbers.
 pub(super) struct ResolvedDesign {
-    /// Name of its study.
+    /// Name of the study to which the design belongs.
     pub study: String,
-    /// The arm.
+    /// The arm of the design.
     pub arm: Arm,
-    /// The cases in which it was judged.
+    /// The cases in which the design was judged.
     pub cases: Vec<LoadCase>,
 }
 
-/// The design of an id, from a folder of results.
+/// The design with this id in a folder of results.
 ///
 /// # Errors
-/// The folder is no whole result of these catalogs, or has no such design.
+/// The folder is not a complete result made with these catalogs, or it has no such design.
 pub(super) fn resolve_design(
     folder: &Path,
     id: &str,
@@ -65,7 +66,7 @@ pub(super) fn resolve_design(
     Ok(ResolvedDesign { study: study.name, arm, cases })
 }
 
-/// Executes the verb.
+/// Runs `armwright design`: writes the files, and returns the text to print.
 pub(super) fn run(args: &DesignArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let ResolvedDesign { study, arm, cases } = resolve_design(&args.results, &args.id, catalogs)?;
     let objectives = full_objectives(&arm, &cases);
@@ -91,8 +92,8 @@ pub(super) fn run(args: &DesignArgs, catalogs: &Catalogs) -> Result<String, Fail
     ))
 }
 
-/// Opens the result of a study. Fails if it is not one whole result, if an earlier version made it, or if it was made with
-/// other catalogs, because an id would then name another design.
+/// Opens the result of a study. Fails if the folder is not a complete result. Fails also if an earlier version or
+/// other catalogs were used, because the same id may then name another design.
 pub(super) fn open_results(folder: &Path, catalogs: &Catalogs) -> Result<Results, Failure> {
     let results = Results::open(folder)?;
     let run = &results.run;

@@ -1,33 +1,33 @@
-//! How the program ends: every exit code, what it means, and the answer of a verb that has one.
+//! How the program ends: all exit codes with their meanings, and the answer of a verb.
 
-/// The end of a run. A caller that would do something else in another case gets another code.
+/// How the program ends. Each case in which a calling script may want to react differently has its own exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Exit {
-    /// What was asked for is done.
+    /// The task is done.
     Done,
-    /// Something that should not happen.
+    /// An internal error, which should not happen.
     Internal,
-    /// A word on the command line that is not known.
+    /// The command line is wrong.
     Usage,
-    /// An input file is wrong.
+    /// An input file has faults.
     Input,
-    /// A catalog is wrong.
+    /// A catalog has faults.
     Catalog,
-    /// There is nothing to choose from.
+    /// The design space has no designs.
     EmptySpace,
-    /// No design meets what is asked.
+    /// No design meets the limits.
     Infeasible,
     /// A file cannot be read or written.
     File,
-    /// The user stopped the run, whatever was kept.
+    /// The user stopped the run, whether or not results were written before.
     Interrupted,
-    /// A check found a difference.
+    /// A check failed: a result is wrong, or two results differ.
     CheckFailed,
-    /// A time limit came before what was asked for was proved.
+    /// A time limit ended the run before the result was proved.
     Partial,
-    /// A check settled nothing.
+    /// A check could not decide whether the result is right.
     Unsettled,
-    /// Another process is writing the results.
+    /// Another process is writing the folder of results.
     Locked,
 }
 
@@ -48,7 +48,7 @@ impl Exit {
         Self::Locked,
     ];
 
-    /// The process exit code, and its meaning in a few words.
+    /// The exit code with which the process ends, and its meaning in a few words.
     const fn row(self) -> (u8, &'static str) {
         match self {
             Self::Done => (0, "done"),
@@ -67,22 +67,22 @@ impl Exit {
         }
     }
 
-    /// The process exit code.
+    /// The exit code of the process.
     pub const fn code(self) -> u8 {
         self.row().0
     }
 
-    /// Every code with its meaning, for the help.
+    /// A list of all exit codes with their meanings, for the help text.
     pub(super) fn help() -> String {
         let rows = Self::ALL.map(|exit| format!("{} {}", exit.row().0, exit.row().1));
         format!("Exit codes: {}.\n\nStart with: armwright run compare-materials", rows.join("; "))
     }
 }
 
-/// The answer of a verb: the text that it prints, and how it ended.
+/// The answer of a verb: the text to print, and how the verb ended.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
-    /// For standard output.
+    /// Text for standard output.
     pub text: String,
     /// How the verb ended.
     pub exit: Exit,

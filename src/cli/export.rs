@@ -1,9 +1,10 @@
-//! `armwright export`: an arm or a design as files of other programs.
+//! `armwright export`: writes an arm or a design as files for other programs.
 
 use super::design::resolve_design;
 use super::failure::Failure;
 use super::finished::pretty;
-use super::values::{choice, number_list, numbers};
+use super::pose_flags::PoseArgs;
+use super::values::{choice, numbers};
 use super::write::write_all;
 use crate::arm::file::read_arm;
 use crate::arm::load::{LoadCase, Payload, read_load_cases};
@@ -39,14 +40,13 @@ pub(crate) struct ExportArgs {
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Cases of an arm file (JSON), as analyze reads them
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["pose_deg", "payload_kg", "payload_cg_m"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["pose_deg", "pose", "payload_kg", "payload_cg_m"])]
     cases: Option<PathBuf>,
     /// Name of the case
     #[arg(long, value_name = "NAME")]
     case: Option<String>,
-    /// Pose of an arm file: one angle per joint, base to tip [deg]; default all zero
-    #[arg(long, value_name = "Q1,Q2,...", allow_hyphen_values = true, value_parser = pose)]
-    pose_deg: Option<Pose>,
+    #[command(flatten)]
+    pose: PoseArgs,
     /// Payload of an arm file [kg]
     #[arg(long, default_value_t = 0.0)]
     payload_kg: f64,
@@ -61,23 +61,16 @@ pub(crate) struct ExportArgs {
     backlash: bool,
 }
 
-#[derive(Debug, Clone)]
-struct Pose(Vec<f64>);
-
-fn pose(text: &str) -> Result<Pose, String> {
-    number_list(text).map(Pose)
-}
-
 /// Executes the verb.
 pub(super) fn run(args: &ExportArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     if args.to != Format::Mjcf && (args.flexible.is_some() || args.backlash) {
         return Err(Failure::Usage("--flexible and --backlash are for --to mjcf".into()));
     }
     let (arm, cases, inputs) = source(args, catalogs)?;
-    if let (Some(joint), Format::Calculix | Format::Mjcf | Format::Urdf) = (arm.prismatics().next(), args.to)
-    {
+    if let (Some(joint), Format::Calculix) = (arm.prismatics().next(), args.to) {
         return Err(Failure::Usage(format!(
-            "{} is a prismatic joint, which is not written to such files yet; --to json, csv and bom have it",
+            "{} is a prismatic joint: the decks of CalculiX join links by hinges between two points, and have nothing that \
+             slides; --to mjcf with --flexible has its springs and flexible links",
             joint.name
         )));
     }
@@ -106,7 +99,7 @@ pub(super) fn run(args: &ExportArgs, catalogs: &Catalogs) -> Result<String, Fail
     ))
 }
 
-/// What is said of an export: what is left out, and the notes.
+/// The text about an export: what the files leave out, each with its part of the tip deflection, and the notes.
 fn said(exported: &Export) -> String {
     let left_out = exported.left_out.iter().map(|left| {
         format!(
@@ -121,11 +114,11 @@ fn said(exported: &Export) -> String {
     left_out.chain(notes).collect()
 }
 
-/// The arm, its cases, and the files that they come from.
+/// The arm, its cases, and the files from which they were read.
 fn source(args: &ExportArgs, catalogs: &Catalogs) -> Result<(Arm, Vec<LoadCase>, Vec<PathBuf>), Failure> {
     let path = PathBuf::from(&args.source);
     if let (false, Some((folder, id))) = (path.is_file(), args.source.rsplit_once('#')) {
-        if args.cases.is_some() || args.pose_deg.is_some() || args.payload_kg != 0.0 {
+        if args.cases.is_some() || args.pose.is_given() || args.payload_kg != 0.0 {
             return Err(Failure::Usage(
                 "a design has the cases of its study: choose one with --case NAME".into(),
             ));
@@ -150,15 +143,6 @@ fn source(args: &ExportArgs, catalogs: &Catalogs) -> Result<(Arm, Vec<LoadCase>,
 }
 
 fn case_of_flags(args: &ExportArgs, arm: &Arm) -> Result<LoadCase, Failure> {
-    let joints = arm.driven_joint_names();
-    let pose_deg = args.pose_deg.clone().map_or(vec![0.0; joints.len()], |pose| pose.0);
-    if pose_deg.len() != joints.len() {
-        let (given, needed) = (pose_deg.len(), joints.len());
-        let names = joints.join(", ");
-        return Err(Failure::Usage(format!(
-            "--pose-deg has {given} angles, the arm has {needed} driven joints: {names}"
-        )));
-    }
     if !(args.payload_kg >= 0.0 && args.payload_kg.is_finite()) {
         return Err(Failure::Usage(format!(
             "--payload-kg {}: give a mass that is not negative",
@@ -167,7 +151,7 @@ fn case_of_flags(args: &ExportArgs, arm: &Arm) -> Result<LoadCase, Failure> {
     }
     Ok(LoadCase {
         name: "case".into(),
-        pose_deg,
+        pose_deg: args.pose.entries(&arm.driven_joints())?,
         payload: Payload { mass_kg: args.payload_kg, cg_m: args.payload_cg_m.into(), ..Payload::default() },
         tip_force_n: Vector3::zeros(),
         tip_moment_nm: Vector3::zeros(),
@@ -177,7 +161,7 @@ fn case_of_flags(args: &ExportArgs, arm: &Arm) -> Result<LoadCase, Failure> {
     })
 }
 
-/// The case that is named, or the case that deflects most.
+/// The case that the user names. Without a name, it is the case with the largest tip deflection.
 fn chosen_case<'c>(args: &ExportArgs, arm: &Arm, cases: &'c [LoadCase]) -> Result<&'c LoadCase, Failure> {
     if let Some(name) = &args.case {
         let names: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
@@ -188,7 +172,7 @@ fn chosen_case<'c>(args: &ExportArgs, arm: &Arm, cases: &'c [LoadCase]) -> Resul
     let deflection_m = |case: &LoadCase| {
         Chain::new(&arm.structure_in(case), case.links).pose(case).statics().tip_displacement_m.norm()
     };
-    // of equals the first
+    // of cases with equal deflections, the first one is taken
     let worst = cases.iter().rev().max_by(|a, b| deflection_m(a).total_cmp(&deflection_m(b)));
     worst.ok_or_else(|| Failure::Usage("there is no case".into()))
 }

@@ -5,46 +5,46 @@ use crate::input::json::{Faults, InputError};
 use crate::study::refusal::Refusal;
 use std::path::Path;
 
-/// Why a verb failed; each reason has an exit code of its own.
+/// Why a verb failed. Each reason has its own exit code.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
-    /// Something that should not happen.
+    /// An internal error, which should not happen.
     #[error("{0}")]
     Internal(String),
-    /// A word on the command line that is not known.
+    /// The command line is wrong.
     #[error("{0}")]
     Usage(String),
-    /// An input file is wrong.
+    /// An input file has faults.
     #[error(transparent)]
     Input(Faults),
-    /// A catalog is wrong.
+    /// A catalog has faults.
     #[error("in the catalogs, {0}")]
     Catalog(Faults),
-    /// There is nothing to choose from.
+    /// The design space has no designs.
     #[error("{0}")]
     EmptySpace(String),
-    /// No design meets what is asked.
+    /// No design meets the limits.
     #[error("{0}")]
     Infeasible(String),
     /// A file cannot be read or written.
     #[error("{0}")]
     File(String),
-    /// Stopped by the user.
+    /// The user stopped the run.
     #[error("{0}")]
     Interrupted(String),
-    /// A check found a difference.
+    /// A check failed: a result is wrong, or two results differ.
     #[error("{0}")]
     Check(String),
-    /// Another process is writing the same results.
+    /// Another process is writing the folder of results.
     #[error("{0}")]
     Locked(String),
-    /// A time limit came before anything was found.
+    /// A time limit ended the run before any design was found.
     #[error("{0}")]
     Partial(String),
 }
 
 impl Failure {
-    /// How the program ends for this reason.
+    /// The exit status with which the program ends after this failure.
     pub fn exit(&self) -> Exit {
         match self {
             Failure::Internal(_) => Exit::Internal,
@@ -61,12 +61,12 @@ impl Failure {
         }
     }
 
-    /// The process exit code.
+    /// The exit code of the process.
     pub fn exit_code(&self) -> u8 {
         self.exit().code()
     }
 
-    /// Why the catalogs cannot be used.
+    /// The failure if the catalogs cannot be read or have faults.
     pub(super) fn catalog(error: InputError) -> Self {
         match error {
             InputError::Faulty(faults) => Failure::Catalog(faults),

@@ -1,4 +1,4 @@
-//! The output of a finished search: files, page and terminal text.
+//! The output of a finished search: its files, the page for a browser, and the text for the terminal.
 
 use super::asked::Asked;
 use super::beside::{Beside, another_stands, say_missing};
@@ -45,44 +45,47 @@ use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Keeps files as a result, which replaces what was kept before; returns the names of those that could not be kept because
-/// other files stand there.
+/// A function that writes files as a result and replaces the result that was written before. It returns the names of
+/// files that it did not write, because files with these names exist that are not part of a result.
 pub(super) type Keep<'a> = dyn Fn(&[(String, Vec<u8>)]) -> Result<Vec<String>, Failure> + Sync + 'a;
 
-/// A finished search whose files are kept.
+/// A finished search whose files are written.
 pub(super) struct Written {
-    /// Files by name.
+    /// Name and contents of each file.
     pub files: Files,
     /// Text for the terminal.
     pub terminal: String,
-    /// The front of all designs.
+    /// Table of the front of all designs.
     pub front: FrontTable,
     /// How the search ended.
     pub status: Status,
-    /// How the program ends if all is written.
+    /// Exit status if all files are written.
     pub exit: Exit,
-    /// How long the search took, in a line.
+    /// One line on how long the search took.
     pub timing: String,
+    /// Optimality gap that was proved, as a fraction; `None` if the front is whole or none was proved.
     pub gap: Option<f64>,
-    /// Whether no design is missing in it.
+    /// Whether no design is missing in the front.
     pub is_whole: bool,
-    /// The mass up to which the front is proved whole \[kg\]; `None` if it is not, or if the study limits no mass.
+    /// Mass up to which no design of the front is missing \[kg\]. `None` if this is not proved, or if the study does
+    /// not limit the mass.
     pub proved_to_mass_kg: Option<f64>,
-    /// The state of the search at its end, and its time \[s\].
+    /// The state of the search at its end.
     pub progress: Progress,
+    /// Time that the search took \[s\].
     pub elapsed_s: f64,
 }
 
-/// What `run.json` says is missing while only the front is kept.
+/// Text for `run.json` while only the front is written: the names of all files that are still missing.
 const NOTHING_ELSE: &str =
     "what goes with the front: budget.csv, summary.md, report.html, plots, ties and supplements";
 
-/// The file that holds the front of one material.
+/// Name of the file with the front of one material.
 pub(super) fn front_of_material(file: &str) -> String {
     format!("front.{file}.csv")
 }
 
-/// Whether a file holds the front of one material.
+/// Whether a file of this name has the front of one material.
 pub(super) fn is_front_of_material(name: &str) -> bool {
     name.starts_with("front.") && name.ends_with(".csv") && name != "front.csv"
 }
@@ -90,34 +93,43 @@ pub(super) fn is_front_of_material(name: &str) -> bool {
 /// What an exact search proved about its front.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FoundExactly {
-    /// Boxes bounded and left open.
+    /// Number of boxes whose bounds were computed, and number of boxes that were left open.
     pub boxes: [u64; 2],
+    /// Optimality gap that was proved, as a fraction; `None` if none was proved.
     pub gap: Option<f64>,
-    /// Whether designs that differ only in drives of equal mass and torsion curve all have rows.
+    /// Whether designs that differ only in drives of equal mass and torsion curve are all rows of the front.
     pub ties_listed: bool,
 }
 
-/// A finished search and what it was made with.
+/// A finished search, with everything that is needed to write its result.
 pub(super) struct Finished<'a> {
     pub study: &'a Study,
+    /// Text of the study's file.
     pub text: &'a str,
+    /// Corrections of a measured arm.
     pub corrections: &'a [Correction],
+    /// The problem with all options of the study, or only with the options that the designs of the front use.
     pub problem: &'a ArmProblem<'a>,
     /// The space with all options of the study.
     pub whole: &'a DesignSpace,
+    /// The fronts that were found.
     pub outcome: &'a StudyOutcome,
-    /// The designs near the front that an exact search found.
+    /// Near designs, if an exact search looked for them.
     pub near: Option<&'a NearDesigns>,
-    /// What an exact search proved about its front.
+    /// What an exact search proved about its front; `None` if every design was visited.
     pub exact: Option<FoundExactly>,
+    /// Time that the search took \[s\].
     pub elapsed_s: f64,
+    /// The user's catalog folder, if any.
     pub overlay: Option<&'a Path>,
     pub catalogs: &'a Catalogs,
+    /// Folder of the result.
     pub dir: &'a Path,
 }
 
 impl<'a> Finished<'a> {
-    /// The finished visit to every design of a study, on one machine or in shards.
+    /// The result of a search that visited every design of a study, on one computer or in shards. `dir` is the folder
+    /// of results, `elapsed_s` the time that the search took \[s\].
     pub(super) fn visit(
         asked: &'a Asked,
         (problem, outcome): (&'a ArmProblem<'a>, &'a StudyOutcome),
@@ -146,11 +158,11 @@ impl<'a> Finished<'a> {
 }
 
 impl Finished<'_> {
-    /// Keeps the front and says how it was found; then works out what goes with it, unless `stop` is set, and keeps that
-    /// too. A part that fails is left out, with a warning: the front stands.
+    /// Writes the front first. Then computes the other files and writes them too, unless `stop` is set. If one of
+    /// these files cannot be made, it is left out with a warning, and the front stays.
     ///
     /// # Errors
-    /// The front cannot be written, or the user stops what follows it.
+    /// The front cannot be written, or the user stops the work on the other files.
     pub(super) fn keep(
         &self,
         asked: &SupplementArgs,
@@ -163,7 +175,7 @@ impl Finished<'_> {
         first.push((RUN.into(), pretty(&self.run_json(&summary, &[], &[NOTHING_ELSE.to_string()]))));
         let mut left_out = keep(&first)?;
         let (mut files, mut supplements, mut beside) = (first, Vec::new(), Beside::default());
-        // who wants to stop gets the front at once and nothing that takes longer
+        // a user who wants to stop gets the front at once, and nothing that takes longer
         if !stop.load(Ordering::Relaxed) {
             let (problem, catalogs) = (self.problem, self.catalogs);
             let budgets =
@@ -199,10 +211,10 @@ impl Finished<'_> {
         })
     }
 
-    /// The supplements that were asked for, with their files.
+    /// Computes the supplements that the user asked for, such as near designs, and adds their files to `beside`.
     ///
     /// # Errors
-    /// The user stops it.
+    /// The user stopped the computation.
     fn supplements(
         &self,
         asked: &SupplementArgs,
@@ -221,7 +233,8 @@ impl Finished<'_> {
         Ok(supplements)
     }
 
-    /// Makes tables, picture, summary and page, and the facts of the run.
+    /// Makes the tables, the picture, the summary and the page, and adds them to `beside`. Returns the contents of
+    /// `run.json`.
     fn fill(&self, summary: &SummaryInput, supplements: &[Supplement], beside: &mut Beside) -> Value {
         for (file, of) in self.file_names().iter().zip(&self.outcome.by_material) {
             if !of.ties_listed {
@@ -242,12 +255,12 @@ impl Finished<'_> {
         self.run_json(summary, supplements, &beside.missing)
     }
 
-    /// The mass up to which the front is proved whole: the study's limit of mass, if no design within it is missing.
+    /// Mass up to which no design of the front is missing \[kg\]: the study's limit on mass, if the front is whole.
     fn proved_to_mass_kg(&self, facts: &SummaryFacts) -> Option<f64> {
         self.study.space.constraints.mass_max_kg.filter(|_| facts.is_whole())
     }
 
-    /// The state of the search at its end. An exhaustive search has visited every design.
+    /// The state of the search at its end. If the search was exhaustive, every design counts as visited.
     fn progress(&self, facts: &SummaryFacts) -> Progress {
         let sweep = &self.outcome.sweep;
         let visited = u64::try_from(sweep.designs_total).unwrap_or(u64::MAX);
@@ -259,7 +272,7 @@ impl Finished<'_> {
         }
     }
 
-    /// The study, its front, and the front of every material.
+    /// The files with the study, the front of all designs, and the front of every material.
     fn tables(&self, summary: &SummaryInput) -> Files {
         let mut files = vec![
             ("front.csv".to_string(), summary.overall.to_csv()),
@@ -270,12 +283,12 @@ impl Finished<'_> {
         files
     }
 
-    /// What stands for each material in the names of files.
+    /// A short name for each material, which is a part of the names of its files.
     fn file_names(&self) -> Vec<String> {
         file_names(self.outcome.by_material.iter().map(|of| of.name.as_str()))
     }
 
-    /// Fronts and facts; what a kilogram buys is worked out later.
+    /// The fronts and facts of the result. The stiffness budget is added later, because it takes longer.
     fn summary(&self) -> SummaryInput {
         let (study, sweep) = (self.study, &self.outcome.sweep);
         let cost = |name: &str| self.catalogs.materials.iter().find(|m| m.name == name)?.cost_eur_per_kg;
@@ -332,7 +345,7 @@ impl Finished<'_> {
         (!sentence.is_empty()).then(|| sentence.split_whitespace().collect::<Vec<_>>().join(" "))
     }
 
-    /// The study's effects. An effect that describes a test does not count, and says so.
+    /// The study's effects as JSON. An effect that describes a test is marked as one that does not count.
     fn effects(&self) -> Vec<Value> {
         let counted = |effect: &Effect| {
             let mut value = effect.to_json();
@@ -342,7 +355,8 @@ impl Finished<'_> {
         self.study.space.effects.iter().map(counted).collect()
     }
 
-    /// The page for a browser.
+    /// The page of the result for a browser. `picture` is the picture of the front, `sections` are those of the
+    /// supplements, and `run` is the content of `run.json`.
     fn page(&self, summary: &SummaryInput, picture: String, sections: Vec<PageSection>, run: &Value) -> Page {
         let mut page = study_page(self.study, self.problem, self.catalogs, summary);
         page.extras.extend(sections);
@@ -418,10 +432,10 @@ impl Finished<'_> {
     }
 }
 
-/// Facts that differ from run to run.
+/// Facts about the run that differ from run to run.
 const OF_A_RUN: [&str; 4] = ["elapsed s", "designs per s", "threads", "platform"];
 
-/// The facts of `run.json` that are a word or a number, for people.
+/// The facts of `run.json` that are a word or a number, as text for people.
 pub(super) fn facts_of(run: &Value) -> Vec<(String, String)> {
     let plain = |value: &Value| match value {
         Value::String(text) => Some(text.clone()),
@@ -440,8 +454,8 @@ pub(super) fn facts_of(run: &Value) -> Vec<(String, String)> {
         .collect()
 }
 
-/// The picture of the front: designs of mixed materials in grey, each material in colour, by its own front
-/// where the search found one.
+/// The picture of the front. Designs of mixed materials are grey, and each material has a colour. If the search found
+/// a front of the material, this front is drawn.
 fn picture(summary: &SummaryInput) -> String {
     let mixed = mixed_designs(&summary.overall);
     let pure: Vec<(String, FrontTable)> = single_materials(summary)
@@ -462,11 +476,11 @@ pub(super) fn pretty(value: &Value) -> Vec<u8> {
 }
 
 /// A count as a JSON number; above 2^53 it is rounded.
-fn count(n: u128) -> Value {
+pub(super) fn count(n: u128) -> Value {
     u64::try_from(n).map_or_else(|_| json!(n as f64), |n| json!(n))
 }
 
-/// A hash of every rating of every part, to recognize results that were made with other catalogs.
+/// A hash of every rating of every part. It recognizes results that were made with other catalogs.
 pub(super) fn catalogs_hash(catalogs: &Catalogs) -> String {
     blake3::hash(format!("{catalogs:?}").as_bytes()).to_hex().to_string()
 }

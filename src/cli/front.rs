@@ -3,20 +3,26 @@
 use super::design::open_results;
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
+use super::finished::catalogs_hash;
+use super::log::Log;
+use super::manifest::hash;
+use super::result_folder::{settle, unfinished_in};
 use super::search::stopped_by_signal;
 use super::time_limit::time_limit;
+use super::unfinished::Unfinished;
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::report::certificate::gap_words;
 use crate::report::front_table::FrontTable;
 use crate::report::words::{TERMINAL, wrap};
-use crate::study::check::{Claim, Completeness, check_front};
+use crate::study::check::{Claim, Completeness, resume_check};
 use crate::study::read::read_study;
 use crate::study::ties;
 use clap::{Args, Subcommand};
+use serde_json::json;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Works on a finished front.
 #[derive(Debug, Args)]
@@ -34,7 +40,7 @@ enum FrontVerb {
     /// bounds of its own. It shares with the search the reader of studies and catalogs, and the full model that
     /// judges a single design (docs/exact.md). The last line says whether these bounds sufficed, or why the exact
     /// search's were used. For a front with a gap the gap is checked: for every design some row must be
-    /// worse by no more than the gap in each objective.
+    /// worse by no more than the gap in each objective. A check that was stopped goes on with the same command.
     Check(CheckArgs),
 }
 
@@ -42,13 +48,14 @@ enum FrontVerb {
 struct CheckArgs {
     /// Result folder of a study
     results: PathBuf,
-    /// Stop looking for missing designs after so many seconds, and say so
+    /// Stop looking for missing designs after so many seconds, and say so. The time of a check that was stopped and goes on
+    /// counts too
     #[arg(long, value_name = "SECONDS", value_parser = time_limit)]
     time_limit: Option<Duration>,
 }
 
 /// Executes the verb.
-pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<Answer, Failure> {
+pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs, log: Log) -> Result<Answer, Failure> {
     let FrontVerb::Check(args) = &args.verb;
     let results = open_results(&args.results, catalogs)?;
     let run = &results.run;
@@ -62,8 +69,8 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<Answer, Failu
         )));
     }
     let front = args.results.join("front.csv");
-    let table = FrontTable::parse(&front, &results.with_todays_ids("front.csv")?)
-        .map_err(|e| Failure::File(e.to_string()))?;
+    let front_csv = results.with_todays_ids("front.csv")?;
+    let table = FrontTable::parse(&front, &front_csv).map_err(|e| Failure::File(e.to_string()))?;
     let mut faults = Vec::new();
     if run["study_hash"].as_str() != Some(blake3::hash(text.as_bytes()).to_hex().as_str()) {
         faults.push("study.json is not the study that was run".to_string());
@@ -81,17 +88,28 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs) -> Result<Answer, Failu
     };
     let ties_listed = run["ties_listed"].as_bool().unwrap_or(true);
     let stop = stopped_by_signal();
-    let deadline = args.time_limit.map(|limit| Instant::now() + limit);
     // a file that is not there has none
     let ties_csv = match results.is_there(ties::FILE) {
         true => results.with_todays_ids(ties::FILE)?,
         false => Vec::new(),
     };
     let claim = Claim { table: &table, gap, ties_listed, ties_csv: &ties_csv };
-    let check = check_front(&study, catalogs, &claim, stop, deadline);
+    let path = unfinished_in(&args.results, "check");
+    let search = json!({
+        "study_hash": hash(text.as_bytes()),
+        "catalogs_hash": catalogs_hash(catalogs),
+        "tool_version": env!("CARGO_PKG_VERSION"),
+        "flags": {"check": hash(&[&front_csv[..], claim.ties_csv].concat()), "gap": gap, "ties_listed": ties_listed},
+    });
+    let unfinished = Unfinished::open_or_begin(&path, &search, log)?;
+    let deadline = args.time_limit.map(|limit| unfinished.started() + limit);
+    let check = resume_check(&study, catalogs, &claim, (stop, deadline), Some(unfinished.resume()))
+        .map_err(|_| unfinished.damaged())?;
     if stop.load(Ordering::Relaxed) {
-        return Err(Failure::Interrupted("stopped before the check was done".into()));
+        let words = "stopped before the check was done; the same command goes on from there";
+        return Err(Failure::Interrupted(words.into()));
     }
+    settle(&path)?;
     faults.extend(check.faults);
     let completeness = match &check.completeness {
         Ok(Completeness { boxes, gap, by_exact_search }) => {

@@ -1,4 +1,4 @@
-//! `armwright import`: a robot of a URDF file as an arm file.
+//! `armwright import`: makes an arm file of a robot that a URDF file describes.
 
 use super::failure::Failure;
 use super::finished::pretty;
@@ -32,7 +32,7 @@ pub(crate) struct ImportArgs {
     out: PathBuf,
 }
 
-/// Executes the verb.
+/// Runs `armwright import`: writes the files, and returns the text to print.
 pub(super) fn run(args: &ImportArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let file = args.file.display().to_string();
     let text = fs_err::read_to_string(&args.file).map_err(|e| Failure::File(e.to_string()))?;

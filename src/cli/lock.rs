@@ -1,22 +1,24 @@
-//! One writer for a folder of results: a lock that the system takes back when its process ends, however it ends.
+//! A lock that lets only one process write a folder of results. The operating system releases the lock when the
+//! process ends, however it ends.
 
 use super::failure::Failure;
 use std::fs::{File, TryLockError};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// The lock of a folder, held until it is dropped.
+/// The lock of a folder. It is released when this value is dropped.
 pub(super) struct Lock {
     path: PathBuf,
-    // closed, and with it unlocked, when dropped
+    // dropping the value closes the file, which releases the lock
     file: File,
 }
 
 impl Lock {
-    /// Takes the lock `path` of a folder. A lock that a dead process left is taken over.
+    /// Takes the lock of `folder`, which is the lock file at `path`. A lock file that a dead process left behind is
+    /// taken over.
     ///
     /// # Errors
-    /// Another process holds it, or the file cannot be written.
+    /// Another process has the lock, or the file cannot be written.
     pub(super) fn take(path: &Path, folder: &Path) -> Result<Self, Failure> {
         let failure = |e: &std::io::Error| Failure::file(path, "write", e);
         loop {
@@ -30,10 +32,11 @@ impl Lock {
             match file.try_lock() {
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => return Err(held(path, folder)),
-                // the file system has no locks: work goes on as without them
+                // this file system has no locks, so the work continues without one
                 Err(TryLockError::Error(_)) => {}
             }
-            // the holder before may have removed the file between opening and locking it
+            // the process that had the lock may have removed the file after it was opened here and before it was
+            // locked
             if !is_the_file_at(&file, path) {
                 continue;
             }
@@ -47,7 +50,7 @@ impl Lock {
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // removed while it is held: nobody else can have it now
+        // the file is removed while it is still locked, so that no other process can have locked it
         let _ = std::fs::remove_file(&self.path);
     }
 }

@@ -1,5 +1,5 @@
-//! What the program says on standard error while it works, in the form that was asked for. A standard error that is closed or
-//! full never ends the work.
+//! Messages and progress on standard error, in the form that the user asks for. If standard error is closed or full,
+//! the work continues all the same.
 
 use super::failure::Failure;
 use super::write::say;
@@ -16,7 +16,7 @@ pub(super) enum LogForm {
     Json,
 }
 
-/// Where messages and progress go.
+/// In which form messages and progress are printed, and whether they are printed at all.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Log {
     form: LogForm,
@@ -24,24 +24,25 @@ pub struct Log {
 }
 
 impl Default for Log {
-    /// Sentences, none left out.
+    /// A log that prints all messages as sentences.
     fn default() -> Self {
         Self::new(LogForm::Text, false)
     }
 }
 
 impl Log {
-    /// A log in a form. A quiet one has errors alone.
+    /// A log in the given form. If `is_quiet`, it prints errors only.
     pub(super) fn new(form: LogForm, is_quiet: bool) -> Self {
         Self { form, is_quiet }
     }
 
-    /// Whether progress is a bar that is drawn anew, which only a terminal can do.
+    /// Whether progress is shown as a bar that is redrawn in place. Only a terminal can do this.
     pub(super) fn draws(self) -> bool {
         self.form == LogForm::Text && !self.is_quiet && std::io::stderr().is_terminal()
     }
 
-    /// Says how far a search is: a line of words, or an event with its numbers.
+    /// Prints how far a search is: the text `words`, or a JSON object with the name `event` and `numbers`, as the form
+    /// of the log says.
     pub(super) fn progress(self, event: &str, words: &str, numbers: Value) {
         if self.is_quiet {
             return;
@@ -58,12 +59,12 @@ impl Log {
         }
     }
 
-    /// Says something that a user should know.
+    /// Prints a message for the user.
     pub(super) fn note(self, words: &str) {
         self.progress("note", words.trim_end(), json!({"message": words.trim_end()}));
     }
 
-    /// Says why a verb failed, however quiet the log is.
+    /// Prints why a verb failed, even if the log is quiet.
     pub fn error(self, failure: &Failure) {
         match self.form {
             LogForm::Text => say(&format!("error: {failure}\n")),

@@ -1,38 +1,40 @@
-//! The list of the files of a result, with a hash of each: the key `files` of `run.json` or `verdict.json`, which is
-//! written after all others.
+//! The manifest of a result: a list of its files with a hash of each. It is the key `files` of `run.json`,
+//! `verdict.json` or `shard.json`. This file is written after all others, so that its presence shows that the result
+//! is complete.
 
 use super::failure::Failure;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::path::{Component, Path};
 
-/// The file that lists the files of a study's result.
+/// Name of the file that lists the files of a study's result.
 pub(super) const RUN: &str = "run.json";
-/// The file that lists the files of a campaign's result.
+/// Name of the file that lists the files of a campaign's result.
 pub(super) const VERDICT: &str = "verdict.json";
-/// The file that lists the files of a shard of a search.
+/// Name of the file that lists the files of a shard of a search.
 pub(super) const SHARD: &str = "shard.json";
-/// Every such file.
+/// Names of all files that may have a manifest.
 pub(super) const MANIFESTS: [&str; 3] = [RUN, VERDICT, SHARD];
 
-/// Files with their names relative to a folder of results.
+/// Names and contents of files. The names are relative to a folder of results.
 pub(super) type Files = Vec<(String, Vec<u8>)>;
 
-/// Which files of a folder belong to a result.
+/// The files in a folder that belong to an earlier result.
 pub(super) enum Earlier {
-    /// There is no result.
+    /// There is no earlier result.
     Nothing,
-    /// A result of a version that listed no files: whatever has the name of a result may be replaced.
+    /// The result is from an early version that listed no files. Every file with the name of a result file may be
+    /// replaced.
     Unlisted,
-    /// These files, with their hashes.
+    /// The listed files, each with its hash.
     Listed(BTreeMap<String, String>),
 }
 
 impl Earlier {
-    /// The result in a folder whose files are listed in the file `manifest`.
+    /// The earlier result in a folder. `manifest` is the name of the file that lists its files.
     ///
     /// # Errors
-    /// There is a file of that name that cannot be read.
+    /// The manifest exists, but cannot be read.
     pub(super) fn read(folder: &Path, manifest: &str) -> Result<Self, Failure> {
         let path = folder.join(manifest);
         let text = match std::fs::read_to_string(&path) {
@@ -49,7 +51,8 @@ impl Earlier {
         })
     }
 
-    /// Whether a file of this name belongs to the result.
+    /// Whether a file of this name belongs to the earlier result. `manifest` is the name of the file that lists the
+    /// others, and belongs to the result as well.
     pub(super) fn has(&self, name: &str, manifest: &str) -> bool {
         match self {
             Earlier::Nothing => false,
@@ -58,7 +61,7 @@ impl Earlier {
         }
     }
 
-    /// The listed names.
+    /// The names of the files of the earlier result that are listed.
     pub(super) fn names(&self) -> impl Iterator<Item = &String> {
         let listed = match self {
             Earlier::Listed(files) => Some(files.keys()),
@@ -68,27 +71,28 @@ impl Earlier {
     }
 }
 
-/// The listed files with their hashes; `None` if there is no list. A name that leads out of the folder is left out.
+/// The files that `manifest` lists, with their hashes; `None` if it has no list. Names that lead out of the folder are
+/// left out, so that no file outside of it is touched.
 pub(super) fn listed(manifest: &Value) -> Option<BTreeMap<String, String>> {
     let files = manifest.get("files")?.as_object()?;
     let listed = files.iter().filter(|(name, _)| stays_inside(name));
     Some(listed.map(|(name, hash)| (name.clone(), hash.as_str().unwrap_or_default().to_string())).collect())
 }
 
-/// Whether a name stays inside the folder that it is relative to.
+/// Whether a relative name stays inside its folder.
 fn stays_inside(name: &str) -> bool {
     !name.is_empty() && Path::new(name).components().all(|part| matches!(part, Component::Normal(_)))
 }
 
-/// The hash by which a file is recognized.
+/// A hash of the contents of a file, by which the file is recognized.
 pub(super) fn hash(bytes: &[u8]) -> String {
     blake3::hash(bytes).to_hex().to_string()
 }
 
-/// The files with the list of them in the file `manifest`, which comes last.
+/// The files of a result, with the list of their hashes added to the file named `manifest`, which comes last.
 ///
 /// # Errors
-/// The manifest is not among the files, or is no JSON object.
+/// The manifest is not among the files, or it is not a JSON object.
 pub(super) fn sealed(mut files: Files, manifest: &str) -> Result<Files, Failure> {
     let internal = || Failure::Internal(format!("{manifest} cannot list the files of the result"));
     let at = files.iter().position(|(name, _)| name == manifest).ok_or_else(internal)?;
@@ -98,7 +102,7 @@ pub(super) fn sealed(mut files: Files, manifest: &str) -> Result<Files, Failure>
         files.iter().map(|(name, bytes)| (name.clone(), Value::String(hash(bytes)))).collect();
     value.as_object_mut().ok_or_else(internal)?.insert("files".into(), Value::Object(list));
     let mut text = serde_json::to_vec_pretty(&value).map_err(|_| internal())?;
-    // a file that ended in a line break still does
+    // if the manifest ended in a line break before, it does so again
     text.extend(bytes.last().filter(|last| **last == b'\n'));
     files.push((name, text));
     Ok(files)

@@ -1,23 +1,29 @@
-//! `armwright merge` and `armwright status`: the shards of a search, whether they cover it, and their front.
+//! `armwright merge` and `armwright status`: join the shards of a search into its front, and list the shards that are
+//! there.
 
 use super::asked::Asked;
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
-use super::finished::{Finished, catalogs_hash};
+use super::finished::{Finished, FoundExactly, Written, catalogs_hash, count};
 use super::manifest::{RUN, SHARD};
 use super::result_folder::ResultFolder;
 use super::run::planned;
 use super::search::stopped_by_signal;
-use super::shard::{CANDIDATES, COMMON, STUDY, folder_of, read_manifest};
+use super::shard_files::{
+    CANDIDATES, COMMON, STUDY, folder_of, read_candidates_of, read_manifest, shards_in_all,
+};
 use super::supplements::SupplementArgs;
 use crate::catalog::Catalogs;
+use crate::exact::outcome::FoundInShard;
 use crate::input::json::Document;
 use crate::report::file_names::file_name;
 use crate::search::sweep::{Shard, Status};
 use crate::space::problem::ArmProblem;
+use crate::study::definition::Study;
 use crate::study::diagnose::why_infeasible;
 use crate::study::effects::left_out;
-use crate::study::outcome::judge_swept;
+use crate::study::exact_shards::joined_exactly;
+use crate::study::outcome::{ExactStudy, Extent, judge_swept};
 use crate::study::read::read_study;
 use crate::study::shards::{Swept, gaps, joined, read_candidates};
 use clap::Args;
@@ -52,22 +58,29 @@ pub(crate) struct StatusArgs {
     shards: Vec<PathBuf>,
 }
 
-/// A shard that was found.
+/// A shard that was found in a folder.
 struct Found {
+    /// Folder of the shard.
     dir: PathBuf,
+    /// Contents of `shard.json`.
     manifest: Value,
+    /// Number of the shard, and number of all shards.
     shard: Shard,
-    range: Range<u128>,
+    /// Numbers of the designs that it visited; `None` of an exact search.
+    range: Option<Range<u128>>,
 }
 
-/// All shards of one search, by their numbers.
+/// All shards of one search that were found.
 struct Shards {
+    /// The shards by their numbers, counted from 1.
     by_number: BTreeMap<u32, Found>,
+    /// Number of shards into which the search is divided.
     of: u32,
+    /// Number of designs in the space.
     designs_total: u128,
 }
 
-/// Executes `merge`.
+/// Runs `armwright merge`: writes the result, and returns the text to print.
 pub(super) fn merge(
     args: &MergeArgs,
     catalogs: &Catalogs,
@@ -83,19 +96,10 @@ pub(super) fn merge(
             missing.join("\n  ")
         )));
     }
-    shards.refuse_gaps()?;
-    let (asked, swept, elapsed_s) = shards.contents(catalogs)?;
-    let study = &asked.study;
-    let stop = stopped_by_signal();
-    let problem = ArmProblem::new(&study.space, catalogs);
-    let outcome = judge_swept(study, &problem, joined(swept, shards.designs_total));
-    if outcome.sweep.status == Status::Infeasible {
-        return Err(Failure::Infeasible(why_infeasible(study, catalogs, stop, None)));
-    }
-    let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(file_name(&study.name)));
-    let finished = Finished::visit(&asked, (&problem, &outcome), elapsed_s, (catalogs, overlay), &dir);
-    let folder = ResultFolder::open(&dir, RUN, &planned(study))?;
-    let written = finished.keep(&args.supplements, stop, &|files| folder.publish(files))?;
+    let (asked, elapsed_s) = shards.asked(catalogs)?;
+    let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(file_name(&asked.study.name)));
+    let joining = Joining { asked: &asked, elapsed_s, catalogs, overlay, dir: &dir, args };
+    let written = if shards.is_exact() { joining.exact(&shards)? } else { joining.exhaustive(&shards)? };
     let text = format!(
         "{}\n{} shards joined; written to {}\n{}",
         written.terminal,
@@ -106,15 +110,84 @@ pub(super) fn merge(
     Ok(Answer { text, exit: Exit::Done })
 }
 
+/// What shards are joined with.
+struct Joining<'a> {
+    asked: &'a Asked,
+    /// Time of all shards \[s\].
+    elapsed_s: f64,
+    catalogs: &'a Catalogs,
+    overlay: Option<&'a Path>,
+    dir: &'a Path,
+    args: &'a MergeArgs,
+}
+
+impl Joining<'_> {
+    /// Joins shards of a visit to every design.
+    fn exhaustive(&self, shards: &Shards) -> Result<Written, Failure> {
+        let Self { asked, elapsed_s, catalogs, overlay, dir, .. } = *self;
+        let study = &asked.study;
+        shards.refuse_gaps()?;
+        let swept = shards.swept(study)?;
+        let problem = ArmProblem::new(&study.space, catalogs);
+        let outcome = judge_swept(study, &problem, joined(swept, shards.designs_total));
+        self.refuse_nothing(outcome.sweep.status)?;
+        self.keep(&Finished::visit(asked, (&problem, &outcome), elapsed_s, (catalogs, overlay), dir))
+    }
+
+    /// Joins shards of an exact search.
+    fn exact(&self, shards: &Shards) -> Result<Written, Failure> {
+        let Self { asked: Asked { study, text, corrections }, elapsed_s, catalogs, overlay, dir, args } =
+            *self;
+        let extent = Extent { deadline: None, gap: shards.gap(), near: args.supplements.slack() };
+        let found = shards.found(study)?;
+        let found = joined_exactly(study, catalogs, &found, stopped_by_signal(), extent)
+            .map_err(|why| Failure::Check(format!("the shards do not cover the designs once: {why}")))?;
+        self.refuse_nothing(found.outcome.sweep.status)?;
+        let ExactStudy { study: part, outcome, boxes, gap, near, ties_listed } = &found;
+        self.keep(&Finished {
+            study: part,
+            text,
+            corrections,
+            problem: &ArmProblem::new(&part.space, catalogs),
+            whole: &study.space,
+            outcome,
+            near: near.as_ref(),
+            exact: Some(FoundExactly { boxes: *boxes, gap: *gap, ties_listed: *ties_listed }),
+            elapsed_s,
+            overlay,
+            catalogs,
+            dir,
+        })
+    }
+
+    /// Says why no design meets the study, if that is so.
+    fn refuse_nothing(&self, status: Status) -> Result<(), Failure> {
+        let why = || why_infeasible(&self.asked.study, self.catalogs, stopped_by_signal(), None);
+        if status == Status::Infeasible { Err(Failure::Infeasible(why())) } else { Ok(()) }
+    }
+
+    fn keep(&self, finished: &Finished) -> Result<Written, Failure> {
+        let folder = ResultFolder::open(self.dir, RUN, &planned(&self.asked.study))?;
+        finished.keep(&self.args.supplements, stopped_by_signal(), &|files| folder.publish(files))
+    }
+}
+
 /// Executes `status`.
 pub(super) fn status(args: &StatusArgs) -> Result<String, Failure> {
     let shards = Shards::read(&args.shards)?;
-    let mut out =
-        format!("{} of {} shards of {} designs\n", shards.by_number.len(), shards.of, shards.designs_total);
+    let mut out = format!(
+        "{} of {} shards of {} designs\n",
+        shards.by_number.len(),
+        shards.of,
+        count(shards.designs_total)
+    );
     for found in shards.by_number.values() {
-        let Range { start, end } = found.range;
+        let part = match &found.range {
+            Some(Range { start, end }) => format!("designs {start} to {end}"),
+            None => format!("{} boxes", found.manifest["boxes"]),
+        };
         out.push_str(&format!(
-            "{:>6}/{}  designs {start} to {end}, {} evaluated, {:.1} s  {}\n",
+            "{:>6}/{}  {part}, {} evaluated, {:.1} s  {}\n",
             found.shard.number,
             found.shard.of,
             found.manifest["designs_evaluated"],
@@ -130,24 +203,14 @@ pub(super) fn status(args: &StatusArgs) -> Result<String, Failure> {
 }
 
 impl Shards {
-    /// Finds the shards in some folders and checks that they belong together.
+    /// Finds the shards in some folders, and checks that they belong to one search.
     ///
     /// # Errors
-    /// There are none, one is damaged, or they are of different searches.
+    /// There are no shards, one is damaged, or they belong to different searches.
     fn read(folders: &[PathBuf]) -> Result<Self, Failure> {
-        let mut all = Vec::new();
-        for folder in folders {
-            for dir in shards_in(folder, DEEPEST)? {
-                all.push(Found::read(dir)?);
-            }
-        }
-        let Some(first) = all.first() else {
-            let names: Vec<String> = folders.iter().map(|folder| folder.display().to_string()).collect();
-            return Err(Failure::File(format!(
-                "{} has no shard, which is a folder with {SHARD}; `armwright run STUDY --shard 1/4` makes one",
-                names.join(", ")
-            )));
-        };
+        let all: Vec<Found> =
+            shards_in_all(folders)?.into_iter().map(Found::read).collect::<Result<_, _>>()?;
+        let first = all.first().ok_or_else(|| Failure::Internal("no shard".into()))?;
         let faults: Vec<String> = all.iter().flat_map(|other| first.unlike(other)).collect();
         if !faults.is_empty() {
             return Err(Failure::Check(format!(
@@ -155,23 +218,23 @@ impl Shards {
                 faults.join("\n  ")
             )));
         }
-        let designs_total = first.manifest["designs_total"].as_u64().unwrap_or_default().into();
+        let designs_total = first.manifest["designs_total"].as_f64().unwrap_or_default() as u128;
         let of = first.shard.of;
-        // the same shard twice is one; whether both are the same was checked
+        // if two folders have the same shard, one of them is used; they were compared above
         let by_number = all.into_iter().map(|found| (found.shard.number, found)).collect();
         Ok(Self { by_number, of, designs_total })
     }
 
-    /// The commands that make the shards that are missing.
+    /// The commands that compute the missing shards.
     fn missing(&self) -> Vec<String> {
         let Some(like) = self.by_number.values().next() else { return Vec::new() };
         let numbers = (1..=self.of).filter(|number| !self.by_number.contains_key(number));
         numbers.map(|number| like.command_of(number)).collect()
     }
 
-    /// Checks that the ranges cover every design once.
+    /// Fails unless the shards cover every design exactly once.
     fn refuse_gaps(&self) -> Result<(), Failure> {
-        let ranges = self.by_number.values().map(|found| found.range.clone()).collect();
+        let ranges = self.by_number.values().filter_map(|found| found.range.clone()).collect();
         match gaps(ranges, self.designs_total) {
             (missing, None) if missing.is_empty() => Ok(()),
             (missing, shared) => Err(Failure::Check(format!(
@@ -181,40 +244,39 @@ impl Shards {
         }
     }
 
-    /// The study, what each shard found, and the time of all \[s\].
-    fn contents(&self, catalogs: &Catalogs) -> Result<(Asked, Vec<Swept>, f64), Failure> {
-        let mut asked: Option<Asked> = None;
-        let (mut swept, mut elapsed_s) = (Vec::new(), 0.0);
-        for found in self.by_number.values() {
-            if asked.is_none() {
-                asked = Some(found.study(catalogs)?);
-            }
-            let materials = asked.as_ref().map_or(0, |asked| asked.study.space.material_names().len());
-            swept.push(found.swept(materials)?);
-            elapsed_s += found.manifest["elapsed_s"].as_f64().unwrap_or_default();
-        }
-        let asked = asked.ok_or_else(|| Failure::Internal("no shard".into()))?;
-        Ok((asked, swept, elapsed_s))
+    /// The study, and the time of all shards \[s\].
+    fn asked(&self, catalogs: &Catalogs) -> Result<(Asked, f64), Failure> {
+        let first = self.by_number.values().next().ok_or_else(|| Failure::Internal("no shard".into()))?;
+        let elapsed_s = |found: &Found| found.manifest["elapsed_s"].as_f64().unwrap_or_default();
+        Ok((first.study(catalogs)?, self.by_number.values().map(elapsed_s).sum()))
     }
-}
 
-/// Folders are searched for shards to this depth.
-const DEEPEST: usize = 3;
+    /// What each shard of a visit found.
+    fn swept(&self, study: &Study) -> Result<Vec<Swept>, Failure> {
+        let materials = study.space.material_names().len();
+        self.by_number.values().map(|found| found.swept(materials)).collect()
+    }
 
-/// The folders of shards in a folder, itself among them, in the order of their names.
-fn shards_in(folder: &Path, depth: usize) -> Result<Vec<PathBuf>, Failure> {
-    if folder.join(SHARD).is_file() {
-        return Ok(vec![folder.to_path_buf()]);
+    /// What each shard of an exact search found, front by front.
+    fn found(&self, study: &Study) -> Result<Vec<Vec<FoundInShard>>, Failure> {
+        let read = |found: &Found| read_candidates_of(&found.dir, &found.manifest, study);
+        self.by_number.values().map(read).collect()
     }
-    let entries = fs_err::read_dir(folder).map_err(|e| Failure::File(e.to_string()))?;
-    let mut inside: Vec<PathBuf> =
-        entries.flatten().map(|entry| entry.path()).filter(|p| p.is_dir()).collect();
-    inside.sort();
-    let mut out = Vec::new();
-    for folder in inside.iter().filter(|_| depth > 0) {
-        out.extend(shards_in(folder, depth - 1)?);
+
+    /// What the flags of all shards say.
+    fn flag(&self, key: &str) -> &Value {
+        self.by_number.values().next().map_or(&Value::Null, |found| &found.manifest["flags"][key])
     }
-    Ok(out)
+
+    /// Whether the shards are of an exact search.
+    fn is_exact(&self) -> bool {
+        self.flag("search") == "exact"
+    }
+
+    /// The gap to which an exact search went.
+    fn gap(&self) -> f64 {
+        self.flag("gap").as_f64().unwrap_or_default()
+    }
 }
 
 impl Found {
@@ -229,11 +291,12 @@ impl Found {
         });
         let range = pair("range").map(|[start, end]| u128::from(start)..u128::from(end));
         let fault = || Failure::File(format!("{}: no shard or no range", dir.join(SHARD).display()));
-        let (shard, range) = shard.zip(range).ok_or_else(fault)?;
+        let shard = shard.filter(|_| range.is_some() || manifest["fronts"].is_array()).ok_or_else(fault)?;
         Ok(Self { dir, manifest, shard, range })
     }
 
-    /// What tells another shard from one of the same search, in words.
+    /// Differences between this shard and `other` that show that they belong to different searches, in words. Empty if
+    /// both are of the same search.
     fn unlike(&self, other: &Self) -> Vec<String> {
         let (here, there) = (self.dir.display(), other.dir.display());
         let differs = |key: &&&str| self.manifest[**key] != other.manifest[**key];
@@ -253,7 +316,7 @@ impl Found {
         out
     }
 
-    /// The command that makes another shard of the search.
+    /// The command that computes the shard with this number in the same search as this one.
     fn command_of(&self, number: u32) -> String {
         let words = self.manifest["command"].as_array().into_iter().flatten().filter_map(Value::as_str);
         let words: Vec<String> = words.map(shell_word).collect();
@@ -286,7 +349,7 @@ impl Found {
     }
 }
 
-/// A word as a POSIX shell reads it.
+/// A word as it must be written in a POSIX shell to be read unchanged: in quotes if it has special characters.
 pub(super) fn shell_word(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+%@".contains(c);
     match !word.is_empty() && word.chars().all(is_plain) {

@@ -1,5 +1,5 @@
-//! The command line: one file a verb. A verb returns the text it prints; [`print()`] is the one place
-//! that writes to standard output.
+//! The command line: each verb has a file of its own. A verb returns the text to print. Only [`print()`] writes to
+//! standard output.
 
 pub(crate) mod analyze;
 pub(crate) mod asked;
@@ -26,7 +26,9 @@ pub(crate) mod log;
 pub(crate) mod manifest;
 pub(crate) mod merge;
 pub(crate) mod new;
-pub(crate) mod predict;
+pub(crate) mod output_keys;
+mod pose_flags;
+mod predict;
 pub(crate) mod progress;
 pub(crate) mod reconcile;
 pub(crate) mod rerun;
@@ -36,6 +38,7 @@ pub(crate) mod run;
 pub(crate) mod schema;
 pub(crate) mod search;
 pub(crate) mod shard;
+mod shard_files;
 pub(crate) mod shell;
 pub(crate) mod size;
 pub(crate) mod slurm;

@@ -1,4 +1,4 @@
-//! `armwright new`: starts a folder to be filled in.
+//! `armwright new`: starts a folder whose files the user then fills in.
 
 use super::failure::Failure;
 use super::starter_files::{ARM, PAGE, PARTS, STUDY, filled};
@@ -56,10 +56,10 @@ struct CampaignArgs {
     out: PathBuf,
 }
 
-/// Writes the folder, and says what to do next.
+/// Writes the files of a new study, arm, catalog folder or campaign, and returns a text that says what to do next.
 ///
 /// # Errors
-/// All faults of the arm file, a folder that has one of the files, or one that cannot be written.
+/// The arm file has faults, the folder already has one of the files, or a file cannot be written.
 pub(crate) fn run(args: &NewArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     match &args.what {
         What::Study(args) => start(STUDY, &args.out, "armwright run", "study.json"),
@@ -69,7 +69,7 @@ pub(crate) fn run(args: &NewArgs, catalogs: &Catalogs) -> Result<String, Failure
     }
 }
 
-/// Writes the files of a starter.
+/// Writes the files of a new study, arm or catalog folder.
 fn start(
     texts: &'static [(&'static str, &'static str)],
     out: &Path,
@@ -99,7 +99,7 @@ fn campaign(args: &CampaignArgs, catalogs: &Catalogs) -> Result<String, Failure>
     ))
 }
 
-/// Writes files, none of which is there.
+/// Writes files into a folder. Fails if one of them exists already.
 fn write_new(out: &Path, files: &[(String, Vec<u8>)], inputs: &[&Path]) -> Result<(), Failure> {
     match files.iter().find(|(name, _)| out.join(name).exists()) {
         Some((name, _)) => {
@@ -110,7 +110,7 @@ fn write_new(out: &Path, files: &[(String, Vec<u8>)], inputs: &[&Path]) -> Resul
     }
 }
 
-/// The name of what is started: that of its folder.
+/// The name of the new study, arm or campaign: the name of its folder.
 fn name_of(folder: &Path) -> String {
     folder.file_name().map_or("new".into(), |name| name.to_string_lossy().into_owned())
 }

@@ -1,4 +1,4 @@
-//! `armwright predict`: adds the model's value to every reading.
+//! `armwright predict`: adds the value that the model predicts to every reading.
 
 use super::failure::Failure;
 use super::result_folder::complete;
@@ -32,17 +32,18 @@ pub(crate) struct PredictArgs {
     pub out: Option<PathBuf>,
 }
 
-/// The readings with the columns of the model, or the name of the file they were written to.
+/// Runs `armwright predict`. Returns the readings with the columns of the model, or the name of the file to which
+/// they were written.
 ///
 /// # Errors
-/// All faults of the input files, or a file that cannot be written.
+/// The input files have faults, or a file cannot be written.
 pub(crate) fn run(args: &PredictArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     complete(&folder_of(&args.arm))?;
     let files = Files { arm: &args.arm, readings: &args.readings, campaign: &args.campaign };
     let found = predict_files(&files, catalogs)?;
     let remark = found.remark.map_or(String::new(), |remark| format!("{remark}.\n"));
     let Some(out) = &args.out else {
-        // the readings are the output; what is said about them must not be among them
+        // the readings are the output, so the remark must go elsewhere: to standard error
         say(&remark);
         return Ok(found.csv);
     };

@@ -1,5 +1,5 @@
-//! What is shown while a search runs: a bar on a terminal, a plain line every ten seconds otherwise, and the record that
-//! `--progress FILE` asks for.
+//! What is shown while a search runs: a bar on a terminal, or else a line of text every ten seconds. Also the file in
+//! which `--progress FILE` records the progress.
 
 use super::failure::Failure;
 use super::log::Log;
@@ -13,24 +13,28 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// Time between two looks at a search.
+/// Time between two looks at the state of a search.
 const LOOK_EVERY: Duration = Duration::from_millis(50);
-/// Time between two plain lines.
+/// Time between two lines of text.
 const LINE_EVERY: Duration = Duration::from_secs(10);
-/// Time between two lines of a record, unless the gap falls in between.
+/// Time between two lines of the record. A line is added earlier if the optimality gap changes.
 const RECORD_EVERY: Duration = Duration::from_secs(1);
 
-/// The state of a search at a moment. What a method of search does not know while it runs is `None`.
+/// The state of a search at one moment. A number is `None` if the search does not know it while it runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Progress {
+    /// Number of designs visited so far; of an exact search, number of designs evaluated so far.
     pub designs: u64,
+    /// Optimality gap proved so far, as a fraction.
     pub gap: Option<f64>,
+    /// Number of designs on the front so far.
     pub front_size: Option<u64>,
+    /// Number of boxes that are not yet decided.
     pub boxes_open: Option<u64>,
 }
 
 impl Progress {
-    /// Of an exhaustive search, which knows its front at its end alone.
+    /// The state of an exhaustive search that has visited `designs` designs. Its front is known only at its end.
     fn visited(designs: u64) -> Self {
         Self { designs, gap: None, front_size: None, boxes_open: None }
     }
@@ -46,7 +50,8 @@ impl Progress {
 }
 
 impl Progress {
-    /// The keys of a record.
+    /// The state of the search as a JSON object, which is one line of the record. `elapsed_s` is the time since the
+    /// start of the search \[s\].
     fn to_json(self, elapsed_s: f64) -> Value {
         let Self { designs, gap, front_size, boxes_open } = self;
         json!({
@@ -55,14 +60,14 @@ impl Progress {
     }
 }
 
-/// The record of a search's progress: a JSON object a line.
+/// The file in which the progress of a search is recorded, one JSON object in each line.
 pub(super) struct Record {
     path: PathBuf,
     file: File,
 }
 
 impl Record {
-    /// An empty record. A file of that name is replaced.
+    /// Starts an empty record. An existing file of this name is replaced.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -71,20 +76,20 @@ impl Record {
         Ok(Self { path: path.to_path_buf(), file })
     }
 
-    /// Adds a line.
+    /// Adds a line with the state of the search after `elapsed_s` \[s\] to the record.
     ///
     /// # Errors
     /// The file cannot be written.
     pub(super) fn add(&self, elapsed_s: f64, progress: &Progress) -> Result<(), Failure> {
         let line = progress.to_json(elapsed_s);
-        // one call writes the whole line, so that a reader never sees a part of it
+        // the whole line is written in one call, so that a reader never sees an incomplete line
         (&self.file)
             .write_all(format!("{line}\n").as_bytes())
             .map_err(|e| Failure::file(&self.path, "write", &e))
     }
 }
 
-/// Watches a search from its start on.
+/// Shows and records the progress of a search from its start.
 pub(super) struct Watch<'r> {
     started: Instant,
     record: Option<&'r Record>,
@@ -96,7 +101,8 @@ impl<'r> Watch<'r> {
         Self { started, record, log }
     }
 
-    /// Looks at a search until it is finished. `see` gets the elapsed time.
+    /// Looks at a search again and again until `finished` is set. Each time, `see` is called with the elapsed time to
+    /// show the progress, and `now`, the state of the search, is added to the record if a line is due.
     fn look(&self, finished: &AtomicBool, now: impl Fn() -> Progress, mut see: impl FnMut(Duration)) {
         let (mut next, mut last_gap) = (Duration::ZERO, None);
         while !finished.load(Ordering::Relaxed) {
@@ -106,7 +112,8 @@ impl<'r> Watch<'r> {
                 let progress = now();
                 if elapsed >= next || progress.gap != last_gap {
                     (next, last_gap) = (elapsed + RECORD_EVERY, progress.gap);
-                    // a disk that is full now may not be later; the last line tells if it still is
+                    // a disk that is full now may have space later; if it has not, writing the last line fails and is
+                    // reported
                     let _ = record.add(elapsed.as_secs_f64(), &progress);
                 }
             }
@@ -114,7 +121,7 @@ impl<'r> Watch<'r> {
         }
     }
 
-    /// Shows how many designs are visited of how many.
+    /// Shows how many of `total` designs have been visited, until `finished` is set.
     pub(super) fn designs(&self, total: u128, visited: &(dyn Fn() -> u64 + Sync), finished: &AtomicBool) {
         let now = || Progress::visited(visited());
         if self.log.draws() {
@@ -137,7 +144,7 @@ impl<'r> Watch<'r> {
         say("searched", self.started.elapsed());
     }
 
-    /// Shows what an exact search knows.
+    /// Shows the state of an exact search (gap, front and boxes) until `finished` is set. `known` returns the state.
     pub(super) fn search(&self, known: &(dyn Fn() -> Known + Sync), finished: &AtomicBool) {
         let now = || Progress::known(&known());
         let line = |elapsed: Duration| search_line(&known(), elapsed);
@@ -155,12 +162,13 @@ impl<'r> Watch<'r> {
     }
 }
 
-/// Calls `say` every ten seconds.
+/// A function that calls `say` at most every ten seconds of elapsed time. It is itself called with the elapsed time.
 fn in_lines(say: impl Fn(Duration)) -> impl FnMut(Duration) {
     let mut next = LINE_EVERY;
     move |elapsed| {
         if elapsed >= next {
-            // not one after the other where a search goes on that an earlier process began
+            // a continued search starts with a large elapsed time; lines for the time before it must not all be
+            // printed at once
             next = elapsed + LINE_EVERY;
             say(elapsed);
         }

@@ -1,4 +1,5 @@
-//! `armwright reconcile`: where model and measurement disagree, what is missing, and what that changes.
+//! `armwright reconcile`: where model and measurements disagree, which physics is missing, and what that changes in a
+//! study.
 
 use super::beside::{Beside, another_stands, say_missing};
 use super::exit::{Answer, Exit};
@@ -52,11 +53,11 @@ pub(crate) struct ReconcileArgs {
     pub out: Option<PathBuf>,
 }
 
-/// Reads, reconciles and writes. A verdict of the same readings, arm, catalogs and version is kept as it is, so that a
-/// script over many campaigns can be run again after it was stopped.
+/// Reads a campaign, finds the verdict and writes it. If the folder already has a verdict from the same readings,
+/// arm, catalogs and version, it is used again. So a script over many campaigns can be repeated after it was stopped.
 ///
 /// # Errors
-/// All faults of the input files, or a file that cannot be written.
+/// The input files have faults, or a file cannot be written.
 pub(crate) fn run(
     args: &ReconcileArgs,
     catalogs: &Catalogs,
@@ -64,7 +65,7 @@ pub(crate) fn run(
     log: Log,
 ) -> Result<Answer, Failure> {
     match &args.study {
-        // a study that does not read, or a search that does not suit it, fails now and not after the fits
+        // a study that has faults or cannot be searched in this way fails at once, and not after the fits
         Some(study) => drop(args.how.check(&load_study(study, catalogs)?.0, catalogs)?),
         None if !args.how.is_default() => {
             return Err(Failure::Usage("--search and --time-limit are for the runs of --study".into()));
@@ -109,7 +110,8 @@ pub(crate) fn run(
     Ok(Answer { text, exit })
 }
 
-/// The text of a verdict in the folder, if it is of this campaign with these catalogs, and every file of it is there.
+/// The text of the verdict that the folder `out` has already. `None` unless the verdict is from this campaign with
+/// these catalogs and this version, and all of its files are unchanged.
 fn kept_before(out: &Path, campaign: &Campaign, hash_of_catalogs: &str) -> Option<String> {
     let verdict: Value = serde_json::from_slice(&std::fs::read(out.join(VERDICT)).ok()?).ok()?;
     let same = verdict["campaign_blake3"] == campaign.hash.as_str()
@@ -119,7 +121,7 @@ fn kept_before(out: &Path, campaign: &Campaign, hash_of_catalogs: &str) -> Optio
     let is_there = |(name, listed): (&String, &String)| {
         std::fs::read(out.join(name)).is_ok_and(|bytes| hash(&bytes) == *listed)
     };
-    // the page is written last
+    // the page is written last, so a verdict with a page is complete
     let is_whole = |files: &BTreeMap<String, String>| files.contains_key(PAGE) && files.iter().all(is_there);
     let files = listed(&verdict).filter(|files| same && is_whole(files))?;
     let text = files.contains_key(TEXT).then(|| std::fs::read_to_string(out.join(TEXT)).ok())??;
@@ -130,11 +132,12 @@ fn kept_before(out: &Path, campaign: &Campaign, hash_of_catalogs: &str) -> Optio
     ))
 }
 
-/// The files of the verdict in words, and for a browser.
+/// Name of the file with the verdict as text.
 const TEXT: &str = "verdict.txt";
+/// Name of the page for a browser.
 const PAGE: &str = "report.html";
 
-/// The files that will be written, as far as they are known before the fits.
+/// Names of the files that will be written, as far as they are known before the fits.
 fn planned(args: &ReconcileArgs, campaign: &Campaign, catalogs: &Catalogs) -> Result<Vec<String>, Failure> {
     let always = [VERDICT, TEXT, CORRECTED_FILE, "residuals.csv", PAGE];
     let mut out: Vec<String> = always.into_iter().map(String::from).collect();
@@ -148,8 +151,8 @@ fn planned(args: &ReconcileArgs, campaign: &Campaign, catalogs: &Catalogs) -> Re
     Ok(out)
 }
 
-/// Keeps the verdict, then the page. Returns the files and the page's words for the terminal. A page that fails is left out,
-/// with a warning: the verdict stands.
+/// Writes the verdict, and then the page. Returns all files and a text for the terminal. If making the page fails, it
+/// is left out with a warning, and the verdict stays.
 fn keep(
     campaign: &Campaign,
     (outcome, hash_of_catalogs): (&Outcome, &str),
@@ -177,7 +180,7 @@ fn keep(
     Ok((files, terminal))
 }
 
-/// Adds the result of the second run of the study to the verdict, and its files.
+/// Adds the results of `rerun`, the two runs of the study, to the verdict, and their files to `files`.
 fn add(files: &mut Files, rerun: Rerun) {
     change_verdict(files, "study", rerun.json);
     let texts = files.iter_mut().filter(|(name, _)| name == TEXT);
@@ -185,7 +188,7 @@ fn add(files: &mut Files, rerun: Rerun) {
     files.extend(rerun.files);
 }
 
-/// Sets a key of the verdict.
+/// Sets the key `key` of `verdict.json`, which is one of `files`, to `value`.
 fn change_verdict(files: &mut Files, key: &str, value: Value) {
     for (_, bytes) in files.iter_mut().filter(|(name, _)| name == VERDICT) {
         let mut verdict: Value = serde_json::from_slice(bytes).expect("it was written as JSON");
@@ -194,7 +197,8 @@ fn change_verdict(files: &mut Files, key: &str, value: Value) {
     }
 }
 
-/// Breaks lines at 80 columns; continued lines keep the indent. Tables are not touched.
+/// Breaks the lines of a text at 80 columns. Continued lines have the same indent. Shorter lines, such as
+/// those of tables, stay as they are.
 fn narrow(text: &str) -> String {
     let line = |line: &str| {
         if line.chars().count() <= TERMINAL {

@@ -1,4 +1,4 @@
-//! A study run twice, without and with the corrections of a reconciled arm, and what changes.
+//! Runs a study twice, without and with the corrections of a measured arm, and compares both fronts.
 
 use super::asked::Asked;
 use super::corrections;
@@ -26,23 +26,24 @@ use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::atomic::Ordering;
 
-/// The file of all designs of either front under both models.
+/// Name of the file with all designs of both fronts under both models.
 pub(super) const CHANGES: &str = "study_changes.csv";
 
-/// What the second run changes.
+/// The results of both runs, and what the corrections change.
 pub(super) struct Rerun {
-    /// For the terminal.
+    /// Text for the terminal.
     pub text: String,
-    /// For `verdict.json`.
+    /// Entry for `verdict.json`.
     pub json: Value,
-    /// The results of both runs, in `study/nominal` and `study/corrected`, and `study_changes.csv`, where both have a front.
+    /// Files of both runs in `study/nominal` and `study/corrected`, and `study_changes.csv` if both runs found a
+    /// front.
     pub files: Files,
-    /// How the program ends: as the run that was stopped, if one was.
+    /// Exit status of the program. If one of the runs was stopped, it is the status of this run.
     pub exit: Exit,
 }
 
 impl Rerun {
-    /// The study was not run, or found nothing.
+    /// The result if the study was not run, or if a run found no design. `why` gives the reason in words.
     fn without(study: &str, status: &str, why: &str) -> Self {
         Self {
             text: format!("\nstudy {study}: {why}\n"),
@@ -53,11 +54,11 @@ impl Rerun {
     }
 }
 
-/// Runs the study without and with the outcome's corrections, each as `how` says. What is finished is kept in `dir` at once:
-/// `keep` gets it with its path there.
+/// Runs the study without and with the corrections of the outcome, each with the search options `how`. `dir` is the
+/// folder of the campaign's result. The files of a finished run are written there at once, by `keep`.
 ///
 /// # Errors
-/// The study does not read, its results cannot be written, or the user stops it.
+/// The study has faults, its results cannot be written, or the user stops the search.
 pub(super) fn rerun(
     outcome: &Outcome,
     (study, how): (&str, &SearchArgs),
@@ -95,7 +96,8 @@ pub(super) fn rerun(
         match search(asked, &with) {
             Ok(written) => {
                 if written.exit == Exit::Interrupted {
-                    // this run was stopped; the other one has a signal of its own
+                    // only this run was stopped: the flag is cleared, so that the other run can be stopped by a new
+                    // signal
                     stopped_by_signal().store(false, Ordering::Relaxed);
                 }
                 kept.extend(placed(&written.files, folder)?);
@@ -114,14 +116,15 @@ pub(super) fn rerun(
     Ok(rerun)
 }
 
-/// The files of a run with their list and their paths in the folder of the campaign's result.
+/// The files of one run with their manifest, under their paths in the folder of the campaign's result. `folder` is
+/// `nominal` or `corrected`.
 fn placed(files: &[(String, Vec<u8>)], folder: &str) -> Result<Files, Failure> {
     let whole = sealed(files.to_vec(), RUN)?;
     Ok(whole.into_iter().map(|(name, bytes)| (format!("study/{folder}/{name}"), bytes)).collect())
 }
 
 fn changes(asked: [&Asked; 2], found: &[Written], catalogs: &Catalogs) -> Changes {
-    // of the spaces, what the designs of both fronts are made of
+    // both spaces are reduced to the options that designs of both fronts use
     let rows = found.iter().flat_map(|written| designs(&written.front));
     let numbers: Vec<u128> = rows.filter_map(|design| number_of(&design.design_id)).collect();
     let spaces = asked.map(|a| &a.study.space);
@@ -169,7 +172,7 @@ fn told(name: &str, corrected: &Asked, found: &[Written], changes: &Changes) -> 
     }
 }
 
-/// A caution for fronts that are not complete.
+/// A warning for the reader if one of the two fronts is not complete.
 fn lacking_words(found: &[Written]) -> String {
     let lacks = |written: &Written| match (written.status, written.gap) {
         (_, Some(gap)) if gap > 0.0 => gap_words(gap),

@@ -1,9 +1,9 @@
-//! A folder of results that one process writes. A result replaces the one before it as a whole.
+//! A folder of results that only one process writes at a time. A new result replaces the earlier one as a whole.
 //!
-//! Files are staged in `.armwright/next`. Renaming that folder to `.armwright/ready` decides that the new result holds: its
-//! files are then moved to their places, files that only the earlier result had are removed, and the manifest is moved
-//! last. A process that dies before the decision leaves the old result, and one that dies after it leaves the rest of the
-//! work to whoever next reads or writes the folder ([`complete`]).
+//! New files are written to `.armwright/next`. Renaming this folder to `.armwright/ready` is the moment from which
+//! the new result counts. Its files are then moved to their places, files that only the earlier result had are
+//! removed, and the manifest is moved last. If the process dies before the renaming, the earlier result stays. If it
+//! dies later, the next process that reads or writes the folder completes the work ([`complete`]).
 
 use super::exit::Exit;
 use super::failure::Failure;
@@ -18,13 +18,14 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Folder of what is in work, in a folder of results, and the lock in it.
+/// Folder for unfinished work inside a folder of results.
 const STATE: &str = ".armwright";
+/// Name of the lock file in this folder.
 const LOCK: &str = "lock";
-/// How often, and after which time each, a reader looks whether a writer is done.
+/// How many times a reader waits until a writer is done, and how long each time.
 const READER_WAITS: (u32, Duration) = (20, Duration::from_millis(100));
 
-/// A folder of results that this process alone writes.
+/// A folder of results that only this process writes, since it has the lock.
 pub(super) struct ResultFolder {
     folder: PathBuf,
     manifest: &'static str,
@@ -32,12 +33,12 @@ pub(super) struct ResultFolder {
 }
 
 impl ResultFolder {
-    /// Opens a folder for a result whose files `manifest` lists. The folder is made if it is missing, and what an earlier
-    /// process left unfinished is completed or swept.
+    /// Opens a folder for a result. `manifest` is the name of the file that lists the files of the result. The folder
+    /// is made if it is missing. Work that an earlier process left unfinished is completed or removed.
     ///
     /// # Errors
-    /// Another process writes the folder, it cannot be written, or files under some of the names `planned` are no part of
-    /// an earlier result.
+    /// Another process writes the folder, the folder cannot be written, or it has files with some of the names
+    /// `planned` that are not part of an earlier result.
     pub(super) fn open(
         folder: &Path,
         manifest: &'static str,
@@ -45,7 +46,7 @@ impl ResultFolder {
     ) -> Result<Self, Failure> {
         let state = folder.join(STATE);
         create_folder(&state).map_err(|e| Failure::file(folder, "create", &e))?;
-        // made first: whatever fails from here on, empty folders are removed again
+        // the value is made first, so that empty folders are removed again if anything fails from here on
         let mut out = Self { folder: folder.to_path_buf(), manifest, lock: None };
         out.lock = Some(Lock::take(&state.join(LOCK), folder)?);
         roll_forward(folder).map_err(|e| Failure::file(folder, "complete", &e))?;
@@ -67,11 +68,12 @@ impl ResultFolder {
         }
     }
 
-    /// Replaces the result in the folder by these files, the manifest among them. Returns the names of files that were not
-    /// written because other files stand there.
+    /// Replaces the result in the folder by these files, which include the manifest. Returns the names of files that
+    /// were not written, because files that are not part of a result have the same names.
     ///
     /// # Errors
-    /// The folder cannot be written. The earlier result then stands, or the new one holds and the next reader completes it.
+    /// The folder cannot be written. Either the earlier result stays, or the new result counts and the next reader
+    /// completes it.
     pub(super) fn publish(&self, files: &[(String, Vec<u8>)]) -> Result<Vec<String>, Failure> {
         let earlier = Earlier::read(&self.folder, self.manifest)?;
         let is_foreign = |(name, bytes): &(String, Vec<u8>)| {
@@ -80,7 +82,7 @@ impl ResultFolder {
         let (foreign, own): (Files, Files) = files.iter().cloned().partition(is_foreign);
         let state = self.folder.join(STATE);
         let staged = self.stage(&sealed(own, self.manifest)?).and_then(|()| {
-            // from here on the new result holds
+            // from here on the new result counts
             rename(&state.join("next"), &state.join("ready"))
         });
         if let Err(e) = staged {
@@ -92,17 +94,19 @@ impl ResultFolder {
         Ok(foreign.into_iter().map(|(name, _)| name).collect())
     }
 
-    /// Removes the states of unfinished searches, unless the user stopped them or what they found could not be kept.
+    /// Removes the saved states of unfinished searches when a search has ended as `end` says. They are kept if the user
+    /// stopped the search, or if its result could not be written.
     ///
     /// # Errors
-    /// A state cannot be removed.
+    /// A saved state cannot be removed.
     pub(super) fn settle(&self, end: Result<Exit, &Failure>) -> Result<(), Failure> {
         let is_over = match end {
             Ok(exit) => exit != Exit::Interrupted,
             Err(failure) => matches!(failure, Failure::Infeasible(_) | Failure::Partial(_)),
         };
         if is_over {
-            // a process that was killed while it kept a state leaves a temporary file; this one has the lock
+            // a process that was killed while it saved a state leaves a temporary file; no other process can be
+            // saving one now, because this one has the lock
             remove_temporaries(&self.folder.join(STATE));
         }
         let entries = std::fs::read_dir(self.folder.join(STATE)).into_iter().flatten().flatten();
@@ -111,13 +115,13 @@ impl ResultFolder {
         states.filter(|_| is_over).try_for_each(|path| remove(&path))
     }
 
-    /// Whether a file of this name and content is there already.
+    /// Whether the folder already has a file of this name with exactly this content.
     fn has(&self, name: &str, bytes: &[u8]) -> bool {
         let path = self.folder.join(name);
         !path.is_symlink() && std::fs::read(path).is_ok_and(|there| there == bytes)
     }
 
-    /// Writes the files that are new or differ, and the manifest.
+    /// Writes the files that are new or changed, and the manifest, to `.armwright/next`.
     fn stage(&self, files: &[(String, Vec<u8>)]) -> io::Result<()> {
         let next = self.folder.join(STATE).join("next");
         sweep(&next)?;
@@ -139,11 +143,23 @@ impl ResultFolder {
 
 impl Drop for ResultFolder {
     fn drop(&mut self) {
-        // the lock's file goes first; folders go only when they are empty, so that no result and no other lock is lost
+        // the lock file is removed first; a folder is removed only if it is empty, so that no result and no other
+        // lock is lost
         self.lock = None;
         let _ = std::fs::remove_dir(self.folder.join(STATE));
         let _ = std::fs::remove_dir(&self.folder);
     }
+}
+
+/// Removes the state of an unfinished search, and what it leaves empty.
+///
+/// # Errors
+/// The state cannot be removed.
+pub(super) fn settle(state: &Path) -> Result<(), Failure> {
+    remove(state)?;
+    // a folder that is not empty is in use
+    let _ = std::fs::remove_dir(folder_of(state));
+    Ok(())
 }
 
 /// The file of the state of an unfinished search in a folder of results.
@@ -151,10 +167,10 @@ pub(super) fn unfinished_in(folder: &Path, name: &str) -> PathBuf {
     folder.join(STATE).join(format!("{name}{ENDING}"))
 }
 
-/// Completes a result whose writer died after the new files were decided on. A reader calls this first.
+/// Completes a result whose writer died after the new result began to count. A reader calls this function first.
 ///
 /// # Errors
-/// A living process is writing the folder, or the folder cannot be written.
+/// Another process is writing the folder at the moment, or the folder cannot be written.
 pub(super) fn complete(folder: &Path) -> Result<(), Failure> {
     let state = folder.join(STATE);
     let (mut waits, wait) = READER_WAITS;
@@ -179,14 +195,14 @@ pub(super) fn complete(folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Moves the files of a decided result to their places. What was moved before is not there any more, so that this may be
-/// interrupted and begun again at any point.
+/// Moves the files of the new result to their places. Files that were moved before are not in `.armwright/ready` any
+/// more. Therefore the function can be interrupted at any point and repeated.
 fn roll_forward(folder: &Path) -> io::Result<()> {
     let ready = folder.join(STATE).join("ready");
     if !ready.exists() {
         return Ok(());
     }
-    // without a manifest all was moved already
+    // the manifest is moved last, so without it everything has been moved already
     if let Some(manifest) = MANIFESTS.into_iter().find(|name| ready.join(name).is_file()) {
         let read =
             |folder: &Path| Earlier::read(folder, manifest).map_err(|e| io::Error::other(e.to_string()));
@@ -208,8 +224,8 @@ fn roll_forward(folder: &Path) -> io::Result<()> {
     sweep(&ready)
 }
 
-/// Removes a file of an earlier result, and its folders if they are empty then. A symbolic link on the way leads to files
-/// that are not the result's: nothing is removed there.
+/// Removes a file of an earlier result, and its folders if they are then empty. Nothing is removed behind a symbolic
+/// link, because it leads to files that are not part of the result.
 fn remove_listed(folder: &Path, name: &str) -> io::Result<()> {
     let path = folder.join(name);
     if has_strange_parent(folder, name) || !is_there(&path) || path.is_dir() && !path.is_symlink() {
@@ -223,26 +239,27 @@ fn remove_listed(folder: &Path, name: &str) -> io::Result<()> {
     Ok(())
 }
 
-/// Whether something other than a file of the earlier result stands under a name.
+/// Whether something exists under the name `name` that is not a file of the earlier result, so that it must not be
+/// replaced.
 fn is_foreign(folder: &Path, name: &str, earlier: &Earlier, manifest: &str) -> bool {
     let path = folder.join(name);
     let is_folder = path.is_dir() && !path.is_symlink();
     has_strange_parent(folder, name) || is_folder || is_there(&path) && !earlier.has(name, manifest)
 }
 
-/// Whether a folder on the way to a file is a symbolic link or no folder.
+/// Whether the path of a file leads over something that is not a real folder, such as a symbolic link.
 fn has_strange_parent(folder: &Path, name: &str) -> bool {
     let parents = Path::new(name).ancestors().skip(1).filter(|parent| !parent.as_os_str().is_empty());
     let mut parents = parents.map(|parent| folder.join(parent));
     parents.any(|parent| is_there(&parent) && (parent.is_symlink() || !parent.is_dir()))
 }
 
-/// Whether there is anything under a path, a broken symbolic link too.
+/// Whether anything exists at a path; a broken symbolic link counts too.
 fn is_there(path: &Path) -> bool {
     path.symlink_metadata().is_ok()
 }
 
-/// Removes a folder of what is in work, if it is there; symbolic links in it are not followed.
+/// Removes a folder for unfinished work if it exists. Symbolic links in it are not followed.
 fn sweep(folder: &Path) -> io::Result<()> {
     match fs_err::remove_dir_all(folder) {
         Err(e) if e.kind() != io::ErrorKind::NotFound => Err(e),

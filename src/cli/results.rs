@@ -1,4 +1,4 @@
-//! A folder of results as a reader sees it: one result, whole, or a reason why it is none.
+//! Reads a folder of results: either it has one complete result, or a reason is given why it has none.
 
 use super::failure::Failure;
 use super::manifest::{RUN, hash, listed};
@@ -11,24 +11,26 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// How often a folder is read again that is being replaced at the moment, and after which time.
+/// How many times a folder is read again if its files do not fit together, and the time between two attempts. The
+/// reason may be that another process is just replacing the result.
 const AGAIN: (u32, Duration) = (3, Duration::from_millis(200));
 
-/// The result of a study.
+/// The result of a study, as it is in a folder.
 pub(super) struct Results {
     folder: PathBuf,
-    /// `run.json`.
+    /// Contents of `run.json`.
     pub run: Value,
-    /// The files with their hashes; `None` in results of versions that listed none.
+    /// The files of the result with their hashes; `None` for results of early versions, which listed no files.
     files: Option<BTreeMap<String, String>>,
 }
 
 impl Results {
-    /// Reads what is in a folder. Files may be missing, as from a copy, until they are asked for.
+    /// Opens the result in a folder. A file may be missing, for instance in a partial copy. That is an error only
+    /// when the file is read.
     ///
     /// # Errors
-    /// There is no `run.json`; an earlier version made it; a file is not the one that `run.json` lists; or a process is
-    /// writing the folder at the moment.
+    /// There is no `run.json`; an earlier version made the result; a file is not the one that `run.json` lists; or
+    /// another process is writing the folder at the moment.
     pub(super) fn open(folder: &Path) -> Result<Self, Failure> {
         let (mut again, wait) = AGAIN;
         loop {
@@ -46,10 +48,10 @@ impl Results {
         }
     }
 
-    /// The result that a file is part of, if the file is in a folder of results.
+    /// The result to which a file belongs; `None` if there is no `run.json` in its folder.
     ///
     /// # Errors
-    /// As of [`Results::open`].
+    /// The same errors as of [`Results::open`].
     pub(super) fn around(file: &Path) -> Result<Option<Self>, Failure> {
         let folder = crate::report::whole_file::folder_of(file);
         folder.join(RUN).is_file().then(|| Self::open(&folder)).transpose()
@@ -64,7 +66,7 @@ impl Results {
         Ok(Self { folder: folder.to_path_buf(), files: listed(&run), run })
     }
 
-    /// Names of the files that are there and are not those that `run.json` lists.
+    /// Names of the files that exist but differ from those that `run.json` lists.
     fn strange_files(&self) -> Vec<&str> {
         let files = self.files.iter().flatten();
         let differs = |name: &str, listed: &str| match std::fs::read(self.folder.join(name)) {
@@ -74,10 +76,10 @@ impl Results {
         files.filter(|(name, listed)| differs(name, listed)).map(|(name, _)| name.as_str()).collect()
     }
 
-    /// A file of the result.
+    /// The contents of a file of the result.
     ///
     /// # Errors
-    /// It cannot be read, or has been replaced since the folder was opened.
+    /// The file cannot be read, or was replaced after the folder was opened.
     pub(super) fn read(&self, name: &str) -> Result<Vec<u8>, Failure> {
         let path = self.folder.join(name);
         let bytes = fs_err::read(&path).map_err(|e| Failure::File(e.to_string()))?;
@@ -92,39 +94,40 @@ impl Results {
         }
     }
 
-    /// Whether a file is one of the result's.
+    /// Whether a file of this name belongs to the result.
     pub(super) fn has(&self, name: &str) -> bool {
         self.files.as_ref().is_none_or(|files| files.contains_key(name))
     }
 
-    /// Whether the result has a file of this name, and it is there.
+    /// Whether a file of this name belongs to the result and exists.
     pub(super) fn is_there(&self, name: &str) -> bool {
         self.has(name) && self.folder.join(name).exists()
     }
 
-    /// A text of the result and the name that messages use for it.
+    /// The path of a file of the result, for messages, and the text of the file.
     ///
     /// # Errors
-    /// As of [`Results::read`], or it is not UTF-8.
+    /// The same errors as of [`Results::read`], or the file is not UTF-8.
     pub(super) fn text(&self, name: &str) -> Result<(String, String), Failure> {
         let file = self.folder.join(name).display().to_string();
         let text = String::from_utf8(self.read(name)?);
         Ok((file.clone(), text.map_err(|e| Failure::File(format!("{file}: {e}")))?))
     }
 
-    /// A front of the result.
+    /// A front of the result, from the file of this name.
     ///
     /// # Errors
-    /// As of [`Results::read`], or it is no front.
+    /// The same errors as of [`Results::read`], or the file is not a front.
     pub(super) fn front(&self, name: &str) -> Result<FrontTable, Failure> {
         let file = self.folder.join(name);
         FrontTable::parse(&file, &self.read(name)?).map_err(|e| Failure::File(e.to_string()))
     }
 
-    /// A table of designs, whose first column names them, with the names that designs have today.
+    /// The contents of the table `name`, whose first column has names of designs. If the result is of an early version,
+    /// the names are replaced by those that this version uses.
     ///
     /// # Errors
-    /// As of [`Results::read`].
+    /// The same errors as of [`Results::read`].
     pub(super) fn with_todays_ids(&self, name: &str) -> Result<Vec<u8>, Failure> {
         let bytes = self.read(name)?;
         let is_line_end = |at: usize| bytes[at] == b'\n' && at + 1 < bytes.len();
@@ -141,12 +144,13 @@ impl Results {
         Ok(out)
     }
 
-    /// Number of the design with this name; `None` if it is no name of a design.
+    /// Number of the design with this name; `None` if the name is not that of a design.
     pub(super) fn number_of(&self, id: &str) -> Option<u128> {
         if self.has_earlier_ids() { number_of_earlier(id) } else { number_of(id) }
     }
 
-    /// Whether names of designs lack the `x`, as in results of versions that listed no files.
+    /// Whether the names of designs lack the `x` in front that this version writes. It is so in results of early
+    /// versions, which listed no files.
     fn has_earlier_ids(&self) -> bool {
         self.files.is_none()
     }

@@ -11,7 +11,8 @@ use super::manifest::{RUN, SHARD};
 use super::progress::Record;
 use super::result_folder::{ResultFolder, unfinished_in};
 use super::search::{SearchArgs, With, search};
-use super::shard::{CANDIDATES, STUDY, folder_of, run_shard, shard_of};
+use super::shard::{run_shard, shard_of};
+use super::shard_files::{CANDIDATES, STUDY, folder_of};
 use super::supplements::{FILES, SupplementArgs};
 use super::write::{is_same_file, refuse_overwriting};
 use crate::catalog::Catalogs;
@@ -60,10 +61,15 @@ pub(crate) struct RunArgs {
     /// boxes_open. There is a line every second and whenever the gap falls; null stands for what is not known
     #[arg(long, value_name = "FILE")]
     progress: Option<PathBuf>,
-    /// Visit part M of N of the designs only, and write what it found for `armwright merge`. The parts can run one after
-    /// the other or on many machines; the front is the same
+    /// Search part M of N of the designs only, and write what it found for `armwright merge`. The parts can run one after
+    /// the other or on many machines; the front is the same. Every design is visited unless --search exact or --gap is
+    /// given
     #[arg(long, value_name = "M/N", value_parser = shard_of)]
     shard: Option<Shard>,
+    /// Shards of exact searches of the same study, such as one to a wide gap on one machine: a shard of an exact search
+    /// begins with the designs that they found, and so prunes from the start what they dominate
+    #[arg(long, value_name = "SHARD|DIR", num_args = 1.., requires = "shard")]
+    incumbents: Vec<PathBuf>,
     #[command(flatten)]
     search: SearchArgs,
     #[command(flatten)]
@@ -71,7 +77,7 @@ pub(crate) struct RunArgs {
 }
 
 impl RunArgs {
-    /// The study with the limit of mass and the effects that were asked for.
+    /// The study to be searched, with the mass limit and the effects that the user gives.
     fn asked(&self, catalogs: &Catalogs) -> Result<Asked, Failure> {
         let (study, text) = load_study(&self.study, catalogs)?;
         let (study, text) = match self.mass_max_kg {
@@ -84,10 +90,10 @@ impl RunArgs {
         }
     }
 
-    /// The files that the run will write, as far as they are known before it.
+    /// Names of the files that the run will write, as far as they are known before it.
     ///
     /// # Errors
-    /// One of them is an input and would change.
+    /// One of these files is an input and would be changed.
     fn planned(&self, dir: &Path, asked: &Asked) -> Result<Vec<String>, Failure> {
         let study = Path::new(&self.study);
         let inputs = [Some(study), self.effects.as_deref()];
@@ -106,7 +112,8 @@ impl RunArgs {
         Ok(planned(&asked.study).into_iter().filter(|name| !stays || name != "study.json").collect())
     }
 
-    /// Name of the folder of results, if none is given.
+    /// Name of the folder of results if the user gives none. It names the study, the mass limit and whether there are
+    /// effects.
     fn folder(&self, study: &Study) -> String {
         let up_to = self.mass_max_kg.map_or(String::new(), |kg| format!("-up-to-{kg}-kg"));
         let effects = if self.effects.is_some() { "-with-effects" } else { "" };
@@ -114,7 +121,7 @@ impl RunArgs {
     }
 }
 
-/// The files of a study's result, without those in `plots`.
+/// Names of the files of a study's result, without those in `plots`.
 pub(super) fn planned(study: &Study) -> Vec<String> {
     let materials = study.space.material_names();
     let of_materials = file_names(materials.iter().map(String::as_str)).into_iter();
@@ -123,7 +130,8 @@ pub(super) fn planned(study: &Study) -> Vec<String> {
     always.into_iter().chain(FILES).map(String::from).chain(of_materials).collect()
 }
 
-/// A study that asks for arms of at most this mass. If it has a lower limit already, nothing changes.
+/// The study with the limit `most_kg` on the mass of the arm \[kg\], and the text of its file. If the study already has
+/// a limit that is as low or lower, nothing changes.
 fn up_to_mass(
     most_kg: f64,
     study: Study,
@@ -140,13 +148,13 @@ fn up_to_mass(
     Ok((read_study(Document::parse(&name, &text)?, catalogs)?, text))
 }
 
-/// A limit of mass \[kg\].
+/// Reads a mass limit \[kg\].
 fn mass_limit(text: &str) -> Result<f64, String> {
     let kg = text.parse::<f64>().ok().filter(|kg| kg.is_finite() && *kg > 0.0);
     kg.ok_or_else(|| "a mass above zero, in kilograms".into())
 }
 
-/// Executes the verb.
+/// Runs `armwright run`: writes the result, and returns the text to print.
 pub(super) fn run(
     args: &RunArgs,
     catalogs: &Catalogs,
@@ -163,7 +171,7 @@ pub(super) fn run(
     let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(args.folder(&asked.study)));
     let planned = args.planned(&dir, &asked)?;
     let record = args.progress.as_deref().map(Record::create).transpose()?;
-    // a folder that cannot be written fails now, not after the search
+    // if the folder cannot be written, the run fails now and not after the search
     let folder = ResultFolder::open(&dir, RUN, &planned)?;
     let (how, supplements, record) = (&args.search, &args.supplements, record.as_ref());
     let keep = |files: &[(String, Vec<u8>)]| folder.publish(files);
@@ -177,7 +185,7 @@ pub(super) fn run(
     Ok(Answer { text, exit: written.exit })
 }
 
-/// Visits one part of the designs.
+/// Searches one part of the designs.
 fn run_part(
     args: &RunArgs,
     shard: Shard,
@@ -196,6 +204,8 @@ fn run_part(
     }
     let mut words = vec!["run".to_string(), args.study.clone()];
     words.extend(args.mass_max_kg.into_iter().flat_map(|kg| ["--mass-max-kg".into(), kg.to_string()]));
+    words.extend(args.search.words());
+    words.extend(args.incumbents.iter().flat_map(|dir| ["--incumbents".into(), dir.display().to_string()]));
     words.extend(overlay.into_iter().flat_map(|dir| ["--catalogs".into(), dir.display().to_string()]));
     let shards = Path::new("results").join(args.folder(&asked.study)).join("shards");
     let dir = args.out.clone().unwrap_or_else(|| folder_of(&shards, shard));
@@ -205,12 +215,12 @@ fn run_part(
     let keep = |files: &[(String, Vec<u8>)]| folder.publish(files);
     let unfinished = &unfinished_in(&dir, "search");
     let with = With { catalogs, overlay, dir: &dir, keep: &keep, unfinished, how, supplements, record, log };
-    let answer = run_shard(asked, shard, words, &with);
+    let answer = run_shard(asked, (shard, &args.incumbents), words, &with);
     folder.settle(answer.as_ref().map(|answer| answer.exit))?;
     answer
 }
 
-/// Runs one of the paper's studies, which are computed without a search.
+/// Runs one of the studies of the paper, which are computed without a search.
 fn run_paper(args: &RunArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(&args.study));
     let planned = [RUN, "summary.md", "report.html"];
@@ -235,10 +245,10 @@ fn run_paper(args: &RunArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     Ok(format!("{}\n{}", output.terminal, told(&dir, &files)))
 }
 
-/// Digits of the numbers in the tables of a page; files have all.
+/// Significant digits of the numbers in the tables of a page. The files have all digits.
 const PAGE_DIGITS: usize = 5;
 
-/// The page of a study of the paper: its pictures and tables.
+/// The page for a browser of a study of the paper, with its pictures and tables.
 fn paper_page(study: &str, files: &[(String, Vec<u8>)], run: &Value) -> DocumentPage {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     let ending = |end: &'static str| files.iter().filter_map(move |(n, b)| Some((n.strip_suffix(end)?, b)));
@@ -259,12 +269,12 @@ fn paper_page(study: &str, files: &[(String, Vec<u8>)], run: &Value) -> Document
     }
 }
 
-/// Says which files were written, in lines of at most 80 columns.
+/// A text that says which files were written, in lines of at most 80 columns.
 fn told(dir: &Path, files: &[(String, Vec<u8>)]) -> String {
     wrap(&format!("written to {}: {}", dir.display(), names(files)), TERMINAL, "")
 }
 
-/// Names of the files that were written; fronts by material and plots are only counted.
+/// Names of the files that were written. Fronts of materials and plots are only counted.
 fn names(files: &[(String, Vec<u8>)]) -> String {
     let kind = |name: &str| match name {
         n if n.starts_with(PLOTS) => 2,

@@ -1,6 +1,8 @@
-//! `armwright schema`: what a kind of file may hold, for editors and other programs.
+//! `armwright schema`: what a kind of file may hold, for editors and other programs, and what the files hold that the program
+//! writes.
 
 use super::failure::Failure;
+use super::output_keys::{EFFECTS, OUTPUTS, TABLES, effects_schema};
 use crate::arm::{ARM_FILE, CASES_FILE};
 use crate::catalog::schema::CatalogFile;
 use crate::input::schema::FileKind;
@@ -12,7 +14,7 @@ use serde_json::Value;
 /// Arguments of `schema`.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  armwright schema\n  armwright schema study > study.schema.json\n  \
-    armwright schema gears\n  armwright schema arm --markdown\n\n\
+    armwright schema gears\n  armwright schema arm --markdown\n  armwright schema run > run.schema.json\n\n\
     Prints the JSON Schema of a kind of file (draft 2020-12), or the Table Schema of a catalog file; without a kind, lists the \
     kinds. An editor that knows the schema completes keys and marks faults while one types. A file may name its schema: \
     {\"$schema\": \"study.schema.json\", ...}")]
@@ -25,43 +27,53 @@ pub(crate) struct SchemaArgs {
     markdown: bool,
 }
 
-/// The kinds of JSON files that people write.
+/// The kinds of JSON files that users write.
 pub(super) const FILES: [FileKind; 4] = [ARM_FILE, CASES_FILE, STUDY_FILE, CAMPAIGN_FILE];
 
-/// Head of the page with all keys.
+/// Beginning of the page with all keys.
 const PAGE_HEAD: &str = "# Keys of all files\n\nEvery key that the readers know, printed by `armwright schema --markdown`. \
     A key that is not here is a fault in a file. [arm-format.md](arm-format.md), [study-format.md](study-format.md) and \
     [reconcile.md](reconcile.md) explain how the keys work together. `armwright schema KIND` prints the same as a JSON Schema.\n";
 
+/// What stands before the keys of files that the program writes.
+const WRITTEN_HEAD: &str = "The following files are written by the program, for other programs to read. A key that is added later is \
+    no change of the form; none is renamed. What stands under *default* says when a key is missing. The columns of `front.csv` and \
+    `bom.csv` are printed by `armwright schema front` and `bom`, the parameters of effects by `armwright schema effects`.\n";
+
 /// Executes the verb.
 ///
 /// # Errors
-/// There is no such kind.
+/// There is no kind of file with this name.
 pub(super) fn run(args: &SchemaArgs) -> Result<String, Failure> {
-    let file = |name: &str| FILES.iter().find(|file| file.name == name);
+    let file = |name: &str| FILES.iter().chain(&OUTPUTS).find(|file| file.name == name);
     match (args.kind.as_deref(), args.markdown) {
         (None, false) => Ok(list()),
         (None, true) => Ok(page()),
         (Some(name), true) => file(name).map(FileKind::tables).ok_or_else(|| unknown(name)),
         (Some(name), false) => {
             let schema = file(name).map(FileKind::schema);
-            schema.or_else(|| catalog_schema(name)).map(|s| format!("{s:#}\n")).ok_or_else(|| unknown(name))
+            schema.or_else(|| table_schema(name)).map(|s| format!("{s:#}\n")).ok_or_else(|| unknown(name))
         }
     }
 }
 
-fn catalog_schema(name: &str) -> Option<Value> {
-    CatalogFile::ALL.into_iter().find(|file| stem(*file) == name).map(CatalogFile::table_schema)
+/// The schema of a table, or of effects.
+fn table_schema(name: &str) -> Option<Value> {
+    let catalog = CatalogFile::ALL.into_iter().find(|file| stem(*file) == name);
+    let written = || TABLES.iter().find(|table| table.name == name).map(|table| table.schema());
+    let effects = || (name == EFFECTS.0).then(effects_schema);
+    catalog.map(CatalogFile::table_schema).or_else(written).or_else(effects)
 }
 
-/// Name of a catalog file without its ending.
+/// Name of a catalog file without `.csv`.
 fn stem(file: CatalogFile) -> &'static str {
     file.file_name().trim_end_matches(".csv")
 }
 
 fn unknown(name: &str) -> Failure {
-    let json = FILES.iter().map(|file| file.name);
-    let names: Vec<&str> = json.chain(CatalogFile::ALL.into_iter().map(stem)).collect();
+    let json = FILES.iter().chain(&OUTPUTS).map(|file| file.name);
+    let tables = TABLES.iter().map(|table| table.name).chain([EFFECTS.0]);
+    let names: Vec<&str> = json.chain(CatalogFile::ALL.into_iter().map(stem)).chain(tables).collect();
     Failure::Usage(format!("there is no kind of file \"{name}\"; kinds: {}", names.join(", ")))
 }
 
@@ -70,10 +82,14 @@ fn list() -> String {
     let csv = CatalogFile::ALL
         .into_iter()
         .map(|file| (stem(file), format!("The catalog file {}, as a Table Schema.", file.file_name())));
-    json.chain(csv).map(|(name, about)| format!("{name:<18}{about}\n")).collect()
+    let written = OUTPUTS.iter().map(|file| (file.name, format!("Written: {}", file.about.replace('`', ""))));
+    let tables = TABLES.iter().map(|table| (table.name, format!("Written: {}", table.about)));
+    let effects = std::iter::once((EFFECTS.0, EFFECTS.1.to_string()));
+    let all = json.chain(csv).chain(effects).chain(written).chain(tables);
+    all.map(|(name, about)| format!("{name:<18}{about}\n")).collect()
 }
 
 fn page() -> String {
-    let tables: Vec<String> = FILES.iter().map(FileKind::tables).collect();
-    format!("{PAGE_HEAD}\n{}", tables.join("\n"))
+    let tables = |files: &[FileKind]| files.iter().map(FileKind::tables).collect::<Vec<_>>().join("\n");
+    format!("{PAGE_HEAD}\n{}\n{WRITTEN_HEAD}\n{}", tables(&FILES), tables(&OUTPUTS))
 }

@@ -1,4 +1,4 @@
-//! Searches a study: chooses the method and stops when asked.
+//! Searches a study: chooses the method, and stops when the user asks for it.
 
 use super::asked::Asked;
 use super::exit::Exit;
@@ -21,7 +21,7 @@ use crate::study::diagnose::why_infeasible;
 use crate::study::outcome::{ExactStudy, Extent, StudyOutcome, judge_swept, resume_exact, sweep_shard};
 use crate::study::search_method::{SearchMethod, SearchWish};
 use crate::study::tolerance::part;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Once;
@@ -52,16 +52,22 @@ pub(crate) struct SearchArgs {
 }
 
 impl SearchArgs {
+    /// What asks for a method and a gap.
+    pub(super) fn asking_for(search: Option<SearchMethod>, gap: Option<f64>) -> Self {
+        Self { search, gap, ..Self::default() }
+    }
+
     /// What is asked of the search.
     fn wish(&self) -> SearchWish {
         let (has_gap, has_time_limit) = (self.gap.is_some(), self.time_limit.is_some());
         SearchWish { method: self.search, has_gap, has_time_limit }
     }
 
-    /// The search that was asked for, or the one that is estimated to cost less, which is told on the terminal.
+    /// The method that the user asks for, or else the one that is estimated to take less time. A choice by estimate
+    /// is reported to the user.
     ///
     /// # Errors
-    /// It does not suit the study, or would take years.
+    /// The method does not suit the study, or would take years.
     fn kind(&self, study: &Study, catalogs: &Catalogs, log: Log) -> Result<SearchMethod, Failure> {
         let (method, words) = self.wish().method(study, catalogs)?;
         if let Some(words) = words {
@@ -70,70 +76,94 @@ impl SearchArgs {
         Ok(method)
     }
 
-    /// Checks that what was asked for suits the study, and counts its designs.
+    /// Checks that the search options suit the study. Returns the number of its designs.
     ///
     /// # Errors
-    /// The study has nothing to choose from, what was asked for does not suit it, or it would take years.
+    /// The design space is empty, the options do not suit the study, or the search would take years.
     pub(super) fn check(&self, study: &Study, catalogs: &Catalogs) -> Result<u128, Failure> {
         Ok(self.wish().check(study, catalogs)?)
     }
 
-    /// Checks that nothing but a visit to every design was asked for, and counts the designs.
+    /// Checks that a search of one shard suits the study, and counts the study's designs. Every design is visited unless the
+    /// exact search or a gap is asked for: an estimate must not decide otherwise for another shard.
     ///
     /// # Errors
-    /// Something else was asked for, or the visit would take years.
-    pub(super) fn check_exhaustive(&self, study: &Study, catalogs: &Catalogs) -> Result<u128, Failure> {
-        if self.search == Some(SearchMethod::Exact) {
+    /// It does not suit the study, would take years, or a time limit is asked for.
+    pub(super) fn check_shard(
+        &self,
+        study: &Study,
+        catalogs: &Catalogs,
+    ) -> Result<(SearchMethod, u128), Failure> {
+        if self.time_limit.is_some() {
             return Err(Failure::Usage(
-                "--shard goes with --search exhaustive: the exact search runs on one machine".into(),
+                "--shard does not go with --time-limit: a shard that is stopped goes on with the same command".into(),
             ));
         }
-        Self { search: Some(SearchMethod::Exhaustive), ..*self }.check(study, catalogs)
+        let of_gap = if self.gap.is_some() { SearchMethod::Exact } else { SearchMethod::Exhaustive };
+        let method = self.search.unwrap_or(of_gap);
+        let designs = Self { search: Some(method), ..*self }.check(study, catalogs)?;
+        Ok((method, designs))
     }
 
-    /// Whether what an earlier process left is not to be used.
+    /// The gap to which an exact search of a study goes.
+    pub(super) fn gap_of(&self, study: &Study) -> f64 {
+        self.gap.unwrap_or(study.gap)
+    }
+
+    /// The words of the command line that ask for this search again.
+    pub(super) fn words(&self) -> Vec<String> {
+        let method = self.search.iter().flat_map(|method| {
+            let word = method.to_possible_value().map(|value| value.get_name().to_string());
+            std::iter::once("--search".to_string()).chain(word)
+        });
+        let gap = self.gap.iter().flat_map(|gap| ["--gap".to_string(), gap.to_string()]);
+        method.chain(gap).collect()
+    }
+
+    /// Whether a state that an earlier process saved is to be discarded.
     pub(super) fn is_fresh(&self) -> bool {
         self.fresh
     }
 
-    /// Whether anything is asked for.
+    /// Whether the user gives none of the options on method, time limit and gap.
     pub(crate) fn is_default(&self) -> bool {
         self.search.is_none() && self.time_limit.is_none() && self.gap.is_none()
     }
 }
 
 /// A percentage, which may be 0.
-fn part_or_none(text: &str) -> Result<f64, String> {
+pub(super) fn part_or_none(text: &str) -> Result<f64, String> {
     match text.trim_end_matches('%').trim_end().parse::<f64>() {
         Ok(0.0) => Ok(0.0),
         _ => part(text),
     }
 }
 
-/// The settings and catalogs that a study is searched with.
+/// The settings with which a study is searched.
 pub(super) struct With<'a> {
     pub catalogs: &'a Catalogs,
-    /// Folder of the catalogs that are laid over the built-in ones.
+    /// Folder with the user's catalog rows, which are added to the built-in ones; `None` if there is none.
     pub overlay: Option<&'a Path>,
-    /// Where the results go.
+    /// Folder of the results.
     pub dir: &'a Path,
-    /// How they are kept.
+    /// Function that writes the files of the result.
     pub keep: &'a Keep<'a>,
-    /// Where the state of the search is kept until it is done.
+    /// File in which the state of the search is saved until it is finished.
     pub unfinished: &'a Path,
+    /// The search options.
     pub how: &'a SearchArgs,
-    /// What is asked for in addition to the front.
+    /// Supplements that the user asks for in addition to the front.
     pub supplements: &'a SupplementArgs,
-    /// Where progress is recorded.
+    /// File in which the progress is recorded, if the user asks for it.
     pub record: Option<&'a Record>,
-    /// Where messages and progress go.
+    /// Log for messages and progress.
     pub log: Log,
 }
 
-/// Searches a study and keeps its result.
+/// Searches a study and writes its result.
 ///
 /// # Errors
-/// The search that is asked for does not suit the study, finds nothing, is interrupted, or its front cannot be written.
+/// The method does not suit the study, the search finds no design, the user stops it, or the front cannot be written.
 pub(super) fn search(asked: &Asked, with: &With) -> Result<Written, Failure> {
     let space = &asked.study.space;
     if (space.has_linkages() || space.has_motors_elsewhere()) && with.supplements.scatters() {
@@ -154,10 +184,10 @@ pub(super) fn search(asked: &Asked, with: &With) -> Result<Written, Failure> {
 }
 
 impl With<'_> {
-    /// The state in which an earlier process left a search of this kind, and the keeping of the next ones.
+    /// The state that an earlier process saved of the same search, if any, and the means to save further states.
     ///
     /// # Errors
-    /// The state is of another search, or cannot be read.
+    /// The state belongs to another search, or cannot be read.
     pub(super) fn go_on(&self, asked: &Asked, flags: Value) -> Result<Unfinished, Failure> {
         let search = json!({
             "schema_version": 1,
@@ -171,7 +201,7 @@ impl With<'_> {
     }
 }
 
-/// Visits every design of a study.
+/// Searches a study by a visit to every design.
 fn visit_all(asked: &Asked, with: &With) -> Result<Written, Failure> {
     let study = &asked.study;
     let With { catalogs, overlay, dir, keep, supplements, record, log, .. } = *with;
@@ -207,25 +237,25 @@ fn visit_all(asked: &Asked, with: &With) -> Result<Written, Failure> {
     };
     let finished = Finished::visit(asked, (&problem, &outcome), elapsed_s, (catalogs, overlay), dir);
     let written = finished.keep(supplements, stop, keep)?;
-    // a signal that came after the search costs what goes with the front
+    // if the user stops the program after the search, the files in addition to the front are not written
     let exit = if stop.load(Ordering::Relaxed) { Exit::Interrupted } else { exit };
     Ok(Written { exit, ..written })
 }
 
-/// How far a visit came that was stopped.
+/// A text on how many designs were visited before the search was stopped.
 fn stopped_words(outcome: &StudyOutcome) -> String {
     let sweep = &outcome.sweep;
     let done = u128::from(sweep.designs_evaluated) + sweep.designs_excluded;
     format!("stopped after {done} of {} designs", sweep.designs_total)
 }
 
-/// A flag that is set when the user wants to stop. Code that reacts to it and continues must clear it: a
-/// second signal while the flag is set ends the program.
+/// A flag that is set when the user wants to stop the program. Code that reacts to the flag and continues must clear
+/// it, because a second signal while the flag is set ends the program at once.
 pub(super) fn stopped_by_signal() -> &'static AtomicBool {
     static STOP: AtomicBool = AtomicBool::new(false);
     static HANDLER: Once = Once::new();
     HANDLER.call_once(|| {
-        // where signals cannot be handled they end the program
+        // on systems without signal handling, a signal ends the program
         let _ = ctrlc::set_handler(|| {
             if STOP.swap(true, Ordering::Relaxed) {
                 std::process::exit(Failure::Interrupted(String::new()).exit_code().into());
@@ -235,12 +265,12 @@ pub(super) fn stopped_by_signal() -> &'static AtomicBool {
     &STOP
 }
 
-/// Finds the front of a study without visiting every design.
+/// Searches a study by the exact method, which does not visit every design.
 fn search_exactly(asked: &Asked, with: &With) -> Result<Written, Failure> {
     let Asked { study, text, corrections } = asked;
     let With { catalogs, overlay, dir, keep, how, supplements, record, log, .. } = *with;
     let stop = stopped_by_signal();
-    let gap = how.gap.unwrap_or(study.gap);
+    let gap = how.gap_of(study);
     let unfinished = with.go_on(asked, json!({"search": "exact", "gap": gap}))?;
     let started = unfinished.started();
     let extent =
@@ -251,7 +281,7 @@ fn search_exactly(asked: &Asked, with: &With) -> Result<Written, Failure> {
     let ExactStudy { study: part, outcome, boxes, gap, near, ties_listed } =
         resume_exact(study, catalogs, stop, extent, unfinished.resume(), watch)
             .map_err(|_| unfinished.damaged())?;
-    // what was found is written; a further signal ends that at once
+    // the front found so far is written; if the user stops the program again, it ends at once
     let is_interrupted = stop.load(Ordering::Relaxed);
     match outcome.sweep.status {
         Status::Infeasible => {

@@ -1,27 +1,27 @@
-//! `armwright run STUDY --shard M/N`: visits one part of a study's designs and writes what it found with a manifest, for
+//! `armwright run STUDY --shard M/N`: searches one part of a study's designs and writes what it found with a manifest, for
 //! `armwright merge`.
 
 use super::asked::Asked;
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
-use super::finished::{catalogs_hash, pretty};
+use super::finished::{catalogs_hash, count, pretty};
 use super::manifest::SHARD;
 use super::progress::Watch;
 use super::search::{With, stopped_by_signal};
+use super::shard_files::{
+    CANDIDATES, COMMON, STUDY, hash_of, read_candidates_of, read_manifest, shards_in_all,
+};
+use crate::exact::Known;
+use crate::exact::outcome::FoundInShard;
 use crate::search::sweep::{Shard, Status};
+use crate::study::definition::Study;
+use crate::study::exact_shards::{exact_shard, fronts_of};
 use crate::study::outcome::sweep_shard;
-use crate::study::shards::candidates_csv;
+use crate::study::search_method::SearchMethod;
+use crate::study::shards::{candidates_csv, found_csv};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
-
-/// Names of the other files of a shard.
-pub(super) const CANDIDATES: &str = "candidates.csv";
-pub(super) const STUDY: &str = "study.json";
-
-/// Keys in which all shards of one search agree.
-pub(super) const COMMON: [&str; 5] =
-    ["tool_version", "study_hash", "catalogs_hash", "flags", "designs_total"];
 
 /// Reads `M/N`.
 pub(super) fn shard_of(text: &str) -> Result<Shard, String> {
@@ -34,119 +34,209 @@ pub(super) fn shard_of(text: &str) -> Result<Shard, String> {
     }
 }
 
-/// More shards than this would be more files than work.
+/// Largest number of shards. With more of them there would be more files than work.
 pub(super) const MOST_SHARDS: u32 = 100_000;
 
-/// The folder of a shard, next to those of the others.
-pub(super) fn folder_of(shards: &Path, shard: Shard) -> PathBuf {
-    shards.join(format!("{}-of-{}", shard.number, shard.of))
-}
-
-/// Visits the designs of a shard. `words` are those of the command line that tell which study, limits and catalogs.
+/// Searches a shard. `words` are those of the command line that tell which study, limits, catalogs and search.
 ///
 /// # Errors
-/// The shard cannot be swept or written, or the user stops it.
+/// The search does not suit the study, the shard cannot be written, or the user stops it.
 pub(super) fn run_shard(
     asked: &Asked,
-    shard: Shard,
+    (shard, incumbents): (Shard, &[PathBuf]),
     words: Vec<String>,
     with: &With,
 ) -> Result<Answer, Failure> {
-    let Asked { study, text, .. } = asked;
-    let designs_total = with.how.check_exhaustive(study, with.catalogs)?;
+    let (method, designs_total) = with.how.check_shard(&asked.study, with.catalogs)?;
+    let flags = match method {
+        SearchMethod::Exhaustive => json!({"search": "exhaustive"}),
+        SearchMethod::Exact => json!({"search": "exact", "gap": with.how.gap_of(&asked.study)}),
+    };
     let mut manifest = json!({
         "schema_version": 1,
-        "study": study.name,
+        "study": asked.study.name,
         "tool_version": env!("CARGO_PKG_VERSION"),
-        "study_hash": blake3::hash(text.as_bytes()).to_hex().to_string(),
+        "study_hash": hash_of(asked.text.as_bytes()),
         "catalogs_hash": catalogs_hash(with.catalogs),
-        "flags": {"search": "exhaustive"},
-        "designs_total": designs_total as u64,
+        "flags": flags,
+        "designs_total": count(designs_total),
         "shard": [shard.number, shard.of],
         "command": words,
     });
     if let Some(words) = already_done(with.dir, &manifest) {
         return Ok(words.into());
     }
+    let (searched, elapsed_s) = match method {
+        SearchMethod::Exhaustive if !incumbents.is_empty() => {
+            return Err(Failure::Usage("--incumbents goes with --search exact".into()));
+        }
+        SearchMethod::Exhaustive => visit(asked, shard, with)?,
+        SearchMethod::Exact => {
+            let given = Incumbents::read(incumbents, &manifest, &asked.study)?;
+            search_exactly(asked, shard, &given, with)?
+        }
+    };
+    let of_this_run = json!({
+        "proved": true,
+        "elapsed_s": elapsed_s,
+        "threads": rayon::current_num_threads(),
+        "platform": format!("{}-{}", std::env::consts::OS, std::env::consts::ARCH),
+    });
+    for (key, value) in [&searched.facts, &of_this_run].into_iter().filter_map(Value::as_object).flatten() {
+        manifest[key] = value.clone();
+    }
+    let text = searched.words(shard, elapsed_s, with.dir);
+    let mut files = vec![
+        (CANDIDATES.to_string(), searched.candidates.into_bytes()),
+        (STUDY.to_string(), asked.text.clone().into_bytes()),
+    ];
+    // it lists the others with their hashes and is written last: where it is, the rest is complete
+    files.push((SHARD.into(), pretty(&manifest)));
+    (with.keep)(&files)?;
+    Ok(Answer { text, exit: Exit::Done })
+}
+
+/// A shard that was searched.
+struct Searched {
+    /// Its candidates as a file.
+    candidates: String,
+    /// What is said of its search in the manifest.
+    facts: Value,
+}
+
+impl Searched {
+    /// What was done, for the terminal.
+    fn words(&self, shard: Shard, elapsed_s: f64, dir: &Path) -> String {
+        let range = [0, 1].map(|end| self.facts["range"][end].as_u64());
+        let what = match range {
+            [Some(start), Some(end)] => format!("{} designs", end - start),
+            _ => format!(
+                "{} boxes, {} designs evaluated",
+                self.facts["boxes"], self.facts["designs_evaluated"]
+            ),
+        };
+        format!(
+            "shard {}/{}: {what}, {} candidates of the front, in {elapsed_s:.1} s\nwritten to {}: {CANDIDATES}, {STUDY}, \
+             {SHARD}\n",
+            shard.number,
+            shard.of,
+            self.facts["candidates"],
+            dir.display()
+        )
+    }
+}
+
+/// Nothing was written because the user stopped the search.
+fn stopped(shard: Shard) -> Failure {
+    Failure::Interrupted(format!(
+        "shard {}/{} was stopped; nothing was written, the same command goes on from there",
+        shard.number, shard.of
+    ))
+}
+
+/// Visits the designs of a shard; also its time \[s\].
+fn visit(asked: &Asked, shard: Shard, with: &With) -> Result<(Searched, f64), Failure> {
     let flags = json!({"search": "exhaustive", "shard": [shard.number, shard.of]});
     let (stop, unfinished) = (stopped_by_signal(), with.go_on(asked, flags)?);
     let started = unfinished.started();
     let watch = |total: u128, visited: &(dyn Fn() -> u64 + Sync), finished: &AtomicBool| {
         Watch::new(started, with.record, with.log).designs(total, visited, finished);
     };
-    let (swept, range) = sweep_shard(study, with.catalogs, shard, stop, unfinished.resume(), watch)
+    let (swept, range) = sweep_shard(&asked.study, with.catalogs, shard, stop, unfinished.resume(), watch)
         .map_err(|_| unfinished.damaged())?;
     if swept.status == Status::Interrupted {
-        return Err(Failure::Interrupted(format!(
-            "shard {}/{} was stopped; nothing was written, the same command goes on from there",
-            shard.number, shard.of
-        )));
+        return Err(stopped(shard));
     }
-    let files = [(CANDIDATES, candidates_csv(&swept)), (STUDY, text.clone())];
-    let elapsed_s = started.elapsed().as_secs_f64();
-    let more = json!({
+    let facts = json!({
         "range": [range.start as u64, range.end as u64],
         "designs_evaluated": swept.designs_evaluated,
         "candidates": swept.front.len(),
-        "proved": true,
-        "elapsed_s": elapsed_s,
-        "threads": rayon::current_num_threads(),
-        "platform": format!("{}-{}", std::env::consts::OS, std::env::consts::ARCH),
     });
-    for (key, value) in more.as_object().into_iter().flatten() {
-        manifest[key] = value.clone();
-    }
-    let mut written: Vec<(String, Vec<u8>)> =
-        files.into_iter().map(|(name, text)| (name.to_string(), text.into_bytes())).collect();
-    // it lists the others with their hashes and is written last: where it is, the rest is complete
-    written.push((SHARD.into(), pretty(&manifest)));
-    (with.keep)(&written)?;
-    let text = format!(
-        "shard {}/{}: {} designs, {} candidates of the front, in {elapsed_s:.1} s\nwritten to {}: {CANDIDATES}, {STUDY}, \
-         {SHARD}\n",
-        shard.number,
-        shard.of,
-        range.end - range.start,
-        swept.front.len(),
-        with.dir.display()
-    );
-    Ok(Answer { text, exit: Exit::Done })
+    Ok((Searched { candidates: candidates_csv(&swept), facts }, started.elapsed().as_secs_f64()))
 }
 
-/// Says so if the folder has this shard already, whole and from the same inputs.
+/// Searches the subtrees of a shard; also its time \[s\].
+fn search_exactly(
+    asked: &Asked,
+    shard: Shard,
+    given: &Incumbents,
+    with: &With,
+) -> Result<(Searched, f64), Failure> {
+    let gap = with.how.gap_of(&asked.study);
+    let flags = json!({
+        "search": "exact", "gap": gap, "shard": [shard.number, shard.of], "incumbents": given.hashes,
+    });
+    let (stop, unfinished) = (stopped_by_signal(), with.go_on(asked, flags)?);
+    let started = unfinished.started();
+    let watch = |known: &(dyn Fn() -> Known + Sync), finished: &AtomicBool| {
+        Watch::new(started, with.record, with.log).search(known, finished);
+    };
+    let study = (&asked.study, with.catalogs);
+    let found = exact_shard(study, (shard, gap), &given.found, stop, unfinished.resume(), watch)
+        .map_err(|_| unfinished.damaged())?;
+    let is_whole = found.len() == fronts_of(&asked.study.space, gap).len();
+    if !is_whole || found.iter().any(|found| found.boxes_open > 0) {
+        return Err(stopped(shard));
+    }
+    let names = asked.study.space.material_names();
+    let front = |(at, found): (usize, &FoundInShard)| {
+        json!({
+            "front": at.checked_sub(1).map_or("all", |material| &names[material]),
+            "subtrees": found.subtrees,
+            "designs_evaluated": found.designs_evaluated,
+            "boxes": found.boxes,
+            "gap": found.gap,
+        })
+    };
+    let facts = json!({
+        "fronts": found.iter().enumerate().map(front).collect::<Vec<_>>(),
+        "designs_evaluated": found[0].designs_evaluated,
+        "boxes": found[0].boxes,
+        "candidates": found[0].decided.len() + found[0].undecided.len(),
+    });
+    Ok((Searched { candidates: found_csv(&found), facts }, started.elapsed().as_secs_f64()))
+}
+
+/// What other searches of the study found.
+struct Incumbents {
+    found: Vec<Vec<FoundInShard>>,
+    /// Hashes of their files.
+    hashes: Vec<Value>,
+}
+
+impl Incumbents {
+    /// Reads shards of exact searches. They may be of another gap and number of shards.
+    ///
+    /// # Errors
+    /// A folder has no shard, or one of another study, other catalogs or another kind of search.
+    fn read(folders: &[PathBuf], manifest: &Value, study: &Study) -> Result<Self, Failure> {
+        let mut out = Self { found: Vec::new(), hashes: Vec::new() };
+        for dir in shards_in_all(folders)? {
+            let other = read_manifest(&dir)?;
+            let differs = |key: &&&str| **key != "flags" && other[**key] != manifest[**key];
+            let unlike: Vec<&str> = COMMON.iter().filter(differs).copied().collect();
+            if !unlike.is_empty() || other["flags"]["search"] != json!("exact") {
+                let what = if unlike.is_empty() { "search".into() } else { unlike.join(", ") };
+                return Err(Failure::Check(format!(
+                    "--incumbents {}: a shard with another {what}; give shards of exact searches of the same study",
+                    dir.display()
+                )));
+            }
+            out.found.push(read_candidates_of(&dir, &other, study)?);
+            out.hashes.push(other["files"][CANDIDATES].clone());
+        }
+        Ok(out)
+    }
+}
+
+/// If the folder has the same shard already, complete and from the same inputs: a sentence that says so. Otherwise
+/// `None`. `manifest` describes the shard that is asked for.
 fn already_done(dir: &Path, manifest: &Value) -> Option<String> {
     let done = read_manifest(dir).ok()?;
     let same = |key: &str| done[key] == manifest[key];
     (COMMON.iter().all(|key| same(key)) && same("shard")).then(|| {
         format!("{} has this shard already, whole and from the same study and catalogs\n", dir.display())
     })
-}
-
-pub(super) fn hash_of(bytes: &[u8]) -> String {
-    blake3::hash(bytes).to_hex().to_string()
-}
-
-/// Reads the manifest of a shard and checks that its files are those that it names.
-///
-/// # Errors
-/// A file is missing, is no manifest, or has other bytes.
-pub(super) fn read_manifest(dir: &Path) -> Result<Value, Failure> {
-    let path = dir.join(SHARD);
-    let text = fs_err::read_to_string(&path).map_err(|e| Failure::File(e.to_string()))?;
-    let manifest: Value =
-        serde_json::from_str(&text).map_err(|e| Failure::File(format!("{}: {e}", path.display())))?;
-    for name in [CANDIDATES, STUDY] {
-        let file = dir.join(name);
-        let bytes = fs_err::read(&file).map_err(|e| Failure::File(e.to_string()))?;
-        if manifest["files"][name].as_str() != Some(&hash_of(&bytes)) {
-            return Err(Failure::Check(format!(
-                "{} is not the file that {} was written with: run the shard again",
-                file.display(),
-                path.display()
-            )));
-        }
-    }
-    Ok(manifest)
 }
 
 #[cfg(test)]

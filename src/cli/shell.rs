@@ -1,4 +1,5 @@
-//! `armwright completions` and `armwright man`: what shells and `man` know of the command line, from its own description.
+//! `armwright completions` and `armwright man`: completion scripts for shells, and manual pages. Both are made from
+//! the description of the command line.
 
 use super::failure::Failure;
 use super::write::write_all;
@@ -32,7 +33,7 @@ pub(crate) struct ManArgs {
     out: PathBuf,
 }
 
-/// The script for a shell.
+/// The script with which a shell completes verbs, flags and file names, made from the description of the command line.
 pub(super) fn completions(args: &CompletionsArgs, mut command: Command) -> String {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut command, NAME, &mut script);
@@ -52,7 +53,7 @@ pub(super) fn man(args: &ManArgs, command: Command) -> Result<String, Failure> {
     Ok(format!("{} pages written to {}\n", pages.len(), args.out.display()))
 }
 
-/// Adds the page of a command and those of its verbs.
+/// Adds the manual page of a command and the pages of its verbs.
 fn add_pages(command: &Command, name: &str, pages: &mut Vec<(String, Vec<u8>)>) -> Result<(), Failure> {
     let mut page = Vec::new();
     let man = Man::new(command.clone()).title(name);

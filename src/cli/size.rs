@@ -48,7 +48,7 @@ pub(crate) struct SizeArgs {
     json: bool,
 }
 
-/// Executes the verb.
+/// Runs `armwright size` and returns the text to print.
 pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let (study, _) = load_study(&args.study, catalogs)?;
     refuse_empty(&study, catalogs)?;
@@ -99,7 +99,8 @@ fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32]) -> String {
     out
 }
 
-/// The state of the arm just before a joint, if the arm holds that far.
+/// The slot (place in the order in which the arm is built) of the joint named `joint`, the index of its piece, and the
+/// arm outboard of it. Fails if this arm breaks a limit.
 fn before(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<(usize, usize, Partial), Failure> {
     let piece = problem
         .space()
@@ -183,7 +184,7 @@ fn demand_line(joint: &str, demand: &JointDemand, table: &DriveTable) -> String 
     )
 }
 
-/// What the link leaves to gear and motor; nothing if nobody asks.
+/// The space that the link leaves for gear and motor, in words; empty if the study does not limit their sizes.
 fn room_words(room: &LinkRoom) -> String {
     let part = |part: &str, m: f64| match m.is_finite() {
         true => format!("; the link leaves {:.1} mm to the {part}", m * 1e3),

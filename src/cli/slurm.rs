@@ -2,10 +2,13 @@
 
 use super::failure::Failure;
 use super::merge::shell_word;
+use super::search::{SearchArgs, part_or_none};
 use super::shard::MOST_SHARDS;
 use crate::catalog::Catalogs;
 use crate::report::file_names::file_name;
 use crate::study::load::{load_study, refuse_empty};
+use crate::study::search_method::SearchMethod;
+use crate::study::tolerance::part;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -22,6 +25,16 @@ pub(crate) struct SlurmArgs {
     /// Number of shards
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_SHARDS)))]
     shards: u32,
+    /// How the front is searched for. Default: exact with --gap, else exhaustive
+    #[arg(long, value_enum)]
+    search: Option<SearchMethod>,
+    /// End the exact search at this gap, such as 1%, as in `armwright run`
+    #[arg(long, value_name = "PERCENT", value_parser = part_or_none)]
+    gap: Option<f64>,
+    /// Before the shards of an exact search, submit a job that searches the whole study to this gap, such as 10%; the shards
+    /// begin with what it found
+    #[arg(long, value_name = "PERCENT", value_parser = part)]
+    gap_first: Option<f64>,
     /// Processors of each shard
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1024))]
     cpus: u32,
@@ -30,41 +43,67 @@ pub(crate) struct SlurmArgs {
     out: Option<PathBuf>,
 }
 
-/// Executes the verb.
+/// Runs `armwright slurm` and returns the script.
 pub(super) fn run(args: &SlurmArgs, catalogs: &Catalogs, overlay: Option<&Path>) -> Result<String, Failure> {
     let (study, _) = load_study(&args.study, catalogs)?;
     refuse_empty(&study, catalogs)?;
+    let (method, _) = SearchArgs::asking_for(args.search, args.gap).check_shard(&study, catalogs)?;
+    if method == SearchMethod::Exhaustive && args.gap_first.is_some() {
+        return Err(Failure::Usage("--gap-first goes with --search exact".into()));
+    }
     let name = file_name(&study.name);
     let out = args.out.clone().unwrap_or_else(|| Path::new("results").join(&name));
     let out = shell_word(&out.display().to_string());
     let catalogs = overlay
         .map_or(String::new(), |dir| format!(" --catalogs {}", shell_word(&dir.display().to_string())));
     let (study, shards, cpus) = (shell_word(&args.study), args.shards, args.cpus);
+    let job = |kind: &str, log: &str, more: &str, command: &str| {
+        format!(
+            "#!/bin/sh\n#SBATCH --job-name={name}-{kind}\n{more}#SBATCH --ntasks=1\n#SBATCH --cpus-per-task={cpus}\n\
+             #SBATCH --output={name}-{kind}-{log}.log\nexec armwright {command}"
+        )
+    };
+    let search = words_of(args.search, args.gap);
+    let (mut first, mut after, mut told, mut incumbents) = Default::default();
+    if let Some(gap) = args.gap_first {
+        let wide = words_of(Some(SearchMethod::Exact), Some(gap));
+        let command =
+            format!("run {study}{catalogs}{wide} --shard 1/1 --threads {cpus} --out {out}/incumbents");
+        first =
+            format!("first=$(sbatch --parsable <<'FIRST'\n{}\nFIRST\n)\n", job("first", "%j", "", &command));
+        (after, told) = (" --dependency=\"afterok:$first\" --kill-on-invalid-dep=yes", "first $first, ");
+        incumbents = format!(" --incumbents {out}/incumbents");
+    }
+    let shard = job(
+        "shard",
+        "%A_%a",
+        &format!("#SBATCH --array=1-{shards}\n"),
+        &format!(
+            "run {study}{catalogs}{search}{incumbents} --shard \"$SLURM_ARRAY_TASK_ID/{shards}\" --threads {cpus} --out \
+             {out}/shards/\"$SLURM_ARRAY_TASK_ID\"-of-{shards}"
+        ),
+    );
+    let merge = job("merge", "%j", "", &format!("merge {out}/shards{catalogs} --threads {cpus} --out {out}"));
     Ok(format!(
         r#"#!/bin/sh
 # Submits {shards} shards of a study and a job that joins them. Run it in the folder from which the study is named.
 # Each batch script ends in exec: signals reach armwright, and Slurm sees its exit code.
 set -eu
-shards=$(sbatch --parsable <<'SHARDS'
-#!/bin/sh
-#SBATCH --job-name={name}-shard
-#SBATCH --array=1-{shards}
-#SBATCH --ntasks=1
-#SBATCH --cpus-per-task={cpus}
-#SBATCH --output={name}-shard-%A_%a.log
-exec armwright run {study}{catalogs} --shard "$SLURM_ARRAY_TASK_ID/{shards}" --threads {cpus} --out {out}/shards/"$SLURM_ARRAY_TASK_ID"-of-{shards}
+{first}shards=$(sbatch --parsable{after} <<'SHARDS'
+{shard}
 SHARDS
 )
 merge=$(sbatch --parsable --dependency="afterok:$shards" --kill-on-invalid-dep=yes <<'MERGE'
-#!/bin/sh
-#SBATCH --job-name={name}-merge
-#SBATCH --ntasks=1
-#SBATCH --cpus-per-task={cpus}
-#SBATCH --output={name}-merge-%j.log
-exec armwright merge {out}/shards{catalogs} --threads {cpus} --out {out}
+{merge}
 MERGE
 )
-echo "shards $shards, merge $merge"
+echo "{told}shards $shards, merge $merge"
 "#
     ))
+}
+
+/// The words that ask for a search, each with a blank before it.
+fn words_of(search: Option<SearchMethod>, gap: Option<f64>) -> String {
+    let words = SearchArgs::asking_for(search, gap).words();
+    words.iter().map(|word| format!(" {word}")).collect()
 }

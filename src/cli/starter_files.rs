@@ -1,27 +1,28 @@
-//! The files of a new study, a new arm and new parts: sound as they are, with a page that explains each block.
+//! The files with which a new study, arm or catalog folder starts. They are valid as they are, and a page explains
+//! each block.
 
-/// Name of the page that says what to put where.
+/// Name of the page that explains the files.
 pub(super) const PAGE: &str = "STARTER.md";
 
-/// What a file may say for the name of what is started.
+/// Word in the files that is replaced by the name of the new study or arm.
 const NAME: &str = "NAME";
-/// What a file may say for the folder.
+/// Word in the files that is replaced by the path of the new folder.
 const FOLDER: &str = "FOLDER";
 
 type Texts = &'static [(&'static str, &'static str)];
 
-/// A study with two joints and two open links.
+/// The files of a study with two joints and two open links.
 pub(super) const STUDY: Texts =
     &[("study.json", include_str!("starters/study.json")), (PAGE, include_str!("starters/study.md"))];
 
-/// An arm with two joints, and cases for it.
+/// The files of an arm with two joints, and of cases for it.
 pub(super) const ARM: Texts = &[
     ("arm.json", include_str!("starters/arm.json")),
     ("cases.json", include_str!("starters/cases.json")),
     (PAGE, include_str!("starters/arm.md")),
 ];
 
-/// Catalog files with one row each.
+/// Catalog files with one example row each.
 pub(super) const PARTS: Texts = &[
     ("gears.csv", include_str!("starters/gears.csv")),
     ("motors.csv", include_str!("starters/motors.csv")),
@@ -30,9 +31,9 @@ pub(super) const PARTS: Texts = &[
     (PAGE, include_str!("starters/parts.md")),
 ];
 
-/// The files with the name and the folder filled in.
+/// The files `texts` with `name`, the name of the new study or arm, and `folder`, its folder, filled in.
 pub(super) fn filled(texts: Texts, name: &str, folder: &str) -> Vec<(String, Vec<u8>)> {
-    // inside JSON a name is a text
+    // between quotation marks the name is a JSON string, so special characters in it are escaped
     let quoted = serde_json::Value::from(name).to_string();
     let fill = |(file, text): &(&str, &str)| {
         let text = text.replace(&format!("\"{NAME}\""), &quoted).replace(NAME, name).replace(FOLDER, folder);

@@ -1,4 +1,4 @@
-//! What `armwright run` works out in addition to the front: ballast, ties, the front under scatter, near designs.
+//! What `armwright run` computes in addition to the front: ballast, ties, the front under scatter, and near designs.
 
 use super::failure::Failure;
 use crate::catalog::Catalogs;
@@ -20,7 +20,7 @@ use clap::Args;
 use serde_json::Value;
 use std::sync::atomic::AtomicBool;
 
-/// Names of the files of supplements; not every run has them.
+/// Names of all files that supplements may write. Which of them a run has depends on its options and its front.
 pub(super) const FILES: [&str; 4] = [ballast::FILE, ties::FILE, tolerance::FILE, near::FILE];
 
 /// What may be asked for in addition to a front.
@@ -50,24 +50,27 @@ pub(super) struct SupplementArgs {
     within_most: u32,
 }
 
-/// A finished search.
+/// A finished search, as the supplements need it.
 pub(super) struct Found<'a> {
     pub problem: &'a ArmProblem<'a>,
     pub catalogs: &'a Catalogs,
+    /// The fronts that were found.
     pub outcome: &'a StudyOutcome,
-    /// The designs near the front that an exact search found.
+    /// Near designs, if an exact search looked for them.
     pub near: Option<&'a NearDesigns>,
+    /// Whether the search was exact.
     pub is_exact: bool,
-    /// Whether drives of equal mass and curve are rows of the front.
+    /// Whether designs that differ only in drives of equal mass and torsion curve are all rows of the front.
     pub ties_listed: bool,
+    /// Set when the user wants to stop the program.
     pub stop: &'a AtomicBool,
 }
 
 impl SupplementArgs {
-    /// Works out what was asked for; `front` is the table of the front.
+    /// Computes the supplements that the user asks for. `front` is the table of the front.
     ///
     /// # Errors
-    /// The user stops it.
+    /// The user stops the computation.
     pub(super) fn work_out(&self, found: &Found, front: &FrontTable) -> Result<Vec<Supplement>, Failure> {
         let stopped = || {
             let words = "stopped after the search: the front is written, what goes with it is not";
@@ -92,27 +95,27 @@ impl SupplementArgs {
         Ok(out)
     }
 
-    /// Whether nothing is asked for.
+    /// Whether the user asks for neither scatter nor near designs.
     pub(super) fn is_default(&self) -> bool {
         self.tolerance.is_none() && self.within.is_none()
     }
 
-    /// Why there is no list of designs near the front, if one was asked for.
+    /// A sentence on why there is no list of near designs; empty if the user asks for none.
     fn why_no_near(&self) -> String {
         if self.within.is_some() { wrap(NO_NEAR, TERMINAL, "") } else { String::new() }
     }
 
-    /// Whether scatter of catalog ratings is asked for.
+    /// Whether the user asks for scatter of catalog ratings.
     pub(super) fn scatters(&self) -> bool {
         self.tolerance.is_some()
     }
 
-    /// Which designs near the front are asked for, if any are.
+    /// How much worse near designs may be, and how many are listed; `None` if the user asks for none.
     pub(super) fn slack(&self) -> Option<Slack> {
         self.within.map(|part| Slack { part, most: self.within_most as usize })
     }
 
-    /// The designs near the front, if they were asked for and found.
+    /// The near designs; `None` if the user asks for none, or if an exact search could not list them.
     fn near(&self, found: &Found) -> Result<Option<NearFront>, ()> {
         let Some(slack) = self.slack() else { return Ok(None) };
         let Found { problem, catalogs, outcome, near, is_exact, stop, .. } = *found;
@@ -122,7 +125,7 @@ impl SupplementArgs {
         }
     }
 
-    /// The front under scatter, if that was asked for.
+    /// The front under scatter; `None` if the user does not ask for it.
     fn scattered(&self, found: &Found, front: &FrontTable) -> Result<Option<Scattered>, ()> {
         let Some(tolerance) = self.tolerance else { return Ok(None) };
         let sampling = Sampling { tolerance, samples: self.samples, seed: self.seed };
@@ -134,6 +137,6 @@ impl SupplementArgs {
     }
 }
 
-/// Why there is no list of designs near a front although it was asked for.
+/// The reason why there is no list of near designs although the user asks for one.
 const NO_NEAR: &str = "No near.csv was written: near designs are listed only if the front is complete and has all ties as rows. A longer \
                        --time-limit, --gap 0% or tighter constraints help.";

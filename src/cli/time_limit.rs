@@ -1,14 +1,14 @@
-//! A time limit of the command line.
+//! Reads a time limit from the command line.
 
 use std::time::Duration;
 
-/// The longest time limit \[s\]: ten years. A longer one is a slip.
+/// The longest time limit \[s\]: ten years. A longer one is taken for a typing error.
 const LONGEST_S: f64 = 10.0 * 365.25 * 86_400.0;
 
 /// Reads a time limit in seconds.
 ///
 /// # Errors
-/// It is not a number above zero and up to ten years; in words.
+/// The text is not a number above zero and up to ten years. The error is a hint to the user.
 pub(super) fn time_limit(text: &str) -> Result<Duration, String> {
     let seconds = text.parse::<f64>().map_err(|_| "a number of seconds, such as 60".to_string())?;
     if seconds > 0.0 && seconds <= LONGEST_S {

@@ -1,13 +1,13 @@
-//! The state of an unfinished search in a folder of results: written every few seconds, read by the same command when it is
-//! given again, removed when the search is done.
+//! The saved state of an unfinished search in a folder of results. It is written every few seconds, and removed when
+//! the search is finished. The same command reads it if it is given again.
 //!
-//! The file is a line of JSON, which says what search it is of, and the state. It is written beside its place, synced and
-//! renamed, so that whatever ends the process leaves a whole state.
+//! The file has a line of JSON that identifies the search, and then the state. It is written under a temporary name,
+//! synced to disk and renamed. Therefore the file is complete whenever the process ends.
 
 use super::failure::Failure;
 use super::log::Log;
 use super::manifest::hash;
-use crate::report::whole_file::{remove_file, write_whole};
+use crate::report::whole_file::{create_folder, folder_of, remove_file, write_whole};
 use crate::search::resume::{KeepState, Resume};
 use serde_json::{Value, json};
 use std::io::ErrorKind;
@@ -15,13 +15,15 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Least time between two states.
+/// Shortest time between two saved states.
 const KEEP_EVERY: Duration = Duration::from_secs(2);
-/// Keeping states may take at most one part in this of the time.
+/// Saving states may take at most the fraction 1/`SHARE` of the running time. Otherwise the time between two saves is
+/// made longer.
 const SHARE: u32 = 200;
-/// How a file of a state ends.
+/// Ending of the name of a file with a state.
 pub(super) const ENDING: &str = ".unfinished";
-/// What two searches of one study may differ in, and what it is called in messages.
+/// Keys that must be equal in the saved state and in the search that is to be continued. Each comes with the word for
+/// it in messages.
 const SAME: [(&str, &str); 4] = [
     ("study_hash", "study"),
     ("catalogs_hash", "catalogs"),
@@ -29,12 +31,17 @@ const SAME: [(&str, &str); 4] = [
     ("flags", "search"),
 ];
 
-/// A search whose state is kept.
+/// A search whose state is saved.
 pub(super) struct Unfinished {
+    /// File of the state.
     path: PathBuf,
+    /// Keys that identify the search.
     search: Value,
+    /// The state that an earlier process saved.
     from: Option<Vec<u8>>,
+    /// Time that earlier processes spent on the search.
     earlier: Duration,
+    /// Start of this process's search.
     started: Instant,
     due: Mutex<Due>,
     log: Log,
@@ -42,18 +49,20 @@ pub(super) struct Unfinished {
 
 struct Due {
     at: Instant,
-    /// When a state was found to be due that is not kept yet: from then on it costs time.
+    /// Time at which a state was found to be due, while it is not saved yet. The time from then on counts as the cost
+    /// of saving.
     since: Option<Instant>,
     every: Duration,
     has_failed: bool,
 }
 
 impl Unfinished {
-    /// Reads the state at `path`, if there is one. `search` says what is searched, in the keys `study_hash`, `catalogs_hash`,
-    /// `tool_version` and `flags`. With `is_fresh` a state is removed and not read.
+    /// Opens the file of a state. If it exists, the state is read. `search` identifies the search by the keys
+    /// `study_hash`, `catalogs_hash`, `tool_version` and `flags`. If `is_fresh`, an existing state is removed instead
+    /// of read.
     ///
     /// # Errors
-    /// The state is of another search, is damaged, or cannot be read.
+    /// The state belongs to another search, is damaged, or cannot be read.
     pub(super) fn open(path: &Path, search: Value, is_fresh: bool, log: Log) -> Result<Self, Failure> {
         let every = keep_every();
         let due = Mutex::new(Due { at: Instant::now() + every, since: None, every, has_failed: false });
@@ -66,6 +75,14 @@ impl Unfinished {
             Ok(bytes) => out.go_on_from(&bytes)?,
         }
         Ok(out)
+    }
+
+    /// As [`open`](Self::open), but a state of another search or a damaged one is removed, and the search begins.
+    ///
+    /// # Errors
+    /// The state cannot be read or removed.
+    pub(super) fn open_or_begin(path: &Path, search: &Value, log: Log) -> Result<Self, Failure> {
+        Self::open(path, search.clone(), false, log).or_else(|_| Self::open(path, search.clone(), true, log))
     }
 
     fn go_on_from(&mut self, bytes: &[u8]) -> Result<(), Failure> {
@@ -87,7 +104,7 @@ impl Unfinished {
         Ok(())
     }
 
-    /// The state cannot be used.
+    /// The error that is reported if the saved state is damaged.
     pub(super) fn damaged(&self) -> Failure {
         Failure::File(format!(
             "{}: the state of the unfinished search is damaged; give --fresh to discard it and begin anew",
@@ -99,17 +116,18 @@ impl Unfinished {
         self.due.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The folder of results, for messages.
+    /// Path of the folder of results, for messages.
     fn folder(&self) -> std::path::Display<'_> {
         self.path.ancestors().nth(2).unwrap_or(&self.path).display()
     }
 
-    /// The state to go on from, and who keeps the next ones.
+    /// The state from which to continue, and the means to save further states.
     pub(super) fn resume(&self) -> Resume<'_> {
         Resume { from: self.from.as_deref(), keeper: self }
     }
 
-    /// When the search would have started if one process had done it all.
+    /// The time at which the search would have started if this process had done all of it. The time of earlier
+    /// processes is thus counted.
     pub(super) fn started(&self) -> Instant {
         self.started.checked_sub(self.earlier).unwrap_or(self.started)
     }
@@ -127,7 +145,10 @@ impl KeepState for Unfinished {
         let mut head = self.search.clone();
         head["elapsed_s"] = json!(self.started().elapsed().as_secs_f64());
         head["hash"] = json!(hash(state));
-        let written = write_whole(&self.path, &[format!("{head}\n").as_bytes(), state].concat());
+        let folder = folder_of(&self.path);
+        let there = if folder.is_dir() { Ok(()) } else { create_folder(&folder) };
+        let written =
+            there.and_then(|()| write_whole(&self.path, &[format!("{head}\n").as_bytes(), state].concat()));
         let mut due = self.due();
         due.at = Instant::now() + due.every.max(begun.elapsed() * SHARE);
         if let Err(e) = written
@@ -139,7 +160,7 @@ impl KeepState for Unfinished {
     }
 }
 
-/// The head and the state of a file; `None` if it is damaged.
+/// The line of JSON and the saved state, taken from the bytes of a file; `None` if the file is damaged.
 fn parts(bytes: &[u8]) -> Option<(Value, &[u8])> {
     let end = bytes.iter().position(|byte| *byte == b'\n')?;
     let head: Value = serde_json::from_slice(&bytes[..end]).ok()?;
@@ -147,10 +168,10 @@ fn parts(bytes: &[u8]) -> Option<(Value, &[u8])> {
     (head["hash"].as_str()? == hash(state)).then_some((head, state))
 }
 
-/// Removes a state, if it is there.
+/// Removes a saved state, if it exists.
 ///
 /// # Errors
-/// It cannot be removed.
+/// The file cannot be removed.
 pub(super) fn remove(path: &Path) -> Result<(), Failure> {
     match remove_file(path) {
         Err(e) if e.kind() != ErrorKind::NotFound => Err(Failure::file(path, "remove", &e)),
@@ -158,9 +179,10 @@ pub(super) fn remove(path: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Time between two states. Builds with debug assertions let a test have more of them.
+/// Time between two states, unless the environment asks for another one: a slow shared disk is written less often, and a test
+/// writes more often.
 fn keep_every() -> Duration {
-    let asked = std::env::var("ARMWRIGHT_KEEP_EVERY_MS").ok().filter(|_| cfg!(debug_assertions));
+    let asked = std::env::var("ARMWRIGHT_KEEP_EVERY_MS").ok();
     asked.and_then(|ms| ms.parse().ok()).map_or(KEEP_EVERY, Duration::from_millis)
 }
 

@@ -1,15 +1,15 @@
-//! Parsers for the values of options: lists of numbers, and one of several words.
+//! Reads the values of options: lists of numbers, and words of which one is to be chosen.
 
 use crate::arm::Words;
 
-/// Comma-separated numbers, as many as asked.
+/// Reads exactly `N` numbers, separated by commas.
 pub(super) fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
     let list = number_list(text)?;
     list.try_into()
         .map_err(|list: Vec<f64>| format!("{} numbers given, {N} needed, separated by commas", list.len()))
 }
 
-/// Comma-separated finite numbers.
+/// Reads finite numbers, separated by commas.
 pub(super) fn number_list(text: &str) -> Result<Vec<f64>, String> {
     text.split(',')
         .map(|cell| match cell.trim().parse::<f64>() {
@@ -19,7 +19,7 @@ pub(super) fn number_list(text: &str) -> Result<Vec<f64>, String> {
         .collect()
 }
 
-/// Comma-separated `key=number`.
+/// Reads entries `key=number`, separated by commas.
 pub(super) fn entries(text: &str) -> Result<Vec<(String, f64)>, String> {
     let entry = |cell: &str| match cell.rsplit_once('=') {
         Some((key, value)) => Ok((key.trim().to_string(), number_list(value)?[0])),
@@ -28,7 +28,7 @@ pub(super) fn entries(text: &str) -> Result<Vec<(String, f64)>, String> {
     text.split(',').map(entry).collect()
 }
 
-/// One of the words of a choice.
+/// Reads one of the words that `T` allows.
 pub(super) fn choice<T: Words>(text: &str) -> Result<T, String> {
     T::from_word(text).ok_or_else(|| format!("choose one of: {}", T::words()))
 }

@@ -1,4 +1,4 @@
-//! All verbs: their names, and the functions that execute them.
+//! All verbs: their names, and the functions that run them.
 
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
@@ -85,13 +85,13 @@ enum Verb {
 }
 
 impl Cli {
-    /// Where messages and progress go.
+    /// The log for messages and progress, in the form that the user asks for.
     pub fn log(&self) -> Log {
         Log::new(self.log, self.quiet)
     }
 }
 
-/// Executes a command line.
+/// Runs a command line and returns the answer to print.
 ///
 /// # Errors
 /// See [`Failure`].
@@ -100,8 +100,8 @@ pub fn run(cli: Cli) -> Result<Answer, Failure> {
         .num_threads(cli.threads.map_or(0, Into::into))
         .stack_size(WORKER_STACK_BYTES)
         .build_global();
-    // A process that has run a command line before keeps the workers it has. Results do not depend on their number,
-    // so only a number that was asked for and cannot be had is an error.
+    // If the process has run a command line before, it keeps its number of worker threads. Results do not depend on
+    // this number. Therefore it is an error only if the user asks for a number that cannot be had.
     if let (Err(e), Some(_)) = (workers, cli.threads) {
         return Err(Failure::Internal(e.to_string()));
     }
@@ -110,7 +110,7 @@ pub fn run(cli: Cli) -> Result<Answer, Failure> {
     let catalogs = Catalogs::load(overlay).map_err(Failure::catalog);
     let text = match cli.verb {
         Verb::Run(args) => return super::run::run(&args, &catalogs?, overlay, log),
-        Verb::Front(args) => return front::run(&args, &catalogs?),
+        Verb::Front(args) => return front::run(&args, &catalogs?, log),
         Verb::Check(args) => return check::run(&args, &catalogs?),
         Verb::Completions(args) => Ok(shell::completions(&args, Cli::command())),
         Verb::Man(args) => shell::man(&args, Cli::command()),

@@ -1,4 +1,4 @@
-//! Results of earlier versions: what they leave out, and that they are refused.
+//! Refuses results of earlier versions, which do not count output bearings.
 
 use super::failure::Failure;
 use crate::input::json::{Fault, Faults};
@@ -8,10 +8,11 @@ use std::path::Path;
 /// The first version whose results count output bearings.
 const WITH_BEARINGS: [u64; 3] = [0, 2, 0];
 
-/// Refuses a result whose run was made before output bearings were modelled: its figures are those of another arm.
+/// Refuses a result that was computed before output bearings were modelled. Its objectives are not those that this
+/// version computes.
 ///
 /// # Errors
-/// The `tool_version` of the run is lower than [`WITH_BEARINGS`], or missing.
+/// The `tool_version` of the run is lower than [`WITH_BEARINGS`], or is missing.
 pub(super) fn refuse_earlier(run_file: &Path, run: &Value) -> Result<(), Failure> {
     let made_by = run["tool_version"].as_str();
     if made_by.and_then(numbers).is_some_and(|version| version >= WITH_BEARINGS) {
@@ -27,7 +28,7 @@ pub(super) fn refuse_earlier(run_file: &Path, run: &Value) -> Result<(), Failure
     }])))
 }
 
-/// The three numbers of a version, without what follows them.
+/// The three numbers of a version, without a suffix such as `-rc1`; `None` if there are not three numbers.
 fn numbers(version: &str) -> Option<[u64; 3]> {
     let release = version.split(['-', '+']).next()?;
     let parts: Vec<u64> = release.split('.').map(|part| part.parse().ok()).collect::<Option<_>>()?;

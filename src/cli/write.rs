@@ -1,4 +1,4 @@
-//! Output: text to standard output and standard error, and files that are no result of a study or a campaign.
+//! Writes text to standard output and standard error, and files that are not part of a study's or campaign's result.
 
 use super::failure::Failure;
 use super::manifest::{Earlier, MANIFESTS};
@@ -6,10 +6,10 @@ use crate::report::whole_file::{create_folder, folder_of, write_whole};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-/// Writes a verb's text to standard output; a closed pipe is no error.
+/// Writes the text of a verb to standard output. It is not an error if the reader has closed the pipe.
 ///
 /// # Errors
-/// Standard output cannot be written, such as a file on a full disk.
+/// Standard output cannot be written, for instance because it is a file on a full disk.
 pub fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
     let end = if text.is_empty() || text.ends_with('\n') { "" } else { "\n" };
@@ -17,10 +17,10 @@ pub fn print(text: &str) -> Result<(), Failure> {
     printed(written.and_then(|()| out.flush()))
 }
 
-/// What the result of a writing to standard output means.
+/// Turns the result of writing to standard output into the result of the program: a closed pipe counts as success.
 ///
 /// # Errors
-/// It failed, and not because nobody reads any more.
+/// Writing failed for another reason than a closed pipe.
 pub fn printed(written: std::io::Result<()>) -> Result<(), Failure> {
     match written {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => {
@@ -30,13 +30,13 @@ pub fn printed(written: std::io::Result<()>) -> Result<(), Failure> {
     }
 }
 
-/// Writes text to standard error. Where that cannot be written nothing is said, because work must go on.
+/// Writes text to standard error. If that fails, the failure is ignored, so that the work continues.
 pub(super) fn say(text: &str) {
     let mut out = std::io::stderr().lock();
     let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
 }
 
-/// Writes files into a folder, which is made if it is missing. Each file is replaced as a whole.
+/// Writes files into a folder. The folder is made if it is missing. Each file is replaced as a whole.
 ///
 /// # Errors
 /// A file cannot be written, is one of the `inputs`, or belongs to a result.
@@ -46,10 +46,10 @@ pub(super) fn write_all(folder: &Path, files: &[(String, Vec<u8>)], inputs: &[&P
     targets.iter().zip(files).try_for_each(|(target, (_, bytes))| write_file(target, bytes, inputs))
 }
 
-/// Writes a file, and its folder if that is missing. The file is replaced as a whole.
+/// Writes a file. Its folder is made if it is missing. An existing file is replaced as a whole.
 ///
 /// # Errors
-/// It cannot be written, is one of the `inputs`, or belongs to a result.
+/// The file cannot be written, is one of the `inputs`, or belongs to a result.
 pub(super) fn write_file(target: &Path, bytes: &[u8], inputs: &[&Path]) -> Result<(), Failure> {
     refuse_overwriting(&[target.to_path_buf()], inputs)?;
     let folder = folder_of(target);
@@ -57,7 +57,7 @@ pub(super) fn write_file(target: &Path, bytes: &[u8], inputs: &[&Path]) -> Resul
     write_whole(target, bytes).map_err(|e| Failure::file(target, "write", &e))
 }
 
-/// Refuses to write over an input, or over a file of a result.
+/// Refuses to write to a path that is an input of the command, or a file of a result.
 ///
 /// # Errors
 /// One of the targets is such a file.
@@ -75,7 +75,7 @@ pub(super) fn refuse_overwriting(targets: &[PathBuf], inputs: &[&Path]) -> Resul
     Ok(())
 }
 
-/// Refuses to write over an input, by whatever path it is reached.
+/// Refuses to write to a path that is an input of the command, even if it is reached by another path.
 ///
 /// # Errors
 /// One of the targets is an input.
@@ -90,12 +90,12 @@ pub(super) fn refuse_inputs(targets: &[PathBuf], inputs: &[impl AsRef<Path>]) ->
     }
 }
 
-/// Whether two paths lead to one file that exists.
+/// Whether two paths lead to the same existing file.
 pub(super) fn is_same_file(a: &Path, b: &Path) -> bool {
     matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
-/// The file that lists a path as part of a result in the same folder.
+/// The manifest that lists this path as a file of a result in the same folder; `None` if there is none.
 fn result_of(path: &Path) -> Result<Option<PathBuf>, Failure> {
     let (folder, name) =
         (folder_of(path), path.file_name().and_then(|name| name.to_str()).unwrap_or_default());

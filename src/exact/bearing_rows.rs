@@ -1,80 +1,92 @@
 //! Loads on the output bearing of a joint, as intervals over the members of a box.
 //!
-//! A bearing carries the wrench of everything outboard: of gravity and load, and of the ramp or the stop of one joint while
-//! the others are at rest ([`bearing_loads`](crate::space::bearing_loads)). Every component of such a wrench is linear in
-//! the weights and the inertias of the parts, so it is an interval. A load is the length of a vector of components. Its
-//! least value takes each component at its least size, its greatest each at its greatest. For a box of one design both are
-//! the load itself.
+//! A bearing transmits the wrench of everything outboard: of gravity and load, and of the ramp or the stop of one joint
+//! while the others are at rest ([`bearing_loads`](crate::space::bearing_loads)). Every component of such a wrench is
+//! linear in the weights and the inertias of the parts, so its range over a box is an interval. A load (moment, radial
+//! or axial force) is the length of a vector of components. The least load takes each component at its least magnitude,
+//! the greatest load each at its greatest. For a box of one design both equal the load of this design.
 
 use super::parts::INERTIAS;
 use crate::mechanics::{Twist, Wrench, linear, rotation_twist, stack};
 use crate::sizing::bearing::{BearingDemand, BearingLoad};
 use nalgebra::{Matrix6, Vector3};
 
-/// A coefficient below this part of what the wrench could make of it is rounding.
+/// A coefficient is set to zero if it is below this fraction of the greatest magnitude that the given wrench could
+/// have. It is then due to rounding.
 const NOTHING: f64 = 1e-13;
-/// Components of a load: moments about the two axes across, forces along them, and the force along the axis.
+/// Number of components of a load: moments about the two axes across the joint axis, forces along these two axes, and
+/// the force along the joint axis.
 const COMPONENTS: usize = 5;
-/// The components whose length is the moment, the radial force and the axial force.
+/// Indices of the components whose length is the moment, the radial force and the axial force.
 const MOMENT: [usize; 2] = [0, 1];
 const RADIAL: [usize; 2] = [2, 3];
 const AXIAL: [usize; 1] = [4];
 
-/// The loads on the bearing of one joint in one case.
+/// The loads on the output bearing of one joint in one case, as linear functions of the weights and inertias of the
+/// parts.
 pub(super) struct BearingRows {
-    /// Of gravity and load, over the weight of each piece \[N\].
+    /// Load components at rest, caused by gravity and the tip load. Each is a sum over the weights of the pieces \[N\].
     at_rest: Components,
-    /// Of the ramp of each joint, over the line inertias of each piece, [`INERTIAS`] places each.
+    /// Additional load components while one joint accelerates, one entry for each joint whose acceleration loads this
+    /// bearing. Each component is a sum over the line inertias (inertias per metre of a tube) of all pieces, with
+    /// [`INERTIAS`] numbers for each piece.
     ramps: Vec<Components>,
 }
 
-/// The components of a load.
+/// The components of a load, each as a linear function of the numbers of the parts.
 type Components = [Sum; COMPONENTS];
 
-/// `fixed + Σ coefficient · number`, over those numbers that count.
+/// A linear function `fixed + Σ coefficient · number` of the weights or of the inertias. `terms` holds the index and
+/// the coefficient of each number whose coefficient is not zero.
 #[derive(Default)]
 struct Sum {
     fixed: f64,
     terms: Vec<(usize, f64)>,
 }
 
-/// The numbers of a box: weights in the case as intervals \[N\], least and greatest line inertias of each piece.
+/// The numbers of a box from which the loads follow: `weights_n` is the least and greatest weight of each piece in the
+/// case \[N\]; `light` and `heavy` are the least and greatest line inertias of each piece.
 pub(super) struct Numbers<'a> {
     pub weights_n: &'a [[f64; 2]],
     pub light: &'a [[f64; INERTIAS]],
     pub heavy: &'a [[f64; INERTIAS]],
 }
 
-/// What is outboard of some joint: a constant wrench, and that of each piece.
+/// The load at rest of everything outboard of a joint: the wrench of what the study gives, and the wrench of each piece
+/// that has a weight of its own.
 pub(super) struct Loads<'a> {
-    /// Wrench of payload, tip force and given bodies.
+    /// Wrench of payload, tip force and the bodies that the study gives, about the world's origin.
     pub fixed: Wrench,
     /// Wrench of each piece per newton of its weight.
     pub per_n: &'a [Wrench],
 }
 
-/// What moves with a joint: its acceleration as a twist, and the inertia that it accelerates.
+/// The ramp of one joint: its acceleration as a kinematic twist, and the inertia that it accelerates.
 pub(super) struct Ramp<'a> {
-    /// Twist of the joint times its acceleration.
+    /// Kinematic twist of the joint per radian, times its angular acceleration \[rad/s²\].
     pub acceleration: Twist,
-    /// Inertia of payload and given bodies that move with the joint.
+    /// Inertia matrix of the payload and of the bodies that the study gives, as far as they move with the joint.
     pub fixed: Matrix6<f64>,
-    /// Inertia of each piece that moves with the joint, per unit of each line inertia.
+    /// Inertia matrix of each piece that moves with the joint, per unit of each of its line inertias (inertias per
+    /// metre of a tube).
     pub inertia: &'a [[Matrix6<f64>; INERTIAS]],
 }
 
-/// The axes about and along which the components of a load are taken.
+/// The axes of a joint about and along which the components of a load are taken, each as a unit motion. The dot product
+/// of such a motion and a wrench is one component.
 struct Frame([Twist; COMPONENTS]);
 
 impl Frame {
-    /// The frame of a joint at a point with two axes across its own.
+    /// The frame of a joint at the point `at_m` with the given `axis`. `first` and `second` are two directions across
+    /// that axis.
     fn new(at_m: &Vector3<f64>, axis: &Vector3<f64>, [first, second]: &[Vector3<f64>; 2]) -> Self {
         let along = |direction: &Vector3<f64>| stack(direction, &Vector3::zeros());
         let about = |direction: &Vector3<f64>| rotation_twist(direction, at_m);
         Self([about(first), about(second), along(first), along(second), along(axis)])
     }
 
-    /// The components of a wrench.
+    /// The moments and forces of `wrench` about and along the axes of this frame. A component that is only rounding
+    /// becomes zero.
     fn components(&self, wrench: &Wrench) -> [f64; COMPONENTS] {
         self.0.each_ref().map(|unit| {
             let component = unit.dot(wrench);
@@ -83,7 +95,8 @@ impl Frame {
         })
     }
 
-    /// The components of a constant wrench and of wrenches per number.
+    /// The components of the wrench `fixed + Σ wrench · number`. `wrenches` holds the index of each number (a weight or
+    /// an inertia) and the wrench per unit of it.
     fn sums(&self, fixed: &Wrench, wrenches: impl Iterator<Item = (usize, Wrench)>) -> Components {
         let mut sums: Components = self.components(fixed).map(|fixed| Sum { fixed, terms: Vec::new() });
         for (number, wrench) in wrenches {
@@ -98,7 +111,8 @@ impl Frame {
 }
 
 impl BearingRows {
-    /// The loads on the bearing of a joint at a point, with two axes across its own.
+    /// Prepares the loads on the bearing of a joint that lies at `at_m` and turns about `axis`. `across` are two
+    /// directions across the axis. `loads` act at rest, and `ramps` are the accelerations of each joint.
     pub(super) fn new<'a>(
         [at_m, axis]: [&Vector3<f64>; 2],
         across: &[Vector3<f64>; 2],
@@ -116,7 +130,10 @@ impl BearingRows {
         Self { at_rest, ramps: ramps.map(of_ramp).filter(counts).collect() }
     }
 
-    /// The least and the greatest loads, before levers along the axis.
+    /// Least and greatest moment, radial and axial force on the output bearing over the box: at rest, while a joint
+    /// accelerates, and in an emergency stop. `stop_factor` is the acceleration in a stop divided by that in a ramp.
+    /// The moment of the radial force about the bearing (force times the distance along the axis to the link) is left
+    /// out; the caller adds it.
     pub(super) fn loads(&self, numbers: &Numbers, stop_factor: f64) -> [BearingDemand; 2] {
         let at_rest = self.at_rest.each_ref().map(|sum| sum.between_weights(numbers.weights_n));
         let rest = squared_lengths(&at_rest);
@@ -137,11 +154,12 @@ impl BearingRows {
         })
     }
 
-    /// Whether no load can fall when a drive gets heavier.
+    /// Whether none of the three loads on the bearing (moment, radial force, axial force) can fall when a drive gets
+    /// heavier. `is_drive` tells whether the piece with an index is a drive.
     ///
-    /// The length of a sum of vectors grows with the share of one of them if that one has no negative dot product with any
-    /// other. For `a` at rest and `b` of a ramp, the greater of `|a + b|` and `|a - b|` grows if `|a|`, `|b|` and `|a·b|` do,
-    /// and `|a·b|` grows if all products of a share of `a` and a share of `b` have one sign.
+    /// The length of a sum of vectors grows with one contribution if this contribution has no negative dot product with
+    /// any other. For `a` at rest and `b` of a ramp, the greater of `|a + b|` and `|a - b|` grows if `|a|`, `|b|` and
+    /// `|a·b|` do. `|a·b|` grows if all products of a contribution to `a` and a contribution to `b` have one sign.
     pub(super) fn grow_with_mass(&self, is_drive: &impl Fn(usize) -> bool) -> bool {
         [&MOMENT[..], &RADIAL, &AXIAL].into_iter().all(|places| {
             let at_rest = shares(&self.at_rest, places);
@@ -160,10 +178,12 @@ impl BearingRows {
     }
 }
 
-/// The share of one number, or of what is given (`None`), in some components of a load.
+/// The contribution of one weight or one line inertia to some components of a load, per unit of it. Without an index
+/// (`None`), it is the constant contribution of payload, tip force and the bodies that the study gives.
 type Share = (Option<usize>, [f64; COMPONENTS]);
 
-/// The shares of all numbers in the components at some places.
+/// For the load components with the indices `places`: the contribution of the given bodies first, and then that of each
+/// weight or each inertia in `sums`.
 fn shares(sums: &Components, places: &[usize]) -> Vec<Share> {
     let mut shares: Vec<Share> = vec![(None, [0.0; COMPONENTS])];
     for &place in places {
@@ -182,8 +202,8 @@ fn shares(sums: &Components, places: &[usize]) -> Vec<Share> {
     shares
 }
 
-/// The dot product of the coefficients of two weights or inertias; 0 if its size is at most 1e-9 of the sum of the sizes of
-/// its terms, which is rounding.
+/// The dot product of two contributions. It is 0 if its magnitude is at most 1e-9 of the sum of the magnitudes of its
+/// terms, because then it is rounding.
 fn dot(a: &[f64; COMPONENTS], b: &[f64; COMPONENTS]) -> f64 {
     let product: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
     let scale: f64 = a.iter().zip(b).map(|(a, b)| (a * b).abs()).sum();
@@ -191,7 +211,7 @@ fn dot(a: &[f64; COMPONENTS], b: &[f64; COMPONENTS]) -> f64 {
 }
 
 impl Sum {
-    /// The interval of the sum over weights.
+    /// The least and the greatest value of this sum if each weight lies in its interval of `weights_n` \[N\].
     fn between_weights(&self, weights_n: &[[f64; 2]]) -> [f64; 2] {
         self.terms.iter().fold([self.fixed; 2], |[low, high], &(at, c)| {
             let [a, b] = weights_n[at].map(|weight| c * weight);
@@ -199,7 +219,8 @@ impl Sum {
         })
     }
 
-    /// The interval of the sum over line inertias.
+    /// The least and the greatest value of this sum if each line inertia lies between its entries of `light` and
+    /// `heavy`.
     fn between_inertias(&self, light: &[f64], heavy: &[f64]) -> [f64; 2] {
         self.terms.iter().fold([self.fixed; 2], |[low, high], &(at, c)| {
             let (a, b) = (c * light[at], c * heavy[at]);
@@ -208,7 +229,8 @@ impl Sum {
     }
 }
 
-/// The components of a load at rest plus a ramp times a factor.
+/// The load components of a moving arm, as intervals: the components `at_rest` plus `times` the components `ramp` that
+/// one accelerating joint adds.
 #[inline]
 fn moving(
     at_rest: &[[f64; 2]; COMPONENTS],
@@ -221,11 +243,12 @@ fn moving(
     })
 }
 
-/// Squares of the moment, of the radial and of the axial force. The largest load has the largest squares, so one root
-/// for all cases is enough.
+/// Squares of the moment \[N² m²\], of the radial force and of the axial force \[N²\]. The largest load has the largest
+/// square, so the root is taken only once, after all ramps are compared.
 type Squares = [f64; 3];
 
-/// The least and the greatest load of components in intervals, squared.
+/// Squares of the least and of the greatest loads (moment, radial force, axial force), if each component lies in its
+/// interval of `components`.
 #[inline]
 fn squared_lengths(components: &[[f64; 2]; COMPONENTS]) -> [Squares; 2] {
     let mut squares = [[0.0; COMPONENTS]; 2];
@@ -237,14 +260,14 @@ fn squared_lengths(components: &[[f64; 2]; COMPONENTS]) -> [Squares; 2] {
     squares.map(|of| [of[MOMENT[0]] + of[MOMENT[1]], of[RADIAL[0]] + of[RADIAL[1]], of[AXIAL[0]]])
 }
 
-/// Makes each end of a load the larger of two.
+/// Replaces the least and the greatest loads in `load` by those in `other` where the latter are larger.
 fn widen(load: &mut [Squares; 2], other: [Squares; 2]) {
     for (load, other) in load.iter_mut().flatten().zip(other.iter().flatten()) {
         *load = load.max(*other);
     }
 }
 
-/// The load whose squares are given.
+/// The bearing load whose moment, radial force and axial force have these squares.
 fn load(squares: &Squares) -> BearingLoad {
     let [moment_nm, radial_n, axial_n] = squares.map(f64::sqrt);
     BearingLoad { moment_nm, radial_n, axial_n }
@@ -266,7 +289,8 @@ mod tests {
     use serde_json::json;
     use std::collections::BTreeSet;
 
-    /// An arm with three sized joints, the middle one with an offset to its side, in two poses.
+    /// A study of an arm with three joints whose drives are sized, in two poses. The upper arm, between the second and
+    /// the third joint, has an offset to the side.
     fn study(pose_deg: [f64; 3], side_m: f64, tip_n: f64, catalogs: &Catalogs) -> Study {
         let drives =
             json!({"gear_series": ["CSG"], "ratios": [100], "motor_models": ["ILM70x18", "ILM85x26"]});
@@ -294,14 +318,15 @@ mod tests {
         std::array::from_fn(|k| all[k / 3][k % 3])
     }
 
-    /// Whether each number of a demand is within a relative tolerance of lying between those of two others.
+    /// Whether each number of a demand lies between those of two other demands, up to a relative tolerance.
     fn is_between(demand: &BearingDemand, ends: &[BearingDemand; 2], tolerance: f64) -> bool {
         let [low, high] = ends.each_ref().map(numbers);
         let slack = |x: f64| tolerance * (1.0 + x);
         numbers(demand).iter().enumerate().all(|(k, x)| low[k] - slack(*x) <= *x && *x <= high[k] + slack(*x))
     }
 
-    /// The loads on every sized joint of a design, tip first, as the walk over its arm computes them.
+    /// The loads on every joint of a design whose drive is sized, tip first, as the walk over its arm computes them.
+    /// `None` if the walk ends at a part that cannot carry its load.
     fn walked(problem: &ArmProblem, options: &[u32]) -> Option<Vec<BearingDemand>> {
         let mut loads = Vec::new();
         let see = |slot: usize, outboard: &Partial| {
@@ -313,7 +338,7 @@ mod tests {
         Some(loads)
     }
 
-    /// The loads of a box on every sized joint, tip first.
+    /// The least and greatest loads of a box on every joint whose drive is sized, tip first.
     fn of_box(problem: &Problem, design_box: &mut [u32], work: &mut Work) -> Option<Vec<[BearingDemand; 2]>> {
         problem.fill(design_box, work)?;
         let sized = problem
@@ -366,7 +391,8 @@ mod tests {
             prop_assume!(held > 0);
         }
 
-        /// If the loads on a bearing are said to grow with the mass of a drive, they do, whatever the other parts weigh.
+        /// If `grow_with_mass` returns true, every load on the bearing grows with the mass of every drive, whatever the
+        /// other parts weigh.
         #[test]
         fn loads_that_are_said_to_grow_with_a_drive_do(
             pose_deg in prop::array::uniform3(-60.0f64..60.0), side_m in prop::sample::select(vec![0.0, 0.1]),
@@ -378,7 +404,7 @@ mod tests {
                 let problem = Problem::new(&study.space, &catalogs, &|_| true, Ties::Separate).expect("options");
                 let is_drive = |piece: usize| matches!(problem.parts[piece], Part::Drives { .. });
                 for rows in problem.poses.iter().flat_map(|pose| pose.bearings.iter().flatten()) {
-                    // at a right angle everywhere, as in the pose at rest, the answer must be yes
+                    // With all joint angles zero and no offset to the side, the answer must be yes.
                     let grows = rows.grow_with_mass(&is_drive);
                     prop_assert!(grows || pose_deg != [0.0; 3] || side_m != 0.0);
                     if !grows {

@@ -1,4 +1,4 @@
-//! The bound of a box: the best that any of its members could be, objective by objective.
+//! The bound of a box: for each objective, the best value that any of its members could have.
 //!
 //! | objective | bound of the box |
 //! |---|---|
@@ -18,17 +18,20 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Refinement of the trial shapes stops when the bound improves by less than this (relative).
+/// The refinement of the trial shapes (motions that give an upper bound of the lowest mode) stops when a step lowers
+/// the bound by less than this fraction.
 const SETTLED: f64 = 1e-10;
-/// Accelerations of the base from which the trial shapes start: vertical, and sideways with a little forward.
+/// Accelerations of the base \[m/s²\] whose inertia forces deform the arm into the first trial shapes: one vertical,
+/// and one sideways with a little forward.
 pub(super) const STARTS: [[f64; 3]; 2] = [[0.0, 0.0, 1.0], [0.3, 1.0, 0.0]];
-/// Greatest number of refinement steps on one box.
+/// Greatest number of refinement steps of the trial shapes on a box of one design.
 const MOST_STEPS: usize = 30;
 
-/// A box of designs: one node of each level's tree, tip first.
+/// A box of designs: the number of one node of each level's tree, tip first.
 pub(super) type DesignBox = Vec<u32>;
 
-/// The ideal point of a box: the best objectives that a member could have. No member is better in any of them.
+/// The ideal point of a box: the least mass \[kg\], the least tip deflection \[m\] and the highest lowest mode \[Hz\]
+/// that a member could have. No member is better in any of them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) struct BoxBound {
     pub mass_kg: f64,
@@ -37,7 +40,7 @@ pub(super) struct BoxBound {
 }
 
 impl BoxBound {
-    /// The bound of a box about which nothing is known yet.
+    /// The bound of a box of which nothing is known yet: no mass, no deflection and an infinite frequency.
     pub(super) const OPEN: Self = Self { mass_kg: 0.0, tip_m: 0.0, hz: f64::INFINITY };
 
     /// The bound with all three objectives made worse by the factor `1 + slack`.
@@ -57,7 +60,7 @@ impl From<BoxBound> for Objectives {
 pub(super) enum Verdict {
     /// No member meets the constraints, or an incumbent dominates the bound.
     Pruned,
-    /// Some member may be on the front.
+    /// The box has this bound, and a member of it may be on the front.
     Open(BoxBound),
 }
 
@@ -67,8 +70,9 @@ impl<'c> Problem<'c> {
         vec![0; self.level_pieces.len()]
     }
 
-    /// The objectives of the design in a box of one design. Mass and deflection are exact in the bound; the mode is
-    /// computed anew, because a trial shape gives only an upper bound of its frequency.
+    /// The objectives of the single design in a box. Its mass and deflection are taken from `box_bound`, which is exact
+    /// for a single design. The lowest mode is computed again, because a trial shape gives only an upper bound of its
+    /// frequency.
     pub(super) fn objectives(&self, box_bound: &BoxBound, work: &Work) -> Objectives {
         let quotient = (box_bound.hz * std::f64::consts::TAU).powi(2);
         let lowest =
@@ -104,9 +108,10 @@ impl<'c> Problem<'c> {
         Some(shapes)
     }
 
-    /// Bounds a box. `shapes` holds the trial shapes of the parent box; a shape is replaced by one of this box where
-    /// that sharpens the bound. `is_dominated` tells whether an incumbent dominates a bound, and `worth_refining`
-    /// whether a better shape could prune the box.
+    /// Bounds a box. `shapes` are the trial shapes (motions that give an upper bound of the lowest mode) of the parent
+    /// box. A shape is replaced by one made for this box if that lowers the bound. `is_dominated` tells whether an
+    /// incumbent dominates a given bound. `worth_refining` tells whether the bound is so close to being dominated that
+    /// better shapes might prune the box.
     pub(super) fn bound(
         &self,
         design_box: &mut [u32],
@@ -121,15 +126,16 @@ impl<'c> Problem<'c> {
         let Some(mut box_bound) = self.first_bound(design_box, shapes, work, &fails) else {
             return Verdict::Pruned;
         };
-        // A step of inverse iteration costs about as much as the rest of the bound, so it is made only where
-        // it can prune the box. A single design is refined in any case, for its mode is reported.
+        // A step of inverse iteration costs about as much as the rest of the bound, so it is made only where it can
+        // prune the box. A single design is refined in any case, because its mode is reported.
         if !work.is_point() && !worth_refining(&box_bound) {
             return Verdict::Open(box_bound);
         }
         self.refine(&mut box_bound, Arc::make_mut(shapes).as_mut_slice(), work, fails)
     }
 
-    /// The bound of a box with the trial shapes of its parent. `None` if no member can be on the front.
+    /// The bound of a box, computed with the trial shapes of its parent box. `fails` tells whether a given bound prunes
+    /// the box. `None` if the box is pruned: no member meets the limits, or `fails` is true for the bound.
     fn first_bound(
         &self,
         design_box: &mut [u32],
@@ -167,7 +173,8 @@ impl<'c> Problem<'c> {
         Some(box_bound)
     }
 
-    /// Improves the trial shapes until the box is pruned or the bound no longer changes.
+    /// Improves the trial shapes of a box by inverse iteration, until `fails` is true for the bound or the bound no
+    /// longer falls. A box of several designs gets only one step.
     fn refine(
         &self,
         box_bound: &mut BoxBound,
@@ -180,8 +187,8 @@ impl<'c> Problem<'c> {
             let before = box_bound.hz;
             for (judged, case) in self.judged_cases().enumerate() {
                 for start in 0..STARTS.len() {
-                    // The second shape is kept orthogonal to the first. Without that both would converge to
-                    // the same mode and the bound would miss a soft plane.
+                    // The second shape is kept orthogonal to the first. Without that both would converge to the same
+                    // mode. The bound would then miss a lower mode of the arm in the other plane.
                     let (others, rest) = shapes[judged * STARTS.len()..].split_at_mut(start);
                     let shape = &mut rest[0];
                     let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };
@@ -203,8 +210,9 @@ impl<'c> Problem<'c> {
         Verdict::Open(*box_bound)
     }
 
-    /// Least deflection of the tip in the worst judged case \[m\]. `None` if no member's forces lie in the intervals
-    /// to which the problem's force bounds restrict them.
+    /// The least tip deflection over the members of the box \[m\], in the judged case in which it is greatest. The
+    /// function also writes the forces, torques, slopes and tip directions of the box to `work`. `None` if no member
+    /// keeps the forces within the force bounds of the problem.
     pub(super) fn least_tip_m(&self, work: &mut Work) -> Option<f64> {
         let mut worst = 0.0f64;
         work.worst_tip = None;
@@ -254,11 +262,12 @@ impl<'c> Problem<'c> {
         Some(worst)
     }
 
+    /// Indices of the cases that count for deflection and lowest mode.
     pub(super) fn judged_cases(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.poses.len()).filter(|&case| self.poses[case].judged)
     }
 
-    /// The options of a box of one design, tip first. `None` if the box has several designs.
+    /// The option of each level of a box of one design, tip first. `None` if the box has several designs.
     pub(super) fn options(&self, design_box: &[u32]) -> Option<Vec<u32>> {
         self.level_pieces
             .iter()
@@ -272,12 +281,14 @@ impl<'c> Problem<'c> {
     }
 }
 
+/// Frequency \[Hz\] of an eigenvalue \[1/s²\], raised by the rounding margin so that it remains an upper bound.
 fn hertz(lambda: f64) -> f64 {
     lambda.sqrt() / std::f64::consts::TAU * (1.0 + ROUNDING)
 }
 
-/// The strain coordinate of a linear spring (of a tube, or of a bearing), as an interval, for a force in an interval. The
-/// stiffness of the piece is an interval too, and the coordinate is the product of force and compliance.
+/// The least and the greatest deflection in one strain coordinate of a tube or a bearing, under a generalized force
+/// between `low` and `high`. The deflection is force times compliance, and the compliance too is an interval over the
+/// box.
 pub(super) fn linear_strain(pose: &Pose, row: &Row, [low, high]: [f64; 2], work: &Work) -> [f64; 2] {
     let (resisted, factor) = pose.pieces[row.piece].resisted(row.coordinate);
     let (stiff, soft) = (work.stiff[row.piece][resisted], work.soft[row.piece][resisted]);

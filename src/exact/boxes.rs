@@ -12,10 +12,10 @@ use super::shape::Shape;
 use super::work::Work;
 use std::sync::Arc;
 
-/// Number of boxes that one task bounds.
+/// Greatest number of boxes that one task bounds. Then it returns the boxes that are still open.
 const BOXES: usize = 32;
 
-/// A box that waits to be bounded, with the trial shapes and the bound of its parent box.
+/// A box that waits to be bounded, with the trial shapes and the bound of the box from which it was halved.
 pub(super) struct OpenBox {
     pub design_box: DesignBox,
     pub shapes: Arc<Vec<Shape>>,
@@ -25,12 +25,25 @@ pub(super) struct OpenBox {
 impl OpenBox {
     /// The box of all designs. `None` if no design meets the constraints.
     fn root(problem: &Problem) -> Option<Self> {
-        let shapes = Arc::new(problem.first_shapes(&mut Work::default())?);
-        Some(Self { design_box: problem.root(), shapes, box_bound: BoxBound::OPEN })
+        Self::first(problem, &[problem.root()]).pop()
     }
 
-    /// The two halves of a box along a level. The half to bound first stands last, because the stack is emptied from
-    /// its end.
+    /// Boxes of a space that are searched first. None if no design of the space meets the constraints.
+    pub(super) fn first(problem: &Problem, boxes: &[DesignBox]) -> Vec<Self> {
+        let Some(shapes) = problem.first_shapes(&mut Work::default()).map(Arc::new) else {
+            return Vec::new();
+        };
+        let open = |design_box: &DesignBox| Self {
+            design_box: design_box.clone(),
+            shapes: Arc::clone(&shapes),
+            box_bound: BoxBound::OPEN,
+        };
+        boxes.iter().map(open).collect()
+    }
+
+    /// The two halves of this box along a level (the choice of one tube or drive). Empty if the level has a single
+    /// option. `box_bound` is the bound of this box and is valid for both halves. The half that is to be bounded first
+    /// comes last, because the stack is emptied from its end.
     pub(super) fn halves(&self, problem: &Problem, level: usize, box_bound: BoxBound) -> Vec<Self> {
         let half = |node: u32| {
             let mut design_box = self.design_box.clone();
@@ -41,9 +54,10 @@ impl OpenBox {
     }
 }
 
-/// Bounds the box of all designs and all boxes into which it is divided. Findings are learned at the end of each
-/// round, after which `see` is shown what is known and which boxes are open. Returns the boxes that are still open when
-/// the search is stopped.
+/// Bounds the box of all designs, then the boxes into which it is divided, and so on. `open` bounds one box and returns
+/// the boxes into which it is divided. At the end of each round of tasks, `learn` adds the designs found to `state`,
+/// and then `see` is shown `state` and the boxes that are still open. Returns the boxes that are open when the search
+/// is stopped.
 pub(super) fn open_all_boxes<K: Sync, F: Send + Default>(
     budget: &Budget,
     problem: &Problem,
@@ -56,7 +70,8 @@ pub(super) fn open_all_boxes<K: Sync, F: Send + Default>(
     go_through_boxes(budget, state, vec![root], open, learn, see)
 }
 
-/// Bounds boxes that are open and all boxes into which they are divided, as [`open_all_boxes`] does.
+/// Bounds the boxes in `first` and all boxes into which they are divided. The other parameters are those of
+/// [`open_all_boxes`].
 fn go_through_boxes<K: Sync, F: Send + Default>(
     budget: &Budget,
     state: &mut K,
@@ -71,8 +86,8 @@ fn go_through_boxes<K: Sync, F: Send + Default>(
     in_rounds(state, first, || budget.stopped(), task, learn, see)
 }
 
-/// Bounds a box and then some of the boxes into which it is divided, depth first. Returns the open boxes and the
-/// findings.
+/// Bounds the box `first` and then boxes into which it is divided, depth first, until [`BOXES`] boxes are bounded.
+/// `open` bounds one box and returns its parts. Returns the boxes that are still open and the designs found.
 pub(super) fn open_boxes<F: Default>(
     budget: &Budget,
     first: OpenBox,
@@ -89,18 +104,17 @@ pub(super) fn open_boxes<F: Default>(
     Done { tasks: stack, findings }
 }
 
-/// One pass over all boxes, or over those that an earlier process left open. `keep` is shown the state and the open boxes
-/// after each round. Returns the bounds of the boxes that are still open when the search is stopped.
+/// One pass over some boxes and all into which they are divided. `keep` is shown the state and the open boxes after each
+/// round. Returns the bounds of the boxes that are still open when the search is stopped.
 pub(super) fn pass_by_boxes(
     budget: &Budget,
     problem: &Problem,
     state: &mut SearchState,
-    (slack, left): (f64, Option<Vec<OpenBox>>),
+    (slack, first): (f64, Vec<OpenBox>),
     live: Option<&Live>,
     keep: impl Fn(&SearchState, &[OpenBox]),
 ) -> Vec<BoxBound> {
     let bounds = |open: &[OpenBox]| open.iter().map(|opened| opened.box_bound).collect::<Vec<_>>();
-    let first = left.unwrap_or_else(|| OpenBox::root(problem).into_iter().collect());
     let left = go_through_boxes(
         budget,
         state,
@@ -123,20 +137,22 @@ pub(super) fn pass_by_boxes(
     bounds(&left)
 }
 
-/// A search of a problem, with the state that was shared when its round began.
+/// The search for designs of a problem, with the state that was shared when the present round began.
 pub(super) struct Search<'s, 'p> {
     pub budget: &'s Budget<'p>,
     pub problem: &'s Problem<'p>,
     pub state: &'s SearchState,
-    /// The slack of the pass: a box is pruned if an incumbent dominates its bound made worse by this (relative, 0 for
-    /// none).
+    /// The slack of the pass (relative; 0 for none). A box is pruned if an incumbent dominates its bound after the
+    /// bound was made worse by the factor `1 + slack`.
     pub slack: f64,
-    /// The local upper bound below which designs are looked for; `None` for the whole space.
+    /// The local upper bound below which the search looks for designs; `None` for the whole space.
     pub below: Option<LocalUpperBound>,
 }
 
 impl Search<'_, '_> {
-    /// Bounds a box and returns its halves. If the box is one design, the design is judged and nothing is returned.
+    /// Bounds the box `here` and returns its two halves. Returns nothing if the box is pruned, or if it is a single
+    /// design; that design is then evaluated and added to `findings`. If dominated drives are removed from the box, the
+    /// smaller box is returned undivided, to be bounded again.
     pub(super) fn open(&self, mut here: OpenBox, work: &mut Work, findings: &mut Findings) -> Vec<OpenBox> {
         self.budget.count_box();
         let verdict = self.problem.bound(
@@ -153,7 +169,7 @@ impl Search<'_, '_> {
             },
         );
         let Verdict::Open(box_bound) = verdict else { return Vec::new() };
-        // The box may have lost drives. Then its numbers in `work` are out of date, and it is bounded anew.
+        // The box may have lost drives. Then its numbers in `work` are out of date, and it has to be bounded again.
         match self.problem.prune_dominated_drives(&mut here.design_box, box_bound.tip_m, work) {
             None => return Vec::new(),
             Some(true) => return vec![here],
@@ -166,7 +182,8 @@ impl Search<'_, '_> {
         here.halves(self.problem, level, box_bound)
     }
 
-    /// Whether a design of the shared state or of the findings dominates the bound, made worse by the slack.
+    /// Whether a known design dominates the bound `box_bound` after it was made worse by the slack. Known are the
+    /// designs of the shared state and those in `findings`, which this task found.
     pub(super) fn dominates(&self, box_bound: &BoxBound, findings: &Findings) -> bool {
         let slackened = box_bound.slackened(self.slack);
         self.state.incumbents.dominates(&slackened) || findings.dominates(&slackened)

@@ -1,4 +1,4 @@
-//! Which level of a box to halve.
+//! The choice of the level along which a box is halved.
 //!
 //! The bound of a box takes every part at its lightest and at its stiffest. The score of a level is how much
 //! the bound would worsen if the level's part had middling numbers instead: the geometric mean of the
@@ -15,13 +15,15 @@ use super::shape::{Shape, products};
 use super::torsion::Torsion;
 use super::work::Work;
 
-/// How far the geometric mean of an interval exceeds its lower end (relative). Zero for an interval without width.
+/// `√(high / low) - 1`: by which fraction the geometric mean of an interval exceeds its lower end. Zero if the interval
+/// has no width or does not begin above zero.
 fn middling(low: f64, high: f64) -> f64 {
     if low > 0.0 && high > low { (high / low).sqrt() - 1.0 } else { 0.0 }
 }
 
 impl Problem<'_> {
-    /// The level whose halving should sharpen the bound most. `None` if every level has a single option.
+    /// The level (choice of one tube or drive) whose halving should improve the bound of the box most. `shapes` are the
+    /// trial shapes of the box. `None` if every level has a single option left.
     pub(super) fn widest_level(
         &self,
         design_box: &[u32],
@@ -58,7 +60,7 @@ impl Problem<'_> {
             }
             let [light, heavy] = work.masses[piece];
             let mass = light * middling(light, heavy) / mass_kg.max(f64::MIN_POSITIVE);
-            // Frequency is the square root of the quotient, hence the half.
+            // The frequency is the square root of the Rayleigh quotient, hence the factor of one half.
             let score = libm::log1p(mass)
                 + libm::log1p(work.tip_growth[piece])
                 + 0.5 * (libm::log1p(softer) + libm::log1p(heavier));
@@ -69,10 +71,11 @@ impl Problem<'_> {
         best.map(|(_, level)| level)
     }
 
-    /// For each piece, the relative fall of a trial shape's Rayleigh quotient if torques had middle values instead of
-    /// those that are best for the bound, as far as the piece's weight makes the torques uncertain. The quotient
-    /// falls because a heavier part may press a gear inboard into a stiffer segment of its curve, and the bound
-    /// assumes this segment.
+    /// For each piece, the relative fall of the Rayleigh quotient of `shape` if gears inboard were loaded by a torque
+    /// of middle size. The bound assumes that each gear works in the stiffest segment of its torsion curve that any
+    /// torque of the box reaches, and the torque is uncertain because the weights outboard are. The fall is divided
+    /// among these weights in proportion to the width that each adds to the interval of the torque. `strain` is twice
+    /// the strain energy of the shape.
     fn softened_by_torque(&self, case: usize, shape: &Shape, strain: f64, work: &Work) -> Vec<f64> {
         let mut softened = vec![0.0; self.parts.len()];
         let pose = &self.poses[case];
@@ -91,8 +94,8 @@ impl Problem<'_> {
         softened
     }
 
-    /// For each piece, the relative growth of the least deflection if the piece's stiffnesses had their geometric
-    /// mean instead of their greatest value.
+    /// Computes `work.tip_growth`: for each piece, the fraction by which the least tip deflection would grow if the
+    /// piece had not its greatest stiffnesses but the geometric mean of its least and greatest ones.
     fn weigh_tip(&self, work: &mut Work) {
         work.tip_growth.clear();
         work.tip_growth.resize(self.parts.len(), 0.0);
@@ -123,7 +126,7 @@ impl Problem<'_> {
         }
     }
 
-    /// The two halves of a box along a level. `None` if the level has a single option.
+    /// The two nodes into which a level of a box is halved. `None` if the level has a single option.
     pub(super) fn halves(&self, design_box: &[u32], level: usize) -> Option<[u32; 2]> {
         match &self.parts[self.level_pieces[level]] {
             Part::Drives { tree, .. } => tree.children(design_box[level]),

@@ -1,13 +1,13 @@
-//! Where to branch when a region may still have a member below a local upper bound.
+//! The choice of how to divide a region that may still have a member below a local upper bound.
 //!
-//! The Lagrangian bound (`lagrangian.rs`) ends with a mixture: several relaxed designs with shares that sum
-//! to one. The bound is loose where these designs differ, and where the product of a force and a compliance
-//! is replaced by its McCormick underestimate. There are two ways to branch:
+//! The Lagrangian bound (`lagrangian.rs`) ends with a mixture: several relaxed designs with weights that sum to one.
+//! The bound is loose where these designs differ, and where the product of a force and a compliance is replaced by its
+//! McCormick underestimate. There are two ways to branch:
 //!
 //! - on the options of a level, where the mixed designs differ or a product is underestimated;
-//! - on a joint torque. A force is uncertain because of all the weights outboard, not because of one level,
-//!   so halving the torque's interval helps where halving a level does not. It also separates the states of a
-//!   gear that is mixed of a soft and a stiff one.
+//! - on a joint torque. A force is uncertain because of all the weights outboard and not because of one level, so
+//!   halving the interval of the torque helps where halving a level does not. It also separates the two states of a
+//!   gear that the mixture blends: a soft gear at a small torque and a stiff one at a large torque.
 
 use super::parts::{STIFFNESSES, inertia};
 use super::pose::Row;
@@ -15,51 +15,60 @@ use super::problem::{Part, Problem};
 use super::rows::{RelaxedDesign, Rows};
 use super::tree::Key;
 
-/// For drives and for tubes: which coordinates of the key stand for mass and for stiffness, and by what factor their
-/// logarithms are scaled there.
+/// For drives and for tubes: the two coordinates of an option's key ([`Key`]) that stand for its mass and for its
+/// stiffness, each as the index of the coordinate and the factor by which it multiplies the logarithm.
 const DRIVE: [(usize, f64); 2] = [(3, 1.0), (0, 4.0)];
 const TUBE: [(usize, f64); 2] = [(0, 2.0), (1, 1.0)];
-/// Gains below this are due to rounding.
+/// A division whose expected benefit is below this is not made, because the benefit is due to rounding.
 const NOTHING: f64 = 1e-9;
-/// A force is known well enough if its interval is narrower than this part of the force's greatest magnitude.
+/// A force is known well enough if the width of its interval is less than this fraction of its greatest magnitude. Then
+/// it is not branched on.
 const KNOWN: f64 = 0.1;
-/// Least distance of a branching point from either end of the interval, as a part of the interval.
+/// Least distance of the value at which a region is divided from either end of the interval, as a fraction of the
+/// interval's width.
 const SAME: f64 = 1e-3;
 
-/// A way to divide a region into two: what is divided, and at which value.
+/// A way to divide a region into two: the quantity that is divided, and the value at which it is divided.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Branching {
-    /// The expected gain, in units of a scaled row.
+    /// Expected benefit of the division. It is the part of the weighted sum of rows (inequalities of the bound) that
+    /// the McCormick bounds underestimate or in which the mixed designs differ, as far as the division can reduce it.
+    /// The rows are scaled, so it has no unit.
     gain: f64,
+    /// The quantity that is divided.
     by: BranchOn,
+    /// Value at which the region is divided. It is a value of the key coordinate by which the tree separates options (a
+    /// scaled logarithm), or a force \[N or N m\].
     at: f64,
 }
 
-/// What is divided between the two halves.
+/// The quantity by which a region is divided.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum BranchOn {
-    /// The options of a level, along a coordinate of their key.
+    /// The options of a level, by one coordinate of their keys.
     Options { level: usize, axis: usize },
-    /// The force of a row of a case.
+    /// The generalized force of one row of a case, such as the torque on a joint.
     Force { case: usize, row: usize },
 }
 
-/// A mixture: relaxed designs with their shares. The mixture may lie below a local upper bound although no design
-/// does.
+/// A mixture: relaxed designs, each with its weight. The weights sum to one. The mixture may lie below a local upper
+/// bound although no single design does.
 type Mixed<'a> = [(&'a RelaxedDesign, f64)];
 
+/// Weighted mean of the number `of` over the designs of a mixture.
 fn mean(mixed: &Mixed, of: impl Fn(&RelaxedDesign) -> f64) -> f64 {
     mixed.iter().map(|(member, share)| share * of(member)).sum()
 }
 
-/// Mean distance of a number of the mixed designs from the number's mean.
+/// Weighted mean absolute deviation of the number `of` from its mean over the designs of a mixture.
 fn spread(mixed: &Mixed, of: impl Fn(&RelaxedDesign) -> f64) -> f64 {
     let middle = mean(mixed, &of);
     mean(mixed, |member| (of(member) - middle).abs())
 }
 
 impl Rows<'_> {
-    /// Ways to divide the region, the most promising first.
+    /// Ways to divide the region, the one with the greatest expected benefit first. `mixed` is the mixture with which
+    /// the bound ended, and `multipliers` are the factors on the rows (inequalities) of the bound.
     pub(super) fn branchings(&self, mixed: &Mixed, multipliers: &[f64]) -> Vec<Branching> {
         let mut branchings = Vec::new();
         let left_out = self.left_out(mixed, multipliers);
@@ -74,8 +83,8 @@ impl Rows<'_> {
                 let at = mean(mixed, |member| key(member)[axis]);
                 branchings.push(Branching { gain, by: BranchOn::Options { level, axis }, at });
             }
-            // Halfway between the best value and the mean: one half then excludes the best value, and with it
-            // the underestimate.
+            // The point lies halfway between the best value and the mean. One half then excludes the best value, and
+            // the underestimate is smaller there.
             for ((axis, best), gain) in self.best_of(piece).into_iter().zip(left_out[piece]) {
                 let at = 0.5 * (best + mean(mixed, |member| key(member)[axis]));
                 branchings.push(Branching { gain, by: BranchOn::Options { level, axis }, at });
@@ -87,7 +96,8 @@ impl Rows<'_> {
         branchings
     }
 
-    /// Which coordinates of the key stand for a piece's mass and stiffness, and the best value of each in the box.
+    /// For the mass and for the stiffness of a piece: the index of the coordinate that stands for it in the key of an
+    /// option, and the best value of this coordinate in the box.
     fn best_of(&self, piece: usize) -> [(usize, f64); 2] {
         let (light, stiff) = (self.work.light[piece][inertia::MASS], self.work.stiff[piece][0]);
         let (places, stiff) = match &self.work.curves[piece] {
@@ -99,8 +109,9 @@ impl Rows<'_> {
         [number(places[0], light), number(places[1], stiff)]
     }
 
-    /// For each piece, how much the McCormick bounds leave out because of the piece's weight, and because of its
-    /// compliance, in units of a scaled row.
+    /// For each piece, the part of the weighted sum of scaled rows that the McCormick bounds of force times compliance
+    /// underestimate. The first number is due to the uncertain weight of the piece, the second to its uncertain
+    /// compliance.
     fn left_out(&self, mixed: &Mixed, multipliers: &[f64]) -> Vec<[f64; 2]> {
         let mut left_out = vec![[0.0; 2]; self.problem.parts.len()];
         for (judged, tip) in self.tips.iter().enumerate() {
@@ -120,14 +131,15 @@ impl Rows<'_> {
         left_out
     }
 
-    /// Ways to divide the region at the torque of a joint whose interval is wide. The gain is what the McCormick
-    /// bounds leave out in the joint's twist and in the tubes up to the next joint outboard, plus the spread of the
-    /// states of the joint's gear.
+    /// Ways to divide the region at a joint torque whose interval is wide. The expected benefit of such a division has
+    /// two terms. One is the McCormick underestimate in the twist of this joint and in the tubes and bearings up to the
+    /// next joint outboard. The other is the spread of the states of the joint's gear over the mixture.
     fn by_torque(&self, mixed: &Mixed, multipliers: &[f64]) -> Vec<Branching> {
         let mut branchings = Vec::new();
         for (judged, tip) in self.tips.iter().enumerate() {
             let (case, multiplier) = (tip.case, multipliers[1 + judged] / self.scale[1 + judged]);
-            // What the tubes and bearings further inboard leave out is due to the next joint's torque.
+            // The underestimates of the tubes and bearings further inboard are attributed to the torque of the next
+            // joint inboard.
             let mut left_out = 0.0;
             for (at, row) in self.problem.poses[case].rows.iter().enumerate() {
                 let tip_per_unit = self.work.tip_directions[judged].dot(&row.tip_m);
@@ -146,8 +158,8 @@ impl Rows<'_> {
                     (multipliers[next] + multipliers[next + 1]) * spread(mixed, |member| member.values[next])
                 });
                 let gain = left_out + apart;
-                // To separate two states of a gear the mean torque is best. To shrink a product, the middle
-                // between the least torque and the acting one.
+                // The mean torque separates two states of a gear best. To shrink a product, the middle between the
+                // least torque and the acting torque is best.
                 let at_nm = if apart > left_out { acting } else { 0.5 * (least + acting) };
                 let margin = SAME * (high - low);
                 if high - low > KNOWN * low.abs().max(high.abs())
@@ -162,14 +174,16 @@ impl Rows<'_> {
         branchings
     }
 
-    /// Tip displacement that the McCormick bound of one product leaves out \[m\]: the excess of the force over its
-    /// least value, times the excess of the compliance over its least value.
+    /// Tip displacement by which the McCormick bound underestimates force times compliance in one strain coordinate
+    /// \[m\]. It is the excess `more` of the force over its least value, times the excess of the compliance over its
+    /// least value. Both are means over the mixture.
     fn product(&self, mixed: &Mixed, judged: usize, row: &Row, more: f64) -> f64 {
         let tip_per_unit = self.work.tip_directions[judged].dot(&row.tip_m);
         (tip_per_unit * more * self.softer(mixed, judged, row)).abs()
     }
 
-    /// For each piece, the part of a force's excess over its least value that the piece's weight causes.
+    /// For each piece, the contribution of its weight to the excess of a force over its least value in the box, as a
+    /// mean over the mixture \[N or N m\]. The sign of `tip_per_unit` tells in which direction the force moves the tip.
     fn heavier(&self, mixed: &Mixed, judged: usize, row: &Row, tip_per_unit: f64) -> Vec<f64> {
         let multipliers = row.per_n.iter().zip(&self.work.weights[self.tips[judged].case]).enumerate();
         multipliers
@@ -180,7 +194,8 @@ impl Rows<'_> {
             .collect()
     }
 
-    /// The excess of a coordinate's compliance over its least value.
+    /// By how much the compliance of a strain coordinate exceeds its least value in the box, as a mean over the
+    /// mixture. A compliance is the displacement of the coordinate per unit of force.
     fn softer(&self, mixed: &Mixed, judged: usize, row: &Row) -> f64 {
         let case = self.tips[judged].case;
         let posed = &self.problem.poses[case].pieces[row.piece];
@@ -198,16 +213,18 @@ impl Rows<'_> {
 }
 
 impl Problem<'_> {
-    /// The coordinates that separate a node of a level's tree from other nodes.
+    /// The key of a node of a level's tree: the coordinates by which the tree separates this node from others. Zeros
+    /// for a level without a tree.
     fn key(&self, level: usize, node: u32) -> Key {
         match &self.parts[self.level_pieces[level]] {
-            Part::Drives { tree, .. } => tree.node(node).key,
-            Part::Links { tree, .. } => tree.node(node).key,
+            Part::Drives { tree, .. } => tree.node(node).key(),
+            Part::Links { tree, .. } => tree.node(node).key(),
             _ => Key::default(),
         }
     }
 
-    /// The problem restricted to each side of a branching. `None` if all options lie on one side.
+    /// The two problems into which `branching` divides this one. `kept` holds, for each level, the nodes of its base
+    /// tree that remain. `None` if all options lie on one side.
     pub(super) fn branch(&self, kept: &[Vec<u32>], branching: &Branching) -> Option<[Self; 2]> {
         match branching.by {
             BranchOn::Options { level, axis } => {
@@ -225,7 +242,8 @@ impl Problem<'_> {
         }
     }
 
-    /// For both sides of a branching on options: the nodes of each level's base tree that remain.
+    /// Divides the options of `level` at the value `at` of the key coordinate `axis`. Returns, for each side and every
+    /// level, the nodes of the level's base tree that remain. `None` if all options of the level lie on one side.
     fn branch_on_options(
         &self,
         kept: &[Vec<u32>],
@@ -236,8 +254,8 @@ impl Problem<'_> {
         let part = &self.parts[self.level_pieces[level]];
         let is_low = |node: &&u32| {
             let key = match part {
-                Part::Drives { tree, .. } => tree.whole_node(**node).key,
-                Part::Links { tree, .. } => tree.whole_node(**node).key,
+                Part::Drives { tree, .. } => tree.whole_node(**node).key(),
+                Part::Links { tree, .. } => tree.whole_node(**node).key(),
                 _ => Key::default(),
             };
             key[axis] <= at

@@ -1,9 +1,9 @@
-//! The budget of a search: when it has to end, and how many boxes it has bounded.
+//! The budget of a search: its time limit, and a count of the boxes that it has bounded.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Instant;
 
-/// The limits of a search, shared by all of its workers.
+/// The stop signal, the time limit and the count of boxes of a search, shared by all of its workers.
 pub(super) struct Budget<'p> {
     stop: &'p AtomicBool,
     started: Instant,
@@ -17,23 +17,24 @@ impl<'p> Budget<'p> {
         Self { stop, started: Instant::now(), deadline, boxes: AtomicU64::new(0) }
     }
 
-    /// The same limits for work whose boxes are not counted.
+    /// A budget with the same stop signal and time limit and a count of its own, for work whose boxes are not counted
+    /// as boxes of the search.
     pub(super) fn aside(&self) -> Self {
         Self { boxes: AtomicU64::new(0), ..*self }
     }
 
-    /// Counts the boxes that an earlier process has bounded.
+    /// Sets the count to the number of boxes that an earlier process has bounded.
     pub(super) fn set_boxes(&self, boxes: u64) {
         self.boxes.store(boxes, Ordering::Relaxed);
     }
 
-    /// The time that is left \[s\]; `None` without a time limit.
+    /// Time left until the deadline \[s\]; 0 if it has passed, `None` without a time limit.
     pub(super) fn left_s(&self) -> Option<f64> {
         let left = |deadline: Instant| deadline.saturating_duration_since(Instant::now()).as_secs_f64();
         self.deadline.map(left)
     }
 
-    /// Whether a part of the time limit has passed, or the search has to end.
+    /// Whether the fraction `part` of the time limit has passed, or the search has to end.
     pub(super) fn has_spent(&self, part: f64) -> bool {
         let limit = self.deadline.map(|deadline| deadline.saturating_duration_since(self.started));
         self.stopped() || limit.is_some_and(|limit| self.started.elapsed() >= limit.mul_f64(part))

@@ -21,26 +21,30 @@ use crate::space::bearing_loads::Lever as LeverByOption;
 use crate::space::design_space::{DesignSpace, LinkOption, SpaceJoint, SpacePiece};
 use crate::space::effects::Layer;
 use crate::space::fit::RoomAtJoint;
-use crate::space::slot::{SizedJoint, Slot, joint_slot};
+use crate::space::joints::TabulatedJoints;
+use crate::space::slot::{SizedJoint, Slot};
 use crate::space::station::reaches_m;
 use std::sync::Arc;
 
-/// The joints of a chain with their drives, before anything is compiled. All lists go by the pieces of the chain, base to
-/// tip.
+/// The joints of a chain with their drives, before anything is compiled. Every list has one entry for each piece of the
+/// chain, base to tip.
 struct Joints<'c> {
+    /// The given joint or the drives of each joint; `None` for any other piece, and after the joint was compiled.
     slots: Vec<Option<Slot<'c>>>,
+    /// The motion of each joint and the state of its bearing, as a compiled pose needs them; default values for any
+    /// other piece.
     needs: Vec<JointNeeds>,
-    /// Where the link attaches to each joint whose bearing is checked.
+    /// Lever from each joint whose bearing is checked to its link; `None` for any other piece.
     levers: Vec<Option<LeverByOption>>,
-    /// The room at each joint that asks for room.
+    /// The space for gear and motor at each joint whose drives must fit into a link; `None` for any other piece.
     rooms: Vec<Option<RoomAtJoint>>,
-    /// The number that the problem gives to each piece.
+    /// The number of each piece in the compiled problem, which counts from the tip.
     numbers: Vec<usize>,
 }
 
 impl<'c> Joints<'c> {
-    /// Tabulates the drives of a space.
-    fn new(space: &'c DesignSpace, catalogs: &'c Catalogs) -> Self {
+    /// The joints of a space, whose drives are tabulated.
+    fn new(space: &'c DesignSpace, tabulated: &TabulatedJoints<'c>) -> Self {
         let numbers = piece_numbers(space);
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
         let mut reaches_m = reaches_m(space, sizing).into_iter();
@@ -49,14 +53,13 @@ impl<'c> Joints<'c> {
         let mut joints =
             Self { slots: Vec::new(), needs: Vec::new(), levers: Vec::new(), rooms, numbers: Vec::new() };
         for (place, piece) in space.pieces.iter().enumerate() {
-            let SpacePiece::Joint(joint) = piece else {
+            let (SpacePiece::Joint(joint), Some(slot)) = (piece, tabulated.slot(place)) else {
                 joints.slots.push(None);
                 joints.needs.push(JointNeeds::default());
                 joints.levers.push(None);
                 continue;
             };
             let reach_m = reaches_m.next().unwrap_or_default();
-            let slot = joint_slot(space, joint, reach_m, catalogs);
             let needs = JointNeeds::of(space, joint, reach_m, &slot);
             let lever = needs.is_checked.then(|| LeverByOption::new(space, place, joint, &numbers));
             joints.slots.push(Some(slot));
@@ -66,14 +69,16 @@ impl<'c> Joints<'c> {
         Self { numbers, ..joints }
     }
 
-    /// Room that a link with an option leaves to the joint that carries it.
+    /// The space for gear and motor that the link at `place` leaves with this option, for the joint that carries the
+    /// link. Unlimited if no joint has to fit its drive into this link.
     fn room(&self, place: usize, option: usize) -> LinkRoom {
         let mut rooms = self.rooms[..place].iter().flatten();
         let room = rooms.find(|room| room.link_slot == self.numbers[place]);
         room.and_then(|room| room.rooms.get(option)).copied().unwrap_or(LinkRoom::ANY)
     }
 
-    /// Lever from the joint next inboard of a link to the link with an option \[m\]; 0 if no bearing asks for it.
+    /// The lever that the link at `place` has with this option \[m\]: the distance along the axis from the bearing of
+    /// the next joint inboard to the link. 0 if no bearing is checked there.
     fn lever_m(&self, place: usize, option: usize) -> f64 {
         let inboard = place.checked_sub(1).and_then(|inboard| self.levers[inboard].as_ref());
         inboard.and_then(|lever| lever.lever_m.get(option)).copied().unwrap_or_default()
@@ -81,14 +86,15 @@ impl<'c> Joints<'c> {
 }
 
 impl JointNeeds {
-    /// What a pose has to know about a joint whose drives are in a slot.
+    /// What a compiled pose needs to know about `joint`, whose drives are in `slot`. `reach_m` is the distance of the
+    /// tip from the joint's axis \[m\]; the angular acceleration follows from it and the tip's acceleration.
     fn of(space: &DesignSpace, joint: &SpaceJoint, reach_m: f64, slot: &Slot) -> Self {
         let motion = joint.motion(&space.motion, reach_m);
         let of_gear = Self { acceleration_rad_s2: motion.acceleration_rad_s2, ..Self::default() };
         let Slot::Sized(sized) = slot else { return of_gear };
         let limits = (0..sized.table.len()).map(|i| sized.table.limits(i).bearing);
         Self {
-            // A stated bearing is a spring of its own.
+            // A bearing that the study states is a separate spring in the chain.
             tilts: joint.bearing_is_open() && sized.tilts_rad_per_nm.iter().any(|tilt| *tilt > 0.0),
             is_checked: limits.into_iter().any(|limits| limits != BearingLimits::NONE),
             ..of_gear
@@ -97,15 +103,26 @@ impl JointNeeds {
 }
 
 impl<'c> Problem<'c> {
-    /// Compiles a space with the link options that `takes` admits. `ties` says whether drives of one mass, one
-    /// curve and one tilt are one option. `None` if some level has no option.
+    /// Prepares a space for the exact search, with only those link options for which `takes` is true. `ties` tells
+    /// whether drives of equal mass, torsion curve and bearing stiffness become one option. `None` if some level
+    /// (choice) has no option.
     pub(super) fn new(
         space: &'c DesignSpace,
         catalogs: &'c Catalogs,
         takes: &dyn Fn(&LinkOption) -> bool,
         ties: Ties,
     ) -> Option<Self> {
-        let mut joints = Joints::new(space, catalogs);
+        Self::with_joints(space, &TabulatedJoints::new(space, catalogs), takes, ties)
+    }
+
+    /// As [`new`](Self::new), of joints that are tabulated already.
+    pub(super) fn with_joints(
+        space: &'c DesignSpace,
+        tabulated: &TabulatedJoints<'c>,
+        takes: &dyn Fn(&LinkOption) -> bool,
+        ties: Ties,
+    ) -> Option<Self> {
+        let mut joints = Joints::new(space, tabulated);
         let poses = (0..space.cases.len()).map(|i| Pose::new(space, i, &joints.needs)).collect();
         let mut problem = Self {
             space,
@@ -135,7 +152,7 @@ impl<'c> Problem<'c> {
                 }
                 Layer::Tilt(tilt) => Part::Given { mass_kg: 0.0, curve: CurveBox::of(&tilt.law()) },
                 Layer::Guide(spring) => Part::Given { mass_kg: 0.0, curve: CurveBox::of(&spring.law()) },
-                // A given mass beyond the parts loads the arm, but a design's mass does not count it.
+                // A given mass that belongs to no part loads the arm, but is not counted in the mass of a design.
                 Layer::Mass(_) | Layer::Travelling(_) | Layer::Springs(_) => Part::Offset { mass_kg: 0.0 },
                 Layer::Extra(mass_kg) => Part::Offset { mass_kg },
                 Layer::Bodies(carried) => Part::Offset { mass_kg: carried.mass_kg() },
@@ -150,15 +167,15 @@ impl<'c> Problem<'c> {
             let room = joints.rooms[place].as_ref().filter(|_| is_joint);
             problem.rooms.push(room.map(|room| problem.room_at(room)));
             problem.parts.push(part);
-            // Play belongs to the joint, whichever drive it has.
+            // Play (lost motion and friction) belongs to the joint and is the same for every drive.
             problem.joint_plays.push(match layer {
                 Layer::Piece(SpacePiece::Joint(joint)) => {
                     JointPlay::of(&space.joint_piece(joint, Curve::Linear(1.0), None).law)
                 }
                 _ => None,
             });
-            // A harness moves and weighs with its link, so the link's inertia has it. The mass of a design
-            // does not count it; a negative offset takes it out of the sum of masses.
+            // A harness moves and weighs with its link, so the inertia of the link includes it. The mass of a design
+            // does not include it, so a negative offset subtracts it from the sum of masses.
             if let Layer::Piece(piece) = layer
                 && let Some(harness_kg) = harness_kg(space, piece)
             {
@@ -172,7 +189,8 @@ impl<'c> Problem<'c> {
         Some(problem.with_inertias())
     }
 
-    /// Compiles a joint of the chain, whose bearing `tilts` with some drive or with none. `None` if it has no drive.
+    /// Compiles the joint in `slot`. `tilts` tells whether its bearing tilts with some drive. `ties` tells whether
+    /// drives of equal mass, torsion curve and bearing stiffness become one option. `None` if the joint has no drive.
     fn joint(&mut self, slot: Slot<'c>, tilts: bool, ties: Ties) -> Option<Part<'c>> {
         match slot {
             Slot::Given { law, mass_kg } => Some(Part::Given { mass_kg, curve: CurveBox::of(&law) }),
@@ -182,7 +200,8 @@ impl<'c> Problem<'c> {
         }
     }
 
-    /// The lever of a joint to the link outboard, which is compiled already.
+    /// Finds out on which link of the compiled problem the lever of a joint depends. That link is compiled already,
+    /// because compilation goes inward from the tip.
     fn lever(&self, lever: &LeverByOption) -> Lever {
         match lever.link_slot {
             Some(link) if matches!(self.parts[link], Part::Links { .. }) => Lever::OfLink(link),
@@ -190,7 +209,8 @@ impl<'c> Problem<'c> {
         }
     }
 
-    /// The room at a joint, whose link is compiled already.
+    /// Finds out on which link of the compiled problem the space at a joint depends. That link is compiled already,
+    /// because compilation goes inward from the tip.
     fn room_at(&self, room: &RoomAtJoint) -> Room {
         match &self.parts[room.link_slot] {
             Part::Links { .. } => Room::OfLink(room.link_slot),
@@ -198,8 +218,9 @@ impl<'c> Problem<'c> {
         }
     }
 
-    /// Compiles a link of the chain. `leaves` gives the lever from the joint inboard to an option \[m\], and the room that the
-    /// option leaves to the joint that carries it. `None` if it has no option.
+    /// Compiles a link of the chain with the options for which `takes` is true. For the index of an option, `leaves`
+    /// returns the lever from the joint inboard \[m\] and the space that the link leaves for the drive of this joint.
+    /// `None` if no option is admitted.
     fn link(
         &mut self,
         piece: &'c SpacePiece,
@@ -239,39 +260,35 @@ impl<'c> Problem<'c> {
     }
 
     /// A joint whose drive is a level of the search.
-    fn drives(&mut self, sized: SizedJoint<'c>, tilts: bool, ties: Ties) -> Option<Part<'c>> {
+    fn drives(&mut self, sized: Arc<SizedJoint<'c>>, tilts: bool, ties: Ties) -> Option<Part<'c>> {
         self.level(sized.table.len());
         let rays = self.rays(self.parts.len(), sized.table.motion());
         let kinds = Kinds::of(&sized, ties);
         let drives =
             |kind: &[u32]| DriveBox::of_kind(kind.iter().map(|&i| drive_box(&sized, i, &rays, tilts)));
         let tree = Tree::build(kinds.iter().filter_map(|kind| Some((kind[0], drives(kind)?))))?;
-        Some(Part::Drives {
-            sized: Arc::new(sized),
-            kinds: Arc::new(kinds),
-            tree: Arc::new(tree),
-            rays: Arc::new(rays),
-        })
+        Some(Part::Drives { sized, kinds: Arc::new(kinds), tree: Arc::new(tree), rays: Arc::new(rays) })
     }
 
     /// A joint that takes the lightest drive that can carry its load.
-    fn first_fit(&self, sized: SizedJoint<'c>, tilts: bool) -> Option<Part<'c>> {
+    fn first_fit(&self, sized: Arc<SizedJoint<'c>>, tilts: bool) -> Option<Part<'c>> {
         let rays = self.rays(self.parts.len(), sized.table.motion());
         let candidates = sized.table.first_fit_candidates();
         let steps: Vec<DriveBox> = candidates.iter().map(|&i| drive_box(&sized, i, &rays, tilts)).collect();
         let ladder = (!steps.is_empty()).then(|| Arc::new(Ladder::new(steps)))?;
-        Some(Part::FirstFit { ladder, sized: Arc::new(sized) })
+        Some(Part::FirstFit { ladder, sized })
     }
 
-    /// Opens the next level and returns the numbers of its options.
+    /// Adds a level (choice) with `size` options for the piece that is compiled next. Returns the numbers of the
+    /// options.
     fn level(&mut self, size: usize) -> std::ops::Range<u32> {
         self.level_pieces.push(self.parts.len());
         self.level_sizes.push(size as u32);
         0..size as u32
     }
 
-    /// The rays of a joint: fixed proportions of static torque and inertia, around the proportion that the payload
-    /// alone causes.
+    /// The rays of a joint, which test whether drives can carry its load: fixed proportions of static torque \[N m\]
+    /// and inertia \[kg m²\], around the proportion that the payload alone causes.
     fn rays(&self, piece: usize, motion: &JointMotion) -> Rays {
         let (mut static_nm, mut inertia_kgm2) = (0.0f64, 0.0f64);
         for pose in self.poses.iter().filter(|pose| pose.sizing) {
@@ -282,7 +299,8 @@ impl<'c> Problem<'c> {
         Rays::new(motion, static_nm, inertia_kgm2)
     }
 
-    /// Adds the inertia matrices of every judged case. An arbitrary arm of the space shows which coordinates yield.
+    /// Adds the inertia matrices of every judged case to the problem. An arbitrary arm of the space shows which
+    /// coordinates deflect elastically.
     pub(super) fn with_inertias(mut self) -> Self {
         let mut work = Work::default();
         let filled = self.fill(&mut self.root(), &mut work);
@@ -297,7 +315,8 @@ impl<'c> Problem<'c> {
     }
 }
 
-/// The number that the problem gives to each piece of the chain. Effects have pieces of their own in between.
+/// The number of each piece of the chain in the compiled problem, base to tip. The numbers count from the tip and have
+/// gaps, because effects have pieces in between.
 fn piece_numbers(space: &DesignSpace) -> Vec<usize> {
     let (mut numbers, mut next) = (vec![0; space.pieces.len()], 0);
     for (place, layer) in space.layers() {
@@ -310,7 +329,9 @@ fn piece_numbers(space: &DesignSpace) -> Vec<usize> {
     numbers
 }
 
-/// The box of a single drive. In a joint whose bearing `tilts` with some drive none is wholly rigid.
+/// The box of the single drive with this index. `tilts` tells whether the bearing of some drive of the joint tilts. If
+/// so, a bearing without tilt gets a very small compliance instead of none, so that all drives of the joint have the
+/// same coordinates.
 fn drive_box(sized: &SizedJoint, index: u32, rays: &Rays, tilts: bool) -> DriveBox {
     let index = index as usize;
     let tilt_rad_per_nm = if tilts { sized.tilts_rad_per_nm[index].max(RIGID_RAD_PER_NM) } else { 0.0 };

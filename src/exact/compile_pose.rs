@@ -1,10 +1,9 @@
 //! Compiles one case of a study into a [`Pose`].
 //!
-//! A serial chain is statically determinate. The generalized force on every strain coordinate (the twist of a
-//! joint, a polynomial coefficient of a link's deformation) is therefore linear in the weights of the pieces
-//! outboard. The tip's displacement is the sum, over the coordinates, of force times compliance times a
-//! constant vector. With weights and compliances as intervals both become intervals. This holds in every
-//! pose.
+//! A serial chain is statically determinate. The generalized force on every strain coordinate (the torsion of a joint,
+//! a polynomial coefficient of a link's deformation) is therefore linear in the weights of the pieces outboard. The
+//! tip's displacement is the sum over the coordinates of force times compliance times a constant vector. If weights and
+//! compliances are intervals, so are the forces and the displacement. This is true in every pose.
 
 use super::bearing_rows::{BearingRows, Loads, Ramp};
 use super::parts::{INERTIAS, inertia};
@@ -26,19 +25,19 @@ use crate::space::effects::{Carried, Carrier, Layer};
 use crate::space::station::{Walk, bodies_at, payload_in, weight_wrench};
 use nalgebra::{DMatrix, Matrix3, Matrix6, Rotation3, SMatrix, Vector3};
 
-/// What a pose has to know about a joint of the chain, beside its axis.
+/// What a compiled pose needs to know about a joint of the chain in addition to its axis.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct JointNeeds {
-    /// Whether its bearing tilts with some drive that may be chosen.
+    /// Whether the output bearing of the joint tilts with at least one of the drives that may be chosen.
     pub tilts: bool,
-    /// Whether the bearing of some drive limits what it carries.
+    /// Whether the output bearing of some drive has a limit that must be checked.
     pub is_checked: bool,
-    /// Acceleration in a ramp \[rad/s²\].
+    /// Angular acceleration of the joint in a ramp \[rad/s²\].
     pub acceleration_rad_s2: f64,
 }
 
 impl Pose {
-    /// Compiles the case with this index. `joints` has what is to be known about the joint at each place of the chain.
+    /// Compiles the case with this index. `joints` has the needs of the joint at each place of the chain, base to tip.
     pub(super) fn new(space: &DesignSpace, index: usize, joints: &[JointNeeds]) -> Self {
         let case = &space.cases[index];
         let water = case.water.or(space.surroundings().water);
@@ -51,7 +50,7 @@ impl Pose {
             let on = |side: Side| springs.iter().filter(move |load| load.on == side);
             let pulls: Vec<&EndLoad> = on(Side::Moving(place)).collect();
             let Some(posed) = posed(space, water, layer, (joint.tilts, &pulls), at) else { continue };
-            // a tube has what springs do to it
+            // Loads of springs on a tube are stored with the tube.
             if let Layer::Springs(side) = layer
                 && (side != Side::Moving(place) || !space.is_tube(place))
             {
@@ -84,8 +83,10 @@ impl Pose {
         pose
     }
 
-    /// Goes inward from the tip. The wrench of everything outboard is kept as a linear function of the
-    /// weights. `joints` are the joints of the chain by their pieces, and so are the `springs` that load them.
+    /// Writes the rows of this pose: for each strain coordinate, its generalized force as a linear function of the
+    /// weights outboard. The function goes inward from the tip and adds each piece to the wrench of everything
+    /// outboard. `joints` holds the needs of each joint and `springs` the wrench of each spring, both with the number
+    /// of the piece at which they act.
     fn compile(
         &mut self,
         space: &DesignSpace,
@@ -118,15 +119,14 @@ impl Pose {
                 PosedPiece::Tube(tube) => {
                     self.inertia_about.push(None);
                     let end_m = tube.root_m + tube.frame * Vector3::x() * tube.length_m;
-                    // The bound checks stress only where the section is a choice.
+                    // The search checks the stress only where the section is a choice.
                     if tube.chosen {
                         self.stress.push(outboard.stress(piece, tube, &end_m));
                     }
                     let areas = areas_per_n(tube, &space.down);
                     let bodies = tube.bodies.as_ref().map_or([0.0; 8], |bodies| bodies.end_forces);
                     for (end, coordinate) in ENDS.into_iter().enumerate() {
-                        // A tube's own weight strains its coordinates too, though it is not outboard of the
-                        // tube.
+                        // The weight of a tube strains the tube itself too, although it is not outboard of the tube.
                         let own = areas[end];
                         let mut row = outboard.row(piece, coordinate, &tube.ends[end], own, tip_m);
                         row.fixed += bodies[end] + tube.pulls.end_forces[end];
@@ -146,14 +146,16 @@ impl Pose {
             }
         }
         let scale = self.rows.iter().map(Row::largest).fold(0.0, f64::max);
-        // Coordinates that nothing strains, such as those across a vertical plane, are left out. Torsions stay,
-        // because the demand on joints is needed in any case.
+        // Coordinates that no load strains are left out, such as those across the vertical plane of a planar arm.
+        // Torsions of joints stay, because the demand on joints is needed in any case.
         let is_torsion: Vec<bool> = self.rows.iter().map(|row| self.is_torsion(row)).collect();
         let mut is_torsion = is_torsion.into_iter();
         self.rows.retain(|row| is_torsion.next() == Some(true) || row.largest() > 1e-13 * scale);
     }
 
-    /// The loads on the bearing of a piece; `None` if none is checked in this case.
+    /// The loads on the output bearing of the joint `piece`, as functions of the weights and inertias outboard.
+    /// `joints` holds the needs of each joint. `None` if the piece is not a joint, its bearing is not checked, or the
+    /// case is not a sizing case.
     fn bearing(
         &self,
         piece: usize,
@@ -178,8 +180,9 @@ impl Pose {
     }
 }
 
-/// One layer of the chain at its place in the pose: whether the bearing of a joint `tilts`, and what springs do to a tube.
-/// `None` for the springs of a gear's bearing, which are coordinates of its joint.
+/// One layer of the chain at its place in the pose. `tilts` tells whether the bearing of a joint tilts; `pulls` are the
+/// loads of springs on a tube; `at_m` and `rotation` are the place and the attitude of the layer. `None` for the tilt
+/// springs of a gear's bearing, because these tilts are coordinates of the joint.
 fn posed(
     space: &DesignSpace,
     water: Option<Water>,
@@ -235,7 +238,8 @@ fn posed(
     })
 }
 
-/// A tube whose root is at a place of the pose.
+/// A tube in the pose. `root_m` and `rotation` are the place and attitude of its root, `pulls` are the loads of springs
+/// on it, and `chosen` tells whether its section is a choice.
 fn posed_tube(
     space: &DesignSpace,
     water: Option<Water>,
@@ -245,7 +249,7 @@ fn posed_tube(
 ) -> PosedPiece {
     let structure = space.structure_of(Vec::new());
     let frame = rotation * section_frame(&link.vector_m);
-    // The fields of the coordinates depend on the length alone, so the first option stands for all.
+    // The displacement fields of the coordinates depend on the length alone, so the first option stands for all.
     let Some(beam) = PreparedBeam::new(link, &structure, LinkModel::Full) else {
         return PosedPiece::Body(Matrix6::zeros());
     };
@@ -269,7 +273,7 @@ fn posed_tube(
 }
 
 impl PosedBodies {
-    /// The bodies on a tube whose root is at a place of the pose; `None` if there are none.
+    /// The given bodies on a tube, whose root is at `root_m` with attitude `rotation`; `None` if there are none.
     fn new(
         space: &DesignSpace,
         link: &LinkPiece,
@@ -300,7 +304,7 @@ impl PosedBodies {
 }
 
 impl Pulls {
-    /// What springs do to a tube whose root and section frame are known.
+    /// The loads of springs on a tube with the root `root_m` and the section frame `frame`.
     fn new(beam: &PreparedBeam, (root_m, frame): (&Vector3<f64>, &Matrix3<f64>), loads: &[&EndLoad]) -> Self {
         let mut out = Self::default();
         for load in loads {
@@ -316,6 +320,8 @@ impl Pulls {
 }
 
 impl TubeForms {
+    /// Prepares the inertia matrices of the tube by integrating the products of its displacement fields along its
+    /// length.
     fn new(beam: &PreparedBeam) -> Self {
         let n = 6 + COORDINATES;
         let mut forms = vec![DMatrix::<f64>::zeros(n, n); 6];
@@ -342,7 +348,8 @@ impl TubeForms {
 }
 
 impl PosedTube {
-    /// Rigid-body inertia about the world's origin per unit of each line inertia.
+    /// Inertia matrices of the tube as a rigid body, about the world's origin, each per unit of one line inertia
+    /// (inertia per metre).
     fn rigid_forms(&self) -> [Matrix6<f64>; INERTIAS] {
         let to_local = crate::mechanics::condensed::world_to_local(&self.root_m, &self.frame);
         let f = &self.forms;
@@ -372,12 +379,12 @@ impl PosedTube {
     }
 }
 
-/// Force on each of the coordinates [`ENDS`] per newton of the tube's own weight, which is distributed along the
-/// tube.
+/// Generalized force on each of the eight coordinates that move the tube's end ([`ENDS`]), per newton of the tube's own
+/// weight. The weight is distributed evenly along the tube.
 fn areas_per_n(tube: &PosedTube, down: &Vector3<f64>) -> [f64; 8] {
     let down = tube.frame.tr_mul(down);
     let f = &tube.forms;
-    // ∫ field · (force per length) is the translation row of the inertia form divided by the length.
+    // `∫ field · (force per length)` is the translation row of the inertia form divided by the length.
     let per = |form: &SMatrix<f64, 9, 9>, place: usize| form[(0, place)] / tube.length_m;
     ENDS.map(|coordinate| match coordinate {
         0 | 1 => down.z * per(&f.across_z, 2 + coordinate),
@@ -389,14 +396,19 @@ fn areas_per_n(tube: &PosedTube, down: &Vector3<f64>) -> [f64; 8] {
     })
 }
 
-/// The wrench and the inertia of everything outboard, as linear functions of the parts.
+/// The wrench and the inertia of everything outboard of the present piece, as linear functions of the weights and
+/// inertias of the parts.
 struct Outboard {
+    /// Wrench of payload, tip force, springs and the bodies that the study gives, added up so far.
     fixed: Wrench,
+    /// Wrench of each piece per newton of its weight, tip first.
     per_n: Vec<Wrench>,
-    /// Inertia of payload and given bodies.
+    /// Inertia of the payload and of the bodies that the study gives, added up so far, about the world's origin.
     fixed_inertia: Matrix6<f64>,
-    /// What it is outboard of each piece.
+    /// Sum of `fixed_inertia` as it was when each piece was added: the inertia of payload and given bodies outboard of
+    /// this piece, tip first.
     fixed_inertia_of: Vec<Matrix6<f64>>,
+    /// Inertia of each piece about the world's origin per unit of each line inertia, tip first.
     inertia: Vec<[Matrix6<f64>; INERTIAS]>,
 }
 
@@ -411,7 +423,8 @@ impl Outboard {
         }
     }
 
-    /// Adds a given body.
+    /// Adds the weight and the inertia of a body that the study gives. `body` is its inertia matrix about the world's
+    /// origin.
     fn add_body(&mut self, body: &Matrix6<f64>, space: &DesignSpace) {
         self.fixed_inertia += body;
         let mass_kg = body[(0, 0)];
@@ -427,6 +440,9 @@ impl Outboard {
         self.inertia.push(inertia);
     }
 
+    /// The row of a strain coordinate: the force on it and the tip's displacement by it. A unit of the coordinate moves
+    /// everything outboard by the kinematic vector `twist`. `own_per_n` is the force on the coordinate per newton of
+    /// the weight of the piece to which it belongs.
     fn row(
         &self,
         piece: usize,
@@ -441,7 +457,8 @@ impl Outboard {
         Row { piece, coordinate, fixed: twist.dot(&self.fixed), per_n, tip_m, tip_m_per_unit: tip_m.norm() }
     }
 
-    /// The inertia of everything outboard about a joint's axis.
+    /// The inertia of everything outboard about a joint's axis \[kg m²\], as a linear function of the line inertias.
+    /// `twist` is the motion per radian of the joint.
     fn inertia_row(&self, twist: &Twist) -> InertiaRow {
         let about = |m: &Matrix6<f64>| twist.dot(&(m * twist)).max(0.0);
         InertiaRow {
@@ -450,7 +467,8 @@ impl Outboard {
         }
     }
 
-    /// The loads on the section of a tube at a point.
+    /// The loads on the section of a tube at the point `at_m`, as linear functions of the weights: axial force \[N\],
+    /// moments about y and z, and torsion \[N m\].
     fn stress(&self, piece: usize, tube: &PosedTube, at_m: &Vector3<f64>) -> StressRow {
         let local = |wrench: &Wrench| {
             let force = tube.frame.tr_mul(&linear(wrench));
@@ -464,6 +482,7 @@ impl Outboard {
 }
 
 impl Row {
+    /// Largest magnitude among the constant part of this row's force and its coefficients per newton.
     fn largest(&self) -> f64 {
         self.per_n.iter().fold(self.fixed.abs(), |most, c| most.max(c.abs()))
     }

@@ -1,7 +1,8 @@
-//! A cover of the space by boxes: the boxes with the greatest gap are halved first.
+//! A cover of the space by boxes. It is refined by halving the boxes with the greatest gap first.
 //!
-//! The boxes hold every design that no design found dominates, and each has a bound. So they say how near the designs found
-//! come to every design of the space ([`gap`](super::gap)). That gap is as large as that of the worst box.
+//! The boxes contain every design that no design found dominates, and each has a bound. The bounds therefore tell how
+//! near the designs found come to every design of the space ([`gap`](super::gap)). The gap of the cover is that of its
+//! worst box.
 
 use super::bound::{BoxBound, Verdict};
 use super::boxes::OpenBox;
@@ -14,7 +15,7 @@ use crate::pareto::objectives::Objectives;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Number of boxes that are halved at once.
+/// Number of boxes that are halved in one step, in parallel.
 const AT_ONCE: usize = 32;
 
 /// Boxes that cover the space.
@@ -28,14 +29,15 @@ struct Piece {
 }
 
 impl Cover {
-    /// A cover of at least so many boxes, unless fewer are left or the search is stopped.
+    /// Makes a cover of at least `boxes` boxes. `found` are the objectives of the designs found, from which the gap of
+    /// each box follows. There are fewer boxes if the remaining ones cannot be halved or the search is stopped.
     pub(super) fn new(budget: &Budget, problem: &Problem, found: &[Objectives], boxes: usize) -> Self {
         let Some(shapes) = problem.first_shapes(&mut Work::default()) else { return Self(Vec::new()) };
         let root =
             OpenBox { design_box: problem.root(), shapes: Arc::new(shapes), box_bound: BoxBound::OPEN };
         let mut cover = Vec::from_iter(Piece::bounded(problem, root, found));
         while cover.len() < boxes && !budget.stopped() {
-            // The worst boxes stand last. A box of one design cannot be halved and stands first.
+            // The boxes with the greatest gap stand last. A box of one design cannot be halved and stands first.
             cover.sort_by(|a, b| a.level.is_some().cmp(&b.level.is_some()).then(a.gap.total_cmp(&b.gap)));
             let divisible = cover.iter().filter(|piece| piece.level.is_some()).count();
             if divisible == 0 {
@@ -49,14 +51,15 @@ impl Cover {
         Self(cover)
     }
 
-    /// The bounds of the boxes.
+    /// The bound (ideal point) of each box of the cover.
     pub(super) fn bounds(&self) -> Vec<BoxBound> {
         self.0.iter().map(|piece| piece.open.box_bound).collect()
     }
 }
 
 impl Piece {
-    /// Bounds a box. `None` if no member meets the constraints, or if a design dominates all members.
+    /// Bounds a box and computes its gap: by how much the nearest of the designs `found` is worse than the bound.
+    /// `None` if no member meets the constraints, or if one of these designs dominates all members.
     fn bounded(problem: &Problem, mut open: OpenBox, found: &[Objectives]) -> Option<Self> {
         let mut work = Work::default();
         let is_dominated = |bound: &BoxBound| {
@@ -71,7 +74,8 @@ impl Piece {
         Some(Self { gap: gap_of(&box_bound, found), open, level })
     }
 
-    /// The halves of the box that may have members.
+    /// The two halves of this box, each bounded. A half is left out if it is empty or if a design in `found` dominates
+    /// all its members.
     fn halves(self, problem: &Problem, found: &[Objectives]) -> Vec<Self> {
         let level = self.level.unwrap_or_default();
         let halves = self.open.halves(problem, level, self.open.box_bound);

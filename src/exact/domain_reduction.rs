@@ -1,7 +1,7 @@
-//! The parts of which a design as good as a known one can be made.
+//! The options that a design may have if it is as good as a known design in all three objectives.
 //!
-//! In a space too large to tabulate these are few, and the relaxation (`src/relax`) can be solved over them
-//! alone.
+//! In a space that is too large to tabulate these options are few, so the relaxation (`src/relax`), a linear program
+//! over mixtures of parts, can be solved with them alone.
 
 use super::kinds::Ties;
 use super::local_upper_bounds::LocalUpperBound;
@@ -14,15 +14,15 @@ use crate::pareto::objectives::Objectives;
 use crate::space::design_space::DesignSpace;
 use std::collections::BTreeSet;
 
-/// Relative margin between the known design's objectives and the local upper bound made of them, so that rounding
-/// excludes no part.
+/// Relative amount by which the known design's objectives are made worse before designs below them are looked for. With
+/// this margin, rounding excludes no part of the known design itself.
 const ROOM: f64 = 1e-6;
-/// Greatest number of subproblems that are branched. A subproblem of fewer designs than [`FEW`] is not worth
-/// branching.
+/// Greatest number of subproblems that are branched. A subproblem of at most [`FEW`] designs is not branched, because
+/// that is not worth the time.
 const MOST_BRANCHED: usize = 50;
 const FEW: f64 = 1e6;
 
-/// A compiled design space that answers which parts can belong to a design as good as a known one.
+/// A compiled design space that tells which parts can belong to a design as good as a known one.
 pub struct DomainReduction<'p> {
     problem: Problem<'p>,
 }
@@ -33,8 +33,8 @@ impl<'p> DomainReduction<'p> {
         Some(Self { problem: Problem::new(space, catalogs, &|_| true, Ties::Merged)? })
     }
 
-    /// For each level, tip first, the options that a design may have if it is no worse than a known design in all
-    /// three objectives, in ascending order. `None` if there is no such design, not even the known one.
+    /// For each level, tip first, the numbers of the options that a design may have if it is no worse than a known
+    /// design in all three objectives, ascending. `None` if no design is that good, not even the known one.
     pub fn options_as_good(&self, known: &Objectives) -> Option<Vec<Vec<u32>>> {
         let upper = LocalUpperBound {
             mass_kg: known.mass_kg * (1.0 + ROOM),
@@ -67,7 +67,8 @@ impl<'p> DomainReduction<'p> {
     }
 }
 
-/// A subproblem whose options have been reduced as far as that is worth the time.
+/// A subproblem whose options have been excluded as far as that is worth the time. `designs` is the number of designs
+/// that remain.
 struct Reduced<'p> {
     subproblem: Subproblem<'p>,
     survivors: Survivors,
@@ -75,6 +76,8 @@ struct Reduced<'p> {
 }
 
 impl<'p> Reduced<'p> {
+    /// Excludes the options of a subproblem that no design below the local upper bound `upper` can have. `None` if no
+    /// design lies below it.
     fn new(mut subproblem: Subproblem<'p>, upper: &LocalUpperBound, work: &mut Work) -> Option<Self> {
         loop {
             let (survivors, reduced) = subproblem.reduce(upper, work, |_| false)?;

@@ -1,14 +1,14 @@
 //! Drives that a lighter drive dominates within a box.
 //!
-//! Let a design have drive B at a joint. Let drive A be lighter, at least as stiff up to the torque that the
-//! joint carries, with a bearing that tilts no more, and able to carry the joint's demand. The demand depends only on the
-//! arm outboard, so it is the same for both. Now put A in the place of B:
+//! Let a design have drive B at a joint. Let drive A be lighter, at least as stiff up to the torque that the joint
+//! carries, and able to carry the demand on the joint, with a bearing that tilts no more. The demand depends only on
+//! the arm outboard, so it is the same for both. Now put A in the place of B:
 //!
-//! - Every force of the study grows with every weight, so no torque, stress or demand inboard grows and the
-//!   tip does not deflect further. The load on a bearing is a sum of vectors; that it grows with the mass of every drive
-//!   outboard is asked for separately ([`bearing_rows`](super::bearing_rows)).
-//! - No inertia grows. No stiffness falls if every gear inboard stays in its segment of the torsion curve.
-//!   Then no mode falls.
+//! - Every force of the study grows with every weight. So no torque, stress or demand inboard grows, and the tip does
+//!   not deflect further. A load on a bearing is a sum of vectors. Whether it grows with the mass of every drive
+//!   outboard is tested separately ([`bearing_rows`](super::bearing_rows)).
+//! - No inertia grows. No stiffness falls if every gear inboard stays in its segment of the torsion curve. Then no mode
+//!   falls.
 //!
 //! So the design with A dominates the design with B, whatever its other parts are. A gear inboard may leave
 //! its segment when a part becomes lighter; therefore the step is valid only within a box, in which the
@@ -23,23 +23,29 @@ use super::tree::Tree;
 use super::work::Work;
 use crate::sizing::demand::JointDemand;
 
-/// A dominating drive must be lighter by at least this part of the arm's mass, so that rounding cannot decide.
+/// A dominating drive must be lighter by at least this fraction of the arm's mass, so that rounding cannot decide.
 const LIGHTER: f64 = 1e-6;
 
-/// Number of tree nodes that may be visited in the search for a dominating drive.
+/// Greatest number of tree nodes that are visited in the search for one dominating drive.
 const BOXES: usize = 64;
 
-/// The properties that a dominating drive must have.
+/// The properties that a drive must have to dominate all drives of a box.
 struct DominatingDrive<'a> {
+    /// Mass that the dominating drive must stay below \[kg\].
     lighter_than_kg: f64,
+    /// Greatest demand on the joint over the box. The dominating drive must carry it.
     demand: &'a JointDemand,
+    /// Torsion curves of the drives of the box. The dominating drive must nowhere be softer than any of them. `None` if
+    /// a drive of the box is rigid, so that the dominating drive must be rigid too.
     curve: Option<CurveBox>,
+    /// Greatest magnitude of the torque on the joint over the box \[N m\]. The curves are compared up to it.
     most_torque_nm: f64,
+    /// Greatest tilt per moment that the drive's bearing may have \[rad/(N m)\].
     most_tilt_rad_per_nm: f64,
 }
 
 impl DominatingDrive<'_> {
-    /// Whether a box of drives may have a dominating drive. For a box of one drive: whether this drive dominates.
+    /// Whether the box `drives` may contain a dominating drive. For a box of a single drive the answer is exact.
     fn may_be_in(&self, drives: &DriveBox) -> bool {
         drives.mass_kg[0] < self.lighter_than_kg
             && drives.tilt_rad_per_nm[0] <= self.most_tilt_rad_per_nm
@@ -51,7 +57,8 @@ impl DominatingDrive<'_> {
             }
     }
 
-    /// Mass of a dominating drive below a node \[kg\]; `None` if none is found before the visits are used up.
+    /// Mass \[kg\] of some dominating drive below `node`. `None` if none is found within `boxes_left` visits of nodes;
+    /// the number of visits is subtracted from it.
     fn find(&self, tree: &Tree<DriveBox>, node: u32, boxes_left: &mut usize) -> Option<f64> {
         let drives = &tree.node(node).bounds;
         if *boxes_left == 0 || !self.may_be_in(drives) {
@@ -67,9 +74,9 @@ impl DominatingDrive<'_> {
 
 impl Problem<'_> {
     /// Whether every load of the arm, and every displacement that a load causes, grows with every weight. Then a
-    /// lighter arm of the same stiffness is no worse. This fails with friction, because the twist that friction holds
-    /// back grows with the weights too. It also fails with first-fit drives, because a lighter arm would get softer
-    /// drives.
+    /// lighter arm of the same stiffness is no worse. With friction this is false, because the twist that friction
+    /// holds back grows with the weights too. With first-fit drives it is false too, because a lighter arm would get
+    /// lighter and softer drives.
     pub(super) fn grows_with_weight(&self) -> bool {
         let fits_first = self.parts.iter().any(|part| matches!(part, Part::FirstFit { .. }));
         let friction = self.joint_plays.iter().flatten().any(JointPlay::has_friction);
@@ -81,8 +88,8 @@ impl Problem<'_> {
             && bearings().all(|rows| rows.grow_with_mass(&is_drive))
     }
 
-    /// Removes dominated drives from a box whose numbers are in `work`. Returns whether the box became smaller;
-    /// `None` if no design is left.
+    /// Removes dominated drives from `design_box`, whose numbers are in `work`. `tip_m` is the least tip deflection of
+    /// the box \[m\]. Returns whether the box became smaller; `None` if no design is left.
     pub(super) fn prune_dominated_drives(
         &self,
         design_box: &mut [u32],
@@ -90,8 +97,8 @@ impl Problem<'_> {
         work: &Work,
     ) -> Option<bool> {
         let mut shrunk = false;
-        // The argument needs contributions to the tip that do not oppose each other. A pose where they may
-        // oppose does no harm if it cannot be the worst pose of the box.
+        // The argument requires that contributions to the tip's displacement do not oppose each other. A pose where
+        // they may oppose does no harm if it cannot be the worst pose of the box.
         if !self.lighter_is_better || work.greatest_tip_m.iter().any(|most_m| *most_m > tip_m) {
             return Some(false);
         }
@@ -106,7 +113,8 @@ impl Problem<'_> {
         Some(shrunk)
     }
 
-    /// Whether a lighter drive dominates every drive of a box.
+    /// Whether a lighter drive dominates every drive of the box `drives` at the joint `piece`. The tree is searched for
+    /// such a drive; `demand` is the greatest demand on the joint.
     fn is_dominated(
         &self,
         piece: usize,
@@ -123,14 +131,14 @@ impl Problem<'_> {
             most_tilt_rad_per_nm: drives.tilt_rad_per_nm[0],
             most_torque_nm: work.torques.iter().map(|torques| torques[piece][1]).fold(0.0, f64::max),
         };
-        // The search starts at the root, for the dominating drive need not be in the box.
+        // The search starts at the root, because the dominating drive need not be in the box.
         wanted.find(tree, 0, &mut BOXES.clone()).is_some_and(|mass_kg| {
             self.slopes_stay(piece, (drives.mass_kg[1] - mass_kg) * self.space.gravity_m_s2, work)
         })
     }
 
-    /// Whether every gear inboard stays in its segment, with unchanged play, if a piece becomes lighter by this
-    /// weight \[N\].
+    /// Whether every gear inboard keeps its slope and its play in the modes if the piece becomes lighter by `lost_n`
+    /// \[N\].
     fn slopes_stay(&self, piece: usize, lost_n: f64, work: &Work) -> bool {
         self.judged_cases().all(|case| {
             self.poses[case].rows.iter().filter(|row| row.piece > piece).all(|row| {

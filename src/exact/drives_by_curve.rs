@@ -3,14 +3,21 @@
 //! A joint has hundreds of drives but only some dozens of curves, and gears of one curve mostly have one bearing. The
 //! price of a drive is the price of its mass plus the prices of its curve and its bearing. Among the drives of one group
 //! only the lightest or the heaviest can therefore be the cheapest, whatever the prices are.
+//!
+//! A region is priced at dozens of multipliers, and the states of a gear that may be the cheapest are the same at all of
+//! them. They are collected once ([`PricedDrives`]), and eight groups are priced side by side.
 
-use super::dual_price::DualPrice;
-use super::parts::{DriveBox, LeastDemand};
+use super::dual_price::{DualPrice, Gear, GearStates, states_of};
+use super::joint_play::JointPlay;
+use super::parts::{DriveBox, LeastDemand, inertia, stiffness_of};
+use super::pose::TILT;
 use super::torsion::CurveBox;
 use super::tree::Tree;
+use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, in_lanes};
 use std::sync::Arc;
 
-/// The drives of one curve and one bearing: mass \[kg\] and node of the lightest and of the heaviest.
+/// The drives with the same torsion curve and the same bearing: mass \[kg\] and node of the lightest and of the
+/// heaviest. `curve` is `None` for a rigid drive.
 struct CurveGroup {
     curve: Option<CurveBox>,
     tilt_rad_per_nm: [f64; 2],
@@ -19,8 +26,8 @@ struct CurveGroup {
 }
 
 impl CurveGroup {
-    /// Adds a drive. Among equal masses the lower node counts, so that the result does not depend on the order of the
-    /// drives.
+    /// Adds a drive, given by its mass \[kg\] and its node. Among equal masses the lower node is taken, so that the
+    /// result does not depend on the order of the drives.
     fn add(&mut self, drive: (f64, u32)) {
         if drive < self.lightest {
             self.lightest = drive;
@@ -35,17 +42,20 @@ impl CurveGroup {
 struct DrivesByCurve(Vec<CurveGroup>);
 
 impl DrivesByCurve {
-    /// The drives below a node that can carry the least demand.
+    /// The drives below a node, grouped by curve and bearing. Drives that cannot carry the least demand `asked` are
+    /// left out; `None` keeps all.
     fn new(tree: &Tree<DriveBox>, node: u32, asked: Option<&LeastDemand>) -> Self {
         let mut curves: Vec<CurveGroup> = Vec::new();
-        let (mut open, mut last) = (vec![node], 0);
-        while let Some(at) = open.pop() {
+        let (mut open, mut last) = (vec![(node, asked)], 0);
+        while let Some((at, asked)) = open.pop() {
             let drives = &tree.node(at).bounds;
             if asked.is_some_and(|asked| !drives.may_hold(asked)) {
                 continue;
             }
             if let Some(halves) = tree.children(at) {
-                open.extend(halves);
+                // What the least limits carry every drive below the node carries, so nothing is asked there.
+                let asked = asked.filter(|asked| !drives.least_limits.hold(&asked.demand));
+                open.extend(halves.map(|half| (half, asked)));
                 continue;
             }
             let drive = (drives.mass_kg[0], at);
@@ -67,17 +77,139 @@ impl DrivesByCurve {
         }
         Self(curves)
     }
+}
 
-    fn cheapest(&self, price: &DualPrice) -> Option<(f64, u32)> {
-        let of = |of: &CurveGroup| {
-            let (mass_kg, node) = if price.of_mass([0.0, 1.0]) < 0.0 { of.heaviest } else { of.lightest };
-            (price.of_joint([mass_kg; 2], of.curve.as_ref(), of.tilt_rad_per_nm), node)
-        };
-        self.0.iter().map(of).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))
+/// Eight groups with curves, and the states of their gears in each judged case.
+struct EightGroups {
+    /// Mass \[kg\] of the lightest and of the heaviest drive of each group, and their nodes. The last group fills the lanes
+    /// that are left.
+    mass_kg: [Eight; 2],
+    nodes: [[u32; LANES]; 2],
+    tilt_rad_per_nm: [Eight; 2],
+    tilt_stiffness: Eight,
+    /// For each judged case the candidate states. A gear with fewer than its neighbours has its first more than once.
+    states: Vec<Vec<EightStates>>,
+    count: usize,
+}
+
+/// A candidate state of the gears of eight groups.
+#[derive(Clone, Copy)]
+struct EightStates {
+    torque_nm: Eight,
+    twist_rad: [Eight; 2],
+    slope: Eight,
+}
+
+impl EightGroups {
+    /// Packs at most eight groups that have curves, for gears and the play of their joint.
+    fn new(groups: &[(&CurveGroup, &CurveBox)], gears: &[&Gear], play: Option<&JointPlay>) -> Self {
+        let group = |lane: usize| groups[lane.min(groups.len() - 1)].0;
+        let lanes =
+            |of: &dyn Fn(&CurveGroup) -> f64| -> Eight { std::array::from_fn(|lane| of(group(lane))) };
+        let both = |group: &CurveGroup| [group.lightest, group.heaviest];
+        Self {
+            mass_kg: [0, 1].map(|end| lanes(&|group| both(group)[end].0)),
+            nodes: [0, 1].map(|end| std::array::from_fn(|lane| both(group(lane))[end].1)),
+            tilt_rad_per_nm: [0, 1].map(|end| lanes(&|group| group.tilt_rad_per_nm[end])),
+            tilt_stiffness: lanes(&|group| stiffness_of(group.tilt_rad_per_nm[0])),
+            states: gears.iter().map(|gear| EightStates::all(groups, gear.torques_nm, play)).collect(),
+            count: groups.len(),
+        }
     }
 }
 
-/// The feasible drives of a level, kept as long as neither the drives nor the demand on them change.
+impl EightStates {
+    /// The candidate states of the curves of at most eight groups under torques in an interval \[N m\].
+    fn all(
+        groups: &[(&CurveGroup, &CurveBox)],
+        torques_nm: [f64; 2],
+        play: Option<&JointPlay>,
+    ) -> Vec<EightStates> {
+        let mut of_lane: [GearStates; LANES] = Default::default();
+        for (lane, states) in of_lane.iter_mut().enumerate() {
+            states_of(groups[lane.min(groups.len() - 1)].1, play, torques_nm, states);
+        }
+        let most = of_lane.iter().map(|states| states.as_slice().len()).max().unwrap_or(0);
+        let at = |lane: usize, place: usize| {
+            let states = of_lane[lane].as_slice();
+            states.get(place).or(states.first()).copied().unwrap_or_default()
+        };
+        (0..most)
+            .map(|place| EightStates {
+                torque_nm: std::array::from_fn(|lane| at(lane, place).torque_nm),
+                twist_rad: [0, 1].map(|end| std::array::from_fn(|lane| at(lane, place).twist_rad[end])),
+                slope: std::array::from_fn(|lane| at(lane, place).slope),
+            })
+            .collect()
+    }
+}
+
+/// The prices of eight groups.
+struct GroupPrices<'a> {
+    groups: &'a EightGroups,
+    price: &'a DualPrice,
+}
+
+impl LaneWork for GroupPrices<'_> {
+    type Output = Eight;
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) -> Eight {
+        let Self { groups, price } = self;
+        let mut torsion = V::splat(-0.0);
+        for (gear, states) in price.joint.iter().zip(&groups.states) {
+            let (twist, torque, slope) = (V::splat(gear.twist), V::splat(gear.torque), V::splat(gear.slope));
+            let mut least = V::splat(f64::INFINITY);
+            for state in states {
+                let [less, more] =
+                    [twist * V::load(&state.twist_rad[0]), twist * V::load(&state.twist_rad[1])];
+                let of_state = less.min(more) + torque * V::load(&state.torque_nm);
+                least = least.min(of_state - slope * V::load(&state.slope));
+            }
+            torsion = torsion + least;
+        }
+        let per_kg = price.inertia[inertia::MASS];
+        let of_mass = V::splat(per_kg) * V::load(&groups.mass_kg[usize::from(per_kg < 0.0)]);
+        let per_tilt = price.compliance[TILT];
+        let of_tilt = V::splat(per_tilt) * V::load(&groups.tilt_rad_per_nm[usize::from(per_tilt < 0.0)]);
+        let of_tilt = of_tilt - V::splat(price.stiffness[TILT]) * V::load(&groups.tilt_stiffness);
+        (of_mass + torsion + of_tilt).store()
+    }
+}
+
+/// The feasible drives of a level with the states that their gears may have in a region.
+pub(super) struct PricedDrives {
+    drives: Arc<DrivesByCurve>,
+    eights: Vec<EightGroups>,
+}
+
+impl PricedDrives {
+    /// The feasible drives of a level with the states of its gears, one for each judged case.
+    pub(super) fn new(feasible: &FeasibleDrives, gears: &[&Gear], play: Option<&JointPlay>) -> Self {
+        let drives = Arc::clone(&feasible.drives);
+        let with_curve: Vec<(&CurveGroup, &CurveBox)> =
+            drives.0.iter().filter_map(|group| Some((group, group.curve.as_ref()?))).collect();
+        let eights = with_curve.chunks(LANES).map(|groups| EightGroups::new(groups, gears, play)).collect();
+        Self { eights, drives }
+    }
+
+    /// The least price of a drive and its node; among equal prices the lower node. `None` if no drive is feasible.
+    pub(super) fn cheapest(&self, price: &DualPrice) -> Option<(f64, u32)> {
+        let end = usize::from(price.of_mass([0.0, 1.0]) < 0.0);
+        let in_eights = self.eights.iter().flat_map(|groups| {
+            let prices = in_lanes(GroupPrices { groups, price });
+            (0..groups.count).map(move |lane| (prices[lane], groups.nodes[end][lane]))
+        });
+        let rigid = self.drives.0.iter().filter(|group| group.curve.is_none()).map(|group| {
+            let (mass_kg, node) = [group.lightest, group.heaviest][end];
+            (price.of_joint([mass_kg; 2], None, group.tilt_rad_per_nm), node)
+        });
+        in_eights.chain(rigid).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))
+    }
+}
+
+/// The feasible drives of a level. They are reused from one box to the next as long as neither the drives nor the
+/// demand on them change.
 #[derive(Clone)]
 pub(super) struct FeasibleDrives {
     tree: Arc<Tree<DriveBox>>,
@@ -87,7 +219,8 @@ pub(super) struct FeasibleDrives {
 }
 
 impl FeasibleDrives {
-    /// The drives below a node that can carry the least demand. They are those of `before` if it was made of the same.
+    /// The drives below a node that carry the least demand `asked`. The groups are copied from `before`, those of the
+    /// parent box, if these were made of the same tree, node and demand.
     pub(super) fn new(
         tree: &Arc<Tree<DriveBox>>,
         node: u32,
@@ -102,11 +235,6 @@ impl FeasibleDrives {
             asked: asked.cloned(),
             drives: Arc::new(DrivesByCurve::new(tree, node, asked)),
         })
-    }
-
-    /// The least price of a drive and its node. `None` if no drive is feasible.
-    pub(super) fn cheapest(&self, price: &DualPrice) -> Option<(f64, u32)> {
-        self.drives.cheapest(price)
     }
 }
 
@@ -178,10 +306,12 @@ mod tests {
                 |drive: &DriveBox| price.of_joint(drive.mass_kg, drive.curve.as_ref(), drive.tilt_rad_per_nm);
             let holding: Vec<&DriveBox> = drives.iter().filter(|drive| drive.hold(&asked.demand)).collect();
             let least = holding.iter().map(|drive| cost(drive)).fold(f64::INFINITY, f64::min);
-            let found = DrivesByCurve::new(&tree, 0, Some(&asked)).cheapest(&price);
+            let feasible = FeasibleDrives::new(&Arc::new(tree), 0, Some(&asked), None);
+            let gear = Gear { piece: 0, judged: 0, torques_nm: [from_nm, from_nm + wide_nm], row: None, least_compliance: 0.0 };
+            let found = PricedDrives::new(&feasible, &[&gear], None).cheapest(&price);
             prop_assert_eq!(found.is_none(), holding.is_empty());
             if let Some((found, node)) = found {
-                let drive = &drives[tree.option(node).unwrap() as usize];
+                let drive = &drives[feasible.tree.option(node).unwrap() as usize];
                 prop_assert!(drive.hold(&asked.demand));
                 prop_assert_eq!([found, cost(drive)], [least; 2]);
             }

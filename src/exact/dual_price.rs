@@ -1,7 +1,8 @@
 //! The price of a part under Lagrange multipliers, and the cheapest part below a node of a tree.
 //!
-//! Every number of a part (mass, inertia, compliance, stiffness) has a dual price. The price of the part is
-//! what it adds to the weighted sum of the rows in [`rows`](super::rows).
+//! Every number of a part (mass, inertia, compliance, stiffness) has a dual price: the amount per unit of this number
+//! that the part adds to the weighted sum of the rows in [`rows`](super::rows). The price of the part is the sum over
+//! its numbers.
 
 use super::joint_play::JointPlay;
 use super::parts::{INERTIAS, LinkBox, STIFFNESSES, inertia, stiffness_of};
@@ -12,29 +13,33 @@ use crate::arm::joint_law::Segment;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Greatest number of boxes that are priced in the search for the cheapest part. If it were smaller, the price of a
-/// box would more often stand for the price of its parts, and the last local upper bounds would never be refuted.
+/// Greatest number of boxes that are priced in the search for the cheapest part. With a smaller number, the lower bound
+/// of a box would more often be taken for the price of its cheapest part, and some local upper bounds would never be
+/// refuted.
 const MOST_LOOKS: usize = 200;
-/// Relative rounding of a torque.
+/// Relative margin for the rounding of a torque.
 const ROUNDING: f64 = 1e-12;
 
-/// The gear of a joint in a judged case.
+/// The gear of a joint in a judged case, as the rows of a bound treat it.
 pub(super) struct Gear {
     pub piece: usize,
+    /// Index of the judged case.
     pub judged: usize,
     /// Interval of the gear's torque \[N m\].
     pub torques_nm: [f64; 2],
-    /// Index of the first of two rows, if the gear's slope may change within the interval. The rows, one for each
-    /// direction, hold the gear's own torque equal to the torque that the weights make. `None` for a gear with a
-    /// single slope. Such a gear is evaluated at the torque `torques_nm[0]`, from which its twist grows linearly with
-    /// the weights.
+    /// Index of the first of the gear's two rows (inequalities of the bound), if the slope of the gear may change
+    /// within the interval. The two rows, one for each direction, force the torque at which the gear is evaluated to
+    /// equal the torque of the weights. `None` for a gear with a single slope. Such a gear is evaluated at the torque
+    /// `torques_nm[0]`, and its twist grows linearly with the weights from there.
     pub row: Option<usize>,
-    /// Least compliance of any gear of the box \[rad/(N m)\].
+    /// Least compliance of any gear of the box within the interval of torque \[rad/(N m)\]. It is 0 and unused for a
+    /// gear with a single slope.
     pub least_compliance: f64,
 }
 
 impl Gear {
-    /// A gear whose torque may lie in several segments. `next` is the index of the first of its two rows.
+    /// A gear whose torque, between `low` and `high` \[N m\], may lie in several segments of its curve. `next` is the
+    /// index of the first of its two rows.
     pub(super) fn free(
         piece: usize,
         judged: usize,
@@ -47,7 +52,7 @@ impl Gear {
         Self { piece, judged, torques_nm, row: Some(next), least_compliance }
     }
 
-    /// A gear that stays in one segment of its curve.
+    /// A gear that stays in one segment of its curve. It is evaluated at this torque \[N m\].
     pub(super) fn at(piece: usize, judged: usize, torque_nm: f64) -> Self {
         let torques_nm = [torque_nm; 2];
         Self { piece, judged, torques_nm, row: None, least_compliance: 0.0 }
@@ -57,27 +62,31 @@ impl Gear {
 /// The dual prices of a piece, one for each of its numbers.
 #[derive(Default)]
 pub(super) struct DualPrice {
-    /// Price per line inertia of a tube. For any other piece the first entry is the price per kilogram.
+    /// Price per unit of each line inertia of a tube. For any other piece the first entry is the price per kilogram.
     pub inertia: [f64; INERTIAS],
-    /// Price per compliance of a tube, and the credit per stiffness. For a joint those of its bearing.
+    /// Price per unit of each compliance of a tube. For a joint the entry [`TILT`] is that of its bearing.
     pub compliance: [f64; STIFFNESSES],
+    /// Credit per unit of each stiffness of a tube, or of a joint's bearing. A stiffer part lowers the weighted sum.
     pub stiffness: [f64; STIFFNESSES],
     /// Prices of a joint, one for each judged case.
     pub joint: Vec<JointPrice>,
 }
 
-/// The dual prices of a gear's state in a case.
+/// The dual prices of the state of a joint's gear in a judged case.
 pub(super) struct JointPrice {
-    /// Price per twist \[1/rad\]. `torque` is the price per torque \[1/(N m)\], `slope` the credit per slope \[rad/(N
-    /// m)\].
+    /// Price per unit of twist \[1/rad\].
     pub twist: f64,
+    /// Price per unit of the torque at which the gear is evaluated \[1/(N m)\].
     pub torque: f64,
+    /// Credit per unit of slope of the torsion curve \[rad/(N m)\].
     pub slope: f64,
+    /// Interval of the gear's torque \[N m\].
     pub torques_nm: [f64; 2],
+    /// Lost motion and friction of the joint; `None` if it has none.
     pub play: Option<JointPlay>,
 }
 
-/// The state of a gear: torque, twist and slope.
+/// The state of a gear: its torque \[N m\], its twist \[rad\], and the slope of its torsion curve \[N m/rad\].
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct JointState {
     pub torque_nm: f64,
@@ -85,9 +94,9 @@ pub(super) struct JointState {
     pub slope: f64,
 }
 
-/// A state of a gear that may be the cheapest. Twist is linear in the torque within a segment, so the ends of the
-/// segments are enough. For a box of gears, `twist_rad` holds the least and the greatest twist (without play), and
-/// `slope` is the greatest slope (with play).
+/// A state of a gear that may have the least price. The twist is linear in the torque within a segment, so the states
+/// at the ends of the segments are enough. For a box of gears, `twist_rad` holds the least and the greatest twist
+/// (without play), and `slope` is the greatest slope (with play).
 #[derive(Clone, Copy, Default)]
 pub(super) struct GearState {
     pub torque_nm: f64,
@@ -95,7 +104,7 @@ pub(super) struct GearState {
     pub slope: f64,
 }
 
-/// The candidate states of a gear: at most two ends of three segments, for torques of both signs.
+/// The candidate states of a gear: at most two ends of each of three segments, for torques of both signs.
 #[derive(Default)]
 pub(super) struct GearStates {
     all: [GearState; 12],
@@ -107,6 +116,21 @@ impl GearStates {
     pub(super) fn as_slice(&self) -> &[GearState] {
         &self.all[..self.count]
     }
+}
+
+/// Collects the candidate states of a curve under torques in an interval \[N m\].
+#[inline]
+pub(super) fn states_of(
+    curve: &CurveBox,
+    play: Option<&JointPlay>,
+    torques_nm: [f64; 2],
+    states: &mut GearStates,
+) {
+    states.count = 0;
+    each_state(curve, play, torques_nm, &mut |state| {
+        states.all[states.count] = state;
+        states.count += 1;
+    });
 }
 
 /// Calls `see` for every candidate state of a curve under torques in an interval \[N m\].
@@ -125,8 +149,8 @@ fn each_state(
     }
 }
 
-/// Calls `see` for every candidate state of a curve under torques of one sign, which are given by their magnitudes
-/// \[N m\].
+/// Calls `see` for every candidate state of a torsion curve under torques of one sign. `low` and `high` are the
+/// magnitudes of the least and the greatest torque \[N m\].
 #[inline(always)]
 fn each_state_of_sign(
     curve: &CurveBox,
@@ -141,7 +165,7 @@ fn each_state_of_sign(
         let (from, to) = (low.max(start), high.min(end));
         // A break point belongs to the segment below it.
         if from <= to && (to > start || start == 0.0) {
-            // With K1 in the modes the segment of the torque does not matter to the slope.
+            // If the modes use K1, the slope does not depend on the segment of the torque.
             let seen = if curve.k1_in_modes { w.k1_nm_per_rad } else { slope };
             let slope = play.map_or(seen, |play| play.in_series(seen, to));
             // The soft envelope is taken at the end of the segment: one value is valid for both ends.
@@ -158,8 +182,8 @@ fn each_state_of_sign(
 }
 
 impl JointPrice {
-    /// Price of the cheapest state of a joint with this curve, and this state. For a box of joints the price is a
-    /// lower bound over its members.
+    /// The price of the cheapest state of a joint's gear, and this state. For a box of gears the price is a lower bound
+    /// over its members. A `curve` of `None` stands for a rigid joint.
     pub(super) fn best_of(&self, curve: Option<&CurveBox>) -> (f64, JointState) {
         let Some(curve) = curve else { return self.rigid() };
         let mut best = (f64::INFINITY, JointState::default());
@@ -174,7 +198,7 @@ impl JointPrice {
         best
     }
 
-    /// Price of the cheapest state of a joint with this curve.
+    /// The price of the cheapest state of a joint's gear, without the state itself.
     #[inline]
     pub(super) fn least_of(&self, curve: Option<&CurveBox>) -> f64 {
         let Some(curve) = curve else { return self.rigid().0 };
@@ -185,28 +209,25 @@ impl JointPrice {
         least
     }
 
+    /// Price of one state. Where the twist is an interval, the end with the lower price is taken.
     #[inline]
     fn of_state(&self, end: &GearState) -> f64 {
         let [least, most] = end.twist_rad.map(|twist| self.twist * twist);
         least.min(most) + self.torque * end.torque_nm - self.slope * end.slope
     }
 
-    /// Collects the candidate states of a joint with this curve in `ends`.
+    /// Writes the candidate states of a joint with this torsion curve into `ends`.
     #[inline]
     pub(super) fn ends(&self, curve: &CurveBox, ends: &mut GearStates) {
-        ends.count = 0;
-        each_state(curve, self.play.as_ref(), self.torques_nm, &mut |end| {
-            ends.all[ends.count] = end;
-            ends.count += 1;
-        });
+        states_of(curve, self.play.as_ref(), self.torques_nm, ends);
     }
 
-    /// Price and state of a rigid joint. A box without a curve has a rigid member, and perhaps members about which
-    /// nothing is known, so the price must be a lower bound for those too.
+    /// Price and state of a rigid joint. A box without a curve has a rigid member, but may have other members whose
+    /// curves are not known. The price is a lower bound for those too.
     fn rigid(&self) -> (f64, JointState) {
         let [low, high] = self.torques_nm.map(|t| self.torque * t);
-        // Other members of the box may twist by any angle. If a twist may earn something, no finite lower
-        // bound exists.
+        // Other members of the box may twist by any angle. If some twist lowers the price, no finite lower bound
+        // exists.
         let opposed = self.torques_nm.iter().any(|t| t * self.twist < 0.0);
         match opposed || self.slope > 0.0 {
             true => (f64::NEG_INFINITY, JointState::default()),
@@ -216,7 +237,8 @@ impl JointPrice {
 }
 
 impl DualPrice {
-    /// Price of a joint's drive. For a box of drives: a lower bound over its members.
+    /// Price of a joint's drive with mass, torsion curve and bearing tilt in these intervals. For a box of drives, it
+    /// is a lower bound over its members.
     pub(super) fn of_joint(
         &self,
         mass_kg: [f64; 2],
@@ -227,14 +249,15 @@ impl DualPrice {
         self.of_mass(mass_kg) + torsion + self.of_tilt(tilt_rad_per_nm)
     }
 
-    /// Price of the bearing of a drive.
+    /// Price of the output bearing of a drive. The bearing's tilt per moment lies in the interval `tilt_rad_per_nm`,
+    /// and the price is a lower bound over it.
     #[inline]
     fn of_tilt(&self, tilt_rad_per_nm: [f64; 2]) -> f64 {
         least(self.compliance[TILT], tilt_rad_per_nm)
             - self.stiffness[TILT] * stiffness_of(tilt_rad_per_nm[0])
     }
 
-    /// Price of a drive's mass.
+    /// Price of a drive's mass, which lies in the interval `mass_kg`. It is a lower bound over the interval.
     #[inline]
     pub(super) fn of_mass(&self, mass_kg: [f64; 2]) -> f64 {
         let per_kg = self.inertia[inertia::MASS];
@@ -258,6 +281,44 @@ impl DualPrice {
     }
 }
 
+/// The price of a tube, prepared for many tubes: the sign of each number's price says which end of an interval costs less.
+pub(super) struct TubePrice<'a> {
+    price: &'a DualPrice,
+    inertia_ends: [usize; INERTIAS],
+    compliance_ends: [usize; STIFFNESSES],
+}
+
+impl<'a> TubePrice<'a> {
+    pub(super) fn new(price: &'a DualPrice) -> Self {
+        let end = |price: f64| usize::from(price < 0.0);
+        Self { price, inertia_ends: price.inertia.map(end), compliance_ends: price.compliance.map(end) }
+    }
+
+    /// Price of a tube, as [`DualPrice::of_tube`] but for rounding. The three sums do not wait for each other.
+    #[inline]
+    fn of(&self, tube: &LinkBox) -> f64 {
+        let DualPrice { inertia, compliance, stiffness, .. } = self.price;
+        let inertias = [&tube.low.inertias, &tube.high.inertias];
+        let [mut of_inertia, mut of_compliance, mut earned] = [0.0; 3];
+        for k in 0..INERTIAS {
+            of_inertia += inertia[k] * inertias[self.inertia_ends[k]][k];
+        }
+        for k in 0..STIFFNESSES {
+            of_compliance += compliance[k] * tube.compliances[self.compliance_ends[k]][k];
+            // An infinite stiffness times a zero price must not become NaN.
+            if stiffness[k] > 0.0 {
+                earned += stiffness[k] * tube.high.stiffnesses[k];
+            }
+        }
+        of_inertia + of_compliance - earned
+    }
+
+    /// The least price of a tube below a node, and its node.
+    pub(super) fn cheapest(&self, tree: &Tree<LinkBox>, node: u32) -> (f64, u32) {
+        cheapest(tree, node, |tube| self.of(tube))
+    }
+}
+
 /// The least price of a number in an interval.
 #[inline]
 fn least(price: f64, [low, high]: [f64; 2]) -> f64 {
@@ -266,7 +327,7 @@ fn least(price: f64, [low, high]: [f64; 2]) -> f64 {
 
 /// The least price of an option below a node, and its node. If the search ends early the node is a box of
 /// several options, and the price is a lower bound.
-pub(super) fn cheapest<B: Bounds>(tree: &Tree<B>, node: u32, price: impl Fn(&B) -> f64) -> (f64, u32) {
+fn cheapest<B: Bounds>(tree: &Tree<B>, node: u32, price: impl Fn(&B) -> f64) -> (f64, u32) {
     let offer = |node: u32| Offer { price: price(&tree.node(node).bounds), node };
     let mut open = BinaryHeap::with_capacity(2 + MOST_LOOKS / 2);
     let (mut cheapest, mut looks) = (offer(node), 0);
@@ -285,12 +346,12 @@ pub(super) fn cheapest<B: Bounds>(tree: &Tree<B>, node: u32, price: impl Fn(&B) 
     (cheapest.price, cheapest.node)
 }
 
-/// Orders two offers, the cheaper first.
+/// Orders two boxes by their prices, the cheaper first.
 fn order([a, b]: [Offer; 2]) -> [Offer; 2] {
     if a > b { [a, b] } else { [b, a] }
 }
 
-/// A box of parts and a lower bound of their prices.
+/// A box of parts in the search for the cheapest one: its node, and a lower bound of the prices of its parts.
 #[derive(Clone, Copy)]
 struct Offer {
     price: f64,
@@ -298,8 +359,8 @@ struct Offer {
 }
 
 impl Ord for Offer {
-    /// The cheapest offer is the greatest, because [`BinaryHeap`] pops the greatest; among equals the lower
-    /// node comes first.
+    /// The cheaper box counts as greater, because [`BinaryHeap`] pops its greatest entry. Of boxes with equal prices
+    /// the one with the lower node comes first.
     fn cmp(&self, other: &Self) -> Ordering {
         other.price.total_cmp(&self.price).then(other.node.cmp(&self.node))
     }

@@ -1,7 +1,7 @@
-//! The first gap of a search, long before its first pass is done.
+//! A first gap that is known long before the first pass of a search is done.
 //!
-//! Short dives find a few designs. A cover of the space by a thousand boxes ([`cover`](super::cover)) says how near to
-//! every design of the space they are. As more designs are found, the gap of the same boxes falls.
+//! Short descents (dives) find a few designs. A cover of the space by a thousand boxes ([`cover`](super::cover)) tells
+//! how near to every design of the space they are. As more designs are found, the gap of the same boxes falls.
 //!
 //! The result of a search does not depend on these designs. They are listed only if the search is stopped, because then
 //! its gap may rest on them.
@@ -18,19 +18,21 @@ use crate::pareto::objectives::Objectives;
 
 /// Number of dives.
 const DIVES: usize = 16;
-/// Number of boxes of the cover: they take about as long as the dives.
+/// Number of boxes of the cover. To bound them takes about as long as the dives.
 const BOXES: usize = 1024;
 
-/// What is known before the first pass.
+/// The designs and the cover that are known before the first pass.
 pub(super) struct Early<'l> {
+    /// Receives the gap and the counts for other threads to read.
     live: &'l Live,
-    /// Bounds of boxes that hold every design, except those that a design in `findings` dominates.
+    /// Bounds of boxes that contain every design of the space, except designs that a design in `findings` dominates.
     cover: Vec<BoxBound>,
+    /// The designs that the dives found.
     findings: Findings,
 }
 
 impl<'l> Early<'l> {
-    /// Finds a few designs and tells of their gap.
+    /// Finds a few designs, makes the cover and reports the gap.
     pub(super) fn new(budget: &Budget, problem: &Problem, live: &'l Live) -> Self {
         let aside = budget.aside();
         let findings = dives(&aside, problem, DIVES);
@@ -41,8 +43,8 @@ impl<'l> Early<'l> {
         early
     }
 
-    /// Tells of the gap, now that these designs were found too. `designs` is the number of those whose objectives were
-    /// computed.
+    /// Reports the gap that the cover proves with the designs of the dives and the designs `found` since. `designs` is
+    /// the number of designs whose objectives were computed so far.
     pub(super) fn tell(&self, found: &[Objectives], designs: u64) {
         self.live.update(|| Known {
             gap: self.gap(found),
@@ -53,12 +55,15 @@ impl<'l> Early<'l> {
         });
     }
 
-    /// Adds the designs to those of a search that was stopped, and returns their gap.
+    /// Adds the designs of the dives to `state`, the state of a search that was stopped. Returns the gap that the cover
+    /// proves for all designs in it (relative), `None` if it proves nothing.
     pub(super) fn into_state(self, state: &mut SearchState) -> Option<f64> {
         state.learn(self.findings);
         gap(&self.cover, &state.front())
     }
 
+    /// The gap that the cover proves with the designs of the dives and the designs in `found` (relative). `None` if
+    /// nothing is proved.
     fn gap(&self, found: &[Objectives]) -> Option<f64> {
         let dived = self.findings.kept.iter().map(|c| c.objectives);
         gap(&self.cover, &found.iter().copied().chain(dived).collect::<Vec<_>>())

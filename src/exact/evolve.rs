@@ -1,12 +1,12 @@
 //! Better incumbents from those that the probes found, by a genetic algorithm.
 //!
-//! The proof of a front is only as fast as its incumbents are good, for what they leave open has to be
-//! searched. Probes find some hundreds of designs one by one. From these come others: a child takes some
-//! parts from a parent of similar mass, or options close to its own, and is kept if no design seen before
-//! dominates it. Of the many that differ by little, one is kept for each cell of a grid
+//! The proof of a front is faster with better incumbents, because everything that the incumbents leave open has to be
+//! searched. Probes find some hundreds of designs one by one. The algorithm makes others from them. A child takes some
+//! parts from a parent of similar mass, or options close to its first parent's, and is kept if no design seen before
+//! dominates it. Of designs that differ by little, one is kept for each cell of a grid
 //! ([`thinned`](super::grid::thinned)), so that they do not crowd out the others.
 //!
-//! The result proves nothing. Its designs are judged and listed like every other design.
+//! The result proves nothing. Its designs are evaluated and listed like all others.
 
 use super::bound::{DesignBox, Verdict};
 use super::budget::Budget;
@@ -26,17 +26,17 @@ use std::sync::Arc;
 
 /// Greatest number of generations. Later ones hardly find better designs.
 const GENERATIONS: u64 = 20;
-/// Greatest part of a time limit after which another generation begins. The passes prove something, generations do not.
+/// Fraction of a time limit after which no further generation begins. The passes prove something, generations do not.
 const MOST_TIME: f64 = 0.25;
 /// Greatest number of children in a generation. In a small space, a generation has as many children as the square
 /// root of the number of designs.
 const MOST_CHILDREN: f64 = 8192.0;
-/// Width of a grid cell, in logarithms of the objectives.
+/// Width of a cell of the grid that thins out similar designs, in logarithms of the objectives.
 const STEP: f64 = 0.02;
-/// The second parent is taken from the designs within this many places of the first, in the order of mass.
+/// The designs are ordered by mass. The second parent is at most this many places away from the first.
 const CLOSE: u64 = 12;
 
-/// A design with trial shapes that bound its modes. They are its own shapes, or those of a similar design.
+/// A design with trial shapes that bound its modes. The shapes were computed for this design or for a similar one.
 pub(super) struct Individual {
     pub design_box: DesignBox,
     pub objectives: Objectives,
@@ -47,7 +47,8 @@ pub(super) struct Individual {
 enum Offspring {
     /// The child has the parts of its parent.
     Unchanged,
-    /// A design that was found before dominates the child, or a part of the child cannot carry its load.
+    /// A design that was found before dominates the child, or a part of the child cannot carry its load, or a bound
+    /// breaks a limit.
     Dominated,
     /// The objectives of the child are known, and it breaks a constraint.
     Infeasible,
@@ -56,7 +57,7 @@ enum Offspring {
 }
 
 impl Offspring {
-    /// Whether the three objectives of the child were computed.
+    /// Whether the three objectives of the child were computed for its own design.
     fn is_evaluated(&self) -> bool {
         matches!(self, Self::Infeasible | Self::Feasible(_))
     }
@@ -69,8 +70,9 @@ impl Offspring {
     }
 }
 
-/// Evolves designs from those in `first` and adds the designs found to the state. After each generation `tell` gets the
-/// objectives of the best designs, and the number of designs whose objectives were computed.
+/// Evolves new designs from those in `first` and adds them to `state`. After each generation, `tell` receives the
+/// objectives of the designs from which the next generation is made, and the number of designs whose objectives were
+/// computed.
 pub(super) fn evolve<'p>(
     budget: &Budget,
     problem: &Problem<'p>,
@@ -108,24 +110,26 @@ pub(super) fn evolve<'p>(
     state.learn(findings);
 }
 
-/// One design for each cell of the grid, the lightest first.
+/// Keeps one design for each cell of the grid over the objectives, and sorts them by mass, the lightest first.
 fn by_mass(members: Vec<Individual>) -> Vec<Individual> {
     let mut kept = thinned(members, STEP, |member| &member.objectives);
     kept.sort_by(|a, b| a.objectives.mass_kg.total_cmp(&b.objectives.mass_kg));
     kept
 }
 
-/// Everything from which a child is made.
+/// The parents and the tools from which one child is made.
 struct Recombination<'a, 'p> {
     budget: &'a Budget<'p>,
     problem: &'a Problem<'p>,
+    /// The designs of the present generation, by rising mass.
     parents: &'a [Individual],
+    /// All designs found before, against which the child is compared.
     seen: &'a Incumbents,
     rng: Xoshiro256PlusPlus,
 }
 
 impl Recombination<'_, '_> {
-    /// Makes one child, bounds it and checks the constraints.
+    /// Makes one child of two parents, bounds it and tests the constraints.
     fn child(mut self, work: &mut Work) -> Offspring {
         let first = self.below(self.parents.len() as u64);
         let from = first.saturating_sub(CLOSE);
@@ -136,7 +140,7 @@ impl Recombination<'_, '_> {
         if self.below(2) == 0 {
             self.exchange(&mut design_box, &other.design_box);
         }
-        // A child that has only its first parent's parts is changed in any case.
+        // A child that has only the parts of its first parent is changed in any case.
         let changes = self.below(2) + u64::from(design_box == parent.design_box);
         for _ in 0..changes {
             let level = self.below(design_box.len() as u64) as usize;
@@ -158,7 +162,8 @@ impl Recombination<'_, '_> {
         Offspring::Feasible(Individual { design_box, objectives, shapes })
     }
 
-    /// Takes about a third of the parts from another design.
+    /// Replaces each option of `design_box` with a probability of about a third by the option of `other` at the same
+    /// level.
     fn exchange(&mut self, design_box: &mut DesignBox, other: &DesignBox) {
         for (mine, theirs) in design_box.iter_mut().zip(other) {
             if self.below(3) == 0 {
@@ -167,14 +172,14 @@ impl Recombination<'_, '_> {
         }
     }
 
-    /// Replaces the option of a level by a random option below a node around the present one. Small nodes, and thus
-    /// similar options, are more likely.
+    /// Replaces the option of a level by a random option below a node of the tree that contains the present option.
+    /// Small nodes, and thus similar options, are more likely.
     fn change(&mut self, design_box: &mut DesignBox, level: usize) {
         let problem = self.problem;
         let option = std::mem::take(&mut design_box[level]);
         let mut around = vec![design_box[level]];
         while let Some([low, high]) = problem.halves(design_box, level) {
-            // Nodes are numbered from the root, the first half before the second.
+            // Nodes are numbered from the root, all of the first half before the second.
             design_box[level] = if option < high { low } else { high };
             around.push(design_box[level]);
         }

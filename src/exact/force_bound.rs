@@ -1,30 +1,34 @@
-//! Bounds on a force, which define a region beside its options.
+//! Bounds on a force. Together with the options that remain they define a region.
 //!
-//! The torque on a gear is a sum over the weights outboard. Where its interval is wide, the products of force
-//! and compliance are bounded badly, and no single level is the cause. So a region may be halved by the
-//! torque itself ([`branching`](super::branching)). A bound on one force then tightens every other force that
-//! the same weights make.
+//! The torque on a gear is a sum over the weights outboard. Where its interval is wide, the products of force and
+//! compliance are bounded poorly, and no single level is the cause. So a region may be halved by the torque itself
+//! ([`branching`](super::branching)). A bound on one force then tightens the interval of every other force that the
+//! same weights cause.
 
 use super::pose::Row;
 
-/// Relative rounding of a force.
+/// Relative margin for the rounding of a force.
 const ROUNDING: f64 = 1e-12;
 
-/// An interval to which the region restricts one force: that of a row of a judged case.
+/// An interval to which the region restricts one generalized force of a judged case.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ForceBound {
+    /// Index of the case.
     pub case: usize,
-    /// Index of the row in the case.
+    /// Index of the force's row in the case.
     pub row: usize,
+    /// Least and greatest allowed force \[N or N m\]; infinite on a side without a bound.
     pub between: [f64; 2],
 }
 
 impl ForceBound {
-    /// Tightens the interval of another force that the same weights make.
+    /// Tightens the interval `force` of another generalized force, which the same weights cause. `by` is the row of the
+    /// force that this bound restricts: its value as a linear function of the weights. `of` is the row of the other
+    /// force. `weights` are the intervals of the weights \[N\].
     ///
-    /// For any `a`, the other force `of` is `a` times the bounded force `by` plus a remainder, which is a sum
-    /// over the weights. The bound is piecewise linear in `a`, and it is best where a weight drops out of the
-    /// remainder; those values of `a` are tried.
+    /// For any number `a`, the other force equals `a` times the restricted force plus a remainder that is linear in the
+    /// weights. The interval of this sum bounds the other force. The bound is piecewise linear in `a`, and best where
+    /// some weight drops out of the remainder, so these values of `a` are tried.
     pub(super) fn tighten(&self, of: &Row, by: &Row, weights: &[[f64; 2]], force: &mut [f64; 2]) {
         for (weight, per_n) in by.per_n.iter().enumerate().filter(|(_, c)| **c != 0.0) {
             let a = of.per_n.get(weight).copied().unwrap_or(0.0) / per_n;

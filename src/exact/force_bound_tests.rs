@@ -1,4 +1,4 @@
-//! Tests of the bounds on forces.
+//! Tests of the bounds on a force: they tighten the intervals of other forces and exclude no possible value.
 
 use super::*;
 use crate::exact::interval::interval;
@@ -22,8 +22,8 @@ fn force(row: &Row, weights: &[f64]) -> f64 {
 }
 
 proptest! {
-    /// The tightened bounds hold for all weights that keep the bounded force in its interval, and no bounds
-    /// are better: both are compared with a grid over the weights.
+    /// The tightened bounds are valid for all weights that keep the bounded force in its interval, and no tighter
+    /// bounds are valid: both are compared with a grid over the weights.
     #[test]
     fn a_bounded_force_tightens_others_and_leaves_out_none(
         of in prop::collection::vec(-3i32..4, 4), by in prop::collection::vec(-3i32..4, 4),
@@ -53,7 +53,7 @@ proptest! {
         prop_assert!(least - bounds[0] < 1.5 && bounds[1] - most < 1.5, "{least} {most} {bounds:?}");
     }
 
-    /// A coefficient that is only rounding must not turn rounding into a bound.
+    /// A coefficient that is only rounding must not make the bounds wrong.
     #[test]
     fn a_coefficient_of_next_to_nothing_does_no_harm(at in 1.0f64..9.0, nearly in 1e-18f64..1e-16) {
         let (of, by) = (row(&[0.0, 1.0, 1.0, 1.0]), row(&[0.0, 1.0, nearly, 1.0]));

@@ -1,4 +1,4 @@
-//! The forces of a case as intervals, within the force bounds of the region.
+//! The generalized forces of a case as intervals, within the force bounds of the region.
 
 use super::force_bound::ForceBound;
 use super::interval::interval;
@@ -6,8 +6,9 @@ use super::problem::Problem;
 use std::sync::Arc;
 
 impl Problem<'_> {
-    /// Computes the interval of each row's force in a case, within the force bounds. `None` if a force bound leaves
-    /// an empty interval.
+    /// Writes the interval of each force of a case to `forces`, one for each row of the pose. The forces follow from
+    /// `weights`, the weight intervals of the pieces in each case \[N\], and are restricted by the force bounds of the
+    /// region. `None` if a force bound leaves an empty interval, so that the region has no member.
     pub(super) fn forces(
         &self,
         case: usize,
@@ -34,7 +35,8 @@ impl Problem<'_> {
         Some(())
     }
 
-    /// The problem with one more force bound. If the force has a bound already, the two intervals are intersected.
+    /// The problem with one more force bound: the force of row `row` in case `case` must lie between `low` and `high`.
+    /// If this force has a bound already, the two intervals are intersected.
     pub(super) fn with_force_bound(&self, case: usize, row: usize, [low, high]: [f64; 2]) -> Self {
         let mut bounds = self.force_bounds.to_vec();
         match bounds.iter_mut().find(|bound| bound.case == case && bound.row == row) {

@@ -1,19 +1,19 @@
-//! How near to every design of the study some found design is, while boxes are open.
+//! The gap of a search: how near to every design of the study some found design is while boxes are open.
 
 use super::bound::BoxBound;
 use crate::pareto::objectives::Objectives;
 use rayon::prelude::*;
 
-/// The least `ε` such that for every open box some design found, with mass and deflection divided by
-/// `1 + ε` and mode multiplied by it, is no worse than the bound of the box. For every missed design some
-/// design found is then worse by at most `ε` in each objective. `None` if a bound says nothing, or if
-/// nothing was found.
+/// The gap of a search: the least `ε` such that for every open box some design in `found` is worse than the bound of
+/// the box by at most the factor `1 + ε` in each of mass, deflection and mode. Then the same is true for every design
+/// that was missed. `None` if the bound of a box tells nothing, or if no design was found.
 pub(super) fn gap(open: &[BoxBound], found: &[Objectives]) -> Option<f64> {
     let worst = open.par_iter().map(|bound| gap_of(bound, found)).reduce(|| 0.0, f64::max);
     worst.is_finite().then_some(worst)
 }
 
-/// The gap that one open box leaves; infinite if its bound says nothing, or if nothing was found.
+/// The gap that one open box leaves (relative): the least `ε` such that some design in `found` is worse than `bound` by
+/// at most the factor `1 + ε` in each objective. It is infinite if the bound tells nothing, or if no design was found.
 pub(super) fn gap_of(bound: &BoxBound, found: &[Objectives]) -> f64 {
     let factor = |o: &Objectives| {
         (o.mass_kg / bound.mass_kg).max(o.tip_deflection_m / bound.tip_m).max(bound.hz / o.lowest_mode_hz)

@@ -1,8 +1,8 @@
-//! The incumbents: the designs found so far, and whether one of them dominates the bound of a box.
+//! The incumbents are the designs found so far. This module tells whether one of them dominates the bound of a box.
 //!
-//! A table ([`Archive`]) answers for incumbents that are better by at least one grid cell in mass and in
-//! deflection. Lists for each row and each column of cells hold the incumbents that share a cell with the
-//! bound in one of these objectives.
+//! A table ([`Archive`]) knows the incumbents that are better by at least one grid cell in both mass and deflection.
+//! Lists for each row and each column of cells contain the incumbents that share a cell with the bound in one of these
+//! objectives.
 
 use super::bound::BoxBound;
 use crate::pareto::archive::Archive;
@@ -11,20 +11,25 @@ use std::collections::HashMap;
 
 /// Two objectives that differ by less than this (relative) count as equal.
 const EQUAL: f64 = 1e-9;
-/// The dominating design must be better by this (relative) in at least one objective.
+/// A design dominates another only if it is better by at least this fraction in one objective, so that rounding cannot
+/// decide.
 const BETTER: f64 = 1e-7;
-/// A better trial shape is expected to lower a bound's frequency to no less than this part of it.
+/// A better trial shape is assumed to lower the frequency of a bound to no less than this fraction of it. If no
+/// incumbent would dominate the bound even then, no better shape is computed, because it would not prune the box.
 const NEAR: f64 = 0.4;
-/// Number of grid steps in a factor of two.
+/// Number of grid steps in a factor of two of mass or deflection.
 const STEPS: f64 = 64.0;
 
 /// Designs that meet every constraint.
 pub(super) struct Incumbents {
     table: Archive,
+    /// The incumbents, listed under the grid step of their mass: its cell number on a logarithmic scale.
     rows: HashMap<i32, Vec<Objectives>>,
+    /// The incumbents, listed under the grid step of their deflection: its cell number on a logarithmic scale.
     columns: HashMap<i32, Vec<Objectives>>,
+    /// All incumbents in the order in which they were added.
     all: Vec<Objectives>,
-    /// The only objective that counts, and the least cost in it; `None` if all three count.
+    /// If a single objective counts: this objective, and the least cost of a design in it. `None` if all three count.
     only: Option<(Objective, f64)>,
 }
 
@@ -41,7 +46,8 @@ impl Default for Incumbents {
 }
 
 impl Incumbents {
-    /// No incumbents yet. If one objective is given, it alone counts: a design dominates all that are no better in it.
+    /// An empty set of incumbents. If `only` is given, that objective alone counts, and a design dominates every design
+    /// that is no better in it.
     pub(super) fn toward(only: Option<Objective>) -> Self {
         Self { only: only.map(|objective| (objective, f64::INFINITY)), ..Self::default() }
     }
@@ -89,14 +95,14 @@ impl Incumbents {
         in_list(self.rows.get(&step(best.mass_kg))) || in_list(self.columns.get(&step(best.tip_deflection_m)))
     }
 
-    /// Whether an incumbent would dominate the bound if a better trial shape lowered its frequency to the part
-    /// [`NEAR`]. Only then is a better shape worth its time.
+    /// Whether an incumbent would dominate the bound if a better trial shape lowered the frequency of the bound to the
+    /// fraction [`NEAR`]. Only then is a better shape worth its time.
     pub(super) fn nearly_dominates(&self, box_bound: &BoxBound) -> bool {
         self.dominates(&BoxBound { hz: box_bound.hz * NEAR, ..*box_bound })
     }
 }
 
-/// The grid step of a positive number on a logarithmic scale.
+/// The index of the grid step of a positive number on a logarithmic scale.
 fn step(x: f64) -> i32 {
     (libm::log2(x.max(f64::MIN_POSITIVE)) * STEPS).floor() as i32
 }

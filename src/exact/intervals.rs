@@ -1,4 +1,4 @@
-//! Fills in the numbers of a box as intervals, part by part from the tip inward.
+//! Computes the numbers of a box as intervals, part by part from the tip inward.
 
 use super::bearing_rows::Numbers;
 use super::interval::interval;
@@ -14,12 +14,13 @@ use crate::space::slot::SizedJoint;
 
 /// Relative margin for rounding of a sum of a few dozen terms.
 pub(super) const ROUNDING: f64 = 1e-12;
-/// Number of levels of a tree that are descended in the search for drives that cannot carry a demand.
+/// Number of levels that the search for drives that cannot carry a demand descends in a tree of drives.
 const DEPTH: usize = 6;
 
 impl Problem<'_> {
-    /// Computes every interval of a box, from the tip inward, and shrinks the nodes of the box to the options that
-    /// can carry the least load. `None` if some part cannot carry it.
+    /// Computes every interval of a box, part by part from the tip inward, and writes it to `work`. Each node of
+    /// `design_box` is replaced by the smallest node that contains all options which can carry the least load. `None`
+    /// if a level has no option left, or if even the least material cost exceeds the limit.
     pub(super) fn fill(&self, design_box: &mut [u32], work: &mut Work) -> Option<()> {
         work.clear(self.parts.len(), self.poses.len());
         let mut level = 0;
@@ -51,7 +52,9 @@ impl Problem<'_> {
         Some(())
     }
 
-    /// Shrinks a box of drives to those that may carry the least demand, and fills in their numbers.
+    /// Reduces the drives of a joint to those that may carry the least demand, and writes the intervals over them to
+    /// `work`. `node` is the node of the joint's tree and is replaced by a smaller one. `None` if no drive may carry
+    /// the demand.
     fn fill_drives(
         &self,
         piece: usize,
@@ -76,7 +79,9 @@ impl Problem<'_> {
         Some(())
     }
 
-    /// Fills in the drives from the first fit of the least demand to the first fit of the greatest.
+    /// Writes the intervals of a joint that takes the lightest drive which carries its demand (first fit). They extend
+    /// over all drives from the first fit of the least demand to that of the greatest. `None` if no drive carries the
+    /// least demand.
     fn fill_first_fit(
         &self,
         piece: usize,
@@ -98,14 +103,16 @@ impl Problem<'_> {
             sized.table.first_fit_candidates().binary_search(&fit).ok()
         };
         let first = step(&least)?;
-        // If no drive carries the greatest demand, the heaviest may still be the fit of some member.
+        // If no drive carries the greatest demand, some member may still have the heaviest drive as its first fit.
         let last = step(&most).unwrap_or(ladder.len() - 1);
         let DriveBox { mass_kg, curve, tilt_rad_per_nm, .. } = ladder.run(first, last);
         work.joint(self, piece, mass_kg, curve, tilt_rad_per_nm);
         Some(())
     }
 
-    /// Shrinks a box of link options to those that may carry the least stress, and fills in their numbers.
+    /// Reduces the options of a link to those that may carry the least stress, and writes the intervals over them to
+    /// `work`. `node` is the node of the link's tree and is replaced by a smaller one. `None` if no option may carry
+    /// the stress.
     fn fill_links(
         &self,
         piece: usize,
@@ -129,7 +136,8 @@ impl Problem<'_> {
         Some(())
     }
 
-    /// Intervals of the static torque on a joint \[N m\] and of the inertia about its axis \[kg m²\].
+    /// Intervals of the greatest static torque on a joint over the sizing cases \[N m\] and of the greatest inertia
+    /// about its axis \[kg m²\].
     fn loads(&self, piece: usize, work: &Work) -> ([f64; 2], [f64; 2]) {
         let (mut static_nm, mut inertia_kgm2) = ([0.0f64; 2], [0.0f64; 2]);
         for (pose, weights) in self.poses.iter().zip(&work.weights).filter(|(p, _)| p.sizing) {
@@ -147,7 +155,8 @@ impl Problem<'_> {
         (rounded(static_nm), rounded(inertia_kgm2))
     }
 
-    /// The least and the greatest loads on the bearing of a joint; zero if no bearing is checked.
+    /// The least and the greatest loads on the output bearing of a joint, over all cases; zero if no bearing is
+    /// checked.
     pub(super) fn bearing_loads(&self, piece: usize, work: &Work) -> [BearingDemand; 2] {
         let Some(lever) = self.levers[piece] else { return [BearingDemand::default(); 2] };
         let cases = self.poses.iter().zip(&work.weights);
@@ -167,7 +176,7 @@ impl Problem<'_> {
         ]
     }
 
-    /// The least and the greatest room that the link which a joint carries leaves to the joint's parts.
+    /// The least and the greatest space that the link of a joint leaves for the gear and motor of this joint.
     fn room(&self, piece: usize, work: &Work) -> [LinkRoom; 2] {
         match self.rooms[piece] {
             None => [LinkRoom::ANY; 2],
@@ -176,8 +185,9 @@ impl Problem<'_> {
         }
     }
 
-    /// The least axial force \[N\], moments about y and z and torsion \[N m\] at the ends of a tube in every
-    /// case, times the factors that are applied before the comparison with the strength.
+    /// The least loads on each end section of a tube in each case: axial force \[N\], moments about y and z and torsion
+    /// \[N m\]. They are multiplied by the peak factor and by `safety`, the safety factor, so that they can be compared
+    /// with the strength.
     fn least_loads(&self, piece: usize, safety: f64, work: &Work) -> Vec<[f64; 4]> {
         let cases = self.poses.iter().zip(&work.weights);
         cases
@@ -195,8 +205,8 @@ impl Problem<'_> {
     }
 }
 
-/// The box around those drives below a node that may carry a demand. The tree is descended a few levels, so that
-/// drives that cannot carry the demand do not widen the box. `None` if no drive may carry it.
+/// The box around those drives below `node` that may carry the demand `asked`. The function descends at most `depth`
+/// levels of the tree. Drives that it excludes there do not widen the box. `None` if no drive may carry the demand.
 fn feasible_drives(tree: &Tree<DriveBox>, node: u32, asked: &LeastDemand, depth: usize) -> Option<DriveBox> {
     let drives = &tree.node(node).bounds;
     if !drives.may_hold(asked) {
@@ -212,7 +222,7 @@ fn feasible_drives(tree: &Tree<DriveBox>, node: u32, asked: &LeastDemand, depth:
     }
 }
 
-/// Whether some option of a box may carry a load.
+/// Whether some option of the box may carry `load`: axial force \[N\], moments about y and z and torsion \[N m\].
 fn stress_holds(links: &LinkBox, load: &[f64; 4]) -> bool {
     let [axial, y, z, torsion]: [f64; 4] = std::array::from_fn(|k| load[k] * links.stress[k]);
     // For other sections the two bending stresses add up at one edge of the section.

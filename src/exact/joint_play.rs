@@ -1,37 +1,38 @@
-//! Play of a joint: lost motion and friction, with bounds over an interval of torque.
+//! Play of a joint (lost motion and friction), with bounds for torques in an interval.
 //!
-//! Lost motion is a twist `h tanh(T/T_c)`. It grows with the torque `T`, and its slope falls. Friction holds
-//! back the twist `c T` of the gear's spring (with the compliance `c` of its middle segment), by at most its
-//! half width; small oscillations do not overcome it. Both belong to the joint, whichever drive it has. Only
-//! `c` depends on the drive.
+//! Lost motion is an angle of twist `h tanh(T/T_c)`. It grows with the torque `T`, and its slope falls. Friction holds
+//! back the twist `c T` of the gear's spring (with the compliance `c` of its middle segment), by at most its half
+//! width. Small oscillations do not overcome friction. Both effects belong to the joint and are the same for every
+//! drive. Only `c` depends on the drive.
 
 use crate::arm::joint_law::{JointLaw, LostMotion};
 
-/// Torques below this part of `T_c` do not change the slope of lost motion.
+/// A torque below this fraction of `T_c` does not change the slope of lost motion.
 const AT_REST: f64 = 1e-8;
 
-/// The twist of a joint beyond its torsion curve.
+/// The twist that a joint has in addition to its torsion curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct JointPlay {
+    /// Clearance that closes as the torque grows; `None` if the joint has none.
     lost_motion: Option<LostMotion>,
     /// Half width of the twist that friction holds back \[rad\].
     friction_rad: f64,
 }
 
 impl JointPlay {
-    /// The play of a joint's law; `None` if the law has no play.
+    /// The play in the torque-twist law of a joint; `None` if the law has no play.
     pub(super) fn of(law: &JointLaw) -> Option<Self> {
         let play = Self { lost_motion: law.lost_motion, friction_rad: law.hysteresis_rad };
         law.has_play().then_some(play)
     }
 
-    /// Whether friction holds back a twist. Then a smaller torque may twist the joint more.
+    /// Whether friction holds back a part of the twist. If so, a smaller torque may leave the joint more twisted.
     pub(super) fn has_friction(&self) -> bool {
         self.friction_rad > 0.0
     }
 
-    /// Least and greatest twist that play adds \[rad\], for torques in an interval \[N m\] and gear springs with
-    /// compliances between `stiff` and `soft` \[rad/(N m)\].
+    /// The least and the greatest twist that play adds to that of the gear \[rad\]. The torque lies between `low` and
+    /// `high` \[N m\], and the compliance of the gear's spring between `stiff` and `soft` \[rad/(N m)\].
     pub(super) fn twist(&self, [stiff, soft]: [f64; 2], [low, high]: [f64; 2]) -> [f64; 2] {
         let lost = |torque_nm: f64| self.lost_motion.map_or(0.0, |lost| lost.angle_rad(torque_nm));
         let held_back = |torque_nm: f64, compliance: f64| {
@@ -42,8 +43,8 @@ impl JointPlay {
         [lost(low) - most_held_back, lost(high) - least_held_back]
     }
 
-    /// Upper bound of the stiffness that small oscillations see: a gear of this stiffness in series with lost motion,
-    /// under torques of at most this magnitude \[N m/rad\].
+    /// Upper bound of the stiffness of the joint for small oscillations \[N m/rad\]: a gear with the given stiffness
+    /// \[N m/rad\] in series with the lost motion. `most_nm` is the greatest magnitude of the torque \[N m\].
     pub(super) fn in_series(&self, stiffness: f64, most_nm: f64) -> f64 {
         match self.lost_motion {
             None => stiffness,
@@ -51,7 +52,8 @@ impl JointPlay {
         }
     }
 
-    /// Whether small oscillations see the same slope of lost motion under all torques up to a magnitude \[N m\].
+    /// Whether lost motion has the same slope for small oscillations under all torques up to the magnitude `most_nm`
+    /// \[N m\].
     pub(super) fn stays(&self, most_nm: f64) -> bool {
         self.lost_motion.is_none_or(|lost| most_nm <= AT_REST * lost.torque_nm)
     }

@@ -1,14 +1,15 @@
-//! What an exact search keeps on the way, so that another process can go on.
+//! The states that an exact search saves on the way, so that another process can continue it.
 //!
-//! A study is searched in *parts*: the front of all designs, then the front of each material. The state has the results of
-//! the parts that are finished and where the present one is. A pass over boxes is kept between two rounds, with the boxes
-//! that are open. A pass over regions is kept at its start alone, because each open region is a problem of its own. Rounds
-//! do not depend on the number of threads, so a search that goes on takes the same steps as one that was never stopped.
+//! A study is searched in *parts*: first the front of all designs, then the front of each material. The state contains
+//! the results of the finished parts and the progress of the present one. A pass over boxes is saved between two
+//! rounds, together with the open boxes. A pass over regions is saved only at its start, because each open region is a
+//! separate problem. Rounds do not depend on the number of threads, so a search that is continued takes the same steps
+//! as one that was never stopped.
 
 use super::bound::{BoxBound, DesignBox};
 use super::boxes::OpenBox;
 use super::budget::Budget;
-use super::outcome::ExactOutcome;
+use super::outcome::FoundInShard;
 use super::plan::Pass;
 use super::problem::Problem;
 use super::search_state::{KeptState, SearchState};
@@ -18,39 +19,43 @@ use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// The journal of a search; without a keeper nothing is kept.
+/// The journal of a search: it saves states and returns what an earlier process saved. If `keeper` is `None`, nothing
+/// is saved.
 #[derive(Default)]
 pub(super) struct Journal<'s> {
     keeper: Option<&'s dyn KeepState>,
     state: Mutex<State>,
-    /// The start of the present pass over regions, until it is kept.
+    /// The state at the start of the present pass over regions, as bytes; `None` once it is saved.
     start: Mutex<Option<Vec<u8>>>,
 }
 
 #[derive(Default, Serialize, Deserialize)]
 struct State {
     /// The results of the parts that are finished.
-    finished: Vec<ExactOutcome>,
+    finished: Vec<FoundInShard>,
     /// How many of them were used in this process.
     #[serde(skip)]
     used: usize,
     /// Number of boxes bounded in all parts.
     boxes: u64,
-    /// The part that is not finished.
+    /// The progress of the unfinished part; `None` if none was begun.
     begun: Option<Begun>,
 }
 
-/// Where a part of a search is: between two passes, or within one.
+/// The progress of one part of a search: between two passes, or within one.
 #[derive(Clone, Serialize, Deserialize)]
 pub(super) struct Begun {
     state: KeptState,
+    /// The completed passes of the present part.
     pub passes: Vec<Pass>,
-    /// The gap that was told.
+    /// The gap of the present part that was reported to other threads so far (relative); `None` if none was.
     pub told: Option<f64>,
+    /// The pass that was begun; `None` between two passes.
     open: Option<OpenPass>,
 }
 
-/// The open boxes of a pass, with shapes that several of them share.
+/// The open boxes of a pass. `shapes` holds each list of trial shapes once, because several boxes share it. A box
+/// refers to its list by index.
 #[derive(Clone, Serialize, Deserialize)]
 struct OpenPass {
     slack: f64,
@@ -59,10 +64,10 @@ struct OpenPass {
 }
 
 impl<'s> Journal<'s> {
-    /// Goes on from a state, and keeps the next ones.
+    /// Makes the journal of a search that continues from a state, if there is one, and that saves later states.
     ///
     /// # Errors
-    /// The bytes are no state, in words.
+    /// Returns a message if the bytes are not a saved state.
     pub(super) fn resumed(Resume { from, keeper }: Resume<'s>, budget: &Budget) -> Result<Self, String> {
         let state: State = match from {
             Some(bytes) => postcard::from_bytes(bytes).map_err(|e| e.to_string())?,
@@ -77,25 +82,25 @@ impl<'s> Journal<'s> {
     }
 
     /// The result of the next part, if an earlier process finished it.
-    pub(super) fn next_finished(&self) -> Option<ExactOutcome> {
+    pub(super) fn next_finished(&self) -> Option<FoundInShard> {
         let mut state = self.lock();
-        let outcome = state.finished.get(state.used).cloned()?;
+        let found = state.finished.get(state.used).cloned()?;
         state.used += 1;
-        Some(outcome)
+        Some(found)
     }
 
-    /// Where an earlier process left the next part.
+    /// The progress of the next part in an earlier process. `None` if it was not begun.
     pub(super) fn begun(&self) -> Option<Begun> {
         self.lock().begun.take()
     }
 
     /// Takes down the result of a part.
-    pub(super) fn finish(&self, outcome: &ExactOutcome) {
+    pub(super) fn finish(&self, found: &FoundInShard) {
         if let Some(keeper) = self.keeper {
             let mut state = self.lock();
-            state.finished.push(outcome.clone());
+            state.finished.push(found.clone());
             state.used += 1;
-            state.boxes = outcome.boxes;
+            state.boxes = found.boxes;
             state.begun = None;
             if keeper.is_due() {
                 keeper.keep(&bytes(&state));
@@ -103,21 +108,23 @@ impl<'s> Journal<'s> {
         }
     }
 
-    /// Keeps a pass over boxes between two rounds, if that is due.
+    /// Saves the state of a pass over boxes between two rounds, if enough time has passed since the last save. `begun`
+    /// makes the progress of the present part, `slack` is the slack of the pass, and `open` are its open boxes.
     pub(super) fn keep_round(
         &self,
         budget: &Budget,
         begun: impl FnOnce() -> Begun,
         (slack, open): (f64, &[OpenBox]),
     ) {
-        // a round that was stopped is not one that goes on the same way
+        // A round that was stopped half-way is not saved, because a search that continues from it would take other
+        // steps.
         let due = self.keeper.filter(|keeper| keeper.is_due() && !budget.stopped());
         if let Some(keeper) = due {
             keeper.keep(&self.with(budget, Begun { open: Some(OpenPass::of(slack, open)), ..begun() }));
         }
     }
 
-    /// Takes down the start of a pass over regions.
+    /// Stores the state at the start of a pass over regions. [`keep_start`](Self::keep_start) saves it later.
     pub(super) fn begin_pass(&self, budget: &Budget, begun: impl FnOnce() -> Begun) {
         if self.keeper.is_some() && !budget.stopped() {
             let bytes = self.with(budget, begun());
@@ -125,7 +132,8 @@ impl<'s> Journal<'s> {
         }
     }
 
-    /// Keeps the start of the present pass over regions, if that is due and not done yet.
+    /// Saves the state at the start of the present pass over regions, if enough time has passed since the last save and
+    /// this state is not saved yet.
     pub(super) fn keep_start(&self) {
         if let Some(keeper) = self.keeper.filter(|keeper| keeper.is_due()) {
             let start = self.start.lock().unwrap_or_else(PoisonError::into_inner).take();
@@ -133,7 +141,7 @@ impl<'s> Journal<'s> {
         }
     }
 
-    /// The state with a part that was begun.
+    /// The bytes of the whole state: the finished parts, and `begun`, the progress of the unfinished part.
     fn with(&self, budget: &Budget, begun: Begun) -> Vec<u8> {
         let mut state = self.lock();
         (state.boxes, state.begun) = (budget.boxes(), Some(begun));
@@ -148,12 +156,12 @@ fn bytes(state: &State) -> Vec<u8> {
 }
 
 impl Begun {
-    /// Between two passes.
+    /// The progress between two passes. `told` is the gap that was reported.
     pub(super) fn between(state: &SearchState, passes: &[Pass], told: Option<f64>) -> Self {
         Self { state: state.to_kept(), passes: passes.to_vec(), told, open: None }
     }
 
-    /// What was found.
+    /// Takes the designs found out of this progress, which has none afterwards.
     pub(super) fn state(&mut self) -> KeptState {
         std::mem::take(&mut self.state)
     }

@@ -1,4 +1,4 @@
-//! The limits that every design keeps, and the judgement of a single design.
+//! The limits that every design must meet, and the evaluation of a single design.
 
 use super::bound::BoxBound;
 use super::local_upper_bounds::LocalUpperBound;
@@ -10,7 +10,8 @@ use crate::search::sweep::Candidate;
 use crate::space::design::number;
 
 impl Problem<'_> {
-    /// The limits on mass, deflection and mode as a local upper bound. It covers the whole front.
+    /// The limits of the study on mass, deflection and mode, as a local upper bound. The region below it contains the
+    /// whole front.
     pub(super) fn limits(&self) -> LocalUpperBound {
         let limits = &self.space.constraints;
         LocalUpperBound {
@@ -20,9 +21,9 @@ impl Problem<'_> {
         }
     }
 
-    /// Judges a box of one design, and returns the objectives of this design. Mass and deflection come from the
-    /// bound, the mode is computed anew. `None` if the design breaks a constraint, or if rounding leaves open whether
-    /// it meets one.
+    /// Evaluates a box of one design, adds the design to `findings` and returns its objectives. Its mass and deflection
+    /// are taken from `box_bound`, and its lowest mode is computed anew. `None` if the box has several designs, if the
+    /// design breaks a constraint, or if rounding leaves open whether it meets one.
     pub(super) fn judge(
         &self,
         design_box: &[u32],

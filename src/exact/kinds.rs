@@ -1,30 +1,32 @@
-//! Drives that no objective distinguishes.
+//! Sets of drives with the same effect on all objectives.
 //!
 //! Deflection, mass and modes depend on a drive only through its mass, its torsion curve and the tilt of its bearing.
 //! Gears of one size have the same curve and tilt for several ratios and in several series. So the drives of one mass,
 //! one curve and one tilt form a **kind**, which is a single option of the search. A kind can carry a demand if any of
 //! its drives can.
 //!
-//! A design of kinds stands for every design whose joints have drives of these kinds, each able to carry its
-//! joint's demand. The demand depends only on the masses outboard, which are the same for all of them, so
-//! each joint chooses its drive independently of the others.
+//! A design of kinds stands for all designs whose joints have drives of these kinds, if each drive can carry the demand
+//! on its joint. The demand depends only on the masses outboard. They are the same for all drives of a kind, so the
+//! drive of each joint can be chosen independently.
 
 use crate::space::slot::SizedJoint;
 
-/// Whether tied drives, which are the drives of one kind, are one option of a search.
+/// Whether the drives of one kind (tied drives) are a single option of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Ties {
-    /// One option for each kind.
+    /// All drives of a kind are one option.
     Merged,
-    /// One option for each drive.
+    /// Every drive is an option, whatever its kind is.
     Separate,
 }
 
-/// The drives of a joint, kind by kind, in ascending order. The first drive of a kind gives the kind its number.
+/// The drives of a joint, grouped by kind. Drives and kinds are in ascending order. The number of a kind is that of its
+/// first drive.
 pub(super) struct Kinds(Vec<Vec<u32>>);
 
 impl Kinds {
-    /// The kinds of a joint's drives.
+    /// Groups the drives of a joint into kinds. `ties` tells whether drives of equal mass, curve and tilt form one
+    /// kind, or each drive a kind of its own.
     pub(super) fn of(sized: &SizedJoint, ties: Ties) -> Self {
         Self(match ties {
             Ties::Merged => sized.kinds(),
@@ -32,17 +34,17 @@ impl Kinds {
         })
     }
 
-    /// The drives of each kind.
+    /// For each kind, the numbers of its drives.
     pub(super) fn iter(&self) -> impl Iterator<Item = &[u32]> {
         self.0.iter().map(Vec::as_slice)
     }
 
-    /// The drives of the kind with this number.
+    /// The drives of the kind with this number; empty if there is no such kind.
     pub(super) fn drives(&self, first: u32) -> &[u32] {
         self.0.binary_search_by_key(&first, |kind| kind[0]).map_or(&[], |at| &self.0[at])
     }
 
-    /// The drives of some kinds, ascending.
+    /// The drives of the kinds with the numbers `firsts`, ascending.
     pub(super) fn drives_of(&self, firsts: &[u32]) -> Vec<u32> {
         let mut drives: Vec<u32> = firsts.iter().flat_map(|first| self.drives(*first)).copied().collect();
         drives.sort_unstable();

@@ -1,15 +1,16 @@
 //! The Lagrangian bound of a box, part by part, and the multipliers that improve it.
 //!
-//! For multipliers `y ≥ 0` the weighted sum of the rows ([`rows`](super::rows)) is a sum of one number for
-//! each part, its price. The least sum over all members of the box is therefore the sum of the least prices,
-//! which are found level by level. It is the value of the dual function at `y`. If it exceeds the weighted
-//! limits of a local upper bound, no member lies below that bound.
+//! For multipliers `y ≥ 0`, the weighted sum of the rows ([`rows`](super::rows)) is a sum of one number for each part,
+//! the price of the part. The least sum over all members of the box is therefore the sum of the least prices, which are
+//! found level by level. This least sum is the value of the dual function at `y`. If it exceeds the weighted limits of
+//! a local upper bound, no member lies below that bound.
 //!
 //! The next multipliers are the solution of a matrix game against the relaxed designs found so far (Kelley's
-//! cutting-plane method). If none refutes the bound, the modes of the mixed arm give new rows.
+//! cutting-plane method). If no multipliers refute the bound, the modes of the mixed arm give new rows. The mixed arm
+//! has the mean stiffnesses and inertias of the relaxed designs, weighted by the solution of the game.
 
 use super::bound::STARTS;
-use super::dual_price::{DualPrice, JointPrice, cheapest};
+use super::dual_price::{DualPrice, JointPrice, TubePrice};
 use super::local_upper_bounds::LocalUpperBound;
 use super::matrix_game::{Game, solve};
 use super::parts::{INERTIAS, LinkBox, STIFFNESSES, inertia, stiffness_of};
@@ -19,13 +20,13 @@ use super::rows::{DualPoint, Force, Mode, RelaxedDesign, Rows};
 use super::shape::{Ideal, Shape, Work as ShapeWork, dot, products};
 use super::torsion::CurveBox;
 
-/// Steps of inverse iteration towards a mode of the mixed arm.
+/// Number of steps of inverse iteration towards a mode of the mixed arm.
 const STEPS: usize = 3;
 
-/// Stiffnesses and inertias of each piece.
+/// Stiffnesses and line inertias of each piece of an arm.
 type Arm = (Vec<[f64; STIFFNESSES]>, Vec<[f64; INERTIAS]>);
 
-/// A joint that is added to a relaxed design.
+/// The numbers of a joint that is to be added to a relaxed design. `curve` is `None` for a rigid joint.
 struct AddedJoint<'a> {
     piece: usize,
     mass_kg: f64,
@@ -34,8 +35,8 @@ struct AddedJoint<'a> {
 }
 
 impl Problem<'_> {
-    /// Mass of a piece per unit of its first line inertia: the length of a tube \[m\], and 1 for any other
-    /// piece.
+    /// Mass of a piece divided by its first line inertia (mass per metre): the length of a tube \[m\]. It is 1 for any
+    /// other piece, because its first line inertia is the mass itself.
     fn length_m(&self, piece: usize) -> f64 {
         match &self.parts[piece] {
             Part::Links { length_m, .. } | Part::Tube { length_m, .. } => *length_m,
@@ -45,23 +46,26 @@ impl Problem<'_> {
 }
 
 impl Rows<'_> {
-    /// The multipliers under which the lowest of the relaxed designs is as far as possible above the limits of a
-    /// local upper bound. The relaxed designs play a matrix game against the rows.
+    /// Finds the multipliers on the rows (inequalities of the bound) that come nearest to a refutation of the local
+    /// upper bound `upper`. Under them, the weighted sum of the rows of each relaxed design in `members` exceeds its
+    /// upper limit by as much as possible. They are the solution of a matrix game between the rows and the relaxed
+    /// designs.
     pub(super) fn best_multipliers(&self, members: &[RelaxedDesign], upper: &LocalUpperBound) -> Game {
-        /// A row this far below its limit (scaled) has no influence.
+        /// Lower limit of the scaled excess of a row over its limit. A row so far below its limit has no influence on
+        /// the game.
         const NO_SAY: f64 = -10.0;
         let row_limits: Vec<f64> = self.row_limits(upper).collect();
         let mut above = Vec::with_capacity(members.len() * row_limits.len());
         for member in members {
             above.extend(member.values.iter().zip(&row_limits).map(|(v, a)| (v - a).max(NO_SAY)));
         }
-        // The rows of a force are equalities on the mixture and not numbers to be kept low.
+        // The mixture has to satisfy the rows of a force as equations. It need not keep them low.
         let balanced = 1 + self.tips.len()..self.first_mode;
         solve(&above, row_limits.len(), balanced)
     }
 
-    /// Adds a row for each mode of the mixed arm that lies below the required frequency. Returns whether there was
-    /// any.
+    /// Adds a row for each mode of the mixed arm that lies below the frequency of `upper`. `mix` holds the weight of
+    /// each relaxed design of `members` in the mixed arm. Returns whether a row was added.
     pub(super) fn add_violated_modes(
         &mut self,
         members: &mut [RelaxedDesign],
@@ -84,13 +88,13 @@ impl Rows<'_> {
                 shapes.push(shape);
             }
             for (start, shape) in shapes.into_iter().enumerate() {
-                // A shape whose quotient is higher would give a row that the mixture satisfies already.
+                // The mixture satisfies the row of a shape with a higher quotient already.
                 if shape.quotient(&ideal) < lambda * (1.0 - 1e-6) {
                     self.push_mode(judged, start, shape);
                 }
             }
         }
-        // The relaxed designs found so far get the values of the new rows too, so that the game may use them.
+        // The relaxed designs found so far get values of the new rows too, so that the game may use these rows.
         for member in members {
             for mode in &self.modes[before..] {
                 let row = member.values.len();
@@ -101,8 +105,8 @@ impl Rows<'_> {
         self.modes.len() > before
     }
 
-    /// Stiffness and inertia of the mixed arm in a case: the means over the relaxed designs, weighted by their
-    /// shares.
+    /// Stiffnesses and inertias of the mixed arm in a judged case. They are means over the relaxed designs `members`
+    /// with the weights `mix`.
     fn mixed_arm(&self, members: &[RelaxedDesign], mix: &[f64], judged: usize) -> Arm {
         let pieces = self.problem.parts.len();
         let mut arm = (vec![[0.0; STIFFNESSES]; pieces], vec![[0.0; INERTIAS]; pieces]);
@@ -114,7 +118,8 @@ impl Rows<'_> {
         arm
     }
 
-    /// The least weighted sum of the rows over the members of the box, and the relaxed design that attains this sum.
+    /// Minimizes the weighted sum of the rows (inequalities of the bound) over the members of a box. Returns the
+    /// multipliers with this least sum as a dual point, and the relaxed design that attains it.
     pub(super) fn minimize(&self, design_box: &[u32], multipliers: Vec<f64>) -> (DualPoint, RelaxedDesign) {
         let mut total: f64 = multipliers.iter().zip(&self.fixed).map(|(w, f)| w * f).sum();
         let mut levels = Vec::with_capacity(design_box.len());
@@ -122,13 +127,13 @@ impl Rows<'_> {
         for (piece, part) in self.problem.parts.iter().enumerate() {
             let level = levels.len();
             let price = || self.price(piece, &multipliers);
-            // What the piece adds to each row is needed to choose a branching.
+            // The amount that the piece adds to each row is needed for the choice of a branching.
             let before = member.adds.len();
             member.adds.extend_from_slice(&member.values[..self.first_mode]);
             total += match part {
                 Part::Drives { tree, .. } => {
                     let price = price();
-                    let cheapest = self.drives[level].as_ref().and_then(|drives| drives.cheapest(&price));
+                    let cheapest = self.priced[level].as_ref().and_then(|drives| drives.cheapest(&price));
                     // If no drive is feasible the sum is infinite, and any local upper bound is refuted.
                     let (least, at) = cheapest.unwrap_or((f64::INFINITY, design_box[level]));
                     member.design_box[level] = at;
@@ -145,7 +150,7 @@ impl Rows<'_> {
                 }
                 Part::Links { tree, length_m } => {
                     let price = price();
-                    let (least, at) = cheapest(tree, design_box[level], |links| price.of_tube(links));
+                    let (least, at) = TubePrice::new(&price).cheapest(tree, design_box[level]);
                     member.design_box[level] = at;
                     levels.push(least);
                     self.add_tube(piece, *length_m, &tree.node(at).bounds, &mut member);
@@ -153,7 +158,7 @@ impl Rows<'_> {
                 }
                 Part::Tube { tube, length_m } => {
                     self.add_tube(piece, *length_m, tube, &mut member);
-                    // A given part has no choice, so its price is a constant of the sum.
+                    // A given part has no options, so its price is a constant of the sum.
                     price().of_tube(tube)
                 }
                 Part::Given { .. } | Part::FirstFit { .. } => {
@@ -175,7 +180,8 @@ impl Rows<'_> {
         (DualPoint { multipliers, least: total, levels }, member)
     }
 
-    /// Computes the mode rows of a relaxed design whose pieces are all added, and scales every row.
+    /// Completes a relaxed design to which all pieces were added: computes the values of its mode rows and divides the
+    /// values of all rows by their scales.
     fn complete(&self, member: &mut RelaxedDesign) {
         for (m, mode) in self.modes.iter().enumerate() {
             member.values[self.first_mode + m] = self.mode_value(mode, member);
@@ -185,7 +191,7 @@ impl Rows<'_> {
         }
     }
 
-    /// A relaxed design in which all numbers are zero.
+    /// A relaxed design to which no piece was added yet: all of its numbers are zero.
     fn empty_design(&self, design_box: &[u32]) -> RelaxedDesign {
         let pieces = self.problem.parts.len();
         RelaxedDesign {
@@ -198,7 +204,8 @@ impl Rows<'_> {
         }
     }
 
-    /// Adds a drive to a relaxed design, in the state that is cheapest for its price.
+    /// Adds a joint's drive to the relaxed design `member`. The gear gets the state (torque and twist) that is cheapest
+    /// under `price`.
     fn add_joint(&self, joint: &AddedJoint, price: &DualPrice, member: &mut RelaxedDesign) {
         let AddedJoint { piece, mass_kg, curve, tilt_rad_per_nm } = *joint;
         member.values[0] += mass_kg;
@@ -224,7 +231,8 @@ impl Rows<'_> {
         }
     }
 
-    /// Adds a tube to a relaxed design. For a box of tubes, the least masses and the greatest stiffnesses are added.
+    /// Adds a tube to the relaxed design `member`. For a box of tubes, the least masses and the greatest stiffnesses
+    /// are added.
     fn add_tube(&self, piece: usize, length_m: f64, links: &LinkBox, member: &mut RelaxedDesign) {
         let (line, stiffnesses) = (&links.low.inertias, &links.high.stiffnesses);
         let mass_kg = line[inertia::MASS] * length_m;
@@ -235,26 +243,28 @@ impl Rows<'_> {
             self.add_weight(piece, judged, (mass_kg - water_kg) * self.problem.space.gravity_m_s2, member);
             let yields = tip.compliances[piece].iter().zip(stiffnesses).map(|(c, s)| c / s);
             member.values[1 + judged] += yields.sum::<f64>();
-            // What does not yield stores no energy.
+            // A rigid coordinate stores no strain energy, so its stiffness is 0 here.
             let place = member.place(judged, piece);
             member.stiffness[place] = stiffnesses.map(|s| if s.is_finite() { s } else { 0.0 });
         }
     }
 
-    /// Adds the effect of a piece's weight on the tip and on the torques of the gears inboard.
+    /// Adds the effects of the weight of a piece to the relaxed design `member` in a judged case: on the displacement
+    /// of the tip, and on the torques of the gears inboard.
     fn add_weight(&self, piece: usize, judged: usize, weight_n: f64, member: &mut RelaxedDesign) {
         member.values[1 + judged] += weight_n * self.tips[judged].per_n[piece];
         let place = member.place(judged, piece);
         member.weights_n[place] = weight_n;
         for force in self.forces.iter().filter(|force| force.judged == judged) {
             let Some(per_n) = force.per_n.get(piece) else { continue };
-            // The gear's own torque enters these rows with the opposite sign, in `add_joint`.
+            // In `add_joint`, the torque at which the gear is evaluated enters these rows with the opposite sign.
             member.values[force.row] -= weight_n * per_n;
             member.values[force.row + 1] += weight_n * per_n;
         }
     }
 
-    /// The dual prices of a piece under these multipliers.
+    /// The dual prices of a piece: for each of its numbers, the amount per unit that the piece adds to the weighted sum
+    /// of rows under `multipliers`.
     pub(super) fn price(&self, piece: usize, multipliers: &[f64]) -> DualPrice {
         let multiplier = |row: usize| multipliers[row] / self.scale[row];
         let (length_m, is_joint) = (self.problem.length_m(piece), self.problem.parts[piece].is_joint());
@@ -298,7 +308,7 @@ impl Rows<'_> {
             for (p, kinetic) in price.inertia.iter_mut().zip(&mode.shape.kinetic[piece]) {
                 *p += w * self.lambda * kinetic;
             }
-            // The slope of a gear depends on its state, so `JointPrice` has its credit instead.
+            // The slope of a gear depends on its state, so the credit for it is in `JointPrice`.
             let first = if is_joint { TILT } else { 0 };
             for (p, strain) in price.stiffness.iter_mut().zip(&mode.shape.strain[piece]).skip(first) {
                 *p += w * strain;
@@ -307,7 +317,7 @@ impl Rows<'_> {
         price
     }
 
-    /// The amount that a piece of a relaxed design adds to a row, divided by the row's scale.
+    /// The amount that one piece of the relaxed design `member` adds to a row, divided by the scale of the row.
     pub(super) fn added(&self, member: &RelaxedDesign, piece: usize, row: usize) -> f64 {
         let adds = match row.checked_sub(self.first_mode) {
             None => member.adds[piece * self.first_mode + row],
@@ -320,7 +330,8 @@ impl Rows<'_> {
         adds / self.scale[row]
     }
 
-    /// `λ xᵀMx - xᵀKx` of a relaxed design, without the part of the payload and given bodies.
+    /// The part of a mode row's value, `λ xᵀMx - xᵀKx`, that the parts of the relaxed design `member` contribute. The
+    /// payload and the bodies that the study gives are not included.
     fn mode_value(&self, mode: &Mode, member: &RelaxedDesign) -> f64 {
         let moves = products(&mode.shape.kinetic, &member.inertia);
         self.lambda * moves - products(&mode.shape.strain, member.stiffness_in(mode.judged))

@@ -1,14 +1,14 @@
-//! What a search knows while it runs, for other threads to read.
+//! The progress of a search while it runs, for other threads to read.
 //!
-//! The gap that is told never rises: a bound that was proved once stays proved, for incumbents only get better.
+//! The reported gap never rises. A bound that was proved once stays proved, because incumbents only get better.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// What an exact search knows at a moment.
+/// The progress of an exact search at one moment.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Known {
-    /// Number of boxes bounded.
+    /// Number of boxes whose bound was computed.
     pub boxes: u64,
     /// Number of boxes or regions that the present pass has yet to bound.
     pub boxes_open: u64,
@@ -16,40 +16,42 @@ pub struct Known {
     pub designs: u64,
     /// Number of designs found that no other dominates.
     pub front_size: u64,
-    /// The gap: for every design of the space some found one is worse by at most this part in each objective. `None`
-    /// if nothing is known yet.
+    /// Gap: for every design of the space, some design found is worse by at most this fraction in each objective.
+    /// `None` if nothing is proved yet.
     pub gap: Option<f64>,
 }
 
 /// Least time between two updates.
 const EVERY: Duration = Duration::from_millis(250);
-/// An update may take at most one part in this of the time.
+/// Least ratio of the time between two updates to the time that one update takes. Updates thus take at most 2 % of the
+/// time.
 const SHARE: u32 = 50;
 
-/// What is known of a search, shared by the search and those who watch it.
+/// The latest progress of a search, shared by the search and the threads that watch it.
 #[derive(Default)]
 pub(super) struct Live(Mutex<Latest>);
 
 #[derive(Default)]
 struct Latest {
     known: Known,
-    /// When the next update is due.
+    /// Time from which the next update is due; `None` before the first update.
     due: Option<Instant>,
 }
 
 impl Live {
-    /// What is known now, except for the number of boxes.
+    /// The latest progress. The number of boxes is not filled in.
     pub(super) fn known(&self) -> Known {
         self.lock().known
     }
 
-    /// Tells of a gap that was proved, unless a smaller one was proved before.
+    /// Reports a gap that was proved (relative). A gap that is not smaller than the one reported before is ignored, and
+    /// so is `None`.
     pub(super) fn prove(&self, gap: Option<f64>) {
         let known = &mut self.lock().known;
         known.gap = least(known.gap, gap);
     }
 
-    /// Tells of what has changed, if an update is due. An update that takes long is due less often.
+    /// Reports the progress that `news` returns, if an update is due. If updates take long, they are due less often.
     pub(super) fn update(&self, news: impl FnOnce() -> Known) {
         let began = Instant::now();
         if self.lock().due.is_some_and(|due| began < due) {
@@ -60,7 +62,7 @@ impl Live {
         self.lock().due = Some(Instant::now() + after);
     }
 
-    /// Tells of what has changed.
+    /// Reports the new progress `news`. The reported gap is replaced only by a smaller one.
     pub(super) fn tell(&self, news: Known) {
         let known = &mut self.lock().known;
         *known = Known { gap: least(known.gap, news.gap), ..news };
@@ -71,7 +73,7 @@ impl Live {
     }
 }
 
-/// The smaller of two bounds; a bound that is `None` is unknown and does not count.
+/// The smaller of two gaps. `None` means that a gap is unknown; then the other one is returned.
 pub(super) fn least(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     a.into_iter().chain(b).reduce(f64::min)
 }

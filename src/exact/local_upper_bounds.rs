@@ -1,18 +1,18 @@
-//! Local upper bounds: what the incumbents leave open.
+//! Local upper bounds of the incumbents. They describe the region in which further designs of the front may lie.
 //!
 //! The search region is the set of objective vectors that no incumbent dominates. It is the union of boxes
 //! below local upper bounds: a design that is not dominated is lighter, deflects less and has a higher mode
 //! than some local upper bound.
 //!
-//! One sweep over the incumbents by rising mass finds them all. Deflection and mode of the incumbents so far
-//! form a staircase, with a bound between any two neighbouring steps. Such a bound is complete, and gets its
-//! mass, when a heavier incumbent cuts it off.
+//! One sweep over the incumbents by rising mass finds all local upper bounds. Deflection and mode of the incumbents so
+//! far form a staircase, with a bound between any two neighbouring steps. When a heavier incumbent cuts off such a
+//! bound, the bound is complete and its mass is the mass of this incumbent.
 
 use super::bound::BoxBound;
 use crate::pareto::objectives::Objectives;
 
-/// A local upper bound. A design below it, that is, of less mass, less deflection and a higher mode, is not dominated
-/// by the incumbents from which the bound was made.
+/// A local upper bound: a mass \[kg\], a tip deflection \[m\] and a frequency \[Hz\]. A design below it (of less mass,
+/// less deflection and a higher mode) is not dominated by the incumbents from which the bound was made.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LocalUpperBound {
     pub mass_kg: f64,
@@ -21,7 +21,8 @@ pub(super) struct LocalUpperBound {
 }
 
 impl LocalUpperBound {
-    /// The least local upper bound that covers two others.
+    /// The smallest region that contains the regions below this local upper bound and below `other`: the larger mass
+    /// and deflection and the lower frequency of the two.
     fn join(&self, other: &Self) -> Self {
         Self {
             mass_kg: self.mass_kg.max(other.mass_kg),
@@ -30,38 +31,39 @@ impl LocalUpperBound {
         }
     }
 
-    /// Whether a box with this bound may have a member below this local upper bound.
+    /// Whether a box of designs with the ideal point `box_bound` may have a member below this local upper bound.
     #[inline]
     pub(super) fn admits(&self, box_bound: &BoxBound) -> bool {
         box_bound.mass_kg <= self.mass_kg && box_bound.tip_m <= self.tip_m && box_bound.hz >= self.hz
     }
 
-    /// Eigenvalue of the local upper bound's frequency, `(2πf)²` \[1/s²\].
+    /// The eigenvalue `(2πf)²` of the frequency `f` of this local upper bound \[1/s²\].
     pub(super) fn lambda(&self) -> f64 {
         (self.hz * std::f64::consts::TAU).powi(2)
     }
 
+    /// Mass, deflection and frequency in this order.
     fn numbers(&self) -> [f64; 3] {
         [self.mass_kg, self.tip_m, self.hz]
     }
 }
 
-/// All local upper bounds, as the leaves of a binary tree. Each node has a bound that covers those below it, so that
-/// many are refuted at once.
+/// All local upper bounds, as the leaves of a binary tree. The bound of each node covers all bounds below the node, so
+/// that many of them can be refuted at once.
 pub(super) struct LocalUpperBounds {
     nodes: Vec<Node>,
 }
 
-/// A node, in preorder.
+/// A node of the tree. Nodes are stored in preorder: a node, its first half, its second half.
 struct Node {
     bound: LocalUpperBound,
-    /// Index after the last node of this subtree.
+    /// Index of the first node after this subtree.
     end: usize,
 }
 
 impl LocalUpperBounds {
-    /// The local upper bounds that designs leave open within limits. Dominated designs are removed from the
-    /// list.
+    /// The local upper bounds of the region that `designs` leave undominated within `limits`, the limits of the study.
+    /// Dominated designs are removed from `designs`.
     pub(super) fn new(designs: &mut Vec<Objectives>, limits: LocalUpperBound) -> Self {
         designs.sort_unstable_by(|a, b| {
             (a.mass_kg.total_cmp(&b.mass_kg))
@@ -81,8 +83,8 @@ impl LocalUpperBounds {
         Self { nodes }
     }
 
-    /// The bound of a node, and the node's two halves if it has any. Node 0 is the root. `None` if there is no such
-    /// node.
+    /// The local upper bound at node `at`, and the numbers of the node's two halves; `None` in place of the halves for
+    /// a leaf. Node 0 is the root. `None` if there is no node `at`.
     pub(super) fn node(&self, at: usize) -> Option<(LocalUpperBound, Option<[usize; 2]>)> {
         let node = self.nodes.get(at)?;
         let halves = (node.end > at + 1).then(|| [at + 1, self.nodes[at + 1].end]);
@@ -90,21 +92,22 @@ impl LocalUpperBounds {
     }
 }
 
-/// Deflection and mode of the incumbents added so far that are not dominated, in ascending order of both.
+/// The staircase of the incumbents added so far: deflection \[m\] and mode \[Hz\] of those that are not dominated, in
+/// ascending order of both.
 struct Stairs {
     steps: Vec<[f64; 2]>,
     limits: LocalUpperBound,
 }
 
 impl Stairs {
-    /// Adds a design that is at least as heavy as all designs before it, and appends the local upper bounds that are
-    /// complete now. Returns whether the design is not dominated.
+    /// Adds a design that is at least as heavy as all designs before it. Local upper bounds that are complete now are
+    /// appended to `upper_bounds`. Returns whether no earlier design dominates this one.
     fn add(&mut self, design: &Objectives, upper_bounds: &mut Vec<LocalUpperBound>) -> bool {
         let (tip_m, hz) = (design.tip_deflection_m, design.lowest_mode_hz);
-        // Steps before `from` deflect less; steps before `to` have no higher mode.
+        // Steps before `from` deflect less than the design. Steps before `to` have no higher mode.
         let from = self.steps.partition_point(|step| step[0] < tip_m);
         let to = self.steps.partition_point(|step| step[1] <= hz);
-        // An incumbent so far deflects no more and has no lower mode, and all of them are no heavier.
+        // In these cases an incumbent dominates the design: it deflects no more, has no lower mode, and is no heavier.
         if to < from || self.steps.get(from).is_some_and(|step| step[0] == tip_m && step[1] >= hz) {
             return false;
         }
@@ -114,7 +117,8 @@ impl Stairs {
         true
     }
 
-    /// The local upper bound between step `k` and the step before it.
+    /// The local upper bound between step `k` of the staircase and the step before it. `mass_kg` is its mass. Where one
+    /// of the steps is missing, the limits of the study take its place.
     fn bound_before(&self, k: usize, mass_kg: f64) -> LocalUpperBound {
         LocalUpperBound {
             mass_kg,
@@ -124,8 +128,8 @@ impl Stairs {
     }
 }
 
-/// Builds the tree: halves the bounds at the median of the objective in which the ratio of their greatest to their
-/// least value is largest.
+/// Builds the tree over the bounds `upper_bounds`, appends its nodes to `nodes` and returns the bound of its root. The
+/// bounds are divided at the median of the objective whose greatest value is the largest multiple of its least value.
 fn grow(upper_bounds: &mut [LocalUpperBound], nodes: &mut Vec<Node>) -> LocalUpperBound {
     let here = nodes.len();
     nodes.push(Node { bound: upper_bounds[0], end: here + 1 });

@@ -1,7 +1,8 @@
 //! The exact lowest eigenvalue of one arm, independent of any trial shape.
 //!
-//! With `A = C^½ M C^½`, all eigenvalues of `K φ = λ M φ` lie above `λ` exactly if `1/λ - A` is positive
-//! definite (Sylvester's law of inertia). One Cholesky factorization decides that.
+//! With `A = C^½ M C^½` and the compliance matrix `C`, the inverse of the stiffness matrix `K`, all eigenvalues of `K φ
+//! = λ M φ` lie above `λ` exactly if `1/λ - A` is positive definite (Sylvester's law of inertia). One Cholesky
+//! factorization decides that.
 
 use super::parts::INERTIAS;
 use super::pose::{COORDINATES, Pose};
@@ -12,17 +13,19 @@ use crate::mechanics::lanes::{LaneWork, Lanes, in_lanes, subtract_multiple};
 /// Relative tolerance of the lowest eigenvalue.
 const TOLERANCE: f64 = 1e-9;
 
-/// The inertia matrix of a case as a linear function of the inertias of the parts.
+/// The inertia matrix of a case as a linear function of the line inertias of the pieces.
 pub(super) struct CaseInertia {
-    /// Piece and coordinate of each row of the matrix.
+    /// Index of the piece and of its strain coordinate for each row of the matrix.
     coordinates: Vec<(usize, usize)>,
+    /// Inertia matrix of the payload and of the bodies that the study gives, row by row.
     fixed: Vec<f64>,
-    /// Piece, index among its inertias, and the matrix per unit of that inertia.
+    /// For each line inertia of a piece: index of the piece, index of the inertia, and the matrix per unit of it.
     forms: Vec<(usize, usize, Vec<f64>)>,
 }
 
 impl CaseInertia {
-    /// The inertia matrices of a case, over the coordinates that yield in an arbitrary arm of the space.
+    /// Computes the inertia matrices of a case over the coordinates that deflect elastically in `some_arm`, an
+    /// arbitrary arm of the space.
     pub(super) fn new(pose: &Pose, some_arm: &Ideal) -> Self {
         let mut coordinates = Vec::new();
         for (piece, posed) in pose.pieces.iter().enumerate() {
@@ -49,8 +52,8 @@ impl CaseInertia {
         Self { coordinates, fixed, forms }
     }
 
-    /// The lowest eigenvalue of an arm \[1/s²\]. It is at most `quotient`, and in most cases equal to it, so that is
-    /// tested first.
+    /// The lowest eigenvalue of an arm \[1/s²\]. `quotient` is the Rayleigh quotient of a trial shape, which is an
+    /// upper bound. In most cases the eigenvalue equals it, so that is tested first.
     pub(super) fn lowest(&self, pose: &Pose, arm: &Ideal, quotient: f64) -> f64 {
         let scaled = self.scaled(pose, arm);
         let (mut low, mut high) = (quotient * (1.0 - TOLERANCE), quotient);
@@ -66,7 +69,7 @@ impl CaseInertia {
         low
     }
 
-    /// The matrix `C^½ M C^½` of an arm.
+    /// The matrix `A = C^½ M C^½` of an arm, row by row, with the compliance matrix `C` and the inertia matrix `M`.
     fn scaled(&self, pose: &Pose, arm: &Ideal) -> Vec<f64> {
         let n = self.coordinates.len();
         let mut m = self.fixed.clone();
@@ -86,8 +89,8 @@ impl CaseInertia {
         m
     }
 
-    /// Whether all eigenvalues of the pencil are above `lambda`: whether `1/λ - A` is positive definite, by a
-    /// Cholesky factorization.
+    /// Whether all eigenvalues of `K φ = λ M φ` are above `lambda` \[1/s²\]. `scaled` is the matrix `A`. A Cholesky
+    /// factorization tests whether `1/λ - A` is positive definite.
     fn all_above(&self, scaled: &[f64], lambda: f64) -> bool {
         let n = self.coordinates.len();
         let mut matrix: Vec<f64> = scaled.iter().map(|a| -a).collect();
@@ -98,7 +101,7 @@ impl CaseInertia {
     }
 }
 
-/// Adds the matrices of an arm's inertias to that of what is given.
+/// Adds the matrices of an arm's line inertias to the inertia matrix of what the study gives.
 struct Inertia<'a> {
     m: &'a mut [f64],
     forms: &'a [(usize, usize, Vec<f64>)],
@@ -116,7 +119,7 @@ impl LaneWork for Inertia<'_> {
     }
 }
 
-/// Decides whether a symmetric matrix of `n` rows is positive definite.
+/// Decides by a Cholesky factorization whether a symmetric matrix of `n` rows is positive definite.
 struct Cholesky<'a> {
     matrix: &'a mut [f64],
     n: usize,
@@ -148,7 +151,9 @@ impl LaneWork for Cholesky<'_> {
     }
 }
 
-/// The matrix `M`, column by column: the inertia forces of unit motions.
+/// The inertia matrix `M` of an arm over the given coordinates (index of the piece, index of its strain coordinate).
+/// `inertia` holds the line inertias of each piece. Each column holds the inertia forces of a unit motion of one
+/// coordinate.
 fn matrix(pose: &Pose, coordinates: &[(usize, usize)], inertia: &[[f64; INERTIAS]]) -> Vec<f64> {
     let n = coordinates.len();
     let mut work = Work::default();

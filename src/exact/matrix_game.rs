@@ -1,34 +1,37 @@
-//! A matrix game: the weights of columns under which the least weighted row is as large as possible.
+//! A matrix game, solved by the simplex method: the weights of columns under which the least weighted row is as large
+//! as possible.
 
 use crate::mechanics::lanes::{LANES, LaneWork, Lanes, in_lanes, subtract_multiple};
 use std::ops::Range;
 
 /// Greatest number of simplex pivots.
 const MOST_PIVOTS: usize = 200;
-/// Numbers below this are rounding.
+/// Numbers below this count as rounding.
 const NOTHING: f64 = 1e-11;
 
-/// Tolerance of the sums over balanced columns. It differs from column to column, so that no two pivots are equal.
+/// A sum over balanced columns may exceed zero by this much. A small amount that differs from column to column is added
+/// to it, so that no two pivots of the simplex method are equal.
 const BALANCED: f64 = 1e-6;
 
-/// The solution of a game.
+/// The solution of a matrix game.
 pub(super) struct Game {
     /// Weights of the columns. None is negative, and they sum to one.
     pub weights: Vec<f64>,
-    /// Shares of the rows in the mixture that keeps the greatest column as low as possible. They sum to one.
+    /// Weights of the rows in the mixture that keeps the greatest column as low as possible. They sum to one.
     pub mix: Vec<f64>,
-    /// Value of the game: the least weighted row.
+    /// Value of the game: the weighted sum of the numbers of a row, for the row in which it is least.
     pub value: f64,
 }
 
-/// The weights of columns that make the least weighted row as large as possible. Each row has `width` numbers.
+/// Solves a matrix game: finds weights of the columns that make the weighted sum of the worst row as large as possible.
+/// `rows` holds the numbers of all rows one after the other, `width` numbers for each row.
 ///
-/// The simplex method solves the linear program of the other player: `max Σ z` with `Σ_j (a_ji + c) z_j <= 1` for
-/// every column `i` and `z >= 0`. Its dual values are the weights.
+/// The simplex method solves the linear program of the other player: `max Σ z` with `Σ_j (a_ji + c) z_j <= 1` for every
+/// column `i`, and `z >= 0`. The dual values of this program are the weights.
 ///
-/// Balanced columns are conditions on the mixture: `Σ_j a_ji z_j <= 0`. They come in pairs of opposite sign, so the
-/// sum must be zero. If such a pair were two ordinary columns, equal weights on both would guarantee the value zero
-/// and prove nothing.
+/// The columns in the range `balanced` are conditions on the mixture: `Σ_j a_ji z_j <= 0`. They come in pairs of
+/// opposite sign, so the sum must be zero. If such a pair were two ordinary columns, equal weights on both would
+/// guarantee the value zero and prove nothing.
 pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game {
     let count = rows.len() / width;
     let least = rows.iter().copied().fold(f64::INFINITY, f64::min);
@@ -38,43 +41,47 @@ pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game 
     let spread = (most - least).max(f64::MIN_POSITIVE);
     let entry =
         |i: usize, a: f64| if balanced.contains(&i) { a / spread } else { (a - least) / spread + 1.0 };
-    // The tableau has one line for each column of the game (its slack is basic) and one for the objective.
-    // Each line has z, the slacks and the right side.
-    let line = count + width + 1;
+    // The tableau has one line for each column of the game (its slack is basic at first) and one for the objective. A
+    // line has a number for each variable that is not basic, and the right side. Basic variables have unit vectors, which
+    // are left out. Lines are filled with zeros to whole registers.
+    let line = (count + 1).next_multiple_of(LANES);
     let mut table = vec![0.0; (width + 1) * line];
-    let mut basic: Vec<usize> = (count..count + width).collect();
-    for i in 0..width {
-        for j in 0..count {
-            table[i * line + j] = entry(i, rows[j * width + i]);
+    let (mut basic, mut others): (Vec<usize>, Vec<usize>) =
+        ((count..count + width).collect(), (0..count).collect());
+    for (i, numbers) in table.chunks_exact_mut(line).enumerate().take(width) {
+        for (j, number) in numbers[..count].iter_mut().enumerate() {
+            *number = entry(i, rows[j * width + i]);
         }
-        table[i * line + count + i] = 1.0;
-        table[i * line + line - 1] =
-            if balanced.contains(&i) { BALANCED * (1.0 + i as f64 / width as f64) } else { 1.0 };
+        numbers[count] = if balanced.contains(&i) { BALANCED * (1.0 + i as f64 / width as f64) } else { 1.0 };
     }
     table[width * line..width * line + count].fill(-1.0);
     for _ in 0..MOST_PIVOTS {
-        let objective = &table[width * line..width * line + line - 1];
+        let objective = &table[width * line..width * line + count];
         let cost = in_lanes(Least(objective));
         // No variable improves the objective: the tableau is optimal.
         if cost > -NOTHING {
             break;
         }
-        let Some(enter) = objective.iter().position(|x| *x == cost) else { break };
+        // Among equals the variable of the lowest number, wherever it stands.
+        let equals = (0..count).filter(|&j| objective[j] == cost);
+        let Some(enter) = equals.min_by_key(|&j| others[j]) else { break };
         let ratio = |i: usize| {
             let a = table[i * line + enter];
-            if a > NOTHING { table[i * line + line - 1] / a } else { f64::INFINITY }
+            if a > NOTHING { table[i * line + count] / a } else { f64::INFINITY }
         };
         let ratios = (0..width).map(|i| (i, ratio(i)));
-        // The program is bounded, so without a finite ratio this is rounding; the solution so far is used.
+        // The program is bounded, so a missing finite ratio is due to rounding. The solution so far is then used.
         let least = ratios.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, ratio)| ratio.is_finite());
         let Some((leave, _)) = least else { break };
-        basic[leave] = enter;
+        std::mem::swap(&mut basic[leave], &mut others[enter]);
         in_lanes(Pivot { table: &mut table, line, leave, enter });
     }
-    let mut weights: Vec<f64> = (0..width).map(|i| table[width * line + count + i].max(0.0)).collect();
-    let mut mix = vec![0.0; count];
+    let (mut weights, mut mix) = (vec![0.0; width], vec![0.0; count]);
+    for (j, &variable) in others.iter().enumerate().filter(|(_, variable)| **variable >= count) {
+        weights[variable - count] = table[width * line + j].max(0.0);
+    }
     for (i, &variable) in basic.iter().enumerate().filter(|(_, variable)| **variable < count) {
-        mix[variable] = table[i * line + line - 1].max(0.0);
+        mix[variable] = table[i * line + count].max(0.0);
     }
     for shares in [&mut weights, &mut mix] {
         let sum: f64 = shares.iter().sum();
@@ -85,7 +92,7 @@ pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game 
     Game { weights, mix, value }
 }
 
-/// The least number of a list.
+/// Computes the least number of a list.
 struct Least<'a>(&'a [f64]);
 
 impl LaneWork for Least<'_> {
@@ -102,10 +109,11 @@ impl LaneWork for Least<'_> {
     }
 }
 
-/// One step of the simplex method: the variable `enter` becomes basic in the place of that of line `leave`.
+/// One step of the simplex method: the variable of column `enter` becomes basic in the place of that of line `leave`, whose
+/// column takes its place.
 struct Pivot<'a> {
     table: &'a mut [f64],
-    /// Numbers in a line.
+    /// Number of entries in a line of the tableau.
     line: usize,
     leave: usize,
     enter: usize,
@@ -118,6 +126,8 @@ impl LaneWork for Pivot<'_> {
     fn run<V: Lanes>(self) {
         let Self { table, line, leave, enter } = self;
         let by = 1.0 / table[leave * line + enter];
+        // The column of the variable that leaves was a unit vector.
+        table[leave * line + enter] = 1.0;
         for x in &mut table[leave * line..(leave + 1) * line] {
             *x *= by;
         }
@@ -127,6 +137,7 @@ impl LaneWork for Pivot<'_> {
             for other in half.chunks_exact_mut(line) {
                 let factor = other[enter];
                 if factor != 0.0 {
+                    other[enter] = 0.0;
                     subtract_multiple::<V>(other, factor, pivotal);
                 }
             }
@@ -140,8 +151,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// The mixture satisfies the balanced pair. What it keeps the other columns below equals what the
-        /// weights guarantee, so no weights are better.
+        /// The mixture satisfies the balanced pair as an equation. The greatest of the other columns under the mixture
+        /// equals the value that the weights guarantee, so no weights are better.
         #[test]
         fn a_balanced_pair_is_a_condition_and_no_stake(rows in prop::collection::vec(-1.0f64..1.0, 3 * 6)) {
             let rows: Vec<f64> = rows.chunks(3).flat_map(|r| [r[0], r[1], r[2], -r[2]]).collect();
@@ -156,8 +167,8 @@ mod tests {
             prop_assert!((mixed(0).max(mixed(1)) - stakes).abs() < 1e-3, "{} {stakes}", mixed(0).max(mixed(1)));
         }
 
-        /// The value lies between what the weights guarantee and what some mixture of rows attains.
-        /// Fictitious play finds such mixtures independently.
+        /// The value of the game lies between the value that the weights guarantee and the value that some mixture of
+        /// rows attains. Fictitious play finds such mixtures independently.
         #[test]
         fn no_other_weights_are_better(rows in prop::collection::vec(-1.0f64..1.0, 4 * 6)) {
             let Game { weights, mix, value } = solve(&rows, 4, 0..0);

@@ -12,6 +12,8 @@
 //! than one local upper bound of the incumbents. A Lagrangian bound over the region removes most options of
 //! each level before boxes are searched.
 //!
+//! A space can also be searched in shards (`shard.rs`), one process each.
+//!
 //! No assumption is made about the poses, the order of the parts or the shape of the torsion curves. The
 //! proof and its conditions are in `docs/exact.md`.
 
@@ -61,6 +63,7 @@ pub(crate) mod rows;
 pub(crate) mod run;
 pub(crate) mod search_state;
 pub(crate) mod shape;
+pub(crate) mod shard;
 pub(crate) mod ties;
 pub(crate) mod tip_row;
 pub(crate) mod torsion;
@@ -69,5 +72,6 @@ pub(crate) mod work;
 
 pub use domain_reduction::DomainReduction;
 pub use live::Known;
-pub use outcome::ExactOutcome;
+pub use outcome::{ExactOutcome, FoundInShard};
 pub use run::{Exact, VAST, WORKER_STACK_BYTES};
+pub use shard::refuse_holes;

@@ -1,9 +1,9 @@
-//! Designs near a finished front, box by box.
+//! The search for designs near a finished front, box by box.
 //!
-//! Every objective of a box's bound is at least as good as that of any member, so no member has a smaller
-//! shortfall ([`Shortfall`]) than the bound. A box is pruned if its bound is not near. Incumbents do not
-//! prune here, and dominated drives stay, because near designs may be dominated. Once more designs have been
-//! found than are asked for, only nearer ones are sought.
+//! Every objective of a box's bound is at least as good as that of any member, so no member has a smaller shortfall
+//! ([`Shortfall`]) than the bound. A box is pruned if the shortfall of its bound is too large. Incumbents do not prune
+//! here, and dominated drives stay, because near designs may be dominated. Once more designs have been found than were
+//! asked for, the greatest allowed shortfall is lowered.
 
 use super::bound::{BoxBound, Verdict};
 use super::boxes::{OpenBox, open_all_boxes};
@@ -16,13 +16,15 @@ use crate::search::near::{BUFFER, NearDesign, NearDesigns, ROUNDING, Shortfall, 
 use crate::search::sweep::Candidate;
 use crate::space::design::number;
 
-/// A better trial shape is expected to lower a bound's frequency to no less than this part of it.
+/// A better trial shape is assumed to lower the frequency of a bound to no less than this fraction of it. If the box
+/// would not be pruned even then, no better shape is computed.
 const NEAR: f64 = 0.4;
 
 impl Exact<'_> {
-    /// Finds the designs that meet the constraints and whose shortfall is at most the slack. The front is included.
-    /// `None` if the search was stopped. If there are far more designs than were asked for, their total is not
-    /// counted.
+    /// Finds the designs that meet the constraints and are near `front`. A design is near if its shortfall, the
+    /// fraction by which it is worse than some design of the front, is at most the slack. The designs of the front are
+    /// included. `None` if the search was stopped. If there are far more designs than were asked for, their total
+    /// number is not counted.
     pub fn near(&self, front: &[Candidate], slack: Slack) -> Option<NearDesigns> {
         let mut seeker = Seeker {
             shortfall: Shortfall::of(front.iter().map(|c| c.objectives)),
@@ -50,7 +52,8 @@ impl Exact<'_> {
         Some(NearDesigns { nearest, total })
     }
 
-    /// Bounds a box and returns its halves. A box of one design is kept if it is near.
+    /// Bounds the box `here` and returns its two halves. If the box is one design, nothing is returned, and the design
+    /// is added to `near` if it is near the front.
     fn open_near(
         &self,
         problem: &Problem,
@@ -82,7 +85,8 @@ impl Exact<'_> {
     }
 }
 
-/// Number of designs that are stored before only the nearest of them are kept.
+/// How many near designs may be stored before the list is cut back to the `most` nearest that were asked for: twice
+/// `most` and a buffer, so that the list is not cut back at every find.
 fn kept_at_most(most: usize) -> usize {
     2 * most + BUFFER
 }
@@ -90,29 +94,33 @@ fn kept_at_most(most: usize) -> usize {
 /// The state of the search for near designs.
 struct Seeker {
     shortfall: Shortfall,
+    /// Number of near designs that were asked for.
     most: usize,
-    /// The greatest shortfall with which a design can still be listed.
+    /// The greatest shortfall with which a design can still be listed (relative). It falls as nearer designs are found.
     reach: f64,
+    /// Number of near designs found so far.
     found: u64,
     nearest: Vec<NearDesign>,
 }
 
 impl Seeker {
-    /// Whether a box with this bound may have a near member.
+    /// Whether a box with the bound `box_bound` may have a near member.
     fn is_near(&self, box_bound: &BoxBound) -> bool {
         self.shortfall.is_within(self.reach, &Objectives::from(*box_bound))
     }
 
+    /// The design with its shortfall; `None` if the shortfall is too large for a near design.
     fn if_near(&self, candidate: Candidate) -> Option<NearDesign> {
         let shortfall = self.shortfall.within(self.reach, &candidate.objectives)?;
         Some(NearDesign { candidate, shortfall })
     }
 
-    /// Stores near designs. Once there are enough of them, lowers the greatest shortfall.
+    /// Stores near designs. Once there are more than enough of them, keeps the nearest and lowers the greatest allowed
+    /// shortfall.
     fn learn(&mut self, near: Vec<NearDesign>) {
         self.found += near.len() as u64;
         self.nearest.extend(near);
-        // The limit falls to the shortfall of the last design that is kept, with room for rounding.
+        // The limit falls to the shortfall of the last design that is kept, with a margin for rounding.
         if self.nearest.len() > kept_at_most(self.most) {
             keep_nearest(&mut self.nearest, self.most);
             let last = self.nearest.last().map_or(0.0, |near| near.shortfall);

@@ -1,4 +1,4 @@
-//! The numbers of a part, and of a box of parts, that bounds depend on. Those of a box are intervals.
+//! The numbers of a part on which bounds depend, and their intervals over a box of parts.
 
 use super::torsion::{BreakPoints, CurveBox};
 use super::tree::{Bounds, Key};
@@ -13,21 +13,23 @@ use crate::space::attributes::StressCheck;
 use crate::space::design_space::LinkOption;
 use std::sync::Arc;
 
-/// Number of inertias and of stiffnesses of a [`Line`].
+/// Number of line inertias of a [`Line`].
 pub(super) const INERTIAS: usize = 5;
+/// Number of stiffnesses of a [`Line`].
 pub(super) const STIFFNESSES: usize = 5;
 
 /// A tube's inertias and stiffnesses per metre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Line {
-    /// Mass \[kg/m\], outer area \[m²\], rotary inertia about the link's axis, its y and its z \[kg m\].
+    /// Mass \[kg/m\], outer area \[m²\], and rotary inertias about the link's x, y and z axis \[kg m\]. The x axis lies
+    /// along the link.
     pub inertias: [f64; INERTIAS],
     /// `EI` about y and z \[N m²\], `κGA` \[N\], `GJ` \[N m²\], `EA` \[N\]. Infinite where the link model has
     /// no such strain.
     pub stiffnesses: [f64; STIFFNESSES],
 }
 
-/// Indices into [`Line::inertias`].
+/// Indices of the five inertias in [`Line::inertias`].
 pub(super) mod inertia {
     pub(crate) const MASS: usize = 0;
     pub(crate) const OUTER_AREA: usize = 1;
@@ -37,7 +39,7 @@ pub(super) mod inertia {
 }
 
 impl Line {
-    /// A tube with its harness under a link model.
+    /// The numbers of a tube with its harness. The link model tells which strains the tube has.
     pub(super) fn new(beam: &Beam, harness_kg_per_m: f64, model: LinkModel) -> Self {
         let tube = tube_inertia(beam, model);
         let yields = |place: usize| match model {
@@ -64,31 +66,31 @@ impl Line {
     }
 }
 
-/// A box of link options, with the least and the greatest of each number.
+/// A box of link options, with the least and the greatest value of each number over its members.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct LinkBox {
     pub low: Line,
     pub high: Line,
-    /// Least and greatest compliance, the reciprocal of each stiffness.
+    /// Least and greatest compliances over the members. Each compliance is the reciprocal of a stiffness per metre.
     pub compliances: [[f64; STIFFNESSES]; 2],
-    /// Least ratio of stress to strength per axial force \[1/N\], per moment about y and z and per torsion
-    /// \[1/(N m)\]. Zero where a strength is unknown.
+    /// Least ratio of stress to strength: per axial force \[1/N\], per moment about y, per moment about z and per
+    /// torsional moment \[1/(N m)\]. Zero if the strength of a member is unknown.
     pub stress: [f64; 4],
     /// Whether some member is a round tube. Its bending stresses about two axes add as a vector, which is
     /// less than their sum.
     pub round: bool,
     /// Least cost of the material \[EUR/m\].
     pub cost_eur_per_m: f64,
-    /// Least and greatest lever along the axis of the joint inboard to where the link attaches \[m\]; 0 if no bearing
-    /// asks for it.
+    /// Least and greatest lever \[m\]: the distance along the axis of the joint inboard from its bearing to where the
+    /// link attaches. 0 if no bearing is checked there.
     pub lever_m: [f64; 2],
-    /// Least and greatest room for the parts of the joint that carries the link.
+    /// Least and greatest space for the gear and motor of the joint that carries the link.
     pub room: [LinkRoom; 2],
 }
 
 impl LinkBox {
-    /// The box of one option. `link` is the option with the effects of the study, and `lever_m` the lever from the joint
-    /// inboard \[m\]. `room` is what the option leaves to the parts of the joint that carries it.
+    /// The box of one option. `link` is the option with the effects of the study. `lever_m` is the lever from the joint
+    /// inboard \[m\], and `room` the space that the option leaves for the drive of the joint that carries it.
     pub(super) fn of(
         option: &LinkOption,
         link: &LinkPiece,
@@ -115,7 +117,7 @@ impl LinkBox {
     }
 }
 
-/// The interval around two intervals.
+/// The smallest interval that contains two intervals.
 fn joined(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
@@ -145,33 +147,36 @@ impl Bounds for LinkBox {
         }
     }
 
-    /// Mass counts twice, because it is an objective and also loads everything inboard. Shear and stretch hardly
-    /// change any objective.
+    /// Mass is weighted twice, because it is an objective and also loads everything inboard. Shear stiffness is
+    /// weighted little and axial stiffness not at all, because they hardly change any objective.
     fn key(&self) -> Key {
         let s = self.low.stiffnesses.map(|s| if s.is_finite() { libm::log(s) } else { 0.0 });
         [2.0 * libm::log(self.low.inertias[inertia::MASS]), s[0], 0.7 * s[1], 0.1 * s[2], 0.3 * s[3]]
     }
 }
 
-/// Torques count as equal, when compared with a break point, if their relative difference is below this.
+/// Relative difference below which a torque and a break point count as equal.
 pub(super) const SAME_TORQUE: f64 = 1e-12;
 
-/// Number of rays of a box of drives.
+/// Number of rays, the proportions of static torque and inertia for which a box of drives knows its capacity.
 pub(super) const RAYS: usize = 12;
 
-/// Rays: demands in fixed proportions of static torque and inertia. A drive that can carry a demand can carry every
-/// smaller multiple of it. If no member of a box carries the multiple of a ray that lies below a demand, then no
-/// member carries the demand, even though each single limit may be met by some member.
+/// Rays: demands on a joint in fixed proportions of static torque and inertia. A drive that carries a demand also
+/// carries every smaller multiple of it. Take the multiple of a ray that lies just below a demand. If no member of a
+/// box carries this multiple, no member carries the demand. This excludes boxes in which each single limit is met, but
+/// by different members.
 pub(super) struct Rays {
-    /// Static torque \[N m\] and inertia \[kg m²\] of each ray.
+    /// Static torque \[N m\] and inertia \[kg m²\] whose multiples make up each ray.
     loads: [(f64, f64); RAYS],
+    /// Demand on the joint under the static torque and the inertia of each ray.
     demands: [JointDemand; RAYS],
 }
 
 impl Rays {
-    /// Rays around the proportion of static torque to inertia that the payload alone causes. A stated duty is left out,
-    /// because it does not grow with the arm; what is left is a lower bound. The motor's own inertia does not grow with the
-    /// arm either: [`MotorHeat::multiple_of`](crate::sizing::heat::MotorHeat::multiple_of) knows that.
+    /// The rays of a joint, around the proportion of static torque to inertia that the payload alone causes. A part of
+    /// the demand that does not grow with the arm would break their proportions. So the demand of a duty that is stated
+    /// in numbers is left out, and the remaining demand is a lower bound. The inertia of the motor itself does not grow
+    /// with the arm either: [`MotorHeat::multiple_of`](crate::sizing::heat::MotorHeat::multiple_of) accounts for it.
     pub(super) fn new(motion: &JointMotion, payload_static_nm: f64, payload_inertia_kgm2: f64) -> Self {
         let motion = motion.without_stated();
         let loads = std::array::from_fn(|k| match k {
@@ -185,26 +190,29 @@ impl Rays {
         Self { demands: loads.map(|(static_nm, inertia)| motion.demand(static_nm, inertia)), loads }
     }
 
-    /// For each ray, the greatest multiple of its demand that a drive can carry.
+    /// For each ray (fixed proportion of static torque and inertia), the greatest multiple of its demand that a drive
+    /// with the limits `limits` carries.
     pub(super) fn capacity(&self, limits: &DriveLimits) -> [f64; RAYS] {
         self.demands.each_ref().map(|demand| limits.multiple_of(demand))
     }
 }
 
-/// Part by which the heat of a least demand is lowered and that of a greatest raised. The motor's own inertia can be most of
-/// it, so that rounding of the loads alone would not keep the rounding of the sum from deciding.
+/// Fraction by which the motor heat of a least demand is lowered and that of a greatest demand is raised to cover
+/// rounding. A margin on the loads alone would not do, because the motor's own inertia can cause most of the heat.
 pub(super) const HEAT_ROUNDING: f64 = 1e-12;
 
-/// The least demand that the members of a box make on a joint.
+/// The least demand that the members of a box put on a joint.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct LeastDemand {
     pub demand: JointDemand,
-    /// For each ray, the multiple of its demand that lies below this demand.
+    /// For each ray (fixed proportion of static torque and inertia), the greatest multiple of its demand that lies
+    /// below this demand.
     multiples: [f64; RAYS],
 }
 
 impl LeastDemand {
-    /// The demand of a static torque \[N m\] and an inertia \[kg m²\], with the loads on the bearing and the room of the link.
+    /// The demand of a static torque \[N m\] and an inertia \[kg m²\], with the loads on the bearing and the space that
+    /// the link leaves for the drive.
     pub(super) fn new(
         motion: &JointMotion,
         rays: &Rays,
@@ -217,46 +225,48 @@ impl LeastDemand {
         let multiples =
             rays.loads.map(|(t, i)| times(static_nm, t).min(times(inertia_kgm2, i)) * (1.0 - 1e-12));
         let demand = motion.demand(static_nm, inertia_kgm2).with_heat_times(1.0 - HEAT_ROUNDING);
-        // The rays do not load the bearing, so a multiple of one is below the demand whatever the bearing carries.
+        // The rays put no load on the bearing, so a multiple of a ray is below the demand whatever the bearing load is.
         Self { demand: demand.with_bearing(bearing).with_room(room), multiples }
     }
 }
 
-/// Least tilt per moment of a joint where some drives tilt and others are rigid \[rad/(N m)\]. A stiffness of 0 stands
-/// for what yields in no member of any box, so a rigid drive among others gets this tilt instead. It adds less than a part
-/// in 1e9 to any deflection.
+/// Tilt per moment that a rigid bearing gets in a joint where the bearings of other drives tilt \[rad/(N m)\]. A
+/// stiffness of 0 could not stand for it, because 0 means a coordinate that is rigid in all members of all boxes. The
+/// tilt adds less than 1e-9 of any deflection.
 pub(super) const RIGID_RAD_PER_NM: f64 = 1e-18;
 
-/// The stiffness of a linear spring of a joint; 0 stands for a spring that never yields.
+/// The stiffness of a linear spring \[N m/rad\] with this compliance \[rad/(N m)\]; 0 stands for a rigid spring.
 #[inline]
 pub(super) fn stiffness_of(rad_per_nm: f64) -> f64 {
     if rad_per_nm > 0.0 { rad_per_nm.recip() } else { 0.0 }
 }
 
-/// A box of drives.
+/// A box of drives, with the least and the greatest value of each number over its members.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct DriveBox {
     /// Least and greatest mass \[kg\].
     pub mass_kg: [f64; 2],
-    /// The greatest of each limit over the members.
+    /// The greatest value of each limit of a drive over the members.
     pub limits: DriveLimits,
     /// The least of each limit over the members.
     pub least_limits: DriveLimits,
-    /// For each ray, the greatest multiple of its demand that any member carries.
+    /// For each ray (fixed proportion of static torque and inertia), the greatest multiple of its demand that a single
+    /// member carries.
     pub multiples: [f64; RAYS],
-    /// The curves of the members; `None` if one of them is rigid.
+    /// Envelopes of the torsion curves of the members; `None` if one of them is rigid.
     pub curve: Option<CurveBox>,
-    /// Break points of the members' curves.
+    /// The break points (torques at which the slope changes) of the members' torsion curves, as a set.
     pub breaks: BreakPoints,
-    /// Least and greatest tilt of the output bearing per moment \[rad/(N m)\], in series with what an effect adds. 0 if
-    /// no drive of the joint tilts.
+    /// Least and greatest tilt of the output bearing per moment \[rad/(N m)\], including the tilt that an effect adds
+    /// in series. 0 if no drive of the joint has a bearing that tilts.
     pub tilt_rad_per_nm: [f64; 2],
-    /// For a single kind of several drives, the limits of each. The kind carries what any of them carries.
+    /// For a box that is one kind of several drives: the limits of each drive that no other drive of the kind covers.
+    /// The kind carries a demand if one of them does. `None` for any other box.
     pub each: Option<Arc<[DriveLimits]>>,
 }
 
 impl DriveBox {
-    /// The box of one kind: drives of one mass, one curve and one tilt.
+    /// The box of one kind: drives of equal mass, torsion curve and bearing stiffness. `None` without drives.
     pub(super) fn of_kind(drives: impl Iterator<Item = Self>) -> Option<Self> {
         let drives: Vec<Self> = drives.collect();
         let kind =
@@ -272,15 +282,16 @@ impl DriveBox {
         Some(Self { each: (each.len() > 1).then(|| Arc::from(each)), ..kind })
     }
 
-    /// Whether some member may carry the demand.
+    /// Whether some member may carry the least demand `asked`. `false` is certain; `true` may be wrong for a box of
+    /// several drives.
     #[inline]
     pub(super) fn may_hold(&self, asked: &LeastDemand) -> bool {
         self.hold(&asked.demand)
             && self.multiples.iter().zip(&asked.multiples).all(|(carried, asked)| carried >= asked)
     }
 
-    /// Whether the demand is within the greatest limits. For a single kind: whether one of its drives carries the
-    /// demand.
+    /// Whether the demand is within the greatest value of each limit over the members. For a box of a single kind the
+    /// answer is exact: it tells whether one of the drives of the kind carries the demand.
     #[inline]
     pub(super) fn hold(&self, demand: &JointDemand) -> bool {
         self.limits.hold(demand)
@@ -303,7 +314,8 @@ impl Bounds for DriveBox {
         }
     }
 
-    /// Drives are separated by torsion curve first, because drives with the same gear share it, and then by mass.
+    /// Drives are separated first by torsion curve, because all drives with the same gear have the same one, and then
+    /// by mass and capacity.
     fn key(&self) -> Key {
         let k = self.curve.map_or([0.0; 3], |c| {
             let w = &c.stiff.windup;
@@ -328,7 +340,8 @@ mod tests {
     use crate::sizing::requirement::MotionRequirement;
     use proptest::prelude::*;
 
-    /// A drive whose limits are multiples of the demand of 100 N m and 10 kg m², and of a moment of 100 N m on its bearing.
+    /// A drive whose limits are multiples of a usual demand: 100 N m and 10 kg m² at the joint, and a moment of 100 N m
+    /// on its bearing.
     fn drive(of: [u32; 6], motion: &JointMotion, rays: &Rays) -> DriveBox {
         let usual = motion.demand(100.0, 10.0);
         let times = |k: usize| 0.2 * f64::from(of[k]);
@@ -354,8 +367,8 @@ mod tests {
     }
 
     proptest! {
-        /// A kind, and a box of kinds, carries whatever one of its drives carries. A kind alone carries no
-        /// more.
+        /// A kind carries a demand exactly if one of its drives does. A box of kinds carries every demand that one of
+        /// its drives carries.
         #[test]
         fn a_kind_holds_what_any_of_its_drives_holds(
             kinds in prop::collection::vec(prop::collection::vec(prop::array::uniform6(1u32..12), 1..5), 1..4),

@@ -1,9 +1,9 @@
-//! The plan against passes whose growth is known.
+//! Tests of the plan with simulated passes whose growth in time is known.
 
 use super::*;
 
-/// The passes of a search whose passes take `first_s` at a slack of 1 and grow with a known exponent, up to a time limit.
-/// Returns the slacks of the completed passes, and the time at which each was done.
+/// Simulates the passes of a search up to a time limit \[s\]. A pass takes `first_s` at a slack of 1 and grows with the
+/// exponent `growth`. Returns the slack of each completed pass and the time at which it was done \[s\].
 fn planned(gap: f64, growth: f64, first_s: f64, limit_s: Option<f64>) -> Vec<(f64, f64)> {
     let plan = Plan::new(gap, true);
     let (mut done, mut out, mut now_s) = (Vec::<Pass>::new(), Vec::new(), 0.0);

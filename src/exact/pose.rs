@@ -1,4 +1,5 @@
-//! One case of a study as rows of numbers: the effect of each weight on each strain coordinate.
+//! One case of a study as rows of numbers: for each strain coordinate, the generalized force that each weight causes
+//! and the displacement of the tip.
 
 use super::bearing_rows::BearingRows;
 use super::interval::interval;
@@ -6,13 +7,14 @@ use super::parts::INERTIAS;
 use crate::mechanics::{Twist, Wrench};
 use nalgebra::{DMatrix, Matrix3, Matrix6, SMatrix, Vector3};
 
-/// Coefficients below this part of the largest are rounding.
+/// Coefficients below this fraction of the largest one count as rounding.
 const NOTHING: f64 = 1e-12;
 
-/// Number of strain coordinates of a tube: curvatures along z and y (4 each), shears along z and y (3 each),
-/// twists (3), stretches (3).
+/// Number of strain coordinates of a tube: curvatures of the bending along z and along y (4 each), shears along z and y
+/// (3 each), torsion (3), stretch (3). They are polynomial coefficients along the tube.
 pub(super) const COORDINATES: usize = 20;
-/// The coordinates that move the end of a tube.
+/// Indices of the eight strain coordinates of a tube that move its end. The others deform the tube only between its
+/// ends.
 pub(super) const ENDS: [usize; 8] = [0, 1, 4, 5, 8, 11, 14, 17];
 /// For each coordinate: the index of the stiffness of a [`Line`](super::parts::Line) that resists it, and the
 /// degree of its polynomial.
@@ -39,46 +41,52 @@ pub(super) const RESISTED: [(usize, u8); COORDINATES] = [
     (4, 2),
 ];
 
-/// The coordinate of a joint's torsion, and the stiffness that resists it. Coordinates after it are the tilts of the
-/// bearing, which one stiffness resists.
+/// Index of a joint's torsion among its coordinates, and of the stiffness that resists it.
 pub(super) const TORSION: usize = 0;
+/// Index of the first of the two tilts of a joint's output bearing, and of the stiffness that resists both.
 pub(super) const TILT: usize = 1;
-/// Number of strain coordinates of a joint that tilts.
+/// Number of strain coordinates of a joint whose bearing tilts: the torsion and two tilts.
 pub(super) const JOINT_COORDINATES: usize = 3;
 
-/// `2i + 1` for a polynomial of degree `i`: the compliance of a coordinate times its stiffness and the tube's
-/// length.
+/// `2i + 1` for a coordinate whose polynomial has degree `i`. This factor equals the coordinate's compliance times the
+/// stiffness of the section times the length of the tube.
 pub(super) fn degree_factor(coordinate: usize) -> f64 {
     f64::from(2 * RESISTED[coordinate].1 + 1)
 }
 
 /// A case, compiled for bounds. Pieces are counted from the tip.
 pub(super) struct Pose {
+    /// Whether the case counts for deflection and lowest mode.
     pub judged: bool,
+    /// Whether drives and stresses are checked in this case.
     pub sizing: bool,
-    /// Whether no two contributions to the tip's displacement may have opposite signs.
+    /// Whether no two contributions to the tip's displacement can oppose each other.
     pub contributions_align: bool,
-    /// Density of the water around the arm, 0 in air \[kg/m³\]. The net weight per length of a tube is `g
-    /// (mass - water · outer area)`.
+    /// Density of the water around the arm \[kg/m³\], 0 in air. The net weight of a tube per length is `g (mass - water
+    /// · outer area)`.
     pub water_kg_m3: f64,
     pub pieces: Vec<PosedPiece>,
-    /// Inertia of the payload, before any part is chosen.
+    /// Inertia of the payload about the world's origin.
     pub payload_inertia: Matrix6<f64>,
-    /// The rows of all coordinates that are strained by a weight or by another load, tip first.
+    /// The rows of this case: one for each strain coordinate that some load deflects, and one for the torsion of each
+    /// joint, tip first. A row gives the force on its coordinate.
     pub rows: Vec<Row>,
+    /// Loads on the end sections of the tubes whose section is chosen, tip first.
     pub stress: Vec<StressRow>,
-    /// Inertia about each joint's axis; `None` for a piece that is no joint.
+    /// Inertia of everything outboard about each joint's axis; `None` for a piece that is not a joint.
     pub inertia_about: Vec<Option<InertiaRow>>,
-    /// Loads on the output bearing of each joint; `None` where the case sizes nothing or no bearing is checked.
+    /// Loads on the output bearing of each joint; `None` for any other piece, if no bearing is checked, or if the case
+    /// is not a sizing case.
     pub bearings: Vec<Option<BearingRows>>,
 }
 
 /// A piece in a pose.
 pub(super) enum PosedPiece {
-    /// A joint: its unit twist, the point of its mass, and the unit twists about the two axes across its own,
-    /// about which the output bearing tilts; `None` if no option tilts.
+    /// A joint. `twist` is the motion of everything outboard per radian (metre for a prismatic joint), and `at_m` the
+    /// place of its mass. `across` holds the motions per radian of tilt of the output bearing about the two axes across
+    /// the joint axis; `None` if no option tilts.
     Joint { twist: Twist, at_m: Vector3<f64>, across: Option<[Twist; 2]> },
-    /// The inertia of a given body.
+    /// A rigid body, with its inertia about the world's origin.
     Body(Matrix6<f64>),
     /// A tube.
     Tube(Box<PosedTube>),
@@ -87,44 +95,51 @@ pub(super) enum PosedPiece {
 /// A tube in a pose.
 pub(super) struct PosedTube {
     pub length_m: f64,
+    /// Place of the inboard end.
     pub root_m: Vector3<f64>,
+    /// Axes of the section frame as columns, x along the tube.
     pub frame: Matrix3<f64>,
-    /// Twist of everything outboard per unit of each of the coordinates [`ENDS`].
+    /// Motion of everything outboard (a kinematic twist) per unit of each of the eight coordinates that move the tube's
+    /// end ([`ENDS`]).
     pub ends: [Twist; 8],
-    /// Inertia forms over the motion of the root and the coordinates, per unit of each line inertia.
+    /// Inertia matrices of the tube over the motion of its root and its strain coordinates, per unit of each line
+    /// inertia (inertia per metre).
     pub forms: TubeForms,
-    /// Added mass across the tube per outer area \[kg/m³\].
+    /// Added mass of the water across the tube, per outer area and length \[kg/m³\].
     pub added_kg_m3: f64,
-    /// Whether its section is chosen by the search.
+    /// Whether the section of the tube is chosen by the search.
     pub chosen: bool,
-    /// The bodies on the tube; `None` if there are none.
+    /// The given bodies on the tube; `None` if there are none.
     pub bodies: Option<Box<PosedBodies>>,
-    /// What springs do to the tube.
+    /// The loads of springs on the tube.
     pub pulls: Pulls,
 }
 
-/// Given bodies on a tube, each of which moves with a point of the axis.
+/// Given bodies on a tube. Each of them moves with a point of the tube's axis.
 pub(super) struct PosedBodies {
-    /// Inertia over the motion of the root and the coordinates, in the section frame.
+    /// Inertia matrix of the bodies over the six motions of the tube's root and all its strain coordinates, in the
+    /// section frame.
     pub inertia: DMatrix<f64>,
-    /// Inertia about the world's origin, if the tube does not yield.
+    /// Inertia of the bodies about the world's origin, for the tube taken as rigid.
     pub rigid: Matrix6<f64>,
+    /// Wrench of the weight of all bodies on the tube, about the world's origin.
     pub weight: Wrench,
-    /// Force of the weight on each of the coordinates [`ENDS`].
+    /// Generalized force of the bodies' weight on each of the eight coordinates that move the tube's end ([`ENDS`]).
     pub end_forces: [f64; 8],
 }
 
-/// What springs do to a tube.
+/// The loads of springs on a tube.
 #[derive(Default)]
 pub(super) struct Pulls {
-    /// Force and moment about the world's origin.
+    /// Force and moment of all springs on the tube, about the world's origin.
     pub wrench: Wrench,
-    /// Force on each of the coordinates [`ENDS`].
+    /// Generalized force of the springs on each of the eight coordinates that move the tube's end ([`ENDS`]).
     pub end_forces: [f64; 8],
 }
 
-/// Quadratic forms of kinetic energy. In each plane they are over `(root translation, root rotation,
-/// curvatures, shears)`; along the tube over `(root rotation, twists)` and `(root translation, stretches)`.
+/// Matrices of the quadratic forms of kinetic energy. `across` and `rotary` are over `(root translation, root rotation,
+/// curvatures, shears)` in one plane. `polar` is over `(root rotation, torsions)` about the tube's axis, and `along`
+/// over `(root translation, stretches)` along it.
 pub(super) struct TubeForms {
     pub across_z: SMatrix<f64, 9, 9>,
     pub across_y: SMatrix<f64, 9, 9>,
@@ -134,53 +149,60 @@ pub(super) struct TubeForms {
     pub along: SMatrix<f64, 4, 4>,
 }
 
-/// The force on a strain coordinate, as a linear function of the weights, and the displacement of the tip by this
-/// coordinate.
+/// The generalized force on one strain coordinate as a linear function of the weights, and the displacement of the tip
+/// that this coordinate causes.
 pub(super) struct Row {
+    /// Index of the piece to which the coordinate belongs.
     pub piece: usize,
-    /// Index of a tube's coordinate. For a joint 0 is the torsion, 1 and 2 are the tilts of its bearing.
+    /// Index of the strain coordinate within its piece. For a joint 0 is the torsion; 1 and 2 are the tilts of the
+    /// bearing.
     pub coordinate: usize,
-    /// Force without the weight of any part \[N or N m\].
+    /// Part of the generalized force that does not depend on the weight of any part, such as that of the payload \[N or
+    /// N m\].
     pub fixed: f64,
-    /// For each piece up to and including `piece`, the force per newton of the piece's weight.
+    /// For each piece from the tip to `piece` itself, the generalized force per newton of the piece's weight.
     pub per_n: Vec<f64>,
-    /// Displacement of the tip per unit of the coordinate. `tip_m_per_unit` is the length of this vector.
+    /// Displacement of the tip per unit of the strain coordinate, in x, y and z.
     pub tip_m: Vector3<f64>,
+    /// Length of the vector `tip_m`.
     pub tip_m_per_unit: f64,
 }
 
-/// Force and moments on the section at an end of a chosen tube.
+/// Loads on the section at one end of a tube whose section is chosen.
 pub(super) struct StressRow {
     pub piece: usize,
-    /// Axial force, moments about y and z, and torsion, each as `fixed + per_n · weights`.
+    /// Axial force \[N\], moments about y and z, and torsion \[N m\]. Each is the sum of a constant and of one
+    /// coefficient per weight \[N\] of a piece, tip first.
     pub loads: [(f64, Vec<f64>); 4],
 }
 
-/// Inertia about a joint's axis \[kg m²\]: `fixed + Σ per_line · inertias` of the pieces outboard.
+/// Inertia of everything outboard about a joint's axis \[kg m²\]: `fixed + Σ per_line · inertia` over the line inertias
+/// of the pieces outboard, tip first.
 pub(super) struct InertiaRow {
     pub fixed: f64,
     pub per_line: Vec<[f64; INERTIAS]>,
 }
 
 impl Pose {
-    /// Torque on a joint, as an interval \[N m\].
+    /// Torque on the joint with this piece number \[N m\], as an interval that follows from `weights`, the weight
+    /// intervals of the pieces \[N\]. Zero for a piece that is not a joint.
     pub(super) fn torque(&self, piece: usize, weights: &[[f64; 2]]) -> [f64; 2] {
         self.torsion(piece).map_or([0.0; 2], |row| interval(row.fixed, &row.per_n, weights))
     }
 
-    /// Torque on a joint without the weight of any part \[N m\].
+    /// Torque on a joint from the payload and all loads other than the weights of parts \[N m\].
     pub(super) fn payload_torque_nm(&self, piece: usize) -> f64 {
         self.torsion(piece).map_or(0.0, |row| row.fixed)
     }
 
-    /// The row of a joint's torsion.
+    /// The row of a joint's torsion; `None` for a piece that is not a joint.
     fn torsion(&self, piece: usize) -> Option<&Row> {
         self.rows.iter().find(|row| row.piece == piece && row.coordinate == TORSION)
     }
 }
 
 impl Pose {
-    /// Whether every force, and so every demand on a joint, grows with every weight.
+    /// Whether the magnitude of every force, and so of every demand on a joint, grows with every weight.
     pub(super) fn grows_with_weight(&self) -> bool {
         let loads = self.stress.iter().flat_map(|row| &row.loads);
         self.water_kg_m3 == 0.0
@@ -188,30 +210,31 @@ impl Pose {
             && loads.into_iter().all(|(fixed, per_n)| sign(*fixed, per_n).is_some())
     }
 
-    /// Whether no two contributions to the tip's displacement may have opposite signs. Then the tip moves further if
-    /// any part yields more.
+    /// Whether no two contributions to the tip's displacement can oppose each other. Then the tip moves further if any
+    /// part becomes more compliant.
     pub(super) fn contributions_align(&self) -> bool {
         let rows = self.relevant_rows();
         let ways: Vec<_> = rows.map(|row| row.tip_m * sign(row.fixed, &row.per_n).unwrap_or(0.0)).collect();
-        // Rounding of right angles must not count as opposition.
+        // A right angle with rounding must not count as opposition.
         let agree = |a: &Vector3<f64>, b: &Vector3<f64>| a.dot(b) >= -NOTHING * a.norm() * b.norm();
         ways.iter().enumerate().all(|(i, a)| ways[..i].iter().all(|b| agree(a, b)))
     }
 
-    /// The rows of torsions, and the rows of coordinates that move the tip.
+    /// The rows that matter for the tests of signs: those of joint torsions, and those of coordinates that move the
+    /// tip.
     fn relevant_rows(&self) -> impl Iterator<Item = &Row> {
         self.rows.iter().filter(|row| self.is_torsion(row) || row.tip_m.norm() > 0.0)
     }
 
-    /// Whether a row is that of a joint's torsion.
+    /// Whether `row` belongs to the torsion of a joint, and not to a tilt of its bearing or to a tube.
     pub(super) fn is_torsion(&self, row: &Row) -> bool {
         row.coordinate == TORSION && matches!(self.pieces[row.piece], PosedPiece::Joint { .. })
     }
 }
 
 impl PosedPiece {
-    /// The index of the stiffness that resists a coordinate, and what the coordinate yields per force times that
-    /// stiffness.
+    /// For a coordinate of this piece: the index of the stiffness that resists it, and the factor that this stiffness
+    /// divides to give the deflection per unit of force.
     #[inline]
     pub(super) fn resisted(&self, coordinate: usize) -> (usize, f64) {
         match self {
@@ -222,8 +245,8 @@ impl PosedPiece {
     }
 }
 
-/// The common sign of the fixed part of a force and of its parts per weight. It is 0 if all are zero, and `None` if
-/// signs differ.
+/// The common sign of the constant force `fixed` and of the coefficients `per_n` of the weights: 1 or -1. It is 0 if
+/// all of them are zero, and `None` if their signs differ.
 fn sign(fixed: f64, per_n: &[f64]) -> Option<f64> {
     let largest = per_n.iter().fold(0.0f64, |most, c| most.max(c.abs()));
     // The fixed force and the coefficients have different units. They are compared as if every weight were

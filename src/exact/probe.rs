@@ -1,7 +1,7 @@
-//! The first incumbents, found by diving.
+//! The search for the first incumbents by quick descents (probes).
 //!
-//! A probe minimizes one weighted sum of the logarithms of mass, deflection and mode. It follows the better
-//! half of every box down to one design, and then optimizes one level at a time with the others fixed. Its
+//! A probe minimizes one weighted sum of the logarithms of mass, deflection and mode. It follows the half with the
+//! better bound of every box down to one design, and then optimizes one level at a time with the others fixed. Its
 //! result proves nothing, but a search with good incumbents prunes early.
 
 use super::bound::{BoxBound, DesignBox, Verdict};
@@ -17,21 +17,22 @@ use std::sync::Arc;
 
 /// Greatest number of boxes that the first descent of a probe bounds.
 const DIVE_BOXES: usize = 2_000;
-/// The same for a probe that is to be done at once.
+/// Greatest number of boxes of the only descent of a short probe ([`dives`]).
 const QUICK_DIVE_BOXES: usize = 400;
 /// Greatest number of boxes that are bounded while one level is optimized.
 const LEVEL_BOXES: usize = 300;
-/// Greatest number of rounds over all levels.
+/// Greatest number of rounds in which every level is optimized once.
 const ROUNDS: usize = 3;
-/// Greatest part of a time limit after which another round begins.
+/// Fraction of a time limit after which a probe begins no further round.
 const MOST_TIME: f64 = 0.1;
 
-/// Weights of mass, deflection and mode. They sum to one.
+/// Weights of mass, deflection and mode in the objective of a probe. They sum to one.
 #[derive(Clone, Copy)]
 struct Merit([f64; 3]);
 
 impl Merit {
-    /// The weights of probe `n`, spread evenly over the triangle of all weights by Roberts' sequence.
+    /// The weights of the three objectives in probe `n`. Roberts' sequence spreads the weights of all probes evenly
+    /// over the triangle of possible weights.
     fn nth(n: usize) -> Self {
         const PLASTIC: f64 = 1.324_717_957_244_746;
         let at = |step: f64| (0.5 + (n + 1) as f64 / step).fract();
@@ -40,7 +41,8 @@ impl Merit {
         Self([u, v, 1.0 - u - v])
     }
 
-    /// The merit of a bound: a weighted sum of the logarithms of its objectives. Less is better.
+    /// The objective of a probe for a bound: the weighted sum of the logarithms of its mass, of its deflection and of
+    /// the reciprocal of its mode. Less is better.
     fn of(&self, box_bound: &BoxBound) -> f64 {
         let [mass, tip, mode] = self.0;
         mass * libm::log(box_bound.mass_kg) + tip * libm::log(box_bound.tip_m.max(1e-12))
@@ -48,7 +50,7 @@ impl Merit {
     }
 }
 
-/// The best design of one probe so far.
+/// The best design that one probe has found so far, with its trial shapes.
 struct Best {
     merit: f64,
     design_box: DesignBox,
@@ -56,7 +58,8 @@ struct Best {
     shapes: Arc<Vec<Shape>>,
 }
 
-/// Runs this many probes, each with different weights of the objectives, and adds the designs found to the state.
+/// Runs `probes` probes, each with other weights of the objectives, and adds the designs found to `state`. Returns the
+/// best design of each probe.
 pub(super) fn probe<'p>(
     budget: &Budget,
     problem: &Problem<'p>,
@@ -78,7 +81,8 @@ pub(super) fn probe<'p>(
     best.into_iter().flatten().collect()
 }
 
-/// The designs that short probes find, without any optimization of single levels.
+/// The designs that `dives` short probes find. A short probe only descends once; it does not optimize the levels one by
+/// one.
 pub(super) fn dives(budget: &Budget, problem: &Problem, dives: usize) -> Findings {
     let mut all = Findings::default();
     let Some(shapes) = problem.first_shapes(&mut Work::default()) else { return all };
@@ -94,7 +98,7 @@ pub(super) fn dives(budget: &Budget, problem: &Problem, dives: usize) -> Finding
     all
 }
 
-/// One probe: a descent to a good design for one weighting of the objectives.
+/// One probe: a descent to one good design for one set of weights of the objectives.
 struct Probe<'a, 'p> {
     budget: &'a Budget<'p>,
     problem: &'a Problem<'p>,
@@ -102,8 +106,8 @@ struct Probe<'a, 'p> {
 }
 
 impl Probe<'_, '_> {
-    /// The best design that the probe finds. It descends from the box of all designs, and then optimizes each level
-    /// by itself.
+    /// The best design that the probe finds. The probe descends from the box of all designs and then optimizes each
+    /// level separately. `None` if no design is found.
     fn best(&self, shapes: &Arc<Vec<Shape>>, findings: &mut Findings) -> Option<Individual> {
         let mut work = Work::default();
         let mut best = self.descend(self.problem.root(), shapes, DIVE_BOXES, None, &mut work, findings)?;
@@ -115,7 +119,7 @@ impl Probe<'_, '_> {
                 let shapes = Arc::clone(&best.shapes);
                 best = self.descend(design_box, &shapes, LEVEL_BOXES, Some(best), &mut work, findings)?;
             }
-            // A round without progress means a local optimum.
+            // A round without improvement means that the design is a local optimum.
             if best.merit >= before || self.budget.has_spent(MOST_TIME) {
                 break;
             }
@@ -123,8 +127,9 @@ impl Probe<'_, '_> {
         Some(Individual { design_box: best.design_box, objectives: best.objectives, shapes: best.shapes })
     }
 
-    /// The design of least merit in a box, or `best` if `best` is better. The half with the better bound is opened
-    /// first.
+    /// Searches the box `design_box` for a design of less merit (the objective of the probe) than `best`. Of two
+    /// halves, the one with the better bound is opened first, and at most `most_boxes` boxes are bounded. Returns the
+    /// better design, or `best` if none was found.
     fn descend(
         &self,
         design_box: DesignBox,
@@ -162,7 +167,9 @@ impl Probe<'_, '_> {
         best
     }
 
-    /// Bounds a box. If the box is one design, the design is judged, and stored if it is the best so far.
+    /// Bounds a box. If the box is one design, the design is evaluated, and stored in `best` if it is better than the
+    /// design there. Returns the box if it has several designs and one of them may be better than `best`; otherwise
+    /// `None`.
     fn look(
         &self,
         mut design_box: DesignBox,
@@ -189,7 +196,8 @@ impl Probe<'_, '_> {
     }
 }
 
-/// A box that may hold a better design than the best so far.
+/// A box that may contain a better design than the best so far. `merit` is that of its bound, and `level` the level
+/// along which it is halved.
 struct Promising {
     merit: f64,
     design_box: DesignBox,

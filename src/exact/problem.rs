@@ -1,5 +1,4 @@
-//! A design space as branch and bound sees it: a tree of boxes for every level, and rows of numbers for every
-//! case.
+//! A design space as branch and bound uses it: a tree of boxes for every level, and rows of numbers for every case.
 
 // {} => Given parts and first fits have no options of their own.
 use super::force_bound::ForceBound;
@@ -15,78 +14,83 @@ use crate::space::design_space::DesignSpace;
 use crate::space::slot::SizedJoint;
 use std::sync::Arc;
 
-/// A compiled design space. Pieces are counted from the tip.
+/// A compiled design space. Pieces are counted from the tip, and most lists have one entry for each piece.
 #[derive(Clone)]
 pub(super) struct Problem<'c> {
     pub space: &'c DesignSpace,
     pub parts: Vec<Part<'c>>,
-    /// The piece of each level, tip first.
+    /// Index of the piece that each level chooses, tip first.
     pub level_pieces: Vec<usize>,
     /// Number of options of each level.
     pub level_sizes: Vec<u32>,
     pub poses: Arc<Vec<Pose>>,
-    /// Inertia matrices of the judged cases.
+    /// Inertia matrix of each judged case, as a function of the line inertias of the pieces.
     pub inertias: Arc<Vec<CaseInertia>>,
-    /// Ratio of peak stress to static stress in sizing cases.
+    /// Ratio of peak stress to static stress in sizing cases, in which the arm also accelerates.
     pub peak_factor: f64,
-    /// Whether a lighter arm of the same stiffness is never worse. Dominated drives can be pruned only then.
+    /// Whether a lighter arm of the same stiffness is never worse in any objective or limit. Dominated drives may be
+    /// pruned only then.
     pub lighter_is_better: bool,
-    /// Play of each piece; `None` if it has none.
+    /// Lost motion and friction of each joint; `None` for a joint without play and for any other piece.
     pub joint_plays: Vec<Option<JointPlay>>,
     /// Lever of each joint whose bearing is checked; `None` for any other piece.
     pub levers: Vec<Option<Lever>>,
-    /// The room at each joint that asks for room; `None` for any other piece.
+    /// The space for gear and motor at each joint whose drives must fit into a link; `None` for any other piece.
     pub rooms: Vec<Option<Room>>,
-    /// Intervals to which a region restricts single forces.
+    /// Intervals to which the present region restricts single forces; empty for a whole space.
     pub force_bounds: Arc<[ForceBound]>,
 }
 
-/// The part, or the choice of parts, at one place of the chain.
+/// The part at one place of the chain, or the options from which a search chooses it.
 #[derive(Clone)]
 pub(super) enum Part<'c> {
-    /// A given joint.
+    /// A joint or an elastic element whose stiffness is given. `curve` is `None` if it is rigid.
     Given { mass_kg: f64, curve: Option<CurveBox> },
-    /// A joint whose drive is a level of the search. An option of the tree is the first drive of a kind.
+    /// A joint whose drive the search chooses. An option of the tree is the first drive of a kind (drives of equal
+    /// mass, curve and bearing stiffness).
     Drives { sized: Arc<SizedJoint<'c>>, kinds: Arc<Kinds>, tree: Arc<Tree<DriveBox>>, rays: Arc<Rays> },
-    /// A joint that takes the lightest drive that carries its demand.
+    /// A joint that takes the lightest drive which carries its demand. The search makes no choice here.
     FirstFit { sized: Arc<SizedJoint<'c>>, ladder: Arc<Ladder> },
-    /// A link whose section and material are a level of the search.
+    /// A link whose section and material the search chooses.
     Links { length_m: f64, tree: Arc<Tree<LinkBox>> },
-    /// A given tube.
+    /// A tube whose section and material are given.
     Tube { length_m: f64, tube: Box<LinkBox> },
-    /// A rigid offset.
+    /// A rigid offset or another body without elastic coordinates. `mass_kg` is the amount that it adds to the mass of
+    /// a design \[kg\]; it may be zero or negative.
     Offset { mass_kg: f64 },
 }
 
-/// Lever along the axis of a joint from its bearing to where the link attaches.
+/// Lever of the loads on a joint's output bearing: the distance along the axis from the bearing to where the link
+/// attaches.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Lever {
-    /// A lever that no choice changes \[m\].
+    /// The lever is the same for all options \[m\].
     Given(f64),
-    /// That of the link with this piece number.
+    /// The lever depends on the option of the link with this piece number.
     OfLink(usize),
 }
 
-/// The room that a link leaves to the parts of the joint that carries it.
+/// Where the space for gear and motor of a joint comes from. It is what the link that the joint carries leaves free.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Room {
-    /// That of a given link.
+    /// The space is the same for all options.
     Given(LinkRoom),
-    /// That of the link with this piece number.
+    /// The space depends on the option of the link with this piece number.
     OfLink(usize),
 }
 
 impl Part<'_> {
-    /// Whether it is a joint or a spring, and no body or tube.
+    /// Whether the part is a joint or another spring, and neither a body nor a tube.
     pub(super) fn is_joint(&self) -> bool {
         matches!(self, Part::Given { .. } | Part::Drives { .. } | Part::FirstFit { .. })
     }
 }
 
-/// The drives that can be a first fit, by rising mass, with the box around any run of them.
+/// The drives that a first-fit joint can get, by rising mass. The ladder returns the box around any contiguous run of
+/// these drives.
 pub(super) struct Ladder {
-    /// `runs[k][i]` is the box around the `2^k` drives from `i` on. The box around any run is the union of two such
-    /// boxes.
+    /// `runs[k][i]` is the box around the `2^k` drives from index `i` on. The box around any run of drives is the union
+    /// of two of these boxes.
     runs: Vec<Vec<DriveBox>>,
 }
 
@@ -103,12 +107,12 @@ impl Ladder {
         Self { runs }
     }
 
-    /// Number of drives.
+    /// Number of drives that can be a first fit.
     pub(super) fn len(&self) -> usize {
         self.runs[0].len()
     }
 
-    /// The box around the drives `first..=last`.
+    /// The box around the drives with indices from `first` to `last`, both included.
     pub(super) fn run(&self, first: usize, last: usize) -> DriveBox {
         let k = (last - first + 1).ilog2() as usize;
         let run = &self.runs[k];
@@ -117,8 +121,8 @@ impl Ladder {
 }
 
 impl<'c> Problem<'c> {
-    /// The problem restricted to the options below some nodes of each level's base tree. `None` if a level has no
-    /// option left.
+    /// The problem restricted to some of its options. `kept` holds, for each level (choice), the nodes of its base tree
+    /// whose options remain. `None` if a level has no option left.
     pub(super) fn restricted_to(&self, kept: &[Vec<u32>]) -> Option<Self> {
         let mut narrower = self.clone();
         for (&piece, nodes) in self.level_pieces.iter().zip(kept) {
@@ -131,7 +135,8 @@ impl<'c> Problem<'c> {
         Some(narrower)
     }
 
-    /// Whether nodes are those of a box of this problem, one for each level.
+    /// Whether `design_box` has one node for each level and every node exists. A state of an earlier process is checked
+    /// with it.
     pub(super) fn has_box(&self, design_box: &[u32]) -> bool {
         let has = |(&piece, &node): (&usize, &u32)| match &self.parts[piece] {
             Part::Drives { tree, .. } => tree.has(node),
@@ -141,17 +146,22 @@ impl<'c> Problem<'c> {
         design_box.len() == self.level_pieces.len() && self.level_pieces.iter().zip(design_box).all(has)
     }
 
-    /// Number of designs in a box, if all drives of a kind are counted as one.
+    /// Number of designs in a box. All drives of a kind are counted as one option.
     pub(super) fn members(&self, design_box: &[u32]) -> f64 {
-        let of = |(&piece, &node): (&usize, &u32)| match &self.parts[piece] {
-            Part::Drives { tree, .. } => f64::from(tree.node(node).members),
-            Part::Links { tree, .. } => f64::from(tree.node(node).members),
-            _ => 1.0,
-        };
-        self.level_pieces.iter().zip(design_box).map(of).product()
+        (0..design_box.len()).map(|level| f64::from(self.members_at(design_box, level))).product()
     }
 
-    /// For each level, the options below some nodes of its base tree. All drives of a kind are included.
+    /// Number of options of a box at a level, if all drives of a kind are counted as one.
+    pub(super) fn members_at(&self, design_box: &[u32], level: usize) -> u32 {
+        match &self.parts[self.level_pieces[level]] {
+            Part::Drives { tree, .. } => tree.node(design_box[level]).members,
+            Part::Links { tree, .. } => tree.node(design_box[level]).members,
+            _ => 1,
+        }
+    }
+
+    /// The options that remain in each level, ascending. `kept` holds, for each level, the nodes of its base tree that
+    /// remain. All drives of a kind are included.
     pub(super) fn options_below(&self, kept: &[Vec<u32>]) -> Vec<Vec<u32>> {
         let of = |(&piece, nodes): (&usize, &Vec<u32>)| match &self.parts[piece] {
             Part::Drives { tree, kinds, .. } => kinds.drives_of(&tree.options_of(nodes)),
@@ -161,7 +171,8 @@ impl<'c> Problem<'c> {
         self.level_pieces.iter().zip(kept).map(of).collect()
     }
 
-    /// Number of designs below some nodes of each level's base tree, if all drives of a kind are counted as one.
+    /// Number of designs that remain. `kept` holds, for each level, the nodes of its base tree that remain. All drives
+    /// of a kind are counted as one option.
     pub(super) fn designs_below(&self, kept: &[Vec<u32>]) -> f64 {
         let of = |(&piece, nodes): (&usize, &Vec<u32>)| match &self.parts[piece] {
             Part::Drives { tree, .. } => tree.members_of(nodes),
@@ -171,7 +182,7 @@ impl<'c> Problem<'c> {
         self.level_pieces.iter().zip(kept).map(of).product()
     }
 
-    /// Number of designs in the space.
+    /// Number of designs in the space. Every drive is counted, tied or not.
     pub(super) fn designs(&self) -> u128 {
         self.level_sizes.iter().map(|&s| u128::from(s)).product()
     }

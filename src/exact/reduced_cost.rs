@@ -1,8 +1,8 @@
-//! Reduced-cost fixing: removes the options that no member below a local upper bound can have.
+//! Reduced-cost fixing: it removes the options that no member below a local upper bound can have.
 //!
-//! At a dual point, let every other part be the cheapest. An option whose price exceeds what is then left of
-//! the limits belongs to no member below the local upper bound. All prices of a box of options are compared
-//! eight dual points at a time.
+//! At a dual point (a set of multipliers), let every other part be the cheapest one. Then the weighted limits allow a
+//! greatest price for the remaining part. An option with a higher price belongs to no member below the local upper
+//! bound. A box of options is compared with eight dual points at a time.
 
 use super::dual_price::{DualPrice, GearStates, JointPrice};
 use super::local_upper_bounds::LocalUpperBound;
@@ -12,18 +12,19 @@ use super::problem::Part;
 use super::rows::{DualPoint, ROUNDING, Rows};
 use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, in_lanes};
 
-/// Approximate number of boxes into which the options of a level are divided.
+/// Approximate number of tree nodes by which the remaining options of a level are described.
 const BOXES: usize = 256;
-/// Number of dual points that are used to exclude options. Those with the greatest least sums are taken first.
+/// Number of dual points (sets of multipliers) that are used to exclude options. Those are taken whose least weighted
+/// sum leaves least up to the sum that the local upper bound allows.
 const STRICTEST: usize = 32;
 
-/// The dual prices of a level's options at a dual point, and the greatest price that the local upper bound allows
-/// there.
+/// The dual prices of a level at one dual point, and the greatest price at which an option of the level may still
+/// belong to a member below the local upper bound.
 type PricedLimit = (DualPrice, f64);
 
 impl Rows<'_> {
-    /// For each level, the nodes of its base tree whose options no dual point excludes. `None` if a level has no
-    /// option left.
+    /// The options that remain in each level after reduced-cost fixing, as nodes of its base tree. `points` are the
+    /// dual points that may exclude options of members below `upper`. `None` if a level has no option left.
     pub(super) fn affordable_options(
         &self,
         design_box: &[u32],
@@ -34,14 +35,14 @@ impl Rows<'_> {
             .iter()
             .map(|point| {
                 let room = self.allowed_sum(&point.multipliers, upper) - point.least + ROUNDING;
-                // The dual points have no multipliers for the modes that were added after them.
+                // The dual points have no multipliers for mode rows that were added after them.
                 let mut multipliers = point.multipliers.clone();
                 multipliers.resize(self.scale.len(), 0.0);
                 (room, multipliers, &point.levels[..])
             })
             .collect();
-        // The strictest dual points exclude most options. Beyond some dozens, another one hardly excludes
-        // more than it costs.
+        // The dual points that allow the lowest prices exclude most options. Beyond some dozens, another one hardly
+        // excludes enough to pay for its time.
         strict.sort_by(|a, b| a.0.total_cmp(&b.0));
         strict.truncate(STRICTEST);
         let levels = self.problem.level_pieces.iter().enumerate();
@@ -57,6 +58,8 @@ impl Rows<'_> {
             .collect()
     }
 
+    /// Nodes of a level's base tree below `node` that contain every option which no dual point excludes. `afforded`
+    /// holds, for each dual point, the prices of the level and the greatest price that an option may have.
     fn affordable(&self, piece: usize, node: u32, afforded: &[PricedLimit]) -> Vec<u32> {
         let prices: Vec<EightPrices> = afforded.chunks(LANES).map(EightPrices::new).collect();
         let prices = &prices[..];
@@ -77,18 +80,23 @@ impl Rows<'_> {
     }
 }
 
-/// The dual prices of a level's options at eight dual points, and the greatest price allowed at each.
+/// The prices of a level's numbers at eight dual points (sets of multipliers), and the greatest price that an option
+/// may have at each.
 struct EightPrices {
+    /// The greatest price that an option may have at each dual point (set of multipliers).
     most: Eight,
+    /// Price per unit of each line inertia (inertia per metre of a tube) at each dual point.
     inertia: [Eight; INERTIAS],
+    /// Price per unit of each compliance at each dual point.
     compliance: [Eight; STIFFNESSES],
+    /// Credit per unit of each stiffness at each dual point. A stiffer part lowers the weighted sum of the rows.
     stiffness: [Eight; STIFFNESSES],
-    /// For each judged case, the prices of a joint per twist, per torque and per slope.
+    /// For each judged case, the prices of a joint per unit of twist and of torque, and the credit per unit of slope.
     joint: Vec<[Eight; 3]>,
 }
 
 impl EightPrices {
-    /// Packs up to eight dual points. In unused lanes any price is allowed.
+    /// Packs up to eight dual points into the lanes of a vector. In unused lanes any price is allowed.
     fn new(afforded: &[PricedLimit]) -> Self {
         let lanes = |of: &dyn Fn(&DualPrice) -> f64| -> Eight {
             std::array::from_fn(|lane| afforded.get(lane).map_or(0.0, |(price, _)| of(price)))
@@ -112,8 +120,8 @@ impl EightPrices {
     }
 }
 
-/// Tells whether, at some dual point, every drive of a box costs more than allowed. A price that is not a number
-/// excludes nothing.
+/// Computes whether every drive of a box is excluded: whether, at some dual point (set of multipliers), its price is
+/// above the allowed one. A price that is not a number excludes nothing.
 struct DrivesCost<'a> {
     drives: &'a DriveBox,
     gears: &'a [JointPrice],
@@ -136,7 +144,7 @@ impl LaneWork for DrivesCost<'_> {
             *left = V::load(&eight.most) - of_mass - of_tilt;
         }
         for (g, gear) in gears.iter().enumerate() {
-            // A box with a rigid member has no bound of its price, so it stays.
+            // The price of a box with a rigid member has no finite bound, so the box stays.
             let Some(curve) = &drives.curve else { return false };
             gear.ends(curve, &mut ends);
             for (left, eight) in left.iter_mut().zip(prices) {
@@ -157,8 +165,8 @@ impl LaneWork for DrivesCost<'_> {
     }
 }
 
-/// Tells whether, at some dual point, every tube of a box costs more than allowed. A price that is not a number
-/// excludes nothing.
+/// Computes whether every tube of a box is excluded: whether, at some dual point (set of multipliers), its price is
+/// above the allowed one. A price that is not a number excludes nothing.
 struct LinksCost<'a> {
     links: &'a LinkBox,
     prices: &'a [EightPrices],
@@ -178,8 +186,7 @@ impl LaneWork for LinksCost<'_> {
             let [stiff, soft] = compliances;
             for k in 0..STIFFNESSES {
                 cost = cost + least::<V>(&eight.compliance[k], [stiff[k], soft[k]]);
-                // What does not yield earns no credit, and an infinite stiffness times a zero price must not
-                // become NaN.
+                // A rigid coordinate earns no credit. An infinite stiffness times a zero price must not become NaN.
                 let price = V::load(&eight.stiffness[k]);
                 let earned = price * V::splat(high.stiffnesses[k]);
                 cost = cost - V::choose(V::zero().less(price), earned, V::zero());
@@ -192,7 +199,7 @@ impl LaneWork for LinksCost<'_> {
     }
 }
 
-/// The least price of a number that lies in an interval, at each of eight dual points.
+/// The least cost of a number that lies in an interval, at each of eight dual points with the prices `price`.
 #[inline(always)]
 fn least<V: Lanes>(price: &Eight, [low, high]: [f64; 2]) -> V {
     let price = V::load(price);
@@ -211,7 +218,7 @@ mod tests {
     use crate::sizing::limits::DriveLimits;
     use proptest::prelude::*;
 
-    /// Prices with an allowed price that is higher than the cost, except at the index `dear`.
+    /// Prices with an allowed price that is higher than the cost, except at the index `dear`, where it is lower.
     fn afforded(prices: Vec<DualPrice>, cost: impl Fn(&DualPrice) -> f64, dear: usize) -> Vec<PricedLimit> {
         let room = |at: usize| if at == dear { -0.1 } else { 0.1 };
         let afford = |(at, price): (usize, DualPrice)| {
@@ -247,7 +254,8 @@ mod tests {
     };
 
     proptest! {
-        /// Eight prices at once exclude exactly what each excludes alone, for tubes with and without shear.
+        /// The comparison with eight prices at once excludes exactly the boxes that a comparison one by one excludes,
+        /// for tubes with and without shear.
         #[test]
         fn tubes_cost_the_same_side_by_side(
             prices in prop::collection::vec(prop::collection::vec(-1.0f64..1.0, 15), 1..20),
@@ -274,8 +282,9 @@ mod tests {
             prop_assert_eq!(excluded, excluded_one_by_one(&afforded, cost));
         }
 
-        /// Eight prices at once exclude exactly what each excludes alone, for drives whose gears are in one of three
-        /// segments under torques of either sign, and whose bearings tilt or not.
+        /// The comparison with eight prices at once excludes exactly the boxes that a comparison one by one excludes,
+        /// for drives whose gears are in one of three segments under torques of either sign, and whose bearings tilt or
+        /// not.
         #[test]
         fn drives_cost_the_same_side_by_side(
             prices in prop::collection::vec(prop::array::uniform10(-1.0f64..1.0), 1..20),

@@ -1,5 +1,5 @@
-//! The result of bounding a region: a refutation, or the surviving options, the branchings and promising
-//! designs.
+//! The bound of a region. Its result is either a proof that the region is empty, or the surviving options, ways to
+//! branch and promising designs.
 
 use super::bound::{BoxBound, DesignBox};
 use super::branching::Branching;
@@ -8,30 +8,34 @@ use super::problem::Problem;
 use super::rows::{DualPoint, ROUNDING, RelaxedDesign, Rows, WarmStart};
 use super::work::Work;
 
-/// Greatest number of dual points, and of rounds of new shapes, for one box.
+/// Greatest number of dual points (sets of multipliers) for one box, in addition to those that use a single row.
 const MOST_POINTS: usize = 24;
+/// Greatest number of rounds in which new trial shapes are added for one box.
 const MOST_SHAPES: usize = 3;
-/// Greatest number of dual points that are added after it is clear that the region cannot be refuted. Further points
-/// improve the reduced costs.
+/// Greatest number of dual points that are added once it is clear that the multipliers cannot prove the region empty.
+/// Further points still exclude more options by their reduced costs.
 const MOST_TO_REDUCE: usize = 8;
-/// The search for multipliers stops when the game promises at most this much more than the best dual point so far.
+/// The search for multipliers stops if the value of the matrix game, which limits what any multipliers can prove,
+/// exceeds the best dual point so far by at most this much (in the scale of the rows).
 const SETTLED: f64 = 1e-4;
-/// A smaller share of a mixture is due to rounding.
+/// Least weight of a relaxed design in the mixture. A smaller weight is due to rounding.
 const SHARE: f64 = 1e-9;
 
-/// What remains of a region after bounding.
+/// The options, branchings and candidates that remain of a region after it was bounded.
 pub(super) struct Survivors {
-    /// For each level, nodes of its base tree with every option that a member of the region may have.
+    /// For each level, nodes of its base tree (the tree over all options) that contain every option which a member of
+    /// the region may have.
     pub options: Vec<Vec<u32>>,
     /// Ways to divide the region, the most promising first.
     pub branchings: Vec<Branching>,
-    /// Designs that may lie in the region. They are tried as incumbents.
+    /// Relaxed designs of the mixture. If one of them is a single design, it is evaluated as a possible incumbent.
     pub candidates: Vec<DesignBox>,
 }
 
 impl Problem<'_> {
-    /// Bounds the part of a box that lies below a local upper bound. The numbers of the box are in `work`. `None` if
-    /// no member lies below the local upper bound.
+    /// Tests whether a box has designs below the local upper bound `upper`. The intervals of the box are in `work`, and
+    /// `warm_start` holds the multipliers of the parent box. `None` if the bound proves that there are none; otherwise
+    /// the options and designs that remain possible.
     pub(super) fn bound_below(
         &self,
         design_box: &[u32],
@@ -51,7 +55,7 @@ impl Problem<'_> {
                 Some(multipliers) => multipliers,
                 None => {
                     let game = rows.best_multipliers(&members, upper);
-                    // The rows at hand cannot refute the bound. New shapes may.
+                    // The present rows cannot prove the region empty. New trial shapes may.
                     if game.value <= ROUNDING && new_shapes < MOST_SHAPES {
                         new_shapes += 1;
                         if rows.add_violated_modes(&mut members, &game.mix, upper) {
@@ -68,8 +72,8 @@ impl Problem<'_> {
             };
             let (point, member) = rows.minimize(design_box, multipliers);
             let above = point.least - rows.allowed_sum(&point.multipliers, upper);
-            // The value of the dual function exceeds the limits: the multipliers are a certificate that the
-            // region is empty.
+            // The value of the dual function exceeds the limits. The multipliers are a certificate that the region is
+            // empty.
             if above > ROUNDING {
                 return None;
             }

@@ -1,13 +1,13 @@
 //! The search region by region.
 //!
-//! A region is the part of the objective space below a [`LocalUpperBound`] of the incumbents. Far fewer
-//! options can reach a region than the space has: a dual point excludes every option whose price the local
-//! upper bound does not allow ([`reduced_cost`](super::reduced_cost)). With fewer options the bounds are
-//! sharper, and more options can be excluded.
+//! A region is the part of the objective space below a [`LocalUpperBound`] of the incumbents. Far fewer options can
+//! belong to a design of a region than the space has. A dual point excludes every option whose price exceeds what the
+//! local upper bound allows ([`reduced_cost`](super::reduced_cost)). With fewer options the bounds are sharper, and
+//! more options can be excluded.
 //!
-//! Local upper bounds are refuted in groups, by one that covers them all. A group that is not refuted is
-//! split. A single bound that is not refuted is branched on options or on a torque
-//! ([`branching`](super::branching)) until few designs are left, which are searched box by box.
+//! Local upper bounds are refuted in groups, by one bound that covers all of a group. A group that is not refuted is
+//! divided into two. A region below a single bound that is not refuted is branched on options or on a torque
+//! ([`branching`](super::branching)) until few designs are left. These are searched box by box.
 
 use super::bound::{BoxBound, DesignBox, Verdict};
 use super::boxes::{OpenBox, Search, open_boxes};
@@ -27,13 +27,14 @@ use crate::pareto::objectives::Objectives;
 use crate::space::design::number;
 use std::sync::Arc;
 
-/// The bound is computed again if at least this part of the designs was excluded.
+/// The bound of a region is computed again with the remaining options if at least this fraction of the region's designs
+/// was excluded.
 const WORTH_IT: f64 = 0.1;
-/// Width of a grid cell for thinning the incumbents, as a part of the slack.
+/// Width of a grid cell for the thinning of incumbents, as a fraction of the slack.
 const THINNED: f64 = 0.45;
 
-/// The options that may belong to a design of a region, with the shapes and multipliers that worked for the region
-/// around it.
+/// The options that may belong to a design of a region, with the trial shapes and multipliers of the region from which
+/// it was divided.
 #[derive(Clone)]
 pub(super) struct Subproblem<'p> {
     problem: Arc<Problem<'p>>,
@@ -46,29 +47,32 @@ pub(super) struct Subproblem<'p> {
 
 /// A task of the search.
 enum Task<'p> {
-    /// The region of the local upper bounds below a node of their tree.
+    /// The region below the local upper bounds under node `at` of their tree.
     Region { upper_bounds: Arc<LocalUpperBounds>, at: usize, subproblem: Subproblem<'p> },
-    /// The designs of a region, if they are few: they are searched box by box.
+    /// The designs of a region with few designs. They are searched box by box.
     Boxes { problem: Arc<Problem<'p>>, upper: LocalUpperBound, first: OpenBox },
 }
 
-/// One pass over the whole search region. `seen` is called after each round. Returns one bound for each task that is left
+/// One pass over the whole search region, for the designs of some boxes. `seen` is called after each round. Returns one bound for each task that is left
 /// when the search is stopped.
 pub(super) fn pass_by_regions<'p>(
     budget: &Budget<'p>,
     problem: &Problem<'p>,
     state: &mut SearchState,
-    slack: f64,
+    (slack, boxes): (f64, &[DesignBox]),
     regions_to: f64,
     (live, seen): (Option<&Live>, impl Fn()),
 ) -> Vec<BoxBound> {
     let mut found: Vec<Objectives> =
         state.incumbents.all().iter().map(|o| improved_by_slack(o, slack)).collect();
-    // Fewer incumbents leave more open, so nothing is missed; the regions stay within the slack.
+    // Fewer incumbents leave a larger region open, so nothing is missed. The cells are narrower than the slack, so the
+    // gap is still proved.
     found = thinned(found, THINNED * slack, |o| o);
     let upper_bounds = Arc::new(LocalUpperBounds::new(&mut found, problem.limits()));
-    let subproblem = Subproblem::whole(problem, state.incumbents.all().len(), &mut Work::default());
-    let first = subproblem.map(|subproblem| Task::Region { upper_bounds, at: 0, subproblem });
+    let (seen_to, mut work) = (state.incumbents.all().len(), Work::default());
+    let subproblems = boxes.iter().filter_map(|of| Subproblem::of_box(problem, of, seen_to, &mut work));
+    let region = |subproblem| Task::Region { upper_bounds: Arc::clone(&upper_bounds), at: 0, subproblem };
+    let first: Vec<Task<'p>> = subproblems.map(region).collect();
     let task = |state: &SearchState, task: Task<'p>| match task {
         Task::Region { upper_bounds, at, subproblem } => {
             let mut findings = Findings::default();
@@ -90,13 +94,12 @@ pub(super) fn pass_by_regions<'p>(
             live.update(|| state.known(&state.front(), open.len(), None));
         });
     };
-    let remaining =
-        in_rounds(state, first.into_iter().collect(), || budget.stopped(), task, SearchState::learn, see);
+    let remaining = in_rounds(state, first, || budget.stopped(), task, SearchState::learn, see);
     remaining.iter().map(|_| BoxBound::OPEN).collect()
 }
 
 impl<'p> Search<'_, 'p> {
-    /// Searches the regions below a node of the tree of local upper bounds. Returns the tasks that remain.
+    /// Searches the region below the local upper bounds under node `at` of their tree. Returns the tasks that remain.
     fn region(
         &self,
         upper_bounds: Arc<LocalUpperBounds>,
@@ -116,7 +119,7 @@ impl<'p> Search<'_, 'p> {
         let Some(survivors) = self.reduce(&mut subproblem, &upper, &mut work, findings) else {
             return Vec::new();
         };
-        // A box costs microseconds and a region milliseconds, so few designs are faster box by box.
+        // A box takes microseconds and a region milliseconds, so few designs are searched faster box by box.
         if subproblem.designs_of(&survivors) <= regions_to {
             return vec![subproblem.in_boxes(upper)];
         }
@@ -132,7 +135,8 @@ impl<'p> Search<'_, 'p> {
             .into()
     }
 
-    /// Reduces the options of a subproblem as long as that is worth the time. `None` if the region is empty.
+    /// Excludes options of a subproblem below `upper` as long as that is worth the time, and evaluates promising
+    /// designs. Returns what remains. `None` if the region is empty.
     fn reduce(
         &self,
         subproblem: &mut Subproblem<'p>,
@@ -154,7 +158,7 @@ impl<'p> Search<'_, 'p> {
         }
     }
 
-    /// Judges a design that may be a good incumbent, unless it was judged before.
+    /// Evaluates a design that may be a good incumbent, unless it was evaluated before.
     fn try_design(&self, subproblem: &Subproblem<'p>, mut design_box: DesignBox, findings: &mut Findings) {
         let problem = &subproblem.problem;
         let Some(options) = problem.options(&design_box) else { return };
@@ -176,8 +180,9 @@ impl<'p> Search<'_, 'p> {
         }
     }
 
-    /// The local upper bounds that are left of a region by incumbents found since its bounds were made. `None` if no
-    /// such incumbent lies in the region.
+    /// The local upper bounds of what remains of the region below `upper` after incumbents that were found since
+    /// `upper` was made have cut it. `incumbents_seen` is the number of incumbents that were known then, and is brought
+    /// up to date. `None` if no later incumbent lies in the region.
     fn clipped(&self, upper: &LocalUpperBound, incumbents_seen: &mut usize) -> Option<LocalUpperBounds> {
         let is_inside = |o: &Objectives| {
             o.mass_kg < upper.mass_kg && o.tip_deflection_m < upper.tip_m && o.lowest_mode_hz > upper.hz
@@ -190,14 +195,15 @@ impl<'p> Search<'_, 'p> {
     }
 }
 
-/// The objectives of an incumbent, improved by the slack. Only designs that are better by more than the slack are
-/// then looked for.
+/// The objectives of an incumbent, improved by the slack. With them in the place of the incumbent, the search looks
+/// only for designs that are better than the incumbent by more than the slack.
 fn improved_by_slack(found: &Objectives, slack: f64) -> Objectives {
     found.better_by(1.0 + slack - DOMINANCE_MARGIN)
 }
 
 impl<'p> Subproblem<'p> {
-    /// The subproblem of the whole space. `None` if no design meets the constraints.
+    /// The subproblem with all options of the space. `incumbents_seen` is the number of incumbents from which its local
+    /// upper bounds were made. `None` if no design meets the constraints.
     pub(super) fn whole(problem: &Problem<'p>, incumbents_seen: usize, work: &mut Work) -> Option<Self> {
         let shapes = problem.first_shapes(work)?;
         Some(Self {
@@ -207,6 +213,20 @@ impl<'p> Subproblem<'p> {
             shapes: Arc::new(shapes),
             incumbents_seen,
         })
+    }
+
+    /// The subproblem of a box of a whole space. `None` if none of its designs meets the constraints.
+    fn of_box(
+        problem: &Problem<'p>,
+        design_box: &DesignBox,
+        incumbents_seen: usize,
+        work: &mut Work,
+    ) -> Option<Self> {
+        if *design_box == problem.root() {
+            return Self::whole(problem, incumbents_seen, work);
+        }
+        let nodes: Vec<Vec<u32>> = design_box.iter().map(|&node| vec![node]).collect();
+        Self::whole(&problem.restricted_to(&nodes)?, incumbents_seen, work)
     }
 
     /// Bounds a subproblem below a local upper bound. Returns the survivors, and whether the subproblem was
@@ -236,8 +256,8 @@ impl<'p> Subproblem<'p> {
         Some((survivors, reduced))
     }
 
-    /// A task that searches the designs of the subproblem box by box. Force bounds are dropped, because they cost
-    /// time and gain little where designs are few.
+    /// A task that searches the designs of the subproblem box by box. Force bounds are dropped, because they take time
+    /// and help little where designs are few.
     fn in_boxes(self, upper: LocalUpperBound) -> Task<'p> {
         let problem = Arc::new(self.problem.without_force_bounds());
         Task::Boxes {
@@ -247,12 +267,13 @@ impl<'p> Subproblem<'p> {
         }
     }
 
-    /// Number of surviving designs.
+    /// Number of designs that the options in `survivors` make.
     pub(super) fn designs_of(&self, survivors: &Survivors) -> f64 {
         self.problem.designs_below(&survivors.options)
     }
 
-    /// Two halves of the subproblem, by the first branching that divides it. `None` if a single design is left.
+    /// Divides the subproblem into two. The first branching of `survivors` that separates its options is taken; if
+    /// there is none, a level is halved. `None` if a single design is left.
     pub(super) fn branch(&self, survivors: &Survivors, work: &mut Work) -> Option<[Self; 2]> {
         let branch = survivors
             .branchings

@@ -1,23 +1,24 @@
 //! Tasks in rounds, so that the result does not depend on the number of threads.
 //!
-//! A search prunes by what it has found. If a design found were told to all workers at once, what they prune
-//! would depend on when it was found. Therefore tasks are done in rounds. Each task sees what was known when
-//! its round began, and what it finds itself. When all tasks of a round are done, their findings are learned
-//! in the order of the tasks.
+//! A search prunes boxes by the designs that it has found. If each new design were told to all workers at once, the
+//! boxes that they prune would depend on the moment at which it was found. Therefore tasks are done in rounds. Each
+//! task knows the designs that were known when its round began and those that it finds itself. When all tasks of a
+//! round are done, their findings are learned in the order of the tasks.
 
 use rayon::prelude::*;
 
-/// Number of tasks in a round. More tasks keep more threads busy, but their findings are learned later.
+/// Number of tasks in a round. With more tasks more threads are busy, but the findings of each task become known later.
 const TASKS: usize = 32;
 
-/// The result of a task: its findings, and new tasks, of which the last is done first.
+/// The result of a task: its findings, and the new tasks that it leaves. The last of the new tasks is done first.
 pub(super) struct Done<T, F> {
     pub tasks: Vec<T>,
     pub findings: F,
 }
 
-/// Does the tasks in `first` and the tasks that they produce, the last first. `see` is shown what is known and which
-/// tasks are open after each round. Returns the tasks that remain when the search is stopped.
+/// Does the tasks in `first` and all tasks that these leave, in rounds; the last task of the list is done first. `task`
+/// does one task with the knowledge `known`. After each round, `learn` adds the findings of each task to `known`, and
+/// then `see` is shown `known` and the open tasks. Returns the tasks that are open when `stopped` becomes true.
 pub(super) fn in_rounds<K: Sync, T: Send, F: Send>(
     known: &mut K,
     first: Vec<T>,

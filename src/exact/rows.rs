@@ -15,7 +15,7 @@
 //! [`lagrangian`](super::lagrangian) minimizes the sum.
 
 use super::bound::{BoxBound, DesignBox, STARTS};
-use super::drives_by_curve::FeasibleDrives;
+use super::drives_by_curve::{FeasibleDrives, PricedDrives};
 use super::dual_price::Gear;
 use super::local_upper_bounds::LocalUpperBound;
 use super::parts::{INERTIAS, STIFFNESSES};
@@ -25,19 +25,22 @@ use super::shape::Shape;
 use super::tip_row::TipRow;
 use super::work::Work;
 
-/// Relative amount by which an incumbent must be better to dominate. It is more than the difference below which
-/// objectives count as equal.
+/// Relative margin by which incumbents are made worse before a region is bounded by them. It is larger than the
+/// relative amount by which an incumbent must be better to dominate, and than the difference below which objectives
+/// count as equal.
 pub(super) const DOMINANCE_MARGIN: f64 = 2e-7;
-/// Rounding of sums whose terms are about 1.
+/// Margin for the rounding of sums whose terms are about 1.
 pub(super) const ROUNDING: f64 = 1e-9;
 
-/// Multipliers, trial shapes and feasible drives of the parent box, with which the search for multipliers starts.
+/// Multipliers, trial shapes and feasible drives of the parent box, from which the search for multipliers starts.
 #[derive(Clone, Default)]
 pub(super) struct WarmStart {
-    /// Multipliers of the mass, the tip rows and the modes. Every box makes its own for torque rows.
+    /// Multipliers of the mass row, of the tip rows and of the mode rows. Every box computes its own multipliers for
+    /// torque rows.
     pub multipliers: Vec<f64>,
+    /// Trial shapes (motions that bound the lowest mode): for each judged case, one for each starting acceleration.
     pub shapes: Vec<Shape>,
-    /// The feasible drives of each level of drives.
+    /// The feasible drives of each level; `None` for a level of links.
     drives: Vec<Option<FeasibleDrives>>,
 }
 
@@ -48,66 +51,76 @@ impl WarmStart {
     }
 }
 
-/// The rows of a box: the inequalities that every member below a local upper bound satisfies.
+/// The rows of a box: linear inequalities between the numbers of the parts that every member below a local upper bound
+/// satisfies.
 pub(super) struct Rows<'a> {
     pub problem: &'a Problem<'a>,
     pub work: &'a Work,
-    /// The scale of each row, which makes its values about 1.
+    /// The scale of each row (inequality): the row's values divided by its scale are about 1.
     pub scale: Vec<f64>,
-    /// The part of each row, scaled, that no choice changes.
+    /// The constant term of each row, divided by the scale. It does not depend on any choice.
     pub fixed: Vec<f64>,
-    /// The displacement of the tip in each judged case.
+    /// For each judged case, the row (inequality) on the displacement of the tip.
     pub tips: Vec<TipRow>,
-    /// For each judged case, the gears that yield.
+    /// The gears that are not rigid, first those of the first judged case, then those of the second, and so on.
     pub gears: Vec<Gear>,
-    /// The forces that the bound has rows for, two rows for each force.
+    /// The generalized forces to which rows set a least and a greatest value. Each has two rows.
     pub forces: Vec<Force<'a>>,
-    /// Eigenvalue at which the mode rows are taken \[1/s²\].
+    /// Eigenvalue `λ` for which the mode rows are made \[1/s²\].
     pub lambda: f64,
-    /// The trial shapes. Each has one row.
+    /// The trial shapes (motions of the arm) whose Rayleigh quotients bound the modes. Each has one row.
     pub modes: Vec<Mode>,
     /// Index of the first mode row.
     pub first_mode: usize,
     /// The feasible drives of each level; `None` for a level of links.
-    pub drives: Vec<Option<FeasibleDrives>>,
+    drives: Vec<Option<FeasibleDrives>>,
+    /// They with the states that their gears may have in this box.
+    pub priced: Vec<Option<PricedDrives>>,
 }
 
-/// A force that the weights make in a judged case. It takes two rows, one for its least and one for its greatest
-/// value.
+/// A generalized force that the weights cause in a judged case. It has two rows, one for its least and one for its
+/// greatest value.
 pub(super) struct Force<'a> {
+    /// Index of the judged case.
     pub judged: usize,
+    /// Force per newton of each piece's weight, tip first.
     pub per_n: &'a [f64],
+    /// Index of the first of the two rows.
     pub row: usize,
 }
 
-/// A trial shape that bounds the modes of a judged case.
+/// A trial shape (motion of the arm) that bounds the modes in a judged case, with the numbers of its row.
 pub(super) struct Mode {
+    /// Index of the judged case.
     pub judged: usize,
+    /// Index of the starting acceleration from which the shape came.
     pub start: usize,
     pub shape: Shape,
-    /// `xᵀMx` with the lightest and with the heaviest parts.
+    /// `xᵀMx` of the shape (twice its kinetic energy per squared angular frequency), with the lightest and with the
+    /// heaviest parts of the box. Each includes the payload and the bodies that the study gives.
     pub kinetic: [f64; 2],
 }
 
-/// A minimizer of the weighted sum over a box. It need not be a member of the box: the torques of its gears need not
-/// agree with its weights, and its node of a level may be a box of several options.
+/// A minimizer of the weighted sum of rows over a box. It need not be a member of the box: the torques at which its
+/// gears are evaluated need not agree with its weights, and its node of a level may be a box of several options.
 pub(super) struct RelaxedDesign {
     /// The node of each level.
     pub design_box: DesignBox,
-    /// The scaled value of every row.
+    /// The value of every row, divided by the row's scale.
     pub values: Vec<f64>,
-    /// For each piece, the amount that it adds to each row before the modes, unscaled.
+    /// For each piece, the amount that it adds to each row on mass, tip displacement and torque. The amounts are not
+    /// divided by the scales.
     pub adds: Vec<f64>,
     /// Line inertias of each piece.
     pub inertia: Vec<[f64; INERTIAS]>,
-    /// Weight of each piece in each judged case \[N\].
+    /// Weight of each piece in each judged case \[N\], at the index [`place`](Self::place).
     pub weights_n: Vec<f64>,
-    /// Stiffnesses of each piece in each judged case.
+    /// Stiffnesses of each piece in each judged case, at the index [`place`](Self::place).
     pub stiffness: Vec<[f64; STIFFNESSES]>,
 }
 
 impl RelaxedDesign {
-    /// The place of a piece in the lists that have a number for each judged case and each piece.
+    /// The index of `piece` in the lists that have one number for each judged case and each piece.
     pub(super) fn place(&self, judged: usize, piece: usize) -> usize {
         judged * self.inertia.len() + piece
     }
@@ -123,8 +136,8 @@ impl RelaxedDesign {
     }
 }
 
-/// A point of the dual function: the multipliers, the least weighted sum over the box, and the amount that each level
-/// adds to this sum.
+/// A point of the dual function: the multipliers of all rows, the least weighted sum over the box, and the amount that
+/// each level adds to this sum.
 pub(super) struct DualPoint {
     pub multipliers: Vec<f64>,
     pub least: f64,
@@ -132,7 +145,8 @@ pub(super) struct DualPoint {
 }
 
 impl Problem<'_> {
-    /// The feasible drives of each level of a box; `None` for a level of links. `before` has those of the parent box.
+    /// The drives of each level of a box that carry the least demand; `None` for a level of links. `before` has those
+    /// of the parent box, which are reused if they are the same.
     fn drives_of_levels(
         &self,
         design_box: &[u32],
@@ -149,7 +163,8 @@ impl Problem<'_> {
 }
 
 impl<'a> Rows<'a> {
-    /// The rows of a box for a local upper bound. The numbers of the box are in `work`.
+    /// Makes the rows (inequalities) of a box for the local upper bound `upper`. `work` holds the intervals of the box,
+    /// and `warm_start` the shapes and drives of the parent box.
     pub(super) fn new(
         problem: &'a Problem,
         design_box: &[u32],
@@ -158,8 +173,8 @@ impl<'a> Rows<'a> {
         warm_start: &WarmStart,
         work: &'a Work,
     ) -> Self {
-        // Far below the modes of the box the rows would say nothing, even if the local upper bound asks for
-        // no mode. Half the box's bound keeps them informative.
+        // If `λ` is far below the modes of the box, the mode rows exclude nothing. The local upper bound may ask for no
+        // mode at all; half the box's bound is then taken.
         let hz = upper.hz.max(0.5 * box_bound.hz.min(1e6));
         let mut rows = Self {
             problem,
@@ -173,11 +188,12 @@ impl<'a> Rows<'a> {
             modes: Vec::new(),
             first_mode: 0,
             drives: problem.drives_of_levels(design_box, work, &warm_start.drives),
+            priced: Vec::new(),
         };
         for (judged, case) in problem.judged_cases().enumerate() {
             let (tip, fixed_m) = TipRow::new(problem, judged, case, work);
-            // A local upper bound may be infinite. A scale far above the values of the row would make the row
-            // vanish in the game.
+            // A local upper bound may be infinite. With a scale far above its values, a row would have no influence in
+            // the game.
             let most = if box_bound.tip_m > 0.0 { 1e3 * box_bound.tip_m } else { 1.0 };
             let scale = upper.tip_m.min(most).max(f64::MIN_POSITIVE);
             rows.tips.push(tip);
@@ -188,10 +204,21 @@ impl<'a> Rows<'a> {
             rows.push_force_bounds(judged, case);
         }
         rows.first_mode = rows.scale.len();
+        rows.priced = rows.priced_drives();
         for (place, shape) in warm_start.shapes.iter().enumerate() {
             rows.push_mode(place / STARTS.len(), place % STARTS.len(), shape.clone());
         }
         rows
+    }
+
+    /// The feasible drives of each level with the states of their gears.
+    fn priced_drives(&self) -> Vec<Option<PricedDrives>> {
+        let of = |(&piece, drives): (&usize, &Option<FeasibleDrives>)| {
+            let gears: Vec<&Gear> = self.gears.iter().filter(|gear| gear.piece == piece).collect();
+            let play = self.problem.joint_plays[piece].as_ref();
+            drives.as_ref().map(|drives| PricedDrives::new(drives, &gears, play))
+        };
+        self.problem.level_pieces.iter().zip(&self.drives).map(of).collect()
     }
 
     /// Adds the gears of a judged case, with two rows for each gear whose slope may change.
@@ -202,8 +229,8 @@ impl<'a> Rows<'a> {
             let gear = match self.tips[judged].torques_nm[row.piece] {
                 Some(torque_nm) => Gear::at(row.piece, judged, torque_nm),
                 None => {
-                    // The slope may change within the interval. The gear gets a torque of its own and two
-                    // rows that hold it equal to that of the weights.
+                    // The slope may change within the interval of torque. The gear is then evaluated at a torque of its
+                    // own, which two rows force to equal the torque of the weights.
                     let [least_nm, most_nm] = work.torques[case][row.piece];
                     let compliance = 1.0 / curve.steepest(least_nm, most_nm);
                     let torques_nm = work.forces[case][at];
@@ -215,16 +242,16 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Adds two rows for each force bound of a judged case, unless the force is the torque of a gear that has rows
-    /// already.
+    /// Adds two rows for each force bound of a judged case: one for the lower and one for the upper limit of the force.
+    /// A torque of a gear that has such rows already gets none.
     fn push_force_bounds(&mut self, judged: usize, case: usize) {
         let (problem, work) = (self.problem, self.work);
         for bound in problem.force_bounds.iter().filter(|bound| bound.case == case) {
             let row = &problem.poses[case].rows[bound.row];
             let is_free =
                 |gear: &Gear| gear.piece == row.piece && gear.row.is_some() && work.curve(row).is_some();
-            // A bounded force that belongs to no such gear needs rows of its own. The gear's rows cover
-            // it otherwise.
+            // A bounded force that is the torque of such a gear is restricted by the gear's rows already. Any other
+            // needs rows of its own.
             if !self.gears.iter().any(is_free) {
                 let between = work.forces[case][bound.row];
                 self.push_force(judged, row, between, between);
@@ -232,22 +259,24 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Index of the first of the two rows of a gear whose slope may change in a case. `None` if the gear has a single
-    /// slope.
+    /// Index of the first of the two rows of the gear at `piece` in a judged case. `None` if the slope of the gear
+    /// cannot change, so that it has no such rows.
     pub(super) fn free_gear(&self, judged: usize, piece: usize) -> Option<usize> {
         self.gears.iter().find(|gear| gear.judged == judged && gear.piece == piece)?.row
     }
 
+    /// Adds a row with the scale `scale` and the constant term `fixed`. The term is divided by the scale.
     fn push(&mut self, scale: f64, fixed: f64) {
         self.scale.push(scale);
         self.fixed.push(fixed / scale);
     }
 
-    /// Adds the two rows of a force: its least value less the force that the weights make, and this force less its
-    /// greatest value.
+    /// Adds the two rows of a generalized force. The first is the force's least value less the force that the weights
+    /// cause, the second is this force less its greatest value. `between` holds the least and the greatest value. The
+    /// scale of the rows is taken from the interval from `low` to `high`. Returns the index of the first row.
     fn push_force(&mut self, judged: usize, row: &'a Row, [low, high]: [f64; 2], between: [f64; 2]) -> usize {
         let next = self.scale.len();
-        // The scale stays comparable to that of the other rows however narrow the interval is.
+        // The scale stays comparable to that of other rows even if the interval is narrow.
         let scale = (high - low).max(0.1 * low.abs().max(high.abs())).max(f64::MIN_POSITIVE);
         self.push(scale, between[0] - row.fixed);
         self.push(scale, row.fixed - between[1]);
@@ -255,19 +284,22 @@ impl<'a> Rows<'a> {
         next
     }
 
+    /// Adds the row of the trial shape `shape`, which bounds the modes in a judged case. `start` is the index of the
+    /// starting acceleration from which the shape came.
     pub(super) fn push_mode(&mut self, judged: usize, start: usize, shape: Shape) {
         let kinetic = [&self.work.light, &self.work.heavy].map(|inertia| shape.kinetic_energy(inertia));
-        // A shape that moves nothing bounds nothing.
+        // A shape without kinetic energy bounds nothing.
         let moves = if kinetic[0] > 0.0 { kinetic[0] } else { 1.0 };
         self.push(self.lambda * moves, self.lambda * shape.kinetic_fixed);
         self.modes.push(Mode { judged, start, shape, kinetic });
     }
 
-    /// The multipliers of the parent box. Rows that the parent did not have get equal multipliers.
+    /// The multipliers with which the search for better ones starts. `above` holds those of the parent box. Rows that
+    /// the parent box did not have get equal multipliers.
     pub(super) fn starting_multipliers(&self, above: &[f64]) -> Vec<f64> {
         let mut multipliers = vec![0.0; self.scale.len()];
         let others: Vec<usize> = (0..=self.tips.len()).chain(self.first_mode..self.scale.len()).collect();
-        // New rows have no multiplier from the parent; equal ones are as good a guess as any.
+        // New rows have no multiplier from the parent. Equal ones are as good a guess as any.
         let even = 1.0 / others.len() as f64;
         for (k, row) in others.into_iter().enumerate() {
             multipliers[row] = above.get(k).copied().unwrap_or(even);
@@ -275,21 +307,22 @@ impl<'a> Rows<'a> {
         self.with_torques(multipliers)
     }
 
-    /// Adds multipliers of torque rows. They make the twist of a gear grow with the torque of the weights, by the
-    /// least compliance of the box (McCormick). Without them a gear could choose its torque at no price.
+    /// Adds multipliers of the torque rows to `multipliers`. With them the price of a gear's twist grows with the
+    /// torque that the weights make, by the least compliance of the box (McCormick). Without them a gear could be
+    /// evaluated at any torque at no price.
     pub(super) fn with_torques(&self, mut multipliers: Vec<f64>) -> Vec<f64> {
         for gear in &self.gears {
             let Some(row) = gear.row else { continue };
             let tip = 1 + gear.judged;
             let per_twist = multipliers[tip] / self.scale[tip] * self.tips[gear.judged].joints[gear.piece];
-            // The row whose sign makes a larger torque dearer.
+            // The row in which the price rises with the torque of the weights.
             let at = if per_twist > 0.0 { row + 1 } else { row };
             multipliers[at] += per_twist.abs() * gear.least_compliance * self.scale[at];
         }
         multipliers
     }
 
-    /// Saves the multipliers, the last shapes and the feasible drives for the halves of the box.
+    /// Saves the multipliers, the last trial shapes and the feasible drives for the halves of the box.
     pub(super) fn save_warm_start(&mut self, multipliers: &[f64], warm_start: &mut WarmStart) {
         let (tips, kept) = (self.tips.len(), warm_start.shapes.len());
         warm_start.drives = std::mem::take(&mut self.drives);
@@ -303,10 +336,10 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// The upper limit of each scaled row for members below a local upper bound.
+    /// The upper limit that each scaled row has for every member below the local upper bound `upper`.
     pub(super) fn row_limits<'b>(&'b self, upper: &'b LocalUpperBound) -> impl Iterator<Item = f64> + 'b {
-        // The rows are taken at `lambda`, the bound may ask for another eigenvalue. The difference times
-        // `xᵀMx` is bounded by the lightest or the heaviest parts, depending on its sign.
+        // The mode rows use the eigenvalue `lambda`, but the bound may ask for another one. The difference times `xᵀMx`
+        // is bounded with the lightest or the heaviest parts, depending on its sign.
         let below = self.lambda - upper.lambda();
         let objectives = std::iter::once(upper.mass_kg).chain(self.tips.iter().map(|_| upper.tip_m));
         let torques = (1 + self.tips.len()..self.first_mode).map(|_| 0.0);
@@ -314,7 +347,8 @@ impl<'a> Rows<'a> {
         objectives.chain(torques).chain(modes).zip(&self.scale).map(|(row, scale)| row / scale)
     }
 
-    /// For each row with a limit, the multipliers that use this row alone.
+    /// Sets of multipliers that use a single row. There is one for each row with a finite limit below `upper`, except
+    /// for torque rows.
     pub(super) fn single_row_multipliers(&self, upper: &LocalUpperBound) -> Vec<Vec<f64>> {
         let is_torque = |row: usize| (1 + self.tips.len()..self.first_mode).contains(&row);
         let rows = self.row_limits(upper).enumerate().filter(|(row, a)| a.is_finite() && !is_torque(*row));
@@ -326,7 +360,7 @@ impl<'a> Rows<'a> {
         rows.map(single).collect()
     }
 
-    /// The upper limit of the weighted sum for members below a local upper bound.
+    /// The upper limit that the weighted sum of the rows has for every member below the local upper bound `upper`.
     pub(super) fn allowed_sum(&self, multipliers: &[f64], upper: &LocalUpperBound) -> f64 {
         let pairs = multipliers.iter().zip(self.row_limits(upper));
         pairs.filter(|(w, _)| **w > 0.0).map(|(w, a)| w * a).sum()

@@ -1,6 +1,7 @@
 //! The exact search: probes, passes with less and less slack, and the listing of the front.
 
 use super::bound::BoxBound;
+use super::bound::DesignBox;
 use super::boxes::{OpenBox, pass_by_boxes};
 use super::budget::Budget;
 use super::early::Early;
@@ -9,7 +10,7 @@ use super::gap::gap;
 use super::journal::{Begun, Journal};
 use super::kinds::Ties;
 use super::live::{Known, Live, least};
-use super::outcome::ExactOutcome;
+use super::outcome::{ExactOutcome, FoundInShard};
 use super::plan::{Pass, Plan};
 use super::probe::probe;
 use super::problem::Problem;
@@ -18,26 +19,32 @@ use super::search_state::SearchState;
 use crate::catalog::Catalogs;
 use crate::pareto::objectives::{Objective, Objectives};
 use crate::search::resume::Resume;
+use crate::search::sweep::Shard;
 use crate::space::design_space::{DesignSpace, LinkOption};
+use crate::space::joints::TabulatedJoints;
+use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-/// Stack that each worker of a thread pool needs \[bytes\]: regions of an exact search are nested calls, and a waiting worker runs
-/// those of others on its own stack. A program that builds its own pool gives its workers as much.
+/// Stack size that each worker thread needs \[bytes\]. Regions of an exact search are nested calls, and a worker that
+/// waits for others runs their tasks on its own stack. A program that builds its own thread pool has to give its
+/// workers this much.
 pub const WORKER_STACK_BYTES: usize = 64 << 20;
 
-/// Number of designs above which a space is searched in passes.
+/// Number of designs above which a space is searched in passes with less and less slack.
 const LARGE: f64 = 1e9;
-/// Number of designs above which a space is searched region by region.
+/// Number of designs above which a space is searched region by region and not box by box.
 pub const VAST: f64 = 1e14;
 /// Number of designs below which a region is searched box by box.
 const FEW: f64 = 1e6;
-/// Number of probes, divided by the square of the number of designs' common logarithm. A large space repays many
-/// probes, a small one none.
+/// Number of probes per squared decade of designs: a space of `10^n` designs gets `0.12 n²` probes. More probes pay
+/// only in a large space.
 const PROBES: f64 = 0.12;
-/// The factor that replaces [`PROBES`] where the genetic algorithm ([`evolve`]) follows.
+/// Number of probes per squared decade of designs if the genetic algorithm ([`evolve`]) follows. It is a third of
+/// [`PROBES`].
 const PROBES_TO_EVOLVE: f64 = 0.04;
-/// Default for the greatest number of designs that are listed with all their ties.
+/// Default of the greatest number of designs that are listed with all their ties. A tie is a design that differs only
+/// in drives of equal mass, torsion curve and bearing stiffness.
 const MOST_WITH_TIES: usize = 20_000;
 
 /// A search for the exact front. Other threads can watch and stop it.
@@ -68,28 +75,34 @@ pub struct Exact<'p> {
     space: &'p DesignSpace,
     catalogs: &'p Catalogs,
     pub(super) budget: Budget<'p>,
-    /// The slack of the last pass, after which the search is complete.
+    /// Gap that was asked for: the slack of the last pass (relative, 0 for the whole front).
     gap: f64,
     /// The only objective that counts; `None` if all three count.
-    only: Option<Objective>,
+    pub(super) only: Option<Objective>,
+    /// The part of the space that is searched.
+    pub(super) shard: Shard,
     /// Number of designs above which the space is searched by regions. `regions_to` is the number below which a
     /// region is searched by boxes.
     regions_from: f64,
     regions_to: f64,
-    /// Greatest number of designs that are listed with all their ties.
+    /// Greatest number of designs that are listed with all their ties. If there are more, one design of each set of
+    /// ties is listed.
     most_with_ties: usize,
-    live: Live,
+    pub(super) live: Live,
     journal: Journal<'p>,
+    /// The joints with their drives, once they are tabulated.
+    joints: OnceLock<TabulatedJoints<'p>>,
 }
 
-/// How the passes of a search ended: the gap that was proved, and the bounds of what is open.
+/// How the passes of a search ended. `gap` is the gap that was proved (relative; `None` if no gap was proved). `open`
+/// holds the bounds of the boxes or regions that are not searched to the end; it is empty after a complete search.
 struct Ended {
     gap: Option<f64>,
     open: Vec<BoxBound>,
 }
 
 impl<'p> Exact<'p> {
-    /// A search of a space. It ends early when `stop` is set or the deadline has passed.
+    /// Prepares a search of a space. The search ends early when `stop` is set or the deadline has passed.
     pub fn new(
         space: &'p DesignSpace,
         catalogs: &'p Catalogs,
@@ -102,12 +115,23 @@ impl<'p> Exact<'p> {
             budget: Budget::new(stop, deadline),
             gap: 0.0,
             only: None,
+            shard: Shard::WHOLE,
             regions_from: VAST,
             regions_to: FEW,
             most_with_ties: MOST_WITH_TIES,
             live: Live::default(),
             journal: Journal::default(),
+            joints: OnceLock::new(),
         }
+    }
+
+    /// Takes joints that are tabulated already. They are those of a space with the same joints and cases.
+    pub(crate) fn with_joints(self, joints: TabulatedJoints<'p>) -> Self {
+        Self { joints: OnceLock::from(joints), ..self }
+    }
+
+    fn joints(&self) -> &TabulatedJoints<'p> {
+        self.joints.get_or_init(|| TabulatedJoints::new(self.space, self.catalogs))
     }
 
     /// Searches the space region by region if it has more designs than this. The default is 1e14. It changes the time
@@ -117,38 +141,45 @@ impl<'p> Exact<'p> {
         Self { regions_from: designs, regions_to: designs.min(FEW), ..self }
     }
 
-    /// Lists designs that differ only in drives of equal mass and curve if they are at most this many. The default is
-    /// 20,000. If there are more, one of each set of ties is listed.
+    /// Sets the greatest number of designs up to which every tie is listed. Ties are designs that differ only in drives
+    /// of equal mass and torsion curve. The default is 20,000. If there are more, one design of each set of ties is
+    /// listed.
     #[must_use]
     pub fn with_ties_up_to(self, designs: usize) -> Self {
         Self { most_with_ties: designs, ..self }
     }
 
-    /// Completes the search once for every design some known or found one is worse by at most this part in each
-    /// objective.
+    /// Sets the gap at which the search is complete (relative; 0 for the whole front). For every design of the space,
+    /// some design that is known or found is then worse by at most this fraction in each objective.
     #[must_use]
     pub fn to_gap(self, gap: f64) -> Self {
         Self { gap, ..self }
     }
 
-    /// Looks for a design that is best in one objective, and for no others. The front then has such a design. The search
-    /// goes box by box: the bounds of regions are about all three objectives.
+    /// Makes the search look only for a design that is best in one objective. The front then contains such a design.
+    /// The search goes box by box, because the bounds of regions are about all three objectives.
     #[must_use]
     pub fn toward(self, objective: Objective) -> Self {
         Self { only: Some(objective), regions_from: f64::INFINITY, ..self }
+    }
+
+    /// Searches one shard of the space ([`found`](Self::found)); [`joined`](Self::joined) makes the front of all.
+    #[must_use]
+    pub fn of_shard(self, shard: Shard) -> Self {
+        Self { shard, ..self }
     }
 
     /// Goes on where an earlier process ended, and keeps states for the next one. They are of the same calls of
     /// [`run`](Self::run) and [`run_of_material`](Self::run_of_material), in the same order.
     ///
     /// # Errors
-    /// The bytes are no state of an exact search, in words.
+    /// Returns a message if the bytes are not a saved state of an exact search.
     pub fn resumed(self, resume: Resume<'p>) -> Result<Self, String> {
         let journal = Journal::resumed(resume, &self.budget)?;
         Ok(Self { journal, ..self })
     }
 
-    /// What is known of the front of all designs now. The gap never rises.
+    /// The progress of the search for the front of all designs at this moment. The gap in it never rises.
     pub fn known(&self) -> Known {
         Known { boxes: self.budget.boxes(), ..self.live.known() }
     }
@@ -156,66 +187,110 @@ impl<'p> Exact<'p> {
     /// Finds the front. `known` holds the objectives of designs that are known already. They prune boxes, but these
     /// designs are not listed.
     pub fn run(&self, known: &[Objectives]) -> ExactOutcome {
-        self.run_of(self.problem(&|_| true, Ties::Merged), known, Some(&self.live))
+        let mut state = SearchState::toward(self.only);
+        known.iter().for_each(|objectives| state.enter(objectives));
+        let whole = self.space_of(None);
+        let found = self.search_part(whole.as_ref(), (state, known.is_empty()), Some(&self.live));
+        self.listed(whole.as_ref(), found)
     }
 
     /// Finds the front of the designs whose chosen links are all of one material, given by its index in the
     /// study.
     pub fn run_of_material(&self, material_index: usize) -> ExactOutcome {
-        let is_of_it = |option: &LinkOption| option.material_index == material_index;
-        self.run_of(self.problem(&is_of_it, Ties::Merged), &[], None)
+        let whole = self.space_of(Some(material_index));
+        let found = self.search_part(whole.as_ref(), (SearchState::toward(self.only), true), None);
+        self.listed(whole.as_ref(), found)
+    }
+
+    /// The compiled space of all designs, or of those whose chosen links are all of one material.
+    pub(super) fn space_of(&self, material_index: Option<usize>) -> Option<Problem<'p>> {
+        let is_of_it =
+            |option: &LinkOption| material_index.is_none_or(|index| option.material_index == index);
+        self.problem(&is_of_it, Ties::Merged)
     }
 
     /// The compiled space with the link options for which `takes` is true. `None` if a level has no option.
     pub(super) fn problem(&self, takes: &dyn Fn(&LinkOption) -> bool, ties: Ties) -> Option<Problem<'p>> {
-        Problem::new(self.space, self.catalogs, takes, ties)
+        Problem::with_joints(self.space, self.joints(), takes, ties)
     }
 
-    fn run_of(&self, whole: Option<Problem<'p>>, given: &[Objectives], live: Option<&Live>) -> ExactOutcome {
-        if let Some(outcome) = self.journal.next_finished() {
-            return outcome;
+    /// Searches a part of the study from a state, or takes what an earlier process found in it. The flag tells whether no
+    /// designs are known at the start.
+    pub(super) fn search_part(
+        &self,
+        whole: Option<&Problem<'p>>,
+        (mut state, is_new): (SearchState, bool),
+        live: Option<&Live>,
+    ) -> FoundInShard {
+        if let Some(found) = self.journal.next_finished() {
+            return found;
         }
-        let mut state = SearchState::toward(self.only);
-        given.iter().for_each(|objectives| state.enter(objectives));
-        let mut ended = Ended { gap: Some(0.0), open: Vec::new() };
-        if let Some(whole) = &whole {
-            ended = self.search(whole, given.is_empty(), &mut state, live);
+        let (mut subtrees, mut ended) = (Vec::new(), Ended { gap: Some(0.0), open: Vec::new() });
+        match whole {
+            Some(whole) => {
+                let names_and_boxes = self.subtrees(whole, self.is_by_regions(whole));
+                subtrees = names_and_boxes.0;
+                ended = self.search((whole, &names_and_boxes.1), is_new, &mut state, live);
+            }
+            // a space without designs has one subtree, and the first shard has it
+            None if self.shard.number == 1 => subtrees.push(String::new()),
+            None => {}
         }
         let designs_evaluated = state.evaluated;
-        let front = state.into_front();
-        let (mut front, ties_listed) = match &whole {
+        let [decided, undecided] = state.into_found();
+        let found = FoundInShard {
+            subtrees,
+            designs_evaluated,
+            boxes: self.budget.boxes(),
+            boxes_open: ended.open.len() as u64,
+            gap: ended.gap,
+            decided,
+            undecided,
+        };
+        if found.boxes_open == 0 {
+            self.journal.finish(&found);
+        }
+        found
+    }
+
+    /// Lists what was found, with all ties.
+    pub(super) fn listed(&self, whole: Option<&Problem<'p>>, found: FoundInShard) -> ExactOutcome {
+        let FoundInShard { designs_evaluated, boxes, boxes_open, gap, decided: mut front, undecided, .. } =
+            found;
+        front.extend(undecided);
+        let (mut front, ties_listed) = match whole {
             Some(whole) => whole.with_ties(&front, self.most_with_ties),
             None => (front, true),
         };
         front.sort_unstable_by_key(|c| c.number);
         // Tied kinds may stand for the same design.
         front.dedup_by_key(|c| c.number);
-        let outcome = ExactOutcome {
+        ExactOutcome {
             // Also of a space of which nothing was compiled because no option of a level can hold.
-            designs_total: self.space.designs(self.catalogs).unwrap_or(u128::MAX),
+            designs_total: self.space.designs_with(self.joints()).unwrap_or(u128::MAX),
             designs_evaluated,
-            boxes: self.budget.boxes(),
-            boxes_open: ended.open.len() as u64,
-            gap: ended.gap,
+            boxes,
+            boxes_open,
+            gap,
             front,
             ties_listed,
-        };
-        if outcome.boxes_open == 0 {
-            self.journal.finish(&outcome);
         }
-        outcome
     }
 
-    /// Searches a compiled space in passes. `is_new` tells whether no designs are known at the start.
+    /// Whether a space is so large that it is searched region by region.
+    fn is_by_regions(&self, whole: &Problem) -> bool {
+        whole.designs() as f64 > self.regions_from
+    }
+
+    /// Searches some boxes of a compiled space in passes. `is_new` tells whether no designs are known at the start.
     fn search(
         &self,
-        whole: &Problem<'p>,
+        (whole, boxes): (&Problem<'p>, &[DesignBox]),
         is_new: bool,
         state: &mut SearchState,
         live: Option<&Live>,
     ) -> Ended {
-        let designs = whole.designs() as f64;
-        let by_regions = designs > self.regions_from;
+        let (designs, by_regions) = (whole.designs() as f64, self.is_by_regions(whole));
         // Small spaces need no passes with slack. With given designs there is something to prune with from the start.
         let in_passes = is_new && (by_regions || designs > LARGE);
         let early = live.filter(|_| in_passes).map(|live| Early::new(&self.budget, whole, live));
@@ -240,15 +315,16 @@ impl<'p> Exact<'p> {
             open = if by_regions {
                 self.journal.begin_pass(&self.budget, || between(state));
                 let seen = (live, || self.journal.keep_start());
-                pass_by_regions(&self.budget, whole, state, slack, self.regions_to, seen)
+                pass_by_regions(&self.budget, whole, state, (slack, boxes), self.regions_to, seen)
             } else {
                 let keep = |state: &SearchState, open: &[OpenBox]| {
                     self.journal.keep_round(&self.budget, || between(state), (slack, open));
                 };
-                pass_by_boxes(&self.budget, whole, state, (slack, from), live, keep)
+                let first = from.unwrap_or_else(|| OpenBox::first(whole, boxes));
+                pass_by_boxes(&self.budget, whole, state, (slack, first), live, keep)
             };
             if !open.is_empty() {
-                // What was told once stays true of the designs found since.
+                // A gap that was reported once stays proved for the designs found since.
                 let told = live.and_then(|live| live.known().gap);
                 let of_early = early.and_then(|early| early.into_state(state));
                 let of_open = gap(&open, &state.front()).map(|gap| gap.max(slack));
@@ -262,7 +338,7 @@ impl<'p> Exact<'p> {
         Ended { gap: done.last().map(|pass| pass.slack), open }
     }
 
-    /// Finds the first incumbents. Spaces that are searched by regions repay a genetic algorithm.
+    /// Finds the first incumbents by probes. If the space is searched by regions, a genetic algorithm improves them.
     fn first_incumbents(
         &self,
         whole: &Problem<'p>,

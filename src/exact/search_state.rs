@@ -1,4 +1,4 @@
-//! The state of a search, and what a task adds to it.
+//! The state of a search, and the findings that a task adds to it.
 
 use super::bound::BoxBound;
 use super::incumbents::{Incumbents, is_better};
@@ -9,22 +9,25 @@ use crate::search::sweep::{Candidate, SLACK};
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 
-/// Above this number, dominated candidates are removed whenever the number of candidates reaches a power of two.
+/// Number of candidates above which the dominated ones are removed from time to time: whenever the number reaches a
+/// power of two.
 const BUFFER: usize = 4096;
 
 /// The state that all tasks of a round share.
 #[derive(Default)]
 pub(super) struct SearchState {
     pub incumbents: Incumbents,
-    /// Numbers of the designs that were tried as incumbents.
+    /// Numbers of the designs that were evaluated as possible incumbents.
     pub tried: HashSet<u128>,
+    /// Designs found that meet every constraint; dominated ones among them are removed from time to time.
     kept: Vec<Candidate>,
     /// Designs for which rounding leaves open whether a part carries its demand. The full model judges them.
     undecided: Vec<Candidate>,
+    /// Number of designs whose three objectives were computed.
     pub evaluated: u64,
 }
 
-/// The state between two rounds, as it is kept for another process.
+/// The state between two rounds, in the form that is saved for another process.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(super) struct KeptState {
     incumbents: Vec<Objectives>,
@@ -34,17 +37,21 @@ pub(super) struct KeptState {
     evaluated: u64,
 }
 
-/// The findings of a task, before they are made known to other tasks.
+/// The findings of a task before other tasks know them.
 #[derive(Default)]
 pub(super) struct Findings {
+    /// Designs found that meet every constraint.
     pub kept: Vec<Candidate>,
+    /// Designs for which rounding leaves open whether a part carries its demand.
     pub undecided: Vec<Candidate>,
+    /// Numbers of the designs that were evaluated as possible incumbents.
     pub tried: Vec<u128>,
+    /// Number of designs whose three objectives were computed.
     pub evaluated: u64,
 }
 
 impl Findings {
-    /// Adds the findings of another task.
+    /// Appends the findings of another task to these findings.
     pub(super) fn append(&mut self, mut other: Self) {
         self.kept.append(&mut other.kept);
         self.undecided.append(&mut other.undecided);
@@ -60,12 +67,12 @@ impl Findings {
 }
 
 impl SearchState {
-    /// The state of a search that begins. If one objective is given, it alone counts.
+    /// The state at the beginning of a search. If one objective is given, it alone counts.
     pub(super) fn toward(only: Option<Objective>) -> Self {
         Self { incumbents: Incumbents::toward(only), ..Self::default() }
     }
 
-    /// What another process needs to go on.
+    /// The state that another process needs to continue the search.
     pub(super) fn to_kept(&self) -> KeptState {
         let mut tried: Vec<u128> = self.tried.iter().copied().collect();
         tried.sort_unstable();
@@ -78,7 +85,8 @@ impl SearchState {
         }
     }
 
-    /// The state that an earlier process kept. Its designs are entered in the same order, so that the state is the same.
+    /// Restores the state that an earlier process saved. Its designs are entered in the same order, so that the
+    /// restored state equals the saved one. `only` is the only objective that counts, if there is one.
     pub(super) fn from_kept(of: KeptState, only: Option<Objective>) -> Self {
         let KeptState { incumbents, tried, kept, undecided, evaluated } = of;
         let mut state = Self::toward(only);
@@ -86,7 +94,7 @@ impl SearchState {
         Self { tried: tried.into_iter().collect(), kept, undecided, evaluated, ..state }
     }
 
-    /// Adds the objectives of a known design, from whatever source.
+    /// Adds the objectives of a design that is known from elsewhere. The design prunes but is not listed.
     pub(super) fn enter(&mut self, objectives: &Objectives) {
         self.incumbents.enter(objectives);
     }
@@ -98,8 +106,9 @@ impl SearchState {
         exact_front(&points).unwrap_or_default().into_iter().map(|i| self.kept[i].objectives).collect()
     }
 
-    /// What there is to tell of the search, with this front and this many boxes or regions to bound. `None` of a gap says
-    /// nothing new.
+    /// The progress of the search as other threads read it. `front` are the designs found that no other dominates,
+    /// `open` is the number of open boxes or regions, and `gap` a gap that was proved. If it is `None`, the gap
+    /// reported before remains.
     pub(super) fn known(&self, front: &[Objectives], open: usize, gap: Option<f64>) -> Known {
         Known {
             boxes_open: open as u64,
@@ -110,7 +119,7 @@ impl SearchState {
         }
     }
 
-    /// Takes in the findings of a task.
+    /// Adds the findings of a task to the state.
     pub(super) fn learn(&mut self, findings: Findings) {
         self.evaluated += findings.evaluated;
         self.tried.extend(findings.tried);
@@ -124,19 +133,22 @@ impl SearchState {
         }
     }
 
-    /// The designs found that no other design dominates, in ascending order, followed by the undecided designs.
-    pub(super) fn into_front(self) -> Vec<Candidate> {
-        let mut front = self.kept;
-        clear(&mut front);
-        front.sort_unstable_by_key(|c| c.number);
-        front.dedup_by_key(|c| c.number);
-        // A design that would have been pruned had it come later is removed too, so that the result does not
-        // depend on the order of discovery.
-        let all = front.clone();
-        front.retain(|c| !all.iter().any(|other| is_better(&other.objectives, &c.objectives)));
-        front.extend(self.undecided);
-        front
+    /// The designs found that no other design dominates, in ascending order, and the undecided designs.
+    pub(super) fn into_found(self) -> [Vec<Candidate>; 2] {
+        [nondominated(self.kept), self.undecided]
     }
+}
+
+/// The designs that no other of them dominates, in ascending order.
+pub(super) fn nondominated(mut front: Vec<Candidate>) -> Vec<Candidate> {
+    clear(&mut front);
+    front.sort_unstable_by_key(|c| c.number);
+    front.dedup_by_key(|c| c.number);
+    // A design that would have been pruned had it come later is removed too, so that the result does not
+    // depend on the order of discovery.
+    let all = front.clone();
+    front.retain(|c| !all.iter().any(|other| is_better(&other.objectives, &c.objectives)));
+    front
 }
 
 /// Removes the candidates that another candidate dominates.

@@ -1,13 +1,13 @@
 //! Trial shapes, which give an upper bound of the lowest mode of every arm in a box.
 //!
-//! For any motion `x` of an arm, `λ₁ ≤ xᵀKx / xᵀMx` (Rayleigh). In strain coordinates `K` is diagonal, so
-//! `xᵀKx` is a sum over the stiffnesses of the parts. The inertia of the arm does not depend on its
-//! stiffness, so `xᵀMx` is a sum over the masses and line inertias, and no factor is negative. A shape is
-//! thus two lists of numbers. With every stiffness at its greatest and every inertia at its least, the
-//! quotient bounds the lowest mode of every member of the box, whatever the shape is.
+//! For any motion `x` of an arm, `λ₁ ≤ xᵀKx / xᵀMx` (Rayleigh). In strain coordinates `K` is diagonal, so `xᵀKx` is a
+//! sum over the stiffnesses of the parts. The inertia of the arm does not depend on its stiffness, so `xᵀMx` is a sum
+//! over the masses and line inertias, and no coefficient is negative. It is therefore enough to store two lists of
+//! coefficients for each shape. With every stiffness at its greatest and every inertia at its least, the quotient
+//! bounds the lowest mode of every member of the box, whatever the shape is.
 //!
-//! The bound is sharp if the shape is close to the box's own mode. One step of inverse iteration from the
-//! shape of the parent box is enough.
+//! The bound is sharp if the shape is close to the lowest mode of the box's ideal arm. One step of inverse iteration
+//! from the shape of the parent box is enough.
 
 use super::parts::{INERTIAS, STIFFNESSES, inertia};
 use super::pose::{
@@ -17,29 +17,32 @@ use crate::mechanics::{Twist, Wrench, angular, linear, stack};
 use nalgebra::{DVector, SMatrix, SVector, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// A motion of the arm, with the strain and kinetic energy of each piece. Pieces are counted from the tip.
+/// A motion of the arm, with the coefficients of its strain energy and kinetic energy for each piece. Pieces are
+/// counted from the tip.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct Shape {
     /// Strain coordinates: [`COORDINATES`] places for each piece, of which a joint uses the first three.
     x: Vec<f64>,
-    /// `xᵀKx` per unit of each stiffness of each piece.
+    /// Coefficients of `xᵀKx` (twice the strain energy): one for each stiffness of each piece.
     pub strain: Vec<[f64; STIFFNESSES]>,
-    /// `xᵀMx` per unit of each inertia of each piece.
+    /// Coefficients of `xᵀMx` (twice the kinetic energy per squared angular frequency): one for each line inertia of
+    /// each piece.
     pub kinetic: Vec<[f64; INERTIAS]>,
-    /// `xᵀMx` of the payload and of given bodies.
+    /// Constant term of `xᵀMx`, from the payload and the bodies that the study gives.
     pub kinetic_fixed: f64,
 }
 
-/// The stiffnesses and inertias of an arm, piece by piece from the tip. For a box they are the best of each: an ideal
-/// arm that need not be a member.
+/// The stiffnesses and inertias of an arm, piece by piece from the tip. For a box they are the greatest stiffnesses and
+/// the least inertias: an ideal arm that need not be a member.
 pub(super) struct Ideal<'a> {
     pub stiffness: &'a [[f64; STIFFNESSES]],
     pub inertia: &'a [[f64; INERTIAS]],
 }
 
 impl Shape {
-    /// A low mode shape of an ideal arm. It starts as the deformation under an acceleration of the base, and is kept
-    /// orthogonal to the other shapes.
+    /// A shape of a low mode of an ideal arm, found by `steps` steps of inverse iteration. The first shape is the
+    /// deformation under an acceleration of the base along `direction`. The shape is kept orthogonal to the shapes in
+    /// `others`, so that it becomes another mode than these.
     pub(super) fn start(
         pose: &Pose,
         ideal: &Ideal,
@@ -64,7 +67,8 @@ impl Shape {
         shape
     }
 
-    /// One step of inverse iteration towards the lowest mode of an ideal arm.
+    /// One step of inverse iteration of this shape towards the lowest mode of an ideal arm that is orthogonal to the
+    /// shapes in `others`.
     pub(super) fn improve(&mut self, pose: &Pose, ideal: &Ideal, others: &[Self], work: &mut Work) {
         self.iterate(pose, ideal, &Twist::zeros(), work);
         self.clear_of(pose, ideal, others);
@@ -96,7 +100,8 @@ impl Shape {
         kinetic
     }
 
-    /// Inverse iteration: `x ← C M x`, where the base moves by `base` on the right-hand side.
+    /// Replaces this shape `x` by `C M x`, one step of inverse iteration, in which the base moves by `base`. Then it is
+    /// scaled.
     fn iterate(&mut self, pose: &Pose, ideal: &Ideal, base: &Twist, work: &mut Work) {
         inertia_forces(pose, ideal.inertia, base, &self.x, work);
         let mut largest = 0.0f64;
@@ -106,7 +111,7 @@ impl Shape {
             let stiffness = &ideal.stiffness[piece];
             for (c, (x, force)) in x.iter_mut().zip(forces).enumerate().take(posed.coordinates()) {
                 let stiffness = posed.coordinate_stiffness(c, stiffness);
-                // A stiffness of 0 stands for a coordinate that does not yield.
+                // A stiffness of 0 stands for a rigid coordinate.
                 *x = if stiffness > 0.0 { force / stiffness } else { 0.0 };
                 largest = largest.max(x.abs());
             }
@@ -117,7 +122,8 @@ impl Shape {
         }
     }
 
-    /// Makes the shape orthogonal to the other shapes in the sense of `K`, so that it converges to another mode.
+    /// Makes this shape orthogonal to the shapes in `others` with respect to the stiffness matrix `K`, so that it
+    /// converges to another mode than these.
     fn clear_of(&mut self, pose: &Pose, ideal: &Ideal, others: &[Self]) {
         for other in others {
             let (mut common, mut own) = (0.0, 0.0);
@@ -135,7 +141,7 @@ impl Shape {
         }
     }
 
-    /// Computes the part of each piece in `xᵀKx` and in `xᵀMx`.
+    /// Computes the coefficients of `xᵀKx` and of `xᵀMx` for each piece.
     fn energies(&mut self, pose: &Pose) {
         let mut twist = Twist::zeros();
         self.kinetic_fixed = 0.0;
@@ -147,7 +153,8 @@ impl Shape {
                     kinetic[inertia::MASS] = displacement(&twist, at_m).norm_squared();
                     strain[TORSION] = x[0] * x[0];
                     strain[TILT] = x[1] * x[1] + x[2] * x[2];
-                    // A joint's mass is inboard of its springs, so it moves before their twists are added.
+                    // The mass of a joint is inboard of its springs, so its motion is computed before the motions of
+                    // the springs are added.
                     twist += axis * x[0];
                     add_tilts(across, x, &mut twist);
                 }
@@ -181,8 +188,9 @@ pub(super) fn products<const N: usize>(a: &[[f64; N]], b: &[[f64; N]]) -> f64 {
     a.iter().zip(b).map(|(a, b)| dot(a, b)).sum()
 }
 
-/// Computes `M x` into `work.forces`: the inertia forces on every coordinate when the arm moves by `x` and
-/// its base by `base`. One pass goes outward for the motion and one inward for the forces, without a matrix.
+/// Writes `M x` to `work.forces`: the inertia force on every coordinate, divided by the squared angular frequency, when
+/// the arm moves by `x` and its base by `base`. One pass goes outward and computes the motion, a second one goes inward
+/// and sums the forces. No matrix is formed.
 pub(super) fn inertia_forces(
     pose: &Pose,
     inertia: &[[f64; INERTIAS]],
@@ -237,7 +245,7 @@ pub(super) fn inertia_forces(
 }
 
 impl PosedPiece {
-    /// Number of strain coordinates.
+    /// Number of strain coordinates of the piece.
     pub(super) fn coordinates(&self) -> usize {
         match self {
             PosedPiece::Joint { across: None, .. } => 1,
@@ -247,7 +255,7 @@ impl PosedPiece {
         }
     }
 
-    /// Stiffness of a coordinate; 0 for a piece that does not yield.
+    /// Stiffness of a coordinate of the piece for these section or joint stiffnesses; 0 for a rigid coordinate.
     #[inline]
     pub(super) fn coordinate_stiffness(&self, coordinate: usize, stiffness: &[f64; STIFFNESSES]) -> f64 {
         match self {
@@ -259,7 +267,8 @@ impl PosedPiece {
     }
 }
 
-/// Adds the tilts of a joint's bearing to the motion of everything outboard.
+/// Adds the motion that the two tilts of a joint's bearing cause to `twist`, the motion of everything outboard. `x`
+/// holds the coordinates of the joint.
 #[inline]
 fn add_tilts(across: &Option<[Twist; 2]>, x: &[f64], twist: &mut Twist) {
     for (tilt, x) in across.iter().flatten().zip(&x[TILT..]) {
@@ -267,33 +276,37 @@ fn add_tilts(across: &Option<[Twist; 2]>, x: &[f64], twist: &mut Twist) {
     }
 }
 
-/// Buffers of one step.
+/// Buffers of one step of inverse iteration.
 #[derive(Default)]
 pub(super) struct Work {
     momenta: Vec<Momentum>,
-    /// Force on each coordinate, [`COORDINATES`] places for each piece.
+    /// Inertia force on each strain coordinate. There are [`COORDINATES`] places for each piece, tip first.
     pub forces: Vec<f64>,
 }
 
-/// The momentum of a piece, kept for the way inward.
+/// The momentum of a piece, stored on the way outward and used on the way inward.
 enum Momentum {
     Body(Wrench),
     Tube(TubeMomentum),
 }
 
+/// The momentum of a tube in its section frame: force and moment at the root, and the generalized force on each
+/// coordinate.
 struct TubeMomentum {
     root_force: Vector3<f64>,
     root_moment: Vector3<f64>,
     forces: [f64; COORDINATES],
 }
 
+/// The displacement of a point \[m\] of a body that moves by a kinematic twist.
 #[inline]
 fn displacement(twist: &Twist, at_m: &Vector3<f64>) -> Vector3<f64> {
     linear(twist) + angular(twist).cross(at_m)
 }
 
 impl PosedTube {
-    /// Adds to `twist`, the motion of everything outboard, the part of the tube's own coordinates.
+    /// Adds the motion of the tube's end relative to its root to `twist`, the motion of everything outboard. `x` holds
+    /// the strain coordinates of the tube.
     #[inline]
     fn carry(&self, twist: &mut Twist, x: &[f64]) {
         for (end, coordinate) in ENDS.into_iter().enumerate() {
@@ -302,7 +315,8 @@ impl PosedTube {
     }
 }
 
-/// The motion of a tube, separated by its planes.
+/// The motion of a tube in its section frame, separated into two planes of bending (`z`, `y`), rotation about its axis
+/// (`turn`) and translation along it (`along`).
 struct Local {
     z: SVector<f64, 9>,
     y: SVector<f64, 9>,
@@ -323,6 +337,7 @@ impl Local {
         }
     }
 
+    /// The momentum of the tube with the line inertias `line`, with the given bodies on it.
     #[inline]
     fn momentum(&self, tube: &PosedTube, line: &[f64; INERTIAS]) -> TubeMomentum {
         let f = &tube.forms;
@@ -348,7 +363,7 @@ impl Local {
         out
     }
 
-    /// Translation and rotation of the root, then all coordinates.
+    /// Translation and rotation of the root, and then all coordinates in the order of their indices.
     fn all(&self) -> DVector<f64> {
         let (z, y, turn, along) = (&self.z, &self.y, &self.turn, &self.along);
         DVector::from_row_slice(&[
@@ -357,6 +372,7 @@ impl Local {
         ])
     }
 
+    /// The coefficients of `xᵀMx` for each line inertia of the tube.
     #[inline]
     fn kinetic(&self, tube: &PosedTube) -> [f64; INERTIAS] {
         let f = &tube.forms;

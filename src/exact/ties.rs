@@ -1,4 +1,4 @@
-//! Tied designs: those that differ only in drives of one kind.
+//! Tied designs, which differ only in drives of one kind, and their listing.
 
 use super::problem::{Part, Problem};
 use super::work::Work;
@@ -7,9 +7,9 @@ use crate::space::design::{number, options};
 use std::collections::{BTreeSet, HashMap};
 
 impl Problem<'_> {
-    /// All designs for which the designs in `found` stand. A drive of such a design stands for all drives of its
-    /// kind. If there are more than `most` designs, only the first for each of `found` is returned. The flag says
-    /// whether all are returned.
+    /// All designs that the designs in `found` represent. The drive of such a design represents all drives of its kind
+    /// (equal mass, curve and bearing stiffness). If there are more than `most` designs, only the first one for each
+    /// design in `found` is returned. The flag is `true` if all are returned.
     pub(super) fn with_ties(&self, found: &[Candidate], most: usize) -> (Vec<Candidate>, bool) {
         let with_ties: Vec<(&Candidate, Vec<Vec<u32>>)> = self.feasible_drives(found);
         let count = |lists: &Vec<Vec<u32>>| lists.iter().map(|list| list.len() as f64).product::<f64>();
@@ -19,8 +19,8 @@ impl Problem<'_> {
         for (candidate, lists) in &with_ties {
             let mut chosen: Vec<Vec<u32>> = vec![Vec::new()];
             for list in lists {
-                // Listing all ties of some designs and not of others would be arbitrary, so it is all or one
-                // of each.
+                // To list all ties of some designs and not of others would be arbitrary. So either all are listed or
+                // one for each design.
                 let choices = if lists_all { &list[..] } else { &list[..1] };
                 let longer = |start: Vec<u32>| choices.iter().map(move |o| [&start[..], &[*o]].concat());
                 chosen = chosen.into_iter().flat_map(longer).collect();
@@ -34,8 +34,9 @@ impl Problem<'_> {
         (designs, lists_all)
     }
 
-    /// For each design found, the drives at each level, tip first, that are of the same kind as the design's drive
-    /// and carry their demand. Drives that carry it by more than rounding come first.
+    /// For each design in `found`, the options of each level that may replace its own, tip first. For a level of
+    /// drives, these are the drives of the same kind that carry the demand. Drives that carry it by more than rounding
+    /// come first.
     fn feasible_drives<'f>(&self, found: &'f [Candidate]) -> Vec<(&'f Candidate, Vec<Vec<u32>>)> {
         let chosen: Vec<Option<Vec<u32>>> =
             found.iter().map(|candidate| options(&self.level_sizes, candidate.number)).collect();
@@ -55,7 +56,8 @@ impl Problem<'_> {
                         let holds = |drive: &&u32| sized.table.limits(**drive as usize).hold(&asked.demand);
                         let mut drives: Vec<u32> =
                             kinds.drives(option).iter().filter(holds).copied().collect();
-                        // Drives that carry the demand whatever rounding does come first.
+                        // Drives that carry even the greatest demand come first: rounding cannot change the result for
+                        // them.
                         let surely = |drive: &u32| {
                             let limits = sized.table.limits(*drive as usize);
                             work.greatest_demands[piece].as_ref().is_some_and(|most| limits.hold(most))
@@ -71,7 +73,7 @@ impl Problem<'_> {
         pairs.filter_map(|(candidate, options)| Some((candidate, lists_of(options.as_ref()?)?))).collect()
     }
 
-    /// For each level, the leaf of each option that some design has.
+    /// For each level, the leaf of each option that one of the designs has. Each design is given by its options.
     fn leaves_of(&self, designs: &[Option<Vec<u32>>]) -> Vec<HashMap<u32, u32>> {
         let of_level = |(level, &piece): (usize, &usize)| {
             let wanted: BTreeSet<u32> = designs.iter().flatten().map(|options| options[level]).collect();

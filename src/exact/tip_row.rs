@@ -1,26 +1,31 @@
-//! The displacement of the tip along a direction, as a sum over the parts of a box's members.
+//! The row of the tip's displacement: the displacement along a fixed direction as a sum over the parts of a box's
+//! members.
 
 use super::parts::STIFFNESSES;
 use super::problem::{Part, Problem};
 use super::work::Work;
 
-/// The displacement of the tip in a judged case, along the direction of its least deflection.
+/// The displacement of the tip in a judged case along a fixed direction, as a linear function of the numbers of the
+/// parts. The direction is that of the tip's displacement when it is least over the box.
 pub(super) struct TipRow {
+    /// Index of the case.
     pub case: usize,
-    /// Displacement per newton of each piece's weight \[m/N\], through tubes, bearings and gears of a single
-    /// slope.
+    /// Displacement of the tip along the direction per newton of each piece's weight \[m/N\]. It comes about through
+    /// tubes, bearings and those gears that keep a single slope.
     pub per_n: Vec<f64>,
-    /// Displacement per twist of each joint \[m/rad\].
+    /// Displacement of the tip along the direction per radian of each joint's torsion \[m/rad\]; 0 for other pieces.
     pub joints: Vec<f64>,
-    /// For each gear with a single slope, the torque at which it twists \[N m\]; `None` for other pieces and for
-    /// gears whose slope may change.
+    /// For each gear that keeps a single slope, the torque at which its torsion curve is evaluated \[N m\]. `None` for
+    /// other pieces and for gears whose slope may change.
     pub torques_nm: Vec<Option<f64>>,
-    /// Displacement per compliance of each tube and of each joint's bearing.
+    /// Displacement of the tip along the direction per unit of each compliance of a tube, or of a joint's bearing; one
+    /// entry for each piece.
     pub compliances: Vec<[f64; STIFFNESSES]>,
 }
 
 impl TipRow {
-    /// The tip row of a judged case, and the part of it that no choice changes \[m\].
+    /// The row of the tip's displacement in a judged case, and the part of this displacement that no choice changes
+    /// \[m\]. `judged` is the index among the judged cases and `case` that among all cases.
     pub(super) fn new(problem: &Problem, judged: usize, case: usize, work: &Work) -> (Self, f64) {
         let pose = &problem.poses[case];
         let pieces = problem.parts.len();
@@ -42,7 +47,8 @@ impl TipRow {
                 let [less, more] = curve.twist_of_play(play, force);
                 fixed_m += tip_per_unit * if tip_per_unit > 0.0 { less } else { more };
                 let known = matches!(problem.parts[row.piece], Part::Drives { .. } | Part::Given { .. });
-                // A gear whose slope may change gets a torque of its own, with rows that balance it.
+                // A gear whose slope may change is evaluated at a torque of its own, which extra rows force to equal
+                // the torque of the weights.
                 if !known || !curve.keeps_its_slope(play, [least_nm, most_nm], breaks) {
                     continue;
                 }

@@ -1,19 +1,19 @@
-//! Torsion curves of gears, and boxes of curves.
+//! Torsion curves of gears (twist as a function of torque), and envelopes of several curves.
 
 use super::joint_play::JointPlay;
 use crate::arm::joint_law::{Curve, JointLaw, Segment, Windup};
 
-/// Stiffness that stands for a rigid gear in series with lost motion \[N m/rad\]. It adds at most a part in 1e9 to
-/// any compliance.
+/// Stiffness that stands for a rigid gear in series with lost motion \[N m/rad\]. It changes no compliance by more than
+/// a fraction of 1e-9.
 const RIGID_NM_PER_RAD: f64 = 1e18;
 
-/// A torsion curve prepared for many evaluations, without divisions.
+/// A torsion curve with precomputed compliances, so that its evaluation needs no division.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Torsion {
     pub windup: Windup,
-    /// Compliance of each segment \[rad/(N m)\]. `begins_rad` holds the twist where the second and the third segment
-    /// begin \[rad\].
+    /// Compliance of each of the three segments \[rad/(N m)\].
     compliance: [f64; 3],
+    /// Twist at which the second and the third segment begin \[rad\].
     begins_rad: [f64; 2],
 }
 
@@ -21,12 +21,12 @@ impl Torsion {
     fn new(windup: Windup) -> Self {
         let compliance = windup.segments().map(|s| 1.0 / s.stiffness_nm_per_rad);
         let second = windup.t1_nm * compliance[0];
-        // A segment that never begins has no length.
+        // A second segment that never begins has no length.
         let third = second + (windup.t2_nm - windup.t1_nm).max(0.0) * compliance[1];
         Self { windup, compliance, begins_rad: [second, third] }
     }
 
-    /// Twist under a torque \[rad\].
+    /// Twist \[rad\] under a torque \[N m\] of either sign.
     #[inline]
     pub(super) fn angle_rad(&self, torque_nm: f64) -> f64 {
         let t = torque_nm.abs();
@@ -34,7 +34,7 @@ impl Torsion {
         self.angle_in(segment, t).copysign(torque_nm)
     }
 
-    /// Twist under a torque that is not negative, if the torque is in this segment \[rad\].
+    /// Twist \[rad\] under a torque that is not negative \[N m\] and that lies in this segment.
     #[inline]
     pub(super) fn angle_in(&self, segment: usize, t_nm: f64) -> f64 {
         let Windup { t1_nm, t2_nm, .. } = self.windup;
@@ -46,19 +46,19 @@ impl Torsion {
     }
 }
 
-/// A box of torsion curves, between its stiffest and its softest envelope.
+/// A set of torsion curves, described by its stiffest and its softest envelope.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct CurveBox {
-    /// A curve that is nowhere softer than a member. For a single member it is the member's curve.
+    /// A curve that is nowhere softer than any member. For a single member it is the member's curve itself.
     pub stiff: Torsion,
-    /// A curve that is nowhere stiffer than a member. For a single member it is the member's curve.
+    /// A curve that is nowhere stiffer than any member. For a single member it is the member's curve itself.
     pub soft: Torsion,
-    /// Whether modes use the slope of the first segment under any torque.
+    /// Whether modes use the slope of the first segment, K1, whatever the torque is.
     pub k1_in_modes: bool,
 }
 
 impl CurveBox {
-    /// The box of one joint's law without its play. `None` for a joint that does not twist.
+    /// The box of the torsion curve in one joint's law, without play. `None` for a rigid joint without lost motion.
     pub(super) fn of(law: &JointLaw) -> Option<Self> {
         let curve = match law.without_play() {
             Curve::Rigid if law.lost_motion.is_some() => Curve::Linear(RIGID_NM_PER_RAD),
@@ -68,8 +68,8 @@ impl CurveBox {
         Some(Self { stiff: torsion, soft: torsion, k1_in_modes: !matches!(curve, Curve::Windup(_)) })
     }
 
-    /// Whether, for each gear of the box, modes see the same slope and the same play under all torques with
-    /// magnitudes in an interval \[N m\].
+    /// Whether every gear of the box has a single slope in the modes, and a single play, under all torques whose
+    /// magnitude lies between `least_nm` and `most_nm` \[N m\]. `breaks` are the break points of the gears' curves.
     pub(super) fn keeps_its_slope(
         &self,
         play: Option<&JointPlay>,
@@ -85,23 +85,26 @@ impl CurveBox {
         keeps_its_segment && play.is_none_or(|play| play.stays(most_nm))
     }
 
-    /// Greatest slope that modes may see at torque magnitudes in an interval \[N m/rad\].
+    /// Greatest slope that a gear of the box may have in the modes \[N m/rad\] under torques whose magnitude lies
+    /// between `least_nm` and `most_nm` \[N m\].
     pub(super) fn stiffest(&self, least_nm: f64, most_nm: f64) -> f64 {
         self.slopes(&self.stiff.windup, least_nm, most_nm).fold(0.0, f64::max)
     }
 
-    /// Least slope that modes may see at torque magnitudes in an interval \[N m/rad\].
+    /// Least slope that a gear of the box may have in the modes \[N m/rad\] under torques whose magnitude lies between
+    /// `least_nm` and `most_nm` \[N m\].
     pub(super) fn softest(&self, least_nm: f64, most_nm: f64) -> f64 {
         self.slopes(&self.soft.windup, least_nm, most_nm).fold(f64::INFINITY, f64::min)
     }
 
-    /// Greatest slope of the static twist at torque magnitudes in an interval \[N m/rad\]. It also counts if modes
-    /// use the slope of the first segment.
+    /// Greatest slope of the torsion curves \[N m/rad\] for static twist under torques whose magnitude lies between
+    /// `least_nm` and `most_nm` \[N m\]. Static twist uses the slope at the torque even if modes use K1.
     pub(super) fn steepest(&self, least_nm: f64, most_nm: f64) -> f64 {
         slopes(&self.stiff.windup, least_nm, most_nm).fold(0.0, f64::max)
     }
 
-    /// Least and greatest twist for torques in an interval, with play \[rad\].
+    /// The least and the greatest twist over the members, with play \[rad\], under torques between `low` and `high` \[N
+    /// m\].
     pub(super) fn twist(&self, play: Option<&JointPlay>, [low, high]: [f64; 2]) -> [f64; 2] {
         let least = if low >= 0.0 { &self.stiff } else { &self.soft }.angle_rad(low);
         let most = if high >= 0.0 { &self.soft } else { &self.stiff }.angle_rad(high);
@@ -109,18 +112,21 @@ impl CurveBox {
         [least + less, most + more]
     }
 
-    /// The part of the twist that comes from play \[rad\].
+    /// The least and the greatest twist that play adds over the members \[rad\], under torques in the interval
+    /// `between_nm` \[N m\].
     pub(super) fn twist_of_play(&self, play: Option<&JointPlay>, between_nm: [f64; 2]) -> [f64; 2] {
         let middle = [&self.stiff, &self.soft].map(|torsion| torsion.compliance[1]);
         play.map_or([0.0; 2], |play| play.twist(middle, between_nm))
     }
 
-    /// The slopes that modes may see at torque magnitudes in an interval.
+    /// The slopes that the curve `w` may have in the modes \[N m/rad\] under torques whose magnitude lies between
+    /// `least_nm` and `most_nm` \[N m\].
     fn slopes(&self, w: &Windup, least_nm: f64, most_nm: f64) -> impl Iterator<Item = f64> {
         let (least_nm, most_nm) = if self.k1_in_modes { (0.0, 0.0) } else { (least_nm, most_nm) };
         slopes(w, least_nm, most_nm)
     }
 
+    /// The box of all members of this box and of `other`.
     pub(super) fn join(&self, other: &Self) -> Self {
         Self {
             stiff: join(rising, [&self.stiff, &other.stiff], f64::max, f64::min),
@@ -130,8 +136,9 @@ impl CurveBox {
     }
 }
 
-/// A curve that bounds two others on one side. Its slopes and break points are the extremes of theirs, after the
-/// slopes of each were made to rise with torque.
+/// A curve that bounds the curves `both` on one side. First `lifted` replaces each of them by a curve whose slope does
+/// not fall with torque. Then `slope` selects the slope of each segment, and `end` the break points: the larger or the
+/// smaller of the two.
 fn join(
     lifted: fn(&Windup) -> Windup,
     both: [&Torsion; 2],
@@ -148,33 +155,37 @@ fn join(
     })
 }
 
-/// The curve with the least slopes that do not fall with torque and are nowhere below those of `w`. Of several such
-/// curves, the greatest slopes and the least break points make a curve that is nowhere softer than any of them.
+/// The softest curve whose slope does not fall with torque and is nowhere below that of `w`. If several such curves are
+/// combined by the greatest slopes and the least break points, the result is nowhere softer than any of them.
 fn rising(w: &Windup) -> Windup {
     let k2 = w.k1_nm_per_rad.max(w.k2_nm_per_rad);
     Windup { k2_nm_per_rad: k2, k3_nm_per_rad: k2.max(w.k3_nm_per_rad), ..*w }
 }
 
-/// The curve with the greatest slopes that do not fall with torque and are nowhere above those of `w`.
+/// The stiffest curve whose slope does not fall with torque and is nowhere above that of `w`.
 fn rising_below(w: &Windup) -> Windup {
     let k2 = w.k2_nm_per_rad.min(w.k3_nm_per_rad);
     Windup { k1_nm_per_rad: k2.min(w.k1_nm_per_rad), k2_nm_per_rad: k2, ..*w }
 }
 
-/// The slopes of the segments that the torques of an interval touch. Torques are given by their magnitudes.
+/// The slopes of those segments of `w` \[N m/rad\] that contain a torque whose magnitude lies between `least_nm` and
+/// `most_nm` \[N m\].
 fn slopes(w: &Windup, least_nm: f64, most_nm: f64) -> impl Iterator<Item = f64> {
     // A break point belongs to the segment below it
     let touched = move |s: &Segment| least_nm <= s.to_nm && (most_nm > s.from_nm || s.from_nm == 0.0);
     w.segments().into_iter().filter(touched).map(|s| s.stiffness_nm_per_rad)
 }
 
-/// The break points of a set of curves, as bits on a logarithmic grid of about 5 %.
+/// A set of break points, stored as bits on a logarithmic grid of torque with steps of about 5 %.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct BreakPoints([u64; 4]);
 
 impl BreakPoints {
+    /// Number of grid cells.
     const CELLS: f64 = 256.0;
+    /// Number of factors of two that the grid spans.
     const OCTAVES: f64 = 18.0;
+    /// Binary logarithm of the torque at the lower end of the grid \[N m\].
     const LEAST_LOG2: f64 = -4.0;
 
     /// The break points of one curve.
@@ -186,16 +197,18 @@ impl BreakPoints {
         })
     }
 
+    /// The break points of this set and of `other`.
     pub(super) fn join(&self, other: &Self) -> Self {
         Self(std::array::from_fn(|i| self.0[i] | other.0[i]))
     }
 
-    /// Whether a break point may lie between two torques \[N m\].
+    /// Whether the set may have a break point between two torques \[N m\]. The grid has steps of about 5 %, so the
+    /// answer may be `true` although the nearest break point lies just outside.
     fn any_between(&self, least_nm: f64, most_nm: f64) -> bool {
         (Self::cell(least_nm)..=Self::cell(most_nm)).any(|cell| self.0[cell / 64] >> (cell % 64) & 1 == 1)
     }
 
-    /// The grid cell of a torque. Torques beyond the grid count to its ends.
+    /// The index of the grid cell of a torque \[N m\]. Torques beyond the grid are assigned to its first or last cell.
     fn cell(t_nm: f64) -> usize {
         let at = (libm::log2(t_nm) - Self::LEAST_LOG2) * (Self::CELLS / Self::OCTAVES);
         at.clamp(0.0, Self::CELLS - 1.0) as usize
@@ -208,7 +221,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// The prepared curve equals the curve, and a box of curves encloses its members.
+        /// The curve with precomputed compliances equals the original curve, and a box of curves encloses its members.
         #[test]
         fn twists_are_those_of_the_curve_and_inside_every_box(
             slopes in prop::array::uniform6(0.1f64..3.0), ends in prop::array::uniform2((0.1f64..3.0, 0.0f64..3.0)),

@@ -1,59 +1,69 @@
-//! A binary tree over the options of one level. Each node is a box that encloses its members.
+//! A binary tree over the options of one level. Each node is a box: its bounds enclose the numbers of all options below
+//! it.
 //!
-//! A tree may also stand over some nodes of a base tree: the options that survived in a region. Such a tree
-//! shares the nodes of the base tree instead of copying them.
+//! A tree may also be built over some nodes of a base tree: those whose options may still belong to a design of a
+//! region. Such a tree shares the nodes of the base tree and does not copy them.
 
 use std::collections::{BTreeSet, BinaryHeap, HashMap};
 use std::sync::Arc;
 
-/// The bounds of all members of a node: a box of parts.
+/// The bounds of a box of parts: intervals that enclose the numbers of all its members.
 pub(super) trait Bounds: Clone {
     /// The box around two boxes.
     fn join(&self, other: &Self) -> Self;
 
-    /// Coordinates by which options are separated, scaled so that a greater spread matters more.
+    /// Coordinates by which options are separated into halves. A coordinate that matters more to the objectives is
+    /// scaled up, so that its spread is larger.
     fn key(&self) -> Key;
 }
 
-/// Coordinates of an option.
+/// Coordinates of an option by which a tree separates it from others.
 pub(super) type Key = [f64; 5];
 
-/// The base tree of a level, or a tree over some nodes of the base tree.
+/// A tree over the options of a level. It is either the base tree, which has all options, or a tree that is built over
+/// some nodes of the base tree.
 pub(super) struct Tree<B> {
     nodes: Vec<Node<B>>,
-    /// The base tree, if this is a tree over some of its nodes. Nodes of the base tree are then numbered from
-    /// [`WHOLE`] on.
+    /// The base tree, if this tree is built over some of its nodes; `None` for a base tree. In this tree, nodes of the
+    /// base tree are numbered from [`WHOLE`] on.
     whole: Option<Arc<Tree<B>>>,
-    /// The nodes of the base tree over which this tree stands.
+    /// The nodes of the base tree over which this tree is built.
     stands_on: Vec<u32>,
 }
 
-/// Number of the first node of the base tree, in a tree over some of its nodes.
+/// Offset of the node numbers of the base tree within a tree that is built over some of its nodes.
 const WHOLE: u32 = 1 << 31;
 
 /// One node of a [`Tree`].
 pub(super) struct Node<B> {
     pub bounds: B,
-    /// The coordinates by which the node is separated from others.
-    pub key: Key,
+    /// The coordinates by which the node is separated from others; `None` for a node that no tree will stand on.
+    key: Option<Key>,
     /// Number of options below the node.
     pub members: u32,
     /// The two halves of the node, or its single option.
     pub kind: NodeKind,
 }
 
-/// What is below a node.
+/// The two halves of a node or its single option.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum NodeKind {
-    /// Two halves.
+    /// Numbers of the two nodes into which the options are halved.
     Split([u32; 2]),
-    /// One option.
+    /// A leaf: the number of its only option.
     Option(u32),
 }
 
+impl<B: Bounds> Node<B> {
+    /// The coordinates by which the node is separated from others.
+    pub(super) fn key(&self) -> Key {
+        self.key.unwrap_or_else(|| self.bounds.key())
+    }
+}
+
 impl<B: Bounds> Tree<B> {
-    /// Builds a tree: halves the options at the median of the coordinate with the greatest spread, down to
-    /// single ones. `None` without options.
+    /// Builds a tree over options, each given by its number and its bounds. The options are halved at the median of the
+    /// coordinate with the greatest spread, down to single ones. `None` if there are no options.
     pub(super) fn build(options: impl Iterator<Item = (u32, B)>) -> Option<Self> {
         let options: Vec<(u32, B)> = options.collect();
         let item =
@@ -71,17 +81,16 @@ impl<B: Bounds> Tree<B> {
         Some(Self { nodes, whole: None, stands_on: vec![0] })
     }
 
-    /// A tree over some nodes of the base tree, none of which is below another. `None` if there are none.
+    /// A tree over the nodes `kept` of the base tree `tree`. None of these nodes may lie below another. `None` if
+    /// `kept` is empty.
     pub(super) fn over(tree: &Arc<Self>, kept: &[u32]) -> Option<Arc<Self>> {
         // Nothing was excluded, so the same tree serves.
         if tree.whole.is_some() && tree.stands_on == kept {
             return Some(Arc::clone(tree));
         }
         let whole = tree.whole.as_ref().unwrap_or(tree);
-        let item = |&at: &u32| {
-            let Node { members, key, .. } = *whole.node(at);
-            Item { at: WHOLE + at, members, key }
-        };
+        let item =
+            |&at: &u32| Item { at: WHOLE + at, members: whole.node(at).members, key: whole.node(at).key() };
         let mut items: Vec<Item> = kept.iter().map(item).collect();
         let mut nodes = Vec::with_capacity((2 * items.len()).max(1) - 1);
         match &items[..] {
@@ -101,8 +110,9 @@ impl<B: Bounds> Tree<B> {
         Some(Arc::new(Self { nodes, whole: Some(Arc::clone(whole)), stands_on: kept.to_vec() }))
     }
 
-    /// About `most` nodes of the base tree that cover the options below a node for which `may` is true. The node with
-    /// the most options is opened first.
+    /// About `most` nodes of the base tree that together contain every option below `node` for which `may` is true.
+    /// `may` is asked for boxes of options, so the nodes may also contain options for which it is false. The node with
+    /// the most options is divided first.
     pub(super) fn kept(&self, node: u32, most: usize, may: impl Fn(&B) -> bool) -> Vec<u32> {
         let mut heap = BinaryHeap::new();
         let mut enter = |at: u32| {
@@ -112,7 +122,7 @@ impl<B: Bounds> Tree<B> {
             }
         };
         match &self.whole {
-            // => The root covers every node over which the tree stands.
+            // => The root contains every node over which the tree is built.
             Some(_) if node == 0 => self.stands_on.iter().for_each(|&at| enter(at + WHOLE)),
             Some(_) => {
                 let mut open = vec![node];
@@ -142,13 +152,13 @@ impl<B: Bounds> Tree<B> {
         kept
     }
 
-    /// Number of options below some nodes of the base tree.
+    /// Number of options below the nodes `kept` of the base tree (the tree over all options of the level).
     pub(super) fn members_of(&self, kept: &[u32]) -> f64 {
         let whole = self.whole.as_deref().unwrap_or(self);
         kept.iter().map(|&at| f64::from(whole.node(at).members)).sum()
     }
 
-    /// The options below some nodes of the base tree, ascending.
+    /// The options below the nodes `kept` of the base tree (the tree over all options of the level), ascending.
     pub(super) fn options_of(&self, kept: &[u32]) -> Vec<u32> {
         let whole = self.whole.as_deref().unwrap_or(self);
         let (mut options, mut open) = (Vec::new(), kept.to_vec());
@@ -162,7 +172,7 @@ impl<B: Bounds> Tree<B> {
         options
     }
 
-    /// For each of these options, its leaf.
+    /// The leaf (node of a single option) of each option in `wanted`, by the number of the option.
     pub(super) fn leaves_of(&self, wanted: &BTreeSet<u32>) -> HashMap<u32, u32> {
         let nodes = self.nodes.iter().zip(0..);
         nodes
@@ -173,17 +183,17 @@ impl<B: Bounds> Tree<B> {
             .collect()
     }
 
-    /// A node of the base tree.
+    /// The node of the base tree with this number.
     pub(super) fn whole_node(&self, index: u32) -> &Node<B> {
         &self.whole.as_deref().unwrap_or(self).nodes[index as usize]
     }
 
-    /// Whether there is a node of this number, in a base tree.
+    /// Whether a base tree has a node with this number.
     pub(super) fn has(&self, index: u32) -> bool {
         (index as usize) < self.nodes.len()
     }
 
-    /// A node. The root is node 0.
+    /// The node with this number. The root is node 0.
     #[inline]
     pub(super) fn node(&self, index: u32) -> &Node<B> {
         match &self.whole {
@@ -192,7 +202,8 @@ impl<B: Bounds> Tree<B> {
         }
     }
 
-    /// The smallest node with all options below a node for which `holds` is true. `None` if there are none.
+    /// The smallest node at or below `node` that contains every option for which `holds` is true. For a box, `holds`
+    /// must be true if it is true for any option in the box. `None` if it is false for all options.
     pub(super) fn smallest_node(&self, mut node: u32, holds: impl Fn(&B) -> bool) -> Option<u32> {
         if !holds(&self.node(node).bounds) {
             return None;
@@ -228,16 +239,17 @@ impl<B: Bounds> Tree<B> {
     }
 }
 
-/// An item of a growing tree. Its box is stored elsewhere, so that items are quick to sort.
+/// An option, or a node of the base tree, during the construction of a tree. Its bounds are stored elsewhere, so that
+/// items are quick to sort.
 struct Item {
-    /// Index among the options, or the node for which it stands.
+    /// Index of the option, or number of the node of the base tree.
     at: u32,
     members: u32,
     key: Key,
 }
 
-/// Builds the tree over some items and returns its root. For an item, `leaf` returns the item's box and the kind of
-/// its node; the kind is `None` if the item is a node already.
+/// Builds the tree over `items`, appends its nodes to `nodes` and returns the number of its root. For an item, `leaf`
+/// returns its bounds and the kind of its node; the kind is `None` if the item is a node of the base tree already.
 fn grow<'b, B: Bounds + 'b>(
     items: &mut [Item],
     nodes: &mut Vec<Node<B>>,
@@ -247,28 +259,29 @@ fn grow<'b, B: Bounds + 'b>(
     let (kind, bounds) = leaf(&items[0]);
     if let [Item { at, members, key }] = *items {
         let Some(kind) = kind else { return at };
-        nodes.push(Node { bounds: bounds.clone(), key, members, kind });
+        nodes.push(Node { bounds: bounds.clone(), key: Some(key), members, kind });
         return here as u32;
     }
     // The root is the first node, so its place is taken before its halves grow.
-    nodes.push(Node { bounds: bounds.clone(), key: items[0].key, members: 0, kind: NodeKind::Option(0) });
+    nodes.push(Node { bounds: bounds.clone(), key: None, members: 0, kind: NodeKind::Option(0) });
     // Halving the widest coordinate keeps the boxes narrow, and so their bounds sharp.
     let axis = widest(items);
     let middle = items.len() / 2;
     items.select_nth_unstable_by(middle, |a, b| a.key[axis].total_cmp(&b.key[axis]).then(a.at.cmp(&b.at)));
     let (low, high) = items.split_at_mut(middle);
     let halves = [grow(low, nodes, leaf), grow(high, nodes, leaf)];
-    // A half whose node is elsewhere is a single item.
+    // A half whose node is in the base tree is a single item.
     let of =
         |half: &[Item], at: u32| nodes.get(at as usize).map_or_else(|| leaf(&half[0]).1, |node| &node.bounds);
     let bounds = of(low, halves[0]).join(of(high, halves[1]));
-    let key = bounds.key();
+    // A tree stands on nodes of the base tree alone, and logarithms take long.
+    let key = kind.map(|_| bounds.key());
     let members = items.iter().map(|item| item.members).sum();
     nodes[here] = Node { bounds, key, members, kind: NodeKind::Split(halves) };
     here as u32
 }
 
-/// The coordinate with the greatest spread.
+/// Index of the coordinate with the greatest spread over some items.
 fn widest(items: &[Item]) -> usize {
     let spread = |axis: usize| {
         let (low, high) = items.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), item| {

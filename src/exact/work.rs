@@ -1,4 +1,4 @@
-//! The numbers of one box, as intervals.
+//! The numbers of one box of designs as intervals: the least and the greatest value over its members.
 
 use super::parts::{INERTIAS, LeastDemand, LinkBox, STIFFNESSES, inertia, stiffness_of};
 use super::pose::{Row, TILT, TORSION};
@@ -9,60 +9,70 @@ use crate::sizing::demand::JointDemand;
 use crate::sizing::fit::LinkRoom;
 use nalgebra::Vector3;
 
-/// Working memory for the bound of one box. A worker uses it for box after box, so that no memory is allocated for each.
+/// Working memory with the intervals of one box. A worker uses it for box after box, so that no memory is allocated for
+/// each.
 #[derive(Default)]
 pub(super) struct Work {
-    /// Greatest stiffnesses of each piece.
+    /// Greatest stiffnesses of each piece over the box, as in [`Line::stiffnesses`](super::parts::Line).
     pub(super) stiff: Vec<[f64; STIFFNESSES]>,
-    /// Least stiffnesses of each piece.
+    /// Least stiffnesses of each piece over the box.
     pub(super) soft: Vec<[f64; STIFFNESSES]>,
-    /// Least line inertias of each piece; the mass \[kg\] of a joint in the first place.
+    /// Least line inertias (inertias per metre of a tube) of each piece over the box, as in
+    /// [`Line::inertias`](super::parts::Line). For a joint the first place is its mass \[kg\].
     pub(super) light: Vec<[f64; INERTIAS]>,
-    /// Greatest line inertias of each piece.
+    /// Greatest line inertias of each piece over the box.
     pub(super) heavy: Vec<[f64; INERTIAS]>,
-    /// Weight of each piece in each case, as an interval \[N\].
+    /// Weight of each piece as an interval \[N\], less buoyancy: first index the case, second the piece.
     pub(super) weights: Vec<Vec<[f64; 2]>>,
-    /// The force of each row of each case, as an interval.
+    /// Generalized force on each strain coordinate as an interval \[N or N m\]: first index the case, second the row of
+    /// [`Pose::rows`](super::pose::Pose).
     pub(super) forces: Vec<Vec<[f64; 2]>>,
-    /// Torsion curves of each joint; `None` for a rigid joint or another piece.
+    /// Torsion curves of each joint, one place for each piece. `None` for a rigid joint and for a piece that is not a
+    /// joint.
     pub(super) curves: Vec<Option<CurveBox>>,
-    /// Greatest stiffnesses of each piece in each case. A gear's slope depends on its torque, so it differs from case
-    /// to case.
+    /// Greatest stiffnesses of each piece: first index the case, second the piece. They differ between cases, because
+    /// the slope of a gear's curve depends on its torque.
     pub(super) stiff_in: Vec<Vec<[f64; STIFFNESSES]>>,
     /// Mass of each piece, as an interval \[kg\].
     pub(super) masses: Vec<[f64; 2]>,
-    /// The least demand on each joint whose drive is a level.
+    /// The least demand on each joint whose drive the search chooses; one entry for each piece, `None` for any other
+    /// piece.
     pub(super) least_demands: Vec<Option<LeastDemand>>,
-    /// The greatest demand on each joint whose drive is a level.
+    /// The greatest demand on each joint whose drive the search chooses; one entry for each piece, `None` for any other
+    /// piece.
     pub(super) greatest_demands: Vec<Option<JointDemand>>,
-    /// Tilt of each joint's bearing per moment, as an interval \[rad/(N m)\]; 0 for a joint that does not tilt.
+    /// Tilt of each joint's output bearing per moment, as an interval \[rad/(N m)\]; 0 for a bearing that does not
+    /// tilt.
     pub(super) tilts: Vec<[f64; 2]>,
-    /// Lever along the axis of the joint inboard to where each link attaches, as an interval \[m\].
+    /// Lever of each link as an interval \[m\]: the distance along the axis of the joint inboard from the joint's
+    /// bearing to where the link attaches.
     pub(super) levers: Vec<[f64; 2]>,
-    /// Least and greatest room that each link leaves to the parts of the joint that carries it.
+    /// Least and greatest space that each link leaves for the gear and motor of the joint that carries it.
     pub(super) rooms: Vec<[LinkRoom; 2]>,
-    /// Break points of the curves of each joint.
+    /// Break points of the torsion curves that each joint may have.
     pub(super) breaks: Vec<BreakPoints>,
     /// Least and greatest magnitude of the torque on each joint, in each judged case \[N m\].
     pub(super) torques: Vec<Vec<[f64; 2]>>,
-    /// The judged case in which the tip's least deflection is greatest, and the direction of the tip's displacement
-    /// there.
+    /// The judged case in which the least tip deflection of the box is greatest, and the direction in which the tip
+    /// moves there.
     pub(super) worst_tip: Option<(usize, Vector3<f64>)>,
-    /// Direction of the tip's least deflection in each judged case.
+    /// For each judged case, the direction of the tip's displacement when it is least over the box.
     pub(super) tip_directions: Vec<Vector3<f64>>,
-    /// Upper bound of the tip's deflection in each judged case in which contributions may oppose each other
-    /// \[m\].
+    /// Upper bound of the tip's deflection \[m\], one entry for each judged case in which contributions to the tip's
+    /// displacement may oppose each other.
     pub(super) greatest_tip_m: Vec<f64>,
-    /// For each piece, the relative growth of the deflection if the piece's stiffnesses had middle values instead of
-    /// their greatest.
+    /// For each piece, the relative growth of the tip's least deflection if the stiffnesses of the piece had middle
+    /// values and not their greatest.
     pub(super) tip_growth: Vec<f64>,
+    /// Buffers of the inverse iteration that improves trial shapes.
     pub(super) shape: ShapeWork,
-    /// Judged case, and number of the start, of the shape with the least quotient.
+    /// The trial shape (motion that bounds the lowest mode) with the least Rayleigh quotient, given by the index of its
+    /// judged case and the index of its starting acceleration ([`STARTS`](super::bound::STARTS)).
     pub(super) worst: (usize, usize),
 }
 
 impl Work {
-    /// Empties all numbers for a problem of this size.
+    /// Resets all numbers to zero for a problem of this many pieces and cases.
     pub(super) fn clear(&mut self, pieces: usize, cases: usize) {
         fn zero<T: Clone>(items: &mut Vec<T>, n: usize, value: T) {
             items.clear();
@@ -91,7 +101,8 @@ impl Work {
         }
     }
 
-    /// Fills in the numbers of a joint.
+    /// Writes the mass, weight, torsion curve and bearing stiffness of a joint into this memory. All are intervals over
+    /// the drives of the box.
     pub(super) fn joint(
         &mut self,
         problem: &Problem,
@@ -113,10 +124,11 @@ impl Work {
         }
     }
 
-    /// Fills in the numbers of a tube.
+    /// Writes the stiffnesses, inertias, mass and weight of a tube into this memory. `links` holds the intervals over
+    /// the options of the box.
     pub(super) fn tube(&mut self, problem: &Problem, piece: usize, length_m: f64, links: &LinkBox) {
-        // Infinite stiffness becomes 0, which stands for a coordinate that does not yield; infinity times
-        // zero strain would be NaN.
+        // An infinite stiffness becomes 0, which stands for a rigid coordinate. Infinity times zero strain would be
+        // NaN.
         let finite = |s: f64| if s.is_finite() { s } else { 0.0 };
         self.levers[piece] = links.lever_m;
         self.rooms[piece] = links.room;
@@ -136,7 +148,8 @@ impl Work {
         }
     }
 
-    /// The torsion curves of the joint to which a row belongs; `None` if the row is that of a linear spring.
+    /// The torsion curves of the joint to which a row belongs; `None` if the row is not the torsion of a joint or the
+    /// joint is rigid.
     #[inline]
     pub(super) fn curve(&self, row: &Row) -> Option<&CurveBox> {
         self.curves[row.piece].as_ref().filter(|_| row.coordinate == TORSION)

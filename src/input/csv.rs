@@ -1,7 +1,7 @@
-//! CSV text cut into records: the one reader of catalogs and of readings.
+//! CSV text divided into records. Catalogs and readings are both read with it.
 //!
-//! Every record keeps its line, because a fault that names a line is found at once. What the records must hold is for
-//! the caller to say.
+//! Every record keeps its line number, so that messages about faults can name it. The caller checks the content of
+//! the records.
 
 use super::lines::LineCounter;
 use csv::{ByteRecord, ReaderBuilder, StringRecord, Trim};
@@ -12,31 +12,32 @@ const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 /// One record of a CSV text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Record {
-    /// Line where it begins, from 1.
+    /// Line at which the record begins, counted from 1.
     pub line: usize,
-    /// Its cells without blanks at their ends.
+    /// Cells of the record, without blanks at their ends.
     pub cells: Vec<String>,
 }
 
-/// Most rows of any table: more are a mistake, or work for another program.
+/// Largest number of rows of any table. A larger table is a mistake, or too large for this program.
 const MOST_ROWS: usize = 2_000_000;
 
-/// A CSV text cut into records; blank lines and comments are no records.
+/// A CSV text divided into records. Blank lines and comments are no records.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(crate) struct Csv {
-    /// The records in the order of the text, the header among them.
+    /// The records in the order of the text, including the header.
     pub records: Vec<Record>,
-    /// Line and reason of what cannot be read.
+    /// Line and reason of each record that cannot be read.
     pub unreadable: Vec<(usize, String)>,
 }
 
 impl Csv {
-    /// Cuts text into records. Lines that begin with `comment` are left out.
+    /// Divides a text into records. Lines that begin with the byte `comment` are left out.
     pub(crate) fn parse(bytes: &[u8], comment: Option<u8>) -> Self {
         Self::parse_up_to(MOST_ROWS, bytes, comment)
     }
 
-    /// [`Csv::parse`] of at most so many rows; more cannot be read.
+    /// Divides a text into records as [`Csv::parse`] does, but with `most` as the largest number of rows. If the text
+    /// has more rows, this is recorded in `unreadable`.
     pub(crate) fn parse_up_to(most: usize, bytes: &[u8], comment: Option<u8>) -> Self {
         let bytes = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
         let mut reader = ReaderBuilder::new()
@@ -53,7 +54,7 @@ impl Csv {
         for record in reader.byte_records() {
             if out.records.len() > most {
                 out.unreadable.push((lines.line(), format!("has more than {most} rows, which is the limit")));
-                // what is refused as a whole is not looked at row by row
+                // a text that is refused as a whole is not examined row by row
                 out.records.truncate(1);
                 break;
             }
@@ -72,14 +73,14 @@ fn utf8(record: ByteRecord) -> Result<StringRecord, String> {
     StringRecord::from_byte_record(record).map_err(|e| e.utf8_error().to_string())
 }
 
-/// The separators other than commas that occur at least so often in the first cell of a header.
+/// The separators other than commas that occur at least `least` times in the first cell of a header.
 pub(crate) fn other_separators(header: &[String], least: usize) -> impl Iterator<Item = &'static str> + '_ {
     let words = [(';', "semicolons"), ('\t', "tabs")];
     let occurs = move |separator: char| header.first().is_some_and(|c| c.matches(separator).count() >= least);
     words.into_iter().filter(move |(separator, _)| occurs(*separator)).map(|(_, word)| word)
 }
 
-/// Whether a column of a header has the name of one before it.
+/// Whether an earlier column of the header has the same name as the column with the index `column`.
 pub(crate) fn is_repeated(header: &[String], column: usize) -> bool {
     header[..column].contains(&header[column])
 }

@@ -1,10 +1,10 @@
-//! Duplicate keys in JSON. A parser keeps the last of them without a word, so they are looked for in the text.
+//! Duplicate keys in JSON. A JSON parser silently keeps the last of them, so the text is searched for them.
 
 use serde::de::{DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
 use std::collections::HashSet;
 use std::fmt;
 
-/// Paths of all keys that occur more than once in an object, in the order of the text. The text is known to parse.
+/// Paths of all keys that occur more than once in an object, in the order of the text. The text must be valid JSON.
 pub(crate) fn duplicate_keys(text: &str) -> Vec<String> {
     let mut found = Vec::new();
     let walk = Walk { path: String::new(), found: &mut found };
@@ -13,7 +13,7 @@ pub(crate) fn duplicate_keys(text: &str) -> Vec<String> {
     found
 }
 
-/// Visits one value and knows its path.
+/// Visits a value and all values in it, and keeps track of the path.
 struct Walk<'a> {
     path: String,
     found: &'a mut Vec<String>,

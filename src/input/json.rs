@@ -1,4 +1,4 @@
-//! JSON documents. A reader finds every fault of a file at once, with file, line, field, the value seen and what to try.
+//! JSON documents. A reader finds all faults of a file at once, each with file, line, field, the value and a hint.
 //!
 //! A [`Document`] is the text of one JSON file. Readers walk it through [`Node`]s. A node never fails: it records a
 //! [`Fault`] and returns `None`, so that one pass over a file finds all of its faults. [`Document::finish`] turns the
@@ -14,18 +14,18 @@ use std::cell::RefCell;
 use std::fmt;
 use std::path::Path;
 
-/// One thing that is wrong with an input file.
+/// One fault of an input file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fault {
     /// File name as the user gave it.
     pub file: String,
-    /// Line in the file, from 1; `None` if unknown.
+    /// Line in the file, counted from 1; `None` if it is unknown.
     pub line: Option<usize>,
-    /// Path of the field (`chain[2].section.wall_m`) or column name.
+    /// Path of the field (`chain[2].section.wall_m`), or name of the column.
     pub field: String,
-    /// What is wrong, with the value seen.
+    /// Description of the fault, with the value that was found.
     pub problem: String,
-    /// What is allowed, or what to try next.
+    /// Hint: what is allowed, or what to try next.
     pub hint: String,
 }
 
@@ -46,7 +46,7 @@ impl fmt::Display for Fault {
     }
 }
 
-/// All faults of one or more input files, at least one.
+/// All faults of one or more input files. There is at least one.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{}", list(.0))]
 pub struct Faults(pub Vec<Fault>);
@@ -63,15 +63,15 @@ fn list(faults: &[Fault]) -> String {
     text
 }
 
-/// Why an input file could not be used.
+/// Reason why an input file could not be used.
 #[derive(Debug, thiserror::Error)]
 pub enum InputError {
-    /// The file could not be read at all.
+    /// The file could not be opened or read.
     #[error("cannot read {file}: {source}")]
     Unreadable {
-        /// File name as given.
+        /// File name as the user gave it.
         file: String,
-        /// Reason that the operating system gave.
+        /// Reason that the operating system gives.
         source: std::io::Error,
     },
     /// The file was read and has faults.
@@ -145,7 +145,7 @@ impl Document {
         &self.file
     }
 
-    /// Records a fault that concerns several fields at once.
+    /// Records a fault at a path. It is used directly for faults that concern several fields.
     pub fn fault(&self, path: &str, problem: String, hint: &str) {
         let fault = Fault {
             file: self.file.clone(),
@@ -155,7 +155,7 @@ impl Document {
             hint: hint.to_string(),
         };
         let mut faults = self.faults.borrow_mut();
-        // two readers may read the same field and find the same fault
+        // the same field may be read twice, which gives the same fault twice
         if !faults.contains(&fault) {
             faults.push(fault);
         }
@@ -200,7 +200,7 @@ impl<'a> Node<'a> {
         &self.path
     }
 
-    /// The raw value.
+    /// The JSON value of this node, unchecked.
     pub fn value(&self) -> &'a Value {
         self.value
     }
@@ -222,13 +222,13 @@ impl<'a> Node<'a> {
         None
     }
 
-    /// This node as an object of a shape. Keys that the shape does not have are faults.
+    /// This node as an object of a given shape. Keys that the shape does not have are recorded as faults.
     pub fn shaped(&self, shape: &Shape) -> Option<Object<'a>> {
         self.object(&shape.names())
     }
 
-    /// This node as an object. Keys that are not among `known` are faults. Objects of files are read by
-    /// [`Node::shaped`], so that their keys are in the schema too.
+    /// This node as an object. Keys that are not among `known` are recorded as faults. Objects of files should be
+    /// read by [`Node::shaped`], because then their keys are in the schema too.
     pub fn object(&self, known: &[&str]) -> Option<Object<'a>> {
         let Value::Object(map) = self.value else {
             return self.fault(format!("is {}, not an object", kind(self.value)), "write { ... }");
@@ -243,7 +243,7 @@ impl<'a> Node<'a> {
         Some(Object { node: self.clone(), map })
     }
 
-    /// This node as a map of names to nodes, in file order.
+    /// This node as an object with any keys: pairs of key and node, in the order of the file.
     pub fn entries(&self) -> Option<Vec<(&'a str, Node<'a>)>> {
         let Value::Object(map) = self.value else {
             return self.fault(format!("is {}, not an object", kind(self.value)), "write { ... }");
@@ -339,12 +339,12 @@ impl<'a> Object<'a> {
         self.map.contains_key(key)
     }
 
-    /// The node under `key`, if the object has it.
+    /// The node under `key`; `None` if the object does not have the key.
     pub fn optional(&self, key: &str) -> Option<Node<'a>> {
         self.map.get(key).map(|v| self.node.child(&join(&self.node.path, key), v))
     }
 
-    /// The node under `key`; its absence is a fault.
+    /// The node under `key`. If the object does not have the key, this is recorded as a fault.
     pub fn required(&self, key: &str) -> Option<Node<'a>> {
         self.optional(key).or_else(|| {
             self.node.document.fault(
@@ -356,8 +356,8 @@ impl<'a> Object<'a> {
         })
     }
 
-    /// The value under `key`, read with `read`, or `default` if the object has no such key. `None` means that the value is
-    /// faulty.
+    /// The value under `key`, converted by `read`, or `default` if the object has no such key. `None` means that
+    /// the value is faulty.
     pub fn or<T>(&self, key: &str, default: T, read: impl FnOnce(&Node<'a>) -> Option<T>) -> Option<T> {
         match self.optional(key) {
             Some(node) => read(&node),
@@ -366,7 +366,7 @@ impl<'a> Object<'a> {
     }
 }
 
-/// The kind of a JSON value in words, with the value itself if it is short.
+/// Description of a JSON value for messages, with the value itself if it is short.
 fn kind(value: &Value) -> String {
     match value {
         Value::Null => "null".into(),
@@ -378,7 +378,7 @@ fn kind(value: &Value) -> String {
     }
 }
 
-/// The known name that is nearest to `word`, if it is near enough for a typing error.
+/// The known name that is most similar to `word`. `None` if none is similar enough to be meant with a typing error.
 pub fn closest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     known
         .iter()
@@ -388,7 +388,7 @@ pub fn closest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
         .map(|(_, k)| k)
 }
 
-/// Levenshtein distance between the bytes of two words.
+/// Levenshtein distance between two words: the least number of bytes to insert, remove or replace.
 fn edit_distance(a: &str, b: &str) -> usize {
     let b = b.as_bytes();
     let mut row: Vec<usize> = (0..=b.len()).collect();
@@ -404,13 +404,13 @@ fn edit_distance(a: &str, b: &str) -> usize {
     row[b.len()]
 }
 
-/// Line, from 1, of the value at `path` in a JSON text that is known to parse.
+/// Line, counted from 1, at which the value at `path` stands in a valid JSON text; `None` if there is no such value.
 fn line_of(text: &str, path: &str) -> Option<usize> {
     let offset = Locator { bytes: text.as_bytes(), at: 0 }.find(&segments(path))?;
     Some(1 + text.as_bytes()[..offset].iter().filter(|&&b| b == b'\n').count())
 }
 
-/// Whether a JSON string, which may be written with escapes, is this key.
+/// Whether a JSON string, which may contain escapes, is equal to this key.
 fn is_key(quoted: &[u8], wanted: &str) -> bool {
     match quoted.contains(&b'\\') {
         true => serde_json::from_slice::<String>(quoted).is_ok_and(|key| key == wanted),
@@ -437,7 +437,7 @@ fn segments(path: &str) -> Vec<Segment<'_>> {
     out
 }
 
-/// Walks JSON text to the value at a path.
+/// Finds the position of the value at a path in JSON text.
 struct Locator<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -486,7 +486,7 @@ impl Locator<'_> {
         }
     }
 
-    /// Moves past one value.
+    /// Moves the position past one JSON value.
     fn skip(&mut self) {
         let mut depth = 0usize;
         while let Some(&byte) = self.bytes.get(self.at) {

@@ -1,46 +1,47 @@
-//! Keys of input files. Each kind of object that a file may hold has one table of its keys ([`Shape`]). The reader refuses
-//! keys that are not in it, `armwright schema` prints it as a JSON Schema, and `docs/keys.md` shows it.
+//! Keys of input files. Each kind of object in a file has one table of its keys ([`Shape`]). The reader refuses
+//! keys that are not in this table, `armwright schema` prints the table as a JSON Schema, and `docs/keys.md` shows
+//! it.
 
-/// One kind of object: its keys, and the rules between them.
+/// One kind of object in a file: its keys, and rules on which of them may occur together.
 #[derive(Debug, Clone, Copy)]
 pub struct Shape {
-    /// Name, which is unique within a kind of file.
+    /// Name of the kind of object, which is unique within a kind of file.
     pub name: &'static str,
-    /// What it is, in a sentence.
+    /// Description in a sentence.
     pub about: &'static str,
-    /// Its keys.
+    /// Keys of the object.
     pub keys: &'static [Key],
-    /// What keys are allowed next to each other.
+    /// Rules on which keys may or must occur together.
     pub rules: &'static [Rule],
-    /// What other keys hold; `None` makes them faults.
+    /// Allowed values of keys that are not in the table; `None` if such keys are faults.
     pub others: Option<&'static Kind>,
 }
 
-/// One key of an object.
+/// One key of a kind of object.
 #[derive(Debug, Clone, Copy)]
 pub struct Key {
-    /// Name, with the unit.
+    /// Name of the key, with the unit.
     pub name: &'static str,
-    /// What its value may be.
+    /// Allowed values.
     pub kind: Kind,
-    /// Unit; `-` for none.
+    /// Unit of the value; `-` if it has none.
     pub unit: &'static str,
-    /// What holds without the key, as JSON or in words; `None` if the key is required.
+    /// The value that is used without the key, as JSON or in words; `None` if the key is required.
     pub default: Option<&'static str>,
-    /// What it is, in a sentence.
+    /// Description in a sentence.
     pub about: &'static str,
 }
 
-/// What a value may be.
+/// The values that are allowed.
 #[derive(Debug, Clone, Copy)]
 pub enum Kind {
-    /// Any JSON.
+    /// Any JSON value.
     Anything,
     /// `null`.
     Null,
     /// `true` or `false`.
     Flag,
-    /// A text.
+    /// Any text.
     Text,
     /// A text that is not empty.
     Name,
@@ -52,50 +53,50 @@ pub enum Kind {
     Positive,
     /// A number not less than zero.
     NonNegative,
-    /// A number from zero to less than this.
+    /// A number from zero to below this limit.
     Below(f64),
-    /// A number from the first to the second, ends included.
+    /// A number from the first to the second limit, limits included.
     Range(f64, f64),
     /// A whole number that is at least this.
     Whole(u32),
-    /// A list of so many values of a kind.
+    /// A list of exactly this many values of one kind.
     Array(usize, &'static Kind),
-    /// A list of values of a kind.
+    /// A list of any length, whose values are all of one kind.
     List(&'static Kind),
-    /// A list of at least one value of a kind.
+    /// A list with at least one value, whose values are all of one kind.
     NonEmpty(&'static Kind),
-    /// An object of any keys with values of a kind.
+    /// An object with any keys, whose values are of one kind.
     Map(&'static Kind),
-    /// An object with keys of its own.
+    /// An object with the keys of a shape.
     Object(&'static Shape),
-    /// A value of any of some kinds.
+    /// A value of one of several kinds.
     Either(&'static [Kind]),
 }
 
-/// Which keys must, and which may not, stand next to each other.
+/// A rule on which keys must occur together and which must not.
 #[derive(Debug, Clone, Copy)]
 pub enum Rule {
-    /// At least one of these keys is there.
+    /// At least one of these keys must occur.
     Any(&'static [&'static str]),
-    /// The key needs at least one of the others.
+    /// If the key occurs, at least one of the others must occur.
     Needs(&'static str, &'static [&'static str]),
-    /// The key refuses the others.
+    /// If the key occurs, none of the others may occur.
     Refuses(&'static str, &'static [&'static str]),
-    /// Where the key is there, its value decides.
+    /// If the key occurs, its value determines which other keys must or must not occur.
     When {
-        /// The key.
+        /// Name of the key.
         key: &'static str,
-        /// The kind of its value that the first pair of lists is about; the second pair is about any other value.
+        /// Kind of value that selects `then`. Any other value selects `otherwise`.
         is: Kind,
-        /// Keys that are then needed, and those that are refused.
+        /// Keys that must occur, and keys that must not occur, for a value of this kind.
         then: [&'static [&'static str]; 2],
-        /// Keys that are needed otherwise, and those that are refused.
+        /// Keys that must occur, and keys that must not occur, for any other value.
         otherwise: [&'static [&'static str]; 2],
     },
 }
 
 impl Shape {
-    /// A kind of object whose other keys are faults.
+    /// A kind of object with the given name, description, keys and rules. Keys that are not among `keys` are faults.
     pub const fn new(
         name: &'static str,
         about: &'static str,
@@ -105,23 +106,23 @@ impl Shape {
         Self { name, about, keys, rules, others: None }
     }
 
-    /// Whether it has a key of this name.
+    /// Whether the table has a key of this name.
     pub fn has(&self, name: &str) -> bool {
         self.keys.iter().any(|key| key.name == name)
     }
 
-    /// The names of its keys.
+    /// The names of all keys in the table.
     pub fn names(&self) -> Vec<&'static str> {
         self.keys.iter().map(|key| key.name).collect()
     }
 }
 
-/// A key that must be there.
+/// A key that must occur.
 pub(crate) const fn required(name: &'static str, kind: Kind, unit: &'static str, about: &'static str) -> Key {
     Key { name, kind, unit, default: None, about }
 }
 
-/// A key that may be left out. `default` is JSON, or says in words what holds then.
+/// A key that may be left out. `default` is the value that is then used, as JSON or in words.
 pub(crate) const fn optional(
     name: &'static str,
     kind: Kind,
@@ -132,7 +133,7 @@ pub(crate) const fn optional(
     Key { name, kind, unit, default: Some(default), about }
 }
 
-/// The address of the schema, which editors look for in a file; programs ignore it.
+/// The key `$schema` with the address of the schema. Editors read it, and the program ignores it.
 pub(crate) const SCHEMA_ADDRESS: Key = optional(
     "$schema",
     Kind::Anything,
@@ -141,7 +142,7 @@ pub(crate) const SCHEMA_ADDRESS: Key = optional(
     "Where an editor finds the schema of this file; ignored.",
 );
 
-/// The words of a table of words and values.
+/// The words of a table whose entries are pairs of a word and a value, in the same order.
 pub(crate) const fn words_of<T, const N: usize>(pairs: &[(&'static str, T)]) -> [&'static str; N] {
     let mut words = [""; N];
     let mut i = 0;

@@ -1,7 +1,7 @@
-//! Line numbers: on which line of a CSV file a record begins.
+//! Line numbers of the records in a CSV file.
 
-/// Counts the lines up to the first byte of a record. The CSV reader's own line number is that of the end of the record
-/// before, which is another one after blank lines and with CRLF.
+/// Counts the lines up to the first byte of a record. The CSV reader itself gives the line at which the record
+/// before ends. This differs after blank lines and with CRLF line ends.
 pub struct LineCounter<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -10,7 +10,7 @@ pub struct LineCounter<'a> {
 }
 
 impl<'a> LineCounter<'a> {
-    /// A counter for the text that the reader reads.
+    /// A counter for the text that the CSV reader reads.
     pub fn new(bytes: &'a [u8]) -> Self {
         Self { bytes, at: 0, line: 1, comment: None }
     }
@@ -20,7 +20,8 @@ impl<'a> LineCounter<'a> {
         Self { comment: Some(comment), ..Self::new(bytes) }
     }
 
-    /// The line, from 1, of a record at this position. Records must come in the order of the text.
+    /// The line, counted from 1, of the record at this position. Records must be asked for in the order of the
+    /// text.
     pub fn of(&mut self, position: Option<&csv::Position>) -> usize {
         let begin = position.map_or(self.at, |p| p.byte() as usize).min(self.bytes.len());
         let end = self.skipped(begin).max(self.at);
@@ -29,7 +30,7 @@ impl<'a> LineCounter<'a> {
         self.line
     }
 
-    /// The first place from here on that is not in a blank line or a comment.
+    /// The first position from here on that is not in a blank line or a comment.
     fn skipped(&self, from: usize) -> usize {
         let mut at = from;
         loop {
@@ -41,7 +42,7 @@ impl<'a> LineCounter<'a> {
         }
     }
 
-    /// The line of the last record.
+    /// The line of the last record that was asked for.
     pub fn line(&self) -> usize {
         self.line
     }

@@ -1,4 +1,4 @@
-//! Input: the reading of JSON documents and tables. Every fault is recorded with its file, line, field and a hint.
+//! Input: reading of JSON documents and tables. Every fault is recorded with its file, line, field and a hint.
 
 pub(crate) mod csv;
 pub(crate) mod duplicates;

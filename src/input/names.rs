@@ -1,28 +1,30 @@
-//! What a name, and any other text of an input file, may hold.
+//! Rules on the characters of names and other texts in input files.
 //!
-//! Names go into tables, pages and messages. Control characters and characters that turn the direction of writing would make
-//! them show something else than what they are, so that no text may hold them. A spreadsheet runs a cell that begins with
-//! `=`, `+`, `-` or `@` as a formula, so that no name may begin with one of these, unless it is a number.
+//! Names are printed in tables, pages and messages. Control characters, and characters that change the direction of
+//! writing, would make a text look different from what it is. So no text may contain them. A spreadsheet runs a
+//! cell that begins with `=`, `+`, `-` or `@` as a formula. So no name may begin with one of these, unless it is a
+//! number.
 
-/// What is wrong with a text, and what to try.
+/// Description of what is wrong with a text, and a hint.
 pub(crate) type Unfit = (String, &'static str);
 
-/// Why a text cannot be taken; line breaks and tabs are allowed.
+/// Reason why a text is not allowed; `None` if it is. Line breaks and tabs are allowed.
 pub(crate) fn unfit_text(text: &str) -> Option<Unfit> {
     unfit_character(text, |c| !matches!(c, '\n' | '\r' | '\t'))
 }
 
-/// Why a text cannot be a cell of a table; line breaks and tabs are allowed inside it.
+/// Reason why a text is not allowed as a cell of a table; `None` if it is. Line breaks and tabs are allowed.
 pub(crate) fn unfit_cell(text: &str) -> Option<Unfit> {
     unfit_text(text).or_else(|| would_run(text))
 }
 
-/// Why a text cannot be a name.
+/// Reason why a text is not allowed as a name; `None` if it is.
 pub(crate) fn unfit_name(text: &str) -> Option<Unfit> {
     unfit_character(text, |_| true).or_else(|| would_run(text))
 }
 
-/// A character that does not show as what it is, among those that `counts` looks at.
+/// A fault for the first hidden character of a text; `None` if there is none. Only characters for which `counts` is
+/// true are examined.
 fn unfit_character(text: &str, counts: impl Fn(char) -> bool) -> Option<Unfit> {
     let hidden = text.chars().filter(|c| counts(*c)).find(|c| is_hidden(*c))?;
     let what = if hidden.is_control() {
@@ -33,14 +35,14 @@ fn unfit_character(text: &str, counts: impl Fn(char) -> bool) -> Option<Unfit> {
     Some((format!("has U+{:04X}, {what}", u32::from(hidden)), "remove it"))
 }
 
-/// Control characters, and the marks, embeddings, overrides and isolates of bidirectional text.
+/// Whether a character is a control character, or a mark, embedding, override or isolate of bidirectional text.
 fn is_hidden(c: char) -> bool {
     let turns =
         matches!(c, '\u{061c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     c.is_control() || turns
 }
 
-/// A text that a spreadsheet would run as a formula. A sign alone is none.
+/// A fault for a text that a spreadsheet would run as a formula; `None` for other texts. A sign alone is allowed.
 fn would_run(text: &str) -> Option<Unfit> {
     let begins = text.chars().count() > 1 && text.starts_with(['=', '+', '-', '@']);
     let is_number = text.replace(',', ".").parse::<f64>().is_ok();
@@ -50,7 +52,7 @@ fn would_run(text: &str) -> Option<Unfit> {
     })
 }
 
-/// A text with its hidden characters written out, for messages.
+/// The text with its hidden characters replaced by escape sequences, for messages.
 pub(crate) fn visible(text: &str) -> String {
     let shown = |c: char| match is_hidden(c) && c != '\n' {
         true => c.escape_unicode().to_string(),

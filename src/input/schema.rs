@@ -1,22 +1,22 @@
-//! The key table of a kind of file as a JSON Schema (draft 2020-12), for editors and other programs, and as Markdown, for
-//! people.
+//! The key tables of a kind of file, written as a JSON Schema (draft 2020-12) for editors and other programs, and
+//! as Markdown for people.
 
 use super::key::{Key, Kind, Rule, Shape};
 use serde_json::{Map, Value, json};
 
-/// A kind of file: its name, what it is, and what its whole document may be.
+/// A kind of file: its name, its description, and the allowed content of the whole document.
 #[derive(Debug, Clone, Copy)]
 pub struct FileKind {
-    /// Name on the command line.
+    /// Name of the kind of file on the command line.
     pub name: &'static str,
-    /// What such a file is, in a sentence.
+    /// Description of such a file, in a sentence.
     pub about: &'static str,
-    /// The whole document.
+    /// Allowed content of the whole document.
     pub root: Kind,
 }
 
 impl FileKind {
-    /// The JSON Schema of such a file.
+    /// The JSON Schema of this kind of file.
     pub fn schema(&self) -> Value {
         let mut definitions = Map::new();
         for shape in self.shapes() {
@@ -32,14 +32,14 @@ impl FileKind {
         out
     }
 
-    /// Every kind of object in such a file, each once, the outermost first.
+    /// Every kind of object in such a file, each once. The outermost comes first.
     pub fn shapes(&self) -> Vec<&'static Shape> {
         let mut found = Vec::new();
         collect(&self.root, &mut found);
         found
     }
 
-    /// The keys of such a file as Markdown tables.
+    /// The keys of this kind of file as Markdown tables.
     pub fn tables(&self) -> String {
         let mut out = format!("## {}\n\n{}\n", self.name, self.about);
         for shape in self.shapes() {
@@ -55,7 +55,7 @@ impl FileKind {
     }
 }
 
-/// Adds the shapes of a kind of value to `found`.
+/// Adds the shapes that occur in a kind of value to `found`.
 fn collect(kind: &Kind, found: &mut Vec<&'static Shape>) {
     match kind {
         Kind::Object(shape) if !found.iter().any(|other| other.name == shape.name) => {
@@ -70,14 +70,14 @@ fn collect(kind: &Kind, found: &mut Vec<&'static Shape>) {
     }
 }
 
-/// Adds the entries of an object to another.
+/// Adds the entries of the JSON object `from` to the JSON object `into`.
 fn merge(into: &mut Value, from: Value) {
     if let (Value::Object(into), Value::Object(from)) = (into, from) {
         into.extend(from);
     }
 }
 
-/// The schema of a kind of value.
+/// The JSON Schema of a kind of value.
 fn value(kind: &Kind) -> Value {
     match kind {
         Kind::Anything => json!({}),
@@ -104,7 +104,7 @@ fn value(kind: &Kind) -> Value {
     }
 }
 
-/// A name inside a reference.
+/// The name of a definition in the form that it has inside a JSON reference.
 fn pointer(name: &str) -> String {
     name.replace(' ', "%20")
 }
@@ -136,14 +136,14 @@ fn property(key: &Key) -> Value {
     out
 }
 
-/// What a key is, with its unit, and what holds without it.
+/// Description of a key with its unit and its default, in sentences.
 fn sentence(key: &Key) -> String {
     let unit = if key.unit == "-" { String::new() } else { format!(" [{}]", key.unit) };
     let default = key.default.map(|text| format!(" Default: {text}."));
     format!("{}{unit}{}", key.about, default.unwrap_or_default())
 }
 
-/// Keys that are all needed, and keys that are all refused.
+/// JSON Schema for a list of keys that must all occur, and a list of keys of which none may occur.
 fn needs_and_refuses([needed, refused]: [&[&str]; 2]) -> Value {
     let mut out = json!({});
     if !needed.is_empty() {
@@ -184,7 +184,7 @@ fn row(key: &Key) -> String {
     format!("| `{}` | {} | {} | {default} | {} |\n", key.name, words(&key.kind), key.unit, key.about)
 }
 
-/// A kind of value in words.
+/// Description in words of the values that are allowed.
 fn words(kind: &Kind) -> String {
     let codes = |words: &[&str]| words.iter().map(|w| format!("`{w}`")).collect::<Vec<_>>().join(", ");
     match kind {
@@ -209,7 +209,7 @@ fn words(kind: &Kind) -> String {
     }
 }
 
-/// A rule in a sentence.
+/// A rule on which keys may or must occur together, in words.
 fn in_words(rule: &Rule) -> String {
     let list = |keys: &[&str], last: &str| {
         let codes: Vec<String> = keys.iter().map(|key| format!("`{key}`")).collect();

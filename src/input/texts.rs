@@ -1,13 +1,13 @@
-//! Every text of a JSON document: which of them no reader may take.
+//! Checks every text of a JSON document for characters that are not allowed.
 
 use super::names::{Unfit, unfit_name, unfit_text};
 use super::path::join;
 use serde_json::Value;
 
-/// The key whose value is a name.
+/// Name of the key whose value is a name, so that the stricter rules for names apply.
 const NAME: &str = "name";
 
-/// Path of every text that cannot be taken, with the reason. Keys are names too.
+/// Path of every text that is not allowed, with the reason. Keys are checked like names.
 pub(crate) fn unfit_texts(value: &Value) -> Vec<(String, Unfit)> {
     let mut found = Vec::new();
     walk(value, "", false, &mut found);

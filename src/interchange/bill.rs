@@ -1,6 +1,7 @@
 //! A bill of materials: every part of an arm with its mass. The masses add up to the mass of the arm.
 //!
-//! An arm file has one mass for a drive. Where the catalogs know gear and motor and their masses make it, the bill has two rows.
+//! An arm file states one mass for gear and motor together. If the catalogs know both parts and their masses add up
+//! to it, the bill has a row for each.
 
 use super::csv_text::csv_text;
 use crate::arm::section::Section;
@@ -8,33 +9,33 @@ use crate::arm::{Arm, Element, Extras, Joint, Link, LinkBody, Prismatic};
 use crate::catalog::gear::{Gear, GearKind, GearMass};
 use crate::catalog::{Catalogs, Provenance};
 
-/// Difference of masses that counts as rounding, relative.
+/// Relative difference of two masses that counts as rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// One row of a bill.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Row {
-    /// How many equal parts.
+    /// Number of equal parts.
     pub count: usize,
     /// Name of the part.
     pub part: String,
-    /// Kind of part.
+    /// Kind of part, such as gear, motor or tube.
     pub kind: &'static str,
-    /// Mass of all of them \[kg\].
+    /// Mass of all parts of this row \[kg\].
     pub mass_kg: f64,
-    /// Length of each \[m\].
+    /// Length of each part \[m\]; `None` for parts that are not cut to length.
     pub length_m: Option<f64>,
-    /// Where its figures come from.
+    /// Source of the data of the part.
     pub source: String,
-    /// How far they can be trusted.
+    /// How far the data can be trusted: the confidence of its catalog row, or `stated`.
     pub confidence: String,
-    /// Cost of all of them \[EUR\].
+    /// Cost of all parts of this row \[EUR\]; `None` if it is unknown.
     pub cost_eur: Option<f64>,
-    /// Joints and links that have one.
+    /// Names of the joints and links that use the part, one entry for each use.
     pub used_at: Vec<String>,
 }
 
-/// The bill of an arm. Equal parts are one row.
+/// The bill of materials of an arm. Equal parts are collected in one row.
 pub(crate) fn bill(arm: &Arm, catalogs: &Catalogs) -> Vec<Row> {
     let mut rows: Vec<Row> = Vec::new();
     for element in &arm.chain {
@@ -65,7 +66,7 @@ pub(crate) fn bill(arm: &Arm, catalogs: &Catalogs) -> Vec<Row> {
     rows
 }
 
-/// The bill as `bom.csv` has it.
+/// The bill of materials as CSV, the content of `bom.csv`.
 pub(crate) fn bill_csv(rows: &[Row]) -> Vec<u8> {
     let header = [
         "item",
@@ -97,7 +98,8 @@ pub(crate) fn bill_csv(rows: &[Row]) -> Vec<u8> {
     csv_text(&header, cells)
 }
 
-/// A part that no catalog has.
+/// The row of the bill for a part that is in no catalog and is used at the element `at`. Its data come from the arm
+/// file.
 fn stated(at: &str, part: String, kind: &'static str, mass_kg: f64) -> Row {
     Row {
         count: 1,
@@ -112,7 +114,8 @@ fn stated(at: &str, part: String, kind: &'static str, mass_kg: f64) -> Row {
     }
 }
 
-/// A part of a catalog.
+/// The row of the bill for a catalog part that is used at the element `at`. `from` is where the catalog has its numbers
+/// from.
 fn bought(at: &str, part: &str, kind: &'static str, mass_kg: f64, from: &Provenance) -> Row {
     let (source, confidence) = (from.source.clone(), from.confidence.to_string());
     Row { source, confidence, ..stated(at, part.into(), kind, mass_kg) }
@@ -150,7 +153,8 @@ fn prismatic_parts(joint: &Prismatic) -> Vec<Row> {
     out
 }
 
-/// Gear and motor of a joint, apart where the catalogs know both masses and they make the mass of the drive.
+/// The rows of gear and motor of a joint. They are two rows if the catalogs know both masses and these add up to the
+/// mass in the arm file; else one.
 fn drive_parts(joint: &Joint, catalogs: &Catalogs) -> Vec<Row> {
     let at = joint.name.as_str();
     let gear = joint.gear.as_ref().and_then(|name| catalogs.gear(name).ok());
@@ -192,7 +196,8 @@ fn drive_parts(joint: &Joint, catalogs: &Catalogs) -> Vec<Row> {
     }
 }
 
-/// Which of its printed masses a gear of this mass has.
+/// Whether a gear of this mass is the housed unit or the component set of the catalog; `None` if neither has this
+/// mass.
 fn which_mass(gear: &Gear, mass_kg: f64) -> Option<&'static str> {
     let is =
         |which| gear.mass_kg(which).is_some_and(|kg: f64| (kg - mass_kg).abs() <= ROUNDING * kg.max(1.0));
@@ -231,7 +236,7 @@ fn link_parts(link: &Link, catalogs: &Catalogs) -> Vec<Row> {
     out
 }
 
-/// A section in words, in millimetres.
+/// A section in words, with sizes in millimetres.
 pub(crate) fn section_words(section: &Section) -> String {
     let mm = |m: f64| format!("{}", (m * 1e6).round() / 1e3);
     match *section {

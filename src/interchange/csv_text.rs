@@ -1,6 +1,6 @@
-//! CSV text of a header and rows.
+//! Tables as CSV text.
 
-/// The text of a table; cells with commas, quotes or line breaks are quoted.
+/// The text of a table with a header and rows. Cells with commas, quotes or line breaks are quoted.
 pub(crate) fn csv_text<const N: usize>(
     header: &[&str; N],
     rows: impl Iterator<Item = Vec<String>>,

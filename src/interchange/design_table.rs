@@ -30,7 +30,7 @@ const HEADER: [&str; 22] = [
     "stiffness_n_per_m",
 ];
 
-/// The elements of an arm as `design.csv` has them.
+/// The elements of an arm as a table, the content of `design.csv`.
 pub(crate) fn design_csv(arm: &Arm) -> Vec<u8> {
     let rows = arm.chain.iter().map(|element| match element {
         Element::Joint(joint) => joint_row(joint, element.mass_kg()),
@@ -40,7 +40,7 @@ pub(crate) fn design_csv(arm: &Arm) -> Vec<u8> {
     csv_text(&HEADER, rows)
 }
 
-/// The cells of some columns; the others are blank.
+/// A row of the table in which only the given columns are filled.
 fn row(cells: Vec<(&str, String)>) -> Vec<String> {
     let cell = |column: &&str| cells.iter().find(|(name, _)| name == column).map(|(_, cell)| cell.clone());
     HEADER.iter().map(|column| cell(column).unwrap_or_default()).collect()
@@ -60,7 +60,7 @@ fn joint_row(joint: &Joint, mass_kg: f64) -> Vec<String> {
     ];
     match joint.curve {
         Curve::Rigid => {}
-        // one slope is a curve of its own
+        // a curve with a single slope has only K1
         Curve::Linear(stiffness) => cells.push(("k1_nm_per_rad", text(stiffness))),
         Curve::Windup(w) | Curve::WindupK1(w) => cells.extend([
             ("k1_nm_per_rad", text(w.k1_nm_per_rad)),

@@ -1,4 +1,5 @@
-//! An arm in a case as files of other programs, with what they cannot carry and what they must find.
+//! Export of an arm in a load case to files of other programs. The result also lists what the files cannot represent
+//! and which results the other program should give.
 
 use super::bill::{bill, bill_csv};
 use super::calculix::deck::{Step, deck, modes};
@@ -9,7 +10,7 @@ use super::left_out::{LeftOut, Remainder};
 use super::mjcf::{Motor, STAND_IN_KGM2, mjcf};
 use super::snapshot::Snapshot;
 use super::tree::TreeOptions;
-use super::urdf_out::{stiffness_file, urdf, with_several_drivers};
+use super::urdf_out::{TRAVEL_M, stiffness_file, urdf, with_several_drivers};
 use crate::arm::effect::entry::Effect;
 use crate::arm::load::{LoadCase, Payload};
 use crate::arm::section::Section;
@@ -20,18 +21,18 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-/// The program or form to write for.
+/// The program or file format to export to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Format {
-    /// Decks of CalculiX.
+    /// Input decks of CalculiX.
     Calculix,
-    /// MuJoCo.
+    /// MJCF, the model format of MuJoCo.
     Mjcf,
-    /// URDF.
+    /// URDF, a robot description, with a stiffness file.
     Urdf,
-    /// Arm file and cases.
+    /// Arm file and cases file of this program.
     Json,
-    /// A table of the elements.
+    /// A CSV table of the elements.
     Csv,
     /// A bill of materials.
     Bom,
@@ -48,36 +49,36 @@ impl Words for Format {
     ];
 }
 
-/// What is asked for.
+/// The input of an export.
 pub(crate) struct Asked<'a> {
-    /// The arm.
+    /// The arm to export.
     pub arm: &'a Arm,
-    /// The case at whose loads curves become numbers.
+    /// The load case that fixes the pose and, by its loads, the stiffness of nonlinear springs.
     pub case: &'a LoadCase,
-    /// All cases, for an arm file with its cases.
+    /// All load cases. They are written together with an arm file.
     pub cases: &'a [LoadCase],
-    /// The form.
+    /// The file format.
     pub format: Format,
-    /// Pieces of flexible links in MJCF; 0 for rigid links.
+    /// Number of rigid pieces into which MJCF divides each flexible link; 0 for rigid links.
     pub pieces: usize,
-    /// Whether joints have the backlash of their gears in MJCF.
+    /// Whether joints in MJCF have the backlash of their gears.
     pub backlash: bool,
 }
 
-/// The files of an export, and what is to be said of them.
+/// The files of an export, with remarks.
 #[derive(Default)]
 pub(crate) struct Export {
-    /// Name and bytes.
+    /// Name and content of each file.
     pub files: Vec<(String, Vec<u8>)>,
-    /// What the files do not have.
+    /// Properties of the arm that the files do not represent.
     pub left_out: Vec<LeftOut>,
-    /// What a reader of the files must know.
+    /// Remarks for the reader of the files.
     pub notes: Vec<String>,
-    /// What a program must find that is given the files; null if they are no model.
+    /// Results that another program should compute from the files; null if the files are no model.
     pub expected: Value,
 }
 
-/// Writes an arm in a form.
+/// Exports an arm as files of the format that is asked for.
 pub(crate) fn export(asked: &Asked, catalogs: &Catalogs) -> Export {
     let mut out = match asked.format {
         Format::Calculix => to_calculix(asked),
@@ -103,7 +104,7 @@ pub(crate) fn export(asked: &Asked, catalogs: &Catalogs) -> Export {
 }
 
 impl Export {
-    /// The record of the export, as `export.json` has it.
+    /// What the export consists of and what the other program should compute, as JSON: the content of `export.json`.
     pub(crate) fn to_json(&self, asked: &Asked) -> Value {
         let names: Vec<&str> = self.files.iter().map(|(name, _)| name.as_str()).collect();
         json!({
@@ -120,7 +121,7 @@ impl Export {
     }
 }
 
-/// Arm and case in words, for the first lines of files.
+/// One line that describes arm and case, for the head of files.
 fn heading(asked: &Asked) -> String {
     let case = asked.case;
     format!(
@@ -234,7 +235,8 @@ fn to_mjcf(asked: &Asked, catalogs: &Catalogs) -> Export {
     }
 }
 
-/// Half widths of the backlash of gears, if it is asked for \[rad\].
+/// Half width of the backlash of each gear \[rad\] by name of the joint. Empty if backlash is not asked for. The joints
+/// with backlash are named in `notes`.
 fn plays(asked: &Asked, catalogs: &Catalogs, notes: &mut Vec<String>) -> BTreeMap<String, f64> {
     if !asked.backlash {
         return BTreeMap::new();
@@ -256,7 +258,8 @@ fn plays(asked: &Asked, catalogs: &Catalogs, notes: &mut Vec<String>) -> BTreeMa
     plays
 }
 
-/// What the motors of an arm add, as far as the catalogs know them.
+/// Inertia and peak torque of the motors by name of the joint. Where the catalogs do not know the rotor inertia,
+/// [`STAND_IN_KGM2`] is used and the joint is named in `notes`.
 fn motors(arm: &Arm, catalogs: &Catalogs, notes: &mut Vec<String>) -> BTreeMap<String, Motor> {
     let mut out = BTreeMap::new();
     let mut unknown = Vec::new();
@@ -276,9 +279,13 @@ fn motors(arm: &Arm, catalogs: &Catalogs, notes: &mut Vec<String>) -> BTreeMap<S
         let peak_nm = motor.peak_torque_nm.map(|nm| nm * ratio);
         out.insert(joint.name.clone(), Motor { armature_kgm2, peak_nm });
     }
+    for joint in arm.prismatics() {
+        unknown.push(joint.name.as_str());
+        out.insert(joint.name.clone(), Motor { armature_kgm2: STAND_IN_KGM2, peak_nm: None });
+    }
     if !unknown.is_empty() {
         notes.push(format!(
-            "an armature of {STAND_IN_KGM2} kg m2 stands in where the catalogs do not know the rotor's inertia: {}",
+            "an armature of {STAND_IN_KGM2} kg m2 (kg where a joint slides) stands in where the catalogs do not know the rotor's inertia: {}",
             unknown.join(", ")
         ));
     }
@@ -298,6 +305,11 @@ fn to_urdf(asked: &Asked) -> Export {
     let snapshot = Snapshot::new(rest.structure, &case, LinkModel::Rigid);
     let mut notes =
         vec!["the payload is not part of the file; joints have no ranges and are continuous".to_string()];
+    if asked.arm.prismatics().next().is_some() {
+        notes.push(format!(
+            "a URDF must have ranges of prismatic joints and an arm has none: {TRAVEL_M} m to either side stand in"
+        ));
+    }
     let several = with_several_drivers(asked.arm);
     if !several.is_empty() {
         let names: Vec<&str> = several.iter().map(|joint| joint.name.as_str()).collect();
@@ -314,8 +326,17 @@ fn to_urdf(asked: &Asked) -> Export {
         left_out: rest.left_out,
         notes,
         // a rigid arm has torques and nothing else
-        expected: json!({"joint_torque_nm": snapshot.expected()["joint_torque_nm"]}),
+        expected: torques_and_forces(&snapshot),
     }
+}
+
+/// What holds the driven joints of a rigid arm.
+fn torques_and_forces(snapshot: &Snapshot) -> Value {
+    let mut expected = snapshot.expected();
+    if let Some(expected) = expected.as_object_mut() {
+        expected.retain(|key, _| key.starts_with("joint_"));
+    }
+    expected
 }
 
 fn to_json(asked: &Asked) -> Export {

@@ -1,12 +1,13 @@
-//! The stiffness file of an import: what a URDF does not know of its joints, given for all of them at once.
+//! The stiffness file of an import. It states, for all joints at once, the elastic properties that a URDF does not
+//! have.
 //!
 //! ```json
 //! {"joints": {"shoulder": {"stiffness_nm_per_rad": 2e4}, "elbow": {"gear": "CSG-20-100", "motor": "ILM70x18"}}}
 //! ```
 //!
-//! Each joint has the keys that it has in an arm file: `stiffness_nm_per_rad` (null is rigid), `windup` or `gear`; `motor`;
-//! `bearing`. A prismatic joint has `stiffness_n_per_m`, `guide` and `moves`. The masses of named parts and of bearings are not
-//! added, because the bodies of a URDF have them.
+//! Each joint has the keys that it has in an arm file: `stiffness_nm_per_rad` (null is rigid), `windup` or `gear`;
+//! `motor`; `bearing`. A prismatic joint has `stiffness_n_per_m`, `guide` and `moves`. The masses of the named parts
+//! and of bearings are not added, because the bodies of a URDF include them.
 
 use crate::arm::bearing::Bearing;
 use crate::arm::file::{read_curve, read_joint_bearing};
@@ -16,42 +17,42 @@ use crate::catalog::Catalogs;
 use crate::input::json::{Document, Faults, Node};
 use serde_json::{Map, Value, json};
 
-/// What is given of one joint.
+/// The elastic properties that the stiffness file states for one joint.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct GivenJoint {
     /// Name of the joint.
     pub name: String,
-    /// How it yields.
+    /// Elastic properties of the joint.
     pub springs: GivenSprings,
 }
 
-/// How a joint yields.
+/// Elastic properties of a joint.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum GivenSprings {
-    /// One that turns.
+    /// A joint that turns.
     Hinge {
-        /// Torsion curve.
+        /// Torsion curve of the joint.
         curve: Curve,
-        /// Output bearing.
+        /// Output bearing; `None` if the joint does not tilt.
         bearing: Option<Bearing>,
-        /// Name of the gear.
+        /// Name of the gear, if one is stated.
         gear: Option<String>,
-        /// Name of the motor.
+        /// Name of the motor, if one is stated.
         motor: Option<String>,
     },
-    /// One that slides.
+    /// A joint that slides.
     Slide {
-        /// Stiffness along the travel \[N/m\]; `None` is rigid.
+        /// Stiffness of the drive along the travel \[N/m\]; `None` means rigid.
         stiffness_n_per_m: Option<f64>,
-        /// Guide.
+        /// Rotational stiffnesses of the guide.
         guide: Guide,
-        /// What travels.
+        /// Whether a carriage or a ram travels.
         moves: Moves,
     },
 }
 
 impl GivenSprings {
-    /// Whether the drive is given as rigid.
+    /// Whether the file states that the joint is rigid about its axis or along its travel.
     pub(crate) fn is_rigid(&self) -> bool {
         match self {
             Self::Hinge { curve, .. } => *curve == Curve::Rigid,
@@ -60,12 +61,12 @@ impl GivenSprings {
     }
 }
 
-/// A joint of which a stiffness may be given.
+/// A joint for which the file may state elastic properties.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct MovingJoint<'a> {
-    /// Name.
+    /// Name of the joint.
     pub name: &'a str,
-    /// Whether it slides and does not turn.
+    /// Whether the joint slides; else it turns.
     pub slides: bool,
 }
 
@@ -75,7 +76,7 @@ const SLIDE_KEYS: [&str; 3] = ["stiffness_n_per_m", "guide", "moves"];
 /// Reads a stiffness file for a robot with these joints.
 ///
 /// # Errors
-/// All faults of the file.
+/// All faults of the file at once.
 pub(crate) fn read_given(
     document: Document,
     joints: &[MovingJoint],
@@ -115,12 +116,12 @@ fn read_hinge(node: &Node, catalogs: &Catalogs) -> Option<GivenSprings> {
     let (gear, motor) = (text("gear"), text("motor"));
     let curve = read_curve(&object, catalogs);
     let bearing = read_joint_bearing(&object, catalogs);
-    // the bodies of the file have the bearing's mass in them
+    // the bodies of the URDF include the mass of the bearing
     let bearing = bearing?.map(|bearing| Bearing { mass_kg: 0.0, ..bearing });
     Some(GivenSprings::Hinge { curve: curve?, bearing, gear: gear?, motor: motor? })
 }
 
-/// A stiffness file that leaves all joints rigid, to be filled in.
+/// A stiffness file for these joints to fill in, in which all joints are rigid.
 pub(crate) fn blank(joints: &[MovingJoint]) -> Value {
     let rigid = |joint: &MovingJoint| match joint.slides {
         true => json!({"stiffness_n_per_m": null, "guide": {}}),

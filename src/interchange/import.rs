@@ -1,12 +1,14 @@
-//! From a URDF to an arm: frames accumulated, fixed joints and side branches lumped, inertials as bodies.
+//! Conversion of a URDF to an arm. Frames are accumulated, fixed joints and side branches are merged into links, and
+//! inertials become bodies.
 //!
-//! A URDF gives every link a frame of its own, turned against that of its parent. In an arm all frames are parallel to the world's
-//! while all joint angles are zero. So every place, axis and inertia is written in the root frame of the URDF at zero angles.
-//! The way from the root to the tip is the arm. Each of its moving joints becomes a joint. What lies between two of them becomes
-//! one rigid link, and the bodies of its URDF links go with it, together with everything that hangs on it beside the way: side
-//! branches stand still at their zero.
+//! A URDF gives every link a frame of its own, rotated against the frame of its parent. In an arm all frames are
+//! parallel to the world's when all joint angles are zero. So every position, axis and inertia is converted to the
+//! root frame of the URDF at zero angles. The path from the root to the tip is the arm. Each moving joint on this
+//! path becomes a joint. Everything between two of them becomes one rigid link, which takes over the bodies of its
+//! URDF links. Side branches, which leave the path, are held at zero angle, and their bodies are added to the link on
+//! which they hang.
 //!
-//! A URDF says nothing of stiffness. A joint that the stiffness file does not give stays rigid.
+//! A URDF has no stiffness. A joint that the stiffness file does not name is rigid.
 
 use super::given::{GivenJoint, GivenSprings, MovingJoint};
 use super::report::ImportReport;
@@ -22,20 +24,21 @@ use urdf_rs::JointType;
 
 const GRAVITY_M_S2: f64 = 9.81;
 
-/// A robot of a URDF file, and the tip that makes an arm of it.
+/// A robot of a URDF file, with the tip link that determines the arm.
 pub(crate) struct Robot<'a> {
     file: &'a str,
     tree: UrdfTree,
     tip: &'a str,
 }
 
-/// How a joint on the way to the tip moves.
+/// How a joint on the path to the tip moves.
 enum Moves<'t> {
-    /// It does not, and stands at this angle \[rad\] or travel \[m\].
+    /// The joint does not move. It is held at this angle \[rad\] or travel \[m\].
     Not(f64),
-    /// By an angle or a travel of its own.
+    /// The joint is driven, with an angle or travel of its own.
     Driven,
-    /// With other joints: its angle is a factor times the angle of a driven joint, plus a constant \[rad\].
+    /// The joint follows another joint: its angle is a factor times the angle of a driven joint, plus a constant
+    /// \[rad\]. The fields are the name of the driven joint, the factor and the constant.
     With(&'t str, f64, f64),
 }
 
@@ -43,7 +46,8 @@ impl<'a> Robot<'a> {
     /// Reads a URDF file. `tip` is the link where the arm ends.
     ///
     /// # Errors
-    /// All faults of the file; a tip that is no link; a joint on the way that no arm has.
+    /// All faults of the file; or that the tip is no link of the robot, or that a joint on the path is of a kind that
+    /// no arm has.
     pub(crate) fn read(file: &'a str, text: &str, tip: &'a str) -> Result<Self, Faults> {
         let robot = Self { file, tree: UrdfTree::read(file, text)?, tip };
         if robot.tree.link(tip).is_none() {
@@ -67,7 +71,7 @@ impl<'a> Robot<'a> {
         Fault { file: self.file.into(), line: None, field: field.into(), problem, hint }
     }
 
-    /// Joints on the way to the tip that an arm cannot have.
+    /// Faults for the joints on the path to the tip that are of a kind that no arm has.
     fn unfit_joints(&self) -> Vec<Fault> {
         let path = self.tree.path_to(self.tip);
         let unfit = path.iter().filter_map(|joint| {
@@ -96,25 +100,26 @@ impl<'a> Robot<'a> {
         out
     }
 
-    /// The joints of the arm, base to tip, passive ones included.
+    /// The joints of the arm, base to tip, including passive ones.
     pub(crate) fn joints(&self) -> Vec<MovingJoint<'_>> {
         let path = self.tree.path_to(self.tip).into_iter();
         let moving = path.filter(|joint| !matches!(self.motion_of(&joint.name), Moves::Not(_)));
         moving.map(|joint| MovingJoint { name: &joint.name, slides: slides(joint) }).collect()
     }
 
-    /// Whether a joint moves with another one.
+    /// Whether the angle of a joint follows another joint (`<mimic>`).
     fn follows(&self, joint: &urdf_rs::Joint) -> bool {
         matches!(self.motion_of(&joint.name), Moves::With(..))
     }
 
-    /// Whether a joint moves with one that slides.
+    /// Whether the angle of a joint follows the travel of a joint that slides.
     fn follows_a_slide(&self, joint: &urdf_rs::Joint) -> bool {
         let Moves::With(driver, ..) = self.motion_of(&joint.name) else { return false };
         self.tree.joints.iter().any(|other| other.name == driver && slides(other))
     }
 
-    /// How a joint moves. A mimic of a mimic follows the joint that both follow in the end.
+    /// How the joint `name` moves. If it mimics a joint that itself mimics another one, it follows the joint at the end
+    /// of this sequence.
     fn motion_of(&self, name: &str) -> Moves<'_> {
         let (mut factor, mut offset_rad) = (1.0, 0.0);
         let on_way: BTreeSet<&str> = self.tree.path_to(self.tip).iter().map(|j| j.name.as_str()).collect();
@@ -128,7 +133,7 @@ impl<'a> Robot<'a> {
                 return match (joint.name == name, on_way.contains(joint.name.as_str())) {
                     (true, _) => Moves::Driven,
                     (false, true) => Moves::With(&joint.name, factor, offset_rad),
-                    // what drives it stands still
+                    // the joint that it follows is not on the path and is held
                     (false, false) => Moves::Not(offset_rad),
                 };
             };
@@ -139,7 +144,7 @@ impl<'a> Robot<'a> {
         Moves::Not(offset_rad)
     }
 
-    /// The arm and what is to be said of it.
+    /// The arm, with the elastic properties `given` at its joints, and the report of its import.
     pub(crate) fn arm(&self, given: &[GivenJoint]) -> (Arm, ImportReport) {
         let mut walk = Walk {
             tree: &self.tree,
@@ -175,34 +180,35 @@ impl<'a> Robot<'a> {
     }
 }
 
-/// The walk from the root to the tip.
+/// The walk along the path from the root to the tip.
 struct Walk<'t> {
     tree: &'t UrdfTree,
-    /// Links on the way but the root.
+    /// Names of the URDF links on the path, without the root.
     on_way: BTreeSet<&'t str>,
-    /// Frame of the present URDF link in the world, all angles zero.
+    /// Frame in the world, at zero joint angles, of the URDF link that the walk has reached.
     at: Isometry3<f64>,
-    /// Where the present link of the arm begins \[m\].
+    /// Position in the world at which the link of the arm that is being built begins \[m\].
     start_m: Vector3<f64>,
-    /// Its name.
+    /// Name of the present link of the arm.
     name: String,
-    /// Its bodies, from where it begins.
+    /// Bodies of the link of the arm that is being built. Their positions are measured from where the link begins.
     bodies: Vec<RigidBody>,
-    /// Names that are taken.
+    /// Names that elements of the arm already have.
     taken: BTreeSet<String>,
     chain: Vec<Element>,
     report: ImportReport,
 }
 
 impl<'t> Walk<'t> {
-    /// Begins a link of the arm with a URDF link and what hangs on it.
+    /// Begins a link of the arm with the URDF link `link` and the side branches that hang on it.
     fn begin(&mut self, link: &str) {
         self.start_m = self.at.translation.vector;
         self.name = self.free_name(link);
         self.lump(link, self.at, None);
     }
 
-    /// Links and joints of a URDF may have the same names, elements of an arm may not.
+    /// A name that no other element has. In a URDF a link and a joint may have the same name, in an arm no two
+    /// elements may.
     fn free_name(&mut self, name: &str) -> String {
         let mut free = name.to_string();
         while !self.taken.insert(free.clone()) {
@@ -211,7 +217,8 @@ impl<'t> Walk<'t> {
         free
     }
 
-    /// Passes a joint of the way to the URDF link behind it.
+    /// Passes a joint on the path to the tip, and goes on to the URDF link behind it. `motion` says how the joint
+    /// moves; a joint that does is added to the arm, with its elastic properties in `given`.
     fn pass(&mut self, joint: &'t urdf_rs::Joint, motion: Moves, given: &[GivenJoint]) {
         let axis = Unit::new_normalize(Vector3::from(joint.axis.xyz.0));
         let child = joint.child.link.as_str();
@@ -239,7 +246,8 @@ impl<'t> Walk<'t> {
         self.begin(child);
     }
 
-    /// Ends the present link of the arm at the present place. A link without length and bodies is left away.
+    /// Ends the link of the arm that was begun, at the position that the walk has reached. A link without length and
+    /// without bodies is left out.
     fn end_link(&mut self) {
         let vector_m = self.at.translation.vector - self.start_m;
         let bodies = std::mem::take(&mut self.bodies);
@@ -254,8 +262,9 @@ impl<'t> Walk<'t> {
         }));
     }
 
-    /// Adds a URDF link at a place, and all that it carries beside the way. `by` is the joint that holds it if it is not on
-    /// the way.
+    /// Adds the body of the URDF link `link`, whose frame is `at`, and the bodies of all side branches that hang on it,
+    /// to the link of the arm that is being built. `by` is the joint that holds the link if it is itself in a side
+    /// branch.
     fn lump(&mut self, link: &str, at: Isometry3<f64>, by: Option<&urdf_rs::Joint>) {
         let tree = self.tree;
         let Some(found) = tree.link(link) else { return };
@@ -272,7 +281,7 @@ impl<'t> Walk<'t> {
     }
 }
 
-/// A joint that turns. The bodies of the file have its drive in them.
+/// A joint that turns. Its drive adds no mass, because the bodies of the URDF include it.
 fn hinge(
     name: &str,
     axis: Unit<Vector3<f64>>,
@@ -302,7 +311,7 @@ fn hinge(
     }
 }
 
-/// A joint that slides. The bodies of the file have its drive in them.
+/// A joint that slides. Its drive adds no mass, because the bodies of the URDF include it.
 fn slide(name: &str, axis: Unit<Vector3<f64>>, springs: Option<&GivenSprings>) -> Prismatic {
     let (stiffness_n_per_m, guide, moves) = match springs {
         Some(GivenSprings::Slide { stiffness_n_per_m, guide, moves }) => (*stiffness_n_per_m, *guide, *moves),
@@ -320,7 +329,8 @@ fn slide(name: &str, axis: Unit<Vector3<f64>>, springs: Option<&GivenSprings>) -
     }
 }
 
-/// The body of a URDF link whose frame stands at a place, measured from the start of a link of the arm.
+/// The body of a URDF link whose frame is `at` in the world, with its position measured from the start `start_m` of a
+/// link of the arm. `None` if the link has neither mass nor inertia.
 fn body_at(link: &urdf_rs::Link, at: &Isometry3<f64>, start_m: &Vector3<f64>) -> Option<RigidBody> {
     let inertial = at * isometry(&link.inertial.origin);
     let turn = inertial.rotation.to_rotation_matrix().into_inner();

@@ -1,4 +1,4 @@
-//! What a file cannot carry, each thing with its share of the tip's deflection.
+//! Properties of an arm that a file cannot represent, each with its part of the tip deflection.
 
 use super::snapshot::Snapshot;
 use crate::arm::LinkModel;
@@ -7,16 +7,17 @@ use crate::arm::structure::{Piece, Structure};
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 
-/// Something of an arm or a case that a file does not have.
+/// A property of an arm or a case that a file does not represent.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct LeftOut {
-    /// What it is.
+    /// What the property is, such as `water` or `link_compliance`.
     pub what: &'static str,
-    /// Where it is: a link, a joint, or `arm`.
+    /// Element that has the property: the name of a link, a joint or a spring, or `arm` or `tip`.
     pub at: String,
-    /// Why, and what to do instead.
+    /// Reason why it is left out, and what to do instead.
     pub why: String,
-    /// The part of the tip's deflection that goes with it, along the whole deflection. All parts and what stays add up to 1.
+    /// The part of the tip deflection that is lost with this property: the component of the lost displacement along the
+    /// whole deflection, divided by the whole. The parts of all properties and the remaining part add up to 1.
     pub tip_share: f64,
 }
 
@@ -26,24 +27,25 @@ impl LeftOut {
     }
 }
 
-/// An arm in a case, from which things are taken away.
+/// An arm in a case, from which properties are removed one after the other.
 pub(crate) struct Remainder {
-    /// What is left.
+    /// The arm without the properties that were removed so far.
     pub structure: Structure,
     case: LoadCase,
     tip_m: Vector3<f64>,
-    /// What was taken away.
+    /// The properties that were removed so far.
     pub left_out: Vec<LeftOut>,
 }
 
 impl Remainder {
-    /// The whole arm.
+    /// The arm as it is in a case, before anything is removed.
     pub(crate) fn new(structure: Structure, case: &LoadCase) -> Self {
         let tip_m = Snapshot::new(structure.clone(), case, case.links).tip_m();
         Self { structure, case: case.clone(), tip_m, left_out: Vec::new() }
     }
 
-    /// The part of a displacement along the whole displacement of the tip.
+    /// Component of the displacement `part_m` \[m\] along the whole displacement of the tip, divided by the whole
+    /// displacement.
     fn share(&self, part_m: &Vector3<f64>) -> f64 {
         match self.tip_m.norm_squared() {
             0.0 => 0.0,
@@ -51,7 +53,8 @@ impl Remainder {
         }
     }
 
-    /// Takes away what `change` removes from the arm.
+    /// Removes a property from the structure by the function `change`, and records how much of the tip deflection is
+    /// lost with it. `what`, `at` and `why` say what the property is, where it is and why it is removed.
     fn remove(&mut self, what: &'static str, at: &str, why: &str, change: impl FnOnce(&mut Structure)) {
         let before_m = Snapshot::new(self.structure.clone(), &self.case, self.case.links).tip_m();
         change(&mut self.structure);
@@ -60,7 +63,7 @@ impl Remainder {
         self.left_out.push(LeftOut { what, at: at.into(), why: why.into(), tip_share });
     }
 
-    /// Water around the arm: its buoyancy and its added mass.
+    /// Removes the water around the arm: its buoyancy and its added mass.
     pub(crate) fn without_water(&mut self) {
         if self.structure.water.is_some() {
             let why = "the file has no water: buoyancy and added mass are missing";
@@ -68,7 +71,7 @@ impl Remainder {
         }
     }
 
-    /// Springs that balance the arm, one by one.
+    /// Removes the springs that balance the arm, one by one.
     pub(crate) fn without_balance_springs(&mut self) {
         let names: Vec<String> = self.structure.springs.iter().map(|spring| spring.name.clone()).collect();
         for name in names {
@@ -79,7 +82,8 @@ impl Remainder {
         }
     }
 
-    /// The compliance of every link.
+    /// Removes the compliance of every link, one by one, so that the loss of each is recorded. `why` is the reason for
+    /// the record.
     pub(crate) fn without_flexible_links(&mut self, why: &str) {
         let names: Vec<String> = self
             .structure
@@ -97,7 +101,7 @@ impl Remainder {
         }
     }
 
-    /// The compliance of one link.
+    /// Removes the compliance of the link `name`. `why` is the reason for the record.
     pub(crate) fn without_flexible_link(&mut self, name: &str, why: &str) {
         self.remove("link_compliance", name, why, |structure| {
             for piece in &mut structure.pieces {
@@ -111,7 +115,8 @@ impl Remainder {
         });
     }
 
-    /// Force and moment at the tip.
+    /// Removes the force and the moment at the tip, and returns the case without them. `why` is the reason for the
+    /// record.
     pub(crate) fn without_tip_load(&mut self, why: &str) -> LoadCase {
         let bare =
             LoadCase { tip_force_n: Vector3::zeros(), tip_moment_nm: Vector3::zeros(), ..self.case.clone() };
@@ -125,7 +130,7 @@ impl Remainder {
         self.case.clone()
     }
 
-    /// Every spring of joints, bearings and frames, for files that know none.
+    /// Removes all springs of joints, bearings and frames, for files without springs.
     pub(crate) fn without_springs(&mut self, why: &str) {
         let statics = {
             let snapshot = Snapshot::new(self.structure.clone(), &self.case, self.case.links);

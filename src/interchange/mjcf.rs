@@ -1,9 +1,10 @@
-//! MJCF, the files of MuJoCo.
+//! Export to MJCF, the model format of MuJoCo.
 //!
-//! A driven joint is two hinges in series: the motor's, with the inertia of rotor and gear (`armature`) and an actuator, and the
-//! gear's, with the spring and without armature. Both on one hinge would be another machine: its rotor would move with the
-//! output. The two tilts of a bearing are two more hinges. A torsion curve is its tangent at the load of the case; the spring's
-//! position of rest (`springref`) is such that it deflects at this load as much as the curve does.
+//! A driven joint becomes two hinges in series. The hinge of the motor has the inertia of rotor and gear (`armature`)
+//! and an actuator. The hinge of the gear has the spring and no armature. A single hinge with both would be wrong:
+//! its rotor would move with the output. The two tilts of a bearing become two more hinges. A torsion curve is
+//! replaced by its tangent at the load of the case. The rest position of the spring (`springref`) is chosen such that
+//! the spring deflects at this load as much as the curve does.
 
 use super::snapshot::Snapshot;
 use super::tree::{Hinge, Node, Role, TreeOptions, mass_properties, tree};
@@ -12,32 +13,32 @@ use crate::arm::structure::JointAngle;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeMap;
 
-/// Mass and moment of inertia of a body that has none, and the least moment of a body \[kg, kg m²\]. MuJoCo takes no moving
-/// body without both.
+/// Mass \[kg\] and moment of inertia \[kg m²\] that a body without any gets; the moment is also added to those of all
+/// bodies. MuJoCo accepts no moving body without mass and inertia.
 const LEAST: f64 = 1e-9;
 
-/// Inertia that stands in for a rotor that nobody knows, at the joint \[kg m²\]. Without any, motor and gear would be two hinges of
+/// Inertia that stands in for a rotor that nobody knows, at the joint \[kg m²; kg where it slides\]. Without any, motor and gear would be two hinges of
 /// one axis with nothing between them, and the mass matrix singular. With motors held it changes nothing.
 pub(crate) const STAND_IN_KGM2: f64 = 0.1;
 
-/// What a motor adds to a joint.
+/// Inertia and torque of the motor of a joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Motor {
-    /// Inertia of rotor and gear, at the joint \[kg m²\].
+    /// Inertia of rotor and gear input, referred to the joint \[kg m²\].
     pub armature_kgm2: f64,
-    /// Peak torque of the motor, at the joint, without losses \[N m\].
+    /// Peak torque of the motor, referred to the joint without losses \[N m\]; `None` if it is unknown.
     pub peak_nm: Option<f64>,
 }
 
-/// The file and what is to be said of it.
+/// An MJCF file, with a remark.
 pub(crate) struct Mjcf {
-    /// The text.
+    /// The text of the file.
     pub text: String,
-    /// Whether an inertia is one that no solid has, so that MuJoCo must change it.
+    /// Whether some body has an inertia that no solid can have, so that MuJoCo must change it.
     pub balanced: bool,
 }
 
-/// Writes an arm in a case as MJCF.
+/// Writes an arm in a case as MJCF. `motors` has inertia and peak torque of the motors by name of the joint.
 pub(crate) fn mjcf(
     name: &str,
     snapshot: &Snapshot,
@@ -48,9 +49,9 @@ pub(crate) fn mjcf(
     let balanced = nodes.iter().any(|node| !is_solid(node));
     let case = &snapshot.case;
     let comment = format!(
-        "{name}, case \"{}\": pose {:?} deg, payload {} kg at {:?} m from the tip. Torsion curves are tangents at the torques of this case",
+        "{name}, case \"{}\": pose {}, payload {} kg at {:?} m from the tip. Torsion curves are tangents at the torques of this case",
         case.name,
-        case.pose_deg,
+        snapshot.pose_words(),
         case.payload.mass_kg,
         case.payload.cg_m.as_slice()
     );
@@ -89,7 +90,8 @@ pub(crate) fn mjcf(
     Mjcf { text: xml.finish(), balanced }
 }
 
-/// Opens a body, which stays open for those that it carries.
+/// Opens the XML element of a body. It stays open, because the bodies outboard of it are nested inside. `before_m` is
+/// the origin of the body that contains it \[m\].
 fn body(xml: &mut Xml, node: &Node, before_m: &Vector3<f64>, motors: &BTreeMap<String, Motor>) {
     xml.open("body", &[("name", node.name.clone()), ("pos", triple(&(node.origin_m - before_m)))]);
     for hinge in &node.hinges {
@@ -148,9 +150,10 @@ fn joint(
     out
 }
 
-/// A passive joint follows the motors and the gears of its drivers: a tendon that stays at zero.
+/// Writes the couplings of passive joints. Each is a tendon of fixed length, so that the joint follows the motor and
+/// the gear of its driving joints.
 fn couplings(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
-    let driven: Vec<&str> = snapshot.case_joints();
+    let driven = snapshot.case_joints();
     let has_gear =
         |joint: &str| nodes.iter().flat_map(|n| &n.hinges).any(|h| h.name == format!("{joint}.gear"));
     let passive: Vec<_> = snapshot.structure.joints().filter(|joint| !joint.is_driven()).collect();
@@ -163,7 +166,7 @@ fn couplings(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
         xml.open("fixed", &[("name", format!("{}.coupling", joint.name))]);
         xml.leaf("joint", &[("joint", joint.name.clone()), ("coef", "1".into())]);
         for (index, factor) in terms {
-            let driver = driven[*index];
+            let driver = &driven[*index];
             let geared = has_gear(driver).then(|| format!("{driver}.gear"));
             for hinge in [Some(driver.to_string()), geared].into_iter().flatten() {
                 xml.leaf("joint", &[("joint", hinge), ("coef", numbers(&[-factor]))]);
@@ -183,8 +186,8 @@ fn couplings(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
 fn actuators(xml: &mut Xml, snapshot: &Snapshot, motors: &BTreeMap<String, Motor>) {
     xml.open("actuator", &[]);
     for joint in snapshot.case_joints() {
-        let mut attributes = vec![("name", joint.to_string()), ("joint", joint.to_string())];
-        if let Some(peak_nm) = motors.get(joint).and_then(|motor| motor.peak_nm) {
+        let mut attributes = vec![("name", joint.clone()), ("joint", joint.clone())];
+        if let Some(peak_nm) = motors.get(&joint).and_then(|motor| motor.peak_nm) {
             attributes.push(("ctrlrange", numbers(&[-peak_nm, peak_nm])));
         }
         xml.leaf("motor", &attributes);
@@ -192,12 +195,14 @@ fn actuators(xml: &mut Xml, snapshot: &Snapshot, motors: &BTreeMap<String, Motor
     xml.close();
 }
 
-/// The pose of the case: with all springs straight, in which frequencies and torques are compared, and deflected.
+/// Writes the pose of the case as two keyframes. In the first all springs are undeflected, for the comparison of
+/// frequencies and torques; in the second they are deflected by the load of the case.
 fn keyframes(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
-    let pose_rad: Vec<f64> = snapshot.case.pose_deg.iter().map(|deg| deg.to_radians()).collect();
+    let (driven, pose) = (snapshot.case_joints(), snapshot.pose_si());
     let angle = |name: &str| {
-        let joint = snapshot.structure.joints().find(|joint| joint.name == name);
-        joint.map_or(0.0, |joint| joint.angle.of(&pose_rad))
+        let passive = snapshot.structure.joints().find(|joint| joint.name == name);
+        let entry = driven.iter().position(|joint| joint == name).map(|at| pose[at]);
+        entry.or(passive.map(|joint| joint.angle.of(&pose))).unwrap_or_default()
     };
     let position = |deflected: bool| {
         let of = |hinge: &Hinge| match hinge.role {
@@ -213,7 +218,7 @@ fn keyframes(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
     xml.close();
 }
 
-/// Whether a solid can have the inertia of a body: no principal moment exceeds the sum of the others.
+/// Whether a solid can have the inertia of this body: no principal moment exceeds the sum of the other two.
 fn is_solid(node: &Node) -> bool {
     let (_, _, inertia) = mass_properties(&node.inertia);
     let moments = (inertia + Matrix3::identity() * LEAST).symmetric_eigenvalues();

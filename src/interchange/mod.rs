@@ -1,10 +1,12 @@
-//! To other tools and back: robots of URDF files as arms, and arms as models for finite elements, simulation and purchase.
+//! Exchange with other tools: robots of URDF files become arms, and arms become models for finite elements,
+//! simulation and purchase.
 //!
-//! - In: `import` makes an arm of the way from the root of a URDF file (`urdf_file`, read by the crate `urdf-rs`) to a tip.
-//!   `given` reads what a URDF does not know, the stiffness of the joints; `report` says what became of the rest.
-//! - Out: `export` writes an arm in a load case. `snapshot` has its springs at their working points, and `tree` makes it a chain
-//!   of rigid bodies for `mjcf` and `urdf_out`. `calculix` makes solids of it, `bill` and `design_table` make tables.
-//!   `left_out` says what a file cannot carry, with its share of the tip's deflection.
+//! - Import: `import` makes an arm of the path from the root of a URDF file (`urdf_file`, read by the crate `urdf-rs`)
+//!   to a tip. `given` reads the stiffness of the joints, which a URDF does not have. `report` says what became of
+//!   everything.
+//! - Export: `export` writes an arm in a load case. `snapshot` has its springs at their working points, and `tree`
+//!   converts it to a chain of rigid bodies for `mjcf` and `urdf_out`. `calculix` converts it to solids, `bill` and
+//!   `design_table` to tables. `left_out` lists what a file cannot represent, each with its part of the tip deflection.
 
 pub(crate) mod bill;
 pub(crate) mod calculix;
@@ -27,13 +29,14 @@ use crate::catalog::Catalogs;
 use crate::input::json::{Document, Faults};
 use serde_json::Value;
 
-/// The arm from the root of a URDF file to a link, and what `import.json` says of it.
+/// The arm on the path from the root of a URDF file to a link, and the report of the import, the content of
+/// `import.json`.
 ///
-/// `file` is the name of the file in messages. `stiffness` has the stiffness of the joints, as in docs/interchange.md; joints that it
-/// does not name are rigid.
+/// `file` is the name of the file in messages. `stiffness` is a stiffness file as described in docs/interchange.md.
+/// Joints that it does not name are rigid.
 ///
 /// # Errors
-/// All faults of the URDF, or all of the stiffness file.
+/// All faults of the URDF file, or all faults of the stiffness file.
 ///
 /// ```
 /// use armwright::catalog::Catalogs;

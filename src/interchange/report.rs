@@ -1,4 +1,5 @@
-//! `import.json`: what became of the links and joints of a robot, what was guessed, and what was left rigid.
+//! The report of an import, `import.json`: what became of the links and joints of a robot, what was assumed, and
+//! which joints are rigid because no stiffness is known.
 
 use super::given::GivenSprings;
 use super::urdf_file::{UrdfTree, moves, slides};
@@ -6,7 +7,7 @@ use nalgebra::Isometry3;
 use serde_json::{Value, json};
 use urdf_rs::{Joint, JointType, Link};
 
-/// What is to be said of an import.
+/// The report of an import.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ImportReport {
     source: String,
@@ -16,11 +17,11 @@ pub(crate) struct ImportReport {
     joined: Vec<Value>,
     lumped: Vec<Value>,
     guessed: Vec<String>,
-    /// Joints that nothing gives a stiffness.
+    /// Names of the joints that are rigid because the stiffness file does not name them.
     pub left_rigid: Vec<String>,
     ignored: Vec<String>,
     tip_frame: Value,
-    /// Elements with an inertia that no solid has.
+    /// Names of elements with an inertia that no solid can have.
     pub impossible: Vec<String>,
     /// Mass of the arm \[kg\].
     pub mass_kg: f64,
@@ -44,7 +45,8 @@ impl ImportReport {
         }
     }
 
-    /// A joint of the arm, with the springs that the stiffness file gives it.
+    /// Records a joint of the arm. `springs` are the elastic properties that the stiffness file states for it; `None`
+    /// if it states none.
     pub(super) fn joint(
         &mut self,
         joint: &Joint,
@@ -99,7 +101,8 @@ impl ImportReport {
         }));
     }
 
-    /// A joint on the way to the tip that does not move, and the angle \[rad\] or travel \[m\] at which it stands.
+    /// Records a joint on the path to the tip that does not move. `held_at` is the angle \[rad\] or travel \[m\] at
+    /// which it is held. `link` is the link of the arm with which the URDF link behind the joint is merged.
     pub(super) fn joined(&mut self, joint: &Joint, link: &str, held_at: f64) {
         self.joined.push(json!({
             "joint": joint.name, "type": word(joint), "link": joint.child.link, "onto": link,
@@ -108,7 +111,8 @@ impl ImportReport {
         }));
     }
 
-    /// A link beside the way, which goes with a link of the arm.
+    /// Records a link of a side branch, whose body is added to the link `onto` of the arm. `by` is the joint that holds
+    /// the link.
     pub(super) fn lumped(&mut self, link: &Link, onto: &str, by: &Joint) {
         self.lumped.push(json!({
             "link": link.name, "onto": onto, "mass_kg": link.inertial.mass.value, "joint": by.name, "type": word(by),
@@ -122,7 +126,7 @@ impl ImportReport {
         }
     }
 
-    /// What holds of the whole robot. `tip` is the frame of the tip link in the world.
+    /// Records properties of the whole robot. `tip` is the frame of the tip link in the world.
     pub(super) fn finish(&mut self, tree: &UrdfTree, tip: &Isometry3<f64>, name: &str) {
         let (roll, pitch, yaw) = tip.rotation.euler_angles();
         self.tip_frame = json!({
@@ -147,7 +151,7 @@ impl ImportReport {
         );
     }
 
-    /// The report as `import.json` has it.
+    /// The report as JSON, the content of `import.json`.
     pub(crate) fn to_json(&self) -> Value {
         json!({
             "source": self.source,
@@ -168,7 +172,7 @@ impl ImportReport {
         })
     }
 
-    /// The report in words.
+    /// The report as text for the terminal.
     pub(crate) fn to_text(&self) -> String {
         let passive = self.joints.iter().filter(|joint| !joint["coupled"].is_null()).count();
         let mut out = format!(

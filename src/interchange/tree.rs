@@ -1,67 +1,71 @@
-//! An arm as a chain of rigid bodies with hinges between them, all angles zero: what simulators and URDF files know.
+//! An arm as a chain of rigid bodies with hinges between them, at zero joint angles, as simulators and URDF files
+//! need it.
 //!
 //! A driven joint is a hinge that a motor turns, and the gear is a hinge with a spring in series with it. A bearing is two hinges
-//! in series with both. A link is rigid, or it is cut into rigid pieces with springs between them: in the middle of each of `N`
+//! in series with both. A prismatic joint is a slide that a motor moves, a slide with the spring of its drive, and up to three
+//! hinges of its guide: outboard of the motor's slide where a carriage moves, inboard of it where a ram does. A link is rigid, or it is cut into rigid pieces with springs between them: in the middle of each of `N`
 //! equal parts two hinges bend, one twists, and three slides shear and stretch. That converges with 1/N².
 
 use super::snapshot::{Snapshot, Working};
 use crate::arm::LinkModel;
+use crate::arm::prismatic::PrismaticPiece;
 use crate::arm::structure::{Beam, LinkPiece};
 use crate::mechanics::beam::{line_stiffnesses, tube_inertia};
 use crate::mechanics::chain::{ElasticElement, Item, OwnMass, Yielding};
-use crate::mechanics::{Twist, angular, body_inertia, linear};
+use crate::mechanics::{Twist, angular, body_inertia, linear, stack};
 use nalgebra::{Matrix3, Matrix6, Vector3};
 use std::collections::BTreeMap;
 
-/// Radius with which a link without section is drawn \[m\].
+/// Radius with which a link without a section is drawn \[m\].
 const THIN_M: f64 = 0.02;
-/// Most hinges of one body in MuJoCo.
+/// Largest number of hinges of one body in MuJoCo.
 const MOST_HINGES: usize = 6;
 
-/// What a hinge is for.
+/// The purpose of a hinge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Role {
-    /// A motor turns it.
+    /// A motor turns the hinge.
     Motor,
-    /// A spring holds it.
+    /// A spring acts on the hinge.
     Spring(Working),
-    /// It is free within a half width \[rad\]: backlash.
+    /// The hinge turns freely within this half width \[rad\], which is the backlash of a gear.
     Play(f64),
 }
 
-/// One axis about which a body turns against the body before it, or along which it slides.
+/// One axis about which a body rotates relative to the body before it, or along which it slides.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Hinge {
-    /// Name.
+    /// Name of the hinge.
     pub name: String,
-    /// Name of the elastic element.
+    /// Name of the elastic element to which the hinge belongs.
     pub element: String,
-    /// Direction in the world, all angles zero; a unit vector.
+    /// Direction of the axis in the world at zero joint angles, a unit vector.
     pub axis: Vector3<f64>,
-    /// Place in the world, all angles zero \[m\].
+    /// Position in the world at zero joint angles \[m\].
     pub at_m: Vector3<f64>,
-    /// Whether it slides.
+    /// Whether the hinge slides along its axis; else it turns about it.
     pub slides: bool,
-    /// What it is for.
+    /// The purpose of the hinge.
     pub role: Role,
 }
 
-/// A rigid body and the hinges that carry it.
+/// A rigid body, and the hinges that connect it to the body before it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Node {
-    /// Name.
+    /// Name of the body.
     pub name: String,
-    /// Place of its frame in the world, all angles zero \[m\].
+    /// Origin of the body's frame in the world at zero joint angles \[m\].
     pub origin_m: Vector3<f64>,
-    /// Hinges from the body before it, base to tip; the first body has none.
+    /// Hinges between the body before and this one, base to tip. The first body has none.
     pub hinges: Vec<Hinge>,
-    /// Inertia about the world's origin, all angles zero.
+    /// Inertia matrix about the world's origin at zero joint angles.
     pub inertia: Matrix6<f64>,
-    /// Rods to draw: ends and radius \[m\].
+    /// Rods for drawing: both ends in the world and radius \[m\].
     pub rods: Vec<(Vector3<f64>, Vector3<f64>, f64)>,
 }
 
-/// Mass, centre of gravity and inertia about it of a rigid body whose inertia about the world's origin is given.
+/// Mass, centre of gravity, and inertia about the centre of gravity of a rigid body, computed from its inertia matrix
+/// about the world's origin.
 pub(crate) fn mass_properties(inertia: &Matrix6<f64>) -> (f64, Vector3<f64>, Matrix3<f64>) {
     let mass_kg = inertia[(0, 0)];
     if mass_kg == 0.0 {
@@ -73,20 +77,20 @@ pub(crate) fn mass_properties(inertia: &Matrix6<f64>) -> (f64, Vector3<f64>, Mat
     (mass_kg, cg_m, 0.5 * (about_cg + about_cg.transpose()))
 }
 
-/// How an arm becomes a tree.
+/// Options of the conversion of an arm to a tree.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct TreeOptions {
-    /// Whether gears, bearings and frames are hinges with springs; else they are rigid.
+    /// Whether gears, bearings and frames are hinges with springs. If not, they are rigid.
     pub springs: bool,
-    /// In how many pieces flexible links are cut; 0 for rigid links.
+    /// Number of rigid pieces into which each flexible link is divided; 0 for rigid links.
     pub pieces: usize,
-    /// How the pieces yield.
+    /// Which deformations the springs between the pieces allow.
     pub links: LinkModel,
-    /// Half width of the backlash of joints that have one \[rad\].
+    /// Half width of the backlash \[rad\] by name of the joint; joints without backlash are missing.
     pub plays: BTreeMap<String, f64>,
 }
 
-/// The bodies of an arm, base to tip.
+/// The rigid bodies of an arm, base to tip.
 pub(crate) fn tree(snapshot: &Snapshot, options: &TreeOptions) -> Vec<Node> {
     let mut builder = Builder { options, nodes: Vec::new() };
     builder.open("base", Vector3::zeros());
@@ -95,13 +99,13 @@ pub(crate) fn tree(snapshot: &Snapshot, options: &TreeOptions) -> Vec<Node> {
     for item in &posed.items {
         match item {
             Item::Body(body) => builder.last().inertia += body.inertia(),
-            // forces are no part of a tree
+            // a tree has no forces
             Item::Load(_) => {}
             Item::Elastic(element) => {
                 let workings = workings.next().unwrap_or_default();
                 match &element.own {
                     Some(own) => builder.link(snapshot.link(own.piece), own),
-                    None => builder.springs(element, &workings),
+                    None => builder.springs(element, &workings, snapshot.carriage(&element.name)),
                 }
             }
         }
@@ -129,21 +133,32 @@ impl Builder<'_> {
         self.nodes.last_mut().expect("the base is opened first")
     }
 
-    /// Adds the hinges of a joint, of its bearing, or of a frame.
-    fn springs(&mut self, element: &ElasticElement, workings: &[Working]) {
-        let is_joint = matches!(element.yielding, Yielding::Joint(_));
+    /// Adds the hinges of a joint, of its bearing or guide, or of a frame. `carriage` is the joint whose guide this is, if the
+    /// guide travels.
+    fn springs(&mut self, element: &ElasticElement, workings: &[Working], carriage: Option<&PrismaticPiece>) {
+        let slides = matches!(element.yielding, Yielding::Slide { .. });
+        let is_joint = slides || matches!(element.yielding, Yielding::Joint(_));
         let yields = self.options.springs && workings.iter().any(|working| !working.is_rigid());
         if !is_joint && !yields {
             return;
         }
-        // a joint is in one body with its bearing, whose name begins with the joint's
-        let node = element.name.strip_suffix(".bearing").unwrap_or(&element.name).to_string();
+        // a joint is in one body with its bearing or guide, whose name begins with the joint's
+        let of_joint = [".bearing", ".guide"].iter().find_map(|end| element.name.strip_suffix(end));
+        let node = of_joint.unwrap_or(&element.name).to_string();
         let last = self.last();
         let shares = last.name == node && last.inertia == Matrix6::zeros();
-        if !shares || last.hinges.len() + element.twists.len() > MOST_HINGES - 2 {
+        // a joint that turns may bring its motor and its backlash too
+        let more = if slides { 1 } else { 2 };
+        if !shares || last.hinges.len() + element.twists.len() > MOST_HINGES - more {
             self.open(&node, element.at_m);
         }
-        if is_joint {
+        if let Some(joint) = carriage {
+            let travel = stack(&joint.axis, &Vector3::zeros());
+            let motor = hinge(&travel, joint.name.clone(), &joint.name, element.at_m, Role::Motor);
+            self.last().hinges.push(motor);
+        }
+        let has_motor = self.last().hinges.iter().any(|hinge| hinge.name == element.name);
+        if is_joint && !has_motor {
             let name = element.name.clone();
             let motor = hinge(&element.twists[0], name.clone(), &name, element.at_m, Role::Motor);
             self.last().hinges.push(motor);
@@ -158,6 +173,7 @@ impl Builder<'_> {
         }
         for (i, (twist, working)) in element.twists.iter().zip(workings).enumerate() {
             let name = match is_joint {
+                true if slides => format!("{}.drive", element.name),
                 true => format!("{}.gear", element.name),
                 false => format!("{}_{}", element.name, i + 1),
             };
@@ -166,7 +182,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Adds a link with mass along it, whole or in pieces.
+    /// Adds a link with mass along it, as one rigid body, or as rigid pieces with springs between them if the options
+    /// ask for it.
     fn link(&mut self, link: Option<&LinkPiece>, own: &OwnMass) {
         let Some(link) = link else { return };
         let vector_m = own.frame.column(0) * link.vector_m.norm();
@@ -184,7 +201,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Adds a link as pieces with springs between them.
+    /// Adds a link as rigid pieces with springs between them. `own` has its root and its section frame; `radius_m` is
+    /// the radius with which it is drawn \[m\].
     fn pieces(&mut self, link: &LinkPiece, beam: &Beam, own: &OwnMass, radius_m: f64) {
         let count = self.options.pieces;
         let length_m = link.vector_m.norm();
@@ -205,7 +223,7 @@ impl Builder<'_> {
             let model = self.options.links;
             let mut inertia = piece_inertia(link, beam, own, (place(from), place(to)), model);
             for body in &link.bodies {
-                // at zero angles the carried frame is parallel to the world's
+                // at zero angles the carried frame is parallel to the world's, so no rotation is needed
                 let xi = (body.cg_m.dot(&along) / length_m).clamp(0.0, 1.0);
                 if xi >= from && (xi < to || k == count) {
                     inertia += body_inertia(body.mass_kg, &(own.root_m + body.cg_m), &body.inertia_kgm2);
@@ -218,7 +236,8 @@ impl Builder<'_> {
     }
 }
 
-/// The hinge or slide of a twist.
+/// The hinge that turns about, or slides along, the axis of the motion `twist` (velocity, angular velocity). `element`
+/// is the name of the elastic element, and `at_m` the position of the hinge \[m\].
 fn hinge(twist: &Twist, name: String, element: &str, at_m: Vector3<f64>, role: Role) -> Hinge {
     let turn = angular(twist);
     let slides = turn == Vector3::zeros();
@@ -226,7 +245,7 @@ fn hinge(twist: &Twist, name: String, element: &str, at_m: Vector3<f64>, role: R
     Hinge { name, element: element.into(), axis, at_m, slides, role }
 }
 
-/// Mass and inertia about the world's origin of a piece of a link between two places.
+/// Inertia matrix, about the world's origin, of the part of a link between the points `from_m` and `to_m` \[m\].
 fn piece_inertia(
     link: &LinkPiece,
     beam: &Beam,
@@ -247,7 +266,8 @@ fn piece_inertia(
     body_inertia(mass_kg, &((from_m + to_m) / 2.0), &inertia)
 }
 
-/// The springs between two pieces of a link: slides along the axes of the section and hinges about them.
+/// The springs between two pieces of a link: slides along the axes of the section, and hinges about them. They are at
+/// `at_m` \[m\] and belong to the piece with the index `piece`.
 fn piece_hinges(
     link: &LinkPiece,
     beam: &Beam,
@@ -275,7 +295,7 @@ fn piece_hinges(
             axis: own.frame.column(column).into_owned(),
             at_m,
             slides,
-            // straight springs: they are at rest without a load
+            // linear springs without preload
             role: Role::Spring(Working {
                 load_nm: 0.0,
                 deflection_rad: 0.0,

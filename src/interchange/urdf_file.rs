@@ -1,7 +1,7 @@
 //! Reading a URDF file as a tree: links, joints, and every fault of the file at once.
 //!
-//! The text is parsed by the crate `urdf-rs`. What it does not look at is checked here: names that are taken or unknown, links
-//! with two parents, circles, axes without direction, masses and inertias that no body can have.
+//! The text is parsed by the crate `urdf-rs`. What the crate does not check is checked here: duplicate and unknown
+//! names, links with two parents, loops, axes without a direction, and masses and inertias that no body can have.
 
 use crate::input::json::{Fault, Faults};
 use crate::input::names::unfit_name;
@@ -9,7 +9,7 @@ use nalgebra::{Isometry3, Matrix3, SymmetricEigen, Translation3, UnitQuaternion,
 use std::collections::BTreeMap;
 use urdf_rs::{Joint, JointType, Link, Pose, Robot};
 
-/// Negative principal moment that counts as rounding, per largest entry of the tensor.
+/// Largest negative principal moment that counts as rounding, relative to the largest entry of the tensor.
 const ROUNDING: f64 = 1e-6;
 
 /// A robot as a tree of links.
@@ -23,34 +23,34 @@ pub(crate) struct UrdfTree {
     pub joints: Vec<Joint>,
 }
 
-/// Whether a joint moves.
+/// Whether a joint moves: it is not fixed.
 pub(crate) fn moves(joint: &Joint) -> bool {
     !matches!(joint.joint_type, JointType::Fixed)
 }
 
-/// Whether a joint slides.
+/// Whether a joint slides: it is prismatic.
 pub(crate) fn slides(joint: &Joint) -> bool {
     matches!(joint.joint_type, JointType::Prismatic)
 }
 
-/// Place and attitude of an `<origin>`.
+/// Position \[m\] and attitude that an `<origin>` states, as a transformation.
 pub(crate) fn isometry(pose: &Pose) -> Isometry3<f64> {
     let [roll, pitch, yaw] = pose.rpy.0;
     let turn = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
     Isometry3::from_parts(Translation3::from(Vector3::from(pose.xyz.0)), turn)
 }
 
-/// Inertia about the centre of gravity in axes of the inertial frame \[kg m²\].
+/// Inertia tensor of a link about its centre of gravity, in axes of its inertial frame \[kg m²\].
 pub(crate) fn tensor(link: &Link) -> Matrix3<f64> {
     let i = &link.inertial.inertia;
     Matrix3::new(i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz)
 }
 
 impl UrdfTree {
-    /// Reads a robot from the text of a URDF file; `file` is its name in messages.
+    /// Reads a robot from the text of a URDF file. `file` is the name of the file in messages.
     ///
     /// # Errors
-    /// All faults of the file.
+    /// All faults of the file at once.
     pub(crate) fn read(file: &str, text: &str) -> Result<Self, Faults> {
         let fault = |name: &str, problem: String, hint: &str| Fault {
             file: file.into(),
@@ -69,22 +69,22 @@ impl UrdfTree {
         if faults.is_empty() { Ok(tree) } else { Err(Faults(faults)) }
     }
 
-    /// The link of a name.
+    /// The link with this name.
     pub(crate) fn link(&self, name: &str) -> Option<&Link> {
         self.links.iter().find(|link| link.name == name)
     }
 
-    /// The joint that carries a link; the root has none.
+    /// The joint whose child is this link; `None` for the root.
     pub(crate) fn parent_joint(&self, link: &str) -> Option<&Joint> {
         self.joints.iter().find(|joint| joint.child.link == link)
     }
 
-    /// The joints that a link carries.
+    /// The joints whose parent is this link.
     pub(crate) fn child_joints(&self, link: &str) -> impl Iterator<Item = &Joint> {
         self.joints.iter().filter(move |joint| joint.parent.link == link)
     }
 
-    /// The joints from the root to a link, in this order.
+    /// The joints on the path from the root to a link, in this order.
     pub(crate) fn path_to(&self, tip: &str) -> Vec<&Joint> {
         let mut path = Vec::new();
         let mut link = tip;
@@ -96,13 +96,13 @@ impl UrdfTree {
         path
     }
 
-    /// The links that carry nothing, where an arm may end.
+    /// The links without child joints. An arm may end at any of them.
     pub(crate) fn ends(&self) -> Vec<&str> {
         let is_end = |link: &&Link| self.child_joints(&link.name).next().is_none();
         self.links.iter().filter(is_end).map(|link| link.name.as_str()).collect()
     }
 
-    /// Everything that is wrong: name of the link or joint, problem, and what to try.
+    /// All faults of the robot, each with the name of the link or joint, the problem and the advice.
     fn problems(&self) -> Vec<(String, String, &'static str)> {
         let mut out = Vec::new();
         if self.links.is_empty() {
@@ -153,7 +153,8 @@ impl UrdfTree {
         }
     }
 
-    /// Each link has one parent but one, which has none; and every way leads to it.
+    /// Checks that the links form a tree: exactly one link has no parent, all others have one, and every path leads
+    /// to the root.
     fn tree_problems(&self, out: &mut Vec<(String, String, &'static str)>) {
         let mut parents: BTreeMap<&str, usize> = BTreeMap::new();
         self.joints.iter().for_each(|joint| *parents.entry(&joint.child.link).or_default() += 1);
@@ -189,7 +190,7 @@ impl UrdfTree {
     }
 }
 
-/// A body must have a mass and moments that are not negative.
+/// Checks that the mass and the principal moments of a body are not negative.
 fn body_problems(link: &Link, out: &mut Vec<(String, String, &'static str)>) {
     let mass_kg = link.inertial.mass.value;
     if !(mass_kg >= 0.0 && mass_kg.is_finite()) {
@@ -215,7 +216,7 @@ fn body_problems(link: &Link, out: &mut Vec<(String, String, &'static str)>) {
     }
 }
 
-/// The line in which a link or joint of this name begins.
+/// The line of the text in which a link or joint of this name begins; `None` if none is found.
 fn line_of(text: &str, name: &str) -> Option<usize> {
     let quoted = [format!("name=\"{name}\""), format!("name='{name}'")];
     let begins = |line: &str| quoted.iter().any(|q| line.contains(q.as_str()));

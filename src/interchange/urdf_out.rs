@@ -1,7 +1,7 @@
-//! URDF: the rigid arm, and a side file for what a URDF does not know, the stiffness of its joints.
+//! Export to URDF: the rigid arm, and a separate file with the stiffness of its joints, which a URDF cannot state.
 //!
-//! The side file is the stiffness file that an import reads, so that an exported arm comes back with the same torques and, its links
-//! being rigid, the same modes.
+//! The separate file is the stiffness file that an import reads. An exported arm that is imported again has the same
+//! torques and, since its links are rigid, the same modes.
 
 use super::snapshot::Snapshot;
 use super::tree::{Node, TreeOptions, mass_properties, tree};
@@ -11,7 +11,7 @@ use crate::arm::{Arm, Joint};
 use nalgebra::Vector3;
 use serde_json::{Map, Value, json};
 
-/// Writes an arm as URDF. The payload of the case is no part of it.
+/// Writes an arm as URDF. The payload of the case is not included.
 pub(crate) fn urdf(arm: &Arm, snapshot: &Snapshot) -> String {
     let nodes = tree(snapshot, &TreeOptions::default());
     let comment = format!(
@@ -41,7 +41,8 @@ pub(crate) fn urdf(arm: &Arm, snapshot: &Snapshot) -> String {
     xml.finish()
 }
 
-/// Links and joints have names of their own in a URDF.
+/// Name of the URDF link for a body, which must differ from the names of joints. `number` counts the bodies from the
+/// base.
 fn link_name(number: usize, node: &Node) -> String {
     if number == 0 { "base".into() } else { format!("{}_link", node.name) }
 }
@@ -68,42 +69,50 @@ fn ends(xml: &mut Xml, parent: &str, child: &str, xyz_m: &Vector3<f64>) {
     xml.leaf("origin", &[("xyz", triple(xyz_m)), ("rpy", "0 0 0".into())]);
 }
 
-/// A joint. An arm has no ranges, so its joints are continuous.
+/// The range of a prismatic joint, which a URDF must have and an arm does not \[m\].
+pub(crate) const TRAVEL_M: f64 = 1e3;
+
+/// A joint. An arm has no ranges, so its joints are continuous where they turn.
 fn joint(xml: &mut Xml, snapshot: &Snapshot, (from, parent): (&str, &Node), (to, node): (&str, &Node)) {
-    xml.open("joint", &[("name", node.name.clone()), ("type", "continuous".into())]);
+    let slides = node.hinges.first().is_some_and(|hinge| hinge.slides);
+    let kind = if slides { "prismatic" } else { "continuous" };
+    xml.open("joint", &[("name", node.name.clone()), ("type", kind.into())]);
     ends(xml, from, to, &(node.origin_m - parent.origin_m));
     if let Some(hinge) = node.hinges.first() {
         xml.leaf("axis", &[("xyz", triple(&hinge.axis))]);
+    }
+    if slides {
+        let limits = [("lower", -TRAVEL_M), ("upper", TRAVEL_M), ("effort", 1e9), ("velocity", 1e3)];
+        xml.leaf("limit", &limits.map(|(key, value)| (key, numbers(&[value]))));
     }
     let piece = snapshot.structure.joints().find(|piece| piece.name == node.name);
     if let Some(JointAngle::Coupled(terms)) = piece.map(|piece| &piece.angle)
         && let [(driver, factor)] = terms.as_slice()
     {
-        let driver = snapshot.case_joints()[*driver].to_string();
+        let driver = snapshot.case_joints()[*driver].clone();
         xml.leaf("mimic", &[("joint", driver), ("multiplier", numbers(&[*factor])), ("offset", "0".into())]);
     }
     xml.close();
 }
 
-/// Passive joints with several drivers, which no `<mimic>` can follow.
+/// Passive joints with several driving joints. A URDF cannot express them, because `<mimic>` follows a single joint.
 pub(crate) fn with_several_drivers(arm: &Arm) -> Vec<&Joint> {
     arm.joints().filter(|joint| joint.coupled.as_ref().is_some_and(|terms| terms.len() != 1)).collect()
 }
 
-/// The stiffness file of an arm.
+/// The stiffness file of an arm, for a later import.
 pub(crate) fn stiffness_file(arm: &Arm) -> Value {
-    let joints: Map<String, Value> = arm
-        .joints()
-        .map(|joint| {
-            let (key, curve) = joint.curve.to_json();
-            let mut of_joint = json!({key: curve, "bearing": joint.bearing.map(|bearing| bearing.to_json())});
-            for (key, part) in [("gear", &joint.gear), ("motor", &joint.motor)] {
-                if let Some(part) = part {
-                    of_joint[key] = json!(part);
-                }
+    let turning = arm.joints().map(|joint| {
+        let (key, curve) = joint.curve.to_json();
+        let mut of_joint = json!({key: curve, "bearing": joint.bearing.map(|bearing| bearing.to_json())});
+        for (key, part) in [("gear", &joint.gear), ("motor", &joint.motor)] {
+            if let Some(part) = part {
+                of_joint[key] = json!(part);
             }
-            (joint.name.clone(), of_joint)
-        })
-        .collect();
+        }
+        (joint.name.clone(), of_joint)
+    });
+    let sliding = arm.prismatics().map(|joint| (joint.name.clone(), joint.springs_to_json()));
+    let joints: Map<String, Value> = turning.chain(sliding).collect();
     json!({"joints": joints})
 }

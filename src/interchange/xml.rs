@@ -1,9 +1,9 @@
-//! XML text: elements with attributes, indented; names are escaped.
+//! Writer of XML text: indented elements with attributes, whose values are escaped.
 
 use nalgebra::Vector3;
 use std::fmt::Write;
 
-/// XML that grows element by element.
+/// An XML document that is written element by element.
 #[derive(Debug, Default)]
 pub(crate) struct Xml {
     text: String,
@@ -11,9 +11,9 @@ pub(crate) struct Xml {
 }
 
 impl Xml {
-    /// Begins a document with a comment on what it is.
+    /// Begins a document, with a comment that says what it is.
     pub(crate) fn new(comment: &str) -> Self {
-        // two hyphens end a comment
+        // XML allows no two hyphens inside a comment
         let comment = comment.replace("--", "- -");
         Self { text: format!("<?xml version=\"1.0\"?>\n<!-- {comment} -->\n"), open: Vec::new() }
     }
@@ -25,7 +25,7 @@ impl Xml {
         let _ = writeln!(self.text, "{indent}<{name}{attributes}{end}");
     }
 
-    /// Opens an element.
+    /// Opens an element with attributes.
     pub(crate) fn open(&mut self, name: &'static str, attributes: &[(&str, String)]) {
         self.tag(name, attributes, ">");
         self.open.push(name);
@@ -44,7 +44,7 @@ impl Xml {
         }
     }
 
-    /// The document, with everything closed.
+    /// The text of the document. Elements that are still open are closed.
     pub(crate) fn finish(mut self) -> String {
         while !self.open.is_empty() {
             self.close();
@@ -53,17 +53,17 @@ impl Xml {
     }
 }
 
-/// A text as the value of an attribute.
+/// A text with the characters escaped that an attribute value must not contain.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// Three numbers, in the shortest form that reads back the same.
+/// Three numbers as text, each in the shortest form that reads back unchanged.
 pub(crate) fn triple(vector: &Vector3<f64>) -> String {
     numbers(vector.as_slice())
 }
 
-/// Numbers with spaces between them. A negative zero is a zero.
+/// Numbers as text with spaces between them. A negative zero is written as zero.
 pub(crate) fn numbers(numbers: &[f64]) -> String {
     numbers.iter().map(|x| format!("{}", x + 0.0)).collect::<Vec<_>>().join(" ")
 }

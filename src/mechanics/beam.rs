@@ -1,20 +1,22 @@
-//! Beams: a link as strain coordinates.
+//! Beams: a link that deforms, described by strain coordinates.
 //!
-//! Let `ξ = x/L` run from 0 to 1 along the link. Each strain is a sum of Legendre polynomials `P_i(2ξ-1)`: curvature in both
-//! planes, shear in both planes, twist rate and axial strain. Slopes and displacements are their integrals from the clamped
-//! root. Legendre polynomials are orthogonal, so the stiffness matrix is diagonal. Only the lowest polynomials move the
-//! end of the link: `P_0` and `P_1` of curvature, and `P_0` of the others. The rest are inner shapes.
+//! Let `ξ = x/L` run from 0 to 1 along the link. Each strain (curvature in both planes, shear in both planes, twist
+//! rate and axial strain) is a sum of Legendre polynomials `P_i(2ξ-1)`. Slopes and displacements are the integrals of
+//! the strains from the clamped root. Legendre polynomials are orthogonal, so the stiffness matrix is diagonal. Only
+//! the lowest polynomials move the end of the link: `P_0` and `P_1` of curvature, and `P_0` of the other strains. The
+//! others are inner shapes: they deform the link while its end stays in place.
 //!
-//! | strain | coordinates | compliance of the i-th | what it moves |
+//! | strain | number of coordinates | compliance of the i-th | motion of the link at ξ per unit |
 //! |---|---|---|---|
 //! | curvature | 4 a plane | `(2i+1)/(E I L)` | deflection `L² ∬P_i`, slope `L ∫P_i` |
 //! | shear | 3 a plane | `(2i+1)/(κ G A L)` | deflection `L ∫P_i` |
 //! | twist | 3 | `(2i+1)/(G J L)` | rotation `L ∫P_i` |
 //! | stretch | 3 | `(2i+1)/(E A L)` | displacement `L ∫P_i` |
 //!
-//! These shapes contain the exact deflection under an end force, an end moment and a uniform load (Eqs 1-4 and their
-//! Timoshenko counterparts), so statics are exact. Frequencies converge from above. The inertia does not depend on the
-//! stiffness, so frequencies rise with every stiffness and fall with every mass. The exact search relies on this.
+//! A sum of these shapes can represent the exact deflection under an end force, an end moment and a uniform load (Eqs
+//! 1-4 and their Timoshenko counterparts), so statics are exact. Natural frequencies converge from above. The inertia
+//! matrix does not depend on the stiffness, so frequencies rise with every stiffness and fall with every mass. The
+//! exact search relies on this.
 
 use super::{Wrench, body_inertia, force_wrench, stack};
 use crate::arm::LinkModel;
@@ -27,7 +29,8 @@ use nalgebra::{DMatrix, Matrix3, Matrix3xX, Matrix6xX, SMatrix, Vector3};
 pub(crate) const CURVATURES: usize = 4;
 /// Number of polynomials of shear in each plane, of twist and of stretch.
 pub(crate) const OTHERS: usize = 3;
-/// Gauss-Legendre points and weights. They are exact to degree 15; the integrands here have degree 10 at most.
+/// Points (0 to 1) and weights of Gauss-Legendre quadrature over the length of a link. With eight points it is exact
+/// for polynomials up to degree 15; the integrands here have degree 10 at most.
 const GAUSS: [(f64, f64); 8] = [
     (0.019_855_071_751_231_9, 0.050_614_268_145_188_1),
     (0.101_666_761_293_186_6, 0.111_190_517_226_687_2),
@@ -39,31 +42,31 @@ const GAUSS: [(f64, f64); 8] = [
     (0.980_144_928_248_768_1, 0.050_614_268_145_188_1),
 ];
 
-/// The kind of strain of one coordinate.
+/// The kind of strain that one coordinate describes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Strain {
     /// Curvature that moves the link along the z axis of its section.
     CurvatureZ,
     /// Curvature that moves the link along the y axis of its section.
     CurvatureY,
-    /// Shear along z.
+    /// Shear that moves the link along the z axis of its section.
     ShearZ,
-    /// Shear along y.
+    /// Shear that moves the link along the y axis of its section.
     ShearY,
-    /// Twist about the link.
+    /// Torsion about the axis of the link.
     Twist,
-    /// Stretch along the link.
+    /// Extension along the axis of the link.
     Stretch,
 }
 
-/// Mass and rotary inertia per length.
+/// Mass and rotary inertia of a link per metre of its length.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct LineInertia {
-    /// Mass per length that moves along the link \[kg/m\].
+    /// Mass per length that counts for motion along the link \[kg/m\].
     pub along_kg_per_m: f64,
-    /// Mass per length that moves across the link, with the added mass of water \[kg/m\].
+    /// Mass per length that counts for motion across the link \[kg/m\]. It includes the added mass of water.
     pub across_kg_per_m: f64,
-    /// Rotary inertia per length about the link \[kg m\].
+    /// Rotary inertia per length about the axis of the link \[kg m\].
     pub polar_kg_m: f64,
     /// Rotary inertia per length about the y axis of the section \[kg m\].
     pub rotary_y_kg_m: f64,
@@ -72,7 +75,8 @@ pub(crate) struct LineInertia {
 }
 
 impl LineInertia {
-    /// Inertia per length of each component of displacement and rotation, in the section frame.
+    /// Mass and rotary inertia per length, one number for each component of motion in the section frame: displacement
+    /// along x, y, z \[kg/m\], rotation about x, y, z \[kg m\].
     fn densities(&self) -> [f64; 6] {
         [
             self.along_kg_per_m,
@@ -85,14 +89,16 @@ impl LineInertia {
     }
 }
 
-/// Weight of the bodies on a link, in its section frame.
+/// Weight of the rigid bodies that are mounted on a link, as loads in the section frame of the link.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct CarriedWeight {
-    /// Work of the weight per coordinate, if it acts along each axis \[N m per unit\].
+    /// Work of the weight per unit of each strain coordinate (columns) if gravity acts along x, y or z (rows)
+    /// \[N m per unit\].
     pub fields: Matrix3xX<f64>,
-    /// Weight \[N\].
+    /// Sum of the weights \[N\].
     pub weight_n: f64,
-    /// First moment of the weight about the root \[N m\].
+    /// Sum over the bodies of weight times position of the centre of gravity, measured from the root of the link \[N
+    /// m\].
     pub moment_nm: Vector3<f64>,
 }
 
@@ -102,31 +108,36 @@ impl Default for CarriedWeight {
     }
 }
 
-/// A link prepared for any pose: everything that does not depend on its place.
+/// A link prepared for any pose: its stiffness, mass and displacement fields, none of which depends on the pose.
 #[derive(Debug, Clone)]
 pub(crate) struct PreparedBeam {
-    /// Length \[m\].
+    /// Length of the link \[m\].
     pub length_m: f64,
-    /// Section frame (columns x, y, z) in the frame that the joints before the link carry.
+    /// Axes of the section (columns x, y, z), in the carried frame of the link: the frame that turns with the joints
+    /// inboard of it.
     pub frame: Matrix3<f64>,
-    /// Compliance of each coordinate.
+    /// Compliance of each strain coordinate.
     pub compliances: Vec<f64>,
-    /// Displacement (rows 0-2) and rotation (rows 3-5) of the end per coordinate, in the section frame.
+    /// Displacement (rows 0-2) and rotation (rows 3-5) of the end of the link per unit of each strain coordinate, in
+    /// the section frame.
     pub end_fields: Matrix6xX<f64>,
-    /// Integral of the displacement over the length per coordinate, in the section frame \[m² per unit\].
+    /// Displacement integrated over the length of the link, per unit of each strain coordinate, in the section frame
+    /// \[m² per unit\].
     pub area_fields: Matrix3xX<f64>,
-    /// Inertia over root translation, root rotation and coordinates, in the section frame.
+    /// Inertia matrix over translation of the root (0-2), rotation of the root (3-5) and strain coordinates (from 6),
+    /// in the section frame.
     pub inertia: DMatrix<f64>,
     /// Weight minus buoyancy per length \[N/m\].
     pub weight_n_per_m: f64,
-    /// Weight of the bodies on the link.
+    /// Weight of the rigid bodies that are mounted on the link.
     pub bodies: CarriedWeight,
     coordinates: Vec<(Strain, usize)>,
     line: LineInertia,
 }
 
 impl PreparedBeam {
-    /// Prepares a link. Returns `None` for a rigid offset without mass along it, or without length.
+    /// Prepares the link of a structure for the link model `model`. Returns `None` if the link has no length, or if it
+    /// is a rigid offset without a harness along it.
     pub(crate) fn new(link: &LinkPiece, structure: &Structure, model: LinkModel) -> Option<Self> {
         let length_m = link.vector_m.norm();
         if length_m == 0.0 || (link.beam.is_none() && link.harness_kg_per_m == 0.0) {
@@ -154,13 +165,13 @@ impl PreparedBeam {
         Some(beam)
     }
 
-    /// Displacement (rows 0-2) and rotation (rows 3-5) at the place `xi` (0 to 1), per unit of root translation (columns
-    /// 0-2), root rotation (columns 3-5) and each coordinate (columns from 6), in the section frame.
+    /// Displacement (rows 0-2) and rotation (rows 3-5) of the point at `xi` (0 to 1), in the section frame, per unit
+    /// of root translation (columns 0-2), root rotation (columns 3-5) and each strain coordinate (columns from 6).
     pub(crate) fn fields(&self, xi: f64) -> Matrix6xX<f64> {
         let mut out = Matrix6xX::zeros(6 + self.coordinates.len());
         out.fill_with_identity();
         let x = xi * self.length_m;
-        // a rotation of the root about y lowers the link; one about z moves it along y
+        // a positive rotation of the root about y moves the point along -z; one about z moves it along +y
         out[(2, 4)] = -x;
         out[(1, 5)] = x;
         for (column, &(strain, degree)) in self.coordinates.iter().enumerate() {
@@ -178,18 +189,20 @@ impl PreparedBeam {
         out
     }
 
-    /// Inertia per length of each component of displacement and rotation, in the section frame.
+    /// Mass and rotary inertia per length of this link, one number for each component of motion in the section frame:
+    /// displacement along x, y, z \[kg/m\], rotation about x, y, z \[kg m\].
     pub(crate) fn line_densities(&self) -> [f64; 6] {
         self.line.densities()
     }
 
-    /// Gauss points (0 to 1), each with its weight times the length.
+    /// The Gauss points of the link (0 at its root, 1 at its end), each with its weight times the length of the link
+    /// \[m\].
     pub(crate) fn quadrature(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         GAUSS.iter().map(|&(xi, weight)| (xi, weight * self.length_m))
     }
 
-    /// Weight as a wrench about the world's origin. The root is at `root_m`, and `frame` is the section frame in the world.
-    /// `down` is the direction of gravity.
+    /// Weight of the link and of the bodies on it, as a wrench about the world's origin. The root is at `root_m`
+    /// \[m\], `frame` is the section frame in the world, and `down` is the unit vector of gravity.
     pub(crate) fn weight(&self, root_m: &Vector3<f64>, frame: &Matrix3<f64>, down: &Vector3<f64>) -> Wrench {
         let middle_m = root_m + frame.column(0) * (self.length_m / 2.0);
         let tube = force_wrench(&(*down * (self.weight_n_per_m * self.length_m)), &middle_m);
@@ -198,7 +211,8 @@ impl PreparedBeam {
         tube + stack(&(*down * *weight_n), &moment_nm)
     }
 
-    /// Adds a body, which moves with the point of the axis that is nearest to its centre.
+    /// Adds inertia and weight of a rigid body to the link. The body moves with the point of the axis that is nearest
+    /// to its centre of gravity.
     fn add_body(&mut self, body: &RigidBody, gravity_m_s2: f64) {
         self.inertia += self.inertia_of(body);
         let weight_n = body.mass_kg * gravity_m_s2;
@@ -207,7 +221,8 @@ impl PreparedBeam {
         self.bodies.moment_nm += weight_n * (self.frame.transpose() * body.cg_m);
     }
 
-    /// Inertia of a body over root translation, root rotation and coordinates, in the section frame.
+    /// Inertia matrix of a body on the link, over root translation, root rotation and strain coordinates, in the
+    /// section frame.
     pub(crate) fn inertia_of(&self, body: &RigidBody) -> DMatrix<f64> {
         let turn = self.frame.transpose();
         let (fields, arm_m) = self.carrier(body);
@@ -216,23 +231,24 @@ impl PreparedBeam {
         DMatrix::from_fn(fields.ncols(), fields.ncols(), |i, j| fields.column(i).dot(&weighted.column(j)))
     }
 
-    /// Displacement of the centre of a body per unit of root translation, root rotation and each coordinate, in the section
-    /// frame.
+    /// Displacement of the centre of gravity of a body on the link, per unit of root translation, root rotation and
+    /// each strain coordinate, in the section frame.
     pub(crate) fn centre_fields(&self, body: &RigidBody) -> Matrix3xX<f64> {
         let (fields, arm_m) = self.carrier(body);
         let turned = arm_m.cross_matrix() * fields.fixed_rows::<3>(3);
         fields.fixed_rows::<3>(0) - turned
     }
 
-    /// The fields at the point of the axis that carries a body, and the way from there to the centre of the body in the
-    /// section frame.
+    /// The point of the axis with which a body on the link moves: the displacement fields at this point (see
+    /// [`Self::fields`]), and the vector from the point to the centre of gravity of the body \[m\], in the section
+    /// frame.
     pub(crate) fn carrier(&self, body: &RigidBody) -> (Matrix6xX<f64>, Vector3<f64>) {
         let cg_m = self.frame.transpose() * body.cg_m;
         let xi = (cg_m.x / self.length_m).clamp(0.0, 1.0);
         (self.fields(xi), cg_m - Vector3::x() * (xi * self.length_m))
     }
 
-    /// Integrates inertia and displacement over the length.
+    /// Computes the inertia matrix and the area fields of the link by quadrature over its length.
     fn integrate(&mut self) {
         let n = 6 + self.coordinates.len();
         let densities = self.line_densities();
@@ -251,8 +267,9 @@ impl PreparedBeam {
     }
 }
 
-/// Where along the axis of a link a spring pulls (0 to 1), and its force and moment about that point in the section frame.
-/// The root is at `root_m`, and `frame` is the section frame in the world.
+/// The point of the axis of a link at which a spring acts (0 at the root, 1 at the end), and the spring's force and
+/// moment about this point in the section frame. The root of the link is at `root_m` \[m\], `frame` is the section
+/// frame in the world, and `load` is the force of the spring in the world.
 pub(crate) fn pull_on(
     length_m: f64,
     root_m: &Vector3<f64>,
@@ -266,7 +283,8 @@ pub(crate) fn pull_on(
     (xi, stack(&force_n, &(frame.tr_mul(&load.moment_nm) + arm_m.cross(&force_n))))
 }
 
-/// Slope `L ∫P_i` and deflection `L² ∬P_i` at `xi`. Both are zero at the root. They follow from
+/// Slope `L ∫P_i` and deflection `L² ∬P_i` of a link at `xi` (0 to 1), if its curvature is the Legendre polynomial of
+/// this degree. Both are integrated from the root, where they are zero. The integrals follow from
 /// `(2i+1) ∫P_i = P_(i+1) - P_(i-1)` over `s = 2ξ-1`, with dξ = ds/2.
 fn shape(degree: usize, xi: f64, length_m: f64) -> (f64, f64) {
     let s = 2.0 * xi - 1.0;
@@ -282,7 +300,7 @@ fn shape(degree: usize, xi: f64, length_m: f64) -> (f64, f64) {
     (length_m * integral(degree), length_m * length_m * deflection)
 }
 
-/// Legendre polynomial, by its recurrence.
+/// Legendre polynomial of this degree at `s` (-1 to 1), by the three-term recurrence.
 fn legendre(degree: usize, s: f64) -> f64 {
     let (mut before, mut here) = (0.0, 1.0);
     for i in 0..degree {
@@ -292,36 +310,39 @@ fn legendre(degree: usize, s: f64) -> f64 {
     here
 }
 
-/// The section frame (columns x, y, z) of a link along `vector_m`, in the frame of this vector. x is along the link, and z
-/// is as near to the z axis of that frame as it can be.
+/// The section frame (columns x, y, z) of a link along `vector_m`, in the frame in which this vector is given. The x
+/// axis is along the link. The z axis is as near as possible to the z axis of the given frame.
 pub(crate) fn section_frame(vector_m: &Vector3<f64>) -> Matrix3<f64> {
     let x = vector_m.normalize();
-    // a link (nearly) along z leaves no direction for "up"; x takes its place
+    // for a link (nearly) along z, the x axis of the given frame is used instead
     let up = if x.z.abs() > 0.99 { Vector3::x() } else { Vector3::z() };
     let z = (up - x * x.dot(&up)).normalize();
     Matrix3::from_columns(&[x, z.cross(&x), z])
 }
 
-/// Compliance of each strain coordinate of a link, in the order of [`PreparedBeam::compliances`].
+/// Compliance (squared coordinate per twice the strain energy) of each strain coordinate of a link, in the order of
+/// [`PreparedBeam::compliances`]. Empty for a rigid link.
 pub(crate) fn compliances(link: &LinkPiece, model: LinkModel) -> Vec<f64> {
     let length_m = link.vector_m.norm();
     let coordinates = link.beam.map_or_else(Vec::new, |beam| coordinates(&beam, length_m, model));
     coordinates.into_iter().map(|(_, _, compliance)| compliance).collect()
 }
 
-/// Strain and degree of the polynomial of each coordinate, in the order of [`PreparedBeam::compliances`].
+/// Kind of strain and degree of the polynomial of each strain coordinate, in the order of
+/// [`PreparedBeam::compliances`].
 pub(crate) fn strains(link: &LinkPiece, model: LinkModel) -> Vec<(Strain, usize)> {
     let coordinates = link.beam.map_or_else(Vec::new, |beam| coordinates(&beam, 1.0, model));
     coordinates.into_iter().map(|(strain, degree, _)| (strain, degree)).collect()
 }
 
-/// Inertia per length of each component of displacement and rotation of a link, as in
+/// Mass and rotary inertia per length of a link, one number for each component of displacement and rotation, as in
 /// [`PreparedBeam::line_densities`].
 pub(crate) fn line_densities(link: &LinkPiece, structure: &Structure, model: LinkModel) -> [f64; 6] {
     line_inertia(link, structure, model).densities()
 }
 
-/// Stiffnesses of a tube: `E I` about y and about z \[N m²\], `κ G A` \[N\], `G J` \[N m²\] and `E A` \[N\].
+/// Stiffnesses of a tube per unit of strain: `E I` about y and about z \[N m²\], `κ G A` \[N\], `G J` \[N m²\] and
+/// `E A` \[N\].
 pub(crate) fn line_stiffnesses(beam: &Beam) -> [f64; 5] {
     let material = &beam.material;
     let section = beam.section.properties(material.poisson);
@@ -335,7 +356,8 @@ pub(crate) fn line_stiffnesses(beam: &Beam) -> [f64; 5] {
     ]
 }
 
-/// The strain coordinates of a tube: strain, degree of the polynomial, and compliance.
+/// The strain coordinates that a tube has in the link model `model`: kind of strain, degree of the polynomial, and
+/// compliance.
 fn coordinates(beam: &Beam, length_m: f64, model: LinkModel) -> Vec<(Strain, usize, f64)> {
     let [bending_y, bending_z, shear, torsion, stretch] = line_stiffnesses(beam);
     let bending = [(Strain::CurvatureZ, CURVATURES, bending_y), (Strain::CurvatureY, CURVATURES, bending_z)];
@@ -359,7 +381,8 @@ fn coordinates(beam: &Beam, length_m: f64, model: LinkModel) -> Vec<(Strain, usi
         .collect()
 }
 
-/// Mass and rotary inertia per length of a link, with its harness and the added mass of water.
+/// Mass and rotary inertia per length of a link, including its harness and the added mass of the water around it. In
+/// the link model `bending`, rotary inertia about axes across the link is zero.
 fn line_inertia(link: &LinkPiece, structure: &Structure, model: LinkModel) -> LineInertia {
     let Some(beam) = link.beam else {
         return LineInertia {
@@ -376,12 +399,13 @@ fn line_inertia(link: &LinkPiece, structure: &Structure, model: LinkModel) -> Li
     LineInertia { along_kg_per_m: along, across_kg_per_m: along + added, ..tube }
 }
 
-/// Mass and rotary inertia per length of a tube in air, without a harness.
+/// Mass and rotary inertia per length of a tube alone: without harness and without added mass of water.
 pub(crate) fn tube_inertia(beam: &Beam, model: LinkModel) -> LineInertia {
     let section = beam.section.properties(beam.material.poisson);
     let density = beam.material.density_kg_m3;
     let mass = density * section.area_m2;
-    // Euler-Bernoulli theory has no rotary inertia across the beam; that about its own axis remains
+    // Euler-Bernoulli theory neglects rotary inertia about axes across the beam; that about the axis of the beam
+    // stays
     let across = if model == LinkModel::Bending { 0.0 } else { density };
     LineInertia {
         along_kg_per_m: mass,
@@ -392,7 +416,7 @@ pub(crate) fn tube_inertia(beam: &Beam, model: LinkModel) -> LineInertia {
     }
 }
 
-/// Weight of tube and harness minus the buoyancy of the sealed tube, per length.
+/// Weight of tube and harness minus the buoyancy of the sealed tube, per length \[N/m\].
 fn weight_n_per_m(link: &LinkPiece, structure: &Structure) -> f64 {
     let water = structure.water.map_or(0.0, |w| w.density_kg_m3);
     let displaced =

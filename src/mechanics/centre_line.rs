@@ -1,8 +1,9 @@
-//! The centre line of an arm and its motion, for drawings.
+//! The centre line of an arm and its displacement, for drawings.
 //!
-//! Strain coordinates ([`Statics::deformations`](super::statics::Statics), [`Mode::coordinates`](super::modes::Mode)) move
-//! every point of the chain. The twists of an element move everything outboard of it; inside a link the fields of its
-//! beam bend it. The walk meets the elements in the same order as [`Chain::pose_rad`](super::chain::Chain::pose_rad).
+//! Strain coordinates ([`Statics::deformations`](super::statics::Statics), [`Mode::coordinates`](super::modes::Mode))
+//! determine the displacement of every point of the chain. An element moves everything outboard of it; inside a link,
+//! the displacement fields of its beam are added. The elements come in the same order as in
+//! [`Chain::pose_rad`](super::chain::Chain::pose_rad).
 
 use super::chain::{ElasticElement, Posed, Prepared};
 use super::{Twist, displacement_at};
@@ -14,20 +15,21 @@ use nalgebra::{DVector, Rotation3, Vector3};
 pub struct Station {
     /// Name of the joint or link to which the point belongs.
     pub piece: String,
-    /// Place of the point in the world \[m\].
+    /// Position of the point in the undeformed arm, in the world \[m\].
     pub at_m: Vector3<f64>,
-    /// Displacement of the point in world axes \[m\].
+    /// Displacement of the point, in world axes \[m\].
     pub moved_m: Vector3<f64>,
-    /// Axis of the joint in the world; `None` on a link.
+    /// Unit vector along the axis of the joint, in the world; `None` on a link.
     pub axis: Option<Vector3<f64>>,
 }
 
-/// Number of points along a link, its ends included.
+/// Number of points along a link, including both ends.
 const POINTS: usize = 9;
 
 impl Posed<'_> {
-    /// The points of the centre line with their motion under the coordinates of every element, base to tip. A joint has
-    /// one point, a link and the way of a prismatic joint have several. `pose_rad` is the pose in which the arm is.
+    /// The points of the centre line, base to tip, with their displacement. `coordinates` has the strain coordinates
+    /// of each element, base to tip; `pose_rad` is the pose in which the arm is. A joint has one point; a link and
+    /// the travel of a prismatic joint have several.
     pub fn centre_line(&self, pose_rad: &[f64], coordinates: &[Vec<f64>]) -> Vec<Station> {
         let mut elements = self.elements().zip(coordinates).peekable();
         let mut walk = Walk::default();
@@ -51,7 +53,7 @@ impl Posed<'_> {
                     walk.rotation *= Rotation3::from_axis_angle(&joint.axis, joint.angle.of(pose_rad));
                 }
                 Prepared::Prismatic(joint) => {
-                    // what travels is drawn rigid: the springs stand at either end of the way
+                    // the part that travels is drawn rigid: the springs are at one of its ends
                     let travel = walk.rotation * joint.axis.into_inner() * pose_rad[joint.entry];
                     out.push(walk.station(&joint.name, walk.at_m, None));
                     if joint.moves == Moves::Carriage {
@@ -86,8 +88,8 @@ impl Posed<'_> {
         out
     }
 
-    /// Displacement of a point of a link by the coordinates of this link, in world axes \[m\]. `xi` is the place of the
-    /// point along the link, from 0 to 1.
+    /// Displacement \[m\] of a point inside a link, in world axes, caused by the strain coordinates `q` of this link
+    /// alone. `xi` is the position of the point along the link, from 0 to 1.
     fn inside(
         &self,
         element: &ElasticElement,
@@ -102,7 +104,8 @@ impl Posed<'_> {
     }
 }
 
-/// The walk from base to tip: place, attitude, and the motion by all elements so far.
+/// The walk from base to tip: position and attitude reached so far, and the motion caused by all elements passed so
+/// far.
 #[derive(Default)]
 struct Walk {
     at_m: Vector3<f64>,
@@ -115,7 +118,8 @@ impl Walk {
         Station { piece: piece.to_string(), at_m, moved_m: displacement_at(&self.motion, &at_m), axis }
     }
 
-    /// Adds the motion of an element that yields, if there is one.
+    /// Adds the motion that an elastic element causes to the motion so far; nothing for `None`. The item is the element
+    /// and the values of its strain coordinates.
     fn yields(&mut self, element: Option<(&ElasticElement, &Vec<f64>)>) {
         if let Some((element, q)) = element {
             self.motion += element.twists.iter().zip(q).map(|(twist, q)| twist * *q).sum::<Twist>();

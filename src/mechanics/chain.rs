@@ -1,6 +1,7 @@
-//! Chains: an arm prepared for many poses, and put into one.
+//! Chains: an arm prepared for many poses (`Chain`), and the arm in one of them (`Posed`).
 //!
-//! A posed arm is a list of elastic elements with their twists and of bodies with their inertia, from base to tip.
+//! A posed arm is a list from base to tip of elastic elements, each with the motions that it allows, and of rigid
+//! bodies with their inertia.
 
 use super::beam::{PreparedBeam, pull_on};
 use super::{Twist, Wrench, body_inertia, force_wrench, rotation_twist, stack};
@@ -20,8 +21,9 @@ use nalgebra::{DMatrix, Matrix3, Matrix6, Matrix6xX, Rotation3, Vector3};
 
 /// An arm prepared for many poses and loads.
 ///
-/// Everything that does not depend on the pose is worked out in [`Chain::new`]. [`Chain::pose`] puts the arm into the pose
-/// and load of a case; [`Posed::statics`] and [`Posed::modes`] then compute how it behaves.
+/// Everything that does not depend on the pose is computed in [`Chain::new`]. [`Chain::pose`] puts the arm into the
+/// pose of a load case and applies its load; [`Posed::statics`] and [`Posed::modes`] then compute deflection and
+/// modes.
 ///
 /// ```
 /// use armwright::arm::{JointModel, LinkModel, Payload, read_arm_document};
@@ -60,7 +62,7 @@ pub struct Chain {
     springs: Vec<Spring>,
 }
 
-/// A piece of the chain with everything that does not depend on the pose.
+/// A joint or a link of the chain, with everything that does not depend on the pose.
 #[derive(Debug, Clone)]
 pub(super) enum Prepared {
     Joint(JointPiece),
@@ -68,54 +70,58 @@ pub(super) enum Prepared {
     Link(LinkPiece, Option<PreparedBeam>),
 }
 
-/// How an element yields to the generalized forces on its coordinates.
+/// How the strain coordinates of an element (its deflections) follow from the generalized forces on them.
 #[derive(Debug, Clone)]
 pub enum Yielding {
-    /// In proportion to the force, with one compliance for each coordinate.
+    /// In proportion to the force; one compliance for each coordinate.
     Linear(Vec<f64>),
-    /// By the law of a joint, which has one coordinate.
+    /// By the joint law of a revolute joint, which has one coordinate: its angle of torsion.
     Joint(JointLaw),
-    /// Along the travel of a prismatic joint, in proportion to the force. The frame of its guide has the travel as its x.
+    /// Along the travel of a prismatic joint, in proportion to the force. The x axis of `frame`, the frame of its
+    /// guide, points along the travel.
     Slide { m_per_n: f64, frame: Matrix3<f64> },
-    /// As feet that lift off, about each of two axes.
+    /// As the feet of a base that can lift off. It has two coordinates: rotation about world x and about world y.
     Lift(BaseLift),
 }
 
 /// One elastic element of an arm in a pose.
 #[derive(Debug, Clone)]
 pub struct ElasticElement {
-    /// Name: that of the joint or link, `NAME.bearing`, `NAME.guide`, `NAME.frame_compliance`, or `base`.
+    /// Name of the element: the name of the joint or link, `NAME.bearing`, `NAME.guide`, `NAME.frame_compliance`, or
+    /// `base`.
     pub name: String,
-    /// Place in the world \[m\]: of the joint, the bearing or the frame, or the root of the link.
+    /// Position in the world \[m\]: of the joint, the bearing or the frame, or of the root of the link.
     pub at_m: Vector3<f64>,
-    /// Motion of everything outboard per unit of each coordinate.
+    /// Motion of everything outboard per unit of each strain coordinate, as a vector of velocity and angular velocity
+    /// at the world's origin.
     pub twists: Vec<Twist>,
-    /// How the coordinates follow from the forces on them.
+    /// How the strain coordinates (the deflections of the element) follow from the generalized forces on them.
     pub yielding: Yielding,
-    /// Torque that acts on the coordinate of a joint beside weight and load \[N m\].
+    /// Torque on the coordinate of a joint that comes neither from weight nor from the load, such as that of a
+    /// counterbalance \[N m\]; 0 for other elements.
     pub torque_nm: f64,
-    /// The distributed mass of the element, if it is a link.
+    /// The distributed mass of the element, if it is a link with mass along it.
     pub own: Option<OwnMass>,
 }
 
 /// The distributed mass of a link in a pose.
 #[derive(Debug, Clone)]
 pub struct OwnMass {
-    /// Number of the link among the pieces of the chain.
+    /// Index of the link among the pieces of the chain.
     pub piece: usize,
-    /// Root of the link in the world \[m\].
+    /// Position of the root of the link in the world \[m\].
     pub root_m: Vector3<f64>,
-    /// Section frame in the world.
+    /// Axes of the section of the link (columns), in the world.
     pub frame: Matrix3<f64>,
-    /// Inertia of the undeformed link about the world's origin.
+    /// Inertia matrix of the undeformed link about the world's origin.
     pub rigid: Matrix6<f64>,
-    /// Momentum about the world's origin per unit rate of each coordinate.
+    /// Momentum about the world's origin per unit rate of each strain coordinate.
     pub coupling: Matrix6xX<f64>,
-    /// Generalized inertia between the coordinates.
+    /// Inertia matrix over the strain coordinates of the link.
     pub inner: DMatrix<f64>,
-    /// Weight, and what springs do along the link, as a wrench about the world's origin.
+    /// Weight of the link and forces of springs that act along it, as a wrench about the world's origin.
     pub weight: Wrench,
-    /// Work of both per unit of each coordinate.
+    /// Work of this weight and these forces per unit of each strain coordinate.
     pub weight_work: Vec<f64>,
 }
 
@@ -128,33 +134,34 @@ pub struct Body {
     pub cg_m: Vector3<f64>,
     /// Inertia about the centre of gravity in world axes \[kg m²\].
     pub inertia_kgm2: Matrix3<f64>,
-    /// Weight minus buoyancy \[N\].
+    /// Weight minus buoyancy \[N\]; a magnitude, without sign.
     pub weight_n: f64,
-    /// Direction of the weight in the world, a unit vector.
+    /// Direction of gravity in the world, a unit vector.
     pub down: Vector3<f64>,
 }
 
-/// An item of a posed arm. Every element that comes before a body or a load moves it.
+/// An item of a posed arm, in the order from base to tip. A body or a load is moved by every elastic element that
+/// comes before it.
 #[derive(Debug, Clone)]
 pub enum Item {
     /// An elastic element.
     Elastic(ElasticElement),
     /// A rigid body.
     Body(Body),
-    /// Force and moment of springs about the world's origin.
+    /// Force and moment that springs put on the arm, as a wrench about the world's origin.
     Load(Wrench),
 }
 
 /// An arm in a pose under a load.
 #[derive(Debug, Clone)]
 pub struct Posed<'a> {
-    /// The arm that was put into the pose.
+    /// The chain that was put into the pose.
     pub chain: &'a Chain,
-    /// Elements and bodies, base to tip.
+    /// Elements, bodies and spring loads, base to tip.
     pub items: Vec<Item>,
-    /// Place of the tip in the world \[m\].
+    /// Position of the tip in the world, without deflection \[m\].
     pub tip_m: Vector3<f64>,
-    /// Attitude of the last frame in the world.
+    /// Rotation from the axes of the last frame to the world.
     pub tip_rotation: Rotation3<f64>,
     /// Force at the tip in world axes \[N\].
     pub tip_force_n: Vector3<f64>,
@@ -163,8 +170,8 @@ pub struct Posed<'a> {
 }
 
 impl Chain {
-    /// Prepares the pieces of an arm, with a link model. [`Arm::structure`](crate::arm::Arm::structure) gives the
-    /// structure.
+    /// Prepares the pieces of an arm for any pose, with the link model `links`.
+    /// [`Arm::structure`](crate::arm::Arm::structure) makes the structure of an arm.
     pub fn new(structure: &Structure, links: LinkModel) -> Self {
         let pieces = structure
             .pieces
@@ -189,20 +196,21 @@ impl Chain {
         }
     }
 
-    /// A pose of files (deg, and mm of travel) in rad and m.
+    /// Converts a pose as files have it (degrees, and millimetres of travel) to radians and metres.
     pub fn pose_si(&self, pose_deg: &[f64]) -> Vec<f64> {
         pose_si(&self.driven, pose_deg)
     }
 
-    /// Puts the arm into the pose and load of a case. The pose has one entry for each driven joint, base to tip: an angle
-    /// \[deg\], or the travel of a prismatic joint \[mm\].
+    /// Puts the arm into the pose of a case and applies its load. The pose of the case has one entry for each driven
+    /// joint, base to tip: an angle \[deg\], or the travel of a prismatic joint \[mm\].
     pub fn pose(&self, case: &LoadCase) -> Posed<'_> {
         let pose_rad = self.pose_si(&case.pose_deg);
         let posed = self.pose_rad(&pose_rad, &case.payload, case.tip_force_n);
         Posed { tip_moment_nm: case.tip_moment_nm, ..posed }
     }
 
-    /// Puts the arm into a pose given in radians (metres where a joint slides), with a payload and a force at the tip \[N\].
+    /// Puts the arm into a pose given in radians (metres for prismatic joints), with a payload and a force at the tip
+    /// \[N\].
     pub fn pose_rad(&self, pose_rad: &[f64], payload: &Payload, tip_force_n: Vector3<f64>) -> Posed<'_> {
         let mut walk = self.walk(pose_rad, self.spring_loads(pose_rad));
         // the payload is the last body, so every element moves it
@@ -217,7 +225,8 @@ impl Chain {
         }
     }
 
-    /// Walks from base to tip. The springs load the arm on the way.
+    /// Walks from base to tip and collects the elements and bodies. `springs` are the forces of the springs, which are
+    /// inserted on the way.
     fn walk(&self, pose_rad: &[f64], springs: Vec<EndLoad>) -> Walk {
         let mut walk = Walk {
             items: Vec::new(),
@@ -243,7 +252,8 @@ impl Chain {
         walk
     }
 
-    /// What the springs do to the arm in a pose. Where their ends are must be known before they load anything.
+    /// Forces of the springs on the arm in a pose. They depend on where their ends are, so a first walk from base to
+    /// tip without springs finds these positions.
     fn spring_loads(&self, pose_rad: &[f64]) -> Vec<EndLoad> {
         match self.springs.is_empty() {
             true => Vec::new(),
@@ -251,19 +261,21 @@ impl Chain {
         }
     }
 
-    /// The springs in a pose given in radians, each with its name.
+    /// The springs in the pose `pose_rad` \[rad, m\], each with its name. Springs whose ends are not in the chain are
+    /// left out.
     pub fn springs_in(&self, pose_rad: &[f64]) -> Vec<(&str, Drawn)> {
         let frames = self.walk(pose_rad, Vec::new()).frames;
         let drawn = |spring: &'_ Spring| spring.drawn(&frames);
         self.springs.iter().filter_map(|spring| Some((spring.name.as_str(), drawn(spring)?))).collect()
     }
 
-    /// The linkages, which turn the passive joints.
+    /// The linkages that turn the passive joints.
     pub fn linkages(&self) -> &[Linkage] {
         &self.linkages
     }
 
-    /// The prepared beam of a piece, for the fields inside a link; `None` if the piece has none.
+    /// The prepared beam of the piece with this index, for the displacement inside a link. `None` if the piece is no
+    /// link, or a link without a beam.
     pub(crate) fn beam(&self, piece: usize) -> Option<&PreparedBeam> {
         match &self.pieces[piece] {
             Prepared::Link(_, beam) => beam.as_ref(),
@@ -271,7 +283,8 @@ impl Chain {
         }
     }
 
-    /// The payload as a body at the tip. Water takes buoyancy from its weight.
+    /// The payload as a rigid body at the tip, where the walk from base to tip has ended. In water, buoyancy is
+    /// subtracted from its weight.
     fn payload_body(&self, payload: &Payload, walk: &Walk) -> Body {
         let rotation = walk.rotation.matrix();
         let buoyancy = self.water.map_or(0.0, |w| w.density_kg_m3 / w.payload_density_kg_m3);
@@ -287,21 +300,22 @@ impl Chain {
     }
 }
 
-/// The walk from base to tip, which collects the items on its way.
+/// The walk from base to tip. It collects the elements, bodies and loads on its way.
 pub(super) struct Walk {
     pub(super) items: Vec<Item>,
     pub(super) at_m: Vector3<f64>,
     pub(super) rotation: Rotation3<f64>,
     /// Acceleration of gravity \[m/s²\] and its direction.
     gravity: (f64, Vector3<f64>),
-    /// What the springs do to the arm.
+    /// Forces that the springs put on the arm.
     springs: Vec<EndLoad>,
-    /// Where each piece is.
+    /// Position and attitude of each piece passed so far.
     pub(super) frames: Vec<ElementFrame>,
 }
 
 impl Walk {
-    /// Adds a joint. Its mass is inboard of its springs; the springs of its bearing come before its torsion.
+    /// Adds a joint at the angle `angle_rad`. The mass of the joint is inboard of its springs, so its own deflection
+    /// does not move it. The springs of its bearing come before its torsion spring.
     fn joint(&mut self, index: usize, joint: &JointPiece, angle_rad: f64) {
         self.point_mass(joint.mass_kg, self.at_m);
         self.bodies(&joint.bodies.fixed);
@@ -326,7 +340,8 @@ impl Walk {
         self.frames.push(ElementFrame { at_m: self.at_m, rotation: self.rotation, hinge });
     }
 
-    /// Adds a link, with the frame at its root.
+    /// Adds a link; the compliance of the frame at its root comes before it. `piece` is the index of the link in the
+    /// chain.
     fn link(&mut self, piece: usize, link: &LinkPiece, beam: Option<&PreparedBeam>) {
         self.frame(&link.name, &link.root_frame);
         let vector = self.rotation * link.vector_m;
@@ -335,7 +350,8 @@ impl Walk {
         if let Some(beam) = beam {
             self.items.push(Item::Elastic(self.beam_element(piece, link, beam, &end_m)));
         }
-        // a tube has its bodies: each moves with a point of its axis
+        // bodies on a tube are part of its beam, where each moves with a point of the axis; here only those on a
+        // rigid offset are added
         if link.beam.is_none() {
             self.bodies(&link.bodies);
             self.load(Side::Moving(piece));
@@ -344,7 +360,8 @@ impl Walk {
         self.at_m = end_m;
     }
 
-    /// The elastic element of a link that ends at `end_m`.
+    /// The elastic element of a link. `piece` is the index of the link in the chain, and its end is at `end_m` in the
+    /// world \[m\].
     fn beam_element(
         &self,
         piece: usize,
@@ -371,7 +388,8 @@ impl Walk {
         }
     }
 
-    /// The distributed mass of a link with this section frame, and what the springs do along a tube.
+    /// The distributed mass of a link, and the forces that springs put on a tube along its length. `frame` is the
+    /// section frame of the link in the world.
     fn own_mass(&self, piece: usize, link: &LinkPiece, beam: &PreparedBeam, frame: &Matrix3<f64>) -> OwnMass {
         let mut own = own_mass(piece, beam, frame, &self.at_m, &self.gravity.1);
         let on_tube = |load: &&EndLoad| link.beam.is_some() && load.on == Side::Moving(piece);
@@ -384,13 +402,14 @@ impl Walk {
         own
     }
 
-    /// Adds what the springs do to a part of the arm, if they load it.
+    /// Adds the forces that springs put on a part of the arm; nothing if there are none.
     pub(super) fn load(&mut self, on: Side) {
         let loads = self.springs.iter().filter(|load| load.on == on);
         self.items.extend(loads.map(|load| Item::Load(wrench_of(load))).collect::<Vec<_>>());
     }
 
-    /// Adds two equal rotational springs about axes through the present place.
+    /// Adds two rotational springs with the same compliance \[rad/(N m)\] about two axes through the position that the
+    /// walk has reached.
     fn tilt(&mut self, name: String, axes: &[Vector3<f64>; 2], compliance: f64) {
         self.items.push(Item::Elastic(ElasticElement {
             name,
@@ -402,7 +421,7 @@ impl Walk {
         }));
     }
 
-    /// Adds feet that lift off about world x and y, if they do.
+    /// Adds the feet of a base that can lift off, which tilt about world x and y; nothing for `None`.
     fn lift(&mut self, lift: Option<BaseLift>) {
         let Some(lift) = lift else { return };
         self.items.push(Item::Elastic(ElasticElement {
@@ -415,7 +434,7 @@ impl Walk {
         }));
     }
 
-    /// Adds the springs of a frame that yields, if it does.
+    /// Adds the springs of a compliant frame at the position that the walk has reached; nothing if the frame is rigid.
     fn frame(&mut self, name: &str, frame: &FrameCompliance) {
         let (axes, compliances): (Vec<_>, Vec<_>) = frame.springs().into_iter().unzip();
         if axes.is_empty() {
@@ -432,7 +451,8 @@ impl Walk {
         }));
     }
 
-    /// Adds rigid bodies of the element that starts at the present place.
+    /// Adds rigid bodies. Their centres of gravity are given from the position that the walk has reached, in the
+    /// carried frame.
     pub(super) fn bodies(&mut self, bodies: &[RigidBody]) {
         for body in bodies {
             let turn = self.rotation.matrix();
@@ -446,7 +466,7 @@ impl Walk {
         }
     }
 
-    /// Adds a point mass, if it is not zero.
+    /// Adds a point mass \[kg\] at `cg_m` \[m\], unless the mass is zero.
     pub(super) fn point_mass(&mut self, mass_kg: f64, cg_m: Vector3<f64>) {
         if mass_kg != 0.0 {
             self.items.push(Item::Body(Body {
@@ -460,20 +480,21 @@ impl Walk {
     }
 }
 
-/// What a spring does, as a wrench about the world's origin.
+/// Force and moment of a spring at its end, as a wrench about the world's origin.
 pub(crate) fn wrench_of(load: &EndLoad) -> Wrench {
     force_wrench(&load.force_n, &load.at_m) + stack(&Vector3::zeros(), &load.moment_nm)
 }
 
-/// Two unit vectors at right angles to `axis` and to each other.
+/// Two unit vectors perpendicular to `axis` and to each other.
 pub(crate) fn across(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
-    // the world axis that `axis` is least parallel to gives the best conditioned cross product
+    // the cross product is best conditioned with the world axis that is least parallel to `axis`
     let least = axis.iamin();
     let first = axis.cross(&Vector3::ith(least, 1.0)).normalize();
     [first, axis.cross(&first)]
 }
 
-/// Transforms the inertia and weight of a link from its section frame to the world.
+/// The distributed mass and weight of a link in the world, computed from those in its section frame. `root_m` is the
+/// root of the link \[m\], `frame` its section frame and `down` the direction of gravity.
 fn own_mass(
     piece: usize,
     beam: &PreparedBeam,
@@ -481,7 +502,7 @@ fn own_mass(
     root_m: &Vector3<f64>,
     down: &Vector3<f64>,
 ) -> OwnMass {
-    // from a twist about the world's origin to translation and rotation of the root in the section frame
+    // converts a twist about the world's origin to translation and rotation of the root in the section frame
     let to_local = {
         let mut x = Matrix6::zeros();
         let turn = frame.transpose();
@@ -495,7 +516,7 @@ fn own_mass(
     let local_coupling = beam.inertia.view((0, 6), (6, n));
     let along = frame.transpose() * (*down * beam.weight_n_per_m);
     let local_down = frame.transpose() * down;
-    // a uniform weight works on the area under each deflected shape
+    // the work of a uniform weight is its value per length times the area under the deflected shape
     let areas = beam.area_fields.column_iter().map(|f| f.dot(&along));
     let bodies = beam.bodies.fields.column_iter().map(|f| f.dot(&local_down));
     let weight_work = areas.zip(bodies).map(|(tube, bodies)| tube + bodies).collect();
@@ -512,12 +533,12 @@ fn own_mass(
 }
 
 impl Body {
-    /// Inertia about the world's origin.
+    /// Inertia matrix of the body about the world's origin.
     pub fn inertia(&self) -> Matrix6<f64> {
         body_inertia(self.mass_kg, &self.cg_m, &self.inertia_kgm2)
     }
 
-    /// Weight as a wrench about the world's origin.
+    /// Weight of the body as a wrench about the world's origin.
     pub fn weight(&self) -> Wrench {
         force_wrench(&(self.down * self.weight_n), &self.cg_m)
     }

@@ -1,10 +1,11 @@
-//! Condensed links: a link reduced to the motion of its end.
+//! Condensed links: a link reduced to the six motions of its end.
 //!
-//! Only six combinations `g` of the strain coordinates `q` of a link move its end. The other shapes vibrate inside the
-//! link, at frequencies far above the lowest of the arm. Let `E` be the motion of the end per coordinate and `C` the
-//! diagonal compliance. The compliance of the end is then `F = E C Eᵀ = L Lᵀ`. The coordinates `g` are chosen such that the
-//! end moves by `L g`; their stiffness is the unit matrix. The rest, `G = C - C Eᵀ F⁻¹ E C`, is the compliance of the
-//! inner shapes while the end is held. Eliminating these shapes from `K - λM` gives
+//! Only six combinations `g` of the strain coordinates `q` of a link move its end. The other shapes vibrate inside
+//! the link, at frequencies far above the lowest frequency of the arm. Let `E` be the motion of the end per unit of
+//! each `q`, and `C` the diagonal compliance matrix. The compliance of the end is then `F = E C Eᵀ = L Lᵀ`. The
+//! coordinates `g` are chosen such that the end moves by `L g` and that their stiffness matrix is the unit matrix.
+//! The remainder, `G = C - C Eᵀ F⁻¹ E C`, is the compliance of the inner shapes while the end is held. Eliminating
+//! these shapes from `K - λM` gives
 //!
 //! ```text
 //! M_eff(λ) = M₀ + λ M₁ + λ² M₂ + O(λ³),  M₁ = M_qᵀ G M_q,  M₂ = M_qᵀ G M_qq G M_q
@@ -12,45 +13,50 @@
 //!
 //! over the motion of the root and `g`.
 //!
-//! *Validity.* The neglected term is of the order `(λ/λ_inner)³`. It is at most 1e-6 of the link's inertia if `λ_inner` is a
-//! hundred times `λ`, that is, if the inner modes have ten times the frequency of the arm's lowest mode. The search uses
-//! this form; every number that it reports is computed by the full model.
+//! *Validity.* The neglected term is of the order `(λ/λ_inner)³`, where `λ_inner` is the lowest eigenvalue of the
+//! inner shapes. It is at most 1e-6 of the link's inertia if `λ_inner` is a hundred times `λ`, which means that the
+//! inner modes have ten times the frequency of the arm's lowest mode. The search uses this form. Every number that it
+//! reports is computed by the full model.
 
 use super::beam::PreparedBeam;
 use nalgebra::{DMatrix, Matrix3, Matrix6, SMatrix, Vector3, Vector6};
 
-/// Inertia over the motion of the root (rows 0-5) and the end coordinates `g` (rows 6-11).
+/// Inertia matrix over the motion of the root (rows 0-5) and the end coordinates `g` (rows 6-11).
 pub(crate) type Inertia12 = SMatrix<f64, 12, 12>;
 
 /// A condensed link, in its section frame.
 #[derive(Debug, Clone)]
 pub(crate) struct CondensedLink {
-    /// Effective inertia, order by order in λ: `M₀, M₁, M₂`.
+    /// Effective inertia as a polynomial in λ: the coefficients `M₀, M₁, M₂`.
     pub inertia: [Inertia12; 3],
-    /// Motion of the end (displacement, rotation) per end coordinate: `L`.
+    /// Displacement (rows 0-2) and rotation (rows 3-5) of the end per unit of each end coordinate: the matrix `L`.
     pub end: Matrix6<f64>,
-    /// End coordinates per uniform load along each axis of the section \[1/(N/m)\].
+    /// End coordinates caused by a uniform load along the link of 1 N/m, in the direction of each axis of the section
+    /// \[1/(N/m)\].
     pub end_per_line_load: SMatrix<f64, 6, 3>,
-    /// End coordinates under the weight of the bodies on the link, if it acts along each axis of the section.
+    /// End coordinates caused by the weight of the bodies on the link, if gravity acts along each axis of the
+    /// section.
     pub end_under_bodies: SMatrix<f64, 6, 3>,
-    /// End coordinates per force and moment about each point of the axis at which a spring pulls, in the section frame.
+    /// For each point of the axis at which a spring acts: end coordinates per unit of force (columns 0-2) and moment
+    /// (columns 3-5) there, in the section frame.
     pub end_per_pull: Vec<Matrix6<f64>>,
-    /// Sum of `1/λ` over the inner modes with root and end held \[s²\]. It is an upper bound of each `1/λ`.
+    /// Sum of `1/λ` over the inner modes with root and end held \[s²\]. As a sum of positive numbers it is an upper
+    /// bound of each `1/λ`.
     pub inner_trace_s2: f64,
 }
 
 impl CondensedLink {
-    /// Condenses a prepared link, on which springs pull at these places (0 to 1) of its axis.
+    /// Condenses a prepared link. `pulled_at` are the points of its axis (0 to 1) at which springs act.
     pub(crate) fn new(beam: &PreparedBeam, pulled_at: &[f64]) -> Self {
         let n = beam.compliances.len();
         let compliance = DMatrix::from_diagonal(&nalgebra::DVector::from_column_slice(&beam.compliances));
         let end_fields = DMatrix::from_iterator(6, n, beam.end_fields.iter().copied());
         let flexibility = &end_fields * &compliance * end_fields.transpose();
         let end = semidefinite_cholesky(&Matrix6::from_iterator(flexibility.iter().copied()));
-        // coordinates per end coordinate: C Eᵀ L⁻ᵀ
+        // strain coordinates per unit of each end coordinate: C Eᵀ L⁻ᵀ
         let spread = &compliance * end_fields.transpose() * inverse_transpose(&end);
         let inner = &compliance - &spread * spread.transpose();
-        // from root motion and g to root motion and q
+        // converts root motion and g to root motion and q
         let mut expand = DMatrix::zeros(6 + n, 12);
         expand.view_mut((0, 0), (6, 6)).fill_with_identity();
         expand.view_mut((6, 6), (n, 6)).copy_from(&spread);
@@ -70,13 +76,13 @@ impl CondensedLink {
             end_per_line_load: SMatrix::from_iterator((spread.transpose() * areas).iter().copied()),
             end_under_bodies: SMatrix::from_iterator((spread.transpose() * bodies).iter().copied()),
             end_per_pull: pulled_at.iter().map(|xi| end_per_pull(beam, &spread, *xi)).collect(),
-            // rounding may make a trace of nothing negative
+            // without inner shapes, rounding may make the trace slightly negative
             inner_trace_s2: (&inner * inner_mass).trace().max(0.0),
         }
     }
 
-    /// The condensed link in a pose. `root_m` and `end_m` are the places of its root and end, `frame` is its section frame and
-    /// `down` the direction of gravity, all in the world.
+    /// The condensed link in a pose. `root_m` and `end_m` are the positions of its root and end \[m\], `frame` is its
+    /// section frame and `down` the direction of gravity, all in the world.
     pub(crate) fn place(
         &self,
         root_m: &Vector3<f64>,
@@ -105,29 +111,31 @@ impl CondensedLink {
     }
 }
 
-/// End coordinates per force and moment about a place of the axis. `spread` has the coordinates per end coordinate.
+/// End coordinates per unit of force and moment at the point `xi` (0 to 1) of the axis. `spread` has the strain
+/// coordinates of the link per unit of each end coordinate.
 fn end_per_pull(beam: &PreparedBeam, spread: &DMatrix<f64>, xi: f64) -> Matrix6<f64> {
     let fields = beam.fields(xi).columns_range(6..).into_owned();
     let per_end = fields * spread;
     Matrix6::from_iterator(per_end.transpose().iter().copied())
 }
 
-/// A condensed link in a pose. Motions are twists about the world's origin.
+/// A condensed link in a pose. All motions are twists (velocity, angular velocity) about the world's origin.
 #[derive(Debug, Clone)]
 pub(crate) struct PlacedLink {
-    /// `M₀, M₁, M₂` over root twist and end coordinates.
+    /// The coefficients `M₀, M₁, M₂` of the effective inertia, over the twist of the root and the end coordinates.
     pub inertia: [Inertia12; 3],
-    /// Twist of everything outboard per end coordinate.
+    /// Motion of everything outboard of the link per unit of each end coordinate.
     pub end: Matrix6<f64>,
-    /// End coordinates under the weight of the bodies on the link.
+    /// End coordinates caused by the weight of the bodies on the link.
     pub end_under_bodies: Vector6<f64>,
-    /// End coordinates per net weight per length \[1/(N/m)\].
+    /// End coordinates caused by a weight less buoyancy of 1 N per metre of the link \[1/(N/m)\].
     pub end_per_weight: Vector6<f64>,
-    /// Sum of `1/λ` over the inner modes \[s²\].
+    /// Sum of `1/λ` over the inner modes with root and end held \[s²\].
     pub inner_trace_s2: f64,
 }
 
-/// The matrix that turns a twist about the world's origin into translation and rotation of a point, in a local frame.
+/// The matrix that converts a twist about the world's origin to translation and rotation of the point `point_m`
+/// \[m\], in the axes of `frame`.
 pub(crate) fn world_to_local(point_m: &Vector3<f64>, frame: &Matrix3<f64>) -> Matrix6<f64> {
     let turn = frame.transpose();
     let mut out = Matrix6::zeros();
@@ -137,13 +145,14 @@ pub(crate) fn world_to_local(point_m: &Vector3<f64>, frame: &Matrix3<f64>) -> Ma
     out
 }
 
-/// Lower triangular `L` with `L Lᵀ = a`. Columns of directions without compliance are zero. The zeros of a block-diagonal
-/// matrix stay zeros, so planes that do not couple stay uncoupled.
+/// The lower triangular matrix `L` with `L Lᵀ = a`, for a positive semidefinite `a`. Columns of directions without
+/// compliance are zero. Zeros of a block-diagonal matrix stay exactly zero, so planes that do not couple stay
+/// uncoupled.
 fn semidefinite_cholesky(a: &Matrix6<f64>) -> Matrix6<f64> {
     let mut lower = Matrix6::zeros();
     for j in 0..6 {
         let pivot = a[(j, j)] - (0..j).map(|k| lower[(j, k)] * lower[(j, k)]).sum::<f64>();
-        // a link model without some strain leaves a direction rigid
+        // a link model that leaves out a kind of strain makes a direction rigid
         if pivot <= 1e-12 * a[(j, j)] {
             continue;
         }
@@ -157,7 +166,7 @@ fn semidefinite_cholesky(a: &Matrix6<f64>) -> Matrix6<f64> {
     lower
 }
 
-/// `L⁻ᵀ`, with zeros for directions without compliance.
+/// The matrix `L⁻ᵀ` for the lower triangular matrix `L`. Rows and columns of directions without compliance are zero.
 fn inverse_transpose(lower: &Matrix6<f64>) -> DMatrix<f64> {
     let mut inverse = DMatrix::zeros(6, 6);
     for column in 0..6 {

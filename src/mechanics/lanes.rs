@@ -1,9 +1,9 @@
-//! Lanes: arithmetic on eight numbers at once, for eight designs side by side.
+//! Lanes: arithmetic on eight numbers at once, one for each of eight designs.
 //!
-//! A kernel is written once over the trait [`Lanes`] and compiled for three instruction sets. [`in_lanes`] takes the widest
-//! set that the machine has. Every set does the same IEEE operations in the same order, without contraction to fused
-//! multiply-add, so that results are equal to the last bit on every machine. `std::simd` is not stable yet; the few
-//! operations that the kernels need are written out here.
+//! A kernel is written once over the trait [`Lanes`] and compiled for three instruction sets. [`in_lanes`] takes the
+//! widest set that the processor has. With every set, the same IEEE operations run in the same order, without
+//! contraction to fused multiply-add. Results are therefore equal to the last bit on every machine. `std::simd` is
+//! not stable yet, so the few operations that the kernels need are written out here.
 
 use std::ops::{Add, Div, Mul, Sub};
 
@@ -12,30 +12,31 @@ pub(crate) const LANES: usize = 8;
 /// One number for each of eight designs.
 pub(crate) type Eight = [f64; LANES];
 
-/// Eight numbers in the registers of the machine.
+/// Eight numbers in the registers of the processor.
 pub(crate) trait Lanes:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
     /// The same number in every lane.
     fn splat(x: f64) -> Self;
-    /// Eight numbers from memory.
+    /// Reads eight numbers from memory.
     fn load(from: &Eight) -> Self;
-    /// The eight numbers, to memory.
+    /// Writes the eight numbers to memory.
     fn store(self) -> Eight;
-    /// The numbers at eight places of a list.
+    /// The numbers of the list `from` at the eight indices `at`.
     ///
     /// # Panics
-    /// If a place is beyond the end of the list.
+    /// If an index is beyond the end of the list.
     fn gather(from: &[f64], at: &[usize; LANES]) -> Self;
-    /// Square root.
+    /// Square root in each lane.
     fn sqrt(self) -> Self;
-    /// The smaller number; the second if either is NaN.
+    /// The smaller of the two numbers in each lane; the second one if either is NaN.
     fn min(self, other: Self) -> Self;
-    /// The larger number; the second if either is NaN.
+    /// The larger of the two numbers in each lane; the second one if either is NaN.
     fn max(self, other: Self) -> Self;
-    /// One bit for each lane in which the first number is less than the second. A lane with a NaN has no bit.
+    /// Bit mask: a bit is set for each lane in which the first number is less than the second. The bit of a lane with
+    /// a NaN is not set.
     fn less(self, other: Self) -> u8;
-    /// In each lane the number of `set` if its bit is set, else that of `clear`.
+    /// In each lane the number of `set` if the lane's bit in `bits` is set, else the number of `clear`.
     fn choose(bits: u8, set: Self, clear: Self) -> Self;
 
     /// Zero in every lane.
@@ -44,14 +45,14 @@ pub(crate) trait Lanes:
         Self::splat(0.0)
     }
 
-    /// The numbers without their signs.
+    /// The absolute value in each lane.
     #[inline(always)]
     fn abs(self) -> Self {
         self.max(Self::zero() - self)
     }
 }
 
-/// Several numbers, each in every lane.
+/// Several numbers, each of them repeated in every lane.
 #[inline(always)]
 pub(crate) fn splat_all<V: Lanes, const K: usize>(numbers: [f64; K]) -> [V; K] {
     let mut out = [V::zero(); K];
@@ -61,7 +62,8 @@ pub(crate) fn splat_all<V: Lanes, const K: usize>(numbers: [f64; K]) -> [V; K] {
     out
 }
 
-/// Subtracts a multiple of a list from another of the same length, number by number.
+/// Subtracts `factor` times each number of `list` from the number of `from` at the same place. Both lists have the same
+/// length.
 #[inline(always)]
 pub(crate) fn subtract_multiple<V: Lanes>(from: &mut [f64], factor: f64, list: &[f64]) {
     let (eights, rest) = from.as_chunks_mut::<LANES>();
@@ -74,19 +76,19 @@ pub(crate) fn subtract_multiple<V: Lanes>(from: &mut [f64], factor: f64, list: &
     }
 }
 
-/// Work that is written over [`Lanes`].
+/// A computation that is written over [`Lanes`], so that it can be compiled for each instruction set.
 ///
-/// Everything that handles lanes must be inlined into `run`, because only `run` is compiled for a particular instruction
-/// set. A closure is a function of its own and would be compiled for the common instructions. The kernels are therefore
-/// written with plain loops.
+/// All functions that handle lanes must be inlined into `run`, because only `run` is compiled for a particular
+/// instruction set. A closure is a function of its own and would be compiled for the basic instruction set. The
+/// kernels are therefore written with plain loops.
 pub(crate) trait LaneWork {
-    /// Result of the work.
+    /// Result of the computation.
     type Output;
-    /// Does the work.
+    /// Carries out the computation.
     fn run<V: Lanes>(self) -> Self::Output;
 }
 
-/// Does work with the widest registers of the machine.
+/// Carries out a computation with the widest registers that the processor has.
 #[inline]
 pub(crate) fn in_lanes<W: LaneWork>(work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
@@ -103,7 +105,7 @@ pub(crate) fn in_lanes<W: LaneWork>(work: W) -> W::Output {
     work.run::<Portable>()
 }
 
-/// Lanes as an array, for machines without wide registers.
+/// Eight numbers in an array, for processors without wide registers.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Portable(Eight);
 
@@ -202,7 +204,7 @@ mod x86 {
                 type Output = Self;
                 #[inline(always)]
                 fn $name(self, other: Self) -> Self {
-                    // SAFETY: only run where the set was found
+                    // SAFETY: this code runs only where the instruction set was found
                     Self(unsafe { $wide(self.0, other.0) })
                 }
             }
@@ -211,7 +213,7 @@ mod x86 {
                 type Output = Self;
                 #[inline(always)]
                 fn $name(self, other: Self) -> Self {
-                    // SAFETY: only run where the set was found
+                    // SAFETY: this code runs only where the instruction set was found
                     unsafe { Self($half(self.0, other.0), $half(self.1, other.1)) }
                 }
             }
@@ -278,7 +280,7 @@ mod x86 {
         }
     }
 
-    /// Checks the places of a gather. The hardware does not.
+    /// Panics if an index of a gather is beyond the end of the list. The hardware does not check this.
     #[inline(always)]
     fn assert_within(list: &[f64], at: &[usize; LANES]) {
         let mut highest = 0;
@@ -351,7 +353,7 @@ mod x86 {
         #[inline(always)]
         fn choose(bits: u8, set: Self, clear: Self) -> Self {
             unsafe {
-                // AVX2 has no mask registers: each bit is spread over a lane of its own
+                // AVX2 has no mask registers, so each bit is expanded to a lane of its own
                 let place = |first: i64| {
                     let own = _mm256_setr_epi64x(first, first << 1, first << 2, first << 3);
                     let all = _mm256_set1_epi64x(i64::from(bits));

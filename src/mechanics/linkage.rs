@@ -1,27 +1,29 @@
-//! Passive joints: a linkage turns them together with the joints that drive them, deflections included.
+//! Passive joints: a linkage turns them together with their driving joint, and its deflection as well.
 //!
-//! One unit of twist of a driver moves everything outboard of the driver. In addition it turns the passive joint, by the
-//! factor of the linkage, and moves everything outboard of that joint. The generalized force on the driver is the work of
-//! the loads on both motions. In matrices: forces become `Tᵀ f` and the mass matrix becomes `Tᵀ M T`. `T` is the unit
-//! matrix with the factor in the row of the passive joint and the column of the driver.
+//! When the driving joint (the *driver*) deflects by a unit angle, everything outboard of it moves. In addition the
+//! linkage turns the passive joint by its factor, which moves everything outboard of that joint. The generalized
+//! force on the driver is the work of the loads on both motions. In matrices, forces become `Tᵀ f` and the mass
+//! matrix becomes `Tᵀ M T`. `T` is the unit matrix, with the factor in the row of the passive joint and the column of
+//! the driver.
 
 use super::chain::{Item, Posed};
 use super::{Twist, Wrench};
 use nalgebra::{DMatrix, DVector};
 
-/// Motion and torque that a linkage transfers to its driver, in a pose under a load.
+/// Motion and torque that a linkage transfers to the driving joint, for an arm in a pose under a load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transferred {
-    /// Name of the joint that drives.
+    /// Name of the driving joint.
     pub driver: String,
-    /// Motion of everything outboard of the passive joint, per unit of the driver's twist.
+    /// Motion of everything outboard of the passive joint, per radian by which the driving joint deflects.
     pub twist: Twist,
-    /// Work of the loads and of the passive joint's own torque on this motion, which is a torque on the driver \[N m\].
+    /// Work of the loads, and of the passive joint's own torque, on this motion. It acts as a torque on the driving
+    /// joint \[N m\].
     pub torque_nm: f64,
 }
 
 impl Posed<'_> {
-    /// Motions and torques that the linkages transfer to their drivers, under weight and tip force.
+    /// For each linkage, the motion and the torque that it transfers to the driving joint under weight and tip force.
     pub fn transferred(&self) -> Vec<Transferred> {
         let linkages = self.chain.linkages();
         let mut out = Vec::new();
@@ -48,7 +50,8 @@ impl Posed<'_> {
         out
     }
 
-    /// Motion of the last frame per unit of every coordinate, with the motion of the passive joints.
+    /// Motion of the last frame per unit of every strain coordinate, base to tip. The unit of a driving joint includes
+    /// the motion of the passive joints that a linkage turns with it.
     pub fn tip_twists(&self) -> Vec<Twist> {
         let mut twists: Vec<Twist> = self.elements().flat_map(|e| e.twists.iter().copied()).collect();
         for (driver, passive, factor) in self.linked_coordinates() {
@@ -58,7 +61,8 @@ impl Posed<'_> {
         twists
     }
 
-    /// A shape to which the rotations of the passive joints are added.
+    /// The strain coordinates `shape`, with the rotations of the passive joints added that follow from the rotations of
+    /// the driving joints.
     pub(crate) fn with_passive(&self, shape: &DVector<f64>) -> DVector<f64> {
         let mut out = shape.clone();
         for (driver, passive, factor) in self.linked_coordinates() {
@@ -67,7 +71,8 @@ impl Posed<'_> {
         out
     }
 
-    /// The mass matrix with the linkages: `Tᵀ M T`.
+    /// The mass matrix `Tᵀ M T` of the arm with linkages, given the mass matrix `M` of the arm without them. `T` turns
+    /// each passive joint together with its driving joint.
     pub(crate) fn with_linkages(&self, mut mass: DMatrix<f64>) -> DMatrix<f64> {
         for (driver, passive, factor) in self.linked_coordinates() {
             let column = mass.column(passive) * factor;
@@ -78,7 +83,8 @@ impl Posed<'_> {
         mass
     }
 
-    /// Numbers of the coordinates of each driver and its passive joint, with the factor of the linkage.
+    /// For each linkage: index of the strain coordinate of the driving joint, index of the strain coordinate of the
+    /// passive joint, and the factor between the two rotations.
     fn linked_coordinates(&self) -> Vec<(usize, usize, f64)> {
         let coordinate = |name: &str| {
             let before = self.elements().take_while(|e| e.name != name);
@@ -99,7 +105,7 @@ mod tests {
     use crate::mechanics::chain::Chain;
     use nalgebra::Vector3;
 
-    /// A driven shoulder, and a wrist that a linkage keeps level.
+    /// An arm with a driven shoulder and a wrist that a linkage keeps level.
     const ARM: &str = r#"{"chain": [
         {"type": "joint", "name": "shoulder", "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e4},
         {"type": "link", "name": "arm", "vector_m": [0.6, 0, 0]},
@@ -115,7 +121,7 @@ mod tests {
         let payload = Payload { mass_kg: 5.0, ..Payload::default() };
         let posed = chain.pose_rad(&[0.0], &payload, Vector3::zeros());
         let statics = posed.statics();
-        // the hand stays level: weight and deflection act at the wrist's lever, 0.6 m, not at 0.8 m
+        // the hand stays level, so weight and deflection act at the lever of the wrist, 0.6 m, and not at 0.8 m
         let (weight_n, lever_m) = (5.0 * 9.81, 0.6);
         assert!((statics.joint_torques_nm[0].1 - weight_n * lever_m).abs() < 1e-9);
         let deflection_m = weight_n * lever_m / 1e4 * lever_m;

@@ -1,66 +1,70 @@
-//! The lowest natural frequency of a chain, without forming its matrices.
+//! The lowest natural frequency of a chain, computed without forming its mass and stiffness matrices.
 //!
-//! A pass goes from the tip to the base. `W(λ)` is the apparent inertia of everything outboard at `λ = ω²`: the inertia of a
-//! rigid body, plus what its flexibility adds. An element with unit stiffness and end motion `t` changes it from `W` on
-//! its outboard side to `W_in` on its inboard side. For a joint, `t` is its twist times the square root of its compliance;
-//! for a link see [`condensed`](super::condensed). The indices r and g stand for the root and the end coordinates.
+//! A pass goes from the tip to the base at a trial value `λ = ω²`. It computes `W(λ)`, the apparent inertia of
+//! everything outboard: the inertia of a rigid body, plus what its flexibility adds. An element with unit stiffness
+//! and end motion `t` changes it from `W` on its outboard side to `W_in` on its inboard side. For a joint, `t` is the
+//! twist vector of its axis times the square root of its compliance; for a link see [`condensed`](super::condensed).
+//! The indices r and g stand for the root and the end coordinates.
 //!
 //! ```text
 //! W_in = W_rr + λ P (1 - λ S)⁻¹ Pᵀ,   P = (M_rg + W t),   S = M_gg + tᵀ W t
 //! ```
 //!
-//! Exactly below the lowest eigenvalue, the pivots of all `1 - λ S` are positive. A pass therefore tells on which side of
-//! the lowest eigenvalue `λ` is (Sturm), and its last pivot points to the root. The search starts from Dunkerley's lower
-//! bound: `1/λ₁ ≤ Σ 1/λ_i = tr(C M)`.
+//! All pivots of all matrices `1 - λ S` are positive exactly if `λ` is below the lowest eigenvalue (Sturm). A pass
+//! therefore tells on which side of the lowest eigenvalue `λ` is, and the last pivot is used to approach the
+//! eigenvalue by secants. The search starts from Dunkerley's lower bound: `1/λ₁ ≤ Σ 1/λ_i = tr(C M)`.
 
 use nalgebra::{SMatrix, SVector};
 use std::f64::consts::TAU;
 
-/// One step of a pass, tip first: a body or an element, restricted to `N` of the six motions.
+/// One step of a pass: a body or an elastic element, restricted to `N` of the six components of motion. Steps are
+/// ordered tip first.
 #[derive(Debug, Clone)]
 pub(crate) enum Step<'a, const N: usize> {
-    /// A body: a factor (such as a mass) and the inertia that it multiplies.
+    /// A body: a factor (such as a mass), and the inertia matrix that it multiplies.
     Body(f64, &'a SMatrix<f64, N, N>),
-    /// A joint, with its twist and its compliance \[rad/(N m)\].
+    /// A joint: the twist vector of its axis, and its compliance \[rad/(N m)\].
     Joint(&'a SVector<f64, N>, f64),
-    /// A link.
+    /// A condensed link.
     Link(&'a BlockLink<N>),
 }
 
-/// A condensed link in a pose, restricted to `N` of the six motions.
+/// A condensed link in a pose, restricted to `N` of the six components of motion. Each inertia is a list of
+/// coefficients of 1, λ and λ².
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct BlockLink<const N: usize> {
-    /// Inertia over the motion of the root, by order in λ.
+    /// Inertia over the motion of the root, coefficients of 1, λ and λ².
     pub root: [SMatrix<f64, N, N>; 3],
-    /// Inertia between root and end coordinates, by order in λ.
+    /// Inertia between the motion of the root and the end coordinates, coefficients of 1, λ and λ².
     pub cross: [SMatrix<f64, N, N>; 3],
-    /// Inertia over the end coordinates, by order in λ.
+    /// Inertia over the end coordinates, coefficients of 1, λ and λ².
     pub end_inertia: [SMatrix<f64, N, N>; 3],
-    /// Twist of everything outboard per end coordinate.
+    /// Twist of everything outboard per unit of each end coordinate.
     pub end: SMatrix<f64, N, N>,
 }
 
 impl<const N: usize> BlockLink<N> {
-    /// Whether the link yields in any way.
+    /// Whether the link is compliant in any direction.
     pub(crate) fn yields(&self) -> bool {
         self.end.amax() > 0.0 || self.end_inertia.iter().any(|m| m.amax() > 0.0)
     }
 }
 
-/// Result of one pass at `λ`.
+/// Result of one pass at a trial value `λ`.
 struct Pass {
-    /// Whether every pivot before the last is positive.
+    /// Whether all pivots except the last are positive.
     inner_sound: bool,
-    /// The last pivot. It is positive below the lowest eigenvalue and negative just above it.
+    /// The last pivot, which is the pivot of the innermost coordinate. It is positive where `λ` is below the lowest
+    /// eigenvalue, and negative just above it.
     last: f64,
-    /// Product of all pivots before the last.
+    /// Product of all pivots except the last.
     inner_product: f64,
     /// Number of pivots.
     count: i32,
 }
 
 impl Pass {
-    /// Whether no eigenvalue is at or below `λ`.
+    /// Whether all eigenvalues are above the trial value `λ`, which means that every pivot is positive.
     fn below_all(&self) -> bool {
         self.inner_sound && self.last > 0.0
     }
@@ -68,27 +72,32 @@ impl Pass {
 
 /// Largest estimated error of an accepted root, relative to `1/λ`.
 ///
-/// The error of a secant is `C` times the product of the last two steps. `C` is about 1 for most arms and far larger if a
-/// pole is near. The last three steps show how large `C` is, so a limit is set on the error that follows from them.
+/// The error of a secant step is `C` times the product of the last two steps. `C` is about 1 for most arms and far
+/// larger if a pole is near. The last three steps show how large `C` is, so the limit applies to the error estimated
+/// from them.
 pub(super) const SHOWN_ERROR: f64 = 1e-13;
-/// Largest last step of an accepted root, relative to `1/λ`. It guards against another mode between the last two points.
+/// Largest last step of an accepted root, relative to `1/λ`. A larger step could jump over another mode between the
+/// last two points.
 pub(super) const LAST_STEP: f64 = 5e-8;
-/// Stands for the steps before the first, relative to `1/λ`. It is so small that no root is accepted before the steps have
-/// shown `C`, unless a step is practically zero.
+/// Stands in for the size of the steps before the first one, relative to `1/λ`. It is so small that no root is accepted
+/// before real steps have shown how large `C` is, unless a step is practically zero.
 pub(super) const UNKNOWN_STEP: f64 = 1e-9;
-/// [`LAST_STEP`] where one chain is solved by itself, so that one more pass does not matter.
+/// The value of [`LAST_STEP`] that is used when one chain is solved by itself. It is stricter, because one more pass
+/// then costs little.
 const CAREFUL_LAST_STEP: f64 = 1e-11;
-/// Number of passes after which the quick method gives up.
+/// Number of passes (evaluations at one trial value) after which the quick method gives up and the careful method takes
+/// over.
 const QUICK_PASSES: usize = 12;
-/// Number of passes after which the careful method takes what it has.
+/// Number of passes after which the careful method returns its best value so far.
 const MOST_PASSES: usize = 300;
 
-/// Lowest eigenvalue `λ₁ = ω₁²` of the chain \[1/s²\], given `trace_s2 ≥ tr(C M)` \[s²\]. It is infinite if nothing yields.
+/// Lowest eigenvalue `λ₁ = ω₁²` of the chain \[1/s²\], given an upper bound `trace_s2 ≥ tr(C M)` \[s²\]. It is
+/// infinite if no element is compliant.
 ///
-/// The last pivot is `1 - λ w(λ)`, where `w` is nearly constant. The secant method is therefore applied to `1/λ - w` as a
-/// function of `1/λ`, which is a straight line if everything outboard is rigid. It converges quickly unless the last joint
-/// hardly takes part in the mode. In that case a pole of `w` is next to the root. The product of all pivots has no poles,
-/// and its root is searched instead.
+/// The last pivot is `1 - λ w(λ)`, where `w` is nearly constant. The secant method is therefore applied to `1/λ - w`
+/// as a function of `1/λ`, which is a straight line if everything outboard is rigid. It converges quickly unless the
+/// last joint hardly takes part in the mode: then a pole of `w` is next to the root. In that case the root of the
+/// product of all pivots is searched instead, which has no poles.
 pub(crate) fn lowest_eigenvalue<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> f64 {
     if trace_s2 <= 0.0 {
         return f64::INFINITY;
@@ -96,19 +105,20 @@ pub(crate) fn lowest_eigenvalue<const N: usize>(steps: &[Step<'_, N>], trace_s2:
     quick_root(steps, trace_s2).unwrap_or_else(|| careful_root(steps, trace_s2))
 }
 
-/// Secants on the last pivot; `None` if they lead beyond a pole or converge too slowly.
+/// The lowest eigenvalue \[1/s²\] by the secant method on the last pivot. `trace_s2` is an upper bound of its
+/// reciprocal. `None` if a step leads beyond a pole or convergence is too slow.
 fn quick_root<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> Option<f64> {
     let mut x = trace_s2;
     let mut before: Option<(f64, f64)> = None;
     let (mut step_before, mut step_two_before) = (UNKNOWN_STEP * x, UNKNOWN_STEP * x);
     for _ in 0..QUICK_PASSES {
         let here = pass(steps, 1.0 / x);
-        // beyond a pole the last pivot belongs to another branch
+        // beyond a pole the last pivot belongs to another branch of the curve, so the secant would mislead
         if !here.inner_sound {
             return None;
         }
         let y = here.last * x;
-        // the first step takes w as constant, for which 1/λ - w has the slope 1
+        // for the first step `w` is taken as constant; then 1/λ - w has the slope 1
         let slope = before.map_or(1.0, |(x0, y0)| (y - y0) / (x - x0));
         let next = x - y / slope;
         let step = (next - x).abs();
@@ -135,7 +145,7 @@ fn careful_root<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> f64 {
         let here = pass(steps, 1.0 / x);
         here.below_all().then_some((x, here.last * here.inner_product, here.count))
     };
-    // the bound is exact for a single spring, and rounding may put its root just above the bound
+    // the bound is exact for a single spring, so rounding may place the root just above the bound
     let (Some(mut far), Some(mut near)) = (product(2.0 * trace_s2), product((1.0 + 1e-9) * trace_s2)) else {
         return 1.0 / trace_s2;
     };
@@ -148,7 +158,7 @@ fn careful_root<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> f64 {
         if near.0 - next <= 1e-15 * near.0 {
             return 1.0 / next;
         }
-        // `beyond` is below the root and `near` above it, so the root stays between them
+        // the root stays between `beyond`, which is smaller, and `near`, which is larger
         match product(next) {
             Some(point) => (far, near) = (near, point),
             None => beyond = next,
@@ -165,7 +175,8 @@ pub(crate) fn frequency_hz(eigenvalue: f64) -> f64 {
     eigenvalue.sqrt() / TAU
 }
 
-/// Takes the apparent inertia from the tip to the base.
+/// One pass from the tip to the base at the trial value `lambda`: computes the apparent inertia and collects the
+/// pivots.
 #[inline]
 fn pass<const N: usize>(steps: &[Step<'_, N>], lambda: f64) -> Pass {
     let mut apparent = SMatrix::<f64, N, N>::zeros();
@@ -185,7 +196,8 @@ fn pass<const N: usize>(steps: &[Step<'_, N>], lambda: f64) -> Pass {
     out
 }
 
-/// Takes the apparent inertia through a link that yields.
+/// Changes the apparent inertia from its value at the end of a compliant link to its value at the root, for the trial
+/// value `lambda`. The pivots of the link are added to `out`.
 #[inline]
 fn through_link<const N: usize>(
     link: &BlockLink<N>,
@@ -226,7 +238,7 @@ fn through_link<const N: usize>(
 }
 
 impl Pass {
-    /// Notes a pivot; the one before it is no longer the last.
+    /// Records the pivot of the next coordinate. The pivot before it now counts among the inner pivots.
     #[inline]
     fn next(&mut self, pivot: f64) {
         self.inner_sound &= self.last > 0.0;
@@ -241,7 +253,8 @@ mod tests {
     use super::*;
     use nalgebra::{Matrix2, Vector2};
 
-    /// Two springs in series on a body with these inertias, by the quadratic formula.
+    /// Lowest eigenvalue of two springs in series that carry a body with inertia matrix `m`, by the quadratic
+    /// formula.
     fn by_hand(m: &Matrix2<f64>, c: [f64; 2], twists: [Vector2<f64>; 2]) -> f64 {
         let a = |i: usize, j: usize| (c[i] * c[j]).sqrt() * twists[i].dot(&(m * twists[j]));
         let (mean, half) = (0.5 * (a(0, 0) + a(1, 1)), 0.5 * (a(0, 0) - a(1, 1)));

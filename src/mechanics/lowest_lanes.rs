@@ -1,25 +1,25 @@
 //! The lowest natural frequency of eight chains at once.
 //!
-//! The eight chains share everything outboard of one piece. The pass is that of [`lowest`](super::lowest): it takes the
-//! apparent inertia from the tip to the base, with one pivot for each way of yielding. One pass serves all eight chains,
-//! each at its own `λ`. What they share is read once.
+//! The eight chains share everything outboard of one piece. The pass is the same as in [`lowest`](super::lowest): it
+//! takes the apparent inertia from the tip to the base, with one pivot for each strain coordinate. One pass serves
+//! all eight chains, each at its own `λ`. The shared part is read from memory once.
 
-// matrices by row and column read better than iterators over them
+// loops over row and column indices read better here than iterators
 #![allow(clippy::needless_range_loop)]
 
 use super::lanes::{Eight, LANES, Lanes};
 use super::lowest::{BlockLink, LAST_STEP, SHOWN_ERROR, Step, UNKNOWN_STEP};
 use nalgebra::{SMatrix, SVector};
 
-/// The part that eight chains share, from the tip inward.
+/// The outboard part of the chain, which all eight chains share. Its steps are ordered tip first.
 #[derive(Debug, Clone)]
 pub(crate) struct Outboard<const N: usize> {
-    /// Inertia outboard of the first element that yields.
+    /// Inertia of everything outboard of the first compliant element.
     start: SMatrix<f64, N, N>,
     steps: Vec<Shared<N>>,
 }
 
-/// A step that eight chains share.
+/// A step of the pass that all eight chains share.
 #[derive(Debug, Clone)]
 enum Shared<const N: usize> {
     Body(SMatrix<f64, N, N>),
@@ -27,16 +27,17 @@ enum Shared<const N: usize> {
     Link(Box<BlockLink<N>>),
 }
 
-/// The pieces that eight chains do not share, from the tip inward.
+/// The inboard pieces of eight chains, in which the chains differ.
 pub(crate) trait Inner<V: Lanes, const N: usize> {
-    /// Adds the pieces to a walk. If any piece yields, the last one must.
+    /// Adds the inboard pieces to a pass, from the tip inward. If any of them is compliant, the last one must be.
     fn add_to(&self, walk: &mut Walk<V, N>);
 }
 
 /// A matrix for each of eight chains.
 pub(crate) type LaneMatrix<const N: usize> = [[Eight; N]; N];
 
-/// A link in a pose for each of eight chains. Only the lower triangle of symmetric matrices is used.
+/// A condensed link in a pose for each of eight chains; the fields are those of [`BlockLink`]. Only the lower
+/// triangle of symmetric matrices is used.
 #[derive(Debug, Clone)]
 pub(crate) struct LaneLink<const N: usize> {
     root: [LaneMatrix<N>; 3],
@@ -45,27 +46,28 @@ pub(crate) struct LaneLink<const N: usize> {
     end: LaneMatrix<N>,
 }
 
-/// Result of one pass at `λ`, in each lane.
+/// Result of one pass in each lane, each at its own `λ`.
 #[derive(Clone, Copy)]
 pub(crate) struct LanePass<V> {
-    /// One bit for each lane in which no pivot is negative: no eigenvalue is below `λ`.
+    /// Bit mask: lanes in which no pivot is negative, which means that no eigenvalue is below `λ`.
     pub below_all: u8,
-    /// One bit for each lane in which at most one pivot is negative: at most one eigenvalue is below `λ`.
+    /// Bit mask: lanes in which at most one pivot is negative, which means that at most one eigenvalue is below `λ`.
     pub near_first: u8,
     /// Product of all pivots.
     pub product: V,
 }
 
-/// The roots that were found.
+/// The lowest eigenvalues that the search for roots found.
 #[derive(Clone, Copy)]
 pub(crate) struct Roots<V> {
-    /// Lowest eigenvalue in each wanted lane.
+    /// Lowest eigenvalue in each wanted lane \[1/s²\].
     pub eigenvalue: V,
-    /// One bit for each wanted lane in which no root was found.
+    /// Bit mask: lanes that were asked for, but in which no root was found.
     pub unsure: u8,
 }
 
-/// Largest number of passes. A lane that needs more is left to [`lowest_eigenvalue`](super::lowest::lowest_eigenvalue).
+/// Largest number of passes. A lane that needs more is computed by itself with
+/// [`lowest_eigenvalue`](super::lowest::lowest_eigenvalue).
 const MOST_PASSES: usize = 16;
 
 impl<const N: usize> Default for Outboard<N> {
@@ -75,8 +77,8 @@ impl<const N: usize> Default for Outboard<N> {
 }
 
 impl<const N: usize> Outboard<N> {
-    /// Takes over the steps of a chain, tip first. Bodies between two elements that yield are added up, and links that do
-    /// not yield become bodies, so that a pass has as few steps as possible.
+    /// Replaces the shared part by `steps`, the steps of a chain, tip first. Bodies between two compliant elements are
+    /// added up, and rigid links become bodies, so that a pass has as few steps as possible.
     pub(crate) fn refill<'a>(&mut self, steps: impl Iterator<Item = Step<'a, N>>) {
         self.start = SMatrix::zeros();
         self.steps.clear();
@@ -96,7 +98,8 @@ impl<const N: usize> Outboard<N> {
 }
 
 impl<const N: usize> LaneLink<N> {
-    /// Puts eight links side by side.
+    /// Stores eight links in one value, with the eight numbers of each entry side by side, so that one instruction
+    /// handles them.
     pub(crate) fn new(links: [&BlockLink<N>; LANES]) -> Self {
         Self {
             root: std::array::from_fn(|k| side_by_side(|lane| &links[lane].root[k])),
@@ -107,23 +110,24 @@ impl<const N: usize> LaneLink<N> {
     }
 }
 
-/// Eight matrices side by side.
+/// Eight matrices, stored as one matrix that has the eight numbers of each entry side by side.
 pub(crate) fn side_by_side<'a, const N: usize>(
     of: impl Fn(usize) -> &'a SMatrix<f64, N, N>,
 ) -> LaneMatrix<N> {
     std::array::from_fn(|i| std::array::from_fn(|j| std::array::from_fn(|lane| of(lane)[(i, j)])))
 }
 
-/// Lower triangle of a symmetric matrix in each lane.
+/// A symmetric matrix in each lane, of which only the lower triangle is used.
 type Inertia<V, const N: usize> = [[V; N]; N];
 
-/// An entry of a symmetric matrix.
+/// The entry (i, j) of a symmetric matrix that is stored as its lower triangle.
 #[inline(always)]
 fn entry<V: Copy, const N: usize>(of: &Inertia<V, N>, i: usize, j: usize) -> V {
     if i >= j { of[i][j] } else { of[j][i] }
 }
 
-/// Takes the apparent inertia from the tip to the base, with one `λ` in each lane.
+/// One pass from the tip to the base for eight chains, with one `λ` in each lane: computes the apparent inertia and
+/// counts negative pivots.
 #[inline(always)]
 pub(crate) fn pass<V: Lanes, const N: usize>(
     outboard: &Outboard<N>,
@@ -138,12 +142,15 @@ pub(crate) fn pass<V: Lanes, const N: usize>(
             Shared::Link(link) => state.yielding_link(&**link),
         }
     }
-    // in the same walk: the pivots of shared and own pieces are one sequence
+    // in the same walk, because the pivots of shared and inboard pieces form one sequence
     inner.add_to(&mut state);
     LanePass { below_all: !state.negative, near_first: !state.twice_negative, product: state.product }
 }
 
-/// The numbers of a link in lanes, whether the eight chains share the link or not.
+/// The matrices of a condensed link (inertia of the root and of the end coordinates, their coupling, twist of
+/// everything outboard per end coordinate), read entry by entry as one value per lane. The three inertias have one
+/// matrix for each `order`, the power of `λ`. Implemented for links that differ from lane to lane and for one link
+/// that all eight chains share.
 trait LinkNumbers<const N: usize> {
     fn root<V: Lanes>(&self, order: usize, i: usize, j: usize) -> V;
     fn cross<V: Lanes>(&self, order: usize, i: usize, j: usize) -> V;
@@ -195,7 +202,8 @@ impl<const N: usize> LinkNumbers<N> for BlockLink<N> {
     }
 }
 
-/// `$a += $term` for each entry of the lower triangle. It is a macro because a closure would not be compiled for lanes.
+/// `$a += $term` for each entry of the lower triangle. It is a macro because a closure would not be compiled for the
+/// wide instruction set.
 macro_rules! add_lower {
     ($a:expr, |$i:ident, $j:ident| $term:expr) => {
         for $i in 0..N {
@@ -206,7 +214,7 @@ macro_rules! add_lower {
     };
 }
 
-/// An entry of a link's effective inertia at `λ`.
+/// The entry of a link's effective inertia at `λ`, from the coefficients of 1, λ and λ².
 macro_rules! at_lambda {
     ($link:ident.$of:ident($i:expr, $j:expr), $lambda:expr) => {
         $link.$of::<V>(0, $i, $j)
@@ -214,14 +222,15 @@ macro_rules! at_lambda {
     };
 }
 
-/// The walk from the tip to the base.
+/// The state of a pass from the tip to the base.
 pub(crate) struct Walk<V, const N: usize> {
     lambda: V,
     apparent: Inertia<V, N>,
-    /// Lanes with a negative pivot, and with two.
+    /// Bit mask of the lanes with at least one negative pivot. The next field is the bit mask of the lanes with at
+    /// least two.
     negative: u8,
     twice_negative: u8,
-    /// Product of the pivots so far.
+    /// Product of all pivots so far.
     product: V,
 }
 
@@ -233,7 +242,7 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
         Self { lambda, apparent, negative: 0, twice_negative: 0, product: V::splat(1.0) }
     }
 
-    /// Notes a pivot.
+    /// Records the pivot of one coordinate in each lane: its sign, and its product with the pivots before.
     #[inline(always)]
     fn pivot(&mut self, pivot: V) {
         let negative = pivot.less(V::zero());
@@ -242,26 +251,27 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
         self.product = self.product * pivot;
     }
 
-    /// Adds a body that all eight chains have.
+    /// Adds a body that is the same in all eight chains.
     #[inline(always)]
     pub(crate) fn body(&mut self, inertia: &SMatrix<f64, N, N>) {
         add_lower!(self.apparent, |i, j| V::splat(inertia[(i, j)]));
     }
 
-    /// Adds a mass times the inertia of one kilogram.
+    /// Adds a mass, one per lane, times the inertia matrix of one kilogram.
     #[inline(always)]
     pub(crate) fn mass(&mut self, mass: V, inertia: &SMatrix<f64, N, N>) {
         add_lower!(self.apparent, |i, j| mass * V::splat(inertia[(i, j)]));
     }
 
-    /// Adds a link that does not yield.
+    /// Adds a rigid link, one for each of the eight chains. Only its inertia over the motion of the root counts.
     #[inline(always)]
     pub(crate) fn rigid(&mut self, link: &LaneLink<N>) {
         add_lower!(self.apparent, |i, j| V::load(&link.root[0][i][j]));
     }
 
-    /// Eliminates one coordinate with its pivot and row. The apparent inertia for everything inboard grows by
-    /// `λ row rowᵀ / pivot`; `scale` is `λ / pivot`, times the compliance of a joint.
+    /// Eliminates one strain coordinate, given its pivot and its row of the matrix, one per lane. The apparent inertia
+    /// for everything inboard grows by `λ row rowᵀ / pivot`. `scale` is `λ / pivot`; for a joint it is multiplied by
+    /// the compliance of the joint.
     #[inline(always)]
     fn yield_by(&mut self, pivot: V, row: &[V; N], scale: V) {
         for i in 0..N {
@@ -273,7 +283,7 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
         self.pivot(pivot);
     }
 
-    /// Adds a joint, given its twist and its compliance.
+    /// Adds a joint, given the twist vector of its axis and its compliance \[rad/(N m)\], one per lane.
     #[inline(always)]
     pub(crate) fn joint(&mut self, twist: &SVector<f64, N>, compliance: V) {
         let mut momentum = [V::zero(); N];
@@ -285,18 +295,18 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
             own = own + momentum[i] * V::splat(twist[i]);
         }
         let yielding = self.lambda * compliance;
-        // 1 - λ c tᵀWt
+        // the pivot is 1 - λ c tᵀWt, with c the compliance of the joint
         let pivot = V::splat(1.0) - yielding * own;
         self.yield_by(pivot, &momentum, yielding / pivot);
     }
 
-    /// Adds a link that yields.
+    /// Adds a compliant link that differs between the eight chains.
     #[inline(always)]
     pub(crate) fn link(&mut self, link: &LaneLink<N>) {
         self.yielding_link(link);
     }
 
-    /// Adds a link that the eight chains share.
+    /// Adds a link that is the same in all eight chains, compliant or rigid.
     #[inline(always)]
     pub(crate) fn shared_link(&mut self, link: &BlockLink<N>) {
         match link.yields() {
@@ -305,12 +315,12 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
         }
     }
 
-    /// Adds a link that yields, whether the eight chains share it or not: `S` and `P` of the formula in
-    /// [`lowest`](super::lowest), then one elimination for each end coordinate.
+    /// Adds a compliant link, whether the eight chains share it or not. It forms `S` and `P` of the formula in
+    /// [`lowest`](super::lowest), then eliminates the end coordinates one by one.
     #[inline(always)]
     fn yielding_link<L: LinkNumbers<N>>(&mut self, link: &L) {
         let lambda = self.lambda;
-        // W t
+        // the product W t of the formula
         let mut moved = [[V::zero(); N]; N];
         for g in 0..N {
             for k in 0..N {
@@ -353,10 +363,11 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
     }
 }
 
-/// Lowest eigenvalue of every wanted lane, by secants on the product of all pivots times `x = 1/λ`.
+/// Lowest eigenvalue of every wanted lane, by the secant method on the product of all pivots times `x = 1/λ`.
 ///
-/// The product is `Π (1 - x_i / x)`, so this function is `(x - x_1) Π (1 - x_i / x)` over the other modes: a straight line
-/// if they are far away, and without poles however near they are. A guess beyond the second mode is moved back.
+/// The product of the pivots is `Π (1 - x_i / x)`, so this function is `(x - x_1) Π (1 - x_i / x)` over the other
+/// modes. It is a straight line if the other modes are far away, and it has no poles however near they are. A guess
+/// beyond the second mode is moved back.
 #[inline(always)]
 pub(crate) fn roots<V: Lanes, const N: usize>(
     outboard: &Outboard<N>,
@@ -367,7 +378,7 @@ pub(crate) fn roots<V: Lanes, const N: usize>(
     let one = V::splat(1.0);
     let mut open = wanted;
     let mut x = one / guess;
-    // the first step takes w as constant, for which 1/λ - w has the slope 1
+    // for the first step `w` is taken as constant; then 1/λ - w has the slope 1
     let (mut result, mut slope) = (x, one);
     let (mut x_before, mut y_before) = (V::zero(), V::zero());
     let unknown = V::splat(UNKNOWN_STEP) * x;
@@ -377,7 +388,7 @@ pub(crate) fn roots<V: Lanes, const N: usize>(
         let here = pass(outboard, inner, one / x);
         let y = here.product * x;
         let secant = (y - y_before) / (x - x_before);
-        // a point beyond a pole belongs to another branch of the curve and gives no secant
+        // a point beyond a pole belongs to another branch of the curve, so no secant is drawn through it
         slope = V::choose(has_before & here.near_first & open, secant, slope);
         let next = x - y / slope;
         let step = (next - x).abs();
@@ -390,11 +401,11 @@ pub(crate) fn roots<V: Lanes, const N: usize>(
         if open == 0 {
             break;
         }
-        // a step may not lead beyond a pole, and may change x by a factor of four at most
+        // a step must not lead beyond a pole, and must not change x by more than a factor of four
         let in_reach = next.less(V::splat(4.0) * x) & (V::splat(0.25) * x).less(next) & here.near_first;
         let drawn_back = V::choose(V::zero().less(y) & here.near_first, V::splat(0.5) * x, V::splat(1.5) * x);
         has_before = here.near_first;
-        // a step that was cut short says nothing about the error
+        // the length of a step that was cut short does not show the error
         step_two_before = step_before;
         step_before = V::choose(in_reach, step, V::splat(UNKNOWN_STEP) * x);
         (x_before, y_before) = (x, y);

@@ -1,20 +1,22 @@
-//! Mechanics: how an arm behaves. One formulation serves statics, modes and response.
+//! Mechanics: deflection, natural frequencies and harmonic response of an arm, all from one formulation.
 //!
-//! Every elastic element has a few *strain coordinates*, each of them a scalar spring. A joint has one (its twist), a
-//! bearing that tilts has two, the drive of a prismatic joint one and its guide up to three, and a link has some polynomials of curvature, shear, twist and stretch (`beam`). One unit
-//! of a coordinate moves everything outboard of it as a rigid body; this motion is the *twist* of the coordinate.
+//! Every elastic element has a few *strain coordinates*, each of them a scalar spring. A joint has one (its angle of
+//! torsion), a bearing that tilts has two. The drive of a prismatic joint has one and its guide up to three. A link
+//! has some polynomials of curvature, shear, twist and stretch (`beam`). One unit of a coordinate moves everything
+//! outboard of it as a rigid body; this motion is called the *twist* of the coordinate.
 //!
-//! - Statics (`statics`; Eqs 1-4, 7, 13-15): the generalized force on a coordinate is the work of the outboard wrench on
-//!   its twist. The coordinate yields by force times compliance, and the tip moves by the sum.
+//! - Statics (`statics`; Eqs 1-4, 7, 13-15): the generalized force on a coordinate is the work of the outboard wrench
+//!   on the twist of the coordinate. The coordinate deflects by force times compliance. The displacement of the tip is
+//!   the sum over all coordinates.
 //! - Modes (`modes`; Eqs 16-18 are the case of rigid links): the mass matrix `M` follows from the composite outboard
 //!   inertia and each pair of twists. The compliance matrix `C` is diagonal, and `C^½ M C^½ ψ = ψ/ω²`.
 //! - Response (`response`; F(t) of Eq 16): the sum of the modes under a harmonic force at the tip.
 //!
-//! `centre_line` turns strain coordinates into the motion of points of the arm, for drawings. `condensed`, `lowest`
-//! and `lowest_lanes` compute the lowest mode in the fast way of the search.
+//! `centre_line` turns strain coordinates into the displacement of points of the arm, for drawings. `condensed`,
+//! `lowest` and `lowest_lanes` are the fast computation of the lowest mode that the search uses.
 //!
-//! Twists and wrenches are taken about the world's origin. A twist is `(v, ω)`, where `v` is the velocity of the point of
-//! the body that is at the origin. A wrench is `(F, M)`, where `M` is the moment about the origin.
+//! Twists and wrenches are taken about the world's origin. A twist is `(v, ω)`, where `v` is the velocity of that
+//! point of the body which is at the origin. A wrench is `(F, M)`, where `M` is the moment about the origin.
 
 pub(crate) mod beam;
 pub(crate) mod centre_line;
@@ -39,9 +41,9 @@ pub use statics::{JointLoad, LinkRoot, Statics};
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 
-/// Translation and rotation of a body: `(v, ω)` about the world origin.
+/// Translation and rotation of a body as one vector `(v, ω)`, taken at the world's origin.
 pub type Twist = Vector6<f64>;
-/// Force and moment: `(F, M)` about the world origin.
+/// Force and moment as one vector `(F, M)`; the moment is taken about the world's origin.
 pub type Wrench = Vector6<f64>;
 
 /// Twist of a rotation by 1 rad about a unit vector `axis` through `point` \[m\].
@@ -54,27 +56,27 @@ pub fn force_wrench(force: &Vector3<f64>, point: &Vector3<f64>) -> Wrench {
     stack(force, &point.cross(force))
 }
 
-/// Displacement of the point of a body that is at `point`, when the body moves by a twist.
+/// Displacement \[m\] of the point of a body that is at `point` \[m\], when the body makes the small motion `twist`.
 pub fn displacement_at(twist: &Twist, point: &Vector3<f64>) -> Vector3<f64> {
     linear(twist) + angular(twist).cross(point)
 }
 
-/// Two vectors as one of six components.
+/// Joins two vectors of three components to one of six.
 pub(crate) fn stack(first: &Vector3<f64>, second: &Vector3<f64>) -> Vector6<f64> {
     Vector6::new(first.x, first.y, first.z, second.x, second.y, second.z)
 }
 
-/// The first three components: velocity or force.
+/// The first three components: the velocity of a twist or the force of a wrench.
 pub(crate) fn linear(six: &Vector6<f64>) -> Vector3<f64> {
     six.fixed_rows::<3>(0).into_owned()
 }
 
-/// The last three components: angular velocity or moment.
+/// The last three components: the angular velocity of a twist or the moment of a wrench.
 pub(crate) fn angular(six: &Vector6<f64>) -> Vector3<f64> {
     six.fixed_rows::<3>(3).into_owned()
 }
 
-/// Inertia of a rigid body about the world's origin: the 6x6 matrix that turns its twist into its momentum.
+/// Inertia matrix (6x6) of a rigid body about the world's origin. It turns the twist of the body into its momentum.
 pub fn body_inertia(
     mass_kg: f64,
     cg_m: &Vector3<f64>,

@@ -1,8 +1,9 @@
-//! Modes: natural frequencies and shapes (Eqs 16-18), with motor shafts locked, no damping and no gravity stiffness.
+//! Modes: natural frequencies and shapes (Eqs 16-18), with motor shafts locked, without damping and without the
+//! stiffness due to gravity.
 //!
-//! Let `C` be the diagonal compliance of the strain coordinates and `M` their mass matrix. The symmetric matrix
-//! `A = C^½ M C^½` has the eigenvalues `1/ω²`. `M` may be singular, for example with a point mass on a roll axis. The
-//! eigenvalue is then zero, and its mode is not returned.
+//! Let `C` be the diagonal compliance matrix of the strain coordinates and `M` their mass matrix. The symmetric
+//! matrix `A = C^½ M C^½` has the eigenvalues `1/ω²`. `M` may be singular, for example with a point mass on a roll
+//! axis. One of these eigenvalues is then zero, and its mode is not returned.
 
 use super::chain::{ElasticElement, Item, Posed};
 use super::statics::Statics;
@@ -15,34 +16,40 @@ use std::f64::consts::TAU;
 pub struct Mode {
     /// Natural frequency \[Hz\].
     pub frequency_hz: f64,
-    /// `xz`, `xy` or `yz` if 99 % of the kinetic energy is of motion in this plane of the world.
+    /// `xz`, `xy` or `yz` if at least 99 % of the kinetic energy belongs to motion in this plane of the world, else
+    /// `None`.
     pub plane: Option<&'static str>,
-    /// The part of the strain energy in each element, base to tip. The parts add up to 1.
+    /// Fraction of the strain energy in each element, with the element's name, base to tip. The sum of the
+    /// fractions is 1.
     pub strain_energy: Vec<(String, f64)>,
-    /// Displacement of the tip when the strain energy of the mode is ½ J \[m\].
+    /// Displacement of the tip \[m\], with the mode scaled to a strain energy of ½ J.
     pub tip_shape_m: Vector3<f64>,
-    /// Value of each coordinate in the same scale, element by element, base to tip.
+    /// Value of each strain coordinate, as one list for each element, base to tip, with the mode scaled to a strain
+    /// energy of ½ J.
     pub coordinates: Vec<Vec<f64>>,
 }
 
 /// The modal solution of an arm in a pose: all modes of the model, lowest first.
 #[derive(Debug, Clone)]
 pub struct Modes {
-    /// `1/ω²` of each mode, largest first. Modes without inertia are included as zeros.
+    /// `1/ω²` of each mode \[s²\], largest first. Modes without inertia are included, with the value zero.
     pub(crate) inverse_squares: Vec<f64>,
-    /// Coordinates of each mode, one mode a column, scaled to a strain energy of ½ J.
+    /// Strain coordinates of each mode, one column for each mode, scaled to a strain energy of ½ J.
     pub(crate) shapes: DMatrix<f64>,
 }
 
-/// Ratio to the largest `1/ω²` below which a `1/ω²` is a rounding error of zero.
+/// Relative threshold: a computed `1/ω²` that is smaller than this fraction of the largest one counts as zero. It is
+/// then a zero with rounding errors.
 const SINGULAR: f64 = 1e-13;
-/// Fraction of the kinetic energy in a plane from which a mode is called planar.
+/// Fraction of the kinetic energy in one plane of the world above which a mode counts as planar.
 const PLANAR: f64 = 0.99;
 
 impl Posed<'_> {
-    /// The `count` lowest modes about a static state, lowest first. There are fewer if the arm has fewer modes with inertia.
+    /// The `count` lowest modes of small vibrations about a static state, lowest first. There are fewer if fewer
+    /// modes have inertia.
     ///
-    /// The static state decides at which slope the joints vibrate. [`Chain`](super::Chain) has an example.
+    /// The static torques decide at which slope of their torsion curves the joints vibrate. [`Chain`](super::Chain)
+    /// has an example.
     pub fn modes(&self, statics: &Statics, count: usize) -> Vec<Mode> {
         let modes = self.solve_modes(statics);
         modes
@@ -54,9 +61,10 @@ impl Posed<'_> {
             .collect()
     }
 
-    /// The lowest natural frequency \[Hz\]. It is infinite if no compliance moves a mass.
+    /// The lowest natural frequency \[Hz\] of small vibrations about a static state. It is infinite if no compliant
+    /// element moves a mass.
     pub fn lowest_frequency_hz(&self, statics: &Statics) -> f64 {
-        // eigenvalues alone take less time than eigenvectors, and a front needs nothing else
+        // eigenvalues without eigenvectors take less time, and a front needs only them
         let a = self.flexibility_form(statics).0;
         if a.is_empty() {
             return f64::INFINITY;
@@ -65,7 +73,8 @@ impl Posed<'_> {
         1.0 / (largest.sqrt() * TAU)
     }
 
-    /// All eigenpairs of the flexibility form.
+    /// All modes of small vibrations about a static state, from the eigenvalue problem in flexibility form
+    /// `C^½ M C^½ ψ = ψ/ω²`.
     pub fn solve_modes(&self, statics: &Statics) -> Modes {
         let (a, roots) = self.flexibility_form(statics);
         if roots.is_empty() {
@@ -73,7 +82,7 @@ impl Posed<'_> {
         }
         let eigen = SymmetricEigen::new(a);
         let mut order: Vec<usize> = (0..roots.len()).collect();
-        // the order of equal eigenvalues is fixed, so that equal inputs give equal files
+        // equal eigenvalues are put into a fixed order, so that equal inputs give equal files
         order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]).then(i.cmp(&j)));
         let mut shapes = DMatrix::zeros(roots.len(), roots.len());
         for (k, &i) in order.iter().enumerate() {
@@ -82,7 +91,8 @@ impl Posed<'_> {
         Modes { inverse_squares: order.iter().map(|&i| eigen.eigenvalues[i].max(0.0)).collect(), shapes }
     }
 
-    /// `C^½ M C^½` and the diagonal of `C^½`.
+    /// The matrix `C^½ M C^½`, and the diagonal of `C^½`. `C` has the tangent compliances of the static state, `M` is
+    /// the mass matrix.
     fn flexibility_form(&self, statics: &Statics) -> (DMatrix<f64>, DVector<f64>) {
         let roots = DVector::from_iterator(
             statics.tangent_compliances.iter().map(Vec::len).sum(),
@@ -104,8 +114,8 @@ impl Posed<'_> {
         })
     }
 
-    /// Mass matrix over all coordinates, base to tip. Its entries are products of the composite inertia outboard of an
-    /// element with the twists of this element and of those inboard of it.
+    /// Mass matrix over all strain coordinates, base to tip. An entry for two elements is computed from the inertia of
+    /// everything outboard of the outer element and the twists (motions per unit) of both.
     pub fn mass_matrix(&self) -> DMatrix<f64> {
         let twists: Vec<Twist> = self.elements().flat_map(|e| e.twists.iter().copied()).collect();
         let mut mass = DMatrix::zeros(twists.len(), twists.len());
@@ -128,7 +138,7 @@ impl Posed<'_> {
         self.with_linkages(mass)
     }
 
-    /// The mode of a shape.
+    /// The mode of this frequency in the form for output. `shape` has its strain coordinates.
     fn describe(&self, statics: &Statics, shape: &DVector<f64>, frequency_hz: f64) -> Mode {
         Mode {
             frequency_hz,
@@ -139,19 +149,21 @@ impl Posed<'_> {
         }
     }
 
-    /// The coordinates of a shape as one list for each element.
+    /// The strain coordinates `shape` of all elements, divided into one list for each element, base to tip.
     fn by_element(&self, shape: &DVector<f64>) -> Vec<Vec<f64>> {
         let mut rest = shape.iter().copied();
         self.elements().map(|e| rest.by_ref().take(e.twists.len()).collect()).collect()
     }
 
-    /// Displacement of the tip in a shape \[m\].
+    /// Displacement of the tip when the strain coordinates have the values of `shape` \[m\].
     pub(crate) fn tip_motion(&self, shape: &DVector<f64>) -> Vector3<f64> {
         let motion: Twist = self.tip_twists().iter().zip(shape.iter()).map(|(t, q)| t * *q).sum();
         displacement_at(&motion, &self.tip_m)
     }
 
-    /// The part of the strain energy in each element, which is the sum of `q²/c` over its coordinates.
+    /// Fraction of the strain energy of a mode in each element, base to tip. `shape` has the strain coordinates q of
+    /// the mode. The energy of an element is proportional to the sum of `q²/c` over its coordinates with their
+    /// compliances c.
     fn strain_energy(&self, statics: &Statics, shape: &DVector<f64>) -> Vec<(String, f64)> {
         let mut coordinate = shape.iter();
         let mut parts: Vec<(String, f64)> = self
@@ -172,7 +184,8 @@ impl Posed<'_> {
         parts
     }
 
-    /// The plane of the world in which the mode moves, if there is one.
+    /// The plane of the world in which a mode moves, given its strain coordinates `shape`. `None` if less than 99 % of
+    /// its kinetic energy is in one plane.
     fn plane(&self, shape: &DVector<f64>) -> Option<&'static str> {
         const PLANES: [(&str, usize); 3] = [("xz", 1), ("xy", 2), ("yz", 0)];
         let mut energy = PlaneEnergy::default();
@@ -192,7 +205,8 @@ impl Posed<'_> {
                 }
             }
         }
-        // a motion along one axis lies in two planes: the energy of rotation decides between them, or else their order
+        // a motion along one axis lies in two planes: the plane with more energy of rotation is taken, else the first
+        // one
         let fractions = PLANES.map(|(name, normal)| (name, energy.fraction(normal)));
         let most = fractions.iter().map(|(_, f)| *f).fold(0.0, f64::max);
         fractions.iter().find(|(_, f)| *f >= PLANAR && *f >= most - 1e-9).map(|(name, _)| *name)
@@ -200,7 +214,7 @@ impl Posed<'_> {
 }
 
 impl Modes {
-    /// Number and frequency \[Hz\] of each mode that has inertia, lowest first.
+    /// Index and frequency \[Hz\] of each mode that has inertia, lowest first.
     pub fn finite(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let floor = SINGULAR * self.inverse_squares.first().copied().unwrap_or(0.0);
         self.inverse_squares
@@ -211,7 +225,9 @@ impl Modes {
     }
 }
 
-/// Fills in the rows and columns of an element whose first coordinate is number `start`.
+/// Fills in the rows and columns of the mass matrix that belong to an element. `outboard` is the inertia of everything
+/// outboard of it, `start` the index of its first coordinate, and `twists` are the motions per unit of the coordinates
+/// inboard of it.
 fn add_element(
     mass: &mut DMatrix<f64>,
     element: &ElasticElement,
@@ -230,7 +246,8 @@ fn add_element(
         mass[(start + i, start + j)] = entry;
         mass[(start + j, start + i)] = entry;
     }
-    // a link's own mass moves with the joints inboard of it as well; among its coordinates it is in `inner`
+    // the own mass of a link also moves with the elements inboard of it; between the link's own coordinates it is in
+    // `inner`
     if let Some(own) = &element.own {
         momentum += &own.coupling;
     }
@@ -241,7 +258,8 @@ fn add_element(
     }
 }
 
-/// Twice the kinetic energy of a shape at unit frequency: in total, and of motion in the plane normal to each world axis.
+/// Twice the kinetic energy of a vibration at unit angular frequency: in total, and of the motion in the plane normal
+/// to each world axis.
 #[derive(Default)]
 struct PlaneEnergy {
     total: f64,
@@ -249,7 +267,7 @@ struct PlaneEnergy {
 }
 
 impl PlaneEnergy {
-    /// Adds a rigid body.
+    /// Adds twice the kinetic energy of a rigid body that makes the motion `motion`.
     fn add_body(&mut self, body: &super::chain::Body, motion: &Twist) {
         let velocity = displacement_at(motion, &body.cg_m);
         let spin = super::angular(motion);
@@ -262,7 +280,8 @@ impl PlaneEnergy {
         }
     }
 
-    /// Adds a link, integrated over its Gauss points.
+    /// Adds twice the kinetic energy of a link, integrated over its Gauss points. `motion` is the motion of the link as
+    /// a rigid body, `rates` are the rates of its strain coordinates.
     fn add_link(&mut self, posed: &Posed, own: &super::chain::OwnMass, motion: &Twist, rates: &[f64]) {
         let Some(beam) = posed.chain.beam(own.piece) else { return };
         let turn = own.frame.transpose();
@@ -282,7 +301,9 @@ impl PlaneEnergy {
         }
     }
 
-    /// Adds the energy of one Gauss point. A rotation is in a plane if it is about the normal of the plane.
+    /// Adds twice the kinetic energy of one Gauss point of a link, of its translation or (if `rotation`) of its
+    /// rotation. `rate` is the velocity in the section frame `frame`, `density` the mass or inertia per length. A
+    /// rotation counts as motion in a plane if it is about the normal of the plane.
     fn add_line(
         &mut self,
         frame: &nalgebra::Matrix3<f64>,
@@ -300,7 +321,7 @@ impl PlaneEnergy {
         }
     }
 
-    /// The fraction of the energy in the plane with this normal.
+    /// Fraction of the kinetic energy that belongs to motion in the plane with this normal (0, 1, 2 for x, y, z).
     fn fraction(&self, normal: usize) -> f64 {
         self.within[normal] / self.total
     }

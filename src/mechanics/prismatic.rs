@@ -1,9 +1,10 @@
 //! Prismatic joints in a pose.
 //!
-//! One unit of the way `s` along the travel `a` moves everything outboard by `a`: the twist of the drive is `(a, 0)`, and the
-//! generalized force on it is the force of gravity and load along the travel, `F = a · Σ f`. The drive yields by `F/k`. The
-//! guide turns everything outboard about three axes through one point, by moment over stiffness. That point is where the
-//! runner blocks are: at the moved point if a carriage moves, where the joint begins if a ram does.
+//! A unit of deflection `s` along the travel direction `a` moves everything outboard by `a`. The twist of the drive
+//! is therefore `(a, 0)`, and the generalized force on it is the force of gravity and load along the travel,
+//! `F = a · Σ f`. The drive deflects by `F/k`. The guide turns everything outboard about three axes through one
+//! point, by moment over stiffness. This point is where the runner blocks are: if a carriage moves, it travels with
+//! the carriage; if a ram moves, it stays where the joint begins.
 
 use super::beam::section_frame;
 use super::chain::{ElasticElement, Item, Walk, Yielding};
@@ -12,19 +13,20 @@ use crate::arm::prismatic::{Moves, PrismaticPiece};
 use crate::arm::springs::{ElementFrame, Side};
 use nalgebra::{Matrix3, Vector3};
 
-/// What the guide of a prismatic joint carries, at the point of its springs.
+/// Force and moment on the guide of a prismatic joint, at the point of its springs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GuideLoad {
     /// Name of the joint.
     pub name: String,
-    /// Force along the travel, which the drive holds, and across it along the y and z of the guide \[N\].
+    /// Force along the travel, which the drive holds, and forces across it along the y and z axes of the guide \[N\].
     pub force_n: Vector3<f64>,
-    /// Moment about the travel (roll) and about the y (pitch) and z (yaw) of the guide \[N m\].
+    /// Moment about the travel (roll), about the y axis (pitch) and about the z axis (yaw) of the guide \[N m\].
     pub moment_nm: Vector3<f64>,
 }
 
 impl GuideLoad {
-    /// What a wrench about the world's origin puts on a guide with this frame at this place.
+    /// Force and moment on the guide of the joint `name`, given as the `wrench` of everything outboard about the
+    /// world's origin. The axes of the guide are the columns of `frame`, and its springs are at `at_m` \[m\].
     pub(super) fn of(name: &str, wrench: &Wrench, frame: &Matrix3<f64>, at_m: &Vector3<f64>) -> Self {
         let force_n = linear(wrench);
         let moment_nm = angular(wrench) - at_m.cross(&force_n);
@@ -32,13 +34,14 @@ impl GuideLoad {
     }
 }
 
-/// Name of the guide of a prismatic joint among the elastic elements.
+/// Name that the guide of a prismatic joint has among the elastic elements.
 pub(crate) fn guide_name(joint: &str) -> String {
     format!("{joint}.guide")
 }
 
 impl Walk {
-    /// Adds a prismatic joint at a travel \[m\]: what stays, the springs of guide and drive, what travels.
+    /// Adds a prismatic joint, moved out by `travel_m` \[m\]: first the mass that stays, then the springs of guide and
+    /// drive, then the mass that travels. `index` is its place in the chain.
     pub(super) fn prismatic(&mut self, index: usize, joint: &PrismaticPiece, travel_m: f64) {
         self.point_mass(joint.fixed_mass_kg, self.at_m);
         self.bodies(&joint.bodies.fixed);
@@ -62,13 +65,14 @@ impl Walk {
         self.at_m = moved_m;
         self.point_mass(joint.mass_kg, moved_m);
         self.bodies(&joint.bodies.rotating);
-        // a spring on the joint pulls at what travels
+        // a spring that is attached to this joint acts on the part that travels
         self.frames.push(ElementFrame { at_m: moved_m, rotation: self.rotation, hinge: None });
         self.load(Side::Moving(index));
     }
 }
 
-/// The springs of a guide, of those axes about which it tilts.
+/// The springs of a guide as an elastic element. `frame` has the axes of the guide and `springs_m` is the point of the
+/// springs, in the world. Axes about which the guide is rigid are left out.
 fn guide(joint: &PrismaticPiece, frame: &Matrix3<f64>, springs_m: &Vector3<f64>) -> ElasticElement {
     let axes = frame.column_iter().zip(joint.guide_rad_per_nm.iter());
     let (twists, compliances) = axes

@@ -1,12 +1,14 @@
-//! Products of dense matrices, in lanes: every sum runs in the order of its terms, on every machine.
+//! Products of dense matrices. Every sum is taken in the order of its terms, so that results are equal on every
+//! machine.
 //!
-//! A library that chooses its kernel by the processor would give other last digits on another machine, and a plain loop
-//! over columns reads and writes every sum once a term. Here a block of eight rows by four columns stays in registers.
+//! A library that chooses its kernel by the processor would give different last digits on another machine. A plain
+//! loop over columns would read and write every sum once for each term. Here a block of eight rows by four columns
+//! stays in registers.
 
 use super::lanes::{Eight, LANES, LaneWork, Lanes, in_lanes};
 use nalgebra::{DMatrix, DMatrixView};
 
-/// Columns of the right factor that are taken at a time.
+/// Number of columns of the right factor that are processed together.
 const COLUMNS: usize = 4;
 
 /// The product `AᵀB`.
@@ -19,24 +21,25 @@ pub(crate) fn transposed_product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<
     out
 }
 
-/// Adds `AᵀB` to a matrix. Parts of tall factors that are added one after the other give the same sums as the whole.
+/// Adds `AᵀB` to the matrix `out`. Tall matrices A and B may be divided into blocks of rows that are added one after
+/// the other; the sums are then the same to the last bit.
 ///
 /// # Panics
-/// If the sizes do not fit.
+/// If the sizes of the matrices do not fit.
 pub(crate) fn add_transposed_product(out: &mut DMatrix<f64>, a: DMatrixView<f64>, b: DMatrixView<f64>) {
     Panels::of_columns(a).add_times(out, b);
 }
 
-/// The left factor of a product, eight of its rows side by side. Rows that fill up the last panel are zero.
+/// The left factor of a product, stored in panels of eight rows. The last panel is filled up with rows of zeros.
 pub(crate) struct Panels {
-    /// For each panel, one entry a term of the sums.
+    /// For each panel and each term of the sums, the eight factors.
     eights: Vec<Eight>,
     rows: usize,
     terms: usize,
 }
 
 impl Panels {
-    /// A matrix, as a left factor.
+    /// Stores the matrix A so that it can be the left factor of a product A B.
     pub(crate) fn of_rows(a: &DMatrix<f64>) -> Self {
         let (rows, terms) = a.shape();
         let mut eights = vec![[0.0; LANES]; rows.div_ceil(LANES) * terms];
@@ -48,20 +51,20 @@ impl Panels {
         Self { eights, rows, terms }
     }
 
-    /// The product with a right factor.
+    /// The product of this left factor with a right factor.
     ///
     /// # Panics
-    /// If the right factor has not as many rows as this one has columns.
+    /// If the right factor does not have as many rows as this one has columns.
     pub(crate) fn times(&self, b: DMatrixView<f64>) -> DMatrix<f64> {
         let mut out = DMatrix::zeros(self.rows, b.ncols());
         self.add_times(&mut out, b);
         out
     }
 
-    /// Adds the product with a right factor to the first rows of a matrix.
+    /// Adds the product with a right factor to a matrix `out`, which may have more rows than the product.
     ///
     /// # Panics
-    /// If the sizes do not fit.
+    /// If the sizes of the matrices do not fit.
     pub(crate) fn add_times(&self, out: &mut DMatrix<f64>, b: DMatrixView<f64>) {
         assert_eq!(self.terms, b.nrows(), "as many terms on either side");
         assert!(self.rows <= out.nrows() && out.ncols() == b.ncols(), "a place for every sum");
@@ -73,7 +76,7 @@ impl Panels {
         }
     }
 
-    /// The transpose of a matrix, as a left factor.
+    /// Stores the matrix A so that its transpose can be the left factor of a product AᵀB.
     pub(crate) fn of_columns(a: DMatrixView<f64>) -> Self {
         let (terms, rows) = a.shape();
         let mut eights = vec![[0.0; LANES]; rows.div_ceil(LANES) * terms];
@@ -87,7 +90,7 @@ impl Panels {
 
 struct Sums<'a> {
     out: &'a mut [f64],
-    /// Rows of the matrix that the sums are added to.
+    /// Number of rows of the matrix to which the sums are added.
     stride: usize,
     a: &'a Panels,
     columns: &'a [&'a [f64]],
@@ -117,7 +120,8 @@ impl LaneWork for Sums<'_> {
     }
 }
 
-/// Adds the products of up to eight rows with `K` columns. The places of one column are `stride` numbers from those of the next.
+/// Adds the products of up to eight rows of the left factor with `K` columns of the right factor to `to`. In `to`,
+/// successive columns start `stride` numbers apart.
 #[inline(always)]
 fn add_block<V: Lanes, const K: usize>(
     to: &mut [f64],
@@ -164,7 +168,7 @@ mod tests {
             let direct = DMatrix::from_fn(rows, columns, |i, j| {
                 (0..terms).fold(0.0, |sum, k| sum + a[(i, k)] * b[(k, j)])
             });
-            // equal to the last bit: the order of the terms is that of the plain sum
+            // equal to the last bit, because the terms are added in the same order as in the plain sum
             assert_eq!(Panels::of_rows(&a).times(b.as_view()), direct);
             assert_eq!(transposed_product(&a.transpose(), &b), direct);
             let mut longer = DMatrix::from_element(rows + 3, columns, 2.0);

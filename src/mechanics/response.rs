@@ -1,15 +1,15 @@
 //! Response of the tip to a harmonic force at the tip: F(t) of Eq 16, with modal damping.
 //!
-//! The amplitude is `u(ω) = Σ u_k (u_k·F) / (1 - (ω/ω_k)² + 2 i ζ ω/ω_k)`. Here `u_k` is the motion of the tip in mode k,
-//! scaled to a strain energy of ½ J, and ζ is the damping ratio. The sum goes over all modes of the model, so that its
-//! static limit is the compliance of the arm.
+//! The amplitude is `u(ω) = Σ u_k (u_k·F) / (1 - (ω/ω_k)² + 2 i ζ ω/ω_k)`. Here `u_k` is the displacement of the tip
+//! in mode k, scaled to a strain energy of ½ J, and ζ is the damping ratio. The sum runs over all modes of the model;
+//! at zero frequency it therefore equals the static compliance of the arm.
 
 use super::chain::Posed;
 use super::statics::Statics;
 use nalgebra::{Complex, Vector3};
 use std::f64::consts::TAU;
 
-/// Motion of the tip at one frequency.
+/// Displacement of the tip at one frequency of the force.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Response {
     /// Frequency of the force \[Hz\].
@@ -30,8 +30,8 @@ impl Response {
     }
 }
 
-/// Motion of the tip at each frequency \[Hz\] under a harmonic force at the tip. `force_n` is the amplitude of the force in
-/// world axes \[N\]; every mode has the same damping ratio.
+/// Displacement of the tip at each frequency \[Hz\] under a harmonic force at the tip. `force_n` is the amplitude of
+/// the force in world axes \[N\]. Every mode has the same damping ratio.
 pub fn frequency_response(
     posed: &Posed,
     statics: &Statics,
@@ -61,7 +61,8 @@ pub fn frequency_response(
         .collect()
 }
 
-/// The denominator of one mode: `1 - (ω/ω_k)² + 2 i ζ ω/ω_k`, from `1/ω_k²`.
+/// The denominator of one mode in the sum of the response, `1 - (ω/ω_k)² + 2 i ζ ω/ω_k`. `inverse_square` is `1/ω_k²`
+/// \[s²\].
 fn resistance(inverse_square: f64, frequency_hz: f64, damping_ratio: f64) -> Complex<f64> {
     let ratio = TAU * frequency_hz * inverse_square.sqrt();
     Complex::new(1.0 - ratio * ratio, 2.0 * damping_ratio * ratio)

@@ -1,7 +1,8 @@
-//! Statics: joint torques, and how far the tip moves under gravity and load (Eqs 4, 7, 13-15).
+//! Statics: joint torques and displacement of the tip under gravity and load (Eqs 4, 7, 13-15).
 //!
-//! The calculation is linear about the undeformed pose, except for the torsion of joints, which follows their laws. In a
-//! serial chain the loads alone fix every force, so one pass from the tip to the base is enough.
+//! The calculation is linear about the undeformed pose, except for the torsion of joints, which follows their joint
+//! laws. In a serial chain every internal force follows from the loads alone, so one pass from the tip to the base is
+//! enough.
 
 use super::chain::{ElasticElement, Item, Posed, Yielding};
 use super::linkage::Transferred;
@@ -12,36 +13,38 @@ use nalgebra::Vector3;
 /// The static state of an arm in a pose under a load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Statics {
-    /// Torque on each joint about its axis \[N m\], with the name of the joint: that of gravity and load (Eq 7), and one that
-    /// acts on the joint beside them.
+    /// Torque on each joint about its axis \[N m\], with the name of the joint: the torque of gravity and load
+    /// (Eq 7), plus any further torque that acts on the joint.
     pub joint_torques_nm: Vec<(String, f64)>,
-    /// Force on each prismatic joint along its travel \[N\], with the name of the joint: that of gravity and load. The joint
-    /// moves by force over stiffness.
+    /// Force of gravity and load on each prismatic joint along its travel \[N\], with the name of the joint. The
+    /// joint deflects by force over stiffness.
     pub joint_forces_n: Vec<(String, f64)>,
-    /// What the guide of each prismatic joint carries, in the order of these forces. It is the same whether the guide yields
-    /// or not.
+    /// Force and moment on the guide of each prismatic joint, in the order of `joint_forces_n`. They are the same
+    /// whether the guide is rigid or compliant.
     pub guide_loads: Vec<GuideLoad>,
-    /// What the output bearing of each joint carries, in the order of the torques. It is the same whether the bearing
-    /// yields or not.
+    /// Force and moment on the output bearing of each joint, in the order of `joint_torques_nm`. They are the same
+    /// whether the bearing is rigid or compliant.
     pub bearing_loads: Vec<JointLoad>,
-    /// Displacement of the tip from its place in the weightless arm, in world axes \[m\] (Eq 15).
+    /// Displacement of the tip from its position in the weightless arm, in world axes \[m\] (Eq 15).
     pub tip_displacement_m: Vector3<f64>,
-    /// The part of this displacement that each element causes, base to tip. The parts add up to the whole.
+    /// The part of this displacement that each element causes \[m\], with the name of the element, base to tip. The
+    /// parts add up to the whole.
     pub shares_m: Vec<(String, Vector3<f64>)>,
-    /// Value of each coordinate, element by element, base to tip.
+    /// Value of each strain coordinate, as one list for each element, base to tip.
     pub deformations: Vec<Vec<f64>>,
-    /// Forces and moments at the root of each link.
+    /// Force and moment at the root of each link.
     pub link_roots: Vec<LinkRoot>,
-    /// Tangent compliance of each coordinate, element by element, base to tip.
+    /// Tangent compliance of each strain coordinate, as one list for each element, base to tip.
     pub tangent_compliances: Vec<Vec<f64>>,
-    /// Force and moment on the base, about the world's origin.
+    /// Force and moment on the base, as a wrench about the world's origin.
     pub base_wrench: Wrench,
 }
 
-/// Force and moment of everything outboard on a joint, across and along its axis.
+/// Force and moment that everything outboard puts on a joint, split into components across and along its axis. All
+/// are magnitudes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointLoad {
-    /// Moment across the axis, at the point of the joint \[N m\].
+    /// Moment across the axis, at the position of the joint \[N m\].
     pub moment_nm: f64,
     /// Force across the axis \[N\].
     pub radial_n: f64,
@@ -50,7 +53,8 @@ pub struct JointLoad {
 }
 
 impl JointLoad {
-    /// What a wrench about the world's origin puts on a joint with this axis at this place.
+    /// Force and moment that everything outboard puts on a joint, given as the `wrench` about the world's origin.
+    /// `axis` is the unit vector along the axis of the joint, and `at_m` its position \[m\].
     fn of(wrench: &Wrench, axis: &Vector3<f64>, at_m: &Vector3<f64>) -> Self {
         let force_n = linear(wrench);
         let moment_nm = angular(wrench) - at_m.cross(&force_n);
@@ -64,17 +68,17 @@ impl JointLoad {
 pub struct LinkRoot {
     /// Name of the link.
     pub name: String,
-    /// Force (axial, along y, along z) \[N\].
+    /// Force along the link, along y and along z of the section \[N\].
     pub force_n: Vector3<f64>,
-    /// Moment (torsion, about y, about z) \[N m\].
+    /// Moment about the link (torsion), about y and about z of the section \[N m\].
     pub moment_nm: Vector3<f64>,
 }
 
 impl Posed<'_> {
-    /// The static state of the arm.
+    /// Computes the static state of the arm.
     ///
-    /// One pass goes from the tip to the base. It adds up the wrench of everything outboard, lets each element yield to
-    /// it, and sums the displacements of the tip. [`Chain`](super::Chain) has an example.
+    /// One pass goes from the tip to the base. It adds up the wrench of everything outboard, computes the deflection
+    /// of each element under it, and sums the displacements of the tip. [`Chain`](super::Chain) has an example.
     pub fn statics(&self) -> Statics {
         let mut wrench = self.tip_load();
         let transferred = self.transferred();
@@ -110,13 +114,14 @@ impl Posed<'_> {
         out
     }
 
-    /// Force and moment at the tip, about the world's origin.
+    /// Force and moment at the tip, as a wrench about the world's origin.
     pub(crate) fn tip_load(&self) -> Wrench {
         force_wrench(&self.tip_force_n, &self.tip_m) + stack(&Vector3::zeros(), &self.tip_moment_nm)
     }
 
-    /// Lets one element yield to the outboard wrench, and records its deformation, its tangent compliance and its share.
-    /// Then the element's own weight is added to the wrench.
+    /// Computes the deflection of one element under `wrench`, the load of everything outboard. Records its strain
+    /// coordinates, its tangent compliance and the tip displacement that it causes in `out`. Then adds the element's
+    /// own weight to `wrench`. `transferred` are the torques that linkages put on driving joints.
     fn yield_to(
         &self,
         element: &ElasticElement,
@@ -127,7 +132,7 @@ impl Posed<'_> {
         let mut motion = Twist::zeros();
         let (yielded, tangents) = match &element.yielding {
             Yielding::Joint(law) => {
-                // a linkage makes a driver hold the torque of its passive joint as well
+                // a driving joint also holds the torque that the linkage transfers from its passive joint
                 let mut torque_nm = element.twists[0].dot(wrench) + element.torque_nm;
                 let mut passive_twist = Twist::zeros();
                 for passive in transferred.iter().filter(|c| c.driver == element.name) {
@@ -163,7 +168,7 @@ impl Posed<'_> {
         out.shares_m.push((element.name.clone(), displacement_at(&motion, &self.tip_m)));
         out.deformations.push(yielded);
         out.tangent_compliances.push(tangents);
-        // a link's own weight was in its work above; from here on it loads everything inboard
+        // the work of a link's own weight is already counted above; from here on this weight loads everything inboard
         if let Some(own) = &element.own {
             *wrench += own.weight;
             let moment = angular(wrench) - own.root_m.cross(&linear(wrench));

@@ -1,9 +1,9 @@
-//! The arm of the paper's Table 1, stretched along +x, as the library's arm.
+//! The arm of the paper's Table 1, stretched along +x, in the form that the library uses.
 //!
-//! Joint 2 stands at x = 0, joint 3 at 0.8 m, the wrist (joints 4 to 6, one point) at 1.3 m, the load
-//! 0.05 m beyond it. Only joints 2, 3 and 4 move in the vertical plane; the paper's joint 4 is the wrist
-//! pitch. Everything here is an input taken from the paper or a stated reading of it; every result is
-//! computed from it.
+//! Joint 2 is at x = 0, joint 3 at 0.8 m, the wrist (joints 4 to 6 at one point) at 1.3 m, and the load 0.05 m
+//! beyond the wrist. Only joints 2, 3 and 4 move in the vertical plane; the paper's joint 4 is the wrist pitch.
+//! Everything in this file is an input: either a number of the paper or a stated interpretation of it. All results
+//! are computed from these inputs.
 
 use crate::arm::joint_law::Curve;
 use crate::arm::load::Payload;
@@ -14,14 +14,14 @@ use crate::mechanics::chain::{Chain, Posed};
 use crate::mechanics::statics::Statics;
 use nalgebra::{Unit, Vector3};
 
-/// Gravitational acceleration of the paper \[m/s²\].
+/// Gravitational acceleration that the paper uses \[m/s²\].
 pub const GRAVITY_M_S2: f64 = 9.81;
 /// Names of the joints that move in the vertical plane, base to tip.
 pub const JOINTS: [&str; 3] = ["j2", "j3", "j4"];
 /// Names of the links, base to tip.
 pub const LINKS: [&str; 2] = ["link1", "link2"];
 
-/// Steel as the paper's numbers need it: E = 2.1e11 Pa, 7850 kg/m³, G = E/2.6.
+/// Steel with the properties for which the paper's numbers come out: E = 2.1e11 Pa, 7850 kg/m³, G = E/2.6.
 pub const STEEL: LinkMaterial = LinkMaterial {
     youngs_modulus_pa: 2.1e11,
     shear_modulus_pa: 2.1e11 / 2.6,
@@ -29,7 +29,7 @@ pub const STEEL: LinkMaterial = LinkMaterial {
     poisson: 0.3,
 };
 
-/// The arm of the paper's Table 1, or one that the table may mean.
+/// The arm of the paper's Table 1, or a variant that the table may mean.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PaperArm {
     /// Torsion curves of joints 2, 3 and 4.
@@ -53,14 +53,14 @@ pub struct PaperArm {
 /// Statics and modes of an arm, computed by the library.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solved {
-    /// The static state.
+    /// Displacements and torques under static load, and the part of the displacement that each element causes.
     pub statics: Statics,
     /// Natural frequencies in the vertical plane, lowest first \[Hz\].
     pub in_plane_hz: Vec<f64>,
 }
 
 impl PaperArm {
-    /// Table 1 as printed, the load 5 cm from the wrist.
+    /// The arm of Table 1 as printed, with the load 5 cm from the wrist.
     pub fn table_1() -> Self {
         let square =
             |size_m: f64| Section::RectangularTube { width_m: size_m, height_m: size_m, wall_m: 0.01 };
@@ -76,7 +76,8 @@ impl PaperArm {
         }
     }
 
-    /// This arm with its joint stiffnesses multiplied by `factors`. Joints with a torsion curve keep it.
+    /// This arm with the stiffness of each of joints 2, 3 and 4 multiplied by its entry in `factors`. A joint with a
+    /// torsion curve keeps its curve.
     pub fn with_stiffness_factors(&self, factors: [f64; 3]) -> Self {
         let mut arm = self.clone();
         for (curve, factor) in arm.curves.iter_mut().zip(factors) {
@@ -102,7 +103,7 @@ impl PaperArm {
         self.sections[link].properties(self.material.poisson).second_moment_y_m4
     }
 
-    /// The arm as the library's arm file would describe it.
+    /// The arm as an arm file would describe it.
     pub fn arm(&self) -> Arm {
         let chain = vec![
             self.joint(0, 0.0),
@@ -157,17 +158,19 @@ impl PaperArm {
         })
     }
 
-    /// The load, a point at the tip.
+    /// The load, a point mass at the tip.
     pub fn payload(&self) -> Payload {
         Payload { mass_kg: self.load_kg, ..Payload::default() }
     }
 
-    /// Statics and in-plane modes of the stretched arm under its load.
+    /// Statics of the stretched arm under its load, and its modes in the vertical plane. `links` tells which
+    /// deformations of the links count.
     pub fn solve(&self, links: LinkModel) -> Solved {
         self.solve_changed(links, |_| {})
     }
 
-    /// Statics and in-plane modes after a change to the structure, such as a connection in series or a stiffer link.
+    /// Statics and modes in the vertical plane after `change` has altered the structure (the arm as the mechanics sees
+    /// it). A change may be a connection in series with a joint, or a stiffer link.
     pub fn solve_changed(&self, links: LinkModel, change: impl FnOnce(&mut Structure)) -> Solved {
         let mut structure = self.arm().structure(JointModel::ThreeSegment);
         change(&mut structure);
@@ -180,7 +183,7 @@ impl PaperArm {
         })
     }
 
-    /// Poses the stretched arm and hands it to `use_it`.
+    /// Puts the arm `structure` into the stretched pose and calls `use_it` with the posed arm.
     pub fn with_posed<T>(
         &self,
         structure: &Structure,
@@ -193,22 +196,22 @@ impl PaperArm {
 }
 
 impl Solved {
-    /// Drop of the load \[m\].
+    /// Downward displacement of the load \[m\].
     pub fn drop_m(&self) -> f64 {
         -self.statics.tip_displacement_m.z
     }
 
-    /// Part of the load's drop that one element causes \[m\].
+    /// Part of the load's downward displacement \[m\] that the element with this name (a joint or a link) causes.
     pub fn share_m(&self, name: &str) -> f64 {
         self.statics.shares_m.iter().filter(|(n, _)| n == name).map(|(_, s)| -s.z).sum()
     }
 
-    /// Part of the load's drop that the joints cause \[m\].
+    /// Part of the load's downward displacement that the joints cause \[m\].
     pub fn joints_m(&self) -> f64 {
         JOINTS.iter().map(|name| self.share_m(name)).sum()
     }
 
-    /// Part of the load's drop that the links cause \[m\].
+    /// Part of the load's downward displacement that the links cause \[m\].
     pub fn links_m(&self) -> f64 {
         LINKS.iter().map(|name| self.share_m(name)).sum()
     }
@@ -218,13 +221,14 @@ impl Solved {
         self.statics.joint_torques_nm.iter().filter(|(n, _)| n == name).map(|(_, t)| *t).sum()
     }
 
-    /// The lowest frequency in the vertical plane \[Hz\]; infinite if nothing yields.
+    /// The lowest frequency in the vertical plane \[Hz\]; infinite if the arm is rigid.
     pub fn lowest_hz(&self) -> f64 {
         self.in_plane_hz.first().copied().unwrap_or(f64::INFINITY)
     }
 }
 
-/// Puts a connection in series with a joint. The connection adds this compliance \[rad/(N m)\].
+/// Adds a connection in series with the joint of this name. `compliance_rad_per_nm` is the compliance of the
+/// connection.
 pub fn connect(structure: &mut Structure, joint: &str, compliance_rad_per_nm: f64) {
     for piece in &mut structure.pieces {
         if let Piece::Joint(piece) = piece
@@ -235,7 +239,7 @@ pub fn connect(structure: &mut Structure, joint: &str, compliance_rad_per_nm: f6
     }
 }
 
-/// Multiplies every stiffness of a link by `factor`, and leaves its mass as it is.
+/// Multiplies every stiffness of the link with this name by `factor`. The mass of the link stays the same.
 pub fn stiffen_link(structure: &mut Structure, link: &str, factor: f64) {
     for piece in &mut structure.pieces {
         if let Piece::Link(piece) = piece

@@ -1,11 +1,11 @@
-//! A statement of the paper, checked.
+//! Statements of the paper that were checked.
 
 use crate::report::table::{Column, Table};
 
 /// A statement of the paper with the evidence computed for it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Claim {
-    /// Key, stable across versions.
+    /// Key of the claim, which stays the same in all versions.
     pub id: &'static str,
     /// The paper's statement, in words.
     pub statement: String,
@@ -27,7 +27,7 @@ impl Claim {
     }
 }
 
-/// Claims as a table.
+/// The claims as a table.
 pub fn table(claims: &[Claim]) -> Table {
     let columns = ["claim", "statement", "holds", "evidence"].map(Column::left).to_vec();
     let mut table = Table::new(columns);
@@ -42,7 +42,7 @@ pub fn table(claims: &[Claim]) -> Table {
     table
 }
 
-/// Claims as a list for reading.
+/// The claims as a Markdown list.
 pub fn list(claims: &[Claim]) -> String {
     claims.iter().map(|c| format!("- {} -- **{}**: {}.\n", c.statement, c.verdict(), c.evidence)).collect()
 }

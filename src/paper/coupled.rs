@@ -1,7 +1,8 @@
 //! The paper's coupled masses and springs (Eqs 16 to 18), written separately from the general mechanics.
 //!
-//! Unknowns are the absolute angles ψ of three rigid links. From Lagrange's equations, with m_i and I_i a
-//! tube's mass and moment of inertia about its centre, m_w the wrist and m_p the load,
+//! The unknowns are the absolute angles ψ of three rigid links. The matrices follow from Lagrange's equations. Here
+//! m_i and I_i are a tube's mass and moment of inertia about its centre, m_w is the mass of the wrist and m_p that
+//! of the load.
 //!
 //! ```text
 //! M11 = I1 + m1 l1²/4 + (m3 + m2 + m_w + m_p) l1²     K = | K2+K3  -K3     0  |
@@ -11,26 +12,27 @@
 //! M23 = m_p l2 l3,  M33 = m_p l3²                     right side for a vertical tip force: [l1, l2, l3] F
 //! ```
 //!
-//! Eq 17 asks `det(K - λ M) = 0`, a cubic in λ = ω²; what the paper calls ω in Hz is f = ω/2π.
+//! Eq 17 requires `det(K - λ M) = 0`, a cubic in λ = ω². The numbers that the paper calls ω in Hz are f = ω/2π.
 
 use super::arm::PaperArm;
 use crate::arm::joint_law::Curve;
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::TAU;
 
-/// Eq 16 for one arm.
+/// The matrices of Eq 16 for one arm.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CoupledArm {
     /// Mass matrix \[kg m²\].
     pub mass: Matrix3<f64>,
     /// Stiffness matrix \[N m/rad\].
     pub stiffness: Matrix3<f64>,
-    /// Lengths l1, l2, l3 \[m\].
+    /// Lengths l1, l2, l3 of the links \[m\].
     pub lengths_m: Vector3<f64>,
 }
 
 impl CoupledArm {
-    /// Eq 16 of an arm with constant joint stiffnesses. For a joint with a torsion curve the middle slope counts.
+    /// Eq 16 for an arm with constant joint stiffnesses. For a joint with a torsion curve the middle slope K2 is
+    /// used.
     pub fn new(arm: &PaperArm) -> Self {
         let [k2, k3, k4] = arm.curves.map(stiffness_nm_per_rad);
         let lengths_m = Vector3::new(arm.lengths_m[0], arm.lengths_m[1], arm.third_link_m);
@@ -46,8 +48,8 @@ impl CoupledArm {
         cubic_roots(self.characteristic_cubic()).map(|lambda| lambda.sqrt() / TAU)
     }
 
-    /// Coefficients of det(K - λ M), lowest power first, as determinants in which columns of K are replaced by
-    /// columns of -M.
+    /// Coefficients of det(K - λ M), lowest power first. Each is a sum of determinants of K in which some columns
+    /// are replaced by those of -M.
     pub fn characteristic_cubic(&self) -> [f64; 4] {
         let mut coefficients = [0.0; 4];
         for choice in 0..8u32 {
@@ -95,7 +97,7 @@ fn tube_inertia_kgm2(arm: &PaperArm, link: usize) -> f64 {
         + arm.material.density_kg_m3 * arm.second_moment_m4(link) * length_m
 }
 
-/// The three real roots of a cubic, rising: Vieta's trigonometric form, then Newton's method.
+/// The three real roots of a cubic in ascending order, by Vieta's trigonometric form and then Newton's method.
 fn cubic_roots([c0, c1, c2, c3]: [f64; 4]) -> [f64; 3] {
     let (a, b, c) = (c2 / c3, c1 / c3, c0 / c3);
     let p = (a * a - 3.0 * b) / 9.0;
@@ -107,7 +109,7 @@ fn cubic_roots([c0, c1, c2, c3]: [f64; 4]) -> [f64; 3] {
     roots
 }
 
-/// Newton's method on `x³ + a x² + b x + c` from a good start.
+/// The root of `x³ + a x² + b x + c` that Newton's method finds from `start`.
 fn polish([c, b, a]: [f64; 3], start: f64) -> f64 {
     (0..4).fold(start, |x, _| {
         let value = ((x + a) * x + b) * x + c;
@@ -121,11 +123,11 @@ pub fn single_spring_hz(stiffness_n_per_m: f64, mass_kg: f64) -> f64 {
     (stiffness_n_per_m / mass_kg).sqrt() / TAU
 }
 
-/// The masses that give an arm three wanted frequencies, while its third spring stays as it is.
+/// Changes masses of an arm so that its three frequencies become `wanted_hz`. The third spring stays unchanged.
 ///
-/// Unknowns are wrist mass, load mass and the load's distance. Newton's method on their logarithms starts from the
-/// arm's own values, in steps that never change one of them by more than a tenth. `None` if the three frequencies
-/// cannot be reached with this spring.
+/// The unknowns are the wrist mass, the load mass and the distance of the load. Newton's method on their logarithms
+/// starts from the values that the arm has. No step changes an unknown by more than a tenth. `None` if the three
+/// frequencies cannot be reached with this spring.
 pub fn masses_that_give(arm: &PaperArm, wanted_hz: [f64; 3]) -> Option<PaperArm> {
     let wanted = Vector3::from(wanted_hz.map(libm::log));
     let mut x = Vector3::new(libm::log(arm.wrist_kg), libm::log(arm.load_kg), libm::log(arm.third_link_m));
@@ -146,7 +148,7 @@ pub fn masses_that_give(arm: &PaperArm, wanted_hz: [f64; 3]) -> Option<PaperArm>
             return None;
         }
     }
-    // rounding may keep the last digit from settling
+    // rounding may prevent the last digit from converging, so a looser tolerance decides
     let found = with_masses(arm, &x);
     let gap = (log_frequencies(arm, &x) - wanted).amax();
     (gap < 1e-9).then_some(found)

@@ -1,4 +1,4 @@
-//! The paper's own equations as they are printed, independent of the general mechanics.
+//! The paper's own equations as they are printed. They do not use the general mechanics.
 
 use super::arm::{GRAVITY_M_S2, JOINTS, PaperArm};
 use crate::arm::LinkModel;
@@ -17,15 +17,17 @@ pub fn deflection_eq_4_m(
         * (force_n * length_m / 3.0 + line_weight_n_per_m * length_m.powi(2) / 8.0 + torque_nm / 2.0)
 }
 
-/// Eq 13: displacement of the end of the arm by the wind-up of a joint \[m\].
+/// Eq 13: displacement of the end of the arm by the torsion of one joint \[m\]. `length_m` is the distance of the
+/// end from the joint.
 pub fn deflection_eq_13_m(torque_nm: f64, stiffness_nm_per_rad: f64, length_m: f64) -> f64 {
     libm::sin(torque_nm / stiffness_nm_per_rad) * length_m
 }
 
-/// The total deflection as the paper computes it.
+/// The total deflection by the paper's equations.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PrintedDeflection {
-    /// Wind-up of joints 2, 3 and 4 times the length to the wrist \[m\] (Eqs 13, 14).
+    /// Displacement by each of the joints 2, 3 and 4: sine of the joint's torsion times the distance to the wrist
+    /// \[m\] (Eqs 13, 14).
     pub joints_m: [f64; 3],
     /// Deflection of links 1 and 2 (Eq 4) \[m\].
     pub links_m: [f64; 2],
@@ -43,16 +45,16 @@ impl PrintedDeflection {
     }
 }
 
-/// How the end force F of Eq 4 is read.
+/// The two interpretations of the end force F in Eq 4.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EndForce {
-    /// The weight of everything outboard of the link.
+    /// The weight of everything outboard of the link, the next links included.
     AllOutboard,
-    /// The weight of the motor and gear at the link's end alone, as the text says.
+    /// The weight of the motor and gear at the link's end only, as the text of the paper says.
     DriveAtTheEnd,
 }
 
-/// Eqs 4 and 13 to 15 for the stretched arm with constant stiffnesses, `L_tot` measured to the wrist.
+/// Eqs 4 and 13 to 15 for the stretched arm with constant stiffnesses. `L_tot` is measured to the wrist.
 pub fn printed_deflection(arm: &PaperArm, force: EndForce) -> PrintedDeflection {
     let [l1, l2] = arm.lengths_m;
     let to_wrist_m = [l1 + l2, l2, 0.0];
@@ -75,26 +77,26 @@ pub fn printed_deflection(arm: &PaperArm, force: EndForce) -> PrintedDeflection 
     PrintedDeflection { joints_m: [0, 1, 2].map(windup), links_m: [0, 1].map(link) }
 }
 
-/// Acceleration of the load, which reaches 1 m/s in 0.20 s \[m/s²\].
+/// Acceleration of a load that reaches 1 m/s in 0.20 s \[m/s²\].
 pub const LOAD_ACCELERATION_M_S2: f64 = 1.0 / 0.20;
 
-/// Eqs 8 to 12 for one joint, both sides of the gear.
+/// The torques of Eqs 8 to 12 for one joint, on both sides of the gear.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DynamicTorque {
     /// Static torque T_j at the output \[N m\].
     pub static_nm: f64,
-    /// T_lin with the printed factor 1/2 \[N m\].
+    /// T_lin by the factor 1/2 that the paper prints, T_j / 2 \[N m\].
     pub linear_half_nm: f64,
-    /// T_lin as Eq 8 defines it, (a/g) T_j \[N m\].
+    /// T_lin by the definition in Eq 8, (a/g) T_j \[N m\].
     pub linear_ratio_nm: f64,
-    /// Torque of linear acceleration by inertia: moment of inertia of everything outboard about the joint, times the
-    /// joint's acceleration \[N m\].
+    /// Torque of linear acceleration, computed from inertia: moment of inertia of everything outboard about the
+    /// joint, times the joint's acceleration \[N m\].
     pub linear_inertia_nm: f64,
-    /// Angular acceleration of the joint: acceleration of the load over the load's distance \[rad/s²\].
+    /// Angular acceleration of the joint: acceleration of the load, divided by the distance of the load \[rad/s²\].
     pub output_acceleration_rad_s2: f64,
-    /// T_rot on the motor's shaft, as Eqs 10 and 11 print it \[N m\].
+    /// T_rot on the motor's shaft, as in Eqs 10 and 11 \[N m\].
     pub rotary_motor_side_nm: f64,
-    /// T_rot on the output side of the gear, larger by the gear's ratio \[N m\].
+    /// T_rot on the output side of the gear: larger than on the motor's shaft by the gear ratio \[N m\].
     pub rotary_output_side_nm: f64,
 }
 
@@ -105,7 +107,8 @@ pub fn dynamic_torque_at_joint_2(arm: &PaperArm, ratio: f64, input_inertia_kgm2:
     let alpha = LOAD_ACCELERATION_M_S2 / reach_m;
     let structure = arm.arm().structure(crate::arm::JointModel::K2);
     let outboard_kgm2 = arm.with_posed(&structure, LinkModel::Rigid, |posed| posed.mass_matrix()[(0, 0)]);
-    // theta'' of Eq 10 is that of the motor: n_j is the motor's speed, ratio times the joint's
+    // theta'' in Eq 10 is the acceleration of the motor: n_j is the speed of the motor, the ratio times that of the
+    // joint
     let rotary_motor_side_nm = input_inertia_kgm2 * ratio * alpha;
     DynamicTorque {
         static_nm,
@@ -119,12 +122,12 @@ pub fn dynamic_torque_at_joint_2(arm: &PaperArm, ratio: f64, input_inertia_kgm2:
 }
 
 impl DynamicTorque {
-    /// Eq 12 as printed: T_rot on the motor's side, added to torques on the output side \[N m\].
+    /// Total torque by Eq 12 as printed. T_rot on the motor's side is added to torques on the output side \[N m\].
     pub fn total_as_printed_nm(&self) -> f64 {
         self.static_nm + self.linear_half_nm + self.rotary_motor_side_nm
     }
 
-    /// Eq 12 with all three torques on the output side \[N m\].
+    /// Total torque by Eq 12, with all three torques on the output side \[N m\].
     pub fn total_at_output_nm(&self) -> f64 {
         self.static_nm + self.linear_inertia_nm + self.rotary_output_side_nm
     }

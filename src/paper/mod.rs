@@ -1,4 +1,4 @@
-//! Reproduces the paper: its table and its three figures, every number computed.
+//! Reproduces the paper: its table and its three figures, with every number computed.
 //!
 //! | study | what it answers |
 //! |---|---|
@@ -7,8 +7,8 @@
 //! | `fig3-wall-or-width` | whether a kilogram is better spent on the wall or on the outer dimensions |
 //! | `fig4-composites` | composites compared with the best metal |
 //!
-//! The paper's equations are written down as printed ([`equations`], [`coupled`]) and separately from the
-//! general mechanics, so that one checks the other.
+//! The paper's equations are written as printed ([`equations`], [`coupled`]), separately from the general
+//! mechanics. So each can be checked with the other.
 
 pub mod arm;
 pub mod claim;

@@ -1,4 +1,5 @@
-//! The paper's dynamic numbers: frequencies, four times the stiffness, the servo's bandwidth.
+//! Rows on the paper's dynamic numbers: frequencies, the effect of four times the stiffness, and the bandwidth of
+//! the servo.
 
 use super::arm::PaperArm;
 use super::coupled::{CoupledArm, single_spring_hz};
@@ -77,7 +78,7 @@ fn frequencies(arm: &PaperArm, matching: &Reading) -> Vec<PaperRow> {
     .concat()
 }
 
-/// The masses and the third spring that give the printed frequencies, in words.
+/// Text that states the masses and the third spring with which Eq 16 gives the frequencies that the paper prints.
 fn matching_words(arm: &PaperArm, matching: &Reading) -> String {
     format!(
         "{} kg at and beyond the wrist (Table 1: {} kg), third spring K4 and K5 in series, \
@@ -187,7 +188,7 @@ fn bandwidth(arm: &PaperArm) -> Vec<PaperRow> {
     ]
 }
 
-/// The lowest mode with both links thin: 0.07 m outside, 2 mm wall.
+/// Rows on the lowest mode if both links are thin tubes: outer size 0.07 m, wall 2 mm.
 fn thin_tubes() -> Vec<PaperRow> {
     let aluminium = LinkMaterial {
         youngs_modulus_pa: 7.0e10,

@@ -1,4 +1,4 @@
-//! What a study of the paper gives, and why one cannot run.
+//! The result of a study of the paper, and the errors that prevent one.
 
 use super::names::NAMES;
 
@@ -7,24 +7,24 @@ use super::names::NAMES;
 pub struct PaperStudyOutput {
     /// Files to write: name and content. `summary.md` is among them.
     pub files: Vec<(String, Vec<u8>)>,
-    /// Text for the terminal.
+    /// Text that the program prints on the terminal.
     pub terminal: String,
 }
 
 impl PaperStudyOutput {
-    /// Adds a text file.
+    /// Adds a text file to the output.
     pub(crate) fn file(&mut self, name: &str, content: String) {
         self.files.push((name.to_string(), content.into_bytes()));
     }
 }
 
-/// Why a paper study could not run.
+/// Reason why a study of the paper could not run.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum PaperError {
     /// No paper study has this name.
     #[error("\"{name}\" is not a study of the paper; choose one of: {}", NAMES.join(", "))]
     UnknownStudy {
-        /// Name as given.
+        /// Name as the user gave it.
         name: String,
     },
     /// A part named in the paper is not in the catalogs, or lacks a rating.

@@ -1,4 +1,4 @@
-//! The catalog parts that the paper's studies need.
+//! The catalog parts that the paper's studies use.
 
 use super::output::PaperError;
 use crate::arm::joint_law::Windup;
@@ -9,7 +9,7 @@ use crate::catalog::motor::Motor;
 use crate::report::number::{fixed, shortest};
 use crate::report::table::{Column, Table};
 
-/// The HFUC gear of a size at 100:1.
+/// The HFUC gear of this size with the ratio 100:1.
 ///
 /// # Errors
 /// The catalog has no such gear.
@@ -23,10 +23,10 @@ fn hfuc(catalogs: &Catalogs, size: u32, ratio: u32) -> Result<&Gear, PaperError>
     found.ok_or_else(|| missing("gear", &format!("HFUC-{size}-{ratio}")))
 }
 
-/// The torsion curve of the HFUC gear of a size at 100:1.
+/// The torsion curve of the HFUC gear of this size with the ratio 100:1.
 ///
 /// # Errors
-/// The catalog has no such gear, or not all of its curve.
+/// The catalog has no such gear, or its torsion curve is incomplete.
 pub(crate) fn windup(catalogs: &Catalogs, size: u32) -> Result<Windup, PaperError> {
     let gear = gear(catalogs, size)?;
     complete_curve(gear).ok_or_else(|| missing("complete torsion curve of gear", &gear.id))
@@ -42,7 +42,7 @@ fn complete_curve(gear: &Gear) -> Option<Windup> {
     })
 }
 
-/// A motor by its model.
+/// The motor of this model name.
 ///
 /// # Errors
 /// The catalog has no such motor.
@@ -50,7 +50,7 @@ pub(crate) fn motor<'c>(catalogs: &'c Catalogs, id: &str) -> Result<&'c Motor, P
     catalogs.motors.iter().find(|m| m.id == id).ok_or_else(|| missing("motor", id))
 }
 
-/// A material by its name.
+/// The material of this name.
 ///
 /// # Errors
 /// The catalog has no such material.
@@ -63,15 +63,15 @@ pub(crate) fn missing(kind: &'static str, name: &str) -> PaperError {
     PaperError::Missing { kind, name: name.to_string() }
 }
 
-/// Gears as the paper's Table 1 prints them: size, ratio of the catalog row, mass \[kg\], stiffness
-/// \[N m/rad\]. HFUC 20 fits the 50:1 row only.
+/// Gears as in the paper's Table 1: size, ratio of the catalog row, mass \[kg\], stiffness \[N m/rad\]. HFUC 20
+/// agrees only with the catalog row of ratio 50:1.
 const PRINTED_GEARS: [(u32, u32, f64, f64); 4] =
     [(58, 100, 4.7, 607e3), (50, 100, 3.2, 405e3), (32, 100, 0.9, 108e3), (20, 50, 0.98, 17.5e3)];
 
-/// The paper's gears next to those of the catalog.
+/// A table of the paper's gears next to those of the catalog.
 ///
 /// # Errors
-/// A gear is missing.
+/// The catalog lacks a gear.
 pub(crate) fn gear_table(catalogs: &Catalogs) -> Result<Table, PaperError> {
     let mut table = Table::new(vec![
         Column::left("gear"),

@@ -10,27 +10,27 @@ use crate::catalog::Catalogs;
 use crate::report::number::{fixed, percent, percent_change, shortest};
 use crate::report::table::{Column, Table};
 
-/// Errors of the gear's torsion curve that are assumed for the second remedy of the paper's conclusions (relative).
+/// Relative errors of the gear's torsion curve that are assumed for the second remedy of the paper's conclusions.
 pub const CURVE_ERRORS: [f64; 3] = [0.05, 0.10, 0.20];
 /// Reduction ratio of the drives in the connection table.
 pub const RATIO: f64 = 100.0;
-/// Stiffness of a connection at the output \[N m/rad\].
+/// Stiffnesses of the connections at the output that are compared \[N m/rad\].
 const CONNECTIONS_NM_PER_RAD: [f64; 4] = [1e5, 3e5, 1e6, 3e6];
 
-/// Table 1 with the catalog's gears in joints 2, 3 and 4.
+/// The arm of Table 1 with the catalog's gears in joints 2, 3 and 4.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CatalogGears {
-    /// The arm whose gears are springs with the middle slope K2.
+    /// The arm with gears that are linear springs of the middle slope K2.
     pub middle_slope: PaperArm,
-    /// The arm whose gears follow the whole torsion curve.
+    /// The arm with gears that follow the whole torsion curve.
     pub curve: PaperArm,
 }
 
 impl CatalogGears {
-    /// Finds the gears in the catalog.
+    /// Looks up the gears in the catalog.
     ///
     /// # Errors
-    /// A gear is missing or has no complete curve.
+    /// A gear is missing or its torsion curve is incomplete.
     pub fn new(catalogs: &Catalogs) -> Result<Self, PaperError> {
         let mut curves = [Curve::Rigid; 3];
         for (curve, size) in curves.iter_mut().zip([58, 50, 32]) {
@@ -42,19 +42,19 @@ impl CatalogGears {
     }
 }
 
-/// The tip error that remains after a correction.
+/// The error of the tip's position that remains after a correction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ErrorLeft {
-    /// What is measured or computed for the correction.
+    /// What is measured or computed for the correction, in words.
     pub method: String,
-    /// Remaining error if the gears are springs of stiffness K2 \[m\].
+    /// Error of the tip's position that remains if the gears are springs of stiffness K2 \[m\].
     pub middle_slope_m: f64,
-    /// Remaining error if the gears follow the three-segment curve \[m\].
+    /// Error of the tip's position that remains if the gears follow the three-segment curve \[m\].
     pub curve_m: f64,
 }
 
-/// What remains after the two remedies of the paper's conclusions: the deflection of the joints is measured at the
-/// output, or it is computed from the motor's torque.
+/// The errors of the tip's position that remain after each of the two remedies in the paper's conclusions. In one, the
+/// deflection of the joints is measured at the output. In the other, it is computed from the motor's torque.
 pub fn error_left(gears: &CatalogGears) -> Vec<ErrorLeft> {
     let [k2, curve] = [&gears.middle_slope, &gears.curve].map(|arm| arm.solve(LinkModel::Full));
     let row = |method: &str, left: &dyn Fn(&Solved) -> f64| ErrorLeft {
@@ -74,7 +74,7 @@ pub fn error_left(gears: &CatalogGears) -> Vec<ErrorLeft> {
     rows
 }
 
-/// [`error_left`] as a table.
+/// The result of [`error_left`] as a table.
 pub fn error_left_table(rows: &[ErrorLeft]) -> Table {
     let mut table = Table::new(vec![
         Column::left("correction"),
@@ -101,17 +101,18 @@ pub fn error_left_table(rows: &[ErrorLeft]) -> Table {
 pub struct Connection {
     /// Name of the joint.
     pub joint: &'static str,
-    /// Stiffness between gear and arm \[N m/rad\].
+    /// Stiffness of a connection between gear and arm \[N m/rad\].
     pub output_nm_per_rad: f64,
-    /// Stiffness between motor and gear with the same effect: N² times smaller \[N m/rad\].
+    /// Stiffness of a connection between motor and gear with the same effect: smaller by N² \[N m/rad\].
     pub motor_side_nm_per_rad: f64,
-    /// Increase of the load's drop by the connection \[m\].
+    /// Increase of the load's displacement by the connection \[m\].
     pub added_m: f64,
-    /// The lowest frequency with the connection over the lowest frequency without it.
+    /// Lowest frequency with the connection, divided by the lowest frequency without it.
     pub frequency_ratio: f64,
 }
 
-/// Rivin's connections, between motor and gear and between gear and arm, in each joint in turn.
+/// The effect of compliant connections (after Rivin) on deflection and lowest frequency. Each is between motor and gear
+/// or between gear and arm, in one joint at a time.
 pub fn connections(arm: &PaperArm) -> Vec<Connection> {
     let before = arm.solve(LinkModel::Full);
     let one = |joint: &'static str, stiffness: f64| {
@@ -127,7 +128,7 @@ pub fn connections(arm: &PaperArm) -> Vec<Connection> {
     JOINTS.iter().flat_map(|joint| CONNECTIONS_NM_PER_RAD.map(|c| one(joint, c))).collect()
 }
 
-/// [`connections`] as a table.
+/// The result of [`connections`] as a table.
 pub fn connection_table(rows: &[Connection]) -> Table {
     let mut table = Table::new(vec![
         Column::left("joint"),
@@ -148,22 +149,23 @@ pub fn connection_table(rows: &[Connection]) -> Table {
     table
 }
 
-/// The effect of doubling one stiffness.
+/// The effect of doubling the stiffness of one element.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stiffer {
     /// Name of the joint or link.
     pub element: &'static str,
-    /// Drop of the load after the change \[m\].
+    /// Downward displacement of the load after the change \[m\].
     pub drop_m: f64,
-    /// Drop of the load after the change over the drop before.
+    /// This displacement divided by the one before the change.
     pub drop_ratio: f64,
-    /// The lowest frequency after the change \[Hz\].
+    /// Lowest frequency after the change \[Hz\].
     pub lowest_hz: f64,
-    /// The lowest frequency after the change over the lowest frequency before.
+    /// Lowest frequency after the change, divided by the one before.
     pub frequency_ratio: f64,
 }
 
-/// Doubles the stiffness of each joint and of each link in turn. Masses stay as they are.
+/// Doubles the stiffness of each joint and of each link, one at a time, and computes the effect on deflection and
+/// lowest frequency. Masses stay unchanged.
 pub fn stiffer(arm: &PaperArm) -> Vec<Stiffer> {
     let before = arm.solve(LinkModel::Full);
     let row = |element, after: Solved| Stiffer {
@@ -184,7 +186,7 @@ pub fn stiffer(arm: &PaperArm) -> Vec<Stiffer> {
     joints.chain(links).collect()
 }
 
-/// [`stiffer`] as a table.
+/// The result of [`stiffer`] as a table.
 pub fn stiffer_table(rows: &[Stiffer]) -> Table {
     let mut table = Table::new(vec![
         Column::left("twice as stiff"),

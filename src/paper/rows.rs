@@ -1,4 +1,4 @@
-//! A number of the paper next to ours, and tables of such rows.
+//! Rows with a number of the paper next to ours, and tables of such rows.
 
 use crate::report::number::{fixed, shortest};
 use crate::report::table::{Column, Table};
@@ -7,55 +7,56 @@ use serde_json::{Value, json};
 /// One of the paper's numbers next to ours.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PaperRow {
-    /// Key, stable across versions.
+    /// Key of the row, which stays the same in all versions.
     pub id: &'static str,
-    /// What the number stands for.
+    /// Name of the quantity.
     pub quantity: &'static str,
-    /// Unit of the number; empty for a plain ratio.
+    /// Unit of the number; empty for a ratio.
     pub unit: &'static str,
-    /// The number that the paper prints, if any.
+    /// The number that the paper prints; `None` if it prints none.
     pub paper: Option<f64>,
     /// The paper's words for this number, such as `less than 3` or `about 70`.
     pub paper_words: &'static str,
-    /// Our number, if the equation is read in the way that gives the paper's number.
+    /// Our number, with the equation read in the way that gives the paper's number; `None` if there is no such
+    /// reading.
     pub reading_value: Option<f64>,
-    /// The number of the exact model: all compliances, Table 1 as printed.
+    /// The number of the exact model, with all compliances and Table 1 as printed; `None` if it has no such number.
     pub exact: Option<f64>,
-    /// Digits after the point.
+    /// Number of digits after the decimal point.
     pub decimals: usize,
-    /// How the equation is read to get `reading_value`, in words.
+    /// The reading of the equation that gives `reading_value`, in words.
     pub reading: String,
-    /// Why our number and the paper's differ, if they do.
+    /// The reason why our number and the paper's differ; empty if they do not.
     pub reason: String,
 }
 
 impl PaperRow {
-    /// A row that does not yet have a number of the paper.
+    /// A row with its name and unit, in which no number is set yet.
     pub fn new(id: &'static str, quantity: &'static str, unit: &'static str, decimals: usize) -> Self {
         Self { id, quantity, unit, decimals, ..Self::default() }
     }
 
-    /// Sets the number of the paper, and the paper's words for it.
+    /// Sets the number of the paper and the words in which the paper states it.
     pub fn paper(mut self, value: f64, words: &'static str) -> Self {
         self.paper = Some(value);
         self.paper_words = words;
         self
     }
 
-    /// Sets our number for one way to read the equation, and says in words how the equation is read.
+    /// Sets the number that we compute with one reading of the equation, and describes this reading in words.
     pub fn reading(mut self, value: f64, reading: impl Into<String>) -> Self {
         self.reading_value = Some(value);
         self.reading = reading.into();
         self
     }
 
-    /// Sets the number of the exact model.
+    /// Sets the number that the exact model gives.
     pub fn exact(mut self, value: f64) -> Self {
         self.exact = Some(value);
         self
     }
 
-    /// Sets the reason why the numbers differ.
+    /// Sets the reason why our number and the paper's differ.
     pub fn because(mut self, reason: impl Into<String>) -> Self {
         self.reason = reason.into();
         self
@@ -84,7 +85,7 @@ impl PaperRow {
     }
 }
 
-/// The rows as a table of numbers. Explanations are in [`notes`].
+/// The numbers of the rows as a table. Explanations are in [`notes`].
 pub fn table(rows: &[PaperRow]) -> Table {
     let mut table = Table::new(vec![
         Column::right("#"),
@@ -107,8 +108,8 @@ pub fn table(rows: &[PaperRow]) -> Table {
     table
 }
 
-/// For each row, how the equation is read and why the numbers differ, numbered as in [`table`]. If consecutive rows
-/// read an equation in the same way, this is said once.
+/// Notes on the rows, numbered as in [`table`]: how the equation is read and why the numbers differ. If consecutive
+/// rows have the same reading, it is written once.
 pub fn notes(rows: &[PaperRow]) -> String {
     let mut text = String::new();
     let mut before = "";
@@ -123,7 +124,7 @@ pub fn notes(rows: &[PaperRow]) -> String {
     text
 }
 
-/// All fields, numbers in shortest round-trip form.
+/// The rows as CSV with all fields. Numbers are in the shortest form that reads back exactly.
 pub fn csv(rows: &[PaperRow]) -> String {
     let mut table = Table::new(
         ["id", "quantity", "unit", "paper", "paper_words", "reading_value", "exact", "reading", "reason"]

@@ -5,10 +5,10 @@ use super::output::{PaperError, PaperStudyOutput};
 use super::table1;
 use crate::catalog::Catalogs;
 
-/// Runs a study of the paper.
+/// Runs the study of the paper with this name.
 ///
 /// # Errors
-/// The name is not in `NAMES`, or the catalogs lack a part the paper names.
+/// The name is not in `NAMES`, or the catalogs lack a part that the paper names.
 pub fn run(name: &str, catalogs: &Catalogs) -> Result<PaperStudyOutput, PaperError> {
     match name {
         "paper-table1" => table1::run(catalogs),

@@ -1,4 +1,4 @@
-//! The paper's static numbers: torques, deflection, the links' part of it.
+//! Rows on the paper's static numbers: torques, deflection, and the links' share of it.
 
 use super::arm::{JOINTS, LINKS, PaperArm};
 use super::equations::{EndForce, PrintedDeflection, printed_deflection};
@@ -80,7 +80,8 @@ fn links(arm: &PaperArm) -> Vec<PaperRow> {
     ]
 }
 
-/// Says where the exact deflection of the links comes from: bending with and without end slopes, and shear.
+/// Text that divides the exact deflection of the links into three parts: the part in Eq 15, the part by the end slopes
+/// that Eq 15 leaves out, and the part by shear.
 fn what_eq_15_drops(arm: &PaperArm, printed: &PrintedDeflection) -> String {
     let [bending, full] = [LinkModel::Bending, LinkModel::Full].map(|model| arm.solve(model).links_m());
     format!(
@@ -102,7 +103,7 @@ fn total(arm: &PaperArm) -> Vec<PaperRow> {
     ]
 }
 
-/// Largest relative difference between the joint stiffnesses of two arms.
+/// Largest relative difference between the compliances that a joint has in arm `a` and in arm `b`.
 fn worst_gap(a: &PaperArm, b: &PaperArm) -> f64 {
     let compliance = |arm: &PaperArm, i: usize| arm.curves[i].tangent_compliance_rad_per_nm(0.0);
     (0..JOINTS.len()).map(|i| (compliance(a, i) / compliance(b, i) - 1.0).abs()).fold(0.0, f64::max)
@@ -127,6 +128,6 @@ fn catalog_gears(gears: &CatalogGears) -> Vec<PaperRow> {
         row("deflection_total_catalog_curve", "total, three-segment curve, full links")
             .paper(1.39, "1.39")
             .exact(1e3 * curve.drop_m())
-            .because("what the paper's arm would sag with the catalog's gears"),
+            .because("how far the paper's arm would deflect with the catalog's gears"),
     ]
 }

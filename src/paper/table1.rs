@@ -1,4 +1,4 @@
-//! `paper-table1`: the paper's numbers beside ours.
+//! `paper-table1`: the paper's numbers next to ours.
 
 use super::arm::PaperArm;
 use super::output::{PaperError, PaperStudyOutput};
@@ -20,32 +20,32 @@ use nalgebra::Vector3;
 /// Damping ratio of every mode in the frequency response.
 pub const DAMPING_RATIO: f64 = 0.02;
 
-/// Everything that the study computes.
+/// All results of the study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table1 {
-    /// The paper's numbers next to ours.
+    /// Rows with the paper's numbers next to ours.
     pub rows: Vec<PaperRow>,
-    /// Titled tables: what the conclusions' remedies leave, connections, and so on.
+    /// Further tables with titles: errors that remain after the conclusions' remedies, connections, and so on.
     pub sections: Vec<Section>,
 }
 
 /// One further table of the study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Section {
-    /// Name of its CSV file, without the ending.
+    /// Name of the table's CSV file, without the ending.
     pub file: &'static str,
-    /// Title.
+    /// Title of the table.
     pub title: &'static str,
-    /// What the table shows, in words.
+    /// Explanation of the table.
     pub words: String,
-    /// The table.
+    /// Numbers of the table.
     pub table: Table,
 }
 
-/// Computes the study.
+/// Computes all results of the study.
 ///
 /// # Errors
-/// The catalogs lack a part the paper names.
+/// The catalogs lack a part that the paper names.
 pub fn compute(catalogs: &Catalogs) -> Result<Table1, PaperError> {
     let gears = CatalogGears::new(catalogs)?;
     let rows =
@@ -112,10 +112,10 @@ fn third_spring_words(springs: &[Reading]) -> String {
     )
 }
 
-/// Runs the study.
+/// Computes the numbers of the paper's Table 1 and writes them next to those of the paper, as a summary and as tables.
 ///
 /// # Errors
-/// The catalogs lack a part the paper names.
+/// The catalogs lack a part that the paper names.
 pub fn run(catalogs: &Catalogs) -> Result<PaperStudyOutput, PaperError> {
     let study = compute(catalogs)?;
     let mut out = PaperStudyOutput { files: Vec::new(), terminal: terminal(&study) };
@@ -163,7 +163,8 @@ fn summary(study: &Table1) -> String {
     text
 }
 
-/// Amplitude at the load \[um\] under 1 N, against frequency \[Hz\].
+/// Frequency response of the load to a vertical harmonic force of 1 N at the load, for the arm of Table 1: pairs of
+/// frequency \[Hz\] and vertical amplitude \[µm\]. `links` tells which deformations of the links count.
 fn response(links: LinkModel) -> Vec<(f64, f64)> {
     let arm = PaperArm::table_1();
     let frequencies_hz: Vec<f64> = (0..=600).map(|i| libm::pow(10f64, f64::from(i) / 200.0)).collect();

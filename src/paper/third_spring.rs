@@ -1,5 +1,5 @@
-//! Arms that have the paper's three frequencies. There is more than one, so the frequencies do not determine
-//! the third spring.
+//! Arms that have the paper's three frequencies. Several arms have them, so the frequencies do not determine the
+//! third spring.
 
 use super::arm::PaperArm;
 use super::coupled::{CoupledArm, masses_that_give};
@@ -14,16 +14,16 @@ pub const PRINTED_HZ: [f64; 3] = [14.8, 74.6, 159.6];
 /// masses that then give the paper's three frequencies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
-    /// Which joints make up the third spring, in words.
+    /// Names of the joints that make up the third spring.
     pub spring: &'static str,
     /// Stiffness of the third spring \[N m/rad\].
     pub stiffness_nm_per_rad: f64,
-    /// The arm with these masses and this third spring.
+    /// The arm with this third spring and these masses.
     pub arm: PaperArm,
     /// The three frequencies of this arm \[Hz\].
     pub frequencies_hz: [f64; 3],
-    /// The lowest frequency with four times the stiffness of joint 2, over the lowest frequency with the stiffness as
-    /// it is.
+    /// Lowest frequency with four times the stiffness of joint 2, divided by the lowest frequency with the
+    /// stiffness of Table 1.
     pub four_times_joint_2: f64,
 }
 
@@ -33,7 +33,7 @@ impl Reading {
         self.arm.wrist_kg + self.arm.load_kg
     }
 
-    /// Largest relative difference between a frequency and the paper's.
+    /// Largest relative difference between one of the three frequencies and the frequency that the paper prints.
     pub fn worst(&self) -> f64 {
         let gaps = self.frequencies_hz.iter().zip(PRINTED_HZ).map(|(f, p)| (f / p - 1.0).abs());
         gaps.fold(0.0, f64::max)
@@ -56,13 +56,13 @@ impl Reading {
 /// Stiffness of joints 4, 5 and 6 as printed \[N m/rad\].
 const K4_K5_K6: [f64; 3] = [108e3, 108e3, 17.5e3];
 
-/// Stiffness of the first `count` of the wrist's joints in series \[N m/rad\].
+/// Stiffness of the first `count` of joints 4, 5 and 6 in series \[N m/rad\].
 fn in_series(count: usize) -> f64 {
     1.0 / K4_K5_K6[..count].iter().map(|k| 1.0 / k).sum::<f64>()
 }
 
-/// Every interpretation of the third spring, with the masses that give the paper's frequencies. The masses are found
-/// by search.
+/// Every interpretation of the third spring, each with the masses that give the paper's frequencies. The masses are
+/// found by Newton's method.
 pub fn readings() -> Vec<Reading> {
     let springs = [
         ("K4 alone", in_series(1)),
@@ -79,7 +79,8 @@ pub fn readings() -> Vec<Reading> {
         .collect()
 }
 
-/// The interpretation closest to Table 1: K4 and K5 in series, the table's wrist, a load of 7.33 kg at 0.1238 m.
+/// The interpretation closest to Table 1: K4 and K5 in series, the wrist mass of the table, and a load of 7.33 kg
+/// at 0.1238 m.
 pub fn closest_reading() -> Reading {
     let [k2, k3, _] = PaperArm::table_1().curves;
     let arm = PaperArm {

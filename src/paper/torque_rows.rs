@@ -1,4 +1,4 @@
-//! The paper's sizing equations (7) to (12) for joint 2 of Table 1.
+//! Rows on the paper's sizing equations, Eqs 7 to 12, for joint 2 of Table 1.
 
 use super::arm::PaperArm;
 use super::equations::{DynamicTorque, LOAD_ACCELERATION_M_S2, dynamic_torque_at_joint_2};
@@ -8,7 +8,7 @@ use super::rows::PaperRow;
 use crate::catalog::Catalogs;
 use crate::report::number::fixed;
 
-/// Reduction ratio of the paper's drives, in rows that depend on it.
+/// Reduction ratio of the paper's drives, for the rows that depend on it.
 const RATIO: f64 = 100.0;
 
 /// All rows of the sizing equations.

@@ -1,12 +1,13 @@
 //! Archive: a table that rejects dominated designs within a few nanoseconds.
 //!
-//! The table is over mass and deflection. Each cell has the highest lowest mode that was found so far at or below its mass
-//! and deflection. Both scales divide each octave into equal steps, which are the leading bits of a floating-point number.
-//! This is monotone and exact, and needs no logarithm.
+//! The table is over mass and deflection. Each cell has the highest lowest mode that was found so far at or below
+//! its mass and deflection. Both scales divide each octave (factor of two) into equal steps, which are the leading
+//! bits of a floating-point number. The map from numbers to steps is monotone and exact, and needs no logarithm.
 //!
-//! A design is entered at the next corner above it and looked up at the next corner below it, and its frequency is rounded
-//! down on entry. The table therefore rejects a design only if another one dominates it. Designs that it lets through are
-//! filtered exactly later, so the result does not depend on the order of entries.
+//! A design is entered at the next grid point above its mass and deflection. It is looked up at the next grid point
+//! below them. Its frequency is rounded down on entry. The table therefore rejects a design only if another one
+//! dominates it. Designs that it lets through are filtered exactly later, so the result does not depend on the
+//! order of entries.
 
 use super::objectives::Objectives;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -15,13 +16,13 @@ use std::sync::atomic::{AtomicU32, Ordering};
 const MASS_OCTAVES: (i32, i32) = (-7, 17);
 /// Range of deflections in powers of two: 0.1 um to 16 m.
 const DEFLECTION_OCTAVES: (i32, i32) = (-23, 4);
-/// Fraction by which the lowest mode of a rejected design is below that of the design that dominates it, at least. It is
-/// far above the rounding errors of the fast model, on which the table works.
+/// Smallest relative difference between the lowest modes of a rejected design and of the design that dominates it.
+/// It is far above the rounding errors of the fast model, on which the table works.
 const MARGIN: f64 = 1e-5;
 
 /// The table of best frequencies. All threads share it.
 pub(crate) struct Archive {
-    /// Number of leading bits of a number's fraction that decide its cell.
+    /// Number of leading mantissa bits that determine the cell of a number.
     bits: u32,
     columns: usize,
     /// Best frequency of each cell, as the bits of an `f32`: positive floats are ordered like their bits.
@@ -37,14 +38,14 @@ impl Archive {
         Self { bits, columns, best_hz: (0..all).map(|_| AtomicU32::new(0)).collect() }
     }
 
-    /// Whether some design entered before surely dominates this one.
+    /// Whether a design that was entered before surely dominates a design with the objectives `o`.
     #[inline]
     pub(crate) fn rejects(&self, o: &Objectives) -> bool {
         self.bar_hz(o.mass_kg, o.tip_deflection_m) > o.lowest_mode_hz
     }
 
-    /// The bar: a design of this mass and deflection with a lowest mode \[Hz\] below it is surely dominated by a
-    /// design that was entered before. The bar is 0 if no such design was entered.
+    /// The bar \[Hz\]. A design of this mass and deflection whose lowest mode is below the bar is surely dominated
+    /// by a design that was entered before. The bar is 0 if no such design was entered.
     #[inline]
     pub(crate) fn bar_hz(&self, mass_kg: f64, tip_deflection_m: f64) -> f64 {
         let (row, column) = (
@@ -56,8 +57,8 @@ impl Archive {
         f64::from(best) * (1.0 - MARGIN)
     }
 
-    /// Enters a design. If two threads write one cell at the same time, the better entry may be lost. The table then rejects
-    /// fewer designs than it could, but never more.
+    /// Enters a design. If two threads write one cell at the same time, the better entry may be lost. The table
+    /// then rejects fewer designs than it could, but never more.
     pub(crate) fn enter(&self, o: &Objectives) {
         let (row, column) = (
             self.corner(o.mass_kg, MASS_OCTAVES, Corner::Above),
@@ -65,7 +66,7 @@ impl Archive {
         );
         let (Some(row), Some(column)) = (row, column) else { return };
         let hz = round_down(o.lowest_mode_hz);
-        // a cell that already has as good a mode has it in all cells beyond, so the rest can be left
+        // a cell that already has as high a mode has passed it on to all cells beyond, so these need no change
         for cells in self.best_hz.chunks(self.columns).skip(row) {
             let worse = |cell: &&AtomicU32| cell.load(Ordering::Relaxed) < hz;
             let mut entered = false;
@@ -79,8 +80,8 @@ impl Archive {
         }
     }
 
-    /// The step of the logarithmic scale at or below a positive number, or at or above it; `None` outside of the
-    /// range.
+    /// The index of the grid step next to the positive number `x`: the step at or below it, or at or above it, as
+    /// `side` says. `low` and `high` are the ends of the scale in powers of two. `None` outside of the scale.
     #[inline]
     fn corner(&self, x: f64, (low, high): (i32, i32), side: Corner) -> Option<usize> {
         let shift = f64::MANTISSA_DIGITS - 1 - self.bits;
@@ -94,15 +95,15 @@ impl Archive {
     }
 }
 
-/// The corner of a cell to which a design's mass and deflection are rounded.
+/// The direction in which a design's mass and deflection are rounded to a step of the scale.
 #[derive(Clone, Copy)]
 enum Corner {
     Below,
     Above,
 }
 
-/// The bits of the largest `f32` that is not above a positive number. For positive numbers, such bits are in the
-/// order of the numbers.
+/// The bits of the largest `f32` that is not above a positive number. The bits of positive numbers, read as
+/// integers, are in the same order as the numbers.
 fn round_down(x: f64) -> u32 {
     let near = x as f32;
     let bits = near.to_bits();

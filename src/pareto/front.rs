@@ -1,6 +1,6 @@
 //! Pareto fronts of three objectives, all to be minimized.
 //!
-//! A sieve drops points that are plainly dominated. The rest are swept along the first objective, over a staircase of the
+//! A sieve first drops most dominated points. The rest are swept along the first objective, over a staircase of the
 //! other two. The method is exact, keeps duplicates, and takes O(n log n) for any set of points.
 
 use super::ranking::{Ranked, Ranking};
@@ -11,7 +11,7 @@ use rayon::prelude::*;
 /// Number of significant decimal digits that count when two objectives are compared. Smaller differences are rounding
 /// errors.
 const DIGITS: i32 = 12;
-/// Relative difference from which on twelve digits surely tell two objectives apart.
+/// If two numbers differ by at least this fraction, they surely differ after rounding to twelve digits.
 const SURELY_APART: f64 = 1e-10;
 
 /// The error for a point with an objective that is not a number (NaN), which cannot be compared with others.
@@ -30,11 +30,11 @@ pub fn rounded(x: f64) -> f64 {
         return x;
     }
     let scale = 10f64.powi(DIGITS - 1 - libm::log10(x.abs()).floor() as i32);
-    // numbers below 1e-297 have no twelve digits that mean anything
+    // the scale of numbers below 1e-297 overflows, so they are not rounded
     if scale.is_finite() { (x * scale).round() / scale } else { x }
 }
 
-/// Refuses points with a NaN, which cannot be compared.
+/// Checks that no point has a NaN, because NaN cannot be compared. The error names the first point that has one.
 pub(crate) fn all_numbers(points: &[[f64; 3]]) -> Result<(), NotANumber> {
     let faulty = points.par_iter().position_first(|p| p.iter().any(|x| x.is_nan()));
     faulty.map_or(Ok(()), |point| Err(NotANumber { point }))
@@ -62,8 +62,8 @@ pub fn exact_front(points: &[[f64; 3]]) -> Result<Vec<usize>, NotANumber> {
     Ok(front)
 }
 
-/// The front by twelve digits, as groups of ties. The points of a group are equal to 12 digits in all three objectives.
-/// Groups are sorted by the objectives, and the indices within a group ascend.
+/// The front after rounding to twelve digits, as groups of ties. The points of a group are equal to 12 digits in
+/// all three objectives. Groups are sorted by the objectives, and the indices within a group ascend.
 ///
 /// # Errors
 /// [`NotANumber`] with the first point that has a NaN.
@@ -95,7 +95,8 @@ fn swept(points: &[[f64; 3]]) -> Vec<u32> {
     kept
 }
 
-/// Indices, ascending, of the points that no other point beats by more than `slack` (relative) in all three objectives.
+/// Indices, ascending, of the points for which no other point is better by more than `slack` (relative) in all
+/// three objectives.
 pub fn not_clearly_beaten(points: &[[f64; 3]], slack: f64) -> Vec<usize> {
     let lowered = |x: f64| x - slack * x.abs();
     let Ranking { order, second } = Ranking::new(points);
@@ -120,7 +121,8 @@ pub fn not_clearly_beaten(points: &[[f64; 3]], slack: f64) -> Vec<usize> {
     kept
 }
 
-/// For each rank of the second objective, the largest rank whose objective is not above `lowered` of this one's.
+/// For each rank of the second objective, the largest rank whose value is not above the value of the first after
+/// `lowered` was applied to it. `None` if there is none.
 fn reaches(second: &[f64], lowered: impl Fn(f64) -> f64) -> Vec<Option<u32>> {
     let mut below = 0;
     let count = second.iter().map(|&x| {

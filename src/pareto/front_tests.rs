@@ -1,4 +1,4 @@
-//! Tests of fronts: every front is compared with the one that a comparison of all pairs gives.
+//! Tests of fronts. Every front is compared with the result of comparing all pairs of points.
 
 use super::*;
 use proptest::prelude::*;
@@ -7,13 +7,13 @@ fn dominates(a: &[f64; 3], b: &[f64; 3]) -> bool {
     (0..3).all(|k| a[k] <= b[k]) && (0..3).any(|k| a[k] < b[k])
 }
 
-/// The front by comparing all pairs.
+/// The front, found by comparing all pairs of points.
 fn all_pairs(points: &[[f64; 3]]) -> Vec<usize> {
     (0..points.len()).filter(|&i| !points.iter().any(|p| dominates(p, &points[i]))).collect()
 }
 
-/// Points of many kinds: small whole numbers (ties, duplicates, collinear ones), both zeros, infinities,
-/// neighbours in floating point, and spread ones.
+/// Random points of many kinds: small whole numbers (which give ties, duplicates and collinear points), both zeros,
+/// infinities, neighbours in floating point, and widely spread numbers.
 fn points() -> impl Strategy<Value = Vec<[f64; 3]>> {
     let near = |k: u8| 1.0 + f64::from(k) * f64::EPSILON;
     let odd = prop::sample::select(vec![-0.0, 0.0, f64::INFINITY, f64::NEG_INFINITY, 1e-300, -1e300]);
@@ -56,7 +56,8 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// Large enough for the sieve; `steps` decides how many ties there are, `bulge` how large the front is.
+    /// The points are numerous enough for the sieve to be used. `steps` determines how many ties there are, `bulge`
+    /// how large the front is.
     #[test]
     fn the_sieve_drops_no_point_of_the_front(
         seed in any::<u64>(), steps in 2u32..60, bulge in 0u8..3, digits in any::<bool>()

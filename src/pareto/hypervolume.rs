@@ -1,4 +1,5 @@
-//! Hypervolume: the volume that a set of points dominates below a reference point. It is one number for how good a front is.
+//! Hypervolume: the volume that a set of points dominates below a reference point. It measures with one number how
+//! good a front is.
 //!
 //! The points are swept as for the front. Each point adds the area that it newly covers in the plane of the second and third
 //! objective, times its distance from the reference point along the first. Every term is positive, so nothing cancels, and
@@ -38,7 +39,8 @@ pub fn hypervolume(points: &[[f64; 3]], reference: [f64; 3]) -> Result<f64, NotA
         if height <= third {
             continue;
         }
-        // points come in the order of the first objective: what this one covers first, it covers up to the reference
+        // points come in ascending order of the first objective, so a newly covered area stays covered up to the
+        // reference
         let depth = reference[0] - first;
         let (mut from, mut open) = (start, true);
         stairs.insert(rank, third, |next, its_third| {
@@ -57,8 +59,9 @@ pub fn hypervolume(points: &[[f64; 3]], reference: [f64; 3]) -> Result<f64, NotA
 /// The reference point below which fronts of studies are measured: 100 mm, 1 t, 0.1 Hz. It is the same for every study.
 pub const REFERENCE: Objectives = Objectives { tip_deflection_m: 0.1, mass_kg: 1000.0, lowest_mode_hz: 0.1 };
 
-/// Hypervolume of designs below [`REFERENCE`], in the natural logarithms of mass, deflection and lowest mode. With logarithms
-/// a factor of two counts the same in each objective. A design with an objective that has no logarithm adds nothing.
+/// Hypervolume of designs below [`REFERENCE`], in the natural logarithms of mass, deflection and lowest mode. With
+/// logarithms a factor of two counts the same in each objective. A design with an objective that has no logarithm
+/// adds nothing.
 pub fn front_hypervolume(designs: impl Iterator<Item = Objectives>) -> f64 {
     let logarithms =
         |o: Objectives| [libm::log(o.mass_kg), libm::log(o.tip_deflection_m), -libm::log(o.lowest_mode_hz)];
@@ -66,7 +69,7 @@ pub fn front_hypervolume(designs: impl Iterator<Item = Objectives>) -> f64 {
     hypervolume(&points, logarithms(REFERENCE)).unwrap_or_default()
 }
 
-/// A compensated sum: it keeps what rounding has removed and adds it at the end.
+/// A compensated (Neumaier) sum: the rounding errors are summed separately and added at the end.
 #[derive(Default)]
 struct Sum {
     sum: f64,

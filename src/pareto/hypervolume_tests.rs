@@ -3,7 +3,7 @@
 use super::*;
 use proptest::prelude::*;
 
-/// Counts unit cells below the reference that a point covers.
+/// Number of unit cells below the reference that at least one point covers.
 fn counted(points: &[[u8; 3]], reference: u8) -> u32 {
     let cells = 0..reference;
     let covered = |cell: [u8; 3]| points.iter().any(|p| (0..3).all(|k| p[k] <= cell[k]));

@@ -16,11 +16,11 @@ pub struct Objectives {
 /// One of the objectives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Objective {
-    /// Tip deflection, the less the better.
+    /// Tip deflection; smaller is better.
     TipDeflection,
-    /// Mass, the less the better.
+    /// Mass; smaller is better.
     Mass,
-    /// Lowest mode, the higher the better.
+    /// Lowest mode; higher is better.
     LowestMode,
 }
 
@@ -37,7 +37,8 @@ impl Objective {
 }
 
 impl Objectives {
-    /// The objectives of a design that is better by this factor in all three.
+    /// The objectives of a hypothetical design that is better in all three by `factor`: mass and deflection divided by
+    /// it, lowest mode multiplied by it.
     pub(crate) fn better_by(&self, factor: f64) -> Self {
         Self {
             tip_deflection_m: self.tip_deflection_m / factor,

@@ -1,10 +1,11 @@
-//! Ranking: points in the order of a sweep, by radix sort.
+//! Ranking: sorts points into the order of a sweep, by radix sort.
 //!
-//! A number becomes an integer code that rises with it: the leading 32 of the bits in which the points differ. Three passes
-//! of eleven bits sort the codes. If two numbers share the 32 bits, the numbers themselves are compared. The sort is
-//! therefore exact and takes O(n log n) at most.
+//! Each number is converted to an integer code in the same order: the leading 32 of the bits in which the points
+//! differ. Three passes of eleven bits sort the codes. If two numbers have the same 32 bits, the numbers themselves
+//! are compared. The sort is therefore exact and takes O(n log n) at most.
 //!
-//! Points are sorted by the second objective first, which gives its ranks. A stable sort by the first objective follows.
+//! Points are sorted by the second objective first, which gives the ranks of this objective. A stable sort by the
+//! first objective follows.
 
 use rayon::prelude::*;
 
@@ -33,7 +34,7 @@ impl Ranking {
         let mut order = by(1, order);
         let mut second = rank(&mut order, points);
         if second.len() < order.len() / 16 {
-            // with many ties, a radix sort by the third objective is cheaper than the comparisons it saves
+            // with many ties, a radix sort by the third objective costs less than the comparisons that it saves
             order = by(1, by(2, order));
             second = rank(&mut order, points);
         }
@@ -45,13 +46,14 @@ impl Ranking {
     }
 }
 
-/// An integer key that orders numbers as they are ordered themselves. Both zeros have the same key.
+/// An integer key with the same order as the numbers. Both zeros have the same key.
 fn key(x: f64) -> u64 {
     let bits = (x + 0.0).to_bits();
     if bits >> 63 == 0 { bits | 1 << 63 } else { !bits }
 }
 
-/// Gives ranks to a list of points that is sorted by the second objective. Returns the objective of each rank.
+/// Sets the rank of each point in `order`, which is sorted by the second objective. Returns the value of the second
+/// objective of each rank.
 fn rank(order: &mut [Ranked], points: &[[f64; 3]]) -> Vec<f64> {
     let mut second: Vec<f64> = Vec::new();
     for ranked in order {
@@ -64,14 +66,15 @@ fn rank(order: &mut [Ranked], points: &[[f64; 3]]) -> Vec<f64> {
     second
 }
 
-/// A point with the leading bits of its key.
+/// A point with the 32-bit code by which it is sorted.
 #[derive(Clone, Copy, Default)]
 struct Coded {
     code: u32,
     ranked: Ranked,
 }
 
-/// Sorts by the leading bits of a key, stably. Runs of equal bits are then sorted by `whole`, unless they already are.
+/// Sorts points in two steps. First they are sorted by the leading bits of `key`, and points with equal bits keep their
+/// order. Then each run of points with equal leading bits is sorted by `whole`, unless it is in order already.
 fn sorted<O: Ord + Send>(
     order: Vec<Ranked>,
     key: impl Fn(&Ranked) -> u64 + Sync,
@@ -79,7 +82,7 @@ fn sorted<O: Ord + Send>(
 ) -> Vec<Ranked> {
     let keys = || order.par_iter().map(&key);
     let (low, high) = (keys().min().unwrap_or(0), keys().max().unwrap_or(0));
-    // bits above the range of the keys are equal for all points and would be wasted
+    // bits above the range of the keys are equal in all points, so the code leaves them out
     let shift = 32 - (high - low).leading_zeros().min(32);
     let coded = order.par_iter().map(|r| Coded { code: ((key(r) - low) >> shift) as u32, ranked: *r });
     let mut coded = by_code(coded.collect());

@@ -1,25 +1,25 @@
-//! Sieve: it drops most dominated points in two passes, before anything is sorted.
+//! Sieve: drops most dominated points in two passes, before anything is sorted.
 //!
-//! The first two objectives are divided into bins of about equal content, which a sample determines. A table has the
-//! smallest third objective of each pair of bins and of all pairs below it. A point is dropped if the pairs of *lower* bins
-//! have a smaller third objective. The point that made this entry is then smaller in all three objectives, because a
-//! number in a lower bin is a smaller number. Bad bins let more points through, but never drop a point that is not
-//! dominated.
+//! The first two objectives are divided into bins of about equal content, which a sample determines. A table has
+//! the smallest third objective of each pair of bins and of all pairs below it. A point is dropped if the pairs of
+//! *lower* bins have a smaller third objective. The point that made this entry is then smaller in all three
+//! objectives, because a number in a lower bin is a smaller number. Badly chosen bins let more points through, but
+//! never drop a point that is not dominated.
 
 use rayon::prelude::*;
 use std::cmp::Ordering;
 
-/// Smallest number of points for which the sieve is worth its cost.
+/// Smallest number of points for which the sieve is used. For fewer points it costs more than it saves.
 const WORTH_IT: usize = 1 << 12;
-/// Number of points in the sample, at most.
+/// Largest number of points in the sample.
 const SAMPLE: usize = 1 << 12;
 /// Number of bins of each of the two objectives.
 const BINS: usize = 256;
 /// Number of equal steps of an objective's range. Bins are made of whole steps.
 const STEPS: usize = 1 << 12;
 
-/// Indices, ascending, of the points that may be on the front. Every point that is left out is beaten by another in all
-/// three objectives by more than `slack` (relative).
+/// Indices, ascending, of the points that may be on the front. For every point that is left out, another point is
+/// better in all three objectives by more than `slack` (relative).
 pub(crate) fn sieve(points: &[[f64; 3]], slack: f64) -> Vec<u32> {
     let index = |i: usize| u32::try_from(i).expect("fewer than 2^32 points fit into memory");
     if points.len() < WORTH_IT {
@@ -29,14 +29,14 @@ pub(crate) fn sieve(points: &[[f64; 3]], slack: f64) -> Vec<u32> {
     let table = Table::new(points, &bins);
     let stays = |p: &[f64; 3]| {
         let lowered = p.map(|x| x - slack * x.abs());
-        // an infinite objective cannot be lowered and stays
+        // an infinite objective cannot be lowered, and such a point stays
         table.best_below(bins[0].of(lowered[0]), bins[1].of(lowered[1])).partial_cmp(&lowered[2])
             != Some(Ordering::Less)
     };
     points.par_iter().enumerate().filter(|(_, p)| stays(p)).map(|(i, _)| index(i)).collect()
 }
 
-/// A monotone map from numbers to bins.
+/// The division of one objective into bins. A larger number is never in a lower bin.
 struct Bins {
     low: f64,
     steps_per_unit: f64,
@@ -44,9 +44,9 @@ struct Bins {
 }
 
 impl Bins {
-    /// The bins of one objective.
+    /// Divides the objective with the index `objective` into bins.
     fn new(points: &[[f64; 3]], objective: usize) -> Self {
-        // every so many points: the sample, and with it the result, is the same in every run
+        // the sample is every n-th point, so that it is the same in every run, and with it the result
         let stride = points.len().div_ceil(SAMPLE);
         let mut sample: Vec<f64> =
             points.iter().step_by(stride).map(|p| p[objective]).filter(|x| x.is_finite()).collect();
@@ -64,8 +64,8 @@ impl Bins {
         bins
     }
 
-    /// The step in which a number lies. The conversion to an integer saturates, so numbers outside of the range are
-    /// at its ends.
+    /// The step in which a number lies. The conversion to an integer saturates, so a number outside of the range
+    /// gets the first or the last step.
     fn step(&self, x: f64) -> usize {
         (((x - self.low) * self.steps_per_unit) as usize).min(STEPS - 1)
     }
@@ -76,11 +76,11 @@ impl Bins {
     }
 }
 
-/// For each pair of bins, the smallest third objective among the points in this pair and in lower bins.
+/// For each pair of bins, the smallest third objective of the points in this pair or in lower bins.
 struct Table(Vec<f64>);
 
 impl Table {
-    /// Fills the table, each thread with a part of the points.
+    /// Fills the table. Each thread takes a part of the points.
     fn new(points: &[[f64; 3]], bins: &[Bins; 2]) -> Self {
         let empty = || vec![f64::INFINITY; BINS * BINS];
         let share = points.len().div_ceil(rayon::current_num_threads()).max(WORTH_IT);

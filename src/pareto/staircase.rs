@@ -1,14 +1,15 @@
-//! Staircase: the points that still matter while a sweep moves along the first of three objectives.
+//! Staircase: the points that can still dominate others while a sweep moves along the first of three objectives.
 //!
-//! Points are taken in the order of their first objective. Of the points taken so far, only those matter that no other one
-//! dominates in the second and third objective. They form a staircase: the larger the second, the smaller the third.
+//! Points are taken in the order of their first objective. Of the points taken so far, only those matter that no
+//! other one dominates in the second and third objective. They form a staircase: the larger the second objective,
+//! the smaller the third.
 //!
-//! All second objectives are known in advance, so a step is addressed by the rank of its second objective. The steps are
-//! then a set of small integers, stored as bits: 64 ranks in a word, and one bit for each word in the level above. To find
-//! a neighbour or to change a step costs one word in each level. With the two sorts, a sweep takes O(n log n) (Kung, Luccio
-//! & Preparata 1975).
+//! All values of the second objective are known in advance, so a step is addressed by the rank of its second
+//! objective. The steps are then a set of small integers, stored as bits: 64 ranks in a word, and one bit for each
+//! word in the level above. Finding a neighbour or changing a step takes one word in each level. With the two
+//! sorts, a sweep takes O(n log n) (Kung, Luccio & Preparata 1975).
 
-/// The steps: ranks of the second objective, each with the third objective of its point.
+/// The steps of the staircase: ranks of the second objective, each with the third objective of its point.
 pub(crate) struct Staircase {
     steps: RankSet,
     third: Vec<f64>,
@@ -25,13 +26,14 @@ impl Staircase {
         self.steps.at_or_below(rank).map(|step| self.third[step as usize])
     }
 
-    /// Whether some point so far is at least as good as a point in both objectives.
+    /// Whether some point of the staircase is at least as good as a point with this rank of the second objective and
+    /// this third objective.
     pub(crate) fn covers(&self, rank: u32, third: f64) -> bool {
         self.best(rank).is_some_and(|best| best <= third)
     }
 
-    /// Adds a step that is not covered and removes the steps that it covers. `see` is called with rank and third
-    /// objective of each step above the new one, up to and including the first that stays.
+    /// Adds a step that no other step covers, and removes the steps that it covers. `see` is called for each of the
+    /// following steps that is removed, and for the first one that stays, with its rank and its third objective.
     pub(crate) fn insert(&mut self, rank: u32, third: f64, mut see: impl FnMut(u32, f64)) {
         self.steps.insert(rank);
         self.third[rank as usize] = third;
@@ -45,7 +47,7 @@ impl Staircase {
     }
 }
 
-/// A set of integers below a bound, which finds the nearest member to a number.
+/// A set of integers from zero to below a bound. It finds the member nearest to a number.
 struct RankSet {
     /// Bits, level by level. The first level has one bit for each possible member, every further level one bit for
     /// each word of the level before that is not empty.
@@ -81,7 +83,7 @@ impl RankSet {
         }
     }
 
-    /// The largest member that is not above a number.
+    /// The largest member that is at most `number`; `None` if there is none.
     fn at_or_below(&self, number: u32) -> Option<u32> {
         let mut place = number as usize;
         // the lowest level includes the number itself; the levels above include only words before it
@@ -98,7 +100,7 @@ impl RankSet {
         None
     }
 
-    /// The smallest member above a number.
+    /// The smallest member above `number`; `None` if there is none.
     fn above(&self, number: u32) -> Option<u32> {
         let mut place = number as usize;
         for (height, level) in self.levels.iter().enumerate() {
@@ -112,8 +114,8 @@ impl RankSet {
         None
     }
 
-    /// Goes from a word that is not empty down to one of the members below it; `bit` chooses among the bits of a
-    /// word.
+    /// Descends from the non-empty word at `height` and `place` to one of the members below it. `bit` selects one of
+    /// the bits of a word, for example the highest.
     fn descend(&self, height: usize, mut place: usize, bit: impl Fn(u64) -> usize) -> u32 {
         for level in self.levels[..height].iter().rev() {
             place = place * 64 + bit(level[place]);

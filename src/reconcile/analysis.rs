@@ -1,5 +1,5 @@
-//! Runs the whole analysis: whether there is a gap, what is missing, how sure that is, and whether it holds
-//! on held-out poses.
+//! Runs the whole analysis of displacements, frequencies and bench readings: whether they differ from the model, which
+//! effects are missing, how certain these are, and whether they predict held-out poses.
 
 use super::fit::descent::{Effort, Fit, Weights};
 use super::fit::held_out;
@@ -36,12 +36,14 @@ use crate::arm::effect::empirical::KIND;
 use serde_json::Value;
 use std::cell::OnceCell;
 
-/// With a rise of ln of the evidence below this an effect is only a suspect, because that is not yet strong (Kass and Raftery 1995, table of Bayes factors).
+/// An effect is only suspected if it raises the natural logarithm of the evidence by less than this. Such evidence is
+/// not yet strong (Kass and Raftery 1995, table of Bayes factors).
 const WEAK: f64 = 3.0;
-/// What is said where no effect is needed.
+/// Reason that is written for the verdict `no_gap`.
 const NOTHING_MISSING: &str = "noise and calibration within tolerance explain every reading";
 
-/// Reconciles the displacements, frequencies and bench readings of a campaign with its arm.
+/// Reconciles the displacements, frequencies and bench readings of a campaign with its arm. Absolute positions and
+/// records are not used here.
 pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let mut forward = Forward::new(campaign);
     let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
@@ -59,13 +61,13 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         candidates: &candidates,
         weights: &weights,
     };
-    let with_laws = [candidates.as_slice(), &empirical::laws(&forward)].concat();
     let hopeless = found.selection.given_up || !search.may_explain(chosen);
     let best = match hopeless {
         true => search.fit(&chosen.effects, &chosen.u, Effort::default()),
         false => search.polish(&chosen.effects, &chosen.u),
     };
     let baseline = search.fit(&[], &found.selection.baseline.u, Effort::default());
+    let with_laws = [candidates.as_slice(), &empirical::laws(&forward, &baseline, &weights)].concat();
     let fit_test = lack_of_fit(campaign, &forward, &best, &weights);
     let alternatives = search.alternatives(chosen, &found.selection.others);
     let explaining = few.then(|| found.selection.others.clone());
@@ -99,26 +101,28 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     analysis.conclude()
 }
 
-/// What is looked for: every effect that the campaign admits and the readings could show.
+/// The candidates (effects at places) that the search tries: every effect that the campaign admits and the readings
+/// could show. `few`: there are only a handful of rows, and rare effects are left out.
 fn sought(campaign: &Campaign, forward: &Forward, nuisance: &Nuisance, few: bool) -> Vec<Candidate> {
     let mut candidates = candidates(forward);
     candidates.retain(|c| campaign.statement.considers(c.kind.name));
     let mut candidates = seen(forward, nuisance, candidates);
     if few {
-        // a handful of readings cannot show what is seldom met
+        // rare effects are left out, because a handful of readings cannot show them convincingly
         candidates.retain(|c| c.kind.traits.odds >= 1.0);
         candidates = candidates.into_iter().map(Candidate::from_corners).collect();
     }
     candidates
 }
 
-/// Whether the evidence for the best effects is weak.
+/// Whether the best effects raise the logarithm of the evidence by less than [`WEAK`] above the baseline.
 fn is_weak(selection: &Selection) -> bool {
     !selection.best.effects.is_empty() && selection.best.score - selection.baseline.score < WEAK
 }
 
-/// Finds the effects and the noise. Where the noise of a channel shows a unit slip, the search is repeated with the
-/// standard deviations of that channel enlarged, and `forward` has them from then on.
+/// Finds the effects and the noise. If the noise of a channel shows that its readings are in another unit than
+/// stated, the search is repeated with larger standard deviations of this channel. The repetition counts, and
+/// `forward` gets these standard deviations, only if the wrong unit is then found as an effect.
 fn settled(
     campaign: &Campaign,
     forward: &mut Forward,
@@ -140,7 +144,7 @@ fn settled(
     units::stretch(&mut stretched, &stretches);
     let mut again = Settled::of_many(campaign, &mut stretched, nuisance, candidates);
     let named: Vec<&Candidate> = again.selection.best.effects.iter().map(|&i| &candidates[i]).collect();
-    // larger standard deviations would hide other physics
+    // unless the wrong unit is found as an effect, larger standard deviations would only hide other physics
     if !stretches.iter().all(|stretch| stretch.is_among(&named)) {
         return found;
     }
@@ -153,7 +157,7 @@ struct Analysis<'a> {
     campaign: &'a Campaign,
     forward: &'a Forward,
     search: &'a Search<'a>,
-    /// The same with laws without a name after its candidates.
+    /// The search `search` once more, with laws without a name appended to its candidates.
     with_laws: &'a Search<'a>,
     selection: &'a Selection,
     noise: &'a Noise,
@@ -162,20 +166,21 @@ struct Analysis<'a> {
     best: Fit<'a>,
     baseline: Fit<'a>,
     lack_of_fit: LackOfFit,
-    /// A law without a name that explains the readings better than the named effects, or, where the model
-    /// fails, better than calibration alone.
+    /// A law without a name that the named effects do not match: it explains the readings better than they do. If the
+    /// model fails the test for lack of fit, the law is instead compared with calibration alone. `None` if there is
+    /// no such law.
     unnamed: Option<Better>,
     alternatives: Vec<Vec<Scored>>,
-    /// Every set of effects that explains the readings, if there are few rows.
+    /// All sets of effects that explain the readings, if the campaign has only a few rows; otherwise `None`.
     explaining: Option<Vec<Scored>>,
-    /// Lack of fit of calibration alone, where the evidence for the effects is weak.
+    /// Test for lack of fit of calibration alone, if the evidence for the effects is weak; otherwise `None`.
     without: Option<LackOfFit>,
-    /// Intervals of the parameters of the best model's effects.
+    /// 95 % intervals of the parameters of the best model's effects. They are computed when they are first asked for.
     ends: OnceCell<Vec<Interval>>,
     left_out: [Vec<Option<f64>>; 2],
 }
 
-/// The corrected arm, and what it has beyond the arm as it was given.
+/// The corrected arm, and what was changed in it: calibrated factors and laws without a name.
 struct Corrections {
     calibrated: Vec<Calibrated>,
     empirical: Vec<Law>,
@@ -192,7 +197,7 @@ impl Analysis<'_> {
             reasons.extend(self.at_a_limit());
         }
         reasons.extend(self.remarks.iter().cloned());
-        // the effects of a weak model are suspects where calibration alone is as good
+        // effects with weak evidence are only suspected if calibration alone is as good
         let findings = match verdict {
             Verdict::Unexplained => Vec::new(),
             _ => self.findings(),
@@ -200,6 +205,9 @@ impl Analysis<'_> {
         let (effects, suspects) = verdict.named_and_suspected(findings, Vec::new());
         let Corrections { calibrated, empirical, models, corrected, provenance } =
             self.corrections(verdict, &effects);
+        if verdict == Verdict::Explained {
+            reasons.extend(caution::unbounded(&self.best, self.ends()));
+        }
         if matches!(verdict, Verdict::Explained | Verdict::NoGap) {
             let shown = if verdict == Verdict::NoGap { &self.baseline } else { &self.best };
             reasons.extend(caution::beyond_tolerance(shown, &calibrated));
@@ -229,7 +237,8 @@ impl Analysis<'_> {
         }
     }
 
-    /// What the corrected arm has, given the verdict and the effects that are named.
+    /// The corrections of the arm. They depend on `verdict`: without an explanation, a model for the corrected arm is
+    /// chosen first. `named` are the effects that the verdict names.
     fn corrections(&self, verdict: Verdict, named: &[Finding]) -> Corrections {
         let choice = (verdict == Verdict::Unexplained).then(|| self.model_without_explanation());
         let written = match (&choice, verdict) {
@@ -295,8 +304,9 @@ impl Analysis<'_> {
         (Verdict::Explained, vec![self.gap_sentence()])
     }
 
-    /// The verdict where the evidence for the best effects is weak: they are suspects. There is no gap if calibration
-    /// alone leaves only noise.
+    /// Verdict and reasons if the evidence for the best effects is weak. These effects are only suspected. The
+    /// verdict is `no_gap` if calibration alone leaves only noise (`without` passes the test for lack of fit),
+    /// otherwise `insufficient_data`.
     fn weak(&self, without: &LackOfFit) -> (Verdict, Vec<String>) {
         let gain = self.selection.best.score - self.selection.baseline.score;
         let suspected = format!(
@@ -324,19 +334,20 @@ impl Analysis<'_> {
         )
     }
 
-    /// Intervals of the parameters of all effects of the best model.
+    /// 95 % intervals of the parameters of all effects of the best model, in the order of the parameters. They are
+    /// computed at the first call.
     fn ends(&self) -> &[Interval] {
         self.ends.get_or_init(|| intervals(self.forward, &self.best, self.weights))
     }
 
-    /// Says that an effect has reached the largest size that is searched for. It names no effect, because it
-    /// may not be the right one.
+    /// Sentence that one of the best effects has reached the largest size that is sought; `None` if none has. The
+    /// sentence does not name the effect, because it may not be the right one.
     fn at_a_limit(&self) -> Option<String> {
         let text = "the size of one of the best effects is the largest that is looked for: is arm.json the arm that was measured?";
         self.best.model.is_at_a_limit(&self.best.point.u).then(|| text.to_string())
     }
 
-    /// Says which structure the residuals keep, without naming an effect.
+    /// Sentences on the structure that the best model leaves in the residuals. They name no effect of the library.
     fn left_over(&self) -> Vec<String> {
         let mut out = units::other_signs(self.forward);
         out.extend(self.lack_of_fit.sentences());
@@ -353,7 +364,8 @@ impl Analysis<'_> {
         out
     }
 
-    /// Says that a law without a name is better than the effects of the library, without naming any of these.
+    /// Sentence that the law without a name `law` explains the readings better than the effects of the library. The
+    /// sentence names none of these effects.
     fn beaten(&self, law: &Better) -> String {
         format!(
             "the library lacks this law, and it explains the readings better than any effect of the library: {} \
@@ -367,7 +379,8 @@ impl Analysis<'_> {
         )
     }
 
-    /// Names stiffnesses about which the readings say nothing.
+    /// Sentence that lists the stiffnesses about which the readings say nothing: the fit leaves more than 90 % of
+    /// their tolerance. Empty if there are none.
     fn unidentified(&self) -> Vec<String> {
         let blind: Vec<String> = self
             .calibrated(&self.best)
@@ -386,7 +399,7 @@ impl Analysis<'_> {
             let each = list.iter().zip(&self.forward.data);
             rms(each.filter_map(|(r, d)| Some((*r)? / self.noise.scale[d.channel as usize])))
         };
-        // with a single pose nothing would be left to predict its readings from
+        // with a single pose no readings would be left from which to predict it
         (count > 0 && self.forward.groups.len() > 1).then(|| HeldOut {
             rms_before: scaled(before),
             rms_after: scaled(after),
@@ -403,7 +416,9 @@ impl Analysis<'_> {
         self.found_in(&self.best, self.ends(), &competitors)
     }
 
-    /// The effects of a model with their intervals, and for each effect those that could replace it.
+    /// The effects of the model `fit` with their parameters. `ends` has the 95 % intervals of all parameters of
+    /// effects, in the order of the model. `competitors` has one list for each effect: names and places of the
+    /// effects that could replace it.
     fn found_in(&self, fit: &Fit, ends: &[Interval], competitors: &[Vec<(String, String)>]) -> Vec<Finding> {
         let mut parameter = 0;
         let effects = fit.model.effects.iter().enumerate();
@@ -423,7 +438,7 @@ impl Analysis<'_> {
             .collect()
     }
 
-    /// The model of the corrected arm where nothing explains the gap.
+    /// Chooses the model for the corrected arm if no effect explains the readings.
     fn model_without_explanation(&self) -> Choice<'_> {
         let first_law = self.search.candidates.len();
         let again =
@@ -433,7 +448,8 @@ impl Analysis<'_> {
         corrected_model::choose(self.with_laws, first_law, self.noise, baseline, named, chosen)
     }
 
-    /// The laws without a name of a model.
+    /// The laws without a name among the effects of the model `fit`, with their parameters. `findings` has one entry
+    /// for each effect of the model.
     fn laws(&self, fit: &Fit, findings: &[Finding]) -> Vec<Law> {
         let each = fit.model.effects.iter().zip(findings);
         each.filter(|(effect, _)| effect.kind.name == KIND.name)
@@ -556,9 +572,10 @@ impl Analysis<'_> {
         }
     }
 
-    /// The same arm without each of the named effects in turn. A test that shows an effect confirms it, if
-    /// nothing else could be the cause. The model without it is not refitted, because a refit would change
-    /// stiffnesses that are not in question.
+    /// The arms that the next test could compare with the best model: the same arm without each of the named effects
+    /// in turn. A test that separates an effect from its absence confirms the effect, if nothing else could be the
+    /// cause. The model without the effect is not fitted again, because a fit would change stiffnesses that are not
+    /// in question.
     fn without_each(&self) -> Vec<(String, crate::arm::effect::subject::Subject)> {
         let best = &self.best;
         (0..best.model.effects.len())
@@ -572,7 +589,8 @@ impl Analysis<'_> {
             .collect()
     }
 
-    /// The pose whose readings the best model misses most.
+    /// The pose in which the residuals of the best model have the largest root mean square, as joint positions \[deg,
+    /// mm\]. `None` if there are no poses.
     fn worst_pose(&self) -> Option<Vec<f64>> {
         let residuals = self.best.residuals(self.forward, self.weights);
         let mut of_groups: Vec<Vec<f64>> = vec![Vec::new(); self.forward.groups.len()];

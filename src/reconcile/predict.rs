@@ -1,4 +1,4 @@
-//! `predict`: adds the model's values to the readings of a file.
+//! The verb `predict`: adds the model's predictions to the readings of a file.
 
 use super::forward::prepared::make_links_rigid;
 use super::model::exact::Exact;
@@ -14,7 +14,7 @@ use crate::arm::{Arm, JointModel};
 use crate::input::json::Faults;
 use crate::reconcile::readings::placement::Placed;
 
-/// The channel of a file, by its columns.
+/// The channel (kind of readings) of a file, recognized by its columns; `None` if the file has no column of readings.
 pub fn channel_of(table: &Table) -> Option<Channel> {
     let has = |name: &str| table.optional(name).is_some();
     match () {
@@ -26,8 +26,8 @@ pub fn channel_of(table: &Table) -> Option<Channel> {
     }
 }
 
-/// The file with the model's columns added, by the first of the arms that stand on one trunk; absolute
-/// positions may be of any of them.
+/// The file as CSV text, with columns added for the model's predictions. Static, modal and bench readings are
+/// predicted for the first of the `arms`. Absolute positions may belong to any of the arms, which stand on one trunk.
 ///
 /// # Errors
 /// All faults of the file.
@@ -68,7 +68,8 @@ pub fn predict(arms: &[Placed], statement: &Statement, table: Table) -> Result<S
     if faults.is_empty() { Ok(text) } else { Err(Faults(faults)) }
 }
 
-/// The arm under test, with all effects of its file.
+/// The arm under test (subject), with all effects of its file. `statement` is what `campaign.json` says about the
+/// tests: whether links are rigid, and the density of payloads.
 pub(crate) fn subject(arm: &Arm, statement: &Statement) -> Subject {
     let mut nominal = Arm { effects: Vec::new(), ..arm.clone() }.subject(JointModel::ThreeSegment);
     if statement.rigid_links {
@@ -81,7 +82,8 @@ pub(crate) fn subject(arm: &Arm, statement: &Statement) -> Subject {
     nominal
 }
 
-/// Positions on one arm, or on several whose weights load a common trunk \[mm\].
+/// Predicted positions of the rows of `table` \[mm\], in the frame of the instrument, on one arm or on several whose
+/// weights load a common trunk.
 fn positions_mm(
     arms: &[Placed],
     statement: &Statement,
@@ -101,8 +103,8 @@ fn positions_mm(
     }
 }
 
-/// Says how many rows of positions belong to no known session, where the arms were placed session by session. They are
-/// predicted from the place that suits all sessions best.
+/// Sentence on the number of position rows that belong to no known session (run of readings with one set-up); `None`
+/// if there are none. These rows are predicted with the placement that fits all sessions best.
 pub(crate) fn unplaced(arms: &[Placed], table: &Table) -> Option<String> {
     if channel_of(table) != Some(Channel::Positions) {
         return None;
@@ -141,7 +143,7 @@ fn text(table: &Table, names: &[&str], columns: &[Vec<f64>]) -> String {
     out
 }
 
-/// Cells as a line of CSV.
+/// The cells as one line of CSV.
 fn joined(cells: &[String]) -> String {
     let quoted = |cell: &String| match cell.contains([',', '"', '\n']) {
         true => format!("\"{}\"", cell.replace('"', "\"\"")),

@@ -1,4 +1,4 @@
-//! The model's values next to the readings of a file, from the files of an arm and a campaign.
+//! Predictions next to the readings of a file, from the files of an arm and a campaign.
 
 use super::predict::{predict, unplaced};
 use super::readings::campaign::{Statement, read_statement};
@@ -12,32 +12,32 @@ use crate::input::json::{Faults, InputError};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// The files of a prediction.
+/// The input files of a prediction.
 #[derive(Debug, Clone, Copy)]
 pub struct Files<'a> {
-    /// Arm file, corrected or not.
+    /// Path of the arm file, corrected or not.
     pub arm: &'a Path,
-    /// Readings: a static, modal, windup or positions file.
+    /// Path of the readings: a static, modal, windup or positions file.
     pub readings: &'a Path,
-    /// The `campaign.json` that says how they were taken.
+    /// Path of the `campaign.json` that states how the readings were taken.
     pub campaign: &'a Path,
 }
 
-/// Readings with the model's values.
+/// Readings with predictions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prediction {
     /// The readings as CSV with the columns of the model added.
     pub csv: String,
-    /// What has to be said about it, if anything.
+    /// A remark on the prediction, if there is one, such as rows that belong to no known session.
     pub remark: Option<String>,
-    /// The other arms on the same trunk, whose files were read too.
+    /// Paths of the other arms on the same trunk, which were read too.
     pub other_arms: Vec<PathBuf>,
 }
 
-/// Adds the model's value to every reading of a file.
+/// Adds the model's prediction to every reading of the readings file.
 ///
 /// # Errors
-/// All faults of the files, or one that cannot be read.
+/// All faults of the files, or one file that cannot be read.
 pub fn predict_files(files: &Files, catalogs: &Catalogs) -> Result<Prediction, InputError> {
     let statement = read_statement(files.campaign)?;
     let other_arms = other_arms(files, &statement);
@@ -63,7 +63,8 @@ fn placed(file: &Path, catalogs: &Catalogs) -> Result<Placed, InputError> {
     Ok(Placed { arm, placement: Placement::from_json(&json_of(file)) })
 }
 
-/// The other arms on the same trunk: those named in the corrected arm's provenance, or else in the campaign.
+/// Paths of the other arms on the same trunk. They are named in the provenance of the corrected arm. If it names
+/// none, they are those that `campaign.json` names.
 fn other_arms(files: &Files, statement: &Statement) -> Vec<PathBuf> {
     let folder = |file: &Path| file.parent().map(Path::to_path_buf).unwrap_or_default();
     let corrected = json_of(files.arm);
@@ -75,8 +76,9 @@ fn other_arms(files: &Files, statement: &Statement) -> Vec<PathBuf> {
     }
 }
 
-/// The readings, with the names of columns that `campaign.json` states for a file of this name, or else for a file
-/// with these columns.
+/// Reads the table of readings from `file`. Users may give columns names of their own in `campaign.json`. The names
+/// stated for a channel are used if `campaign.json` names this file for the channel or, failing that, if the file has
+/// all of these columns.
 fn table(file: &Path, statement: &Statement) -> Result<Table, InputError> {
     let sources = Channel::ALL.map(|channel| statement.source(channel));
     let is_named = |source: &&Source| source.file.as_ref().is_some_and(|named| file.ends_with(named));

@@ -1,5 +1,5 @@
-//! The files of a new campaign: `campaign.json` with a note on each block, tables with the columns of the arm's joints and
-//! no rows, and `STARTER.md`, which says what to measure and what each column is.
+//! The files of a new campaign: `campaign.json` with a note on each block, tables with the columns of the arm's joints
+//! and no rows, and `STARTER.md`, which explains what to measure and what each column means.
 
 use super::positions::outcome::FEWEST as FEWEST_POSITIONS;
 use super::readings::source::{DEFAULT_FILES, columns_for};
@@ -10,10 +10,10 @@ use crate::arm::effect::channel::Channel;
 use crate::arm::pose::DrivenJoint;
 use serde_json::{Value, json};
 
-/// Name of the page that says what to do.
+/// Name of the page that explains what to measure.
 pub(crate) const PAGE: &str = "STARTER.md";
 
-/// The files of a new campaign, by name. The arm file is not among them.
+/// Names and contents of the files of a new campaign. The arm file is not among them.
 pub(crate) fn files(arm: &Arm, name: &str) -> Vec<(String, String)> {
     let joints = arm.driven_joints();
     let table = |channel: Channel| {
@@ -84,7 +84,7 @@ fn campaign_json(name: &str) -> Value {
     })
 }
 
-/// What is said of a kind of readings.
+/// Texts of the starter page on one kind of readings.
 struct Kind {
     channel: Channel,
     title: &'static str,
@@ -164,7 +164,7 @@ fn page(arm: &Arm, name: &str, joints: &[DrivenJoint]) -> String {
     out
 }
 
-/// Unit and meaning of a column.
+/// Unit and meaning of the column `column` of the channel's file.
 fn meaning(channel: Channel, column: &str) -> (&'static str, &'static str) {
     match column {
         "test" => ("-", "your label of the row; may be blank"),

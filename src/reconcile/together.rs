@@ -1,8 +1,8 @@
 //! Reconciles all kinds of readings together.
 //!
-//! Absolute positions determine the geometry, which displacements, frequencies and bench readings take as
-//! given. These in turn determine what yields under loads of their own, while positions are loaded by gravity
-//! alone. So each kind is reconciled with the findings of the other. Records against time are judged by themselves.
+//! Absolute positions determine the geometry, which the analysis of displacements, frequencies and bench readings takes
+//! as given. These readings determine compliances under various loads, while positions are loaded by gravity alone. So
+//! each kind is reconciled with the findings of the other. Records against time are judged separately.
 
 use super::analysis;
 use super::fit::held_out::HeldOut;
@@ -22,8 +22,8 @@ use super::verdict::too_little::rows;
 use crate::arm::{Arm, Element};
 use serde_json::{Value, json};
 
-/// Reconciles a campaign with its arm. A campaign with absolute positions and other readings is reconciled in two parts,
-/// whose verdicts are then joined.
+/// Reconciles a campaign with its arm. If there are absolute positions and other readings, each of the two kinds is
+/// reconciled by itself, and the two verdicts are then joined.
 ///
 /// ```
 /// use armwright::catalog::Catalogs;
@@ -43,7 +43,8 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     outcome
 }
 
-/// Reconciles what there is of records and of the readings without time.
+/// Reconciles the records against time and all other readings, whichever of these the campaign has, and joins the two
+/// outcomes.
 fn of_all(campaign: &Campaign) -> Outcome {
     let has_others = campaign.has_displacements() || !campaign.positions.is_empty();
     if campaign.records.is_empty() {
@@ -53,7 +54,8 @@ fn of_all(campaign: &Campaign) -> Outcome {
     if has_others { records::outcome::joined(of_readings(campaign), recorded) } else { recorded }
 }
 
-/// Reconciles the readings without time.
+/// Reconciles the readings that are not records against time. If there are positions and other readings, but too few
+/// of one kind, only the other kind is reconciled and a reason says so.
 fn of_readings(campaign: &Campaign) -> Outcome {
     let (loaded, placed) = campaign.parted();
     let (rows, count) = (rows(&loaded), placed.positions.len());
@@ -78,8 +80,9 @@ fn of_readings(campaign: &Campaign) -> Outcome {
     of_both(campaign, loaded, placed)
 }
 
-/// Finds what yields from the loaded arm on calibrated geometry, and then what the positions still lack.
-/// Where the loaded arm does not settle it, the findings of the positions are tried on it.
+/// First finds effects from `loaded` (the readings other than positions), on an arm whose geometry was calibrated
+/// from `placed` (the positions). Then finds effects that the positions still need. If the first step does not
+/// explain the readings of `loaded`, the effects that the positions show are tried on them.
 fn of_both(campaign: &Campaign, mut loaded: Campaign, placed: Campaign) -> Outcome {
     let calibrated = positions::analysis::calibrated(&placed);
     loaded.arm = calibrated.arms[0].clone();
@@ -102,31 +105,32 @@ fn of_both(campaign: &Campaign, mut loaded: Campaign, placed: Campaign) -> Outco
     loaded.arm = second.corrected.clone();
     let again = if second.effects.is_empty() { first } else { analysis::reconcile(&loaded) };
     let corrected = again.corrected.clone();
-    // laws without a name yield under gravity too, so the geometry is calibrated once more with them
+    // laws without a name also change the deflection under gravity, so the geometry is calibrated once more with them
     let with_laws = (!again.empirical.is_empty())
         .then(|| positions::analysis::calibrated(&with_what_yields(&placed, &again)));
     Both { campaign, calibrated, with_laws, loaded: again, placed: second, told: false, corrected }.outcome()
 }
 
-/// Where neither kind of readings explains the gap, a model whose error at held-out positions is larger than that of
-/// calibration alone by more than this factor is not written, however well it predicts the other readings.
+/// Largest factor by which a corrected arm may increase the median error at held-out positions over calibration
+/// alone, if the readings are not explained. A model with a larger error is not written, no matter how well it
+/// predicts the other readings.
 const MOST_HARM: f64 = 1.1;
 
-/// The arms that are written where something remains unexplained, where they stand, and whether they have laws without a
-/// name.
+/// The corrected arms if some readings are not explained, the placements of these arms in the frame of the
+/// instrument, and whether the arms have laws without a name.
 struct Unexplained {
     arms: Vec<Arm>,
     placements: Value,
     has_laws: bool,
 }
 
-/// Effects as words.
+/// Labels of the findings (effect and place), joined by `and`.
 fn labels(findings: &[Finding]) -> String {
     findings.iter().map(Finding::label).collect::<Vec<_>>().join(" and ")
 }
 
-/// The positions campaign with the stiffnesses, masses and effects that the loaded arm showed. The geometry
-/// stays nominal, and payloads weigh what that arm felt.
+/// The campaign of positions `placed`, with the stiffnesses, masses and effects that the other readings showed
+/// (`found`). The geometry stays as in `placed`. The payloads get the mass that the other readings showed.
 fn with_what_yields(placed: &Campaign, found: &Outcome) -> Campaign {
     let mut out = placed.clone();
     let known = out.arm.effects.len();
@@ -159,17 +163,19 @@ fn with_what_yields(placed: &Campaign, found: &Outcome) -> Campaign {
     out
 }
 
-/// The conclusion from both kinds of readings.
+/// The outcome for positions and the outcome for all other readings, from which the common outcome is made.
 struct Both<'a> {
     campaign: &'a Campaign,
     calibrated: Calibrated,
-    /// The geometry calibrated with the laws without a name that the loaded arm has; `None` if it has none.
+    /// Result of calibrating the geometry again, with the laws without a name that the other readings showed; `None`
+    /// if they showed none.
     with_laws: Option<Calibrated>,
     loaded: Outcome,
     placed: Outcome,
-    /// Whether the positions were given the findings of the loaded arm, or analysed first.
+    /// Whether the positions were analysed with the findings of the other readings. If not, the positions were
+    /// analysed without them.
     told: bool,
-    /// The arm with the findings of both.
+    /// The arm with the findings from both kinds of readings.
     corrected: Arm,
 }
 
@@ -236,8 +242,9 @@ impl Both<'_> {
         }
     }
 
-    /// The arms to write where something remains unexplained: those with the laws of the loaded arm or with what explains
-    /// that arm, unless the positions are predicted worse with them; else the calibrated ones.
+    /// The corrected arms if some readings are not explained. They contain the laws without a name, or the effects,
+    /// that the other readings showed. If positions are then predicted worse than [`MOST_HARM`] allows, the arms are
+    /// only calibrated.
     fn unexplained(&self) -> Unexplained {
         let error_mm = |stage: Option<&Stage>| stage.map_or(f64::INFINITY, |s| s.median_mm);
         let most_mm = MOST_HARM * error_mm(self.calibrated.stages.last());
@@ -258,7 +265,8 @@ impl Both<'_> {
         of(&self.calibrated, false)
     }
 
-    /// The verdict on the arm as a whole: what one kind of readings leaves open or unexplained, remains so.
+    /// The verdict on the arm as a whole. If positions or the other readings are not explained or not sufficient, the
+    /// same is said of the arm.
     fn verdict(&self) -> Verdict {
         Verdict::on_all(&[self.loaded.verdict, self.placed.verdict])
     }
@@ -274,13 +282,14 @@ impl Both<'_> {
         [of(&self.loaded, "the readings other than positions"), of(&self.placed, "the positions")].concat()
     }
 
-    /// The last stage of the positions before an effect was searched for.
+    /// Index, in the stages of the positions, of the last stage before the first effect was added; `None` if there is
+    /// none.
     fn last_calibration(&self) -> Option<usize> {
         self.placed.stages.iter().rposition(|s| !s.added.contains('@'))
     }
 
-    /// The table of position errors: calibration alone, the effects that were given, and those that were
-    /// found.
+    /// The table of position errors as effects are added. Its rows are calibration alone, then the findings of the
+    /// other readings, then the effects found in positions.
     fn stages(&self) -> Vec<Stage> {
         let Some(last) = self.last_calibration() else { return Vec::new() };
         let mut out = self.calibrated.stages.clone();
@@ -292,7 +301,9 @@ impl Both<'_> {
         out
     }
 
-    /// Held-out residuals of both kinds of readings. Those before are by calibration alone.
+    /// Root mean squares of the held-out residuals of both kinds of readings together \[standard deviations\]. The
+    /// value before is with calibration alone. For positions it is scaled by the ratio of median errors, because the
+    /// fit with the findings of the other readings already contains effects.
     fn held_out(&self) -> Option<HeldOut> {
         let (Some(loaded), Some(placed)) = (self.loaded.held_out, self.placed.held_out) else {
             return self.loaded.held_out.or(self.placed.held_out);

@@ -1,4 +1,4 @@
-//! Drops the drives that the remaining loads do not allow.
+//! Drops the drives that cannot meet any demand that the remaining options leave possible.
 
 use super::parts::Parts;
 use super::statics::CaseLoads;
@@ -8,16 +8,16 @@ use crate::space::problem::ArmProblem;
 use crate::space::slot::Slot;
 
 impl Parts {
-    /// Drops the drives that cannot carry the least demand on their joint. If a joint takes the lightest drive that
-    /// carries its demand, drives heavier than the lightest that carries the greatest demand are dropped too. Returns
-    /// whether any drive was dropped.
+    /// Drops the drives that cannot meet the least demand on their joint, over all remaining options outboard. If a
+    /// joint takes the lightest drive that meets its demand, drives heavier than the lightest one that meets the
+    /// greatest demand are dropped too. Returns whether any drive was dropped.
     pub(super) fn drop_drives(&mut self, problem: &ArmProblem, cases: &[CaseLoads]) -> bool {
         let mut dropped = false;
         for (slot, piece) in problem.slots().iter().enumerate() {
             let Slot::Sized(sized) = piece else { continue };
             let motion = sized.table.motion();
-            // With such a duty cycle the mean torque or the motor's heat may fall while a load rises, so the ends of the
-            // intervals prove nothing.
+            // If a duty cycle slows down longer than it speeds up, the mean torque or the motor's heat may decrease
+            // while a load grows. The ends of the intervals then prove nothing.
             let heat = &motion.heat;
             if motion.mean_torque.sum < motion.mean_torque.difference || heat.sum < heat.difference {
                 continue;
@@ -48,7 +48,7 @@ impl Parts {
         dropped
     }
 
-    /// The most and the least room that the remaining tubes leave to the parts of a joint.
+    /// The largest and the smallest space that the remaining tubes leave to the gear and motor of a joint.
     fn rooms(&self, problem: &ArmProblem, slot: usize) -> [LinkRoom; 2] {
         let Some(RoomAtJoint { link_slot, rooms }) = &problem.rooms()[slot] else {
             return [LinkRoom::ANY; 2];

@@ -1,23 +1,24 @@
-//! A lower bound on the mass of every design that deflects no more and vibrates no lower than required.
+//! A lower bound on the mass of every design that deflects at most as far, and has at least as high a lowest mode,
+//! as required.
 //!
-//! Each piece of the arm may be a mixture of its catalog options, with weights that sum to one. Then
+//! *Relaxation* here means a linear program in which the choice of one option per piece is relaxed: each piece of
+//! the arm may be a mixture of its catalog options, with weights that sum to one. Then
 //!
 //! - mass is linear in the weights;
-//! - tip deflection has lower bounds that are linear (`statics`: loads at an end of their range, plus
-//!   McCormick's envelope of load times compliance);
-//! - what a drive must carry is linear;
-//! - a required lowest mode is `K - ω² M ⪰ 0` with `K` and `M` linear, and each trial shape `x` gives one
-//!   linear inequality (`shapes`).
+//! - tip deflection has lower bounds that are linear (`statics`: loads at an end of their range, plus McCormick's
+//!   envelope of load times compliance);
+//! - the torque that a drive must provide is linear;
+//! - a required lowest mode is `K - ω² M ⪰ 0` with `K` and `M` linear, and each trial shape `x` gives one linear
+//!   inequality (`shapes`).
 //!
-//! The two springs of the bearing of a chosen gear share the weights of the drive. What a drive's bearing may carry is left
-//! out: designs that it forbids count too, so the bound stays a bound and is lower.
+//! The two springs of the bearing of a chosen gear have the same weights as the drive. The allowed loads of that
+//! bearing are left out. Designs that they would exclude are included, so the bound stays valid and is only lower.
 //!
-//! The lightest mixture is a linear program, which Clarabel solves (`program`). The bound that is returned is
-//! the Lagrangian bound at the solver's multipliers. It is valid for any multipliers, so it does not depend
-//! on the solver's tolerance.
+//! The lightest mixture is a linear program, which Clarabel solves (`program`). The result is the Lagrangian bound
+//! at the solver's multipliers. It is valid for any multipliers, so it does not depend on the solver's tolerance.
 //!
-//! Options that cannot belong to a design as good and as light as the known one are dropped. This shrinks the
-//! ranges of the loads and tightens the bound; it is repeated until nothing changes. Every step is proved in
+//! Options that cannot belong to a design as good and as light as the known one are dropped. This narrows the
+//! ranges of the loads and tightens the bound, and is repeated until nothing changes. Every step is proved in
 //! `docs/relaxation.md`.
 
 pub(crate) mod drives;

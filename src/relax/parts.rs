@@ -1,22 +1,22 @@
-//! The options that each piece may still have, tip first.
+//! The remaining options of each slot (piece of the arm), tip first.
 
 use super::row::Row;
 use crate::space::problem::ArmProblem;
 use crate::space::slot::Slot;
 
-/// Remaining options and masses of every slot.
+/// Remaining options of every slot, and the masses of all options.
 pub(super) struct Parts {
-    /// For each slot, the options that remain, in ascending order.
+    /// For each slot, the indices of the options that remain, in ascending order.
     pub alive: Vec<Vec<u32>>,
     /// For each slot, the option of the known design.
     pub known: Vec<u32>,
     mass_kg: Vec<Vec<f64>>,
-    /// Every slot with a spring of the bearing of a chosen gear, and the slot of its joint.
+    /// Slot of every spring of a chosen gear's bearing, with the slot of the joint to which it belongs.
     bearings: Vec<(usize, usize)>,
 }
 
 impl Parts {
-    /// All options of every slot.
+    /// Starts with all options of every slot that can be part of a design.
     pub(super) fn new(problem: &ArmProblem, known: &[u32]) -> Self {
         let mass_kg: Vec<Vec<f64>> = problem.slots().iter().map(slot_masses).collect();
         let alive = problem
@@ -40,15 +40,15 @@ impl Parts {
         Self { alive, known: known.to_vec(), mass_kg, bearings }
     }
 
-    /// A bearing comes with its drive, so it has the options that are left for the drive.
+    /// Leaves every bearing only the options that its drive still has, because a bearing comes with its drive.
     pub(super) fn follow_drives(&mut self) {
         for &(bearing, joint) in &self.bearings {
             self.alive[bearing] = self.alive[joint].clone();
         }
     }
 
-    /// The same inequality with the coefficients of a bearing added to those of the drive that it comes with: one weight
-    /// stands for both. The bearings must have followed their drives.
+    /// The inequality `row` with the coefficients of each bearing moved to those of its drive, because the linear
+    /// program has one weight for both. [`Self::follow_drives`] must have been called before.
     pub(super) fn with_drives(&self, mut row: Row) -> Row {
         for &(bearing, joint) in &self.bearings {
             for at in 0..self.alive[joint].len() {
@@ -59,7 +59,7 @@ impl Parts {
         row
     }
 
-    /// Weights in which every bearing has those of its drive.
+    /// The weights of all options in a mixture. The weights of each drive are copied to its bearing.
     pub(super) fn with_bearings(&self, weights: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let mut out = weights.to_vec();
         for &(bearing, joint) in &self.bearings {
@@ -78,14 +78,14 @@ impl Parts {
         self.each(|slot, option| self.mass_kg(slot, option))
     }
 
-    /// A number for each remaining option, slot by slot.
+    /// Computes `number(slot, option)` for each remaining option, slot by slot.
     pub(super) fn each(&self, number: impl Fn(usize, u32) -> f64) -> Vec<Vec<f64>> {
         let slots = self.alive.iter().enumerate();
         slots.map(|(slot, alive)| alive.iter().map(|&o| number(slot, o)).collect()).collect()
     }
 
-    /// Drops the options with which a row exceeds its limit even if every other slot has its best option. Returns
-    /// whether any option was dropped.
+    /// Drops the options that cannot satisfy the inequality `row`, even if every other slot takes the option with the
+    /// least coefficient. Returns whether any option was dropped.
     pub(super) fn drop_by(&mut self, row: &Row) -> bool {
         let least = row.least();
         let total: f64 = least.iter().sum();
@@ -102,9 +102,9 @@ impl Parts {
         dropped
     }
 
-    /// Keeps the options of a slot that pass, and always the known design's option. `passes` is given an option's
-    /// index among the remaining ones and its number. Returns whether any option was dropped.
-    /// A bearing loses options only by following its drive.
+    /// Keeps the options of a slot for which `passes` is true, and always the option of the known design. `passes`
+    /// gets the index of an option among the remaining ones and its index among all. Returns whether any option was
+    /// dropped. A bearing loses options only together with its drive.
     pub(super) fn keep(&mut self, slot: usize, passes: impl Fn(usize, u32) -> bool) -> bool {
         if self.bearings.iter().any(|(bearing, _)| *bearing == slot) {
             return false;

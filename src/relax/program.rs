@@ -1,46 +1,48 @@
 //! The lightest mixture: a linear program solved by Clarabel, and its Lagrangian bound.
 //!
-//! Minimize `Σ m_so w_so` subject to `Σ_o w_so = 1`, `w ≥ 0` and the rows `Σ c_rso w_so ≤ b_r`. The solver
-//! sees only a few options of each piece. For its multipliers `y ≥ 0`
+//! Minimize `Σ m_so w_so` subject to `Σ_o w_so = 1`, `w ≥ 0` and the rows `Σ c_rso w_so ≤ b_r`. Here `w_so` is the
+//! weight of option `o` of slot `s`, `m_so` its mass and `c_rso` its coefficient in row `r`. The solver gets only a
+//! few options of each slot. For its multipliers `y ≥ 0`
 //!
 //! ```text
 //! L(y) = Σ_s min_o (m_so + Σ_r y_r c_rso) - Σ_r y_r b_r
 //! ```
 //!
-//! over *all* remaining options is a lower bound, for any `y`. The options that attain the minima are those
-//! that the solver lacks (column generation).
+//! over *all* remaining options is a lower bound, for any `y`. The options that attain the minima are then added to
+//! the solver's program (column generation).
 
 use super::parts::Parts;
 use super::row::Row;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SupportedConeT};
 
-/// Number of options that are added to a slot of the solver's program at a time.
+/// Number of options that are added to each slot of the solver's program in one step.
 const ADDED: usize = 3;
 
 /// The linear program, and the options over which it is solved.
 pub(super) struct Program {
     masses: Vec<Vec<f64>>,
     rows: Vec<Row>,
-    /// For each slot, the options that the solver knows, as indices among the remaining options.
+    /// For each slot, the options in the solver's program, as indices among the remaining options.
     seen: Vec<Vec<usize>>,
     /// The best lower bound so far \[kg\], and the multipliers of the rows that give it.
     best: (f64, Vec<f64>),
 }
 
-/// One solution of the program.
+/// The result of solving the program once.
 pub(super) struct Solution {
     /// Lower bound on the mass \[kg\].
     pub bound_kg: f64,
-    /// For each slot, the weight of every remaining option in the solution.
+    /// For each slot, the weight of every remaining option in the mixture that solves the program.
     pub weights: Vec<Vec<f64>>,
-    /// Whether options were added to the solver's program, so that the mixture may become lighter.
+    /// Whether options were added to the solver's program. The mixture may then become lighter in the next
+    /// solution.
     pub grew: bool,
 }
 
 impl Program {
-    /// A program that starts with three kinds of options: those of the known design, the lightest ones, and those
-    /// with the least coefficient in each row.
+    /// A program that starts with three kinds of options: those of the known design, the lightest one of each slot,
+    /// and the one with the least coefficient in each row.
     pub(super) fn new(parts: &Parts, rows: Vec<Row>) -> Self {
         let masses = parts.masses();
         let seen = (0..masses.len())
@@ -56,7 +58,7 @@ impl Program {
         Self { masses, rows, seen, best: (0.0, Vec::new()) }
     }
 
-    /// Adds an inequality.
+    /// Adds an inequality to the program.
     pub(super) fn add(&mut self, row: Row) {
         for (slot, seen) in self.seen.iter_mut().enumerate() {
             see(seen, place_of_least(&row.coefficients[slot]));
@@ -85,7 +87,7 @@ impl Program {
         Some(Solution { bound_kg, weights, grew })
     }
 
-    /// Drops the options that no design of at most `mass_kg` can have.
+    /// Drops those options from `parts` that no design of at most the mass `mass_kg` can have, by their reduced costs.
     pub(super) fn drop_options(&self, parts: &mut Parts, mass_kg: f64) {
         let (bound_kg, multipliers) = &self.best;
         let reduced = self.reduced(multipliers);
@@ -95,8 +97,8 @@ impl Program {
         }
     }
 
-    /// Reduced cost of each remaining option: its mass plus its price in the rows. A row without a multiplier,
-    /// because it was added later, costs nothing.
+    /// Reduced cost of each remaining option \[kg\]: its mass plus its coefficient in each row times the multiplier of
+    /// this row. A row that was added after the last solution has no multiplier and adds nothing.
     fn reduced(&self, multipliers: &[f64]) -> Vec<Vec<f64>> {
         let mut out = self.masses.clone();
         for (row, y) in self.rows.iter().zip(multipliers).filter(|(_, y)| **y > 0.0) {
@@ -107,13 +109,14 @@ impl Program {
         out
     }
 
-    /// The Lagrangian bound on the mass for these reduced costs \[kg\].
+    /// The Lagrangian lower bound on the mass \[kg\] for these multipliers and the reduced costs that follow from them.
     fn bound(&self, reduced: &[Vec<f64>], multipliers: &[f64]) -> f64 {
         let least: f64 = reduced.iter().map(|r| r.iter().copied().fold(f64::INFINITY, f64::min)).sum();
         least - self.rows.iter().zip(multipliers).map(|(row, y)| y * row.limit).sum::<f64>()
     }
 
-    /// Adds the options of least reduced cost to the solver's program. Returns whether any of them was new.
+    /// Adds, for each slot, the options with the least reduced cost to the solver's program. Returns whether any of
+    /// them was new.
     fn see_more(&mut self, reduced: &[Vec<f64>]) -> bool {
         let mut grew = false;
         for (seen, reduced) in self.seen.iter_mut().zip(reduced) {
@@ -130,8 +133,8 @@ impl Program {
         grew
     }
 
-    /// Solves the program over the options that the solver knows. Returns the weights of these options, slot by slot,
-    /// and the multipliers of the rows, all at least zero. `None` if the solver fails.
+    /// Solves the program over the options that it has. Returns the weights of these options, slot by slot, and the
+    /// multipliers of the rows, all at least zero. `None` if the solver fails.
     fn solver(&self) -> Option<(Vec<f64>, Vec<f64>)> {
         let (slots, rows) = (self.seen.len(), self.rows.len());
         let columns: usize = self.seen.iter().map(Vec::len).sum();
@@ -174,7 +177,7 @@ fn place_of_least(numbers: &[f64]) -> usize {
     (0..numbers.len()).min_by(|&a, &b| numbers[a].total_cmp(&numbers[b])).unwrap_or_default()
 }
 
-/// Adds an index to a sorted list. Returns whether it was new.
+/// Adds the index `at` to the sorted list `seen`, unless it is in the list already. Returns whether it was added.
 fn see(seen: &mut Vec<usize>, at: usize) -> bool {
     match seen.binary_search(&at) {
         Ok(_) => false,

@@ -1,4 +1,4 @@
-//! The relaxation of a design space: rounds of solving the program and dropping options.
+//! The relaxation of a design space: a linear program is solved and options are dropped, in alternation.
 
 use super::parts::Parts;
 use super::program::Program;
@@ -10,37 +10,37 @@ use crate::space::problem::ArmProblem;
 
 /// Greatest number of rounds of solving and dropping options.
 const ROUNDS: usize = 4;
-/// Greatest number of solutions of the program in a round. After each, trial shapes or options are added.
+/// Greatest number of solutions of the program in a round. After each solution, trial shapes or options are added.
 const STEPS: usize = 40;
 /// Relative margin for rounding of an objective.
 const ROUNDING: f64 = 1e-9;
 
-/// What the relaxation proves about the designs that meet the objectives asked for.
+/// The bound on mass for designs that meet the required objectives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MassBound {
     /// No design with at most this deflection and at least this lowest mode is lighter \[kg\].
     pub mass_lower_bound_kg: f64,
-    /// The bound before it was used to drop options \[kg\]. It is about the mass of the lightest mixture of catalog
-    /// parts.
+    /// The bound before it was used to drop options \[kg\]. It is close to the mass of the lightest arm whose parts
+    /// are mixtures of catalog options.
     pub mixture_kg: f64,
-    /// For each piece from base to tip, how many options are left for a design that meets the objectives and is no
-    /// heavier than the known design. Tilting bearings and added masses are pieces too.
+    /// For each piece from base to tip, the number of options left for a design that meets the objectives and is no
+    /// heavier than the known design. Tilting bearings and added masses count as pieces.
     pub options_left: Vec<usize>,
-    /// Whether some load may have either sign within the remaining options. The bound then has to take the
-    /// more favourable sign and is weaker.
+    /// Whether the torque of some joint may have either sign within the remaining options. The bound then has to
+    /// take the more favourable sign and is weaker.
     pub loads_oppose: bool,
 }
 
-/// A design space compiled for bounds.
+/// A design space prepared for lower bounds on mass.
 pub struct Relaxation<'a> {
     problem: &'a ArmProblem<'a>,
     cases: Vec<CaseLoads>,
-    /// One model for each judged case.
+    /// The inertias and stiffnesses of the arm from which trial shapes are made, one model for each judged case.
     models: Vec<ShapeModel>,
 }
 
 impl<'a> Relaxation<'a> {
-    /// Compiles every case of the problem.
+    /// Prepares every case of the problem.
     pub fn new(problem: &'a ArmProblem<'a>) -> Self {
         Self {
             problem,
@@ -49,9 +49,9 @@ impl<'a> Relaxation<'a> {
         }
     }
 
-    /// Bounds the mass of every design that deflects no more and vibrates no lower than `asked`. `known` is a design
-    /// (one option for each level) that meets these objectives and weighs at most the mass in `asked`. `None` if a
-    /// part of the known design cannot carry its load.
+    /// Lower bound on the mass of every design that deflects at most as far as `asked`, and whose lowest mode is at
+    /// least that of `asked`. `known` is a design (one option for each level) that meets these objectives and weighs at
+    /// most the mass in `asked`. `None` if a part of the known design cannot take its load.
     pub fn mass_lower_bound(&self, known: &[u32], asked: &Objectives) -> Option<MassBound> {
         let arm = self.problem.walk(known, |_, _| {}).ok()?;
         let mut search = Search {
@@ -66,7 +66,7 @@ impl<'a> Relaxation<'a> {
             first_kg: 0.0,
         };
         search.run();
-        // If nothing else is left, the known design is the lightest.
+        // If only the known design is left, it is the lightest.
         let alone = search.parts.alive.iter().all(|options| options.len() == 1);
         Some(MassBound {
             mass_lower_bound_kg: if alone { self.problem.mass_kg(&arm) } else { search.best_kg }
@@ -82,14 +82,14 @@ struct Search<'a> {
     problem: &'a ArmProblem<'a>,
     asked: &'a Objectives,
     cases: &'a [CaseLoads],
-    /// For each judged case, the direction in which the known design's tip moves.
+    /// For each judged case, the direction in which the tip of the known design moves.
     directions: Vec<(usize, nalgebra::Vector3<f64>)>,
     models: &'a [ShapeModel],
     parts: Parts,
-    /// Trial shapes, each with its judged case and its strain coordinates.
+    /// Trial shapes: the index of the model (judged case), and the values of the strain coordinates.
     shapes: Vec<(usize, nalgebra::DVector<f64>)>,
     best_kg: f64,
-    /// The best bound after the first round of solving \[kg\].
+    /// The best bound after the first round of solving \[kg\], before it was used to drop options.
     first_kg: f64,
 }
 
@@ -105,14 +105,15 @@ impl Search<'_> {
             }
             self.reduce();
             let after: usize = self.parts.alive.iter().map(Vec::len).sum();
-            // Nothing was dropped, or the bound has reached the known design.
+            // Stop if nothing was dropped, or if the bound has reached the mass of the known design.
             if after == before || self.best_kg >= self.asked.mass_kg * (1.0 - 1e-6) {
                 return;
             }
         }
     }
 
-    /// Drops the options with which some row exceeds its limit even if every other piece has its best option.
+    /// Drops the options that cannot satisfy some inequality, even if every other piece takes the option that is best
+    /// for this inequality.
     fn reduce(&mut self) {
         loop {
             let mut dropped = self.parts.drop_drives(self.problem, self.cases);
@@ -128,7 +129,7 @@ impl Search<'_> {
         }
     }
 
-    /// Every inequality that holds for the designs that meet the objectives.
+    /// All linear inequalities that every design with the required deflection, mass and lowest mode satisfies.
     fn rows(&self) -> Vec<Row> {
         let mut rows = Vec::new();
         for (case, direction) in &self.directions {
@@ -143,13 +144,14 @@ impl Search<'_> {
         rows.into_iter().map(|row| self.parts.with_drives(row)).chain(shapes).collect()
     }
 
-    /// The least eigenvalue that the required mode allows \[1/s²\].
+    /// The least eigenvalue `(2πf)²` that a design may have if its lowest mode is to reach the required one \[1/s²\].
     fn eigenvalue(&self) -> f64 {
         let omega = std::f64::consts::TAU * self.asked.lowest_mode_hz;
         omega * omega * (1.0 - ROUNDING)
     }
 
-    /// For each judged case and each slot, the greatest stiffness of the joint's options \[N m/rad\].
+    /// Greatest tangent stiffness of each remaining option of a joint \[N m/rad\]; first index the judged case, second
+    /// the slot, third the option.
     fn stiffness(&self) -> Vec<Vec<Vec<f64>>> {
         self.models.iter().map(|m| self.cases[m.case].stiffest(self.problem, &self.parts)).collect()
     }
@@ -159,7 +161,8 @@ impl Search<'_> {
         self.parts.with_drives(row)
     }
 
-    /// Solves the program, and adds the trial shapes that the mixture violates and the options that it lacks.
+    /// Solves the program repeatedly. After each solution, the trial shapes that the mixture violates and the
+    /// missing options are added.
     fn solve(&mut self) {
         let stiffness = self.stiffness();
         let mut program = Program::new(&self.parts, self.rows());
@@ -175,12 +178,12 @@ impl Search<'_> {
                 break;
             }
         }
-        // With the best multipliers of this round, options that make the mass exceed that asked for are
+        // With the best multipliers of this round, options that would make the mass exceed the required one are
         // dropped.
         program.drop_options(&mut self.parts, self.asked.mass_kg * (1.0 + ROUNDING));
     }
 
-    /// Trial shapes whose inequalities the mixture violates, each with its judged case.
+    /// Trial shapes whose inequalities the mixture violates, each with the index of its model (judged case).
     fn violated(
         &self,
         stiffness: &[Vec<Vec<f64>>],

@@ -12,19 +12,20 @@ pub(super) struct Row {
 }
 
 impl Row {
-    /// For each slot (a piece of the arm), the least coefficient among its remaining options.
+    /// For each slot (piece of the arm), the least coefficient that an option of the slot has in this inequality.
     pub(super) fn least(&self) -> Vec<f64> {
         self.coefficients.iter().map(|c| c.iter().copied().fold(f64::INFINITY, f64::min)).collect()
     }
 
-    /// Whether some choice of options exceeds the limit.
+    /// Whether some choice of options violates the inequality. If none does, the inequality can be left out.
     pub(super) fn can_bind(&self) -> bool {
         let most: f64 =
             self.coefficients.iter().map(|c| c.iter().copied().fold(f64::NEG_INFINITY, f64::max)).sum();
         most > self.limit
     }
 
-    /// The same inequality, scaled so that no number exceeds 1, with the margin for rounding added to its limit.
+    /// The same inequality, scaled so that no coefficient exceeds 1 in magnitude, with the margin for rounding
+    /// added to its limit.
     pub(super) fn ready(mut self) -> Self {
         let largest_of = |c: &Vec<f64>| c.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
         let terms: Vec<f64> = self.coefficients.iter().map(largest_of).collect();

@@ -1,10 +1,10 @@
 //! Trial shapes: linear inequalities that follow from a required lowest mode, in one case.
 //!
-//! `λ₁ = min_x xᵀK x / xᵀM x`. So a design whose `λ₁` is at least `ω²` satisfies `ω² xᵀM x - xᵀK x ≤ 0` for
-//! every shape `x` of strain coordinates (joint angles and the polynomials of
-//! [`beam`](crate::mechanics::beam)). `M` is linear in the masses of the pieces and `K` in their stiffnesses.
-//! For a fixed `x` the left side is therefore a sum of one number for each piece. The shapes that matter are
-//! the modes of mixtures that are too soft; they are found one after the other.
+//! `λ₁ = min_x xᵀK x / xᵀM x`. So a design whose `λ₁` is at least `ω²` satisfies `ω² xᵀM x - xᵀK x ≤ 0` for every
+//! shape `x` of strain coordinates (joint angles and the polynomials of [`beam`](crate::mechanics::beam)). `M` is
+//! linear in the masses of the pieces and `K` in their stiffnesses. For a fixed `x` the left side is therefore a
+//! sum with one number for each piece. The shapes that matter are the modes of mixtures whose lowest mode is below
+//! the required one. They are found one after the other.
 
 use super::parts::Parts;
 use super::row::Row;
@@ -19,20 +19,20 @@ use crate::space::problem::ArmProblem;
 use crate::space::station::{StationSlot, Walk};
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix6xX, SymmetricEigen, Vector3};
 
-/// Greatest number of shapes taken from one mixture.
+/// Greatest number of shapes that are taken from one mixture.
 const MOST_SHAPES: usize = 3;
 
-/// Masses and stiffnesses of the arm in one case, over the strain coordinates.
+/// Inertias and stiffnesses of the arm in one case, over the strain coordinates.
 pub(super) struct ShapeModel {
-    /// Index of the case in the study.
+    /// Index of the case among all cases of the study.
     pub case: usize,
-    /// Inertia of everything that is given: the payload and rigid offsets.
+    /// Inertia matrix of everything that is the same in all designs: the payload, rigid offsets and bodies.
     given: DMatrix<f64>,
     joints: Vec<JointShape>,
     links: Vec<LinkShape>,
 }
 
-/// A joint of the model: its coordinate, and the motion of its mass.
+/// A joint of the model: the index of its coordinate, and the motion of its mass.
 struct JointShape {
     slot: usize,
     column: usize,
@@ -44,17 +44,18 @@ struct JointShape {
 struct LinkShape {
     slot: usize,
     first: usize,
-    /// Displacement and rotation at each Gauss point per unit of each coordinate, times the root of the point's
-    /// weight.
+    /// Displacement and rotation at each Gauss point per unit of each coordinate, times the square root of the
+    /// point's weight.
     fields: Vec<Matrix6xX<f64>>,
-    /// Inertia per length of each option.
+    /// Inertias per length of each option.
     densities: Vec<[f64; 6]>,
     /// For each option, the stiffness of each of the tube's coordinates.
     stiffness: Vec<Vec<f64>>,
 }
 
 impl LinkShape {
-    /// The tube of a slot whose first coordinate is `first`. `tubes`: its options.
+    /// The tube in slot `slot`. Its strain coordinates start at the index `first`, `fields` is its motion at each Gauss
+    /// point, and `tubes` are its options.
     fn new(
         slot: usize,
         first: usize,
@@ -87,7 +88,7 @@ fn add_end_motions(
 }
 
 impl ShapeModel {
-    /// Compiles a case.
+    /// Prepares the model of one case.
     pub(super) fn new(problem: &ArmProblem, case: usize) -> Self {
         let space = problem.space();
         let around = space.surroundings();
@@ -105,7 +106,7 @@ impl ShapeModel {
         let count: usize = sizes.sum();
         let mut model =
             Self { case, given: DMatrix::zeros(count, count), joints: Vec::new(), links: Vec::new() };
-        // The twist of everything so far per unit of each coordinate, from base to tip.
+        // The kinematic twist (motion) of the chain's end so far per unit of each coordinate, from base to tip.
         let mut twist = DMatrix::<f64>::zeros(6, count);
         let mut column = 0;
         for (slot, placed) in station.slots.iter().enumerate().rev() {
@@ -143,8 +144,8 @@ impl ShapeModel {
         model
     }
 
-    /// The inequality that a trial shape gives at a required eigenvalue \[1/s²\]. `stiffness` holds the stiffnesses
-    /// of the joints' remaining options, by slot.
+    /// The inequality that the trial shape `x` gives for designs whose lowest eigenvalue is at least `eigenvalue`
+    /// \[1/s²\]. `stiffness` has the stiffnesses of the remaining options of joints, by slot.
     pub(super) fn row(
         &self,
         parts: &Parts,
@@ -178,7 +179,9 @@ impl ShapeModel {
         row.ready()
     }
 
-    /// The modes of a mixture that lie below an eigenvalue \[1/s²\], as shapes, the lowest first.
+    /// The modes of a mixture whose eigenvalues are below `eigenvalue` \[1/s²\], as trial shapes, the lowest mode
+    /// first. `weights` are the weights of the options in the mixture, and `stiffness` the stiffnesses of the joints'
+    /// options, both by slot.
     pub(super) fn violated(
         &self,
         parts: &Parts,
@@ -197,7 +200,7 @@ impl ShapeModel {
             let mass: f64 =
                 mix.clone().map(|(at, w)| w * parts.mass_kg(joint.slot, parts.alive[joint.slot][at])).sum();
             inertia += joint.motion.transpose() * &joint.motion * mass;
-            // A joint that may be rigid would make the coefficient infinite, so it does not take part in a
+            // A joint that may be rigid would make the coefficient infinite, so its coordinate is zero in every
             // shape.
             let rigid = stiffness[joint.slot].iter().any(|k| k.is_infinite());
             resistance[joint.column] =
@@ -225,7 +228,8 @@ impl ShapeModel {
         let scaled = DMatrix::from_fn(count, count, |i, j| soft[i] * inertia[(i, j)] * soft[j]);
         let modes = SymmetricEigen::new(scaled);
         let mut slow: Vec<usize> =
-            // The eigenvalues of the scaled matrix are reciprocals, so a low mode is a large one.
+            // An eigenvalue of the scaled matrix is the reciprocal of a squared frequency, so low modes have large
+            // eigenvalues.
             (0..count).filter(|&i| modes.eigenvalues[i] * eigenvalue > 1.0 + 1e-7).collect();
         slow.sort_by(|&a, &b| modes.eigenvalues[b].total_cmp(&modes.eigenvalues[a]));
         slow.truncate(MOST_SHAPES);
@@ -234,7 +238,8 @@ impl ShapeModel {
 }
 
 impl LinkShape {
-    /// For each component of motion, the integral along the link of its square in the shape `x`.
+    /// For each of the six components of motion, the integral of its square along the link, if the arm moves by the
+    /// shape `x`.
     fn moved(&self, x: &DVector<f64>) -> [f64; 6] {
         let mut out = [0.0; 6];
         for field in &self.fields {
@@ -245,7 +250,7 @@ impl LinkShape {
     }
 }
 
-/// The options of a link, with the effects of the study; empty if the layer is no link.
+/// The options of a link, with the effects of the study applied; empty if the layer is no link.
 fn tubes(space: &DesignSpace, layer: &Layer) -> Vec<LinkPiece> {
     match layer {
         Layer::Piece(SpacePiece::Choice(choice)) => {
@@ -256,24 +261,26 @@ fn tubes(space: &DesignSpace, layer: &Layer) -> Vec<LinkPiece> {
     }
 }
 
-/// Indices and weights of the options that take part in a mixture.
+/// Indices and weights of the options that have a positive weight in a mixture.
 fn mixture(weights: &[f64]) -> impl Iterator<Item = (usize, f64)> + Clone + '_ {
     weights.iter().copied().enumerate().filter(|(_, w)| *w > 0.0)
 }
 
-/// Velocity of a point per unit of each coordinate inboard of it.
+/// Velocity of the point `at_m` per unit of each coordinate of the arm. Each column of `twist` is the motion of the
+/// chain inboard of the point for one coordinate.
 fn point_motion(twist: &DMatrix<f64>, at_m: &Vector3<f64>) -> DMatrix<f64> {
     let columns: Vec<Vector3<f64>> =
         twist.column_iter().map(|t| displacement_at(&t.fixed_rows::<6>(0).into_owned(), at_m)).collect();
     DMatrix::from_fn(3, columns.len(), |i, j| columns[j][i])
 }
 
-/// Whether a layer has the bodies on a tube.
+/// Whether a layer is a set of bodies on a tube.
 fn is_on_tube(layer: &Layer) -> bool {
     matches!(layer, Layer::Bodies(Carried { by: Carrier::Tube, .. }))
 }
 
-/// Inertia of a body on a tube, over all coordinates. The coordinates of the tube are those from `first` on.
+/// Inertia matrix of a body on a tube over all coordinates of the arm. The coordinates of the tube start at the index
+/// `first`; `twist` has the motion of the tube's root for the coordinates inboard of it.
 fn body_inertia_over(
     beam: &PreparedBeam,
     body: &RigidBody,
@@ -299,7 +306,8 @@ fn root_motion(frame: &Matrix3<f64>, root_m: &Vector3<f64>, twist: &DMatrix<f64>
     root
 }
 
-/// Displacement and rotation in the section frame at each Gauss point, times the square root of its weight.
+/// Displacement and rotation of the link's section at each Gauss point, in the section frame, per unit of each
+/// coordinate of the arm. They are multiplied by the square root of the point's weight.
 fn link_fields(
     beam: &PreparedBeam,
     frame: &Matrix3<f64>,

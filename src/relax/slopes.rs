@@ -1,23 +1,25 @@
-//! Bounds on the slope of a joint's law between two torques.
+//! Bounds on the tangent compliance of a joint between two torques.
 
 use crate::arm::joint_law::{Curve, JointLaw};
 
-/// Relative margin for rounding of a torque near a break point.
+/// Relative margin within which a torque counts as being at a break point, because of rounding.
 const NEAR: f64 = 1e-12;
 
-/// Least and greatest tangent compliance of a joint under torques in an interval \[rad/(N m)\].
+/// Least and greatest tangent compliance of a joint with the law `law` \[rad/(N m)\], under torques in the interval
+/// `torque_nm`.
 pub(super) fn tangent_range(law: &JointLaw, torque_nm: [f64; 2]) -> [f64; 2] {
     let size = size_range(torque_nm);
     let curve = curve_range(&law.curve, size);
-    // The slope of lost motion falls as the torque grows.
+    // The tangent compliance of lost motion decreases as the torque grows.
     let play = law
         .lost_motion
         .map_or([0.0; 2], |lost| [size[1], size[0]].map(|t| lost.tangent_compliance_rad_per_nm(t)));
     [0, 1].map(|end| curve[end] + law.connection_rad_per_nm + play[end])
 }
 
-/// Least and greatest mean slope of the twist between any two torques of an interval, if the torque has risen from
-/// rest \[rad/(N m)\]. Friction holds back the twist of the gear's spring until its half width is used up.
+/// Least and greatest secant compliance of a joint \[rad/(N m)\] between any two torques of the interval `torque_nm`.
+/// The torque has risen from rest, so friction holds back a part of the gear's twist, until the half width of the
+/// hysteresis is reached.
 pub(super) fn rising_range(law: &JointLaw, torque_nm: [f64; 2]) -> [f64; 2] {
     let [least, most] = tangent_range(&as_it_twists(law), torque_nm);
     let Some(stiffness) = law.play_stiffness_nm_per_rad() else { return [least, most] };
@@ -28,7 +30,8 @@ pub(super) fn rising_range(law: &JointLaw, torque_nm: [f64; 2]) -> [f64; 2] {
     [least - held_back, most - freed]
 }
 
-/// The law with the curve that it twists by: a gear that vibrates with its first slope still twists along all three.
+/// The joint law `law` with the torsion curve that holds for static twist. A gear whose vibration is computed with its
+/// first slope alone still has all three segments in static twist.
 fn as_it_twists(law: &JointLaw) -> JointLaw {
     let curve = match law.curve {
         Curve::WindupK1(windup) => Curve::Windup(windup),
@@ -42,7 +45,7 @@ fn size_range([low, high]: [f64; 2]) -> [f64; 2] {
     [low.max(-high).max(0.0) * (1.0 - NEAR), high.max(-low) * (1.0 + NEAR)]
 }
 
-/// Least and greatest compliance of a curve at torque magnitudes in an interval \[rad/(N m)\].
+/// Least and greatest tangent compliance of a torsion curve at torque magnitudes in an interval \[rad/(N m)\].
 fn curve_range(curve: &Curve, [near, far]: [f64; 2]) -> [f64; 2] {
     match curve {
         Curve::Rigid => [0.0; 2],

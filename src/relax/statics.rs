@@ -1,9 +1,10 @@
-//! Linear lower bounds of the tip's deflection and of the joints' loads, in one case.
+//! Linear lower bounds of the tip deflection and of the loads on joints, in one case.
 //!
-//! Everything outboard loads a piece by the wrench `W = W₀ + Σ_j q_j û_j`. Here `û_j` is the wrench of one
-//! unit of the load of slot `j`, and `q_j` is the load of its chosen option. The tip's displacement along a
-//! direction `d` is a sum over the pieces. With `q` between `q⁻` and `q⁺`, each term is at least its value at
-//! one end plus, for each load, the least slope times the distance from that end. Both ends give a row.
+//! A piece is loaded by the wrench (force and moment) of everything outboard, `W = W₀ + Σ_j q_j û_j`. Here `û_j` is
+//! the wrench of one unit of the load of slot `j`, and `q_j` is the load of its chosen option. The displacement of
+//! the tip along a direction `d` is a sum over the pieces. With `q` between `q⁻` and `q⁺`, each term is at least
+//! its value at one end plus, for each load, the least slope times the distance from that end. Each of the two ends
+//! gives a row.
 
 use super::parts::Parts;
 use super::row::Row;
@@ -16,35 +17,38 @@ use crate::space::slot::Slot;
 use crate::space::station::{Station, StationJoint, StationSlot};
 use nalgebra::{Matrix6, Vector3};
 
-/// The loads of one case: where each slot's weight acts, and how much each option weighs.
+/// The loads of one case, as the linear program uses them: the wrench of each slot's load, and the load of each option.
 pub(super) struct CaseLoads {
     case: usize,
-    /// For each slot, the wrench per unit of the slot's load.
+    /// For each slot, the wrench (force and moment) per unit of the slot's load.
     unit: Vec<Wrench>,
-    /// For each slot, the load of each option: kilograms for joints, newtons for links, 1 for a body.
+    /// For each slot, the load of each option: mass \[kg\] for joints, weight \[N\] for links, 1 for bodies.
     amount: Vec<Vec<f64>>,
-    /// For each joint, the inertia about its axis of every option of every slot outboard of it \[kg m²\]. Empty if a
-    /// slot is no joint.
+    /// Inertias about the joints' axes \[kg m²\]; first index the slot of the joint, second a slot outboard of it,
+    /// third an option of that slot. Empty for a slot that is no joint.
     inertia: Vec<Vec<Vec<f64>>>,
 }
 
-/// The end of the loads' intervals at which a linear bound touches the true value.
+/// The end of the loads' intervals, with all loads least or all greatest, at which the linear bound equals the exact
+/// value.
 #[derive(Clone, Copy, PartialEq)]
 enum LoadEnd {
     Low,
     High,
 }
 
-/// A linear lower bound of the part of the deflection that one piece causes.
+/// A linear lower bound of the deflection that one piece causes.
 struct Term {
-    /// For each remaining option, the part of the deflection with all loads at that end \[m\].
+    /// For each remaining option of the piece, the tip deflection that it causes if all loads have their values at the
+    /// end for which the bound is made \[m\].
     at_end: Vec<f64>,
-    /// For each load outboard, the slope of the part per unit of the load \[m\].
+    /// For each load outboard, the slope with which the linear bound of this tip deflection changes with the load \[m
+    /// per unit\].
     slopes: Vec<f64>,
 }
 
 impl CaseLoads {
-    /// Reads the loads of a case.
+    /// Computes the wrenches and the loads of the case with the index `case`.
     pub(super) fn new(problem: &ArmProblem, case: usize) -> Self {
         let station = &problem.stations()[case];
         let (mut unit, mut amount) = (Vec::new(), Vec::new());
@@ -60,7 +64,8 @@ impl CaseLoads {
                 }
                 StationSlot::Link { options, .. } => {
                     let weights: Vec<f64> = options.iter().map(|o| o.weight_n(&station.down)).collect();
-                    // All options of a link weigh along the same line, so one of them gives the direction.
+                    // The weights of all options of a link act along the same line, so one option gives the
+                    // direction for all.
                     let weighing = options.iter().zip(&weights).find(|(_, w)| **w != 0.0);
                     unit.push(weighing.map_or(Wrench::zeros(), |(o, w)| o.weight / *w));
                     amount.push(weights);
@@ -71,7 +76,8 @@ impl CaseLoads {
         Self { case, unit, amount, inertia }
     }
 
-    /// Least and greatest load of a slot's remaining options.
+    /// Least and greatest load among the remaining options of a slot (mass \[kg\] of a joint, weight \[N\] of a link, 1
+    /// for a body).
     fn range(&self, parts: &Parts, slot: usize) -> [f64; 2] {
         let amounts = parts.alive[slot].iter().map(|&o| self.amount[slot][o as usize]);
         amounts.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], q| [low.min(q), high.max(q)])
@@ -81,7 +87,8 @@ impl CaseLoads {
         self.range(parts, slot)[usize::from(end == LoadEnd::High)]
     }
 
-    /// The wrench of everything outboard of a slot, with all loads at one end of their intervals.
+    /// The wrench (force and moment) of everything outboard of `slot`, if all loads are at the end `end` of their
+    /// intervals.
     fn wrench(&self, problem: &ArmProblem, parts: &Parts, slot: usize, end: LoadEnd) -> Wrench {
         let start = problem.stations()[self.case].start_wrench;
         (0..slot).fold(start, |sum, j| sum + self.unit[j] * self.end_load(parts, j, end))
@@ -94,7 +101,7 @@ impl CaseLoads {
         }
     }
 
-    /// Least and greatest torque on a joint \[N m\].
+    /// Least and greatest torque on the joint in `slot` \[N m\] over the remaining options outboard.
     fn torque_range(&self, problem: &ArmProblem, parts: &Parts, slot: usize) -> [f64; 2] {
         let Some(joint) = self.joint(problem, slot) else { return [0.0; 2] };
         let start = joint.twist.dot(&problem.stations()[self.case].start_wrench);
@@ -105,13 +112,13 @@ impl CaseLoads {
         })
     }
 
-    /// Least and greatest magnitude of the torque on a joint \[N m\].
+    /// Least and greatest magnitude of the torque on the joint in `slot` \[N m\] over the remaining options outboard.
     pub(super) fn torque_size(&self, problem: &ArmProblem, parts: &Parts, slot: usize) -> [f64; 2] {
         let [low, high] = self.torque_range(problem, parts, slot);
         [low.max(-high).max(0.0), high.max(-low)]
     }
 
-    /// Whether the torque of some joint may have either sign.
+    /// Whether the torque of some joint may be positive with some of the remaining options and negative with others.
     pub(super) fn opposes(&self, problem: &ArmProblem, parts: &Parts) -> bool {
         (0..self.unit.len()).any(|slot| {
             let [low, high] = self.torque_range(problem, parts, slot);
@@ -119,7 +126,7 @@ impl CaseLoads {
         })
     }
 
-    /// Least and greatest inertia outboard of a joint about its axis \[kg m²\].
+    /// Least and greatest inertia of everything outboard of the joint in `slot` about the joint's axis \[kg m²\].
     pub(super) fn inertia_range(&self, problem: &ArmProblem, parts: &Parts, slot: usize) -> [f64; 2] {
         let Some(joint) = self.joint(problem, slot) else { return [0.0; 2] };
         let start = joint.twist.dot(&(problem.stations()[self.case].start_inertia * joint.twist));
@@ -130,8 +137,8 @@ impl CaseLoads {
         })
     }
 
-    /// Greatest tangent stiffness of every joint's options under the remaining torques \[N m/rad\]. Infinite
-    /// for a rigid joint, empty for a slot that is no joint.
+    /// Greatest tangent stiffness \[N m/rad\] of each remaining option of every joint under the torques that are
+    /// possible; by slot, then by option. Infinite for a rigid joint, empty for a slot that is no joint.
     pub(super) fn stiffest(&self, problem: &ArmProblem, parts: &Parts) -> Vec<Vec<f64>> {
         let slots = problem.slots().iter().enumerate();
         slots
@@ -148,7 +155,8 @@ impl CaseLoads {
             .collect()
     }
 
-    /// Two rows that hold for every design whose tip moves at most `limit_m` along a direction.
+    /// Two inequalities that every design satisfies whose tip moves at most `limit_m` along `direction`. One is exact
+    /// where all loads are least, the other where all are greatest.
     pub(super) fn deflection_rows(
         &self,
         problem: &ArmProblem,
@@ -172,7 +180,8 @@ impl CaseLoads {
         })
     }
 
-    /// The linear lower bound of one slot's part of the deflection; `None` for a body.
+    /// The linear lower bound of the tip deflection along `direction` that one slot causes. It is exact if all loads
+    /// are at the end `end` of their intervals. `None` for a body, which does not deform.
     fn term(
         &self,
         problem: &ArmProblem,
@@ -182,7 +191,7 @@ impl CaseLoads {
         end: LoadEnd,
     ) -> Option<Term> {
         let wrench = self.wrench(problem, parts, slot, end);
-        // From the low end the loads rise, from the high end they fall.
+        // From the low end the loads can only grow, from the high end only decrease.
         let least = |a: f64, b: f64| if end == LoadEnd::Low { a.min(b) } else { a.max(b) };
         match &problem.stations()[self.case].slots[slot] {
             StationSlot::Joint(joint) => {
@@ -223,16 +232,17 @@ impl CaseLoads {
         }
     }
 
-    /// Rows that hold for every design whose sized joints carry their static, peak and emergency torque in this case.
-    /// The heat of a motor is no sum over parts and makes no row: that only weakens the bound.
+    /// Inequalities that every design satisfies whose sized joints can take their static, peak and emergency torque
+    /// in this case. The heat of a motor is no sum over parts, so there is no row for it; this only weakens the
+    /// bound.
     pub(super) fn torque_rows(&self, problem: &ArmProblem, parts: &Parts) -> Vec<Row> {
         let mut rows = Vec::new();
         for (slot, piece) in problem.slots().iter().enumerate() {
             let (Slot::Sized(sized), Some(joint)) = (piece, self.joint(problem, slot)) else { continue };
             let motion = sized.table.motion();
             let [low, high] = self.torque_range(problem, parts, slot);
-            // The rows bound the torque on the side where it can be larger. Its other side is not used, which
-            // only weakens the bound.
+            // The rows limit the torque in the direction in which it can be larger. The other direction is not
+            // used, which only weakens the bound.
             let sign = if high >= -low { 1.0 } else { -1.0 };
             let ramp = |factor: f64| match motion.linear_reading {
                 LinearReading::Exact => [1.0, factor * motion.acceleration_rad_s2],
@@ -248,7 +258,7 @@ impl CaseLoads {
                 ),
             ];
             for ([torque, inertia], allowed) in demands {
-                // a brake holds any static torque
+                // with a brake the static torque is not limited
                 if allowed.iter().any(|nm| nm.is_infinite()) {
                     continue;
                 }
@@ -274,7 +284,8 @@ impl CaseLoads {
     }
 }
 
-/// Inertia about a joint's axis of every option of every slot outboard of the joint \[kg m²\].
+/// Inertia of every option of every slot outboard of the joint in `slot` about the joint's axis \[kg m²\]. `amount` has
+/// the load of each option, which is the mass for a joint.
 fn inertias(station: &Station, slot: usize, amount: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let StationSlot::Joint(StationJoint { twist, .. }) = &station.slots[slot] else { return Vec::new() };
     let about = |inertia: &Matrix6<f64>| twist.dot(&(inertia * twist));

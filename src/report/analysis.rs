@@ -1,4 +1,4 @@
-//! An arm analysed in one load case: torques, tip displacement, modes and response, as JSON and as text.
+//! The results of an arm in one load case (torques, tip displacement, modes and response) as JSON and as text.
 
 use super::number::percent;
 use super::pose::pose_words;
@@ -20,18 +20,18 @@ use nalgebra::Vector3;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
-/// A harmonic force at the tip, and where its response is asked for (Eq 16).
+/// A harmonic force at the tip, and the frequencies at which the response is computed (Eq 16).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Harmonic {
-    /// Amplitude of the force, world axes \[N\].
+    /// Amplitude of the force, in world axes \[N\].
     pub force_n: Vector3<f64>,
     /// Damping ratio of every mode.
     pub damping: f64,
-    /// Frequencies \[Hz\].
+    /// Frequencies at which the response is computed \[Hz\].
     pub frequencies_hz: Vec<f64>,
 }
 
-/// An arm in one load case, solved.
+/// The results of an arm in one load case.
 ///
 /// ```
 /// use armwright::arm::{read_arm_document, read_load_cases};
@@ -54,20 +54,21 @@ pub struct Harmonic {
 pub struct Analysis {
     /// The load case.
     pub case: LoadCase,
-    /// Torques, displacement and shares.
+    /// Joint torques, tip displacement, and the displacement that each element causes.
     pub statics: Statics,
-    /// The lowest modes, as many as were asked for.
+    /// The lowest modes, as many as were requested.
     pub modes: Vec<Mode>,
-    /// Response to a harmonic force, if it was asked for.
+    /// Response to a harmonic force; `None` if it was not requested.
     pub response: Option<Vec<Response>>,
-    /// Effects on the bending of links, if the case holds links rigid.
+    /// Names of effects on the bending of links, if the case has rigid links and so ignores them.
     unbent: Vec<String>,
-    /// The springs in the pose of the case.
+    /// Name of each balance spring, with its length and force, or its torque, in the pose of the case.
     springs: Vec<(String, Drawn)>,
 }
 
 impl Analysis {
-    /// Solves the arm in this case, with so many modes.
+    /// Computes the results of the arm in the load case `case`: statics, the `modes` lowest modes, and the response to
+    /// `harmonic`, a harmonic force at the tip, if it is given.
     pub fn of(arm: &Arm, case: LoadCase, modes: usize, harmonic: Option<&Harmonic>) -> Self {
         let structure = arm.structure_in(&case);
         let chain = Chain::new(&structure, case.links);
@@ -82,7 +83,7 @@ impl Analysis {
         Self { case, statics, modes, response, unbent, springs }
     }
 
-    /// The analysis as `armwright analyze --json` prints it; `docs/arm-format.md` has its keys.
+    /// The results as `armwright analyze --json` prints them; `docs/arm-format.md` describes the keys.
     pub fn to_json(&self, arm: &Arm) -> Value {
         let torques: Map<String, Value> =
             self.statics.joint_torques_nm.iter().map(|(n, t)| (n.clone(), json!(t))).collect();
@@ -136,7 +137,7 @@ impl Analysis {
         out
     }
 
-    /// Adds what drives and guides of prismatic joints hold, if there are any.
+    /// Adds the forces of drives and the loads on guides to the object `out`, if the arm has prismatic joints.
     fn guides_json(&self, out: &mut Value) {
         if self.statics.guide_loads.is_empty() {
             return;
@@ -150,7 +151,7 @@ impl Analysis {
         out["guide_moment_nm"] = each(&|load| json!(load.moment_nm.as_slice()));
     }
 
-    /// What the guides of prismatic joints carry across their travel.
+    /// Adds a table of the loads on the guides of prismatic joints.
     fn guides_text(&self, out: &mut String) {
         if self.statics.guide_loads.is_empty() {
             return;
@@ -165,13 +166,14 @@ impl Analysis {
         }
     }
 
-    /// The joints with what their output bearings carry at rest.
+    /// The joints, each with the load on its output bearing while the joint is at rest.
     fn carried(&self) -> impl Iterator<Item = (&str, &JointLoad)> {
         let joints = self.statics.joint_torques_nm.iter().map(|(name, _)| name.as_str());
         joints.zip(&self.statics.bearing_loads)
     }
 
-    /// The joints that have an output bearing, with the bearing and what it carries.
+    /// The joints that have an output bearing, each with the bearing and the load on the bearing with the joint at
+    /// rest.
     fn on_bearings<'a>(&'a self, arm: &'a Arm) -> impl Iterator<Item = (&'a str, OnBearing<'a>)> {
         let bearing = |name: &str| {
             let at = arm.chain.iter().position(|element| element.name() == name)?;
@@ -196,7 +198,7 @@ impl Analysis {
         self.on_bearings(arm).map(of_joint).collect()
     }
 
-    /// The moments on the output bearings, next to what is permitted.
+    /// Adds a table of the moments on the output bearings and of the permissible moments.
     fn bearings_text(&self, arm: &Arm, out: &mut String) {
         let mut on_bearings = self.on_bearings(arm).peekable();
         if on_bearings.peek().is_none() {
@@ -217,7 +219,7 @@ impl Analysis {
         }
     }
 
-    /// The analysis as `armwright analyze` prints it.
+    /// The results as `armwright analyze` prints them.
     pub fn to_text(&self, arm: &Arm) -> String {
         let driven = arm.driven_joints();
         let pose = match any_slides(&driven) {
@@ -339,7 +341,7 @@ impl Analysis {
     }
 }
 
-/// The joints with a gear whose output bearing the arm file leaves out.
+/// The joints that have a gear, but for which the arm file states no output bearing. Their bearings count as rigid.
 fn rigid_bearings(arm: &Arm) -> Vec<&str> {
     let rigid = |element: &Element| matches!(element, Element::Joint(joint) if joint.gear.is_some() && joint.bearing.is_none());
     arm.chain.iter().filter(|element| rigid(element)).map(Element::name).collect()
@@ -372,7 +374,8 @@ struct OnBearing<'a> {
 }
 
 impl OnBearing<'_> {
-    /// Moment at the centre of the bearing: its lever along the axis counts \[N m\].
+    /// Moment at the centre of the bearing \[N m\]: the moment where the link attaches, plus the radial force times
+    /// the bearing's offset along the axis.
     fn moment_with_offset_nm(&self) -> f64 {
         self.load.moment_nm + self.bearing.offset_m.unwrap_or_default().abs() * self.load.radial_n
     }

@@ -1,13 +1,13 @@
-//! A small plot for a terminal: each braille character holds two by four dots.
+//! A small plot for a terminal. Each braille character has dots in two columns and four rows.
 
 use super::number::significant;
 
-/// Dots of a braille character by column and row, as bits.
+/// Bit of each dot of a braille character, by column and row.
 const DOTS: [[u8; 4]; 2] = [[0x01, 0x02, 0x04, 0x40], [0x08, 0x10, 0x20, 0x80]];
-/// Room for the numbers of the upright axis \[characters\].
+/// Width of the numbers on the vertical axis \[characters\].
 const MARGIN: usize = 7;
 
-/// A plot of points, as wide as asked; an axis that spans more than a decade is logarithmic.
+/// A plot of points, `width` characters wide. An axis that spans more than a decade is logarithmic.
 pub(crate) fn plot(
     title: &str,
     x_label: &str,
@@ -42,7 +42,7 @@ pub(crate) fn plot(
     out
 }
 
-/// Blocks of lines beside one another.
+/// Two blocks of lines, printed side by side. The right block starts at the column `width`.
 pub(crate) fn beside(left: &[String], right: &[String], width: usize) -> String {
     let blank = String::new();
     let line = |i: usize| {
@@ -53,12 +53,13 @@ pub(crate) fn beside(left: &[String], right: &[String], width: usize) -> String 
     (0..left.len().max(right.len())).map(line).collect()
 }
 
-/// A bar as long as this share of the width, at least one character.
+/// A bar of block characters for the fraction `share` (0 to 1): its length is this fraction of `width`, but at least
+/// one character.
 pub(crate) fn bar(share: f64, width: usize) -> String {
     "\u{2588}".repeat(((share.clamp(0.0, 1.0) * width as f64).round() as usize).max(1))
 }
 
-/// Where values lie between the smallest and the largest.
+/// Maps values to positions from 0 (smallest value) to 1 (largest value). `ratio` is true for a logarithmic scale.
 struct Scale {
     low: f64,
     high: f64,

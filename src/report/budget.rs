@@ -1,12 +1,13 @@
-//! The stiffness budget of a front's picks as words, tables and CSV: what one more kilogram buys at each joint
-//! and link, and how far each pick is from the lightest arm that could do as well.
+//! The stiffness budget of a front's picks as words, tables and CSV. It tells how much one more kilogram changes
+//! deflection and lowest mode at each joint and link, and how much heavier each pick is than the lower bound on
+//! mass.
 
 use super::number::{fixed, percent, shortest, significant};
 use super::section::PageSection;
 use super::table::{Column, Table, csv_line};
 use super::words::wrap;
 
-/// Change per kilogram added.
+/// Change of deflection and lowest mode per kilogram added.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gain {
     /// Change of the tip's deflection \[mm/kg\]; negative is better.
@@ -16,31 +17,32 @@ pub struct Gain {
 }
 
 impl Gain {
-    /// Whether it lowers the deflection or raises the mode.
+    /// Whether one more kilogram lowers the deflection or raises the lowest mode by more than rounding errors.
     pub fn helps(&self) -> bool {
         self.mm_per_kg < -NOTHING || self.hz_per_kg > NOTHING
     }
 }
 
-/// A heavier part that may stand in a piece's place.
+/// A heavier part that may replace the part of a piece.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NextPart {
-    /// Gear, or size and material of a tube.
+    /// Name of the gear, or size and material of the tube.
     pub name: String,
-    /// Mass of the piece with it \[kg\].
+    /// Mass of the piece with the new part \[kg\].
     pub mass_kg: f64,
-    /// Change to the design with it, per kilogram added.
+    /// Change of deflection and lowest mode per kilogram that the new part adds.
     pub gain: Gain,
 }
 
-/// What a row of a budget is about.
+/// Kind of the piece in a row of a budget.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PieceKind {
-    /// A joint: its drive, with what belongs to it.
+    /// A joint: its drive, with the masses that belong to it.
     Joint,
-    /// The output bearing of a joint. It has a share of its own; its mass and what a kilogram buys are the joint's.
+    /// The output bearing of a joint. It has its own share of the deflection; its mass and its changes per kilogram
+    /// are counted with the joint.
     Bearing,
-    /// A link.
+    /// A link: its tube.
     Link,
 }
 
@@ -54,21 +56,22 @@ impl PieceKind {
     }
 }
 
-/// One piece of an arm and what a kilogram buys there.
+/// One piece of an arm, and the effect of one more kilogram there.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BudgetRow {
-    /// Joint, output bearing (`NAME.bearing`) or link.
+    /// Name of the joint, of the output bearing (`NAME.bearing`) or of the link.
     pub piece: String,
-    /// What it is.
+    /// Kind of the piece.
     pub kind: PieceKind,
-    /// Its mass \[kg\]; 0 for a bearing, whose mass is in that of its joint.
+    /// Mass of the piece \[kg\]; 0 for a bearing, whose mass is counted with its joint.
     pub mass_kg: f64,
-    /// Its part of the tip's deflection in the worst case, from 0 to 1; negative if it lifts the tip.
+    /// Share of the tip deflection in the worst case that this piece causes, from 0 to 1; negative if the piece
+    /// reduces the deflection.
     pub share: f64,
-    /// What a kilogram buys if mass and stiffness of the piece grow in proportion; `None` for a bearing, which grows with its
-    /// joint.
+    /// Changes of deflection and lowest mode per kilogram if mass and stiffness of the piece grow in proportion; `None`
+    /// for a bearing, which grows with its joint.
     pub in_place: Option<Gain>,
-    /// The heavier part that lowers the deflection most per kilogram, if any part helps.
+    /// The heavier part that lowers the deflection most per kilogram; `None` if no part helps.
     pub next_part: Option<NextPart>,
 }
 
@@ -78,41 +81,44 @@ pub struct PickBound {
     /// Lower bound: no design of the study that is at least as stiff and has at least as high a lowest mode
     /// weighs less \[kg\].
     pub mass_kg: f64,
-    /// Approximate mass if parts could be blended between catalog options \[kg\]; at most the bound.
+    /// Approximate mass of an equally good arm if parts could be blended between catalog options \[kg\]. It is at most
+    /// `mass_kg`, the bound.
     pub mixture_kg: f64,
-    /// Whether loads may oppose each other somewhere, which weakens the bound.
+    /// Whether the torque of some joint may have either sign within the options that the bound considers. The bound
+    /// then takes the more favourable sign and is weaker.
     pub loads_oppose: bool,
 }
 
-/// A pick with its budget.
+/// The stiffness budget of one pick.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PickBudget {
-    /// What it was picked for.
+    /// What the design was picked for: lightest, stiffest, highest mode, knee.
     pub names: Vec<&'static str>,
     /// Name of the design.
     pub design_id: String,
-    /// Its mass \[kg\].
+    /// Mass of the design \[kg\].
     pub mass_kg: f64,
-    /// What its joints weigh beyond drives and bearings, in that mass \[kg\].
+    /// Mass of the joints in addition to drives and bearings \[kg\]; it is included in `mass_kg`.
     pub extras_mass_kg: f64,
-    /// Lower bounds on its mass; `None` if they could not be worked out.
+    /// Lower bounds on the mass of an equally good design; `None` if they could not be computed.
     pub bound: Option<PickBound>,
-    /// Pieces that weigh, base to tip.
+    /// One row for each piece that has mass, from base to tip.
     pub rows: Vec<BudgetRow>,
 }
 
 impl PickBudget {
-    /// How much heavier the pick is than a given mass \[%\].
+    /// How much heavier the pick is than a design with the mass `mass_kg` \[kg\], in percent of this mass.
     fn above_percent(&self, mass_kg: f64) -> f64 {
         100.0 * (self.mass_kg / mass_kg - 1.0)
     }
 
-    /// The share of joints and their bearings of the tip deflection, from 0 to 1.
+    /// The fraction of the tip deflection that joints and their bearings cause together, from 0 to 1.
     fn joints_share(&self) -> f64 {
         self.rows.iter().filter(|r| r.kind != PieceKind::Link).map(|r| r.share).sum()
     }
 
-    /// The joint (or link) at which an added kilogram reduces the tip deflection most, and what it buys there.
+    /// Among the pieces of this kind (joints, or links), the one at which one more kilogram reduces the tip deflection
+    /// most, with the changes per kilogram.
     fn best(&self, kind: PieceKind) -> Option<(&BudgetRow, Gain)> {
         let of_kind = self.rows.iter().filter(|r| r.kind == kind).filter_map(|r| Some((r, r.in_place?)));
         of_kind.min_by(|a, b| a.1.mm_per_kg.total_cmp(&b.1.mm_per_kg))
@@ -122,7 +128,7 @@ impl PickBudget {
         format!("{} ({})", self.names.join(", "), self.design_id)
     }
 
-    /// The advice in a sentence: where to add mass first.
+    /// A sentence that says at which joint or link of this pick mass should be added first.
     fn advice(&self) -> String {
         let lead = format!(
             "{}: joints give {} of the tip's deflection",
@@ -152,7 +158,8 @@ impl PickBudget {
         }
     }
 
-    /// Where the lowest mode rises most, if that is another piece.
+    /// A sentence that names the piece where one more kilogram raises the lowest mode most. Empty if this is `told`,
+    /// the piece that was named before.
     fn mode_advice(&self, told: &BudgetRow) -> String {
         let rises = self.rows.iter().filter_map(|r| Some((r, r.in_place?.hz_per_kg)));
         let best = rises.max_by(|a, b| a.1.total_cmp(&b.1));
@@ -164,7 +171,7 @@ impl PickBudget {
         )
     }
 
-    /// `pick`, `design_id`, mass and bound, for `run.json`.
+    /// The pick with its mass and its lower bounds on mass, as an object for `run.json`.
     pub fn to_json(&self) -> serde_json::Value {
         serde_json::json!({
             "names": self.names,
@@ -178,11 +185,12 @@ impl PickBudget {
     }
 }
 
-/// Changes smaller than this in a kilogram are rounding errors \[mm or Hz\].
+/// Changes per kilogram below this are rounding errors \[mm/kg or Hz/kg\].
 const NOTHING: f64 = 1e-6;
 
-/// A change in words: `lowers the deflection by 0.021 mm/kg and raises the mode by 0.40 Hz/kg`. The numbers
-/// are rates, because a kilogram may be more than the piece weighs.
+/// The change of deflection and lowest mode in words:
+/// `lowers the deflection by 0.021 mm/kg and raises the mode by 0.40 Hz/kg`. The numbers are rates, because a kilogram
+/// may be more than the piece weighs.
 fn effect(gain: &Gain) -> String {
     let part = |change: f64, what: &str, unit: &str| {
         if change.abs() < NOTHING {
@@ -194,12 +202,12 @@ fn effect(gain: &Gain) -> String {
     format!("{} and {}", part(gain.mm_per_kg, "deflection", "mm/kg"), part(gain.hz_per_kg, "mode", "Hz/kg"))
 }
 
-/// The pick shown on the terminal: the knee, or the last pick if there is no knee.
+/// The pick whose budget the terminal shows: the knee, or the last pick if there is no knee.
 fn shown(budgets: &[PickBudget]) -> Option<&PickBudget> {
     budgets.iter().find(|b| b.names.contains(&"knee")).or(budgets.last())
 }
 
-/// A change with its sign; at most seven characters if it is below 1000.
+/// A change per kilogram with its sign, in at most seven characters if its magnitude is below 1000.
 fn signed(value: f64) -> String {
     let text = if value.abs() < 0.1 { fixed(value, 4) } else { significant(value, 3) };
     let rises = value > 0.0 && text.bytes().any(|b| (b'1'..=b'9').contains(&b));
@@ -220,7 +228,8 @@ const FULL: [&str; 9] = [
 const NARROW: [&str; 9] =
     ["piece", "mass kg", "% of tip", "mm/kg", "Hz/kg", "", "next: kg", "mm/kg", "Hz/kg"];
 
-/// The budget of a pick under these headers; an empty header leaves its column out.
+/// The stiffness budget of a pick as a table, with `headers` as the headers of its columns. A column with an empty
+/// header is left out.
 fn budget_table(pick: &PickBudget, headers: [&str; 9]) -> Table {
     let shown: Vec<usize> = (0..headers.len()).filter(|&i| !headers[i].is_empty()).collect();
     let words = |i: usize| i == 0 || i == 5;
@@ -250,7 +259,7 @@ fn budget_table(pick: &PickBudget, headers: [&str; 9]) -> Table {
     table
 }
 
-/// How far each pick is from the bound; `None` if no bound is known.
+/// A table of the mass of each pick and of how far it is above its lower bound. `None` if a bound is not known.
 fn bounds_table(budgets: &[PickBudget]) -> Option<Table> {
     let mut table = Table::new(vec![
         Column::left("pick"),
@@ -284,7 +293,8 @@ fn opposed(budgets: &[PickBudget]) -> bool {
     budgets.iter().any(|b| b.bound.is_some_and(|b| b.loads_oppose))
 }
 
-/// The block of the terminal's summary, within `width` columns: the knee's budget and every pick's bound.
+/// The stiffness budget as a block of the terminal's summary, within `width` columns: the budget of the knee and the
+/// bounds of all picks.
 pub fn budget_text(budgets: &[PickBudget], width: usize) -> String {
     let Some(pick) = shown(budgets) else { return String::new() };
     let mut out = format!("What one more kilogram buys at each joint and link: {}\n", pick.title());
@@ -300,7 +310,7 @@ pub fn budget_text(budgets: &[PickBudget], width: usize) -> String {
     out
 }
 
-/// The section of `summary.md`; empty if there is no budget.
+/// The stiffness budgets of the picks as a section of `summary.md`; empty if there are none.
 pub fn budget_markdown(budgets: &[PickBudget]) -> String {
     if budgets.is_empty() {
         return String::new();
@@ -320,7 +330,7 @@ pub fn budget_markdown(budgets: &[PickBudget]) -> String {
     out
 }
 
-/// The part of the page; `None` if there is no budget.
+/// The stiffness budgets of the picks as a section of the study page; `None` if there are none.
 pub fn budget_extra(budgets: &[PickBudget]) -> Option<PageSection> {
     let mut tables: Vec<(String, Table)> = budgets
         .iter()
@@ -340,7 +350,7 @@ pub fn budget_extra(budgets: &[PickBudget]) -> Option<PageSection> {
     })
 }
 
-/// `budget.csv`.
+/// The stiffness budgets of the picks as the content of `budget.csv`.
 pub fn budget_csv(budgets: &[PickBudget]) -> String {
     let header = [
         "pick",

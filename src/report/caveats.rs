@@ -5,15 +5,15 @@ use super::words::{TERMINAL, wrap};
 use crate::catalog::{Catalogs, Provenance};
 use std::collections::BTreeMap;
 
-/// What is said beside parts, by their names.
+/// The caveats of parts, by the names of the parts.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Caveats(BTreeMap<String, &'static str>);
 
-/// Columns of a front that name parts, without the link or joint.
+/// Endings of the columns that name parts. The name of the link or joint comes before the ending.
 const PARTS: [&str; 4] = ["_material", "_profile", "_gear", "_motor"];
 
 impl Caveats {
-    /// Of all parts of a catalog.
+    /// Caveats of all parts of the catalogs.
     pub fn of(catalogs: &Catalogs) -> Self {
         let gears = catalogs.gears.iter().map(|p| (&p.id, &p.provenance));
         let motors = catalogs.motors.iter().map(|p| (&p.id, &p.provenance));
@@ -29,13 +29,13 @@ impl Caveats {
         self.0.get(name).copied()
     }
 
-    /// The name of a part, with the caveat behind it in brackets.
+    /// The name of a part, followed by its caveat in brackets.
     pub fn marked(&self, name: &str) -> String {
         self.of_part(name).map_or(name.to_string(), |caveat| format!("{name} ({caveat})"))
     }
 
-    /// One sentence for the terminal about the parts of picks, each with its row and its name; empty if documents were seen
-    /// for all.
+    /// One sentence for the terminal that names the parts with caveats and the picks that use them. Each item of
+    /// `picks` is the row of the front and the name of a pick. Empty if no part has a caveat.
     pub(crate) fn sentence(&self, front: &FrontTable, picks: &[(usize, String)]) -> String {
         let mut used: Vec<(&str, Vec<String>)> = Vec::new();
         for (row, name) in picks {
@@ -63,7 +63,7 @@ impl Caveats {
     }
 }
 
-/// The names of the parts of a row.
+/// The names of the parts (materials, profiles, gears and motors) of the design in the row `row`.
 fn parts(front: &FrontTable, row: usize) -> impl Iterator<Item = &str> {
     let named = front.columns.iter().zip(&front.rows[row]);
     named

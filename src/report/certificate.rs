@@ -1,12 +1,12 @@
-//! How sure a front is: what was visited, what was discarded and why, and what may be missing.
+//! The certificate of a front: how many designs were evaluated or discarded, and what may be missing.
 
 use super::facts::SummaryFacts;
 use super::number::{large, percent_rounded, shortest};
 use super::section::PageSection;
 use super::words::{TERMINAL, wrap};
 
-/// The section of a page. `boxes` holds, for an exact search, how many boxes were bounded and how many were
-/// left open.
+/// The certificate as a section of a page. For an exact search, `boxes` has the numbers of boxes that were bounded
+/// and that were left open; `None` for an exhaustive search.
 pub(crate) fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>) -> PageSection {
     let words = match (boxes, facts.is_stopped()) {
         (None, false) => vec![format!(
@@ -63,8 +63,9 @@ pub(crate) fn certificate_section(facts: &SummaryFacts, boxes: Option<[u64; 2]>)
 
 /// How much an exact search may have missed, in the same words for page, terminal and summary.
 ///
-/// What is excluded is a design to which no listed one comes within the gap in all objectives. That none beats *every*
-/// listed one in everything would say nothing: the lightest listed design alone may settle it.
+/// The gap promises that every design of the study has a listed design that is nearly as good in all objectives. A
+/// weaker promise, that no design beats *every* listed one, would be worth nothing: the lightest listed design
+/// alone could ensure it.
 pub(crate) fn gap_words(gap: f64) -> String {
     format!(
         "for every design of the study some listed one is at most {} worse in each of tip deflection, mass and lowest mode",
@@ -72,8 +73,8 @@ pub(crate) fn gap_words(gap: f64) -> String {
     )
 }
 
-/// What an exact search proved, for the terminal. `boxes` as in [`certificate_section`]; `up_to_kg` is the limit of mass
-/// up to which a whole front is proved.
+/// What an exact search proved, for the terminal. `boxes` is as in [`certificate_section`]. `up_to_kg` is the
+/// largest mass up to which the whole front is proved.
 pub(crate) fn certificate_words([boxes, open]: [u64; 2], gap: Option<f64>, up_to_kg: Option<f64>) -> String {
     match (open, gap) {
         (0, None | Some(0.0)) => {

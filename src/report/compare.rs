@@ -1,10 +1,10 @@
-//! Fronts side by side: which is lightest at a given deflection, stiffest or fastest at a given mass,
-//! lightest for a given lowest mode, and what the material costs.
+//! Fronts compared: which is lightest at a given deflection, stiffest or of highest mode at a given mass, lightest
+//! for a given lowest mode, and what the material costs.
 //!
-//! A *contender* is a front with a label: one material of a study, or one of several results. The front of
-//! all materials mixed is at least as good as each of them, so it is shown as a reference and never counts as
-//! the winner. Every function here is pure; `text` writes the comparison for people, `thresholds` chooses
-//! round limits where the user gives none, [`moved`] tells what changed between two runs of a study.
+//! A *contender* is a front with a label: one material of a study, or one of several results. The front of all
+//! materials mixed is at least as good as each of them, so it is shown as a reference and never counts as the
+//! winner. The functions here have no side effects. `text` writes the comparison for people, `thresholds` chooses
+//! round limits where the user gives none, and [`moved`] tells what changed between two runs of a study.
 
 pub(crate) mod changes;
 pub(crate) mod comparison;

@@ -1,46 +1,46 @@
-//! What a run knows besides its fronts.
+//! Facts of a run, in addition to its fronts.
 
 use super::caveats::Caveats;
 use super::number::{shortest, significant};
 use crate::space::constraint::Constraints;
 
-/// What a run knows besides its fronts.
+/// Facts of a run that its reports print in addition to its fronts.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SummaryFacts {
     /// Name of the study.
     pub study: String,
-    /// Its question in a sentence.
+    /// The question of the study in a sentence.
     pub question: String,
     /// How the search ended: `complete`, `certified`, `partial`, `infeasible` or `interrupted`.
     pub status: String,
-    /// Designs in the space.
+    /// Number of designs in the space.
     pub designs_total: u128,
-    /// Designs whose three objectives were computed.
+    /// Number of designs whose three objectives were computed.
     pub designs_evaluated: u128,
-    /// Designs left out because a limit cannot be met.
+    /// Number of designs excluded because a drive, a link or a limit rules them out.
     pub designs_excluded: u128,
-    /// For a search that was stopped or asked for a gap: for every design of the study some listed one is worse by at
-    /// most this fraction in each objective.
+    /// Gap of a search that was stopped or asked for a gap: for every design of the study, some listed design is
+    /// worse by at most this fraction in each objective.
     pub gap: Option<f64>,
     /// Duration of the search \[s\].
     pub elapsed_s: f64,
-    /// Worker threads; 0 = not known.
+    /// Number of worker threads; 0 if it is not known.
     pub threads: usize,
     /// Version of the program.
     pub tool_version: String,
     /// Constraints in words; see [`constraint_words`].
     pub constraints: Vec<String>,
-    /// Names of the cases, the worst of which counts.
+    /// Names of the cases. For each objective the worst of them counts.
     pub cases: Vec<String>,
-    /// How far the joints turn, in words; joints of the same range share a line.
+    /// Ranges of the joint angles, in words; joints with the same range share a line.
     pub ranges: Vec<String>,
-    /// Parts and options left out because a rating is unknown, in words.
+    /// Parts and options that were left out because a rating is unknown, in words.
     pub not_checked: Vec<String>,
-    /// What a reader of the result should know of the question, in sentences.
+    /// Remarks about the study that a reader of the result should know, in sentences.
     pub remarks: Vec<String>,
-    /// Parts whose figures no document was seen for.
+    /// Parts whose ratings were not read from a document.
     pub caveats: Caveats,
-    /// Result folder as it is typed.
+    /// Path of the result folder, as the user typed it.
     pub results: String,
 }
 
@@ -50,13 +50,13 @@ impl SummaryFacts {
         ["partial", "interrupted"].contains(&self.status.as_str())
     }
 
-    /// Whether no design is missing.
+    /// Whether the front is complete: the search was not stopped and its gap is zero.
     pub fn is_whole(&self) -> bool {
         !self.is_stopped() && self.gap.is_none_or(|gap| gap == 0.0)
     }
 }
 
-/// Constraints in words, one a line; empty if there are none.
+/// Constraints in words, one per entry; empty if there are none.
 pub fn constraint_words(constraints: &Constraints) -> Vec<String> {
     let c = constraints;
     let plain = shortest;

@@ -1,20 +1,22 @@
-//! File names made from names: of a study, a campaign, a material, a pose, a joint, a picture.
+//! File names made from names of studies, campaigns, materials, poses, joints or pictures.
 //!
-//! A name may hold anything; the file name that is made of it holds lower-case letters, digits and `-` alone. It is never
-//! empty, has at most 64 letters, and is unique among those that are made together.
+//! A name may contain any characters. The file name that is made of it contains only lower-case letters, digits and
+//! `-`. It is never empty, has at most 64 letters, and differs from the other file names that are made together
+//! with it.
 
 use std::collections::HashSet;
 
-/// The most letters of a file name, without what stands before and behind it. File systems allow 255 bytes.
+/// Largest number of letters of a file name, without prefix and ending. File systems allow 255 bytes.
 const MOST_LETTERS: usize = 64;
-/// Letters of a hash, which stands for what a file name cannot hold.
+/// Number of letters of a hash. The hash replaces what a file name cannot contain.
 const HASH_LETTERS: usize = 8;
-/// Names that Windows keeps for devices.
+/// Names that Windows reserves for devices.
 const DEVICES: [&str; 4] = ["aux", "con", "nul", "prn"];
 
-/// The file names of things with these names, each different from all others, in their order.
+/// File names for these names, in the same order. All differ from each other.
 ///
-/// The first of several names with the same letters and digits keeps them; the next ones get a number behind them.
+/// If several names give the same letters and digits, the first keeps them and the next ones get a number at the
+/// end.
 ///
 /// ```
 /// use armwright::report::file_names::file_names;
@@ -27,23 +29,24 @@ pub fn file_names<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<String> {
     names.into_iter().map(|name| unique_file_name(name, &mut taken)).collect()
 }
 
-/// The file name of one thing with this name.
+/// The file name for a single name.
 pub fn file_name(name: &str) -> String {
     unique_file_name(name, &mut HashSet::new())
 }
 
-/// The file name of a thing, different from those that are taken; it is taken from now on.
+/// A file name for `name` that differs from all names in `taken`. It is added to `taken`.
 pub(crate) fn unique_file_name(name: &str, taken: &mut HashSet<String>) -> String {
     let plain = not_empty_and_short(name);
     let numbered = (2..).map(|number: u64| format!("{plain}-{number}"));
     let mut candidates = std::iter::once(plain.clone()).chain(numbered);
-    // numbers do not end, so that one is free
+    // numbers do not end, so one of them is always free
     let free = candidates.find(|candidate| !taken.contains(candidate)).unwrap_or(plain);
     taken.insert(free.clone());
     free
 }
 
-/// Letters and digits of a name. A hash of the whole name stands for what is cut off, and for a name without any.
+/// The letters and digits of a name. If the name is too long or has none, a hash of the whole name makes the file
+/// name unique.
 fn not_empty_and_short(name: &str) -> String {
     let plain = letters_and_digits(name);
     let hash = || blake3::hash(name.as_bytes()).to_hex()[..HASH_LETTERS].to_string();
@@ -58,7 +61,7 @@ fn not_empty_and_short(name: &str) -> String {
     }
 }
 
-/// A name in lower case; every run of other characters than ASCII letters and digits becomes one `-`.
+/// The name in lower case, with every run of characters other than ASCII letters and digits replaced by one `-`.
 fn letters_and_digits(name: &str) -> String {
     let mut out = String::new();
     for c in name.chars() {
@@ -89,7 +92,7 @@ mod tests {
             assert!(name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-'), "{name}");
             assert!(!DEVICES.contains(&name.as_str()) && !name.starts_with('-'), "{name}");
         }
-        // the next one gives way: no name takes what another was given
+        // the third name gets another number, because a name does not take what another one was given
         assert_eq!(made[..3], ["pa6-x", "pa6-x-2", "pa6-x-2-2"]);
     }
 

@@ -1,7 +1,7 @@
 //! A picture of fronts: tip deflection and lowest mode over mass, by material.
 //!
-//! A front on three objectives is a cloud on each panel, and clouds of nine materials hide one another.
-//! So every design is a small dot, and on top of all dots stands the edge of each front: the best of
+//! With three objectives, a front is a cloud of points on each panel, and the clouds of nine materials hide one
+//! another. So every design is a small dot. On top of all dots the edge of each front is drawn: the best value of
 //! the panel's objective at each mass, joined by a line, with the markers of the legend.
 
 use super::front_table::FrontTable;
@@ -15,33 +15,33 @@ use std::collections::HashSet;
 
 const WIDTH_PX: f64 = 900.0;
 const HEIGHT_PX: f64 = 460.0;
-/// An axis whose ends are further apart than this factor is logarithmic: on a linear one light arms would
-/// crowd at the left.
+/// An axis whose ends differ by more than this factor is logarithmic. On a linear axis light arms would crowd at
+/// the left.
 pub(crate) const WIDE: f64 = 5.0;
-/// Points of one series that are closer than this share of an axis are drawn once.
+/// Points of one series that are closer than this fraction of an axis are drawn once.
 const GRAIN: f64 = 1.0 / 200.0;
-/// Least distance between markers on an edge \[grains\].
+/// Least distance between markers on an edge, in units of [`GRAIN`].
 const MARKER_STEPS: f64 = 3.0;
 
-/// A front that is drawn.
+/// A front in the picture.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PlottedFront<'a> {
     /// Name in the legend.
     pub name: String,
-    /// Its designs.
+    /// Designs of the front.
     pub front: &'a FrontTable,
-    /// Whether it is drawn in grey behind the others.
+    /// Whether the front is drawn in grey behind the others.
     pub muted: bool,
 }
 
-/// Fronts and picks in one picture.
+/// A picture with fronts and picks.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct FrontPicture<'a> {
-    /// Title.
+    /// Title of the picture.
     pub title: String,
     /// The fronts, in the order of the legend.
     pub fronts: Vec<PlottedFront<'a>>,
-    /// Designs that get a ring and a name.
+    /// Designs that are marked with a ring and a name.
     pub picks: Vec<Pick>,
 }
 
@@ -60,7 +60,7 @@ fn designs_where(front: &FrontTable, wanted: impl Fn(&[&str]) -> bool) -> FrontT
     FrontTable { columns: front.columns.clone(), rows: rows.map(|r| front.rows[r].clone()).collect() }
 }
 
-/// A front with its designs, ready to be drawn.
+/// A front whose designs have been read, ready to be drawn.
 struct Drawn<'a> {
     name: &'a str,
     muted: bool,
@@ -96,7 +96,7 @@ impl FrontPicture<'_> {
         let clouds = numbered().map(|(i, f)| grain.cloud(f, style(i)));
         let edges = numbered().map(|(i, f)| grain.edge(f, style(i)));
         let mut series: Vec<Series> = clouds.chain(edges).collect();
-        // all dots lie behind all edges, and what is grey behind the rest of its kind
+        // all dots lie behind all edges, and grey dots or edges lie behind coloured ones
         series.sort_by_key(|s| (!s.name.is_empty(), s.style != MUTED));
         let notes = self.picks.iter().map(|p| Note {
             at: (Objective::Mass.of(&p.design), over.of(&p.design)),
@@ -115,7 +115,7 @@ impl FrontPicture<'_> {
         }
     }
 
-    /// What the picture shows, in words.
+    /// A description of the picture in words, for readers who cannot see it.
     fn description(&self, drawn: &[Drawn]) -> String {
         let mut out = String::from(
             "Two panels over the mass of links and drives: tip deflection above, lowest mode below. \
@@ -145,7 +145,7 @@ impl FrontPicture<'_> {
     }
 }
 
-/// An axis for an objective: in ratios where the data are wide.
+/// An axis for an objective: logarithmic if the values span more than the factor [`WIDE`].
 fn axis(objective: Objective, shown: &[&Design]) -> Axis {
     let values = || shown.iter().map(|d| objective.of(d));
     let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max));
@@ -158,7 +158,7 @@ fn axis(objective: Objective, shown: &[&Design]) -> Axis {
     Axis::new(label, scale)
 }
 
-/// The resolution of a panel: designs closer than this look like one.
+/// The resolution of a panel: designs that are closer than one step on both axes look like one.
 struct Grain {
     axes: [(Objective, Scale); 2],
     low: [f64; 2],
@@ -175,8 +175,8 @@ impl Grain {
         Self { axes, low: ends.map(|e| e.0), step }
     }
 
-    /// All designs of a front as small dots without a name. If several fall on one place, only the first is
-    /// drawn.
+    /// All designs of a front as small dots without a name in the legend. If several fall on the same place of the
+    /// picture, only the first is drawn.
     fn cloud(&self, front: &Drawn, index: usize) -> Series {
         let mut seen = HashSet::new();
         let cell =
@@ -186,7 +186,8 @@ impl Grain {
         Series { marker_px: 1.6, ..Series::scatter("", front.style(index), points) }
     }
 
-    /// The edge of a front on this panel, a line with markers: for every mass the best of the other axis.
+    /// The edge of a front on this panel, as a line with markers: for every mass, the best value of the objective that
+    /// the panel shows over mass.
     fn edge(&self, front: &Drawn, index: usize) -> Series {
         let over = self.axes[1].0;
         let mut rising: Vec<&Design> = front.designs.iter().collect();
@@ -199,7 +200,7 @@ impl Grain {
             best = best.min(over.minimized(d));
             better
         });
-        // markers that would touch are left out, but for the ends
+        // markers that would touch each other are left out, except at the ends
         let last = rising.len().saturating_sub(1);
         let mut shown: Option<&Design> = None;
         let mut points = Vec::new();
@@ -209,7 +210,7 @@ impl Grain {
                 shown = Some(d);
             }
         }
-        // beyond the palette the colours repeat: hollow markers tell them apart
+        // beyond the number of colours in the palette they repeat, and hollow markers tell the fronts apart
         let open = !front.muted && (index / PALETTE.len()) % 2 == 1;
         let marker_px = if front.muted { 2.5 } else { 4.0 };
         let stroke = Stroke::Patterned;
@@ -220,7 +221,7 @@ impl Grain {
         (self.axes[0].0.of(design), self.axes[1].0.of(design))
     }
 
-    /// Whether the markers of two designs do not touch.
+    /// Whether the markers of two designs are far enough apart that they do not touch.
     fn apart(&self, a: &Design, b: &Design) -> bool {
         let steps = |i: usize| (place(self.axes[i], a) - place(self.axes[i], b)) / self.step[i];
         libm::hypot(steps(0), steps(1)) > MARKER_STEPS
@@ -233,7 +234,8 @@ impl Drawn<'_> {
     }
 }
 
-/// Where a design lies along an axis, up to scale.
+/// Coordinate of a design along the axis of an objective, up to a scale factor and an offset. On a logarithmic axis it
+/// is the logarithm of the value.
 fn place((objective, scale): (Objective, Scale), design: &Design) -> f64 {
     let value = objective.of(design);
     if scale == Scale::Log { libm::log(value) } else { value }

@@ -1,4 +1,4 @@
-//! The front as a table: one row a design, units in the column names.
+//! The front as a table, with one row per design and units in the column names.
 
 use std::path::Path;
 
@@ -7,32 +7,32 @@ use std::path::Path;
 pub struct FrontTable {
     /// Column names.
     pub columns: Vec<String>,
-    /// Rows, as many cells as columns.
+    /// Rows; each has as many cells as there are columns.
     pub rows: Vec<Vec<String>>,
 }
 
-/// Why a front could not be read.
+/// Reason why a front could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum FrontTableError {
     /// The file is missing or not CSV.
     #[error("cannot read {file}: {source}")]
     Unreadable {
-        /// File name.
+        /// Name of the file.
         file: String,
-        /// The reader's reason.
+        /// Reason that the CSV reader gives.
         source: csv::Error,
     },
-    /// A column that every front has is missing.
+    /// A column that every front must have is missing.
     #[error("{file} has no column \"{column}\": is it a front written by `armwright run`?")]
     NoColumn {
-        /// File name.
+        /// Name of the file.
         file: String,
-        /// The missing column.
+        /// Name of the missing column.
         column: &'static str,
     },
 }
 
-/// Columns that every front has.
+/// Columns of the objectives, which every front must have.
 pub const OBJECTIVE_COLUMNS: [&str; 3] = ["tip_deflection_mm", "mass_kg", "lowest_mode_hz"];
 
 impl FrontTable {
@@ -45,7 +45,7 @@ impl FrontTable {
         writer.into_inner().expect("flushing to memory does not fail")
     }
 
-    /// Reads a front.
+    /// Reads a front from a file.
     ///
     /// # Errors
     /// The file is missing, is not CSV, or lacks a column that every front has.
@@ -58,10 +58,10 @@ impl FrontTable {
         Self::parse(path, &bytes.map_err(unreadable)?)
     }
 
-    /// A front from the bytes of its file; `path` is named in messages.
+    /// Reads a front from the bytes of its file. `path` is used only in messages.
     ///
     /// # Errors
-    /// It is not CSV, or lacks a column that every front has.
+    /// The bytes are not CSV, or a column is missing that every front must have.
     pub fn parse(path: &Path, bytes: &[u8]) -> Result<Self, FrontTableError> {
         let file = path.display().to_string();
         let unreadable = |source| FrontTableError::Unreadable { file: file.clone(), source };
@@ -80,12 +80,12 @@ impl FrontTable {
         Ok(Self { columns, rows })
     }
 
-    /// Index of a column.
+    /// Index of the column `name`; `None` if there is no such column.
     pub fn column(&self, name: &str) -> Option<usize> {
         self.columns.iter().position(|c| c == name)
     }
 
-    /// A column as numbers; blank cells are `None`.
+    /// The values of the column `name` as numbers, one for each row; `None` for a blank cell.
     pub fn numbers(&self, name: &str) -> Vec<Option<f64>> {
         match self.column(name) {
             Some(i) => self.rows.iter().map(|r| r[i].parse().ok()).collect(),

@@ -1,15 +1,15 @@
 //! Numbers as text: with a stated number of digits for people, in shortest round-trip form for files.
 
-/// A value with `digits` significant digits, trailing zeros kept: `significant(1.4, 3)` is `1.40`.
+/// A value with `digits` significant digits. Trailing zeros are kept: `significant(1.4, 3)` is `1.40`.
 ///
-/// From 1e-4 to 1e7 in plain decimals, beyond that with an exponent. Integers larger than `digits`
+/// Values from 1e-4 to 1e7 are written as plain decimals, others with an exponent. Integers with more than `digits`
 /// digits are rounded, not cut: `significant(123456.0, 3)` is `123000`.
 pub fn significant(value: f64, digits: usize) -> String {
     let digits = digits.max(1);
     if value == 0.0 || !value.is_finite() {
         return plain(value);
     }
-    // the exponent after rounding: 9.996 with three digits is 1.00e1
+    // the exponent is taken after rounding: 9.996 with three digits is 1.00e1
     let rounded = format!("{value:.*e}", digits - 1);
     let Some((mantissa, exponent)) = rounded.split_once('e') else { return rounded };
     let exponent: i32 = exponent.parse().unwrap_or(0);
@@ -40,13 +40,13 @@ pub fn percent_rounded(value: f64, digits: usize) -> String {
     format!("{} %", significant(value, digits))
 }
 
-/// A share in percent, with one decimal unless that is zero.
+/// A fraction in percent, with one decimal unless that decimal is zero.
 pub fn percent_short(share: f64) -> String {
     let text = format!("{:.1}", 100.0 * share);
     format!("{} %", text.strip_suffix(".0").unwrap_or(&text))
 }
 
-/// A share in percent; a part is never rounded to 0 % or to 100 %.
+/// The percentage that a part is of a whole. It is never rounded to 0 % or to 100 % unless it is exactly that.
 pub fn percent_of(part: usize, whole: usize) -> String {
     let share = 100.0 * part as f64 / whole.max(1) as f64;
     match share {
@@ -58,24 +58,25 @@ pub fn percent_of(part: usize, whole: usize) -> String {
     }
 }
 
-/// A change in percent with `decimals` digits and, unless it rounds to zero, its sign: `+75.2 %`.
+/// A change in percent with `decimals` digits, from the ratio of new to old value. It has a sign unless it rounds
+/// to zero: `+75.2 %`.
 pub fn percent_change(ratio: f64, decimals: usize) -> String {
     let text = fixed(100.0 * (ratio - 1.0), decimals);
     let rises = text.bytes().any(|b| (b'1'..=b'9').contains(&b)) && !text.starts_with('-');
     if rises { format!("+{text} %") } else { format!("{text} %") }
 }
 
-/// A cost with three digits, whole above 100.
+/// A cost with three significant digits; above 100 as a whole number.
 pub fn cost_words(value: f64) -> String {
     if value.abs() >= 100.0 { format!("{value:.0}") } else { significant(value, 3) }
 }
 
-/// A count in digits, or as a power of ten where nobody counts digits.
+/// A count with commas; from 1e12 as a power of ten with three digits.
 pub fn large(n: u128) -> String {
     if n < 1_000_000_000_000 { grouped(n) } else { format!("{:.2e}", n as f64) }
 }
 
-/// A whole number with commas; above 1e12 in powers of ten.
+/// A whole number with commas; from 1e12 as a power of ten.
 pub fn grouped(n: u128) -> String {
     if n >= 1_000_000_000_000 {
         return significant(n as f64, 3);

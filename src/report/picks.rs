@@ -6,20 +6,20 @@ use super::number::significant;
 use super::tube::tube_size;
 use std::cmp::Ordering;
 
-/// One design of a front by its objectives.
+/// One design of a front, with its objectives.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Design {
-    /// Name of the design in its results.
+    /// Name of the design in its result.
     pub design_id: String,
-    /// Tip deflection \[mm\].
+    /// Tip deflection of the design \[mm\].
     pub tip_deflection_mm: f64,
-    /// Mass \[kg\].
+    /// Mass of the design \[kg\].
     pub mass_kg: f64,
-    /// Lowest mode \[Hz\].
+    /// Lowest mode of the design \[Hz\].
     pub lowest_mode_hz: f64,
-    /// Cost of the links' material \[EUR\]; `None` = unknown.
+    /// Cost of the links' material \[EUR\]; `None` if it is unknown.
     pub material_cost_eur: Option<f64>,
-    /// Row in its table, from 0.
+    /// Index of the design's row in its table, counted from 0.
     #[serde(skip)]
     pub row: usize,
 }
@@ -27,19 +27,19 @@ pub struct Design {
 /// One of the three objectives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Objective {
-    /// Tip deflection \[mm\], small is good.
+    /// Tip deflection \[mm\]; smaller is better.
     Deflection,
-    /// Mass \[kg\], small is good.
+    /// Mass \[kg\]; smaller is better.
     Mass,
-    /// Lowest mode \[Hz\], large is good.
+    /// Lowest mode \[Hz\]; larger is better.
     Mode,
 }
 
 impl Objective {
-    /// All three.
+    /// All three objectives.
     pub const ALL: [Self; 3] = [Self::Deflection, Self::Mass, Self::Mode];
 
-    /// The value of a design.
+    /// The value of this objective for a design.
     pub fn of(self, design: &Design) -> f64 {
         match self {
             Self::Deflection => design.tip_deflection_mm,
@@ -48,12 +48,12 @@ impl Objective {
         }
     }
 
-    /// The value of a design as a number to be made small.
+    /// The value of this objective for a design, negated for the lowest mode, so that smaller is always better.
     pub fn minimized(self, design: &Design) -> f64 {
         if self == Self::Mode { -self.of(design) } else { self.of(design) }
     }
 
-    /// Unit.
+    /// Unit of the objective.
     pub fn unit(self) -> &'static str {
         match self {
             Self::Deflection => "mm",
@@ -62,13 +62,13 @@ impl Objective {
         }
     }
 
-    /// A value with four digits and its unit.
+    /// A value with four significant digits and its unit.
     pub fn amount(self, value: f64) -> String {
         format!("{} {}", significant(value, 4), self.unit())
     }
 }
 
-/// The designs of a table; rows whose objectives are not finite numbers are left out.
+/// The designs of a table. Rows whose objectives are not finite numbers are left out.
 pub fn designs(front: &FrontTable) -> Vec<Design> {
     let [deflection, mass, mode] =
         ["tip_deflection_mm", "mass_kg", "lowest_mode_hz"].map(|c| front.numbers(c));
@@ -89,8 +89,8 @@ pub fn designs(front: &FrontTable) -> Vec<Design> {
         .collect()
 }
 
-/// The best design in one objective. Equals are told apart by the other objectives, then by cost
-/// (unknown last), then by name, so that the answer does not depend on the order of the rows.
+/// The best design in one objective. Designs with equal values are ranked by the other objectives, then by cost
+/// (unknown last), then by name. So the result does not depend on the order of the rows.
 pub fn best<'a>(objective: Objective, among: impl IntoIterator<Item = &'a Design>) -> Option<&'a Design> {
     among.into_iter().min_by(|a, b| better(objective, a, b))
 }
@@ -103,8 +103,8 @@ fn better(objective: Objective, a: &Design, b: &Design) -> Ordering {
     by(objective).then(others).then(cost(a).total_cmp(&cost(b))).then_with(|| name(a).cmp(&name(b)))
 }
 
-/// The knee: the design nearest to the ideal point (the best of every objective at once), distances
-/// measured in logarithms, each objective scaled by its range over the front.
+/// The knee: the design nearest to the ideal point, which has the best value of every objective on the front. Distances
+/// are measured in logarithms, and each objective is scaled by its range over the front.
 pub fn knee(designs: &[Design]) -> Option<&Design> {
     let scales = Objective::ALL.map(|o| Scale::of(o, designs));
     let distance = |d: &Design| scales.iter().map(|s| s.regret(d).powi(2)).sum::<f64>();
@@ -113,7 +113,7 @@ pub fn knee(designs: &[Design]) -> Option<&Design> {
         .min_by(|a, b| distance(a).total_cmp(&distance(b)).then_with(|| better(Objective::Mass, a, b)))
 }
 
-/// How an objective is spread over a front.
+/// The scale of an objective over a front: its best value and its range.
 struct Scale {
     objective: Objective,
     logarithmic: bool,
@@ -132,34 +132,37 @@ impl Scale {
         scale
     }
 
-    /// The objective, small is good; in logarithms where all are positive.
+    /// The value of the objective for a design, with the sign chosen so that smaller is better. It is the logarithm if
+    /// all values of the front are positive.
     fn value(&self, design: &Design) -> f64 {
         let value = self.objective.of(design);
         let value = if self.logarithmic { libm::log(value) } else { value };
         if self.objective == Objective::Mode { -value } else { value }
     }
 
-    /// Distance from the best, 0 to 1.
+    /// How far a design is from the best value of the objective, relative to the range over the front: 0 for the best
+    /// design, 1 for the worst.
     fn regret(&self, design: &Design) -> f64 {
         if self.range > 0.0 { (self.value(design) - self.ideal) / self.range } else { 0.0 }
     }
 }
 
-/// A design with the names of what it is picked for.
+/// A picked design.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pick {
-    /// What it is picked for: one or more of `lightest`, `stiffest`, `highest mode`, `knee`.
+    /// What the design is picked for: one or more of `lightest`, `stiffest`, `highest mode`, `knee`.
     pub names: Vec<&'static str>,
-    /// The design.
+    /// The design that is picked.
     pub design: Design,
 }
 
-/// The row and the names of each pick.
+/// For each pick, its row in the table and its names in one text.
 pub(crate) fn rows_and_names(picks: &[Pick]) -> Vec<(usize, String)> {
     picks.iter().map(|pick| (pick.design.row, pick.names.join(", "))).collect()
 }
 
-/// Lightest, stiffest, highest mode and knee; a design picked twice is listed once, with both names.
+/// The picks of a front: lightest, stiffest, highest mode and knee. A design that is picked twice is listed once,
+/// with both names.
 pub fn picks(designs: &[Design]) -> Vec<Pick> {
     let named = [
         ("lightest", best(Objective::Mass, designs)),
@@ -177,13 +180,14 @@ pub fn picks(designs: &[Design]) -> Vec<Pick> {
     out
 }
 
-/// The choices of a row in words, link by link and joint by joint as the columns come:
-/// `upper_arm 120 x 100 x 3 mm Aluminium 6061-T6`.
+/// The choices of a row in words, for each link and joint in the order of the columns: `upper_arm 120 x 100 x 3 mm
+/// Aluminium 6061-T6`.
 pub fn choices(front: &FrontTable, row: usize) -> Vec<String> {
     marked_choices(front, row, &Caveats::default())
 }
 
-/// [`choices`] with what is said beside their parts: `CFRP (representative)`, `F11-10 (from memory)`.
+/// The choices of a row in words, as [`choices`] gives them, with the caveats of their parts in brackets:
+/// `CFRP (representative)`, `F11-10 (from memory)`.
 pub fn marked_choices(front: &FrontTable, row: usize, caveats: &Caveats) -> Vec<String> {
     let cell = |name: &str| front.column(name).map(|c| front.rows[row][c].as_str()).filter(|c| !c.is_empty());
     let piece = |column: &String| {
@@ -196,7 +200,7 @@ pub fn marked_choices(front: &FrontTable, row: usize, caveats: &Caveats) -> Vec<
                     format!(" {}", tube_size(shape, [width, height, wall]))
                 }
                 [None, None, None] => String::new(),
-                // a table of another program may lack some of the columns
+                // a table that another program wrote may lack some of the columns
                 _ => format!(" {} mm", known.join(" x ")),
             };
             let profile = cell(&format!("{link}_profile")).and_then(|profile| caveats.of_part(profile));
@@ -212,7 +216,7 @@ pub fn marked_choices(front: &FrontTable, row: usize, caveats: &Caveats) -> Vec<
     front.columns.iter().filter_map(piece).collect()
 }
 
-/// The different link materials of a row, in the order of the links.
+/// The distinct link materials of a row, in the order of the links.
 pub fn materials(front: &FrontTable, row: usize) -> Vec<&str> {
     let mut out: Vec<&str> = Vec::new();
     for (index, _) in front.columns.iter().enumerate().filter(|(_, c)| c.ends_with("_material")) {
@@ -241,7 +245,8 @@ mod tests {
 
     #[test]
     fn the_knee_is_nearest_to_the_ideal_in_logarithms() {
-        // logs base 10: deflection 0..2, mass 0..2; b is at (0.5, 0.5), a and c in opposite corners
+        // logarithms base 10: deflection 0 to 2, mass 0 to 2. Design b is at (0.5, 0.5), a and c are far from the
+        // ideal point.
         let front =
             [design("a", 1.0, 100.0, 9.0), design("b", 3.162, 3.162, 9.0), design("c", 100.0, 1.0, 9.0)];
         assert_eq!(knee(&front).map(|d| d.design_id.as_str()), Some("b"));

@@ -1,9 +1,10 @@
-//! A pose in words.
+//! Poses in words.
 
 use super::number::shortest;
 use crate::arm::pose::{DrivenJoint, any_slides};
 
-/// A pose in words: `(0, -45, 90) deg`, or each joint with its entry and unit where one slides: `rail 250 mm, j2 30 deg`.
+/// A pose in words: `(0, -45, 90) deg`. If a joint of the arm slides, each joint is listed with its value and unit:
+/// `rail 250 mm, j2 30 deg`.
 pub(crate) fn pose_words(driven: &[DrivenJoint], pose: &[f64]) -> String {
     if !any_slides(driven) {
         let angles: Vec<String> = pose.iter().map(|angle| shortest(*angle)).collect();
@@ -15,7 +16,7 @@ pub(crate) fn pose_words(driven: &[DrivenJoint], pose: &[f64]) -> String {
     words.collect::<Vec<_>>().join(", ")
 }
 
-/// A pose in signs, `0°, -45°, 90°`, or in words where a joint slides.
+/// A pose with degree signs, `0°, -45°, 90°`. If a joint of the arm slides, [`pose_words`] is used.
 pub(crate) fn pose_signs(driven: &[DrivenJoint], pose: &[f64]) -> String {
     if any_slides(driven) {
         return pose_words(driven, pose);

@@ -1,14 +1,14 @@
-//! Gears that excite the arm: the input speed at which the two waves that a wave generator passes in each turn meet the
-//! lowest mode, and the picks that cruise near it.
+//! Warnings about gears that excite the arm. A wave generator passes two waves in each turn. At its critical speed,
+//! their frequency equals the lowest mode. Picks whose motors cruise near this speed are reported.
 
 use super::front_table::FrontTable;
 use super::number::significant;
 use super::picks::Pick;
 
-/// Relative distance from the critical speed below which cruising is warned of.
+/// A warning is given if the cruising speed is within this fraction of the critical speed.
 const NEAR: f64 = 0.15;
 
-/// Warnings for the picks of a front, one for each joint and speed, in words.
+/// Warnings for the picks of a front in words, one for each joint and pick near resonance.
 pub(crate) fn warnings(front: &FrontTable, picks: &[Pick]) -> Vec<String> {
     let joints = front.columns.iter().filter_map(|column| column.strip_suffix("_critical_rpm"));
     joints.flat_map(|joint| picks.iter().filter_map(move |pick| warning(front, joint, pick))).collect()

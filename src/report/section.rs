@@ -1,28 +1,28 @@
-//! A titled part of a page: paragraphs, tables, pictures.
+//! A section of a page, with a title, paragraphs, tables and pictures.
 
 use super::table::Table;
 use serde::Serialize;
 
-/// A picture with the numbers behind it.
+/// A picture, with the numbers behind it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Figure {
-    /// Name of its files, without ending.
+    /// Name of the picture's files, without ending.
     pub name: String,
-    /// What is said below it.
+    /// Caption below the picture.
     pub caption: String,
-    /// The picture.
+    /// The picture as SVG.
     pub svg: String,
-    /// The numbers behind it; empty if they stand in another file.
+    /// The numbers behind the picture as CSV; empty if they are in another file.
     pub csv: String,
 }
 
-/// A titled part of a page that another room fills: a stiffness budget, a certificate, a run with the
-/// corrected arm.
+/// A section of a page whose content comes from another folder of the source: a stiffness budget, a certificate, a
+/// run with the corrected arm.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PageSection {
-    /// Title.
+    /// Title of the section.
     pub title: String,
-    /// Paragraphs.
+    /// Paragraphs of text, at the beginning of the section.
     pub words: Vec<String>,
     /// Tables with their captions.
     pub tables: Vec<(String, Table)>,

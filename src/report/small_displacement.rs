@@ -1,17 +1,18 @@
-//! The warning where the tip moves too far for the model, which is linear about the undeformed pose.
+//! The warning that the tip moves too far for the model, which is linear about the undeformed pose.
 //!
-//! *The limit.* Where an arm yields by an angle θ, its loads get other levers. If an arm points by an angle φ above the
-//! horizontal, the lever of its load changes by the fraction `θ tan φ`, and the deflection changes with it. A tip that moves
-//! by 5 % of the reach has turned by θ = 0.05. The linear deflection is then off by 5 % at 45 degrees, and by 0.1 % for a
-//! horizontal arm, whose lever changes by the fraction `θ²/2`.
+//! *The limit.* If elastic deformation turns a part of the arm by an angle θ, the lever arms of its loads change.
+//! If an arm points by an angle φ above the horizontal, the lever of its load changes by the fraction `θ tan φ`,
+//! and the deflection changes with it. A tip that moves by 5 % of the reach has turned by θ = 0.05. The error of
+//! the linear deflection is then 5 % at 45 degrees. It is 0.1 % for a horizontal arm, whose lever changes by the
+//! fraction `θ²/2`.
 
 use super::number::{fixed, percent, significant};
 
-/// A tip that moves by more than this fraction of the arm's reach moves too far.
+/// Largest tip displacement, as a fraction of the arm's reach, for which no warning is given.
 pub(crate) const SMALL_PART: f64 = 0.05;
 
-/// The warning for a tip displacement, in words that continue "the tip"; `None` if the displacement is small, or if the arm has
-/// no reach: what slides alone moves without turning.
+/// The warning for a tip displacement, in words that continue "the tip". `None` if the displacement is small, or if
+/// the arm has no reach: an arm with prismatic joints only moves without turning.
 pub(crate) fn too_far(tip_m: f64, reach_m: f64) -> Option<String> {
     (reach_m > 0.0 && tip_m > SMALL_PART * reach_m).then(|| {
         format!(
@@ -37,11 +38,12 @@ mod tests {
         assert_eq!(too_far(0.04, 1.0), None);
     }
 
-    /// A load on a lever of 1 m at an angle above the horizontal, on a spring: the turn by the linear model, and the
-    /// turn at which the spring balances the load.
+    /// The rotation \[rad\] of a spring that holds a load on a lever of 1 m at an angle above the horizontal. The first
+    /// number is from the linear model; the second is the rotation at which the spring balances the load on the rotated
+    /// lever.
     fn turns_rad(compliance_rad: f64, above_rad: f64) -> [f64; 2] {
         let mut turn_rad = 0.0;
-        // a fixed point: the spring turns by the torque on the lever that it has turned
+        // a fixed-point iteration: the torque follows from the rotated lever
         for _ in 0..200 {
             turn_rad = compliance_rad * libm::cos(above_rad - turn_rad);
         }

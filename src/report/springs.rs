@@ -1,4 +1,4 @@
-//! The springs of an arm in a pose, as JSON and as text.
+//! The balance springs of an arm in a pose, as JSON and as text.
 
 use crate::arm::load::LoadCase;
 use crate::arm::springs::Drawn;
@@ -6,13 +6,13 @@ use crate::mechanics::chain::Chain;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// The springs of an arm in the pose of a case, each with its name.
+/// The balance springs of an arm in the pose of a case, each with its name.
 pub(crate) fn springs_in(chain: &Chain, case: &LoadCase) -> Vec<(String, Drawn)> {
     let pose_rad = chain.pose_si(&case.pose_deg);
     chain.springs_in(&pose_rad).into_iter().map(|(name, drawn)| (name.to_string(), drawn)).collect()
 }
 
-/// A spring as `armwright analyze --json` prints it.
+/// A spring with its forces, as `armwright analyze --json` prints it.
 pub(super) fn spring_json((name, drawn): &(String, Drawn)) -> Value {
     match drawn {
         Drawn::Line { length_m, force_n, .. } => {
@@ -22,7 +22,7 @@ pub(super) fn spring_json((name, drawn): &(String, Drawn)) -> Value {
     }
 }
 
-/// Adds the springs, and what is left out of them, to a text; nothing without springs.
+/// Adds a table of the springs and a note on what the model leaves out. Adds nothing if there are no springs.
 pub(super) fn springs_text(springs: &[(String, Drawn)], out: &mut String) {
     if springs.is_empty() {
         return;

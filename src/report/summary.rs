@@ -1,4 +1,4 @@
-//! What a finished study found: the question, the answer in two sentences, picks, materials, counts.
+//! The summary of a finished study: the question, the answer in two sentences, picks, materials and counts.
 
 use super::budget::{PickBudget, budget_markdown, budget_text};
 use super::certificate::gap_words;
@@ -13,25 +13,25 @@ use super::resonance::warnings;
 use super::table::{Column, Table};
 use super::words::{TERMINAL, and, capital, wrap};
 
-/// Height of a small plot \[characters\].
+/// Height of the small plots on the terminal \[lines\].
 const PLOT_ROWS: usize = 8;
 
-/// The front of one material's designs.
+/// The front of the designs of one material.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MaterialFront {
-    /// Whether designs that differ only in drives of equal mass and curve are all in it.
+    /// Whether all designs are listed that differ only in drives of equal mass and torsion curve.
     pub ties_listed: bool,
     /// Name of the material.
     pub name: String,
-    /// Cost of the raw material \[EUR/kg\]; `None` = unknown.
+    /// Cost of the raw material \[EUR/kg\]; `None` if it is unknown.
     pub cost_eur_per_kg: Option<f64>,
-    /// How its search ended: complete, certified, partial or infeasible.
+    /// How the search of this material's front ended: complete, certified, partial or infeasible.
     pub status: String,
-    /// The front of the designs whose links are all of it.
+    /// The front of the designs whose links are all of this material.
     pub front: FrontTable,
 }
 
-/// Everything a summary says.
+/// All inputs of a summary.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SummaryInput {
     /// Facts of the run.
@@ -40,7 +40,7 @@ pub struct SummaryInput {
     pub overall: FrontTable,
     /// Front of each material, in the study's order.
     pub materials: Vec<MaterialFront>,
-    /// What one more kilogram buys in each pick, and how light it could be.
+    /// The stiffness budget and the lower bound on mass of each pick.
     pub budgets: Vec<PickBudget>,
 }
 
@@ -142,18 +142,18 @@ pub fn terminal_summary(input: &SummaryInput) -> String {
     out
 }
 
-/// The answer in two sentences.
+/// The answer to the study's question in two sentences.
 pub fn answer_words(input: &SummaryInput) -> String {
     answer(input, &Found::of(input))
 }
 
-/// The materials side by side: size of each front, the best of each, share of the whole front.
+/// A table of the materials side by side: size of each front, its best values, and its share of the whole front.
 pub fn materials_side_by_side(input: &SummaryInput) -> Table {
     let names: Vec<String> = input.materials.iter().map(|m| m.name.clone()).collect();
     materials_table(input, &names, MARKDOWN_MATERIALS)
 }
 
-/// The front in two small plots, tip deflection and lowest mode over mass.
+/// The front in two small plots for the terminal: tip deflection and lowest mode, both over mass.
 fn small_plots(designs: &[Design]) -> String {
     let plot = |title: &str, over: Objective| {
         let points: Vec<(f64, f64)> = designs.iter().map(|d| (d.mass_kg, over.of(d))).collect();
@@ -164,7 +164,7 @@ fn small_plots(designs: &[Design]) -> String {
     super::braille::beside(&left, &right, TERMINAL / 2)
 }
 
-/// What the fronts say.
+/// The designs of the front and the picks among them.
 struct Found {
     designs: Vec<Design>,
     picks: Vec<Pick>,
@@ -176,16 +176,16 @@ impl Found {
         Self { picks: picks(&designs), designs }
     }
 
-    /// The design that examples take out: the knee.
+    /// The pick that examples of commands use: the knee.
     fn default_pick(&self) -> Option<&Pick> {
         self.picks.iter().find(|p| p.names.contains(&"knee"))
     }
 }
 
-/// What stands around the timing, so that the rest can be compared from run to run.
+/// Marks before and after the timing, so that the rest can be compared between runs.
 const TIMING: [&str; 2] = ["<!-- timing -->", "<!-- /timing -->"];
 
-/// The answer in two sentences.
+/// The answer to the study's question in two sentences.
 fn answer(input: &SummaryInput, found: &Found) -> String {
     let facts = &input.facts;
     let Some(knee) = knee(&found.designs) else {
@@ -209,7 +209,8 @@ fn answer(input: &SummaryInput, found: &Found) -> String {
     format!("{caution}{} {}", winners(input, found), compromise(input, found, knee))
 }
 
-/// `A gives the lightest arm (31 kg); B the stiffest (0.8 mm) and the highest mode (40 Hz).`
+/// The materials with the best value of each objective: `A gives the lightest arm (31 kg); B the stiffest (0.8 mm)
+/// and the highest mode (40 Hz).`
 fn winners(input: &SummaryInput, found: &Found) -> String {
     let sought = [
         (Objective::Mass, "the lightest arm"),
@@ -251,7 +252,7 @@ fn compromise(input: &SummaryInput, found: &Found, knee: &Design) -> String {
     out + "."
 }
 
-/// How many designs of the overall front are of each material, and how many are mixed.
+/// For each single material, and for mixed materials, the number of designs of the overall front that consist of it.
 fn owners(input: &SummaryInput) -> Vec<(String, usize)> {
     let of_row: Vec<Vec<&str>> =
         (0..input.overall.rows.len()).map(|r| materials(&input.overall, r)).collect();
@@ -262,8 +263,8 @@ fn owners(input: &SummaryInput) -> Vec<(String, usize)> {
     out
 }
 
-/// The materials a design may be of alone: those with a front of their own, or, where the search made no such
-/// fronts, those of the designs found.
+/// The materials of which a whole design can consist. If the search made a front for each material, these
+/// materials; otherwise those of the designs found.
 pub fn single_materials(input: &SummaryInput) -> Vec<&str> {
     if !input.materials.is_empty() {
         return input.materials.iter().map(|m| m.name.as_str()).collect();
@@ -322,7 +323,7 @@ const MARKDOWN_MATERIALS: [&str; 7] = [
 const TERMINAL_MATERIALS: [&str; 7] =
     ["material", "front", "least kg", "least mm", "most Hz", "share", "EUR/kg"];
 
-/// One row a material; the last row is what mixing adds to the whole front.
+/// A table with one row per material. The last row is for designs of mixed materials.
 fn materials_table(input: &SummaryInput, names: &[String], headers: [&str; 7]) -> Table {
     let columns =
         headers.iter().enumerate().map(|(i, h)| if i < 1 { Column::left(h) } else { Column::right(h) });
@@ -351,7 +352,7 @@ fn material_cells(name: &str, front: &[Design], share: String, cost: String) -> 
     head.into_iter().chain(reach).chain([share, cost]).collect()
 }
 
-/// How many other designs have the same objectives.
+/// Words that say how many other designs have the same objectives as the pick; empty if there are none.
 fn ties(pick: &Pick, designs: &[Design]) -> String {
     let same = |d: &&Design| Objective::ALL.iter().all(|o| o.of(d) == o.of(&pick.design));
     match designs.iter().filter(same).count() {
@@ -361,7 +362,7 @@ fn ties(pick: &Pick, designs: &[Design]) -> String {
     }
 }
 
-/// Designs total, evaluated, excluded.
+/// Total number of designs, and how many were evaluated and excluded, in words.
 fn counts(facts: &SummaryFacts) -> String {
     if ["certified", "partial"].contains(&facts.status.as_str()) {
         return format!(
@@ -380,7 +381,7 @@ fn counts(facts: &SummaryFacts) -> String {
     )
 }
 
-/// Number of designs, time and rate. Everything else in a summary is the same for each run of a study.
+/// Number of designs, duration and rate, in words. Everything else in a summary is the same in each run of a study.
 pub fn timing_words(facts: &SummaryFacts) -> String {
     let threads = match facts.threads {
         0 => String::new(),
@@ -396,7 +397,7 @@ pub fn timing_words(facts: &SummaryFacts) -> String {
     format!("{} designs in {elapsed} s{threads}{rate}", large(facts.designs_total))
 }
 
-/// The commands that take a design out and analyse it, one a line.
+/// The commands that extract a pick and analyse it, one per line.
 fn commands(facts: &SummaryFacts, pick: &Pick) -> String {
     let (results, id) = (&facts.results, &pick.design.design_id);
     let dir = format!("{results}/design-{id}");

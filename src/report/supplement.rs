@@ -1,25 +1,25 @@
-//! What goes with a front beyond its own table: a list, its words and its facts, in one shape for all of them.
+//! The form that all additions to a front have: a file, a section, facts.
 
 use super::section::PageSection;
 use serde_json::Value;
 
-/// One addition to a result: designs near the front, ties, the front under scatter. Each part may be absent.
+/// One addition to a result: designs near the front, ties, the front under scatter. Each part of it may be absent.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Supplement {
-    /// Name and content of its file, beside `front.csv`.
+    /// Name and content of the file that is written next to `front.csv`.
     pub file: Option<(&'static str, Vec<u8>)>,
-    /// Its section of `summary.md`.
+    /// The section of `summary.md`.
     pub markdown: String,
-    /// Its section of the page.
+    /// The section of the page.
     pub section: Option<PageSection>,
-    /// Its key in `run.json` and what stands there.
+    /// Key and value that are added to `run.json`.
     pub run: Option<(&'static str, Value)>,
-    /// Its paragraph for the terminal.
+    /// The paragraph for the terminal.
     pub terminal: String,
 }
 
 impl Supplement {
-    /// A fact for `run.json` alone: there is nothing to list.
+    /// An addition that consists of one entry of `run.json` and nothing else.
     pub fn fact(key: &'static str, value: Value) -> Self {
         Self { run: Some((key, value)), ..Self::default() }
     }

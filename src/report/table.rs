@@ -2,21 +2,21 @@
 
 use super::number::significant;
 
-/// On which side a column's cells stand.
+/// The side on which the cells of a column are aligned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Align {
-    /// Words.
+    /// At the left, for words.
     Left,
-    /// Numbers.
+    /// At the right, for numbers.
     Right,
 }
 
-/// One column.
+/// One column of a table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Column {
-    /// What the column holds, with the unit in brackets where it has one: `mass [kg]`.
+    /// Name of the column's content, with the unit in brackets if it has one: `mass [kg]`.
     pub header: String,
-    /// Side of the cells.
+    /// Side on which the cells are aligned.
     pub align: Align,
 }
 
@@ -37,7 +37,7 @@ impl Column {
     }
 }
 
-/// Rows of text under columns.
+/// A table of text cells.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Table {
     columns: Vec<Column>,
@@ -50,14 +50,14 @@ impl Table {
         Self { columns, rows: Vec::new() }
     }
 
-    /// Adds a row; missing cells are blank, further ones are left out.
+    /// Adds a row. Missing cells are blank, surplus cells are dropped.
     pub fn row(&mut self, cells: impl IntoIterator<Item = impl Into<String>>) {
         let mut row: Vec<String> = cells.into_iter().map(Into::into).collect();
         row.resize(self.columns.len(), String::new());
         self.rows.push(row);
     }
 
-    /// A table from CSV text; columns of which every cell is a number or blank stand at the right.
+    /// A table from CSV text. A column is aligned at the right if all of its cells are numbers or blank.
     pub fn from_csv(text: &str) -> Self {
         let mut reader = csv::Reader::from_reader(text.as_bytes());
         let headers: Vec<String> =
@@ -74,7 +74,7 @@ impl Table {
         table
     }
 
-    /// The same with no number of more than so many digits, for people: whole numbers stay.
+    /// This table with numbers rounded to at most `digits` significant digits. Whole numbers are not changed.
     #[must_use]
     pub fn rounded(mut self, digits: usize) -> Self {
         for cell in self.rows.iter_mut().flatten() {
@@ -88,17 +88,18 @@ impl Table {
         self
     }
 
-    /// The columns.
+    /// The columns of the table.
     pub fn columns(&self) -> &[Column] {
         &self.columns
     }
 
-    /// The rows so far.
+    /// The rows that have been added.
     pub fn rows(&self) -> &[Vec<String>] {
         &self.rows
     }
 
-    /// Aligned text with a rule under the header, two blanks between columns, no blanks at line ends.
+    /// The table as aligned text, with a rule under the header, two blanks between columns and no blanks at line
+    /// ends.
     pub fn to_text(&self) -> String {
         let widths = self.widths(|cell| cell.to_string());
         let headers: Vec<String> = self.columns.iter().map(|c| c.header.clone()).collect();
@@ -107,7 +108,7 @@ impl Table {
         lines.map(|cells| format!("{}\n", self.line(cells, &widths, "  ").trim_end())).collect()
     }
 
-    /// A Markdown table whose source is aligned too.
+    /// The table in Markdown. The source text is aligned too.
     pub fn to_markdown(&self) -> String {
         let widths: Vec<usize> = self.widths(escape_markdown).iter().map(|w| (*w).max(3)).collect();
         let headers: Vec<String> = self.columns.iter().map(|c| escape_markdown(&c.header)).collect();
@@ -129,7 +130,7 @@ impl Table {
             .collect()
     }
 
-    /// CSV with the headers as they are; cells are quoted where they must be.
+    /// The table as CSV. Cells are quoted only if necessary.
     pub fn to_csv(&self) -> String {
         let headers: Vec<String> = self.columns.iter().map(|c| c.header.clone()).collect();
         std::iter::once(&headers).chain(&self.rows).map(|cells| csv_line(cells)).collect()

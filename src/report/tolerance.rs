@@ -1,5 +1,5 @@
-//! The front under scatter of the catalog ratings: how often a design stays on the front, how often a pick
-//! stays the pick, and what takes its place.
+//! The front under scatter of the catalog ratings: how often a design stays on the front, how often a pick is still
+//! picked, and which design replaces it.
 
 use super::number::{percent_short, shortest, significant};
 use super::picks::{Design, Objective};
@@ -9,52 +9,53 @@ use super::table::{Column, Table, csv_line};
 use super::words::{TERMINAL, wrap};
 use serde_json::{Value, json};
 
-/// Name of the file that lists every design.
+/// Name of the file that lists the results of every design.
 pub const FILE: &str = "tolerance.csv";
-/// Key in `run.json`.
+/// Key of these results in `run.json`.
 pub const KEY: &str = "tolerance";
 
 /// What a design may be picked for, in the order of [`Fate::picked`].
 pub const PICKS: [&str; 4] = ["lightest", "stiffest", "highest mode", "knee"];
-/// Shares of the samples that lie below the values that are given, in percent.
+/// Percentiles of the objectives that are given \[%\].
 pub const PERCENTILES: [u32; 3] = [5, 50, 95];
 
-/// One design of the front over all samples.
+/// The results of one design of the front over all samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fate {
-    /// The design with its catalog ratings.
+    /// The design, with its objectives by the catalog ratings.
     pub design: Design,
-    /// The picks it is with its catalog ratings.
+    /// What the design is picked for with the catalog ratings.
     pub picks: Vec<&'static str>,
-    /// Samples in which it is on the front.
+    /// Number of samples in which the design is on the front.
     pub on_front: u32,
-    /// Samples in which it keeps the limits on deflection, mass and lowest mode.
+    /// Number of samples in which the design meets the limits on deflection, mass and lowest mode.
     pub keeps_limits: u32,
-    /// Samples in which it is each of [`PICKS`].
+    /// Number of samples in which the design is picked, for each of [`PICKS`].
     pub picked: [u32; 4],
-    /// [`PERCENTILES`] of tip deflection \[mm\], mass \[kg\] and lowest mode \[Hz\], of a pick alone.
+    /// [`PERCENTILES`] of tip deflection \[mm\], mass \[kg\] and lowest mode \[Hz\]; `None` for a design that is no
+    /// pick.
     pub percentiles: Option<[[f64; 3]; 3]>,
 }
 
-/// A front under scatter.
+/// The results of a front under scatter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scattered {
-    /// The scatter in words: `gear_stiffness 20 %`.
+    /// The scatter of each kind of rating, in words: `gear_stiffness 20 %`.
     pub words: Vec<String>,
-    /// The scatter by name, as a part.
+    /// The scatter of each kind of rating: its name, and the scatter as a fraction.
     pub parts: Vec<(&'static str, f64)>,
-    /// Samples taken.
+    /// Number of samples.
     pub samples: u32,
-    /// Seed of the samples.
+    /// Seed of the random numbers.
     pub seed: u64,
-    /// Samples in which no design keeps the limits.
+    /// Number of samples in which no design of the front meets the limits.
     pub without_design: u32,
-    /// Every design of the front, lightest first.
+    /// The results of every design of the front, lightest first.
     pub fates: Vec<Fate>,
 }
 
 impl Scattered {
-    /// One row a design of the front.
+    /// The results of the front under scatter as CSV, one row per design of the front.
     pub fn to_csv(&self) -> String {
         let mut columns = vec![
             "design_id".to_string(),
@@ -79,7 +80,8 @@ impl Scattered {
         std::iter::once(csv_line(&columns)).chain(self.fates.iter().map(row)).collect()
     }
 
-    /// Each pick: how often it is on the front, how often it is still the pick, and what its objectives are.
+    /// A table of the picks: how often each is on the front, how often it is still picked, and the range of its
+    /// objectives.
     pub fn table(&self) -> Table {
         let mut table = Table::new(vec![
             Column::left("pick"),
@@ -107,7 +109,7 @@ impl Scattered {
         table
     }
 
-    /// Sentences: what was sampled, what takes a pick's place, how much of the front stays.
+    /// The results in sentences: what was sampled, which designs replace a pick, how much of the front stays.
     pub fn sentences(&self) -> Vec<String> {
         let mut out = vec![format!(
             "{} samples (seed {}) of {}; 95 % of the rows' true ratings are taken to lie within that scatter.",
@@ -135,7 +137,7 @@ impl Scattered {
         out
     }
 
-    /// All that a result says of it.
+    /// All outputs of these results: file, sections, facts and words for the terminal.
     pub fn supplement(&self) -> Supplement {
         let sentences: String = self.sentences().iter().map(|s| wrap(s, TERMINAL, "")).collect();
         Supplement {
@@ -147,7 +149,7 @@ impl Scattered {
         }
     }
 
-    /// The section of a page.
+    /// The results of the front under scatter, as a section of the page.
     pub fn section(&self) -> PageSection {
         let mut words = self.sentences();
         words.push("Parts are not sized again, and only designs of this front are compared.".into());
@@ -159,7 +161,7 @@ impl Scattered {
         }
     }
 
-    /// The section of a summary.
+    /// The results of the front under scatter, as a section of `summary.md`.
     pub fn to_markdown(&self) -> String {
         let lines: Vec<String> = self.sentences().iter().map(|s| format!("- {s}\n")).collect();
         format!(
@@ -169,7 +171,7 @@ impl Scattered {
         )
     }
 
-    /// What `run.json` says of it.
+    /// The results of the front under scatter, as an entry of `run.json`.
     pub fn to_json(&self) -> Value {
         let scatter: serde_json::Map<String, Value> =
             self.parts.iter().map(|(name, part)| ((*name).to_string(), json!(part))).collect();
@@ -186,14 +188,15 @@ impl Scattered {
         json!({"scatter": scatter, "samples": self.samples, "seed": self.seed, "picks": picks})
     }
 
-    /// Every pick by its index in [`PICKS`], with the design that it is by the catalog ratings.
+    /// For every pick, its index in [`PICKS`] and the design that is picked with the catalog ratings.
     fn picks(&self) -> impl Iterator<Item = (usize, &Fate)> {
         PICKS.iter().enumerate().filter_map(|(name, word)| {
             Some((name, self.fates.iter().find(|fate| fate.picks.contains(word))?))
         })
     }
 
-    /// Which designs take a pick's place, most often first.
+    /// A sentence that names the designs that replace the pick with the index `name` in some samples, most often first.
+    /// `fate` is the design that is picked with the catalog ratings. `None` if no design replaces it.
     fn displaced(&self, name: usize, fate: &Fate) -> Option<String> {
         let mut others: Vec<&Fate> =
             self.fates.iter().filter(|f| f.picked[name] > 0 && f.design.row != fate.design.row).collect();
@@ -217,7 +220,7 @@ impl Scattered {
     }
 }
 
-/// The value below which a share of sorted values lies, between neighbours in proportion.
+/// The value below which `percent` percent of the values in `sorted` lie. Between two values it is interpolated.
 pub fn percentile(sorted: &[f64], percent: u32) -> f64 {
     let place = f64::from(percent) / 100.0 * (sorted.len().saturating_sub(1)) as f64;
     let below = place.floor() as usize;
@@ -225,7 +228,8 @@ pub fn percentile(sorted: &[f64], percent: u32) -> f64 {
     sorted[below] + (place - below as f64) * (sorted[above] - sorted[below])
 }
 
-/// [`PERCENTILES`] of tip deflection \[mm\], mass \[kg\] and lowest mode \[Hz\].
+/// [`PERCENTILES`] of tip deflection \[mm\], mass \[kg\] and lowest mode \[Hz\] of a design over `samples`, its
+/// objectives in each sample.
 pub fn percentiles(samples: &[Design]) -> [[f64; 3]; 3] {
     Objective::ALL.map(|objective| {
         let mut values: Vec<f64> = samples.iter().map(|d| objective.of(d)).collect();

@@ -1,9 +1,9 @@
-//! The size of a section in words: a round one has one diameter and is never written like a square one, a bar has no wall.
+//! The size of a section in words. A round section is written with one diameter, and a bar without a wall.
 
 use crate::arm::section::Section;
 
-/// Outer size and wall of a section, `60 x 40 x 2 mm`, `Ø60 x 2 mm` or `60 x 40 mm bar`; the numbers are written by the
-/// caller, in millimetres: width, height, wall. `shape` is the word that files use ([`Section::shape`]).
+/// Outer size and wall of a section: `60 x 40 x 2 mm`, `Ø60 x 2 mm` or `60 x 40 mm bar`. The numbers are texts in
+/// millimetres: width, height, wall. `shape` is the name of the shape in files ([`Section::shape`]).
 pub(crate) fn tube_size(shape: &str, [width, height, wall]: [&str; 3]) -> String {
     if matches!(shape, "i_beam" | "stated") {
         return format!("{width} x {height} mm {}", if shape == "stated" { "as stated" } else { "I" });
@@ -16,7 +16,8 @@ pub(crate) fn tube_size(shape: &str, [width, height, wall]: [&str; 3]) -> String
     }
 }
 
-/// [`tube_size`] of a section; `outer` and `wall` write a length given in metres as millimetres.
+/// Outer size and wall of a section in words, as [`tube_size`] writes them. `outer` and `wall` convert a length in
+/// metres to a text in millimetres.
 pub(crate) fn section_size(
     section: &Section,
     outer: impl Fn(f64) -> String,

@@ -1,21 +1,24 @@
-//! Files that appear as a whole or not at all: written beside their place, synced to the disk, renamed into it.
+//! Files that are written completely or not at all. Each is written under a temporary name in the same folder,
+//! synced to the disk and then renamed.
 //!
-//! Every change that the program makes to a disk goes through the functions of this file. In builds with debug assertions
-//! a test can stop the program, or fill its disk, at any one of them: `ARMWRIGHT_FAULT=kill:7` ends the process at the
-//! seventh, `ARMWRIGHT_FAULT=full:7` lets every writing from the seventh on fail.
+//! Every change of the disk by the program goes through the functions of this file. In builds with debug assertions
+//! a test can stop the program, or simulate a full disk, at any of these changes. `ARMWRIGHT_FAULT=kill:7` ends the
+//! process at the seventh change. `ARMWRIGHT_FAULT=full:7` lets every write fail from the seventh change on.
 
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// How the names of temporary files begin and end.
+/// Beginning and end of the names of temporary files.
 const TEMPORARY: [&str; 2] = [".armwright-", ".tmp"];
-/// A temporary file that is older and that no process has locked was left behind.
+/// A temporary file is removed if it is older than this and no process has locked it. A process that was stopped
+/// has left it.
 const LEFT_BEHIND_AFTER: Duration = Duration::from_secs(10);
 
-/// Replaces a file: a reader sees the old one or the new one, and a fault leaves the old one. Permissions are those of
-/// any new file (`umask`). A symbolic link at the path is replaced and not followed.
+/// Replaces a file as a whole: a reader sees either the old or the new content, and after a fault the old one is
+/// still there. Permissions are those of any new file (`umask`). A symbolic link at the path is replaced and not
+/// followed.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -28,7 +31,8 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     builder.prefix(prefix).suffix(suffix);
     as_any_new_file(&mut builder);
     let mut file = builder.tempfile_in(&folder)?;
-    // a lock tells others that the file is in use; where there are no locks its age does
+    // the lock tells other processes that the file is in use; where locks do not exist, they go by the age of the
+    // file
     let _ = file.as_file().try_lock();
     file.write_all(bytes)?;
     file.as_file().sync_all()?;
@@ -37,18 +41,19 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     sync_folder(&folder)
 }
 
-/// Temporary files are private to their owner; results are as public as the user's other files.
+/// Sets the permissions. Temporary files are otherwise private to their owner, but results should be as readable as
+/// other files of the user.
 #[cfg(unix)]
 fn as_any_new_file(builder: &mut tempfile::Builder) {
     use std::os::unix::fs::PermissionsExt;
-    // the system takes the bits of umask away
+    // the operating system removes the bits of umask
     builder.permissions(std::fs::Permissions::from_mode(0o666));
 }
 
 #[cfg(not(unix))]
 fn as_any_new_file(_: &mut tempfile::Builder) {}
 
-/// The folder that a file is in.
+/// The folder that contains a file.
 pub(crate) fn folder_of(path: &Path) -> PathBuf {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder.to_path_buf(),
@@ -56,7 +61,7 @@ pub(crate) fn folder_of(path: &Path) -> PathBuf {
     }
 }
 
-/// Removes temporary files that a stopped process left in a folder.
+/// Removes temporary files that a stopped process has left in a folder.
 fn sweep(folder: &Path) {
     temporaries(folder).into_iter().filter(|path| is_left_behind(path)).for_each(|path| {
         let _ = std::fs::remove_file(path);
@@ -88,16 +93,16 @@ fn is_left_behind(path: &Path) -> bool {
         && !matches!(file.try_lock(), Err(std::fs::TryLockError::WouldBlock))
 }
 
-/// Makes a folder and its parents.
+/// Creates a folder and its parents.
 ///
 /// # Errors
-/// It cannot be made, or there is a file of this name.
+/// The folder cannot be created, or a file has this name.
 pub(crate) fn create_folder(folder: &Path) -> io::Result<()> {
     fault(Step::Change)?;
     fs_err::create_dir_all(folder)
 }
 
-/// Writes a new file and syncs it to the disk. It is not at its place yet.
+/// Writes a new file under a temporary name and syncs it to the disk. The caller renames it afterwards.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -108,28 +113,28 @@ pub(crate) fn write_staged(path: &Path, bytes: &[u8]) -> io::Result<()> {
     file.sync_all()
 }
 
-/// Gives a file or folder another name.
+/// Renames a file or folder.
 ///
 /// # Errors
-/// It cannot be renamed.
+/// The file or folder cannot be renamed.
 pub(crate) fn rename(from: &Path, to: &Path) -> io::Result<()> {
     fault(Step::Change)?;
     fs_err::rename(from, to)
 }
 
-/// Removes a file; a symbolic link is removed and not followed.
+/// Removes a file. A symbolic link is removed and not followed.
 ///
 /// # Errors
-/// It cannot be removed.
+/// The file cannot be removed.
 pub(crate) fn remove_file(path: &Path) -> io::Result<()> {
     fault(Step::Change)?;
     fs_err::remove_file(path)
 }
 
-/// Writes to the disk which names a folder holds. Only Unix systems can.
+/// Syncs the list of names in a folder to the disk. Only Unix systems can do this; on others nothing happens.
 ///
 /// # Errors
-/// The disk cannot be written.
+/// The folder cannot be synced.
 pub(crate) fn sync_folder(folder: &Path) -> io::Result<()> {
     fault(Step::Change)?;
     match cfg!(unix) {
@@ -138,16 +143,16 @@ pub(crate) fn sync_folder(folder: &Path) -> io::Result<()> {
     }
 }
 
-/// What is about to be done to the disk.
+/// Kind of the next change of the disk.
 #[derive(Clone, Copy, PartialEq)]
 enum Step {
-    /// Needs space.
+    /// A change that needs space on the disk.
     Write,
-    /// Needs none.
+    /// A change that needs no space.
     Change,
 }
 
-/// Stops the program, or reports a full disk, where a test wants it.
+/// Ends the process or reports a full disk, if a test asks for it at this change.
 #[cfg(debug_assertions)]
 fn fault(step: Step) -> io::Result<()> {
     use std::sync::atomic::{AtomicU64, Ordering};

@@ -1,10 +1,10 @@
-//! Sentences: broken into lines, joined by "and", begun with a capital letter.
+//! Functions for sentences: breaking into lines, joining with "and", capital letters.
 
-/// Width of a terminal \[characters\].
+/// Width of a terminal for which text is wrapped \[characters\].
 pub(crate) const TERMINAL: usize = 80;
 
-/// Breaks words into lines of at most `width` characters, each beginning with `lead`; a number and its
-/// unit stay together.
+/// Breaks text into lines of at most `width` characters. Each line begins with `lead`. A number and its unit stay
+/// on the same line.
 pub(crate) fn wrap(words: &str, width: usize, lead: &str) -> String {
     let mut lines: Vec<String> = Vec::new();
     for word in bound(words) {
@@ -19,7 +19,7 @@ pub(crate) fn wrap(words: &str, width: usize, lead: &str) -> String {
     lines.iter().map(|l| format!("{l}\n")).collect()
 }
 
-/// Words, with units bound to the numbers before them.
+/// The words of a text. A unit is joined to the number before it.
 fn bound(words: &str) -> Vec<String> {
     const UNITS: [&str; 5] = ["%", "mm", "kg", "Hz", "EUR"];
     let mut out: Vec<String> = Vec::new();
@@ -36,13 +36,13 @@ fn bound(words: &str) -> Vec<String> {
     out
 }
 
-/// The text with a capital first letter.
+/// The text with its first letter in upper case.
 pub(crate) fn capital(text: &str) -> String {
     let mut chars = text.chars();
     chars.next().map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
 }
 
-/// The words as a list: `steel`, `steel and titanium`, `steel, titanium and CFRP`.
+/// The words joined as a list: `steel`, `steel and titanium`, `steel, titanium and CFRP`.
 pub(crate) fn and(words: &[impl AsRef<str>]) -> String {
     match words {
         [] => String::new(),

@@ -1,45 +1,57 @@
-//! Eight arms side by side, as pieces are added from the row level to the base.
+//! Eight partial arms, whose numbers stand next to each other in memory, while slots (places of a part) are added from
+//! the row level to the base.
 
 use super::row::hinge_numbers;
 use crate::mechanics::lanes::{Eight, LANES};
 use crate::pareto::objectives::Objectives;
 use crate::space::problem::ArmProblem;
 
-/// Eight arms as they grow inward.
+/// Eight partial arms, to which the inner slots (places of a part, from the row level to the base) are added one after
+/// another.
 ///
 /// Eight numbers that are loaded together must also be stored together. Partial stores would defeat store-to-load
 /// forwarding: the processor would wait until they have reached the cache.
 pub(crate) struct EightArms {
-    /// One bit for each arm that holds so far.
+    /// Bit mask, one bit per arm: the arms that have met every limit checked so far.
     pub held: u8,
-    /// If none holds: how many of the drives chosen inboard of the row level were added before that showed.
+    /// If no arm is left in `held`: number of the drives chosen inboard of the row level that had been added when the
+    /// last arm failed. The other rows that begin with the same drives fail too, so the sweep skips them.
     pub failed_with: usize,
+    /// Mass of each arm, summed over the slots added so far \[kg\].
     pub mass_kg: Eight,
-    /// Mass of the drive in each inner slot. The masses of given drives are set from the beginning.
+    /// Mass \[kg\] of the drive in each inner slot (the slots from the row level to the base). The masses of given
+    /// drives are set from the beginning.
     pub masses_kg: Vec<Eight>,
-    /// Largest part of Dunkerley's sums that a single joint adds \[s²\]. The lowest eigenvalue is at most its reciprocal.
+    /// The largest single term of Dunkerley's sums (each the sum of `1/λ` over the eigenvalues of a block) that one
+    /// joint or one tube coordinate adds \[s²\]. The lowest eigenvalue is at most the reciprocal of this term.
     pub largest_s2: Eight,
+    /// The eight arms in each case.
     pub cases: Vec<CaseArms>,
-    /// Objectives of the finished arms.
+    /// Tip deflection of the complete arms \[m\], the largest over the judged cases.
     pub tip_deflection_m: Eight,
+    /// Lowest mode of the complete arms \[Hz\].
     pub lowest_mode_hz: Eight,
 }
 
-/// Eight arms in one case.
+/// Eight arms in one case: the numbers that change as slots are added.
 #[derive(Clone)]
 pub(crate) struct CaseArms {
+    /// Displacement of the tip \[m\] in x, y and z, caused by the slots added so far.
     pub tip_m: [Eight; 3],
-    /// Torque \[N m\] on each hinge that some load turns, and outboard inertia \[kg m²\] about it.
+    /// Torque \[N m\] on each hinge. It stays zero at hinges that no load turns.
     pub torque_at: Vec<Eight>,
+    /// Inertia \[kg m²\] of everything outboard of each hinge, about the axis of this hinge.
     pub inertia_at: Vec<Eight>,
-    /// Tangent compliance of each inner joint \[rad/(N m)\].
+    /// Tangent compliance of the joint or bearing spring in each inner slot (the slots from the row level to the base)
+    /// \[rad/(N m)\].
     pub compliance: Vec<Eight>,
-    /// Dunkerley's sum of each block \[s²\].
+    /// Dunkerley's sum of each block of the eigenvalue problem \[s²\]: the sum of `1/λ` over its eigenvalues. A planar
+    /// pose has two blocks, a spatial pose only one.
     pub trace_s2: [Eight; 2],
 }
 
 impl EightArms {
-    /// Working space for eight arms of a problem.
+    /// Memory for eight arms of a problem. All numbers are zero, except for the masses of given drives.
     pub(crate) fn new(problem: &ArmProblem) -> Self {
         let zeros = [0.0; LANES];
         let inner = &problem.slots()[problem.row_slot().unwrap_or(0)..];
@@ -63,7 +75,7 @@ impl EightArms {
         }
     }
 
-    /// Objectives of one of the eight.
+    /// Objectives of the complete arm in one lane (0 to 7).
     pub(crate) fn objectives(&self, lane: usize) -> Objectives {
         Objectives {
             tip_deflection_m: self.tip_deflection_m[lane],

@@ -1,11 +1,12 @@
 //! Ballast: parts that a design has only for their weight.
 //!
 //! The torsion curve of a gear becomes steeper with torque. Weight outboard loads the gear past a break point of its
-//! curve. Its tangent stiffness then rises, and the lowest mode with it. A design can be on a front for that reason alone.
+//! curve. Its tangent stiffness then rises, and the lowest mode with it. A design can be on a front for that reason
+//! alone.
 //!
-//! The sign of ballast is this: with a lighter part that is at least as stiff in every way, the design would weigh less
-//! and deflect no more. Only its lowest mode would fall, because a gear inboard would get into a softer segment, or
-//! because the play of a joint would open.
+//! A part is reported as ballast if a lighter part that is at least as stiff in every way exists for its place, and
+//! if the design with this lighter part weighs less and deflects no more. Only its lowest mode is lower, because a
+//! gear inboard gets into a softer segment of its torsion curve, or because the play of a joint opens.
 
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::mechanics::Wrench;
@@ -19,43 +20,48 @@ use crate::space::slot::Slot;
 use crate::space::state::StationState;
 use crate::space::station::{Station, StationSlot};
 
-/// Relative difference below which two objectives count as equal.
+/// Relative difference up to which two values of an objective count as equal, since both come from rounded
+/// arithmetic.
 const ROUNDING: f64 = 1e-9;
 
-/// A part that a design has for its weight.
+/// A part that a design has only for its weight, with the lighter design that shows it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ballast {
-    /// Number of the part's piece, base to tip.
+    /// Number of the piece that is ballast, counted from the base to the tip.
     pub piece: usize,
-    /// Number of the design with a lighter part in its place.
+    /// Number of the design that has a lighter part in this place.
     pub lighter: u128,
-    /// Number of the joint's piece (base to tip) that is softer in the lighter design.
+    /// Number of the piece (base to tip) of the joint that is softer in the lighter design, because less weight loads
+    /// it.
     pub pressed: usize,
-    /// Whether the gear of this joint gets into a softer segment; if not, the play of the joint opens.
+    /// `true` if the gear of this joint gets into a softer segment of its torsion curve; `false` if the play of the
+    /// joint opens.
     pub by_segment: bool,
-    /// The case in which this happens.
+    /// Number of the case in which the joint becomes softer.
     pub case: usize,
 }
 
-/// A joint that becomes softer when the torque on it falls.
+/// A joint that becomes softer when less weight loads it, and the case in which this happens.
 struct Relieved {
     slot: usize,
     case: usize,
     by_segment: bool,
 }
 
-/// The design that is examined.
+/// The design that is searched for ballast.
 struct Weighed<'p, 'c> {
     problem: &'p ArmProblem<'c>,
     options: Vec<u32>,
     arm: Partial,
     objectives: Objectives,
-    /// Torque on every joint \[N m\], by slot and case.
+    /// Torque on every joint of the design \[N m\]; first index the slot, second the case. It is 0 for slots that are
+    /// no joints.
     torques_nm: Vec<Vec<f64>>,
 }
 
 impl ArmProblem<'_> {
-    /// The ballast of a design, if it has any. Of several parts it is the one whose replacement gives the lightest design.
+    /// The ballast of a design; `None` if it has none or if no design has this number. If several parts are ballast,
+    /// it is the one whose replacement gives the lightest design.
     pub fn ballast(&self, design: u128) -> Option<Ballast> {
         let weighed = Weighed::new(self, options(self.level_sizes(), design)?)?;
         let found = (0..weighed.options.len()).flat_map(|level| weighed.at(level));
@@ -83,7 +89,8 @@ impl<'p, 'c> Weighed<'p, 'c> {
         Some(Self { problem, options, arm, objectives, torques_nm })
     }
 
-    /// Replacements for the part of one level that show this part to be ballast, each with the mass of its design \[kg\].
+    /// All lighter options for a level that show the present part of this level to be ballast. Each is returned with
+    /// the mass of the design that has the option \[kg\].
     fn at(&self, level: usize) -> Vec<(f64, Ballast)> {
         let slot = self.problem.level_slots()[level];
         let now = self.options[level];
@@ -93,7 +100,8 @@ impl<'p, 'c> Weighed<'p, 'c> {
         better.filter_map(|option| self.without_weight(level, slot, option)).collect()
     }
 
-    /// Whether an option weighs less than the present one and is at least as stiff in every way.
+    /// Whether `option` weighs less than `now`, the present option of a slot, and is at least as stiff. A drive must be
+    /// as stiff at every torque, a tube in every kind of deformation.
     fn lighter_and_as_stiff(&self, slot: usize, option: u32, now: u32) -> bool {
         match (&self.problem.slots()[slot], self.problem.piece_in_slot(slot)) {
             (Slot::Sized(sized), _) => {
@@ -110,8 +118,9 @@ impl<'p, 'c> Weighed<'p, 'c> {
         }
     }
 
-    /// The design with a lighter part, with its mass \[kg\], if only its lowest mode is worse and a softer joint inboard
-    /// is the reason.
+    /// Replaces the part in `slot` by the lighter `option`. If this shows the part to be ballast, the finding is
+    /// returned with the mass of the lighter design \[kg\]. It does so if the lowest mode is the only objective that
+    /// gets worse, and if a joint inboard that became softer is the reason. Otherwise `None`.
     fn without_weight(&self, level: usize, slot: usize, option: u32) -> Option<(f64, Ballast)> {
         let relieved = self.relieved(slot, option)?;
         let mut options = self.options.clone();
@@ -134,7 +143,8 @@ impl<'p, 'c> Weighed<'p, 'c> {
         })
     }
 
-    /// The first joint inboard, with its case, that becomes softer when the weight of a part changes.
+    /// The first joint inboard of `slot` whose tangent compliance grows if the weight in this slot becomes that of
+    /// `option`, with the case in which it grows. `None` if no joint becomes softer.
     fn relieved(&self, slot: usize, option: u32) -> Option<Relieved> {
         let cases = &self.problem.space().judged_cases;
         let inboard = slot + 1..self.problem.slots().len();
@@ -146,7 +156,7 @@ impl<'p, 'c> Weighed<'p, 'c> {
             let torque_nm = self.torques_nm[joint][case];
             let change_nm = place.twist.dot(&self.change_of_weight(station, slot, option));
             let [now, then] = [torque_nm, torque_nm + change_nm];
-            // the curve without effects tells a segment from play
+            // the curve without play or friction shows whether the gear changes its segment; otherwise the play opens
             let softer = |of: &dyn Fn(f64) -> f64| of(then) > of(now);
             let by_segment = softer(&|t| law.curve.tangent_compliance_rad_per_nm(t));
             let is_softer = by_segment || softer(&|t| law.tangent_compliance_rad_per_nm(t));
@@ -154,12 +164,13 @@ impl<'p, 'c> Weighed<'p, 'c> {
         })
     }
 
-    /// Law of a joint in this design.
+    /// The joint law (angle as a function of torque) that the joint in a slot has in this design.
     fn law(&self, slot: usize) -> Option<&JointLaw> {
         self.problem.slots()[slot].law(self.arm.options[slot] as usize)
     }
 
-    /// Change of weight if another option is taken, as a wrench.
+    /// Wrench (force and moment) by which the weight in `slot` changes if the slot takes `option` in place of its
+    /// present option.
     fn change_of_weight(&self, station: &Station, slot: usize, option: u32) -> Wrench {
         let now = self.arm.options[slot] as usize;
         match (&station.slots[slot], &self.problem.slots()[slot]) {
@@ -171,7 +182,8 @@ impl<'p, 'c> Weighed<'p, 'c> {
         }
     }
 
-    /// Whether the lighter design would have as high a lowest mode if no joint inboard had become softer.
+    /// Whether the lighter design would have as high a lowest mode as the present one if no joint inboard had become
+    /// softer. Then these joints are the reason for the lower mode.
     fn joints_are_why(&self, lighter: &Partial, slot: usize) -> bool {
         let mut held = lighter.clone();
         for (state, before) in held.stations.iter_mut().zip(&self.arm.stations) {

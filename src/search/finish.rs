@@ -1,8 +1,8 @@
-//! Rows of designs, finished together.
+//! Evaluates all designs of a row together.
 //!
-//! A *row* is the set of designs that differ in the row level alone. Whatever depends on the options of that level but
-//! not on the arm outboard of them is compiled once ([`FinishRows::compile`]). Each worker then finishes rows in working
-//! space of its own.
+//! A *row* is the set of designs that differ in the row level alone. Some numbers depend on the options of that level
+//! but not on the arm outboard of it; they are computed once ([`FinishRows::compile`]). Each worker then completes
+//! and evaluates the designs of its rows, in working space of its own.
 
 use super::row::Row;
 use super::row_begun::RowScratch;
@@ -11,20 +11,22 @@ use crate::mechanics::lanes::in_lanes;
 use crate::space::levels::{DesignRow, Keep, OutwardIn};
 use crate::space::problem::{ArmProblem, Partial};
 
-/// A tree of designs that knows how to finish whole rows.
+/// A tree of designs in which all designs of a row can be completed and evaluated together.
 pub trait FinishRows: OutwardIn {
-    /// The row level and all that is inboard of it, compiled once for all rows.
+    /// The row level (whose options are evaluated together) and the levels inboard of it, with every number that is the
+    /// same in all rows.
     type Compiled: Send + Sync;
-    /// Working space of a worker, kept from one row to the next.
+    /// Working space of a worker. It is used again for each row, so that memory is allocated once.
     type Scratch: Send;
 
-    /// Compiles the row level.
+    /// Computes the numbers that are the same in all rows.
     fn compile(&self) -> Self::Compiled;
 
-    /// Working space for one worker.
+    /// Allocates the working space of one worker.
     fn scratch(&self) -> Self::Scratch;
 
-    /// Finishes rows of designs and shows them to `keep`.
+    /// Completes and evaluates all designs of the rows `rows` and reports them to `keep`. `compiled` is what all rows
+    /// have in common, and `scratch` is the working space.
     fn finish<K: Keep>(
         &self,
         compiled: &Self::Compiled,
@@ -34,7 +36,8 @@ pub trait FinishRows: OutwardIn {
     );
 }
 
-/// Finishes rows design by design. It is slower than rows in lanes and works for every tree.
+/// Evaluates the designs of `rows` one by one. This is slower than eight at once, but works for every tree of designs.
+/// `spare` is memory for one arm.
 pub(crate) fn finish_one_by_one<P: OutwardIn>(
     problem: &P,
     rows: &[DesignRow<P::Partial>],
@@ -49,7 +52,8 @@ pub(crate) fn finish_one_by_one<P: OutwardIn>(
     }
 }
 
-/// The row level of an arm, compiled. It is `None` inside if the rows are finished design by design.
+/// The row level of an arm, with every number that is the same in all rows. It holds `None` if eight designs at once
+/// are not possible; then the designs are evaluated one by one.
 pub struct CompiledArm(Option<Row>);
 
 impl FinishRows for ArmProblem<'_> {

@@ -1,12 +1,13 @@
 //! The sweep: every design of a space is evaluated, in parallel.
 //!
-//! - [`sweep`] visits every design and keeps those that no other dominates. A *row* is the set of designs that differ in
-//!   one level alone; it is finished eight designs at a time (`finish`).
-//! - [`near`] finds the designs that are nearly on a front.
-//! - [`resume`] lets a sweep go on where an earlier process ended.
+//! - [`sweep`] visits every design and keeps the designs that no other design dominates. A *row* is the set of
+//!   designs that differ in one level alone; the sweep evaluates the designs of a row eight at a time (`finish`).
+//! - [`near`] finds the near designs: those that a design of the front beats by at most a stated percentage.
+//! - [`resume`] saves the state of a sweep, so that another process can continue it.
 //! - [`scatter`] computes designs whose parts differ a little from the catalog.
-//! - `ballast` finds designs that are on a front only because extra weight loads a gear into a stiffer part of its curve.
-//! - `same_drives` finds the lightest arm on the drives that first fit gave a design.
+//! - `ballast` finds designs that are on a front only because extra weight loads a gear into a stiffer part of its
+//!   torsion curve.
+//! - `same_drives` finds a lighter arm with the drives that first fit gave a design.
 
 pub(crate) mod arms;
 pub(crate) mod ballast;

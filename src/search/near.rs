@@ -1,8 +1,9 @@
-//! Near designs: designs that are nearly on the front.
+//! Near designs: designs that are not on the front, but worse than some design of it by at most a stated percentage.
 //!
-//! The *shortfall* `s` of a design says how near it is. Some design of the front is better than it by at most the
-//! fraction `s` in every objective, and `s` is the smallest such number. It is the multiplicative epsilon of
-//! multi-objective optimization. With mass m, deflection u and lowest mode f (f_d, f_f: of the design and of the front):
+//! The *shortfall* `s` of a design says how near it is to the front. It is the smallest number for which some design
+//! of the front is better by at most the fraction `s` in every objective. It is the multiplicative epsilon of
+//! multi-objective optimization. With mass m, deflection u and lowest mode f (index d: the design; index f: a design
+//! of the front):
 //!
 //! ```text
 //! s(d) = min over f of the front of max(m_d/m_f, u_d/u_f, f_f/f_d) - 1
@@ -10,11 +11,11 @@
 //!
 //! The shortfall of a design of the front is zero.
 //!
-//! All designs are visited a second time, now that the front is known. The designs of the front, each worsened by the
-//! slack, fill a table (`Archive`) that rejects most designs at once. The table rejects no near design: a design that a
-//! worsened design of the front dominates lies beyond the slack of every design of the front, because these do not
-//! dominate each other. The rest are compared with the front one by one. Memory grows with the number of designs asked
-//! for.
+//! All designs are visited a second time, after the front is known. The designs of the front, each made worse by the
+//! slack, fill a table (`Archive`) that rejects most designs at once. The table rejects no near design: a design that
+//! is dominated by a worsened design of the front lies beyond the slack of every design of the front, because these
+//! do not dominate each other. The other designs are compared with the front one by one. The search needs memory in
+//! proportion to the number of near designs that are asked for.
 
 use super::finish::FinishRows;
 use super::sweep::Candidate;
@@ -28,33 +29,36 @@ use std::collections::HashSet;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Relative difference between the fast model and the full one, at most. The slack is widened by it, so that no near design
-/// is lost to rounding.
+/// Upper bound of the relative difference between the fast model and the full one. The slack is made larger by it, so
+/// that no near design is lost to rounding.
 pub(crate) const ROUNDING: f64 = 1e-9;
 
-/// A front that designs are compared with.
+/// A front, prepared to compute the shortfall of designs.
 pub struct Shortfall {
-    /// Lightest first.
+    /// Objectives of the designs of the front, lightest first.
     front: Vec<Objectives>,
 }
 
 impl Shortfall {
-    /// Takes the designs of a front, in any order.
+    /// Prepares a front for the computation of shortfalls. Its designs may be in any order.
     pub fn of(front: impl IntoIterator<Item = Objectives>) -> Self {
         let mut front: Vec<Objectives> = front.into_iter().collect();
         front.sort_by(|a, b| a.mass_kg.total_cmp(&b.mass_kg));
         Self { front }
     }
 
-    /// The shortfall of a design, as a fraction; `None` if it is more than `most`.
+    /// The shortfall of a design: the fraction by which it is worse than the nearest design of the front (0.02 for 2
+    /// %). `None` if it is larger than `most`.
     pub fn within(&self, most: f64, design: &Objectives) -> Option<f64> {
-        // skip the lightest designs of the front: they are lighter by more than `most`
+        // the lightest designs of the front cannot count: each is lighter than the design by more than the fraction
+        // `most`
         let first = self.front.partition_point(|f| design.mass_kg > f.mass_kg * (1.0 + most));
         let worst = |other: &Objectives| worse_by(design, other).into_iter().fold(0.0, f64::max);
         self.front[first..].iter().map(worst).reduce(f64::min).filter(|shortfall| *shortfall <= most)
     }
 
-    /// Whether the shortfall of a design is at most `most`.
+    /// Whether the shortfall of a design is at most `most`: some design of the front is then better by no more than
+    /// this fraction in every objective.
     pub fn is_within(&self, most: f64, design: &Objectives) -> bool {
         let worse = 1.0 + most;
         let first = self.front.partition_point(|f| design.mass_kg > f.mass_kg * worse);
@@ -65,8 +69,8 @@ impl Shortfall {
     }
 }
 
-/// By what fraction a design is worse than another in deflection, mass and lowest mode. A fraction is negative where the
-/// design is better.
+/// The fractions by which `design` is worse than `other` in deflection, mass and lowest mode, in this order. A fraction
+/// is negative where `design` is better.
 pub fn worse_by(design: &Objectives, other: &Objectives) -> [f64; 3] {
     let over = |a: f64, b: f64| if a == b { 0.0 } else { a / b - 1.0 };
     [
@@ -76,30 +80,32 @@ pub fn worse_by(design: &Objectives, other: &Objectives) -> [f64; 3] {
     ]
 }
 
-/// A design near the front.
+/// A design that is not on the front, but within the slack of a design on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NearDesign {
-    /// The design and its objectives by the fast model.
+    /// Number of the design, and its objectives by the fast model.
     pub candidate: Candidate,
-    /// Shortfall of the design, as a fraction.
+    /// Shortfall of the design, as a fraction (0.02 for 2 %).
     pub shortfall: f64,
 }
 
-/// Designs near a front.
+/// The result of a search for near designs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NearDesigns {
-    /// The nearest come first; among equals, the one with the smaller number.
+    /// The near designs, smallest shortfall first. Of designs with an equal shortfall, the one with the smaller
+    /// number comes first.
     pub nearest: Vec<NearDesign>,
-    /// Number of near designs; `None` if the search stopped counting because there are more than it keeps.
+    /// Number of near designs, which may be larger than the length of `nearest`; `None` if the search stopped
+    /// counting.
     pub total: Option<u64>,
 }
 
-/// Which near designs are looked for.
+/// How near the designs must be, and how many are returned.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slack {
-    /// Largest shortfall, as a fraction.
+    /// Largest shortfall of a near design, as a fraction.
     pub part: f64,
-    /// Largest number of designs to keep.
+    /// Largest number of designs to return.
     pub most: usize,
 }
 
@@ -141,7 +147,7 @@ pub fn near_designs<P: FinishRows>(
     (!stop.load(Ordering::Relaxed)).then_some(NearDesigns { nearest, total: Some(total) })
 }
 
-/// The state that all tasks share.
+/// The inputs and the shared results of all tasks of a search for near designs.
 struct Seeker<'s> {
     constraints: &'s Constraints,
     archive: Archive,
@@ -154,7 +160,7 @@ struct Seeker<'s> {
 /// Number of designs that a task collects before it adds them to the shared list.
 pub(crate) const BUFFER: usize = 1 << 12;
 
-/// The keeper of one task.
+/// Collects the near designs that one task finds.
 struct Worker<'s> {
     seeker: &'s Seeker<'s>,
     found: u64,
@@ -187,7 +193,7 @@ impl Keep for Worker<'_> {
 }
 
 impl Worker<'_> {
-    /// Adds the collected designs to the shared list.
+    /// Adds the designs that this task has collected to the list that all tasks share.
     fn hand_over(&mut self) {
         let most = self.seeker.slack.most;
         let mut all = self.seeker.nearest.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
@@ -203,7 +209,7 @@ impl Worker<'_> {
     }
 }
 
-/// Sorts near designs and keeps the nearest.
+/// Sorts `designs` by their shortfalls and keeps the first `most` of them, which are nearest to the front.
 pub(crate) fn keep_nearest(designs: &mut Vec<NearDesign>, most: usize) {
     designs.sort_unstable_by(|a, b| {
         a.shortfall.total_cmp(&b.shortfall).then(a.candidate.number.cmp(&b.candidate.number))

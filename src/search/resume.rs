@@ -1,36 +1,37 @@
-//! The state of a search, from which another process goes on where this one ended.
+//! The saved state of a sweep, from which another process can continue.
 //!
-//! A sweep is divided into tasks, each a range of designs. Its state is which tasks are done, their counts, and the candidates
-//! found so far. A task that was only begun is done again: what it found before is found again, so the candidates are the
-//! same in the end, and the counts are those of whole tasks.
+//! A sweep is divided into tasks. Each task is a range of designs. The state contains the set of completed tasks,
+//! their counts, and the candidates found so far. A task that was begun but not completed is done again from its
+//! start. It finds the same candidates again, so the result is the same as without the interruption.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Keeps states of a search.
+/// Saves states of a search, for instance in a file.
 pub trait KeepState: Sync {
-    /// Whether it is time to keep the state again.
+    /// Whether enough time has passed since the last save that the state is to be saved again.
     fn is_due(&self) -> bool;
 
-    /// Keeps a state in place of the one before. If that fails, the search goes on all the same.
+    /// Saves a state in place of the one saved before. If saving fails, the search continues all the same.
     fn keep(&self, state: &[u8]);
 }
 
-/// How a search goes on: the state that an earlier process left, and who keeps the next ones.
+/// Where a search starts from, and where it saves its states.
 #[derive(Clone, Copy)]
 pub struct Resume<'s> {
-    /// The state of an earlier process; `None` to begin.
+    /// The state that an earlier process saved; `None` to start from the beginning.
     pub from: Option<&'s [u8]>,
-    /// Who keeps the states of this process.
+    /// Receives the states of this process.
     pub keeper: &'s dyn KeepState,
 }
 
-/// A set of tasks, as ranges that do not touch each other: the end of each range by its start.
+/// A set of numbers of completed tasks, stored as ranges that do not touch each other. Each entry of the map is a
+/// range: the key is its first task, and the value is the first task after it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(super) struct Done(BTreeMap<u64, u64>);
 
 impl Done {
-    /// Adds a task.
+    /// Adds the task with this number to the set, and joins ranges that touch each other.
     pub(super) fn insert(&mut self, task: u64) {
         let before = self.0.range(..=task).next_back().map(|(&start, &end)| (start, end));
         if before.is_some_and(|(_, end)| end > task) {
@@ -41,12 +42,13 @@ impl Done {
         self.0.insert(start, end);
     }
 
-    /// Whether a task is in the set.
+    /// Whether the task with this number is in the set.
     pub(super) fn has(&self, task: u64) -> bool {
         self.0.range(..=task).next_back().is_some_and(|(_, &end)| end > task)
     }
 
-    /// Whether every task is one of the first so many.
+    /// Whether this set can belong to a sweep of `tasks` tasks: all its numbers must be below `tasks`. It is `false`
+    /// also if a range is empty or reversed, as in a damaged file.
     pub(super) fn is_within(&self, tasks: u64) -> bool {
         self.0.iter().all(|(&start, &end)| start < end && end <= tasks)
     }

@@ -1,8 +1,9 @@
 //! Loads on the output bearings of inner joints, eight designs at once.
 //!
-//! The loads are those of [`bearing_loads`](crate::space::bearing_loads). Here each is a sum of parts that are linear in
-//! what is chosen: what is outboard of the row, the link of the row, and the masses of inner drives. The parts are
-//! projected once on the five components that a bearing feels, so that the kernel only adds and squares.
+//! The loads are those of [`bearing_loads`](crate::space::bearing_loads). Each load is a sum of three terms: that of
+//! everything outboard of the row, that of the row's link, and that of the inner drives, which grows linearly with
+//! their masses. Each term is projected in advance on the five force and moment components that load a bearing.
+//! During the sweep the terms then only need to be added and squared.
 
 use crate::mechanics::Wrench;
 use crate::mechanics::lanes::{Eight, LANES, Lanes};
@@ -13,52 +14,65 @@ use crate::space::slot::Slot;
 use crate::space::station::{Station, StationSlot};
 use nalgebra::Matrix6;
 
-/// The bearing of an inner joint that is checked.
+/// The output bearing of an inner joint, with its loads prepared for the designs of a row.
 pub(crate) struct RowBearing {
-    /// Inner slot of the joint.
+    /// Index of the joint among the inner slots (the slots from the row level to the base).
     pub k: usize,
-    /// One entry for each sizing case, with the number of the case.
+    /// The bearing in each sizing case. Each entry has the index of the case and the bearing's loads in it.
     cases: Vec<(usize, BearingCase)>,
+    /// Lever of the radial force about the bearing.
     lever: RowLever,
 }
 
-/// Lever from the face of the flange to where the link attaches \[m\].
+/// Where the lever from the face of the flange to the point at which the link attaches \[m\] comes from.
 enum RowLever {
-    /// The link is outboard of the row, or the lever is stated.
+    /// The lever does not depend on the link of the row: it is stated, or the link is given or outboard of the row.
+    /// The number is the slot of the joint.
     OfSlot(usize),
-    /// The link is that of the row: the lever in each lane of each chunk.
+    /// The lever depends on the link of the row: one lever \[m\] for each option, eight in a chunk.
     OfChunk(Vec<Eight>),
 }
 
-/// One bearing in one case: what loads it at rest, and what each joint adds when it moves.
+/// The loads on one bearing in one case: the load at rest, and the additional load while each joint accelerates.
 struct BearingCase {
+    /// Position and axes of the bearing in this pose.
     joint: PosedBearing,
+    /// Load at rest from the weight of the row's link and of the inner pieces. The load from the arm outboard of the
+    /// row is added later.
     at_rest: Source,
+    /// Additional load while each joint accelerates, one entry for each joint whose acceleration loads the bearing, tip
+    /// first.
     ramps: Vec<Ramp>,
 }
 
-/// What a ramp adds.
+/// Load on a bearing while one joint accelerates at its ramp and the other joints are at rest.
 struct Ramp {
-    /// Number of the joint among the movers.
+    /// Number of the accelerating joint in the list of all movers.
     mover: usize,
-    /// Twist times acceleration of an inner joint; `None` if the joint is outboard of the row.
+    /// Acceleration of everything outboard of the joint that moves: its twist (a kinematic vector) times its angular
+    /// acceleration. `None` if the joint is outboard of the row, since then the load is known from the outboard arm.
     inner: Option<Wrench>,
+    /// Load that the accelerated inertia of the row's link and of the inner pieces makes. The load from the arm
+    /// outboard of the row is added later.
     source: Source,
 }
 
-/// The parts of a load that do not depend on what is outboard of the row.
+/// A load on a bearing, as far as it comes from the row's link and from the inner pieces (from the row level to the
+/// base).
 #[derive(Default)]
 struct Source {
-    /// From inner pieces that are not chosen.
+    /// Load from inner pieces whose mass is given \[N, N m\].
     fixed: Components,
-    /// Per kilogram of each inner drive that is chosen, with its inner slot.
+    /// For each inner drive that is chosen or sized: its inner slot, and the load per kilogram of the drive.
     per_kg: Vec<(usize, Components)>,
-    /// From the link of the row, by chunk; empty if the row has no link.
+    /// Load from the link of the row level, with each of its options, eight in a chunk. Empty if the row level is not a
+    /// link.
     link: Vec<[Eight; 5]>,
 }
 
 impl Source {
-    /// Adds up what the inner pieces outboard of `limit` do; `effect` is what an inertia and a weight do.
+    /// Sums the loads from the row's link and from the inner pieces outboard of the slot `limit`. `effect` returns the
+    /// load on the bearing that a piece makes with a given inertia and weight. `first` is the slot of the row level.
     fn new(
         problem: &ArmProblem,
         station: &Station,
@@ -102,13 +116,14 @@ fn add_times(to: &mut Components, what: &Components, times: f64) {
     to.iter_mut().zip(what).for_each(|(to, what)| *to += times * what);
 }
 
-/// Eight sets of components, component by component.
+/// Converts eight loads of five components each into five components with eight values each.
 fn side_by_side(lanes: [Components; LANES]) -> [Eight; 5] {
     std::array::from_fn(|i| lanes.map(|components| components[i]))
 }
 
 impl BearingCase {
-    /// Compiles the bearing of the joint in slot `slot` in one case.
+    /// Prepares the loads on the bearing of the joint in `slot` for one case. `first` is the slot of the row level.
+    /// `None` if the slot has no joint.
     fn new(problem: &ArmProblem, station: &Station, first: usize, slot: usize) -> Option<Self> {
         let StationSlot::Joint(place) = &station.slots[slot] else { return None };
         let joint = PosedBearing::new(place);
@@ -118,7 +133,8 @@ impl BearingCase {
             .map(|(mover, moving)| match &station.slots[moving.slot] {
                 StationSlot::Joint(of) if moving.slot >= first => {
                     let motion = of.twist * moving.acceleration_rad_s2;
-                    // a joint moves what is outboard of it, and the bearing feels what is outboard of itself
+                    // a joint accelerates only what is outboard of it, and a bearing is loaded only by what is
+                    // outboard of the bearing
                     let limit = slot.min(moving.slot);
                     let source = Source::new(problem, station, first, limit, &|inertia, _| {
                         joint.components(&(inertia * motion))
@@ -133,8 +149,9 @@ impl BearingCase {
 }
 
 impl RowBearing {
-    /// The checked bearings of the joints inboard of the row level, compiled; that of the row level itself is not among them,
-    /// because all its drives feel the same loads.
+    /// Prepares the bearings that are checked, of the joints inboard of the row level. `first` is the slot of the row
+    /// level. If the row level is itself a joint, its bearing is left out, because its load is the same for all drives
+    /// of the row.
     pub(crate) fn all(problem: &ArmProblem, first: usize) -> Vec<Self> {
         let slots = problem.slots();
         let loads = problem.bearing_loads();
@@ -163,7 +180,9 @@ impl RowBearing {
             .collect()
     }
 
-    /// What is outboard of a row, by case: at rest, then for each mover.
+    /// Writes to `out` the loads that come from the arm `from`, which is outboard of the row. There is one list for
+    /// each sizing case: the load at rest first, then the load from the acceleration of each mover (joint that
+    /// accelerates).
     pub(crate) fn begin(&self, from: &Partial, out: &mut Vec<Vec<Components>>) {
         out.resize_with(self.cases.len(), Vec::new);
         for ((case, of), out) in self.cases.iter().zip(out) {
@@ -184,12 +203,13 @@ impl RowBearing {
     }
 }
 
-/// What is outboard of a row, for each checked bearing, case and source.
+/// Loads from the arm outboard of a row. First index the bearing, second the sizing case, third the cause: the load at
+/// rest first, then that of each mover (joint that accelerates).
 pub(crate) type BearingsBegun = Vec<Vec<Vec<Components>>>;
 
 impl RowBearing {
-    /// Loads on the bearing in eight designs of a chunk. `begun` is what is outboard of the row, `masses_kg` those of the
-    /// inner drives so far.
+    /// Loads on the bearing in the eight designs of a chunk. `from` is the arm outboard of the row and `begun` are the
+    /// loads from it. `masses_kg` are the masses of the drives in the inner slots.
     #[inline(always)]
     pub(crate) fn demands<V: Lanes>(
         &self,
@@ -220,7 +240,8 @@ impl RowBearing {
 }
 
 impl Source {
-    /// The components of a load: outboard of the row, of its link, and of the drives so far.
+    /// The five components of this load in eight designs. The term `begun` comes from the arm outboard of the row; the
+    /// terms of the row's link and of the inner drives, which have the masses `masses_kg`, are added to it.
     #[inline(always)]
     fn load<V: Lanes>(&self, chunk: usize, begun: &Components, masses_kg: &[Eight]) -> [V; 5] {
         let mut out = [V::zero(); 5];

@@ -1,4 +1,4 @@
-//! Rows that have begun: what depends on the arm outboard of a row, worked out once for all its designs.
+//! The numbers of a row that depend on the arm outboard of it. They are computed once for all designs of the row.
 
 use super::arms::EightArms;
 use super::row::{AtJoint, AtJoints, Row, hinge_numbers};
@@ -9,53 +9,66 @@ use crate::sizing::fit::LinkRoom;
 use crate::space::problem::{ArmProblem, Partial, block_steps};
 use crate::space::station::{Modal, StationSlot};
 
-/// Working space in which rows are finished.
+/// Working space in which the designs of rows are evaluated.
 pub struct RowScratch {
+    /// One entry for each row of a batch: the numbers of this row that depend on the arm outboard of it.
     pub(crate) rows: Vec<Begun>,
+    /// Eight arms that are being completed.
     pub(crate) arms: EightArms,
-    /// An arm for designs that are finished one by one.
+    /// An arm for designs that are evaluated one by one.
     pub(crate) spare: Partial,
 }
 
-/// A row that has begun: what depends on the arm outboard of it.
+/// The numbers of a row that depend on the arm outboard of it.
 pub(crate) struct Begun {
+    /// The numbers that depend on the case, one entry for each case.
     pub cases: Vec<CaseBegun>,
-    /// For each inner joint, the step of the drive table at which the drive of the last design was found. The next search
-    /// starts there, because the demands of neighbouring designs are similar.
+    /// For each inner joint (from the row level to the base), the step of the drive table at which the drive of the
+    /// last design was found. The search for the next drive starts there, because the demands of neighbouring designs
+    /// are similar.
     pub steps: Vec<usize>,
-    /// Loads on the bearing of the row level, if that is the drive of a joint.
+    /// Loads on the output bearing of the joint that is the row level; zero if the row level is a link.
     pub of_row: BearingDemand,
-    /// The room at that joint.
+    /// Room for the gear and motor of the joint that is the row level; unlimited if the row level is a link.
     pub room_of_row: LinkRoom,
+    /// Loads that everything outboard of the row makes on the output bearings inboard of the row level.
     pub bearings: BearingsBegun,
 }
 
-/// A row that has begun, in one case.
+/// The numbers of a row that depend on the arm outboard of it, in one case.
 pub(crate) struct CaseBegun {
+    /// The arm outboard of the row, prepared for the lowest modes.
     pub outboard: CaseOutboard,
-    /// Torque and inertia at each hinge: of everything outboard of the row, and of the inner pieces that are not
-    /// chosen.
+    /// Torque and inertia about each hinge that everything outboard of the row and the inner pieces with a given mass
+    /// cause.
     pub at: AtJoints,
-    /// The entries of the outboard inertia that the ends of the links move ([`RowCase::spread_entries`](super::row::RowCase::spread_entries)).
+    /// The entries of the inertia matrix of everything outboard that count in Dunkerley's sum (the sum of `1/λ` over
+    /// the eigenvalues). Entries off the diagonal are doubled. The order is that of
+    /// [`RowCase::spread_entries`](super::row::RowCase::spread_entries).
     pub spread: Vec<f64>,
-    /// Axial force, torsion and both bending moments of everything outboard, at the link's end and at its root.
+    /// Loads at the end of the row's link from everything outboard: axial force \[N\], torsion and both bending moments
+    /// \[N m\].
     pub at_end: [f64; 4],
+    /// Loads at the root of the row's link from everything outboard, without the weight of the link: axial force \[N\],
+    /// torsion and both bending moments \[N m\].
     pub at_root: [f64; 4],
 }
 
-/// The arm outboard of a row as the pass for the lowest mode sees it.
+/// The arm outboard of a row as the computation of the lowest mode needs it: two blocks of three motions, or one of
+/// six.
 pub(crate) enum CaseOutboard {
     Planar(Box<[Outboard<3>; 2]>),
     Spatial(Box<Outboard<6>>),
 }
 
 impl RowScratch {
-    /// Working space for the rows of a problem.
+    /// Allocates the working space for the rows of a problem.
     pub(crate) fn new(problem: &ArmProblem) -> Self {
         Self { rows: Vec::new(), arms: EightArms::new(problem), spare: problem.empty() }
     }
 
-    /// Begins rows: works out what the designs of each row share.
+    /// Computes, for each row of a batch, the numbers that all its designs have in common. `from` are the arms outboard
+    /// of the rows, one for each row.
     pub(crate) fn begin<'p>(
         &mut self,
         problem: &ArmProblem,
@@ -70,7 +83,7 @@ impl RowScratch {
 }
 
 impl Begun {
-    /// Working space for one row of a problem.
+    /// Allocates the numbers of one row of a problem.
     fn new(problem: &ArmProblem) -> Self {
         let inner = &problem.slots()[problem.row_slot().unwrap_or(0)..];
         let numbers = hinge_numbers(inner);
@@ -93,7 +106,7 @@ impl Begun {
         }
     }
 
-    /// Begins the row beyond the arm `from`. Memory of the row before is used again.
+    /// Computes the numbers of the row that continues the arm `from`. The memory of an earlier row is used again.
     fn refill(&mut self, problem: &ArmProblem, row: &Row, from: &Partial) {
         self.of_row = from.next_demand.map_or(BearingDemand::default(), |demand| demand.bearing);
         self.room_of_row = from.next_demand.map_or(LinkRoom::ANY, |demand| demand.room);
@@ -115,11 +128,12 @@ impl Begun {
             }
             begun.spread.clear();
             begun.spread.extend(case.spread_entries.iter().map(|&(_, i, j)| {
-                // the inertia is symmetric: an entry of the lower triangle stands for its mirror image too
+                // the matrix is symmetric, and only its lower triangle is listed: an entry off the diagonal counts
+                // twice
                 let both = if i == j { 1.0 } else { 2.0 };
                 both * state.inertia[(i, j)]
             }));
-            // a case that only sizes drives has no modes to find
+            // a case that is not judged needs no modes
             if !case.judged {
                 continue;
             }

@@ -1,23 +1,26 @@
-//! The drives of a joint as a row sees them: numbers of one kind side by side.
+//! The masses and torsion curves of the drives of a joint, as lists with one entry per drive.
 
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::space::slot::Slot;
 
-/// The drives of a joint by index. Each has its mass and its torsion curve of three segments, with the connection in
-/// series. The numbers of one kind stand together, so that a lane can gather them.
+/// Mass and torsion curve of every drive that a joint can have; the index in each list is the index of the drive. A
+/// curve has three segments, each with the compliance of the connection in series. Each quantity has a list of its
+/// own, so that eight values of it can be loaded at once.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct DriveAttributes {
+    /// Mass of each drive \[kg\].
     pub mass_kg: Vec<f64>,
-    /// Twist per torque \[rad/(N m)\] in each segment.
+    /// Compliance \[rad/(N m)\] of each drive, in one list for each of the three segments.
     pub compliance: [Vec<f64>; 3],
-    /// Whether modes see the first segment alone, at every torque.
+    /// Whether a mode uses the compliance of the first segment at every torque (`Curve::WindupK1`), and not the
+    /// tangent compliance.
     pub first_in_modes: bool,
-    /// Ends of the first two segments \[N m\].
+    /// Torques \[N m\] at which the first and the second segment end.
     pub ends_nm: [Vec<f64>; 2],
 }
 
 impl DriveAttributes {
-    /// Adds a drive. A rigid or linear joint becomes a curve whose segments are equal.
+    /// Adds a drive. A rigid or linear joint gets a curve of three equal segments.
     fn push(&mut self, mass_kg: f64, law: &JointLaw) {
         let (stiffness, ends_nm) = match law.curve.as_windup().map(|windup| windup.segments()) {
             None => ([f64::INFINITY; 3], [f64::INFINITY; 2]),
@@ -36,7 +39,8 @@ impl DriveAttributes {
     }
 }
 
-/// The drives that can be in a slot.
+/// Masses and torsion curves of the drives that can be in a slot. The list is empty for links and offsets. The springs
+/// of a bearing count as drives without mass.
 pub(super) fn drive_attributes(slot: &Slot) -> DriveAttributes {
     let mut drives = DriveAttributes::default();
     match slot {

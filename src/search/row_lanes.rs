@@ -1,10 +1,11 @@
-//! The kernel of the sweep: eight designs of a row, finished at once.
+//! The inner loop of the sweep: it evaluates eight designs of a row at once.
 //!
-//! The slots from the row level to the base are added in lanes, one design in each lane. Then follow
-//! [the lowest modes](super::row_modes). Designs that cannot hold, or that are surely dominated, are only counted.
+//! The slots from the row level to the base are added to eight arms at a time, one design in each lane of a vector
+//! register. Then follow [the lowest modes](super::row_modes). A design that breaks a limit, or that is surely
+//! dominated, is only counted.
 //!
-//! The functions are `#[inline(always)]` because the lanes are compiled for the instructions of one processor, and a call
-//! out of that code would be compiled for the common ones.
+//! The functions are `#[inline(always)]` because this code is compiled once for each set of vector instructions. A
+//! function that is not inlined would be compiled for the common instructions alone and would be slow.
 
 // matrices by row and column read better than iterators over them
 #![allow(clippy::needless_range_loop)]
@@ -22,25 +23,29 @@ use crate::space::slot::{SizedJoint, Slot};
 use crate::space::station::{Station, StationJoint, StationSlot};
 use std::f64::consts::TAU;
 
-/// Rows to be finished.
+/// Rows whose designs are to be evaluated.
 pub(crate) struct RowsWork<'a, 'c, K> {
     pub problem: &'a ArmProblem<'c>,
     pub row: &'a Row,
+    /// The rows of one batch.
     pub rows: &'a [DesignRow<Partial>],
-    /// Number of designs in each row.
+    /// Number of designs in each row: the options of the row level.
     pub options: u32,
     pub scratch: &'a mut RowScratch,
+    /// Takes the designs that are of interest, and counts the others.
     pub keep: &'a mut K,
 }
 
-/// The outcome of eight designs, one bit for each. Their objectives are in the [`EightArms`].
+/// The outcome of eight designs, as bit masks with one bit per design. Their objectives are in the [`EightArms`].
 #[derive(Clone, Copy, Default)]
 struct FinishedEight {
-    /// The designs that hold.
+    /// Designs that meet all limits.
     held: u8,
-    /// The designs that hold and whose lowest mode is below the bar, so that its value does not matter.
+    /// Designs that meet all limits, but whose lowest mode is below the bar, the mode that they would need for not
+    /// being dominated. Their modes are not computed.
     below_bar: u8,
-    /// The designs that hold and whose lowest mode was not found.
+    /// Designs that meet all limits, but whose iteration for the lowest mode did not converge. They are computed
+    /// again, one by one.
     unsure: u8,
 }
 
@@ -51,11 +56,13 @@ impl<K: Keep> LaneWork for RowsWork<'_, '_, K> {
     fn run<V: Lanes>(self) {
         let RowsWork { problem, row, rows, options, scratch, keep } = self;
         let (mut excluded, mut below_bar) = (0, 0);
-        // chunks outside, rows inside: a chunk is read from memory once for all rows
+        // the outer loop runs over chunks and the inner one over rows, so that a chunk is read from memory once for
+        // all rows
         for chunk in 0..(options as usize).div_ceil(LANES) {
             let lanes = LANES.min(options as usize - chunk * LANES);
             let valid = u8::MAX >> (LANES - lanes);
-            // what rules out all eight in one row rules them out in every row that begins like it
+            // if all eight designs of one row fail with the first drives, they fail in every row with the same arm
+            // and first drives
             let mut ruled_out: Option<(&DesignRow<Partial>, usize)> = None;
             for (designs, begun) in rows.iter().zip(&mut scratch.rows) {
                 if ruled_out.is_some_and(|(other, levels)| designs.begins_like(other, levels)) {
@@ -78,8 +85,9 @@ impl<K: Keep> LaneWork for RowsWork<'_, '_, K> {
 }
 
 impl RowChunk<'_, '_> {
-    /// Finishes eight designs, `valid` of which exist. Tests go from the cheapest to the dearest, and the function returns
-    /// as soon as nothing is left to decide.
+    /// Evaluates eight designs. `valid` is a bit mask of the lanes that hold a design. The tests go from the cheapest
+    /// to the most expensive, and the function returns as soon as every design breaks a limit or is below its bar (the
+    /// lowest mode that it needs for not being dominated).
     #[inline(always)]
     fn finish<V: Lanes>(
         &self,
@@ -96,7 +104,7 @@ impl RowChunk<'_, '_> {
         if arms.held == 0 {
             return FinishedEight::default();
         }
-        // squares first: most designs are settled without the square root
+        // deflections are compared as squares first: most designs are decided without the square root
         let mut tip_m2 = V::zero();
         for (_, lanes) in self.row.cases.iter().zip(&arms.cases).filter(|(case, _)| case.judged) {
             let [x, y, z]: [V; 3] = load_all(&lanes.tip_m);
@@ -108,7 +116,7 @@ impl RowChunk<'_, '_> {
             return FinishedEight { held, below_bar, unsure: 0 };
         }
         arms.tip_deflection_m = tip_m2.sqrt().store();
-        // Dunkerley's sums are left until they are needed
+        // Dunkerley's sums are computed only now, because few designs get this far
         self.sum_traces::<V>(begun, arms);
         let question = Question::new(*self, begun, arms);
         below_bar |= question.below_bar::<V>(keep, held & !below_bar);
@@ -120,7 +128,8 @@ impl RowChunk<'_, '_> {
         FinishedEight { held, below_bar, unsure }
     }
 
-    /// Shows the designs that are of interest to `keep`. It is rarely called, so it is kept out of the kernel.
+    /// Reports the designs whose lowest mode is above the bar to `keep`. `done` is the outcome of the eight designs.
+    /// The function is rarely called, so it is not inlined into the loop.
     #[inline(never)]
     fn hand_over(
         &self,
@@ -132,7 +141,7 @@ impl RowChunk<'_, '_> {
     ) {
         for lane in (0..LANES).filter(|lane| (done.held & !done.below_bar) >> lane & 1 == 1) {
             let option = (self.chunk * LANES + lane) as u32;
-            // the iteration in lanes may fail to converge; the search by itself does not
+            // the iteration for eight designs at once may not converge; the search for a single design always does
             if done.unsure >> lane & 1 == 1 {
                 self.problem.finish_one(designs, option, spare, keep);
             } else {
@@ -142,14 +151,14 @@ impl RowChunk<'_, '_> {
         }
     }
 
-    /// Adds piece after piece, until every arm is complete or none holds. Returns how many of the drives chosen inboard of
-    /// the row level were added.
+    /// Adds one inner slot (from the row level to the base) after another to the eight arms, until every arm is
+    /// complete or every arm breaks a limit. Returns how many of the drives chosen inboard of the row level were added.
     #[inline(always)]
     fn grow<V: Lanes>(&self, begun: &mut Begun, arms: &mut EightArms) -> usize {
         let slots = &self.problem.slots()[self.row.first..];
         let mut largest_s2 = V::zero();
         let mut indices = [0; LANES];
-        // the row level is a link or a drive, and no other inner slot is a link
+        // the row level is either a link or a drive, and the other inner slots are no links with options
         match self.row.chunks.get(self.chunk) {
             Some(chunk) => self.start_with_link::<V>(chunk, begun, arms),
             None => self.start::<V>(begun, arms),
@@ -160,7 +169,7 @@ impl RowChunk<'_, '_> {
                 largest_s2 = largest_s2.max(self.add_tube(k, arms));
                 continue;
             }
-            // the springs of a bearing follow the drive they belong to
+            // the springs of a bearing take the index of the drive that they belong to
             indices = match &slots[k] {
                 Slot::Sized(sized) => self.pick::<V>(k, sized, begun, arms),
                 Slot::Bearing { .. } => indices,
@@ -179,7 +188,8 @@ impl RowChunk<'_, '_> {
         chosen
     }
 
-    /// Starts with the arm outboard of the row, the same in every lane.
+    /// Sets all eight arms to the same arm outboard of the row, whose numbers are in `begun`. Nothing is added for the
+    /// row level.
     #[inline(always)]
     fn start<V: Lanes>(&self, begun: &Begun, arms: &mut EightArms) {
         arms.mass_kg = V::splat(self.from.mass_kg + self.row.fixed_kg).store();
@@ -194,7 +204,8 @@ impl RowChunk<'_, '_> {
         }
     }
 
-    /// Starts with the arm outboard of the row and one link option in each lane.
+    /// Sets the eight arms to the arm outboard of the row, whose numbers are in `begun`, and adds one link option of
+    /// `chunk` to each.
     #[inline(always)]
     fn start_with_link<V: Lanes>(&self, chunk: &Chunk, begun: &Begun, arms: &mut EightArms) {
         let constraints = &self.problem.space().constraints;
@@ -210,7 +221,7 @@ impl RowChunk<'_, '_> {
             let weight = V::load(&own.weight_n);
             for &Hinge { number: j, .. } in &self.row.hinges {
                 let AtJoint { torque_nm, inertia_kgm2 } = begun.at[j];
-                // the torque on a joint that nothing turns stays zero
+                // a joint that no load or weight turns has a torque of zero in every arm
                 if case.turned[j] {
                     let own = weight * V::splat(case.link_torque[j]);
                     lanes.torque_at[j] = (V::splat(torque_nm) + own).store();
@@ -224,7 +235,7 @@ impl RowChunk<'_, '_> {
                 let mut tip = V::splat(state.tip_m[i]);
                 if case.bends[i] {
                     tip = tip + V::load(&own.own_weight_deflection_m[i]);
-                    // in a planar pose half of the wrench is zero
+                    // in a planar pose half of the components of the wrench are zero
                     for j in (0..6).filter(|&j| state.wrench[j] != 0.0) {
                         tip = tip + V::load(&own.flexibility[i][j]) * V::splat(state.wrench[j]);
                     }
@@ -238,7 +249,8 @@ impl RowChunk<'_, '_> {
         }
     }
 
-    /// Largest ratio of stress to strength at peak load, over the ends of all links so far.
+    /// For each of eight designs, the largest ratio of stress to strength at peak load, over both ends of the row's
+    /// link and of all links outboard of it.
     #[inline(always)]
     fn stress<V: Lanes>(&self, chunk: &Chunk, begun: &Begun) -> V {
         let (mut standing, mut moving) = (V::zero(), V::zero());
@@ -250,18 +262,19 @@ impl RowChunk<'_, '_> {
             }
             let at_end: V = stress_squared(&chunk.stress, splat_all(begun.cases[k].at_end));
             let largest = at_end.max(stress_squared(&chunk.stress, at_root));
-            // in a sizing case the arm accelerates; in the other cases it stands still
+            // in a sizing case the arm accelerates; in the other cases it is at rest
             match case.sizing {
                 true => moving = moving.max(largest),
                 false => standing = standing.max(largest),
             }
         }
-        // the largest squares were kept, so that two square roots are enough for all cases
+        // the largest squares over the cases are taken first, so that two square roots are enough
         let own = standing.sqrt().max(moving.sqrt() * V::splat(self.problem.peak_factor()));
         own.max(V::splat(self.from.stress_ratio))
     }
 
-    /// The drive of each arm. An arm for which no drive holds is no longer `held`.
+    /// Index of the drive that each of the eight arms gets at inner slot `k`: the chosen drive, or the lightest one
+    /// that meets the demand. An arm for which no drive meets the demand is removed from `held`.
     #[inline(always)]
     fn pick<V: Lanes>(
         &self,
@@ -308,8 +321,9 @@ impl RowChunk<'_, '_> {
         }
     }
 
-    /// The drive of each arm if the joint is the row level: each lane has a drive of its own, with limits of its own, and the
-    /// loads are the same in all.
+    /// Index of the drive of each arm if the row level is a joint. The eight lanes have eight different drives, with
+    /// different limits, while the demand is the same in all lanes. An arm whose drive does not meet the demand is
+    /// removed from `held`.
     #[inline(always)]
     fn drive_in_each_lane(
         &self,
@@ -330,7 +344,8 @@ impl RowChunk<'_, '_> {
         indices
     }
 
-    /// Adds the mass of each arm's drive, with its torque and inertia at the joints inboard.
+    /// Adds the mass of each arm's drive at inner slot `k`, and the torque and inertia that this mass causes at the
+    /// joints inboard. `indices` are the drives of the eight arms.
     #[inline(always)]
     fn add_drive<V: Lanes>(&self, k: usize, indices: &[usize; LANES], arms: &mut EightArms) {
         let mass: V = at_places(&self.row.drives[k].mass_kg, indices, all_equal(indices));
@@ -339,7 +354,7 @@ impl RowChunk<'_, '_> {
         for (case, lanes) in self.row.cases.iter().zip(&mut arms.cases) {
             for &Hinge { number: j, .. } in self.row.hinges.iter().filter(|hinge| hinge.slot > k) {
                 let AtJoint { torque_nm, inertia_kgm2 } = case.per_kg[k][j];
-                // the same for all lanes, and often zero
+                // both numbers are the same for all lanes, and often zero
                 if torque_nm != 0.0 {
                     add(&mut lanes.torque_at[j], V::splat(torque_nm) * mass);
                 }
@@ -350,14 +365,15 @@ impl RowChunk<'_, '_> {
         }
     }
 
-    /// Adds the twist of each arm's drive. Returns the largest part that this joint adds to Dunkerley's sums \[s²\].
+    /// Adds the tip displacement that the torsion of the joint in inner slot `k` causes. `indices` are the drives of
+    /// the eight arms. Returns, for each arm, the largest term that this joint adds to Dunkerley's sums \[s²\].
     #[inline(always)]
     fn add_joint<V: Lanes>(&self, k: usize, indices: [usize; LANES], arms: &mut EightArms) -> V {
         let drives = &self.row.drives[k];
         let all_same = all_equal(&indices);
         let first: V = at_places(&drives.compliance[0], &indices, all_same);
         let twisting = self.row.twisting[k];
-        // gathered once for all cases
+        // the curves are loaded once for all cases
         let curves = match twisting {
             Twisting::Segments => Curves::<V>::gather(drives, &indices, all_same),
             _ => Curves::line(first),
@@ -384,8 +400,8 @@ impl RowChunk<'_, '_> {
         largest
     }
 
-    /// Adds the bending of a given tube. Returns the largest part that one of its end coordinates adds to Dunkerley's sums
-    /// \[s²\].
+    /// Adds the tip displacement that the bending of the given tube in inner slot `k` causes. Returns, for each arm,
+    /// the largest term that one end coordinate of the tube adds to Dunkerley's sums \[s²\].
     #[inline(always)]
     fn add_tube<V: Lanes>(&self, k: usize, arms: &mut EightArms) -> V {
         let mut largest = V::zero();
@@ -409,7 +425,8 @@ impl RowChunk<'_, '_> {
         largest
     }
 
-    /// Dunkerley's sum of each case and block: the trace of flexibility times mass.
+    /// Computes Dunkerley's sum for each case and block of the eigenvalue problem \[s²\]: the trace of flexibility
+    /// matrix times mass matrix, which equals the sum of `1/λ` over the eigenvalues.
     #[inline(always)]
     fn sum_traces<V: Lanes>(&self, begun: &Begun, arms: &mut EightArms) {
         for (c, case) in self.row.cases.iter().enumerate().filter(|(_, case)| case.judged) {
@@ -430,7 +447,7 @@ impl RowChunk<'_, '_> {
                         (StationSlot::Joint(joint), _) if joint.block == b => {
                             sum = sum + V::load(&lanes.compliance[hinge.slot]) * inertia;
                         }
-                        // an end coordinate has unit stiffness
+                        // an end coordinate has unit stiffness, so its compliance is 1
                         (StationSlot::Link { options, .. }, Some(end)) if options[0].block[end] == b => {
                             sum = sum + inertia;
                         }
@@ -442,7 +459,9 @@ impl RowChunk<'_, '_> {
         }
     }
 
-    /// Twist and tangent compliance of joints with play or friction, lane by lane: their laws have no form in lanes.
+    /// Angle \[rad\] and tangent compliance \[rad/(N m)\] of the joints in inner slot `k`, which have play or friction,
+    /// under `torque_nm`. They are computed one arm at a time, because laws with play are not written for eight at
+    /// once.
     #[inline(always)]
     fn each_by_itself<V: Lanes>(&self, k: usize, indices: [usize; LANES], torque_nm: V) -> (V, V) {
         let slot = &self.problem.slots()[self.row.first + k];
@@ -461,7 +480,7 @@ impl RowChunk<'_, '_> {
         &self.problem.stations()[case]
     }
 
-    /// The joint in inner slot `k`, if there is one.
+    /// The joint in inner slot `k` in a case; `None` if the slot is not a joint.
     #[inline(always)]
     fn joint(&self, case: usize, k: usize) -> Option<&StationJoint> {
         match &self.station(case).slots[self.row.first + k] {
@@ -471,13 +490,13 @@ impl RowChunk<'_, '_> {
     }
 }
 
-/// Adds to eight numbers in memory.
+/// Adds the eight numbers `more` to the eight numbers `to` in memory.
 #[inline(always)]
 fn add<V: Lanes>(to: &mut Eight, more: V) {
     *to = (V::load(to) + more).store();
 }
 
-/// Loads several eights from memory.
+/// Loads several sets of eight numbers from memory.
 #[inline(always)]
 fn load_all<V: Lanes, const K: usize>(from: &[Eight; K]) -> [V; K] {
     let mut out = [V::zero(); K];
@@ -487,19 +506,21 @@ fn load_all<V: Lanes, const K: usize>(from: &[Eight; K]) -> [V; K] {
     out
 }
 
-/// Whether all eight have the same drive. Neighbouring options often do, and one load is cheaper than a gather.
+/// Whether all eight arms have the same drive. This is frequent, because the drives of neighbouring designs are
+/// similar, and one load from memory is faster than eight.
 #[inline(always)]
 fn all_equal(indices: &[usize; LANES]) -> bool {
     indices.iter().all(|index| *index == indices[0])
 }
 
-/// The numbers of a list at eight places; `all_same` says that the places are equal.
+/// The entries of `list` at the eight indices `at`. `all_same` tells that these are equal.
 #[inline(always)]
 fn at_places<V: Lanes>(list: &[f64], at: &[usize; LANES], all_same: bool) -> V {
     if all_same { V::splat(list[at[0]]) } else { V::gather(list, at) }
 }
 
-/// Square of the ratio of von Mises stress (bending, axial force and torsion) to strength.
+/// Square of the ratio of von Mises stress (bending, axial force and torsion) to strength, for eight links. `per` has
+/// the ratio per unit of each load. The loads are axial force \[N\], torsion and the two bending moments \[N m\].
 #[inline(always)]
 fn stress_squared<V: Lanes>(per: &StressEight, [axial, torsion, y, z]: [V; 4]) -> V {
     let y = y.abs() * V::load(&per.per_moment_y);
@@ -513,21 +534,24 @@ fn stress_squared<V: Lanes>(per: &StressEight, [axial, torsion, y, z]: [V; 4]) -
     normal * normal + V::splat(3.0) * shear * shear
 }
 
-/// The three-segment curves of eight gears.
+/// The torsion curves of eight gears, each with three segments.
 struct Curves<V> {
+    /// Compliance of each segment \[rad/(N m)\].
     compliance: [V; 3],
+    /// Torques at which the first and the second segment end \[N m\].
     ends_nm: [V; 2],
+    /// Whether modes use the compliance of the first segment at every torque.
     first_in_modes: bool,
 }
 
 impl<V: Lanes> Curves<V> {
-    /// Curves with a single slope each.
+    /// Curves with a single slope, for drives that need only one.
     #[inline(always)]
     fn line(compliance: V) -> Self {
         Self { compliance: [compliance; 3], ends_nm: [V::zero(); 2], first_in_modes: true }
     }
 
-    /// The curves of eight drives of a joint.
+    /// The torsion curves of the drives with the eight indices `at`. `all_same` says that the indices are equal.
     #[inline(always)]
     fn gather(of: &DriveAttributes, at: &[usize; LANES], all_same: bool) -> Self {
         let zero = V::zero();
@@ -542,7 +566,8 @@ impl<V: Lanes> Curves<V> {
         curves
     }
 
-    /// Twist under a torque, and compliance in modes. Every segment is computed and masked, because lanes cannot branch.
+    /// Angle \[rad\] of eight gears under `torque_nm`, and their compliance in modes \[rad/(N m)\]. Every segment is
+    /// computed and then selected, because the eight lanes cannot branch separately.
     #[inline(always)]
     fn windup(&self, torque_nm: V) -> (V, V) {
         let Self { compliance, ends_nm, first_in_modes } = self;

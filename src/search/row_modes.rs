@@ -1,15 +1,18 @@
 //! The lowest modes of eight designs at once.
 //!
-//! Few eigenproblems are solved to the end. When mass and deflection of a design are known, the *bar* is the lowest mode of
-//! some known design that is no worse in both. A design below its bar is dominated and its mode need not be computed. The
-//! tests, from the cheapest to the dearest:
+//! For most designs the lowest mode itself is never computed. When mass and deflection of a design are known, its
+//! *bar* is the highest lowest mode among the known designs that are no worse in both. A design whose lowest mode is
+//! below its bar is dominated. The tests, from the cheapest to the most expensive:
 //!
-//! 1. The compliance of a single joint bounds the lowest mode from above. Most often this decides, and a single bar serves
-//!    all eight designs.
-//! 2. Otherwise one pass over a block at the bar shows whether an eigenvalue is below it.
-//! 3. For designs above the bar, the block with the largest Dunkerley sum is solved first. Another block can only matter
-//!    if its lower bound is below the root just found. It then gets one pass at this root, and is solved only if a pivot is
-//!    negative there.
+//! 1. The compliance of a single joint gives an upper bound of the lowest mode. Most often this bound is below the
+//!    bar, and a single bar decides for all eight designs.
+//! 2. Otherwise one factorization of a block at the frequency of the bar shows whether an eigenvalue is below it.
+//! 3. For designs above the bar, the block with the largest Dunkerley sum is solved first. Another block matters only
+//!    if its lower bound is below the eigenvalue just found. It is then factorized once at this eigenvalue, and solved
+//!    only if a pivot is negative there.
+//!
+//! Dunkerley's sum of a block is the sum of `1/λ` over all its eigenvalues λ. It is found without solving for them, and
+//! its reciprocal is a lower bound of the lowest eigenvalue.
 
 use super::arms::EightArms;
 use super::row::{ChunkModal, RowCase, RowChunk};
@@ -20,7 +23,8 @@ use crate::space::levels::Keep;
 use crate::space::station::{Block, BlockSlot, Modal};
 use std::f64::consts::TAU;
 
-/// A question about the lowest modes of eight complete arms.
+/// Eight complete arms whose lowest modes are to be found, or at least compared with a bar. A bar is the lowest mode
+/// that a design needs for not being dominated.
 #[derive(Clone, Copy)]
 pub(crate) struct Question<'a, 'c> {
     at: RowChunk<'a, 'c>,
@@ -28,26 +32,27 @@ pub(crate) struct Question<'a, 'c> {
     arms: &'a EightArms,
 }
 
-/// A question about the lowest eigenvalues of one block.
+/// A question about the lowest eigenvalue of one block of the eigenvalue problem, for eight arms.
 #[derive(Clone, Copy)]
 struct Ask<V> {
-    /// The lanes in question, one bit for each.
+    /// Bit mask, one bit per arm: the arms for which the question is asked.
     open: u8,
-    /// Eigenvalues that are not below this number are of no interest.
+    /// Eigenvalues \[1/s²\] that are not below this number are of no interest.
     below: V,
-    /// Where to start to look for the eigenvalues; `None` if only the lanes below are asked for.
+    /// Eigenvalue at which the iteration starts; `None` if the question is only whether an eigenvalue is below
+    /// `below`.
     guess: Option<V>,
 }
 
 impl RowChunk<'_, '_> {
-    /// The group (material) of the design in a lane.
+    /// Number of the group (material) of the design in a lane; `None` if its links are of several materials.
     #[inline(always)]
     pub(crate) fn group(&self, lane: usize) -> Option<usize> {
         let material = self.row.chunks.get(self.chunk).and_then(|chunk| chunk.materials[lane]);
         self.from.group.with(material).material()
     }
 
-    /// Whether the eight are all of one group.
+    /// Whether the eight designs all belong to the same group (material).
     #[inline(always)]
     fn of_one_group(&self) -> bool {
         self.row.chunks.get(self.chunk).is_none_or(|chunk| chunk.of_one_material)
@@ -59,8 +64,10 @@ impl<'a, 'c> Question<'a, 'c> {
         Self { at, begun, arms }
     }
 
-    /// The designs that a single bar for all eight shows to be of no interest. It is the bar of a design with the least
-    /// mass and the least deflection of the eight, and so no bar of the eight is lower. `tip_m2` has the squares of the deflections.
+    /// The designs among `held` that are shown to be dominated by a single bar for all eight. A bar is the lowest mode
+    /// that a design of known mass and deflection needs for not being dominated. This one belongs to an imagined design
+    /// with the least mass and the least deflection of the eight, so the bar of each of the eight is at least as high.
+    /// `tip_m2` has the squares of the deflections \[m²\].
     #[inline(always)]
     pub(crate) fn below_one_bar<V: Lanes>(&self, keep: &impl Keep, tip_m2: &Eight, held: u8) -> u8 {
         if !self.at.of_one_group() {
@@ -70,7 +77,8 @@ impl<'a, 'c> Question<'a, 'c> {
         held & self.sluggish(V::splat(eigenvalue(bar_hz)))
     }
 
-    /// The designs whose lowest mode is below their own bars.
+    /// The designs among `held` whose lowest mode is below their own bar, that is, below the mode that a design of this
+    /// mass and deflection needs for not being dominated.
     #[inline(always)]
     pub(crate) fn below_bar<V: Lanes>(&self, keep: &impl Keep, held: u8) -> u8 {
         let (mass_kg, tip_deflection_m) = (&self.arms.mass_kg, &self.arms.tip_deflection_m);
@@ -81,11 +89,11 @@ impl<'a, 'c> Question<'a, 'c> {
         self.below::<V>(&bars, held)
     }
 
-    /// The lanes whose lowest eigenvalue is below a bar.
+    /// The arms among `held` whose lowest eigenvalue is below the arm's entry in `bars` \[1/s²\], as a bit mask.
     #[inline(always)]
     fn below<V: Lanes>(&self, bars: &Eight, held: u8) -> u8 {
         let below = V::load(bars);
-        // a bar of zero excludes nothing
+        // a bar of zero means that no known design could dominate
         let asked = held & V::zero().less(below);
         let mut above = asked & !self.sluggish(below);
         if above == 0 {
@@ -100,7 +108,8 @@ impl<'a, 'c> Question<'a, 'c> {
         asked & !above
     }
 
-    /// The lowest eigenvalue over all judged cases, and the lanes in which it was not found.
+    /// The lowest eigenvalue of each arm over all judged cases \[1/s²\], and a bit mask of the arms for which the
+    /// iteration did not converge. `held` is a bit mask of the arms in question.
     #[inline(always)]
     pub(crate) fn lowest<V: Lanes>(&self, held: u8) -> (V, u8) {
         let (mut lowest, mut unsure) = (V::splat(f64::INFINITY), 0);
@@ -108,7 +117,8 @@ impl<'a, 'c> Question<'a, 'c> {
             let least = self.least::<V>(block);
             let open = held & least.less(lowest);
             if open != 0 {
-                // blocks that still matter have roots close to the one known so far: start just below it
+                // a block that still matters has an eigenvalue just below the lowest one so far, so the iteration
+                // starts slightly below it
                 let guess = V::choose(lowest.less(V::splat(f64::INFINITY)), V::splat(0.97) * lowest, least);
                 let ask = Ask { open, below: lowest, guess: Some(guess.max(least)) };
                 let (root, lost) = self.answer(block, ask);
@@ -119,22 +129,24 @@ impl<'a, 'c> Question<'a, 'c> {
         (lowest, unsure)
     }
 
-    /// The lanes in which a single joint yields so much that the lowest eigenvalue is below a bar. The reciprocal of the
-    /// lowest eigenvalue is the largest eigenvalue of flexibility times mass (in its symmetric form), and no diagonal entry
-    /// of a symmetric matrix exceeds its largest eigenvalue.
+    /// The arms in which a single joint is so compliant that the lowest eigenvalue must be below the bar `below`
+    /// \[1/s²\]. The reason: the reciprocal of the lowest eigenvalue is the largest eigenvalue of flexibility times
+    /// mass (in its symmetric form), and no diagonal entry of a symmetric matrix exceeds its largest eigenvalue.
     #[inline(always)]
     fn sluggish<V: Lanes>(&self, below: V) -> u8 {
         V::splat(1.0).less(V::load(&self.arms.largest_s2) * below)
     }
 
-    /// Dunkerley's lower bound of the lowest eigenvalue of a block.
+    /// Dunkerley's lower bound of the lowest eigenvalue of a block \[1/s²\]: the reciprocal of the sum of `1/λ` over
+    /// its eigenvalues.
     #[inline(always)]
     fn least<V: Lanes>(&self, (case, block): (usize, usize)) -> V {
         V::splat(1.0) / V::load(&self.arms.cases[case].trace_s2[block])
     }
 
-    /// The blocks of the judged cases. The one with the largest Dunkerley sum comes first, since it most likely has the
-    /// lowest eigenvalue.
+    /// The blocks of the eigenvalue problems of all judged cases, each given by case and block. The block with the
+    /// largest Dunkerley sum over the arms in the bit mask `of` comes first, since it most likely has the lowest
+    /// eigenvalue.
     fn blocks(&self, of: u8) -> impl Iterator<Item = (usize, usize)> {
         let sum = move |(case, block): (usize, usize)| -> f64 {
             let traces = &self.arms.cases[case].trace_s2[block];
@@ -151,8 +163,9 @@ impl<'a, 'c> Question<'a, 'c> {
         first.into_iter().chain(blocks.filter(move |&block| Some(block) != first && sum(block) > 0.0))
     }
 
-    /// The eigenvalues of a block, and the lanes in which none was found. Without a guess: the lanes in which an eigenvalue
-    /// is below.
+    /// Answers the question `ask` for one block. Returns the lowest eigenvalue of each arm \[1/s²\], and a bit mask of
+    /// the arms for which none was found. If the question has no guess, the bit mask has the arms with an eigenvalue
+    /// below `below` instead.
     #[inline(always)]
     fn answer<V: Lanes>(&self, (case, block): (usize, usize), ask: Ask<V>) -> (V, u8) {
         let chunk = self.at.row.chunks.get(self.at.chunk).map(|chunk| &chunk.cases[case].modal);
@@ -171,12 +184,12 @@ impl<'a, 'c> Question<'a, 'c> {
                 };
                 self.solve(&self.pieces(case, block, pieces, link), outboard, ask)
             }
-            // a case keeps its kind; if it did not, these lanes would be solved by themselves
+            // a case is always planar or always spatial; otherwise these arms would be solved one by one
             _ => (ask.below, ask.open),
         }
     }
 
-    /// The inner pieces of the eight arms in a block.
+    /// The pieces of the eight arms from the row level to the base, in one block of the eigenvalue problem.
     #[inline(always)]
     fn pieces<'s, const N: usize>(
         &'s self,
@@ -195,7 +208,8 @@ impl<'a, 'c> Question<'a, 'c> {
         }
     }
 
-    /// Answers for a block of `N` motions.
+    /// Answers the question `ask` for a block of `N` motions, as [`answer`](Self::answer) does. `inner` are the inner
+    /// pieces of the arms, and `outboard` is the arm outboard of the row.
     #[inline(always)]
     fn solve<V: Lanes, const N: usize>(
         &self,
@@ -206,18 +220,18 @@ impl<'a, 'c> Question<'a, 'c> {
         let Ask { mut open, below, guess } = ask;
         let known = open & below.less(V::splat(f64::INFINITY));
         if known != 0 {
-            // no pivot is negative at `below`: the lowest eigenvalue is above it, and the lane is done
+            // if no pivot is negative at `below`, the lowest eigenvalue is above it and the arm is decided
             let here = pass(outboard, inner, V::choose(known, below, guess.unwrap_or(below)));
             open &= !(known & here.below_all);
         }
-        // without a guess only the side of `below` was asked for
+        // without a guess the question was only on which side of `below` the eigenvalue is
         let Some(guess) = guess.filter(|_| open != 0) else { return (below, open) };
         let found = roots(outboard, inner, guess, open);
         (V::choose(open, found.eigenvalue, below), found.unsure)
     }
 }
 
-/// The least of eight.
+/// The least of eight numbers.
 #[inline(always)]
 fn least(numbers: &Eight) -> f64 {
     let less = |a: f64, b: f64| if a < b { a } else { b };
@@ -225,19 +239,24 @@ fn least(numbers: &Eight) -> f64 {
     less(less(less(a, e), less(c, g)), less(less(b, f), less(d, h)))
 }
 
-/// `(2πf)²`.
+/// Eigenvalue `(2πf)²` \[1/s²\] of a frequency \[Hz\].
 #[inline(always)]
 fn eigenvalue(hz: f64) -> f64 {
     (TAU * hz) * (TAU * hz)
 }
 
-/// The inner pieces of eight arms in one block, up to the last that yields.
+/// The pieces of eight arms from the row level to the last compliant one, in one block of the eigenvalue problem.
 struct Pieces<'a, const N: usize> {
     slots: &'a [BlockSlot<N>],
+    /// Number of inner slots from the row level to the last one that is compliant.
     end: usize,
+    /// The eight options of the row's link; `None` if the row level is a joint.
     link: Option<&'a LaneLink<N>>,
     case: &'a RowCase,
+    /// Mass of the drive in each inner slot (from the row level to the base) \[kg\], in eight arms.
     masses_kg: &'a [Eight],
+    /// Tangent compliance of the joint or spring in each inner slot (from the row level to the base) \[rad/(N m)\], in
+    /// eight arms.
     compliance: &'a [Eight],
 }
 
@@ -250,13 +269,15 @@ impl<V: Lanes, const N: usize> Inner<V, N> for Pieces<'_, N> {
                     if twist.amax() > 0.0 {
                         walk.joint(twist, V::load(&self.compliance[k]));
                     }
-                    // the mass of the last drive that yields is inboard of everything that yields: no mode moves it
+                    // the drive of the last compliant joint is inboard of every compliance, so its mass stands still
+                    // in every mode
                     if k + 1 < self.end {
                         walk.mass(V::load(&self.masses_kg[k]), inertia_per_kg);
                     }
                 }
                 BlockSlot::Body(inertia) => walk.body(inertia),
-                // a given tube: only the first slot may be the link of the row
+                // only the first slot may be the link of the row: any other is a given tube, the same in all eight
+                // arms
                 BlockSlot::Links(options) if k > 0 => walk.shared_link(&options[0]),
                 BlockSlot::Links(_) => match self.link {
                     Some(link) if self.case.links_yield => walk.link(link),

@@ -1,27 +1,29 @@
-//! The room that links leave to the parts of inner joints, eight designs at once.
+//! The room that links leave for the gears and motors of inner joints, for eight designs at once.
 
 use crate::mechanics::lanes::{Eight, LANES, Lanes};
 use crate::space::fit::RoomAtJoint;
 use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::Slot;
 
-/// The room at a joint inboard of the row level.
+/// The room that a link leaves for the gear and motor of a joint inboard of the row level.
 pub(crate) struct RowRoom {
-    /// Inner slot of the joint.
+    /// Index of the joint among the inner slots (the slots from the row level to the base).
     pub k: usize,
+    /// Which link determines the room.
     of: RoomOf,
 }
 
-/// The link that leaves the room.
+/// Which link determines the room.
 enum RoomOf {
-    /// The link is outboard of the row, or given; the slot of the joint.
+    /// A link that is given or outboard of the row. The number is the slot of the joint.
     Slot(usize),
-    /// The link is that of the row: the room for gear and motor in each lane of each chunk \[m\].
+    /// The link of the row: the room \[m\] for gear and for motor, for each chunk of its options.
     Chunk(Vec<[Eight; 2]>),
 }
 
 impl RowRoom {
-    /// The rooms at the joints inboard of the row level, which is in slot `first`.
+    /// The rooms for gear and motor at the joints inboard of the row level, as far as they are limited. `first` is the
+    /// slot of the row level.
     pub(crate) fn all(problem: &ArmProblem, first: usize) -> Vec<Self> {
         let slots = problem.slots();
         let is_inboard =
@@ -35,7 +37,8 @@ impl RowRoom {
         rooms.filter_map(room).collect()
     }
 
-    /// The room for gear and motor \[m\] in eight designs of a chunk, beyond the arm `from`.
+    /// Largest outer diameters \[m\] that the link leaves for the gear and for the motor of this joint, for the eight
+    /// designs of a chunk. `from` is the arm outboard of the row. `None` if no link limits them.
     #[inline(always)]
     pub(crate) fn room<V: Lanes>(
         &self,
@@ -52,7 +55,8 @@ impl RowRoom {
     }
 }
 
-/// The rooms by the option of a link, eight in a chunk.
+/// Largest outer diameters \[m\] that each option of the link leaves for the gear and for the motor, eight options in a
+/// chunk. The last chunk is filled up with copies of the last option.
 fn chunks(room: &RoomAtJoint) -> Vec<[Eight; 2]> {
     let of = |option: usize| room.rooms[option.min(room.rooms.len() - 1)];
     let eight = |chunk: usize| {

@@ -1,27 +1,32 @@
-//! Lighter arms on the drives of a design.
+//! Lighter arms with the same drives as a design.
 //!
-//! Where the lightest drive that holds is taken (first fit), a lighter link may let a smaller and softer drive hold inboard.
-//! A design with a heavy link can then be on a front only because the larger drive came with it. The sign of this is an
-//! arm with the same drives at those joints that is lighter, deflects no more and has as high a lowest mode. No design of
-//! the study is that arm, because first fit would give it smaller drives.
+//! With first fit, every joint gets the lightest drive that meets the demand. A lighter link may then lead to a
+//! smaller and softer drive inboard. A design with a heavy link can therefore be on a front only because the heavy
+//! link made the drive larger. It is recognized by an arm with the same drives at the joints sized by first fit that
+//! is lighter, deflects no more and has as high a lowest mode. This arm is not a design of the study, because first
+//! fit would give it smaller drives.
 
 use crate::pareto::objectives::Objectives;
 use crate::space::levels::OutwardIn;
 use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::Slot;
 
-/// A lighter arm that keeps the drives that first fit gave a design.
+/// An arm that is lighter than a design and has the same drives at the joints sized by first fit.
 pub struct OnSameDrives {
-    /// Pieces whose parts differ from those of the design, base to tip.
+    /// Pieces whose parts differ from those of the design, numbered from the base to the tip.
     pub exchanged: Vec<usize>,
-    /// Joints at which first fit would take a smaller drive in the lighter arm, as pieces, base to tip.
+    /// Joints at which first fit would take a smaller drive in the lighter arm, as numbers of pieces from the base to
+    /// the tip.
     pub oversized: Vec<usize>,
+    /// The lighter arm.
     pub(crate) arm: Partial,
 }
 
 impl ArmProblem<'_> {
-    /// The lightest arm that keeps the first-fit drives of a design and is no worse in any objective, as far as exchanging
-    /// one part at a time finds it; `None` if no joint is sized by first fit or if no part can be exchanged.
+    /// An arm that is lighter than the design with these `options`, has its first-fit drives, and is no worse in
+    /// deflection and lowest mode. It is found by exchanging one part at a time for the one that gives the lightest
+    /// arm, so it need not be the lightest of all. `None` if no joint is sized by first fit, if no exchange helps, or
+    /// if first fit would give the lighter arm the same drives.
     pub fn lighter_on_same_drives(&self, options: &[u32]) -> Option<OnSameDrives> {
         let design = self.walk(options, |_, _| {}).ok()?;
         let first_fit = |slot: &Slot| matches!(slot, Slot::Sized(sized) if !sized.all_fits);
@@ -40,11 +45,13 @@ impl ArmProblem<'_> {
         let levels: Vec<u32> = self.level_slots().iter().map(|&slot| arm.options[slot]).collect();
         let sized_anew = self.walk(&levels, |_, _| {}).ok()?;
         let oversized = self.pieces_where(&sized_anew, &arm);
-        // without a larger drive the lighter arm is a design of the study that an unfinished search did not list
+        // if first fit gives it the same drives, the lighter arm is a design of the study, which an unfinished search
+        // did not list
         (!oversized.is_empty()).then_some(OnSameDrives { exchanged, oversized, arm })
     }
 
-    /// The lightest arm with one other part that is no worse than the objectives.
+    /// The lightest arm that differs from `arm` in one part, weighs less than `arm`, and is no worse than the
+    /// objectives `judged` in deflection and lowest mode. `None` if there is no such arm.
     fn lightest_exchange(&self, arm: &Partial, judged: &Objectives) -> Option<Partial> {
         let sizes = self.level_slots().iter().zip(self.level_sizes());
         let exchanges = sizes.flat_map(|(&slot, &size)| (0..size).map(move |option| (slot, option)));
@@ -58,14 +65,14 @@ impl ArmProblem<'_> {
         others.min_by(|a, b| a.mass_kg.total_cmp(&b.mass_kg))
     }
 
-    /// Pieces at which two arms have different parts, base to tip.
+    /// Numbers of the pieces (base to tip) at which two arms have different parts.
     fn pieces_where(&self, a: &Partial, b: &Partial) -> Vec<usize> {
         let pieces = self.options(a).zip(self.options(b)).enumerate();
         pieces.filter(|(_, (a, b))| a != b).map(|(piece, _)| piece).collect()
     }
 }
 
-/// Whether an arm is no worse than another in deflection and lowest mode.
+/// Whether `arm` is no worse than `than` in deflection and lowest mode. The mass is not compared.
 fn no_worse(arm: &Objectives, than: &Objectives) -> bool {
     arm.tip_deflection_m <= than.tip_deflection_m && arm.lowest_mode_hz >= than.lowest_mode_hz
 }

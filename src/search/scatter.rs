@@ -1,13 +1,13 @@
-//! Scatter: designs as they might be built, with parts that differ a little from their catalog ratings.
+//! Scatter: designs as they might be built, with parts whose properties differ a little from their catalog ratings.
 //!
-//! Each rating has one factor. The factor of a gear's stiffness applies to its whole torsion curve (K1, K2 and K3; the
-//! break points T1 and T2 stay). The factor of a material's modulus applies to E and to G. Masses of gears and motors have
-//! factors of their own. A factor belongs to a row of a catalog, so it is the same in every joint and every design
-//! that uses the row. The stiffness of an output bearing has a factor too: that of the gear's row where the bearing comes
-//! with the chosen gear, and one of its own at each joint whose bearing is stated. What an effect adds to the tilt is
-//! exact.
+//! Each rating has one random factor. The factor of a gear's stiffness applies to its whole torsion curve: it scales
+//! K1, K2 and K3, while the break points T1 and T2 stay. The factor of a material's modulus applies to E and to G.
+//! Masses of gears and motors have factors of their own. A factor belongs to a row of a catalog, so it is the same in
+//! every joint and every design that uses the row. The stiffness of an output bearing has a factor too. It belongs to
+//! the row of the gear if the bearing comes with the chosen gear; a bearing that is stated at a joint has a factor
+//! for this joint. The compliance that an effect adds to the tilt is exact.
 //!
-//! The designs are not sized again: they keep their drives and sections whatever the true ratings are.
+//! The designs are not sized again: they keep their drives and sections, whatever the sampled ratings are.
 
 use crate::arm::joint_law::JointLaw;
 use crate::arm::{Link, LinkBody};
@@ -20,53 +20,58 @@ use crate::space::station::{Station, StationSlot};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// A catalog rating that scatters, with the name of its row.
+/// A catalog rating that has a random factor, with the name of the row (or joint) that it belongs to.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rating {
-    /// The torsion curve of a gear.
+    /// The torsion curve of the gear with this name.
     GearStiffness(String),
-    /// E and G of a material.
+    /// E and G of the material with this name.
     Modulus(String),
-    /// The mass of a gear.
+    /// The mass of the gear with this name.
     GearMass(String),
-    /// The mass of a motor.
+    /// The mass of the motor with this name.
     MotorMass(String),
-    /// The tilting stiffness of the output bearing of a gear.
+    /// The tilting stiffness of the output bearing that comes with the gear of this name.
     BearingStiffness(String),
-    /// The tilting stiffness of the bearing that is stated for a joint.
+    /// The tilting stiffness of the bearing that is stated for the joint of this name.
     StatedBearingStiffness(String),
 }
 
-/// Ratio of the true value to the catalog's, for each rating. A rating that is not listed is exact.
+/// Ratio of the sampled value to the catalog's value, for each rating. A rating that is not listed has the catalog's
+/// value.
 pub type Factors = BTreeMap<Rating, f64>;
 
-/// Designs of a problem whose parts are to scatter.
+/// The designs of a problem whose parts are to be varied.
 pub struct ChosenParts<'p, 'c> {
     problem: &'p ArmProblem<'c>,
-    /// Option of every slot, design by design.
+    /// For each design, the option of every slot, tip first.
     designs: Vec<Vec<u32>>,
-    /// Options that the designs use, slot by slot. Only these are built.
+    /// For each slot, the options that the designs use. Only these parts are built.
     used: Vec<BTreeSet<u32>>,
-    /// The joint whose stated bearing is the spring in a slot, slot by slot.
+    /// For each slot, the joint whose stated bearing is the spring in this slot; `None` for other slots.
     tilting: Vec<Option<&'p SpaceJoint>>,
 }
 
-/// A joint as it might be built.
+/// A joint with one option, built with the sampled values of its ratings.
 struct BuiltJoint {
+    /// Angle of the joint as a function of its torque.
     law: JointLaw,
+    /// Mass of the drive \[kg\].
     mass_kg: f64,
 }
 
-/// The parts of [`ChosenParts`] with one set of factors.
+/// The parts of [`ChosenParts`] with one set of sampled values.
 pub struct BuiltParts<'p, 'c> {
     chosen: &'p ChosenParts<'p, 'c>,
-    /// The cases with links of other moduli; `None` if no modulus scatters.
+    /// The stations of the cases with the sampled moduli; `None` if no modulus is sampled.
     stations: Option<Vec<Station>>,
+    /// For each slot, the joint with each option that some design uses; empty for links.
     joints: Vec<BTreeMap<u32, BuiltJoint>>,
 }
 
 impl<'p, 'c> ChosenParts<'p, 'c> {
-    /// The parts of designs, each given by its options, one for each level. Returns `None` if a design cannot hold.
+    /// Prepares the parts of some designs, so that their ratings can be varied. Each design is given by its options,
+    /// one for each level, tip first. `None` if a design breaks a limit.
     pub fn new(problem: &'p ArmProblem<'c>, designs: &[Vec<u32>]) -> Option<Self> {
         let complete =
             designs.iter().map(|options| problem.walk(options, |_, _| {}).ok().map(|arm| arm.options));
@@ -77,17 +82,17 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
         Some(Self { problem, designs, used, tilting })
     }
 
-    /// Number of designs.
+    /// Number of designs whose parts are varied.
     pub fn len(&self) -> usize {
         self.designs.len()
     }
 
-    /// Whether there is no design.
+    /// Whether the list of designs whose parts are varied is empty.
     pub fn is_empty(&self) -> bool {
         self.designs.is_empty()
     }
 
-    /// All catalog ratings on which the designs depend.
+    /// All catalog ratings on which the designs depend, so that factors can be drawn for them.
     pub fn ratings(&self) -> BTreeSet<Rating> {
         let used = self.used.iter().enumerate().flat_map(|(slot, used)| used.iter().map(move |&o| (slot, o)));
         used.flat_map(|(slot, option)| {
@@ -104,7 +109,7 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
         .collect()
     }
 
-    /// The parts with the true values of their ratings.
+    /// The parts with sampled values of their ratings: the value of the catalog times the rating's factor in `factors`.
     pub fn built(&self, factors: &Factors) -> BuiltParts<'_, 'c> {
         let bends = factors.keys().any(|rating| matches!(rating, Rating::Modulus(_)));
         let stations = bends.then(|| {
@@ -125,7 +130,7 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
         let factor = |rating: Rating| factors.get(&rating).copied().unwrap_or(1.0);
         let mut law = *self.problem.slots()[slot].law(option as usize)?;
         if let Some((rating, nominal_rad_per_nm)) = self.bearing(slot, option) {
-            // as a deviation, so that a factor of 1 gives this compliance exactly
+            // applied as a difference, so that a factor of 1 gives exactly the nominal compliance
             law.connection_rad_per_nm += nominal_rad_per_nm * (1.0 / factor(rating) - 1.0);
         }
         let stiffness = self.gear(slot, option).map_or(1.0, |gear| factor(Rating::GearStiffness(gear)));
@@ -134,7 +139,7 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
             Slot::Sized(sized) => {
                 let (drive, mass_kg) =
                     (sized.table.drive(option as usize), sized.table.mass_kg(option as usize));
-                // as deviations from the mass in the table, so that factors of 1 give this mass exactly
+                // applied as differences from the mass in the table, so that factors of 1 give exactly this mass
                 let motor_kg = drive.motor.mass_kg.unwrap_or(0.0);
                 let gear_kg = drive.mass_kg().map_or(0.0, |both_kg| both_kg - motor_kg);
                 let gear_off = factor(Rating::GearMass(drive.gear.id.clone())) - 1.0;
@@ -146,7 +151,8 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
         Some(BuiltJoint { law: JointLaw { curve: law.curve.stiffened(stiffness), ..law }, mass_kg })
     }
 
-    /// Name of the catalog gear of a joint, whether chosen or given.
+    /// Name of the catalog gear that the joint in `slot` has with `option`, whether the gear is chosen or given. `None`
+    /// if the drive is given in numbers.
     fn gear(&self, slot: usize, option: u32) -> Option<String> {
         match (self.drive(slot, option), self.problem.piece_in_slot(slot)) {
             (Some(drive), _) => Some(drive.gear.id.clone()),
@@ -158,7 +164,8 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
         }
     }
 
-    /// The rating of the bearing whose spring is in a slot, with its nominal compliance \[rad/(N m)\].
+    /// If `slot` is a spring of an output bearing: the rating of this bearing, and its compliance by the catalog or the
+    /// study \[rad/(N m)\]. Otherwise `None`.
     fn bearing(&self, slot: usize, option: u32) -> Option<(Rating, f64)> {
         let (rating, bearing) = match &self.problem.slots()[slot] {
             Slot::Bearing { joint, .. } => {
@@ -176,7 +183,8 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
         (rad_per_nm > 0.0).then_some((rating, rad_per_nm))
     }
 
-    /// The drive of a joint that is sized. The drive of a given joint has the mass that the study gives; it does not scatter.
+    /// The drive `option` of the joint in `slot`, if the joint is sized; `None` for other slots. A given drive has the
+    /// mass that the study states, and this mass does not scatter.
     fn drive(&self, slot: usize, option: u32) -> Option<Drive<'c>> {
         match &self.problem.slots()[slot] {
             Slot::Sized(sized) => Some(sized.table.drive(option as usize)),
@@ -184,7 +192,7 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
         }
     }
 
-    /// Name of the material of a link, whether chosen or given.
+    /// Name of the material of a link, whether the link is chosen or given; `None` for a rigid offset.
     fn material(&self, slot: usize, option: u32) -> Option<String> {
         match self.problem.piece_in_slot(slot)? {
             SpacePiece::Choice(choice) => Some(choice.options[option as usize].material_name.clone()),
@@ -197,7 +205,8 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
 }
 
 impl BuiltParts<'_, '_> {
-    /// Objectives of a design. `design` is its place in the list from which the parts were taken.
+    /// Objectives of one design with the sampled values of its ratings. `design` is the index of the design in the list
+    /// from which the parts were prepared.
     pub fn objectives(&self, design: usize) -> Objectives {
         let problem = self.chosen.problem;
         let stations = self.stations.as_deref().unwrap_or(problem.stations());
@@ -205,7 +214,7 @@ impl BuiltParts<'_, '_> {
         objectives_over(problem.space().judged_cases.iter().map(|&i| (&stations[i], &arm.stations[i])), &arm)
     }
 
-    /// The arm of a design, with its states in the judged cases.
+    /// The complete arm of the design with these `options`, with the sampled values. `stations` are the compiled cases.
     fn arm(&self, stations: &[Station], options: &[u32]) -> Partial {
         let problem = self.chosen.problem;
         let mut arm = problem.empty();
@@ -236,7 +245,7 @@ impl BuiltParts<'_, '_> {
     }
 }
 
-/// The space with the true moduli of its materials.
+/// A copy of the space in which the modulus of each material is multiplied by its factor in `factors`.
 fn with_moduli(space: &DesignSpace, factors: &Factors) -> DesignSpace {
     let factor = |name: &str| factors.get(&Rating::Modulus(name.to_string())).copied().unwrap_or(1.0);
     let mut out = space.clone();

@@ -1,9 +1,9 @@
-//! The sweep: it visits every design, in parallel.
+//! The sweep: it evaluates every design, in parallel.
 //!
-//! `Visit` walks the tree in tasks. A design that another clearly dominates is dropped at once (`Archive`). The
-//! others are filtered exactly from time to time, so that memory grows with the front and with what the problem keeps for
-//! each option (for arms some kilobytes an option and case), not with the number of designs. The result does not depend on
-//! the order of visits or on the number of threads.
+//! `Visit` walks the tree of designs in tasks. A design that another one clearly dominates is dropped at once
+//! (`Archive`). The others are compared exactly from time to time. Memory therefore grows with the front and with the
+//! tables of the problem (for arms some kilobytes per option and case), not with the number of designs. The result
+//! does not depend on the order of visits or on the number of threads.
 
 use super::finish::FinishRows;
 use super::resume::Done;
@@ -19,10 +19,10 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Relative difference in an objective up to which the sweep does not decide between two designs. It keeps both, and the
-/// full model decides.
+/// Relative difference in an objective up to which the sweep keeps both of two designs. The full model decides
+/// between them later, because the fast model has rounding errors.
 pub const SLACK: f64 = 1e-7;
-/// Candidates are filtered when this many have been added since the last filtering.
+/// Number of added candidates after which the dominated candidates are removed.
 const BUFFER: usize = 1 << 15;
 
 /// How a search ended.
@@ -32,16 +32,16 @@ pub enum Status {
     Certified,
     /// Every design was visited.
     Complete,
-    /// The search stopped early; the result states how much it may lack.
+    /// The search stopped before the proof was complete. The result states how much may be missing.
     Partial,
-    /// Every design was visited and none meets the constraints.
+    /// Every design was visited, and none meets the limits.
     Infeasible,
     /// The sweep was stopped before every design was visited.
     Interrupted,
 }
 
 impl Status {
-    /// The word for the status in files.
+    /// The word for this status in files.
     pub fn word(self) -> &'static str {
         match self {
             Status::Certified => "certified",
@@ -53,12 +53,12 @@ impl Status {
     }
 }
 
-/// A design that no other clearly dominates.
+/// A design that no other design found so far clearly dominates.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Candidate {
-    /// Number of the design in its space.
+    /// Number of the design in its design space.
     pub number: u128,
-    /// Objectives of the design by the fast model.
+    /// Objectives of the design by the fast model of the search, which condenses links.
     pub objectives: Objectives,
 }
 
@@ -69,64 +69,69 @@ pub struct SweepOutcome {
     pub status: Status,
     /// Number of designs in the space.
     pub designs_total: u128,
-    /// Number of designs that hold and were judged. Most are judged by mass, deflection and a bound of the lowest mode,
-    /// which shows that another design is no worse in anything; the rest by all three objectives.
+    /// Number of designs that meet the limits on drives, stress, slenderness, mass and cost, and were judged. Most
+    /// are judged by mass, deflection and an upper bound of the lowest mode, which shows that another design is no
+    /// worse in any objective. The rest are judged by all three objectives.
     pub designs_evaluated: u64,
-    /// Number of designs that cannot hold, because a drive, stress, slenderness, mass or cost limit excludes them.
+    /// Number of designs that a limit on a drive, stress, slenderness, mass or cost excludes.
     pub designs_excluded: u128,
-    /// Candidates of the front of all designs.
+    /// Candidates for the front of all designs.
     pub front: Vec<Candidate>,
-    /// Candidates of the front of each group (material).
+    /// Candidates for the front of each group (material), in the order of the study's materials.
     pub groups: Vec<Vec<Candidate>>,
 }
 
-/// The state of a sweep.
+/// The state of a sweep that can be saved and continued by another process.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SweepState {
-    /// Number of tasks of the sweep.
+    /// Number of tasks into which the sweep is divided.
     tasks: u64,
-    /// Which of them are done.
+    /// The numbers of the completed tasks.
     done: Done,
-    /// Designs of these tasks that were evaluated, and those that cannot hold.
+    /// Number of designs that the completed tasks judged by their objectives.
     evaluated: u64,
+    /// Number of designs that a limit excluded in the completed tasks.
     excluded: u128,
-    /// Candidates of the front of all designs, and of the front of each group.
+    /// Candidates for the front of all designs.
     front: Vec<Candidate>,
+    /// Candidates for the front of each group (material).
     groups: Vec<Vec<Candidate>>,
 }
 
 impl SweepState {
-    /// The state as bytes.
+    /// The state as bytes that can be written to a file.
     pub fn to_bytes(&self) -> Vec<u8> {
         postcard::to_stdvec(self).expect("numbers can be written to memory")
     }
 
-    /// Reads [`to_bytes`](Self::to_bytes).
+    /// Reads the bytes that [`to_bytes`](Self::to_bytes) wrote.
     ///
     /// # Errors
-    /// The bytes are no state, in words.
+    /// An explanation, if the bytes are not a state.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, String> {
         postcard::from_bytes(bytes).map_err(|e| e.to_string())
     }
 }
 
-/// A shard: part `number` of `of` parts of a space, counted from 1. Each is swept by itself.
+/// One of the parts into which a space is divided, so that several computers can sweep it. It is part `number` of `of`
+/// parts, counted from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
-    /// Which part, from 1.
+    /// Number of this part, counted from 1.
     pub number: u32,
-    /// How many parts.
+    /// Number of all parts.
     pub of: u32,
 }
 
 impl Shard {
-    /// The whole space.
+    /// A single part that is the whole space.
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 }
 
-/// A sweep that other threads can watch and stop.
+/// A sweep whose progress other threads can read, and which they can stop.
 ///
-/// The problem is any tree that can finish rows of designs. [`ArmProblem`](crate::space::ArmProblem) is the one for arms.
+/// The problem is any tree of designs that implements [`FinishRows`]. For arms it is
+/// [`ArmProblem`](crate::space::ArmProblem).
 ///
 /// ```
 /// use armwright::catalog::Catalogs;
@@ -163,13 +168,15 @@ pub struct Sweep<'p, P: FinishRows> {
     shard: Shard,
     overall: Pool,
     groups: Vec<Pool>,
-    /// The tasks that are done, and what they counted.
+    /// The completed tasks, and the numbers of designs that these tasks evaluated and excluded.
     done: Mutex<(Done, Tally)>,
 }
 
-/// Candidates of one front, shared by the tasks.
+/// The candidates that all tasks have found for one front: that of all designs, or that of a material.
 struct Pool {
+    /// Table that rejects dominated candidates at once.
     archive: Archive,
+    /// The candidates, and how many of them were left after the last removal of dominated ones.
     candidates: Mutex<(Vec<Candidate>, usize)>,
 }
 
@@ -178,7 +185,8 @@ impl Pool {
         Self { archive: Archive::new(bits), candidates: Mutex::new((Vec::new(), 0)) }
     }
 
-    /// Takes a candidate, unless one that was taken before surely dominates it. Returns whether it was taken.
+    /// Adds a candidate for this front to the buffer of a task, unless the table of earlier candidates shows that one
+    /// of them surely dominates it. Returns whether it was added.
     fn offer(&self, candidate: Candidate, buffer: &mut Vec<Candidate>) -> bool {
         if self.archive.rejects(&candidate.objectives) {
             return false;
@@ -191,9 +199,9 @@ impl Pool {
         true
     }
 
-    /// Moves the candidates of a task into the pool.
+    /// Moves the candidates from the buffer of a task into the pool.
     fn empty(&self, buffer: &mut Vec<Candidate>) {
-        // a task filters its own candidates first, so that the lock is held for few of them
+        // a task compares its own candidates first, so that the lock is held only for the few that remain
         clear_dominated(buffer);
         let mut pool = lock(&self.candidates);
         let (all, settled) = &mut *pool;
@@ -204,19 +212,19 @@ impl Pool {
         }
     }
 
-    /// The candidates of an earlier process.
+    /// Puts the candidates of an earlier process into the pool.
     fn refill(&self, candidates: Vec<Candidate>) {
         candidates.iter().for_each(|candidate| self.archive.enter(&candidate.objectives));
         *lock(&self.candidates) = (candidates, 0);
     }
 
-    /// The candidates that no other found so far clearly dominates.
+    /// The candidates that no other candidate found so far clearly dominates, by number.
     fn candidates(&self) -> Vec<Candidate> {
         let mut all = lock(&self.candidates).0.clone();
         clear_dominated(&mut all);
-        // tasks end in any order; the result must not depend on it
+        // tasks end in any order; sorting makes the result independent of it
         all.sort_unstable_by_key(|c| c.number);
-        // a task that an earlier process left unfinished finds the same designs again
+        // a design is here twice if an earlier process found it in a task that it did not complete
         all.dedup_by_key(|c| c.number);
         all
     }
@@ -226,20 +234,21 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// `all * shards / of` without an overflow.
+/// Number of blocks that the first `shards` of `of` shards have together, if there are `all` blocks: `all * shards /
+/// of`, rounded down. The result is exact even where the product would overflow.
 fn share(all: u128, shards: u32, of: u32) -> u128 {
     let (shards, of) = (u128::from(shards), u128::from(of));
     all / of * shards + all % of * shards / of
 }
 
-/// Drops the candidates that another clearly dominates.
+/// Drops the candidates that another candidate clearly dominates.
 pub(crate) fn clear_dominated(candidates: &mut Vec<Candidate>) {
     let points: Vec<[f64; 3]> = candidates.iter().map(|c| c.objectives.minimized()).collect();
     let kept = not_clearly_beaten(&points, SLACK);
     *candidates = kept.into_iter().map(|i| candidates[i]).collect();
 }
 
-/// The counts of tasks.
+/// Counts of designs that a task, or all tasks together, visited.
 #[derive(Debug, Clone, Copy, Default)]
 struct Tally {
     evaluated: u64,
@@ -254,7 +263,7 @@ impl Tally {
 }
 
 impl<'p, P: FinishRows> Sweep<'p, P> {
-    /// A sweep of all designs of a problem. It ends early when `stop` is set.
+    /// A sweep of all designs of a problem. It stops early when another thread sets `stop`.
     pub fn new(problem: &'p P, constraints: Constraints, stop: &'p AtomicBool) -> Self {
         Self {
             problem,
@@ -268,13 +277,14 @@ impl<'p, P: FinishRows> Sweep<'p, P> {
         }
     }
 
-    /// Visits the designs of a shard alone.
+    /// Restricts the sweep to the designs of one shard.
     #[must_use]
     pub fn of_shard(self, shard: Shard) -> Self {
         Self { shard, ..self }
     }
 
-    /// The numbers of the designs that are visited. The ranges of all shards follow each other and cover the space.
+    /// The numbers of the designs that this sweep visits. The ranges of all shards follow each other and cover the
+    /// space.
     pub fn range(&self) -> Range<u128> {
         let each = blocks(self.problem).1;
         let Range { start, end } = self.blocks();
@@ -288,12 +298,12 @@ impl<'p, P: FinishRows> Sweep<'p, P> {
         before(number - 1)..before(number)
     }
 
-    /// Number of designs visited or excluded so far.
+    /// Number of designs visited or excluded so far, by this process and by those that it continues.
     pub fn visited(&self) -> u64 {
         self.visited.load(Ordering::Relaxed)
     }
 
-    /// Number of designs in the space.
+    /// Number of designs in the whole space, even if only a shard is visited.
     pub fn total(&self) -> u128 {
         self.problem.level_sizes().iter().map(|&s| u128::from(s)).product()
     }
@@ -302,10 +312,10 @@ impl<'p, P: FinishRows> Sweep<'p, P> {
         Tasks::of(self.problem, self.blocks())
     }
 
-    /// Goes on from a state of the same sweep: its tasks are not done again.
+    /// Continues from a saved state of the same sweep. The tasks that are completed in it are not done again.
     ///
     /// # Errors
-    /// It is a state of another sweep, in words.
+    /// An explanation, if the state belongs to another sweep: the number of tasks or of groups differs.
     pub fn go_on_from(self, state: SweepState) -> Result<Self, String> {
         let SweepState { tasks, done, evaluated, excluded, front, groups } = state;
         let here = self.tasks().number;
@@ -320,9 +330,9 @@ impl<'p, P: FinishRows> Sweep<'p, P> {
         Ok(self)
     }
 
-    /// The state now, from which another process can go on.
+    /// The present state, from which another process can continue.
     pub fn state(&self) -> SweepState {
-        // the tasks first: whatever they found is in the pools by now
+        // tasks are read first: the candidates of these tasks are in the pools already
         let (done, Tally { evaluated, excluded }) = lock(&self.done).clone();
         SweepState {
             tasks: self.tasks().number,
@@ -334,12 +344,12 @@ impl<'p, P: FinishRows> Sweep<'p, P> {
         }
     }
 
-    /// Visits every design and returns the candidates of the fronts. The full model must still evaluate them
-    /// ([`evaluate`](crate::space::evaluate)) and decide between those closer than [`SLACK`].
+    /// Visits every design and returns the candidates for the fronts. The full model must then evaluate them
+    /// ([`evaluate`](crate::space::evaluate)) and decide between candidates that differ by less than [`SLACK`].
     pub fn run(&self) -> SweepOutcome {
         let sizes = self.problem.level_sizes();
         let before = lock(&self.done).clone();
-        // what was visited in tasks that are not whole counts too, if the sweep is stopped
+        // if the sweep is stopped, the designs of tasks that are not completed count too
         let tally = match self.problem.root() {
             None => {
                 let range = self.range();
@@ -367,7 +377,8 @@ impl<'p, P: FinishRows> Sweep<'p, P> {
         }
     }
 
-    /// Does the tasks that were not done `before`, and returns what they counted.
+    /// Does the tasks that are not completed in `before`. Returns how many designs they evaluated and excluded. `root`
+    /// is the arm without any chosen part.
     fn visit(&self, root: &P::Partial, before: &Done) -> Tally {
         let Self { problem, visited, stop, constraints, overall, groups, .. } = self;
         let visit = Visit { problem: *problem, compiled: problem.compile(), visited, stop };
@@ -396,7 +407,7 @@ impl<'p, P: FinishRows> Sweep<'p, P> {
     }
 }
 
-/// The keeper of one task.
+/// Collects the candidates of one task.
 struct Worker<'s> {
     constraints: &'s Constraints,
     overall: &'s Pool,
@@ -413,7 +424,7 @@ impl Keep for Worker<'_> {
             return;
         }
         let candidate = Candidate { number, objectives };
-        // a design that one of its own group dominates is dominated in the whole front too
+        // a design that another of its own group dominates is dominated in the front of all designs too
         let dominated =
             group.is_some_and(|group| !self.groups[group].offer(candidate, &mut self.group_buffers[group]));
         if !dominated {
@@ -425,8 +436,8 @@ impl Keep for Worker<'_> {
         self.tally.excluded += designs;
     }
 
-    // A design of a group is of interest for two fronts. One that its own group dominates is dominated in both, so the
-    // bar of the group is the one to use.
+    // A design of a group can be on two fronts: that of the group and that of all designs. If a design of its own
+    // group dominates it, it is on neither, so the bar of the group is used.
     fn bar_hz(&self, group: Option<usize>, mass_kg: f64, tip_deflection_m: f64) -> f64 {
         let pool = group.map_or(self.overall, |group| &self.groups[group]);
         pool.archive.bar_hz(mass_kg, tip_deflection_m)

@@ -1,8 +1,9 @@
-//! A walk through every design of a tree, in parallel.
+//! Visits every design of a tree, in parallel.
 //!
 //! A *row* is the set of designs that differ in the row level alone. Each task takes a range of rows. It builds the
-//! arm outboard of a row level by level and reuses the levels that the row shares with the one before. Rows are finished
-//! in batches. A task keeps its finds to itself until it ends, so tasks do not wait for each other.
+//! arm outboard of a row level by level, and reuses the levels that are the same as in the row before. The designs of
+//! several rows are evaluated together, in batches. A task keeps its results to itself until it ends, so that tasks
+//! do not wait for each other.
 
 use super::finish::FinishRows;
 use crate::space::design::options;
@@ -11,31 +12,34 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Number of tasks to aim for: enough to balance the load and to report progress.
+/// Number of tasks to aim for: enough to give all threads equal work and to report progress.
 const TASKS: u128 = 512;
-/// Smallest number of tasks when a task gets a whole batch of rows. A smaller space is divided into smaller tasks, because
-/// idle threads cost more than incomplete batches.
+/// Smallest number of tasks if each task gets a whole batch of rows. A smaller space is divided into smaller tasks
+/// than a batch, because idle threads cost more than incomplete batches.
 const LEAST_TASKS: u128 = 64;
-/// Largest number of rows that are finished together, and of designs in them. A batch reads each chunk of the row level
-/// from memory once for all its rows.
+/// Largest number of rows in a batch. All rows of a batch are evaluated together, so that each chunk of the row level
+/// is read from memory once for the batch.
 const BATCH: usize = 16;
+/// Largest number of designs in a batch.
 const BATCH_DESIGNS: usize = 1 << 18;
 
-/// Largest number of designs of a task, so that little is lost when a task is not finished: some seconds of work.
+/// Largest number of designs of a task: some seconds of work. This is what is lost when a task is interrupted.
 const TASK_DESIGNS: u128 = 1 << 24;
 
-/// A walk that other threads can watch and stop.
+/// A visit to all designs of a tree. Other threads can read its progress and stop it.
 pub(crate) struct Visit<'p, P: FinishRows> {
     pub problem: &'p P,
-    /// The row level, compiled.
+    /// The row level with every number that is the same in all rows.
     pub compiled: P::Compiled,
-    /// Designs visited or excluded so far.
+    /// Number of designs visited or excluded so far.
     pub visited: &'p AtomicU64,
+    /// Set by another thread to stop the visit.
     pub stop: &'p AtomicBool,
 }
 
 impl<P: FinishRows> Visit<'_, P> {
-    /// Visits every design. Each task has a keeper of its own; the keepers come back in the order of the tasks.
+    /// Visits every design below `root`, the arm without any chosen part. `keeper` makes the keeper that collects the
+    /// designs of one task. The keepers are returned in the order of the tasks.
     pub(crate) fn every_design<'v, K: Keep + Send + 'v>(
         &'v self,
         root: &'v P::Partial,
@@ -45,7 +49,8 @@ impl<P: FinishRows> Visit<'_, P> {
         self.tasks(tasks, root, |_| true, keeper).map(|walked| walked.keeper)
     }
 
-    /// Does the tasks that are wanted, unless the walk is stopped before.
+    /// Does the tasks with numbers for which `is_wanted` is true, until the visit is stopped. `keeper` makes the keeper
+    /// that collects the designs of one task.
     pub(crate) fn tasks<'v, K: Keep + Send + 'v>(
         &'v self,
         Tasks { start, rows, each, number }: Tasks,
@@ -63,19 +68,22 @@ impl<P: FinishRows> Visit<'_, P> {
     }
 }
 
-/// The tasks of a walk: ranges of rows that follow each other. They depend on the problem alone.
+/// The tasks of a visit: consecutive ranges of rows. They depend on the problem alone, so that another process
+/// divides it in the same way.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Tasks {
-    /// First row, number of rows, and number of rows of each task but the last.
+    /// Number of the first row that the visit covers.
     start: u128,
+    /// Number of rows that the visit covers.
     rows: u128,
+    /// Number of rows in each task; the last task may have fewer.
     each: u128,
-    /// Number of tasks.
+    /// Number of tasks into which these rows are divided.
     pub number: u64,
 }
 
 impl Tasks {
-    /// The tasks of some [blocks].
+    /// Divides some [blocks] of designs into tasks.
     pub(crate) fn of(problem: &impl FinishRows, blocks: Range<u128>) -> Self {
         let Levels { row, inner, .. } = Levels::of(problem);
         let choices = product(inner);
@@ -86,22 +94,25 @@ impl Tasks {
     }
 }
 
-/// A task that is over.
+/// A task that has ended.
 pub(crate) struct Walked<K> {
+    /// Number of the task.
     pub task: u64,
-    /// Whether all its rows were visited; otherwise the walk was stopped.
+    /// Whether all rows of the task were visited; `false` if the visit was stopped before.
     pub is_whole: bool,
+    /// The keeper of the task, with the designs that it collected.
     pub keeper: K,
 }
 
-/// The blocks of a tree: the designs of one arm outboard of the row level, which have neighbouring numbers. Their number, and
-/// the number of designs in each.
+/// Number of blocks of a tree, and number of designs in each block. A block has all designs with the same arm
+/// outboard of the row level; their numbers follow each other.
 pub(crate) fn blocks(problem: &impl FinishRows) -> (u128, u128) {
     let Levels { outer, row, inner } = Levels::of(problem);
     (product(outer), u128::from(row) * product(inner))
 }
 
-/// The sizes of the levels outboard of the row level, of the row level, and of those inboard of it.
+/// Number of options at each level, in three groups: the levels outboard of the row level, the row level itself, and
+/// the levels inboard of it.
 struct Levels<'p> {
     outer: &'p [u32],
     row: u32,
@@ -109,7 +120,7 @@ struct Levels<'p> {
 }
 
 impl<'p> Levels<'p> {
-    /// A problem without levels has a row of one design.
+    /// Splits the levels of a problem. A problem without levels gets a row of one design.
     fn of(problem: &'p impl FinishRows) -> Self {
         let (outer, inward) = problem.level_sizes().split_at(problem.row_level());
         let (row, inner) = inward.split_first().map_or((1, inward), |(&row, inner)| (row, inner));
@@ -121,15 +132,15 @@ fn product(sizes: &[u32]) -> u128 {
     sizes.iter().map(|&size| u128::from(size)).product()
 }
 
-/// The state of one task.
+/// A worker's progress through the rows of one task.
 struct Walker<'v, 'p, P: FinishRows, K> {
     visit: &'v Visit<'p, P>,
     keeper: K,
-    /// The partial arms of the last row: the empty arm, then the arm with one level, with two levels, and so on.
+    /// The partial arms outboard of the last row: the empty arm, the arm with one level, with two levels, and so on.
     begun: Vec<P::Partial>,
-    /// The options of these arms.
+    /// The options with which these arms were built, tip first.
     options: Vec<u32>,
-    /// Rows to be finished together.
+    /// Rows that wait to be evaluated together.
     batch: Vec<DesignRow<P::Partial>>,
     scratch: P::Scratch,
 }
@@ -147,8 +158,8 @@ impl<'v, 'p, P: FinishRows, K: Keep> Walker<'v, 'p, P, K> {
         }
     }
 
-    /// Visits every design of some rows, and returns whether it was not stopped before. A space without levels has one
-    /// design.
+    /// Visits every design of the rows with these numbers. Returns `false` if the visit was stopped before the end. A
+    /// space without levels has a single design.
     fn walk(&mut self, rows: Range<u128>) -> bool {
         let problem = self.visit.problem;
         if problem.level_sizes().is_empty() {
@@ -160,7 +171,7 @@ impl<'v, 'p, P: FinishRows, K: Keep> Walker<'v, 'p, P, K> {
         }
         let Levels { outer, row: length, inner } = Levels::of(problem);
         let batch = (BATCH_DESIGNS / length.max(1) as usize).clamp(1, BATCH);
-        // the rows of one arm outboard follow each other, one for each choice inboard
+        // the rows with the same arm outboard follow each other, one for each combination of options inboard
         let choices = product(inner);
         let mut row = rows.start;
         while row < rows.end && !self.visit.stop.load(Ordering::Relaxed) {
@@ -177,7 +188,7 @@ impl<'v, 'p, P: FinishRows, K: Keep> Walker<'v, 'p, P, K> {
                     row + 1
                 }
                 Err(level) => {
-                    // every row with the same options up to this level fails with it: skip to the next that differs
+                    // every row with the same options up to this level fails too: skip to the first row that differs
                     let rows_of_level = product(&outer[level + 1..]) * choices;
                     let next = ((row / rows_of_level + 1) * rows_of_level).min(rows.end);
                     let designs = (next - row) * u128::from(length);
@@ -195,13 +206,15 @@ impl<'v, 'p, P: FinishRows, K: Keep> Walker<'v, 'p, P, K> {
         row >= rows.end
     }
 
-    /// Builds the arm outboard of a row.
+    /// Builds the arm outboard of the rows of the block with the number `arm`. `outer` are the numbers of options of
+    /// the levels outboard of the row level.
     ///
     /// # Errors
-    /// The level at which no design with this beginning can hold.
+    /// The level at which the arm breaks a limit, whatever the options of the later levels are.
     fn begin(&mut self, outer: &[u32], arm: u128) -> Result<(), usize> {
         let wanted = options(outer, arm).unwrap_or_default();
-        // neighbouring rows differ in their last levels; the arms up to the first difference are kept
+        // neighbouring rows differ in their last levels, so the partial arms up to the first difference are used
+        // again
         let shared = self.options.iter().zip(&wanted).take_while(|(a, b)| a == b).count();
         self.options.truncate(shared);
         for (level, &option) in wanted.iter().enumerate().skip(shared) {
@@ -214,7 +227,7 @@ impl<'v, 'p, P: FinishRows, K: Keep> Walker<'v, 'p, P, K> {
         Ok(())
     }
 
-    /// Finishes the rows of the batch.
+    /// Evaluates the rows that wait in the batch. `row_length` is the number of designs in each row.
     fn finish(&mut self, row_length: u32) {
         let Visit { problem, compiled, .. } = self.visit;
         problem.finish(compiled, &self.batch, &mut self.scratch, &mut self.keeper);
@@ -222,7 +235,7 @@ impl<'v, 'p, P: FinishRows, K: Keep> Walker<'v, 'p, P, K> {
         self.batch.clear();
     }
 
-    /// Counts designs for whoever watches the progress.
+    /// Adds to the number of visited designs, from which the progress is reported.
     fn count(&self, designs: u128) {
         self.visit.visited.fetch_add(u64::try_from(designs).unwrap_or(u64::MAX), Ordering::Relaxed);
     }

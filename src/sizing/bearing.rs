@@ -12,7 +12,8 @@
 //!    and 0.45 while `F_a` is at most 1.5 times the bracket, else both are 0.67. n is the mean speed of the joint over its
 //!    cycle, so the same formula holds for joints that swing: a swing of ±θ travels 4θ in each oscillation.
 //!
-//! Each of the three grows with every load, so a bearing is a set of thresholds like the rest of a drive.
+//! Each of the three loads grows with every force and moment, so a bearing is a set of thresholds, as the rest of a
+//! drive is.
 
 use crate::arm::bearing::Bearing;
 
@@ -22,9 +23,9 @@ pub(crate) const SAFETY_AT_REST: f64 = 3.0;
 pub(crate) const SAFETY_IN_A_STOP: f64 = 2.0;
 /// Load factor f_w of the life: the vendor's value for its own tables, which lies in the range of normal use, 1.2 to 1.5.
 pub(crate) const LOAD_FACTOR: f64 = 1.3;
-/// Share of the axial force in the static equivalent load P₀.
+/// Factor of the axial force in the static equivalent load P₀.
 pub(super) const AXIAL_SHARE: f64 = 0.44;
-/// Turns that the dynamic rating C is for.
+/// Number of turns for which the dynamic load rating C is defined.
 const RATED_TURNS: f64 = 1e6;
 
 /// The load on a bearing: forces on its face and the moment of everything outboard.
@@ -38,37 +39,38 @@ pub struct BearingLoad {
     pub axial_n: f64,
 }
 
-/// The loads that a study puts on the bearing of a joint. Each number is the largest over the sizing cases and over the
-/// ramps or stops of single joints; the numbers of one load may come from different cases, which is on the safe side.
+/// The loads on the output bearing of a joint that a study asks for. Each number is the largest over the sizing cases
+/// and over the ramps or stops of single joints. The numbers of one load may come from different cases, which is on the
+/// safe side.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BearingDemand {
-    /// Gravity and load alone.
+    /// Loads from gravity, payload and tip force alone, with all joints at rest.
     pub at_rest: BearingLoad,
-    /// With one joint in its ramp and the others at rest.
+    /// Loads while one joint is in its ramp and the others are at rest.
     pub running: BearingLoad,
-    /// With one joint in its emergency stop and the others at rest.
+    /// Loads while one joint is in its emergency stop and the others are at rest.
     pub in_stop: BearingLoad,
 }
 
-/// What a bearing allows.
+/// Thresholds of an output bearing. A bearing passes its checks exactly if no load exceeds its threshold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BearingLimits {
     /// Distance R from the bearing's centre to the face of the flange \[m\].
     pub flange_offset_m: f64,
-    /// Equivalent force per moment: `2 / d_p` \[1/m\].
+    /// Force that is equivalent to a moment of 1 N m: `2 / d_p` \[1/m\]. 0 if the pitch diameter is unknown.
     pub force_per_moment_per_m: f64,
-    /// Largest moment while the joint turns \[N m\].
+    /// Largest moment at the bearing's centre while the joint turns \[N m\].
     pub running_moment_nm: f64,
-    /// Largest static equivalent load at rest \[N\].
+    /// Largest static equivalent load P₀ at rest \[N\].
     pub at_rest_n: f64,
-    /// Largest static equivalent load in a stop \[N\].
+    /// Largest static equivalent load P₀ in an emergency stop \[N\].
     pub in_stop_n: f64,
-    /// Largest dynamic equivalent load at which the bearing lives as long as required \[N\].
+    /// Largest dynamic equivalent load P_c at which the bearing reaches the required life \[N\].
     pub life_n: f64,
 }
 
 impl BearingLoad {
-    /// Each number the larger of two.
+    /// The larger of this load and `other`, component by component. The result may be larger than both.
     pub fn max(self, other: Self) -> Self {
         Self {
             moment_nm: self.moment_nm.max(other.moment_nm),
@@ -77,12 +79,13 @@ impl BearingLoad {
         }
     }
 
-    /// The load of a force that attaches further out along the axis by a lever \[m\].
+    /// This load if its forces attach further out along the axis by `lever_m` \[m\]. The radial force then adds to the
+    /// moment.
     pub fn with_lever(self, lever_m: f64) -> Self {
         Self { moment_nm: self.moment_nm + lever_m * self.radial_n, ..self }
     }
 
-    /// The load times a factor.
+    /// This load with all three components multiplied by `factor`.
     pub fn scaled(self, factor: f64) -> Self {
         Self {
             moment_nm: self.moment_nm * factor,
@@ -98,7 +101,7 @@ impl BearingDemand {
         *self == Self::default()
     }
 
-    /// Each number the larger of two.
+    /// The larger of this demand and `other`, component by component.
     pub fn max(self, other: Self) -> Self {
         Self {
             at_rest: self.at_rest.max(other.at_rest),
@@ -107,7 +110,7 @@ impl BearingDemand {
         }
     }
 
-    /// The demand with forces that attach further out by a lever \[m\].
+    /// This demand if all forces attach further out along the axis by `lever_m` \[m\].
     pub fn with_lever(self, lever_m: f64) -> Self {
         Self {
             at_rest: self.at_rest.with_lever(lever_m),
@@ -116,8 +119,8 @@ impl BearingDemand {
         }
     }
 
-    /// A demand that is surely no smaller than this one with all accelerations times a factor of at most 1: what the
-    /// accelerations add to the norm of a load is convex in them.
+    /// An upper bound of this demand when all accelerations are multiplied by `factor`, at most 1. The norm of a load
+    /// is a convex function of the accelerations, so interpolation between rest and full acceleration overestimates it.
     pub fn slowed(self, factor: f64) -> Self {
         let between = |at_rest: f64, moving: f64| at_rest + factor * (moving - at_rest).max(0.0);
         let load = |moving: BearingLoad| BearingLoad {
@@ -128,7 +131,7 @@ impl BearingDemand {
         Self { at_rest: self.at_rest, running: load(self.running), in_stop: load(self.in_stop) }
     }
 
-    /// The demand with every load times a factor.
+    /// This demand with every load multiplied by `factor`.
     pub fn scaled(self, factor: f64) -> Self {
         Self {
             at_rest: self.at_rest.scaled(factor),
@@ -139,7 +142,7 @@ impl BearingDemand {
 }
 
 impl BearingLimits {
-    /// Limits that hold everything: of a joint without a bearing, or of one whose bearing is not asked about.
+    /// Limits that no load exceeds: for a joint without a bearing, or with a bearing that is not to be checked.
     pub(crate) const NONE: Self = Self {
         flange_offset_m: 0.0,
         force_per_moment_per_m: 0.0,
@@ -149,8 +152,9 @@ impl BearingLimits {
         life_n: f64::INFINITY,
     };
 
-    /// The limits of a bearing in a joint with this mean speed \[rad/s\] and required life \[h\]. A blank rating does not
-    /// limit: what cannot be checked is listed by the checks of the bearing.
+    /// The limits of a bearing in a joint with this mean speed \[rad/s\] and required life \[h\]. Where a rating is
+    /// blank, the limit is infinite; [`BlankRatings`](super::BlankRatings) lists the checks that cannot be made for
+    /// this reason.
     pub fn of(bearing: Option<&Bearing>, mean_speed_rad_s: f64, life_h: f64) -> Self {
         let Some(bearing) = bearing else { return Self::NONE };
         let ratings = &bearing.ratings;
@@ -173,33 +177,37 @@ impl BearingLimits {
         }
     }
 
-    /// Moment across the axis at the centre of the bearing \[N m\].
+    /// Moment across the axis at the centre of the bearing \[N m\], for a `load` that is given at the face of the
+    /// flange.
     #[inline]
     pub fn moment_nm(&self, load: &BearingLoad) -> f64 {
         load.moment_nm + self.flange_offset_m * load.radial_n
     }
 
-    /// Radial force and the forces that make up the moment: `F_r + 2 M / d_p` \[N\].
+    /// Radial force of a load plus the force that is equivalent to its moment at the bearing's centre:
+    /// `F_r + 2 M / d_p` \[N\].
     #[inline]
     fn across_n(&self, load: &BearingLoad) -> f64 {
         load.radial_n + self.force_per_moment_per_m * self.moment_nm(load)
     }
 
-    /// Static equivalent load P₀ \[N\].
+    /// Static equivalent load P₀ of a load on the bearing \[N\]: radial force, force equivalent to the moment, and 0.44
+    /// times the axial force.
     #[inline]
     pub fn static_load_n(&self, load: &BearingLoad) -> f64 {
         self.across_n(load) + AXIAL_SHARE * load.axial_n
     }
 
-    /// Dynamic equivalent load P_c \[N\]. The two pairs of X and Y meet where the axial force is 1.5 times the bracket, and
-    /// the larger load is the vendor's on either side of it.
+    /// Dynamic equivalent load P_c \[N\]. The vendor changes from one pair of X and Y to the other where the axial
+    /// force is 1.5 times the bracket. On either side of this point the vendor's value is the larger of the two, so
+    /// no case distinction is needed.
     #[inline]
     pub fn dynamic_load_n(&self, load: &BearingLoad) -> f64 {
         let across_n = self.across_n(load);
         (across_n + 0.45 * load.axial_n).max(0.67 * (across_n + load.axial_n))
     }
 
-    /// Whether the bearing holds a demand.
+    /// Whether the bearing meets `demand`: no load of the demand exceeds its limit.
     #[inline]
     pub fn hold(&self, demand: &BearingDemand) -> bool {
         (self.moment_nm(&demand.running) <= self.running_moment_nm)
@@ -208,7 +216,8 @@ impl BearingLimits {
             & (self.dynamic_load_n(&demand.at_rest) <= self.life_n)
     }
 
-    /// The largest factor on every load that the bearing still holds; infinite if nothing loads it.
+    /// The largest factor by which every load of `demand` may be multiplied so that the bearing still passes its
+    /// checks. Infinite if all loads are zero.
     pub fn multiple_of(&self, demand: &BearingDemand) -> f64 {
         let times = |limit: f64, asked: f64| if asked > 0.0 { limit / asked } else { f64::INFINITY };
         times(self.running_moment_nm, self.moment_nm(&demand.running))
@@ -217,7 +226,8 @@ impl BearingLimits {
             .min(times(self.life_n, self.dynamic_load_n(&demand.at_rest)))
     }
 
-    /// Limits that hold whatever one of two bearings holds.
+    /// The weaker of the limits of this bearing and of `other`, one by one. If one of the two bearings meets a demand,
+    /// the demand is within these limits.
     pub fn max(&self, other: &Self) -> Self {
         Self {
             flange_offset_m: self.flange_offset_m.min(other.flange_offset_m),
@@ -229,7 +239,8 @@ impl BearingLimits {
         }
     }
 
-    /// Limits that hold only what both of two bearings hold.
+    /// The stricter of the limits of this bearing and of `other`, one by one. If a demand is within these limits, both
+    /// bearings meet it.
     pub fn min(&self, other: &Self) -> Self {
         Self {
             flange_offset_m: self.flange_offset_m.max(other.flange_offset_m),
@@ -241,7 +252,8 @@ impl BearingLimits {
         }
     }
 
-    /// Whether the bearing surely holds whatever `other` holds.
+    /// Whether no limit of this bearing is stricter than the same limit of `other`. This bearing then meets every
+    /// demand that `other` meets.
     #[inline]
     pub fn cover(&self, other: &Self) -> bool {
         (self.flange_offset_m <= other.flange_offset_m)
@@ -253,17 +265,19 @@ impl BearingLimits {
     }
 }
 
-/// Life of a bearing of dynamic rating C \[N\] under an equivalent load \[N\] at a mean speed \[rad/s\], in hours.
+/// Life of a bearing \[h\] with the dynamic load rating C = `rating_n` \[N\] under the equivalent load `load_n` \[N\],
+/// at a mean speed of the joint \[rad/s\].
 pub(super) fn life_h(rating_n: f64, load_n: f64, mean_speed_rad_s: f64) -> f64 {
     RATED_TURNS / turns_per_h(mean_speed_rad_s) * libm::pow(rating_n / (LOAD_FACTOR * load_n), 10.0 / 3.0)
 }
 
-/// The equivalent load \[N\] under which a bearing of dynamic rating C \[N\] just lives so long.
+/// The equivalent load \[N\] under which a bearing with the dynamic load rating C = `rating_n` \[N\] reaches exactly
+/// the life `life_h` \[h\] at a mean speed of the joint \[rad/s\].
 fn load_of_life_n(rating_n: f64, mean_speed_rad_s: f64, life_h: f64) -> f64 {
     rating_n / LOAD_FACTOR * libm::pow(RATED_TURNS / (turns_per_h(mean_speed_rad_s) * life_h), 0.3)
 }
 
-/// Turns in an hour.
+/// Number of turns in one hour at a speed \[rad/s\].
 fn turns_per_h(speed_rad_s: f64) -> f64 {
     speed_rad_s / std::f64::consts::TAU * 3600.0
 }

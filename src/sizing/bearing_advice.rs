@@ -1,4 +1,5 @@
-//! What output bearings reject at one joint, what helps, and which of them could not be checked.
+//! Advice on output bearings at one joint: how many gears fail because of their bearings, what helps, and which
+//! bearings could not be checked.
 
 use super::bearing_checks::{BlankRatings, RigidBearing, bearing_that_holds};
 use super::check::Check;
@@ -12,9 +13,9 @@ use crate::catalog::gear::Gear;
 /// A gear whose output bearing fails a check.
 struct Overloaded<'t> {
     gear: &'t str,
-    /// The worst check of the bearing.
+    /// The failed check of the bearing with the smallest margin.
     check: Check,
-    /// Whether the gear passes every other check.
+    /// Whether the bearing is the only reason why the gear is rejected.
     is_alone: bool,
 }
 
@@ -46,7 +47,8 @@ impl DriveTable<'_> {
         }
     }
 
-    /// How many gears their bearings reject, the one that comes nearest, and what helps.
+    /// One sentence: how many gears are rejected because of their bearings, the gear with the largest margin among
+    /// them, and what helps. `None` if no bearing fails.
     fn overloaded_bearings(&self, demand: &JointDemand) -> Option<String> {
         let overloaded: Vec<Overloaded> =
             self.gears().iter().filter_map(|gear| self.overloaded(gear, demand)).collect();
@@ -66,7 +68,8 @@ impl DriveTable<'_> {
         ))
     }
 
-    /// The gear, if its bearing fails a check.
+    /// `gear` with the failed check of its output bearing that has the smallest margin, or `None` if its bearing
+    /// passes.
     fn overloaded<'t>(&self, gear: &'t Gear, demand: &JointDemand) -> Option<Overloaded<'t>> {
         let bearing = self.bearing_of(gear);
         let checks = gear_checks(gear, self.gear_mass(), bearing.as_ref(), self.motion(), demand);
@@ -76,7 +79,8 @@ impl DriveTable<'_> {
         Some(Overloaded { gear: &gear.id, check, is_alone })
     }
 
-    /// The bearings that cannot be checked in full, one line each; a stated bearing is the same with every gear.
+    /// The bearings that cannot be checked in full, one line each. A bearing that the study states is the same with
+    /// every gear and gets a single line.
     fn blank_bearings(&self) -> Vec<String> {
         let blank = |gear| BlankRatings::of(self.bearing_source(), gear, self.gear_mass());
         let line =

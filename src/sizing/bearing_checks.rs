@@ -1,4 +1,4 @@
-//! The checks of an output bearing, one by one; which ratings they lack; what helps where one fails.
+//! The single checks of an output bearing, the ratings that are missing for them, and what helps where a check fails.
 
 use super::bearing::{self, BearingDemand, BearingLimits, BearingLoad};
 use super::check::{Check, CheckKind, check, plain};
@@ -33,23 +33,24 @@ pub(super) fn bearing_checks(bearing: &Bearing, motion: &JointMotion, demand: &B
     ]
 }
 
-/// The margin of an output bearing: the smallest factor on its loads, over its checks, at which one of them just holds. It
-/// is the factor by which all loads may grow together, so it equals [`BearingLimits::multiple_of`]. `None` if no check
-/// could be made.
+/// The margin of an output bearing: the largest factor by which all its loads may grow together until one of its
+/// checks fails. It equals [`BearingLimits::multiple_of`]. `None` if no check could be made.
 pub fn bearing_margin(checks: &[Check]) -> Option<f64> {
     checks.iter().filter(|c| c.kind.is_bearing()).filter_map(Check::torque_margin).reduce(f64::min)
 }
 
-/// Ratings of an output bearing that are unknown, so that it cannot be checked in full.
+/// Ratings of an output bearing that are blank, so that some or all of its checks cannot be made.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BlankRatings {
-    /// Their names: columns of the catalog for the bearing of a gear, keys of the file for a stated one.
+    /// Names of the blank ratings: columns of `gears.csv` for the bearing of a gear, keys of the study for a stated
+    /// bearing.
     pub names: Vec<&'static str>,
     /// Whether no check at all can be made.
     pub nothing_is_checked: bool,
 }
 
-/// Names of the ratings of a bearing: columns of the catalog of gears, and keys of a bearing that a file states.
+/// Names of the four ratings of a bearing: first as columns of the gear catalog, then as keys of a bearing that a
+/// file states.
 const RATINGS: [[&str; 4]; 2] = [
     [
         "permissible_tilting_moment_nm",
@@ -61,7 +62,9 @@ const RATINGS: [[&str; 4]; 2] = [
 ];
 
 impl BlankRatings {
-    /// Those of the bearing of a joint with this gear; `None` if all are known or the joint has no bearing.
+    /// The blank ratings of the output bearing of a joint with this gear. `source` says where the bearing comes from,
+    /// `which` whether the gear is a housed unit or a component set. `None` if all ratings are known or the joint has
+    /// no bearing.
     pub fn of(source: &BearingSource, gear: &Gear, which: GearMass) -> Option<Self> {
         match source {
             BearingSource::OfGear => Self::under(&RATINGS[0], Bearing::of_gear(gear, which)?),
@@ -69,12 +72,13 @@ impl BlankRatings {
         }
     }
 
-    /// Those of a bearing that a file states; `None` if all are known.
+    /// The blank ratings of a bearing that a file states; `None` if all are known.
     pub fn of_stated(bearing: Bearing) -> Option<Self> {
         Self::under(&RATINGS[1], bearing)
     }
 
-    /// The ratings that are blank, under these names.
+    /// The blank ratings of a bearing. `names` are the names under which its four ratings are reported, in the order of
+    /// [`RATINGS`].
     fn under(names: &[&'static str; 4], bearing: Bearing) -> Option<Self> {
         let ratings = bearing.ratings;
         let loads_n = [ratings.static_load_rating_n, ratings.dynamic_load_rating_n];
@@ -86,7 +90,8 @@ impl BlankRatings {
         (!names.is_empty()).then_some(Self { names, nothing_is_checked })
     }
 
-    /// `bearing not checked: CSF-25-100 lacks bearing_static_load_rating_n`, where `whose` has the bearing.
+    /// The message, such as `bearing not checked: CSF-25-100 lacks bearing_static_load_rating_n`. `whose` lists the
+    /// gears that have this bearing.
     pub fn words(&self, whose: &[&str]) -> String {
         let how_far = if self.nothing_is_checked { "" } else { " in full" };
         let lack = if whose.len() > 1 { "lack" } else { "lacks" };

@@ -1,9 +1,9 @@
-//! One check of a drive, for people: needed, allowed, margin, and whether it could be made at all.
+//! The outcome of one check of a drive: needed and allowed value, margin, and whether the check could be made at all.
 
 use super::drive::{MissingRating, Rating};
 use std::fmt;
 
-/// One limit of a gear or a motor.
+/// The limits of a drive that are checked: of its gear, output bearing and motor, and of their sizes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum CheckKind {
     /// Static plus linear torque is below the gear's limit for repeated peaks.
@@ -18,19 +18,20 @@ pub enum CheckKind {
     GearRatcheting,
     /// The largest moment across the axis while the joint turns is below what the output bearing permits.
     BearingMoment,
-    /// Static safety of the output bearing at rest.
+    /// Static safety of the output bearing at rest is at least the required one.
     BearingRest,
-    /// Static safety of the output bearing in an emergency stop.
+    /// Static safety of the output bearing in an emergency stop is at least the required one.
     BearingStop,
     /// L10 life of the output bearing is above the required life.
     BearingLife,
-    /// N times speed is below the gear's largest input speed.
+    /// Ratio N times the largest speed of the joint is below the gear's largest input speed.
     GearSpeed,
-    /// N times mean speed is below the gear's limit for average input speed.
+    /// Ratio N times the mean speed of the joint is below the gear's limit for average input speed.
     GearMeanSpeed,
     /// L10 life of the wave-generator bearing is above the required life.
     GearLife,
-    /// The gear bears the number of emergency stops that the study asks for. This check is listed only if it does.
+    /// The gear withstands the number of emergency stops that the study asks for. This check is listed only if the
+    /// study states a number.
     GearStops,
     /// The motor can hold the static torque continuously.
     MotorHold,
@@ -38,17 +39,18 @@ pub enum CheckKind {
     MotorPeak,
     /// Root mean square of the motor's torque over the cycle is below its continuous torque.
     MotorRms,
-    /// N times speed is below the motor's largest speed.
+    /// Ratio N times the largest speed of the joint is below the motor's largest speed.
     MotorSpeed,
-    /// The gear is no wider than the link that the joint carries allows. Checks of fit are listed only if the study asks.
+    /// The outer diameter of the gear is at most a stated multiple of the width of the link that the joint carries.
+    /// Checks of size are listed only if the study asks for them.
     GearWidth,
-    /// The motor goes into the hollow of that link.
+    /// The motor fits into the hollow of the link that the joint carries.
     MotorWidth,
-    /// Cables go through the gear.
+    /// The bore of the gear is wide enough for the cables.
     GearBore,
-    /// Cables go through the motor behind the gear.
+    /// The bore of the motor behind the gear is wide enough for the cables.
     MotorBore,
-    /// The drive is no longer than the room at the joint.
+    /// The drive is no longer than the space that the study states for this joint.
     DriveLength,
     /// The torsion curve of the gear is known. This check is listed only if it is not.
     Torsion,
@@ -57,7 +59,7 @@ pub enum CheckKind {
 }
 
 impl CheckKind {
-    /// Name in messages, where it follows the name of the part.
+    /// Name of the check in messages. The name of the part precedes it.
     pub fn name(self) -> &'static str {
         match self {
             CheckKind::GearPeak | CheckKind::MotorPeak => "peak",
@@ -84,7 +86,7 @@ impl CheckKind {
         }
     }
 
-    /// Name with the kind of part, for tables.
+    /// Name of the check together with the kind of part, for tables.
     pub fn label(self) -> &'static str {
         match self {
             CheckKind::GearPeak => "gear peak",
@@ -114,7 +116,7 @@ impl CheckKind {
         }
     }
 
-    /// Unit of needed and allowed.
+    /// Unit of the needed and the allowed value.
     pub fn unit(self) -> &'static str {
         match self {
             CheckKind::GearSpeed | CheckKind::GearMeanSpeed | CheckKind::MotorSpeed => "rpm",
@@ -128,7 +130,8 @@ impl CheckKind {
         }
     }
 
-    /// Power of the torque that the margin usually goes with.
+    /// Exponent p of the torque in this check: its margin is proportional to torque^-p. It is 1 except for lives. A
+    /// gear whose catalog row states another life exponent overrides it in [`Check::torque_exponent`].
     pub fn torque_exponent(self) -> f64 {
         match self {
             CheckKind::GearLife => 3.0,
@@ -137,27 +140,28 @@ impl CheckKind {
         }
     }
 
-    /// Whether the check is about the output bearing.
+    /// Whether the check is about the output bearing of the joint.
     pub fn is_bearing(self) -> bool {
         use CheckKind::{BearingLife, BearingMoment, BearingRest, BearingStop};
         matches!(self, BearingMoment | BearingRest | BearingStop | BearingLife)
     }
 
-    /// Whether the check is about the sizes of the parts, and no torque changes it.
+    /// Whether the check compares sizes of parts, so that no torque changes its result.
     pub fn is_fit(self) -> bool {
         use CheckKind::{DriveLength, GearBore, GearWidth, MotorBore, MotorWidth};
         matches!(self, GearWidth | MotorWidth | GearBore | MotorBore | DriveLength)
     }
 
-    /// Whether a drive is excluded if a rating that this check needs is blank. An output bearing whose rating is blank and a
-    /// part whose size is blank are not checked. Buckling and ratcheting torques are known of few gears and lie above the momentary peak, which is known.
+    /// Whether a drive is excluded if the rating that this check needs is blank. It is not for an output bearing and
+    /// for sizes: these are then left unchecked. Nor is it for buckling and ratcheting torques, which few vendors
+    /// state; both lie above the momentary peak torque, which must be known.
     pub fn needs_its_rating(self) -> bool {
         !self.is_bearing()
             && !self.is_fit()
             && !matches!(self, CheckKind::GearBuckling | CheckKind::GearRatcheting | CheckKind::GearStops)
     }
 
-    /// Whether the check is about gear and bearing alone, whatever the motor.
+    /// Whether the check is about gear and bearing alone, so that its result is the same with every motor.
     pub fn is_gear(self) -> bool {
         use CheckKind::{
             DriveLength, Mass, MotorBore, MotorHold, MotorPeak, MotorRms, MotorSpeed, MotorWidth,
@@ -172,7 +176,7 @@ impl CheckKind {
 /// Outcome of a check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CheckState {
-    /// The limit is kept.
+    /// The limit is met.
     Holds,
     /// The limit is exceeded.
     Fails,
@@ -180,7 +184,7 @@ pub enum CheckState {
     NotChecked(MissingRating),
 }
 
-/// One limit of one part against one demand.
+/// The comparison of one limit of a part with one demand.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Check {
     /// Which limit is checked.
@@ -189,9 +193,10 @@ pub struct Check {
     pub needed: Option<f64>,
     /// The value that the part allows (or, for life, that it reaches); `None` if it is unknown.
     pub allowed: Option<f64>,
-    /// Outcome.
+    /// Result of the check.
     pub state: CheckState,
-    /// Power of the torque that the margin goes with; of a gear's life, the exponent of its law.
+    /// Exponent p of the torque: the margin is proportional to torque^-p. It is 1 for most checks, and for lives the
+    /// exponent of the life formula.
     pub torque_exponent: f64,
     /// Whether forces along a travel take the place of torques about an axis.
     pub slides: bool,
@@ -220,7 +225,8 @@ impl Check {
         }
     }
 
-    /// Allowed over needed; below 1 the check fails. `None` if it could not be checked.
+    /// Allowed value divided by needed value; below 1 the check fails. Infinite if nothing is needed, `None` if the
+    /// check could not be made.
     pub fn margin(&self) -> Option<f64> {
         match (self.needed?, self.allowed?) {
             (0.0, _) => Some(f64::INFINITY),
@@ -228,9 +234,10 @@ impl Check {
         }
     }
 
-    /// The margin as a factor on torque, which makes checks comparable. Life goes with a power of the torque, of a
-    /// strain-wave gear the cube, so its margin becomes the root; that of a bearing with the power 10/3 of its load. The number of stops does not depend
-    /// on the torque. A part that fits does so at any torque.
+    /// Margin of the check as a factor on the torque, which makes different checks comparable. A life is proportional
+    /// to a power of the torque (cube for a strain-wave gear, 10/3 for a bearing), so the root of its margin is taken.
+    /// The number of stops does not depend on the torque; its margin is returned as it is. A size that fits does so at
+    /// any torque, so its margin is infinite.
     pub fn torque_margin(&self) -> Option<f64> {
         let margin = self.margin()?;
         Some(match self.kind {
@@ -242,12 +249,14 @@ impl Check {
         })
     }
 
-    /// Needed minus allowed; positive if the check fails, `None` if one of the two is unknown.
+    /// Needed minus allowed value, in [`CheckKind::unit`]; positive if the check fails, `None` if one of the two is
+    /// unknown.
     pub fn shortfall(&self) -> Option<f64> {
         Some(self.needed? - self.allowed?)
     }
 
-    /// Whether the check holds, or could not be made and excludes nothing.
+    /// Whether the check lets the drive pass: its limit is met, or it could not be made and
+    /// [`CheckKind::needs_its_rating`] is false.
     pub fn holds(&self) -> bool {
         match self.state {
             CheckState::Holds => true,
@@ -258,7 +267,7 @@ impl Check {
 }
 
 impl fmt::Display for Check {
-    /// `peak 568 N m needed, 523 allowed`, or `peak not checked: lacks peak_torque_nm`.
+    /// A message such as `peak 568 N m needed, 523 allowed` or `peak not checked: lacks peak_torque_nm`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = self.kind.name();
         match (self.state, self.needed, self.allowed) {
@@ -281,7 +290,7 @@ impl fmt::Display for Check {
     }
 }
 
-/// Number of decimals that shows about three digits of a number.
+/// Number of decimals that print `x` with about three significant digits.
 pub(super) fn digits_of(x: f64) -> usize {
     match x.abs() {
         x if x >= 100.0 => 0,
@@ -291,14 +300,16 @@ pub(super) fn digits_of(x: f64) -> usize {
     }
 }
 
-/// Number of decimals that shows about three digits of the larger number, or more if the two would look equal.
+/// Number of decimals that print the larger of `a` and `b` with about three significant digits. It is larger if both
+/// numbers would look the same.
 fn digits_that_differ(a: f64, b: f64) -> usize {
     let least = digits_of(a.abs().max(b.abs()));
     (least..12).find(|&n| format!("{a:.n$}") != format!("{b:.n$}")).unwrap_or(least)
 }
 
-/// Compares `load` with `threshold`. `needed` and `allowed` say the same thing in the units that people use, but they are
-/// not compared: rounding could decide otherwise than the search did.
+/// A check of the kind `kind`, which passes if `load` is at most `threshold`; these are the same numbers as in the
+/// search. `needed` and `allowed` state the comparison in units for people and are only printed: they have been
+/// converted, and rounding could change the result.
 pub(super) fn check(kind: CheckKind, needed: Rating, allowed: Rating, load: f64, threshold: Rating) -> Check {
     let state = match threshold {
         Ok(threshold) if load <= threshold => CheckState::Holds,
@@ -309,7 +320,7 @@ pub(super) fn check(kind: CheckKind, needed: Rating, allowed: Rating, load: f64,
     Check { kind, needed: needed.ok(), allowed: allowed.ok(), state, torque_exponent, slides: false }
 }
 
-/// A check that compares the printed numbers themselves.
+/// A check whose printed values are also the numbers that are compared: it passes if `needed` is at most `allowed`.
 pub(super) fn plain(kind: CheckKind, needed: f64, allowed: Rating) -> Check {
     check(kind, Ok(needed), allowed, needed, allowed)
 }

@@ -57,7 +57,7 @@ fn gear_mean(gear: &Gear, demand: &JointDemand) -> Check {
     )
 }
 
-/// L10 = L_rated (T_rated / T_mean)^p (n_rated / n_mean), compared with the required life.
+/// Check of the L10 life of the gear: L_rated (T_rated / T_mean)^p (n_rated / n_mean), compared with the required life.
 fn gear_life(gear: &Gear, motion: &JointMotion, demand: &JointDemand) -> Check {
     let life_h = limit::gear_life_h(gear, motion, demand.mean_torque_cubed_nm3);
     let check = check(
@@ -70,14 +70,15 @@ fn gear_life(gear: &Gear, motion: &JointMotion, demand: &JointDemand) -> Check {
     Check { torque_exponent: gear.life.exponent, ..check }
 }
 
-/// What of the torsion curve is blank, a check for each figure: without it nobody knows how far the joint yields.
+/// One check that could not be made for each blank rating of the torsion curve. Without the curve the deflection of
+/// the joint is unknown.
 pub(super) fn torsion_checks(gear: &Gear) -> Vec<Check> {
     let missing = gear.missing_of_torsion().into_iter().map(MissingRating);
     missing.map(|rating| Check::not_made(CheckKind::Torsion, rating)).collect()
 }
 
-/// The checks of a motor behind its gear. Its heat is checked unless the study turns that off. An unknown mass of the pair
-/// is listed too.
+/// The checks of a motor behind its gear. Heating of the motor is checked unless the study turns that off. If the
+/// mass of gear and motor is unknown, this is listed as a check that could not be made.
 pub fn motor_checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Vec<Check> {
     let mut checks = vec![motor_hold(drive, motion, demand), motor_peak(drive, motion, demand)];
     if motion.checks_motor_heat {
@@ -95,7 +96,8 @@ pub fn motor_checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -
     checks
 }
 
-/// T / (N η), compared with the continuous torque; a brake holds any.
+/// Check of the motor at rest: static torque T / (N η) at the motor, compared with its continuous torque at rest. If a
+/// brake holds the joint, any torque is allowed.
 fn motor_hold(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check {
     let rated = motor_curve::standing_torque_nm(drive.motor);
     check(
@@ -107,7 +109,8 @@ fn motor_hold(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Chec
     )
 }
 
-/// (T + T_lin) / (N η) + J_in N α, compared with the peak torque.
+/// Check of the motor in a ramp: its peak torque (T + T_lin) / (N η) + J_in N α, compared with what the motor allows
+/// for a short time.
 fn motor_peak(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check {
     let peak_nm = demand.peak_torque_nm();
     check(
@@ -119,7 +122,8 @@ fn motor_peak(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Chec
     )
 }
 
-/// Root mean square of the motor's torque over the cycle, compared with its continuous torque at the cruising speed.
+/// Check of the motor's heat: root mean square of its torque over the cycle, compared with its continuous torque at the
+/// cruising speed.
 fn motor_rms(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check {
     let motor_rpm = drive.motor_speed_rpm(motion);
     let continuous_nm = motor_curve::continuous_torque_nm(drive.motor, motor_rpm);
@@ -135,12 +139,13 @@ pub fn checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Vec<
     all
 }
 
-/// Whether every check holds. A check that could not be made does not hold.
+/// Whether all `checks` let the drive pass, see [`Check::holds`].
 pub fn all_hold(checks: &[Check]) -> bool {
     checks.iter().all(Check::holds)
 }
 
-/// The check that binds: the one with the smallest torque margin among those that could be made.
+/// The binding check: of those among `checks` that could be made, the one with the smallest torque margin (allowed over
+/// needed torque).
 pub fn binding(checks: &[Check]) -> Option<&Check> {
     let made = checks.iter().filter_map(|c| Some((c.torque_margin()?, c)));
     made.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, check)| check)

@@ -1,4 +1,4 @@
-//! Tests of the checks: each limit alone, what is said, and that thresholds decide alike.
+//! Tests of the checks: each limit alone, the messages, and that thresholds and printed numbers give the same result.
 
 use super::super::bearing::BearingLimits;
 use super::super::bearing_checks::bearing_margin;
@@ -17,7 +17,7 @@ use crate::sizing::limits::{DriveLimits, Obstacle};
 use crate::sizing::requirement::MotionRequirement;
 use proptest::prelude::*;
 
-/// A joint at 1.35 m with 300 N m static and 100 N m linear torque.
+/// A joint at 1.35 m from the tip. With [`demand`] it has 300 N m static and 100 N m linear torque.
 fn motion() -> JointMotion {
     MotionRequirement::default().joint_motion(1.35, None)
 }
@@ -26,7 +26,7 @@ fn demand() -> JointDemand {
     motion().demand_of_torques(300.0, 100.0)
 }
 
-/// Kinds that do not hold after one thing was changed.
+/// Kinds of the checks that fail after one change to a drive that passes all of them.
 fn failing(change: impl FnOnce(&mut Gear, &mut Motor, &mut JointMotion, &mut JointDemand)) -> Vec<CheckKind> {
     let (mut gear, mut motor) = ample();
     let (mut motion, mut demand) = (motion(), demand());
@@ -266,7 +266,7 @@ proptest! {
                 prop_assert!(matches!(c.state, CheckState::NotChecked(_)), "{:?}", c);
                 continue;
             };
-            // The printed numbers decide alike, but for rounding at the limit itself.
+            // The printed numbers give the same result, except for rounding exactly at the limit.
             if (margin - 1.0).abs() > 1e-12 {
                 prop_assert_eq!(c.holds(), margin > 1.0, "{:?}", c);
             }

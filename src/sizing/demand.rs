@@ -8,7 +8,7 @@ use super::stated::{StatedDemand, StatedDuty};
 use super::{RAD_S_PER_RPM, rpm_from_rad_s};
 use crate::catalog::gear::Gear;
 
-/// The reading of Eq 8, which gives the torque of linear acceleration.
+/// Two interpretations of Eq 8, the torque of linear acceleration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LinearReading {
     /// The sum of m a ρ² / r over the outboard bodies, which is the inertia about the axis times a / r.
@@ -28,37 +28,38 @@ pub struct JointMotion {
     pub acceleration_rad_s2: f64,
     /// Ramp time t_a \[s\].
     pub ramp_time_s: f64,
-    /// Ratio of tip acceleration to gravity, a / g, for the paper's reading of Eq 8.
+    /// Ratio of tip acceleration to gravity, a / g. Only the paper's reading of Eq 8 uses it.
     pub acceleration_over_gravity: f64,
-    /// Reading of Eq 8.
+    /// Which interpretation of Eq 8 is used.
     pub linear_reading: LinearReading,
-    /// Ratio of emergency deceleration to acceleration.
+    /// Ratio of emergency deceleration to normal acceleration.
     pub stop_factor: f64,
-    /// Ratio of mean speed to ω.
+    /// Ratio of the mean speed over the duty cycle to the largest speed ω.
     pub mean_speed_fraction: f64,
-    /// Weights of the cubic mean torque.
+    /// Weights of the terms of the cubic mean torque.
     pub mean_torque: MeanTorqueWeights,
     /// Required life, L10 \[h\].
     pub life_h: f64,
-    /// Weights of the motor's heat.
+    /// Weights of the squared torques in the root mean square of the motor's torque.
     pub heat: HeatWeights,
-    /// Whether the heat of the motor is checked.
+    /// Whether heating of the motor is checked.
     pub checks_motor_heat: bool,
     /// Whether a brake holds the joint at rest.
     pub has_brake: bool,
-    /// What a duty that the study states for this joint asks.
+    /// Torques of a duty that the study states for this joint; `None` if it states none.
     pub stated: Option<StatedDemand>,
-    /// Number of emergency stops in the life of the gear, if the study asks for one.
+    /// Number of emergency stops that the gear must withstand in its life; `None` if the study states none.
     pub emergency_stops: Option<f64>,
-    /// What the study asks of the sizes of the parts.
+    /// Limits that the study sets to the sizes of the parts.
     pub fit: FitRequirement,
 }
 
 impl JointMotion {
-    /// The same motion of a joint with a brake, or with a duty of its own.
+    /// This motion, adapted to a joint that has a brake or a duty of its own.
     ///
-    /// A stated duty replaces the cycle of the study: mean torque, mean speed and heat follow from its phases. Its first
-    /// ramp sets the acceleration, and its largest speed that of the joint unless `max_speed_rad_s` \[rad/s\] is larger.
+    /// A stated duty replaces the duty cycle of the study: mean torque, mean speed and motor heat follow from its
+    /// phases. Its first ramp sets the acceleration. The speed of the joint is the largest speed of the duty, or
+    /// `max_speed_rad_s` \[rad/s\] if that is larger.
     pub fn of_joint(self, max_speed_rad_s: Option<f64>, has_brake: bool, duty: Option<&StatedDuty>) -> Self {
         let mut motion = Self { has_brake, ..self };
         if has_brake {
@@ -79,28 +80,29 @@ impl JointMotion {
         }
     }
 
-    /// The same motion without the part of the demand that is the same for every arm. What is left grows in proportion
-    /// with static torque and inertia.
+    /// This motion without the duty that the study states in numbers, whose torques are the same for every arm. The
+    /// demand that remains is proportional to static torque and inertia.
     pub(crate) fn without_stated(self) -> Self {
         Self { stated: None, ..self }
     }
 
-    /// Duration of an emergency stop from full speed \[s\].
+    /// Duration of an emergency stop from the largest speed of the joint to rest \[s\].
     pub fn stop_time_s(&self) -> f64 {
         self.ramp_time_s / self.stop_factor
     }
 
-    /// Mean speed over the duty cycle, output side \[rad/s\].
+    /// Mean speed of the joint over the duty cycle, on the output side of the gear \[rad/s\].
     pub fn mean_speed_rad_s(&self) -> f64 {
         self.speed_rad_s * self.mean_speed_fraction
     }
 
-    /// The same motion with another reading of Eq 8. A vertical axis needs the exact one.
+    /// This motion with `linear_reading` as the reading of Eq 8. A joint with a vertical axis needs the exact reading,
+    /// because it has no static torque.
     pub fn with_linear_reading(self, linear_reading: LinearReading) -> Self {
         Self { linear_reading, ..self }
     }
 
-    /// The same motion with speed, acceleration and emergency deceleration times `factor`. The ramp time stays.
+    /// This motion with speed, acceleration and emergency deceleration multiplied by `factor`. The ramp time stays.
     pub fn slowed(self, factor: f64) -> Self {
         Self {
             speed_rad_s: self.speed_rad_s * factor,
@@ -132,13 +134,15 @@ impl JointMotion {
         self.demand_of_torques(static_torque_nm, linear_torque_nm)
     }
 
-    /// Largest torque \[N m\] and cube of the mean torque \[(N m)³\] of a stated duty; zeros without one.
+    /// Largest torque \[N m\] and cube of the mean torque \[(N m)³\] of the duty that the study states for the joint.
+    /// Both are 0 if it states none.
     #[inline]
     pub(super) fn stated_torques(&self) -> [f64; 2] {
         self.stated.map_or([0.0; 2], |stated| [stated.peak_torque_nm, stated.mean_torque_cubed_nm3])
     }
 
-    /// The demand on a joint whose static and linear torques are known \[N m\].
+    /// The demand on a joint with this motion, whose static and linear torque \[N m\] are known. The signs of the
+    /// torques do not matter.
     #[inline]
     pub fn demand_of_torques(&self, static_torque_nm: f64, linear_torque_nm: f64) -> JointDemand {
         let static_torque_nm = static_torque_nm.abs();
@@ -159,7 +163,7 @@ impl JointMotion {
     }
 }
 
-/// The torques on one joint, on the output side. None is negative.
+/// The torques on one joint, on the output side of the gear. None of them is negative.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointDemand {
     /// Largest static torque over the sizing cases, Eq 7 \[N m\].
@@ -168,28 +172,29 @@ pub struct JointDemand {
     pub linear_torque_nm: f64,
     /// Static torque plus the torque of the emergency stop \[N m\].
     pub stop_torque_nm: f64,
-    /// Cube of the cubic mean torque over the duty cycle \[(N m)³\]. It is kept as a cube, so that a search needs no cube
-    /// root.
+    /// Cube of the cubic mean torque over the duty cycle \[(N m)³\]. The cube is stored because a search then needs
+    /// no cube root.
     pub mean_torque_cubed_nm3: f64,
-    /// Loads on the output bearing; all zero if it is not to be checked.
+    /// Loads on the output bearing; all zero if the bearing is not to be checked.
     pub bearing: BearingDemand,
-    /// The room that the link which the joint carries leaves to its parts.
+    /// Largest diameters of gear and motor for which the link outboard of this joint leaves room.
     pub room: LinkRoom,
     /// Largest torque of a duty that the study states for the joint \[N m\]; 0 without one.
     pub stated_peak_nm: f64,
-    /// Weights of the motor's heat.
+    /// Weights of the squared torques in the root mean square of the motor's torque.
     pub heat_weights: HeatWeights,
 }
 
 impl JointDemand {
-    /// Largest torque that the gear transmits in the cycle \[N m\]: T + T_lin while the joint accelerates, or the largest
-    /// of a stated duty.
+    /// Largest torque that the gear transmits in the cycle \[N m\]: T + T_lin while the joint accelerates, or the
+    /// largest torque of a stated duty if that is larger.
     #[inline]
     pub fn peak_torque_nm(&self) -> f64 {
         (self.static_torque_nm + self.linear_torque_nm).max(self.stated_peak_nm)
     }
 
-    /// The same demand with the motor's heat counted by a factor, so that rounding cannot decide.
+    /// This demand with the weights of the motor's heat multiplied by `factor`. Callers use a factor near 1, so that a
+    /// comparison does not depend on rounding.
     pub(crate) fn with_heat_times(self, factor: f64) -> Self {
         Self { heat_weights: self.heat_weights.times(factor), ..self }
     }
@@ -199,17 +204,17 @@ impl JointDemand {
         libm::cbrt(self.mean_torque_cubed_nm3)
     }
 
-    /// The same demand with loads on the output bearing.
+    /// This demand with `bearing` as the loads on the output bearing.
     pub fn with_bearing(self, bearing: BearingDemand) -> Self {
         Self { bearing, ..self }
     }
 
-    /// The same demand with the room that the link leaves.
+    /// This demand with `room` as the largest diameters of gear and motor.
     pub fn with_room(self, room: LinkRoom) -> Self {
         Self { room, ..self }
     }
 
-    /// The same demand with every torque and moment times `factor`.
+    /// This demand with every torque, force and moment multiplied by `factor`.
     pub fn scaled(self, factor: f64) -> Self {
         Self {
             static_torque_nm: self.static_torque_nm * factor,
@@ -223,7 +228,7 @@ impl JointDemand {
     }
 }
 
-/// Eq 8, torque of linear acceleration \[N m\].
+/// Torque of linear acceleration at the joint \[N m\] (Eq 8).
 ///
 /// - Exact reading: T_lin = Σ m a ρ² / r = I α, where I is the inertia of everything outboard about the axis.
 /// - The paper's reading: T_lin = (a / g) T, as if every mass accelerated like the tip. It is 0.5097 T, printed as T / 2.
@@ -235,13 +240,15 @@ pub fn linear_torque_nm(motion: &JointMotion, static_torque_nm: f64, outboard_in
     }
 }
 
-/// Torque in an emergency stop \[N m\]: T + (a_stop / a) T_lin.
+/// Torque in an emergency stop \[N m\]: T + (a_stop / a) T_lin. `stop_factor` is a_stop / a, the ratio of emergency
+/// deceleration to normal acceleration.
 #[inline]
 pub fn stop_torque_nm(static_torque_nm: f64, linear_torque_nm: f64, stop_factor: f64) -> f64 {
     static_torque_nm + stop_factor * linear_torque_nm
 }
 
-/// Cube of the cubic mean torque \[(N m)³\]: T_mean³ = Σ |T_i|³ n_i t_i / Σ n_i t_i (Eq 18.2 of the vendor).
+/// Cube of the cubic mean torque over a duty cycle \[(N m)³\]: T_mean³ = Σ |T_i|³ n_i t_i / Σ n_i t_i (Eq 18.2 of the
+/// vendor). `weights` are those of the cycle.
 #[inline]
 pub fn cubic_mean_cubed_nm3(weights: MeanTorqueWeights, static_torque_nm: f64, linear_torque_nm: f64) -> f64 {
     let cube = |x: f64| x * x * x;
@@ -250,12 +257,12 @@ pub fn cubic_mean_cubed_nm3(weights: MeanTorqueWeights, static_torque_nm: f64, l
         + weights.difference * cube((static_torque_nm - linear_torque_nm).abs())
 }
 
-/// N ω \[rpm\].
+/// Largest input speed of the gear, N ω \[rpm\].
 pub(super) fn input_speed_rpm(gear: &Gear, motion: &JointMotion) -> f64 {
     gear.ratio * rpm_from_rad_s(motion.speed_rad_s)
 }
 
-/// N times the mean speed over the duty cycle \[rpm\].
+/// Mean input speed of the gear over the duty cycle, N times the mean speed of the joint \[rpm\].
 pub(super) fn mean_input_speed_rpm(gear: &Gear, motion: &JointMotion) -> f64 {
     gear.ratio * rpm_from_rad_s(motion.mean_speed_rad_s())
 }

@@ -21,15 +21,16 @@ impl std::fmt::Display for MissingRating {
     }
 }
 
-/// A rating that may be blank.
+/// A rating, or its name if the catalog leaves it blank.
 pub(super) type Rating = Result<f64, MissingRating>;
 
-/// The rating, or its name if it is blank.
+/// The rating, or an error with its name if it is blank.
 pub(super) fn known(rating: Option<f64>, name: &'static str) -> Rating {
     rating.ok_or(MissingRating(name))
 }
 
-/// A rating of a gear, or its name if it is blank. Where the gear's kind has no ratings of its own, a blank one is `none`.
+/// The rating of a gear, or an error with its name if it is blank. Some kinds of gear, such as direct drives, have no
+/// ratings of their own; for these a blank rating counts as the value `none`.
 pub(super) fn if_any(gear: &Gear, rating: Option<f64>, none: f64, name: &'static str) -> Rating {
     match rating {
         None if gear.kind.has_no_ratings_of_its_own() => Ok(none),
@@ -37,7 +38,7 @@ pub(super) fn if_any(gear: &Gear, rating: Option<f64>, none: f64, name: &'static
     }
 }
 
-/// A gear and a motor.
+/// A gear and a motor, as they are mounted in a joint.
 ///
 /// ```
 /// use armwright::catalog::Catalogs;
@@ -72,7 +73,7 @@ pub struct Drive<'c> {
 }
 
 impl Drive<'_> {
-    /// `gear + motor`, for messages; an actuator by its model.
+    /// Name of the drive for messages: `gear + motor`, or the model if it is an actuator.
     pub fn name(&self) -> String {
         if self.gear.kind == GearKind::Actuator {
             return self.gear.id.clone();
@@ -93,7 +94,7 @@ impl Drive<'_> {
     /// Mass of gear, motor and extras \[kg\].
     ///
     /// # Errors
-    /// The mass that the catalog leaves blank.
+    /// The name of the mass that the catalog leaves blank.
     pub fn mass_with_extras_kg(&self) -> Result<f64, MissingRating> {
         Ok(self.mass_kg()? + self.extras().total_kg())
     }
@@ -117,10 +118,11 @@ impl Drive<'_> {
         self.stage.ratio * input_speed_rpm(self.gear, motion)
     }
 
-    /// Mass of gear and motor \[kg\], rounded to the microgram, so that equal sums of catalog masses are equal numbers.
+    /// Mass of gear and motor \[kg\], rounded to the microgram. Rounding makes sums of catalog masses that are equal
+    /// on paper also equal as floating-point numbers.
     ///
     /// # Errors
-    /// The mass that the catalog leaves blank.
+    /// The name of the mass that the catalog leaves blank.
     pub fn mass_kg(&self) -> Result<f64, MissingRating> {
         const PER_KG: f64 = 1e9;
         let name = match self.gear_mass {
@@ -136,7 +138,7 @@ impl Drive<'_> {
     /// Eq 9: J_in = rotor + input of the gear (wave generator), motor side \[kg m²\], with that of a stage between both.
     ///
     /// # Errors
-    /// The inertia that the catalog leaves blank.
+    /// The name of the inertia that the catalog leaves blank.
     pub fn input_inertia_kgm2(&self) -> Result<f64, MissingRating> {
         let rotor = match self.gear.kind {
             GearKind::Actuator => "inertia_output_kgm2",
@@ -150,31 +152,31 @@ impl Drive<'_> {
     /// Efficiency of stage and gear.
     ///
     /// # Errors
-    /// Its name if the catalog leaves it blank.
+    /// The name of the rating if the catalog leaves it blank.
     pub fn efficiency(&self) -> Result<f64, MissingRating> {
         let gear = if_any(self.gear, self.gear.efficiency, 1.0, "efficiency_rated_2000rpm")?;
         Ok(self.stage.efficiency * gear)
     }
 
-    /// Output torque per newton metre at the motor: N η.
+    /// Torque at the joint per newton metre of torque at the motor: N η, ratio times efficiency.
     pub(super) fn gain(&self) -> Rating {
         Ok(self.ratio() * self.efficiency()?)
     }
 
-    /// Eq 11 for this drive, on the motor's side \[N m\].
+    /// Torque that accelerates rotor and gear input of this drive, on the motor's side \[N m\] (Eq 11).
     ///
     /// # Errors
-    /// The inertia that the catalog leaves blank.
+    /// The name of the inertia that the catalog leaves blank.
     pub fn rotary_torque_motor_nm(&self, motion: &JointMotion) -> Result<f64, MissingRating> {
         let inertia = self.input_inertia_kgm2()?;
         Ok(rotary_torque_motor_nm(inertia, self.ratio(), motion.acceleration_rad_s2))
     }
 
-    /// Eq 12 on the motor's side \[N m\]: torque of the motor while the joint accelerates and the gear transmits
-    /// `peak_torque_nm`.
+    /// Torque of the motor while the joint accelerates and the gear transmits `peak_torque_nm`, on the motor's side
+    /// \[N m\] (Eq 12).
     ///
     /// # Errors
-    /// The rating that the catalog leaves blank.
+    /// The name of the rating that the catalog leaves blank.
     pub fn peak_motor_torque_nm(
         &self,
         motion: &JointMotion,
@@ -184,25 +186,28 @@ impl Drive<'_> {
     }
 }
 
-/// Eqs 10-11 on the motor's side \[N m\]: T_rot = J_in N α.
+/// Torque that accelerates rotor and gear input, on the motor's side \[N m\]: T_rot = J_in N α (Eqs 10-11).
 ///
-/// The paper's n_j is the speed of the motor, so its θ̈ is N α. `acceleration_rad_s2` is that of the joint.
+/// The paper's n_j is the speed of the motor, so its θ̈ is N α. `acceleration_rad_s2` is α, the acceleration of the
+/// joint.
 pub fn rotary_torque_motor_nm(input_inertia_kgm2: f64, ratio: f64, acceleration_rad_s2: f64) -> f64 {
     input_inertia_kgm2 * ratio * acceleration_rad_s2
 }
 
-/// Eqs 10-11 referred to the joint \[N m\]: J_in N² α, which is N times the torque on the motor's side.
+/// Torque that accelerates rotor and gear input, referred to the joint \[N m\]: J_in N² α, which is N times the torque
+/// on the motor's side (Eqs 10-11).
 pub fn rotary_torque_output_nm(input_inertia_kgm2: f64, ratio: f64, acceleration_rad_s2: f64) -> f64 {
     ratio * rotary_torque_motor_nm(input_inertia_kgm2, ratio, acceleration_rad_s2)
 }
 
-/// Eq 12 on the motor's side \[N m\]: T / (N η) + T_rot, where `gain` is N η.
+/// Torque of the motor while the joint accelerates, on the motor's side \[N m\]: T / (N η) + T_rot, where `gain` is N η
+/// (Eq 12).
 pub fn motor_torque_nm(output_torque_nm: f64, gain: f64, rotary_torque_motor_nm: f64) -> f64 {
     output_torque_nm / gain + rotary_torque_motor_nm
 }
 
-/// Input speed at which the gear excites a natural frequency: its wave generator passes with two waves in each turn, so
-/// that n / 60 · 2 = f \[rpm\].
+/// Input speed of a strain-wave gear at which it excites a natural frequency \[rpm\]. The wave generator deforms the
+/// flexspline twice in each turn, so the excitation frequency is 2 n / 60, and n = 30 f.
 pub fn critical_rpm(frequency_hz: f64) -> f64 {
     30.0 * frequency_hz
 }
@@ -224,7 +229,8 @@ mod tests {
 
     #[test]
     fn with_the_wave_generator_of_hfuc_58_the_rotary_torque_is_eight_times_that() {
-        // Eq 9 adds the transmission: 0.00273 kg m² (gears.csv, HFUC-58-100), seven rotors.
+        // Eq 9 adds the inertia of the gear's input: 0.00273 kg m² (gears.csv, HFUC-58-100), seven times that of the
+        // rotor.
         let (gear, motor) = (hfuc_58_100(), f11_10());
         let drive = Drive {
             gear: &gear,

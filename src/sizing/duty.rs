@@ -1,23 +1,23 @@
-//! Duty cycles: the cycle that a joint repeats, its mean speed, and the weights of its cubic mean torque and of the heat
-//! of its motor.
+//! Duty cycles: the phases that a joint repeats. They give the mean speed, the weights of the cubic mean torque and
+//! the weights of the motor's heat.
 
 /// What a joint does during one phase of the duty cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PhaseKind {
-    /// Speeding up: static plus linear torque, half the speed on average.
+    /// Speeding up: static plus linear torque, at half the largest speed on average.
     Accelerate,
-    /// Constant speed: static torque.
+    /// Constant largest speed: static torque.
     Constant,
-    /// Slowing down: the difference of static and linear torque, half the speed on average.
+    /// Slowing down: static minus linear torque, at half the largest speed on average.
     Decelerate,
-    /// Standing still. A rest counts in the mean speed. It does not count in the mean torque, because the wave-generator
+    /// Standing still. A rest counts in the mean speed, but not in the mean torque, because the wave-generator
     /// bearing does not turn.
     Rest,
-    /// Stated fractions of static torque and speed.
+    /// A phase with stated fractions of the static torque and of the largest speed.
     Fraction {
-        /// Fraction of the static torque.
+        /// Fraction of the joint's static torque.
         of_static_torque: f64,
-        /// Fraction of the joint's speed.
+        /// Fraction of the joint's largest speed.
         of_speed: f64,
     },
 }
@@ -27,15 +27,16 @@ pub enum PhaseKind {
 pub struct Phase {
     /// Duration of the phase \[s\].
     pub duration_s: f64,
-    /// What the joint does.
+    /// What the joint does in this phase.
     pub kind: PhaseKind,
 }
 
 /// A cycle that the joint repeats for its whole life.
 ///
-/// The mean values follow the vendor (Harmonic Drive, engineering data 1019659, Eqs 18.2 and 18.5). The mean torque is the
-/// cubic mean weighted by time *and* speed; the mean speed counts pauses. When a lift is followed by a lowering, the
-/// torques of the two ramps change places, and the mean of the pair stays the same.
+/// The mean values follow the vendor (Harmonic Drive, engineering data 1019659, Eqs 18.2 and 18.5). The mean torque
+/// is the cubic mean weighted by time *and* speed. The mean speed includes pauses. A cycle lifts the load; if it
+/// lowers the load instead, the torques of its two ramps change places, and the mean over a lift and a lowering is
+/// the same.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DutyCycle {
     /// The phases in order.
@@ -57,13 +58,13 @@ impl DutyCycle {
         }
     }
 
-    /// Ratio of mean speed to full speed, pauses included.
+    /// Ratio of the mean speed over the cycle, pauses included, to the largest speed.
     pub fn mean_speed_fraction(&self) -> f64 {
         let total: f64 = self.phases.iter().map(|p| p.duration_s).sum();
         if total > 0.0 { self.travel_s() / total } else { 0.0 }
     }
 
-    /// Weights of the cubic mean torque. The mean of a cycle that never moves is its static torque.
+    /// Weights of the cubic mean torque over this cycle. A cycle without motion gets the static torque as its mean.
     pub fn mean_torque_weights(&self) -> MeanTorqueWeights {
         let travel_s = self.travel_s();
         if travel_s <= 0.0 {
@@ -84,7 +85,8 @@ impl DutyCycle {
         weights
     }
 
-    /// Weights of the squares of the motor's torque: shares of the cycle's time. A cycle that takes no time stands still.
+    /// Weights of the squared torques in the mean square of the motor's torque: the fraction of the cycle's time that
+    /// each kind of phase takes. A cycle of zero duration counts as standing still.
     pub fn heat_weights(&self) -> HeatWeights {
         let total_s: f64 = self.phases.iter().map(|p| p.duration_s).sum();
         if total_s <= 0.0 {
@@ -108,21 +110,21 @@ impl DutyCycle {
         weights
     }
 
-    /// Time of speeding up and of slowing down \[s\]. Both happen at one acceleration, so a cycle that comes back to rest
-    /// takes equally long for both.
+    /// Total time of speeding up and total time of slowing down \[s\]. Both happen at the same acceleration, so the
+    /// two are equal in a cycle that comes back to rest.
     pub fn ramps_s(&self) -> [f64; 2] {
         [PhaseKind::Accelerate, PhaseKind::Decelerate]
             .map(|kind| self.phases.iter().filter(|p| p.kind == kind).map(|p| p.duration_s).sum())
     }
 
-    /// Travel of the whole cycle divided by the full speed \[s\].
+    /// Angle through which the joint turns in the whole cycle, divided by its largest speed \[s\].
     fn travel_s(&self) -> f64 {
         self.phases.iter().map(Phase::travel_s).sum()
     }
 }
 
 impl Phase {
-    /// Travel of the phase divided by the full speed \[s\].
+    /// Angle through which the joint turns in this phase, divided by its largest speed \[s\].
     fn travel_s(&self) -> f64 {
         let speed = match self.kind {
             PhaseKind::Accelerate | PhaseKind::Decelerate => 0.5,
@@ -135,7 +137,8 @@ impl Phase {
 }
 
 /// Weights of the cubic mean torque of a duty cycle:
-/// T_mean³ = sum (T + T_lin)³ + steady T³ + difference |T - T_lin|³. They add up to 1 for a cycle of ramps and travel.
+/// T_mean³ = sum (T + T_lin)³ + steady T³ + difference |T - T_lin|³. The weights add up to 1 for a cycle of ramps and
+/// travel at full speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeanTorqueWeights {
     /// Weight of (T + T_lin)³.
@@ -147,25 +150,26 @@ pub struct MeanTorqueWeights {
 }
 
 impl MeanTorqueWeights {
-    /// Nothing of the arm counts: the mean torque is that of a stated duty.
+    /// All weights are zero: torques of the arm do not count, because the mean torque comes from a stated duty.
     pub(super) const NONE: Self = Self { sum: 0.0, steady: 0.0, difference: 0.0 };
 }
 
-/// Shares of the cycle's time, as weights of squared torques.
+/// Weights of the squared torques in the mean square of the motor's torque: the fraction of the cycle's time that
+/// each kind of phase takes.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct HeatWeights {
-    /// Weight of the phases of speeding up.
+    /// Fraction of the time in which the joint speeds up, with the sum of static and linear torque.
     pub sum: f64,
-    /// Weight of moving under the static torque.
+    /// Fraction of the time in which the joint moves under the static torque.
     pub steady: f64,
-    /// Weight of the phases of slowing down.
+    /// Fraction of the time in which the joint slows down, with the difference of static and linear torque.
     pub difference: f64,
-    /// Weight of standing under the static torque; 0 if a brake holds the joint.
+    /// Fraction of the time in which the motor holds the static torque at rest; 0 if a brake holds the joint.
     pub standing: f64,
 }
 
 impl HeatWeights {
-    /// All weights times a factor.
+    /// These weights, all multiplied by `factor`.
     pub(crate) fn times(self, factor: f64) -> Self {
         Self {
             sum: self.sum * factor,

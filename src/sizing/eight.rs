@@ -1,7 +1,7 @@
-//! The demands on one joint of eight arms at once, and the lightest drives that hold them.
+//! The demands on the same joint of eight arms at once, and the lightest drives that meet them.
 //!
-//! The operations and their order are those of [`JointMotion::demand`] and [`DriveTable::first_fit`], so that an arm gets
-//! the same drive by itself and among eight.
+//! The operations and their order are the same as in [`JointMotion::demand`] and [`DriveTable::first_fit`]. An arm
+//! therefore gets the same drive whether it is sized by itself or among eight.
 
 use super::bearing::{AXIAL_SHARE, BearingLimits};
 use super::demand::JointMotion;
@@ -12,7 +12,7 @@ use super::limits::DriveLimits;
 use super::select::DriveTable;
 use crate::mechanics::lanes::{LANES, Lanes};
 
-/// The torques on one joint of eight arms, on the output side. None is negative.
+/// The torques on one joint of eight arms, on the output side. Each number has one lane per arm; none is negative.
 #[derive(Clone, Copy)]
 pub(crate) struct EightDemands<V> {
     static_torque_nm: V,
@@ -21,16 +21,18 @@ pub(crate) struct EightDemands<V> {
     mean_torque_cubed_nm3: V,
     /// Loads on the output bearings; `None` if they are not checked.
     bearing: Option<EightBearing<V>>,
-    /// Room that the links leave to gear and motor \[m\]; `None` if it is not asked about.
+    /// Largest outer diameters of gear and motor that the links leave room for \[m\]; `None` if the study does not
+    /// ask for this check.
     room: Option<[V; 2]>,
-    /// T + T_lin, and how much T exceeds T_lin and T_lin exceeds T \[N m\].
+    /// T + T_lin, the torque while speeding up \[N m\]. The next field has max(T - T_lin, 0) and max(T_lin - T, 0) \[N
+    /// m\], which are needed while slowing down.
     up_nm: V,
     down_nm: [V; 2],
     heat_weights: HeatWeights,
 }
 
-/// The loads on one output bearing of eight arms. Forces and moments are collected as squares, and become norms with
-/// [`EightBearing::with_lever`].
+/// The loads on one output bearing of eight arms. While loads are collected, `moment` and `radial` are squares;
+/// [`EightBearing::with_lever`] takes their roots.
 #[derive(Clone, Copy)]
 pub(crate) struct EightBearing<V> {
     at_rest: EightLoad<V>,
@@ -38,7 +40,8 @@ pub(crate) struct EightBearing<V> {
     in_stop: EightLoad<V>,
 }
 
-/// A load on the bearing in eight arms.
+/// A load on the bearing in eight arms: moment across the axis \[N m\], radial force \[N\] and axial force \[N\].
+/// Moment and radial force are first collected as squares, then as norms.
 #[derive(Clone, Copy)]
 struct EightLoad<V> {
     moment: V,
@@ -52,8 +55,8 @@ impl<V: Lanes> EightLoad<V> {
         Self { moment: V::zero(), radial: V::zero(), axial_n: V::zero() }
     }
 
-    /// Takes the larger of squares; the components are force along two axes across and along the axis, and moment about
-    /// the two axes across.
+    /// Replaces each component of this load by the given one in the lanes where that is larger. `radial` and `moment`
+    /// are squares of norms.
     #[inline(always)]
     fn max_of_squares(&mut self, radial: V, axial_n: V, moment: V) {
         self.radial = self.radial.max(radial);
@@ -61,14 +64,16 @@ impl<V: Lanes> EightLoad<V> {
         self.moment = self.moment.max(moment);
     }
 
-    /// Norms, with forces that attach further out by a lever.
+    /// This load with moment and radial force as norms, after their squares were collected. The forces attach further
+    /// out along the axis by `lever_m` \[m\], so the radial force adds to the moment.
     #[inline(always)]
     fn with_lever(self, lever_m: V) -> Self {
         let radial = self.radial.sqrt();
         Self { moment: self.moment.sqrt() + lever_m * radial, radial, axial_n: self.axial_n }
     }
 
-    /// Radial force and the forces that make up the moment, as [`BearingLimits`] computes it.
+    /// Radial force plus the force that is equivalent to the moment \[N\], in each lane, computed as in
+    /// [`BearingLimits`].
     #[inline(always)]
     fn across(&self, limits: &BearingLimits) -> V {
         self.radial + V::splat(limits.force_per_moment_per_m) * self.moment_at_centre(limits)
@@ -81,22 +86,24 @@ impl<V: Lanes> EightLoad<V> {
 }
 
 impl<V: Lanes> EightBearing<V> {
-    /// No load.
+    /// No load on the bearing in any of the eight arms.
     #[inline(always)]
     pub(crate) fn zero() -> Self {
         Self { at_rest: EightLoad::zero(), running: EightLoad::zero(), in_stop: EightLoad::zero() }
     }
 
-    /// Takes a load at rest. What moves is taken with [`EightBearing::moving`].
+    /// Takes a load at rest into account. The five components are two forces across the axis, the force along it, and
+    /// two moments across it.
     #[inline(always)]
     pub(crate) fn rest(&mut self, [u, v, along, about_u, about_v]: &[V; 5]) {
         let (radial, moment) = (*u * *u + *v * *v, *about_u * *about_u + *about_v * *about_v);
         self.at_rest.max_of_squares(radial, along.abs(), moment);
-        // ramps are taken with either sign, so they never load a bearing less
+        // `running` and `in_stop` stay: a ramp is taken with either sign, so one of the two signs loads the bearing
+        // no less than rest does
     }
 
-    /// Takes a load at rest with what a ramp adds or takes away, and so many times as much in a stop. Of the two signs
-    /// the larger norm is `|s|² + |d|² + 2 |s·d|`.
+    /// Takes into account the load s at rest together with the load d that a ramp adds: s ± d in the ramp, and s ±
+    /// `stop_factor` d in an emergency stop. Of the two signs the larger squared norm is `|s|² + |d|² + 2 |s·d|`.
     #[inline(always)]
     pub(crate) fn moving(&mut self, at_rest: &[V; 5], ramp: &[V; 5], stop_factor: V) {
         let (radial, moment) = (Pair::new(at_rest, ramp, 0), Pair::new(at_rest, ramp, 3));
@@ -106,7 +113,7 @@ impl<V: Lanes> EightBearing<V> {
         self.in_stop.max_of_squares(radial.largest(), rest_n + stop_factor * ramp_n, moment.largest());
     }
 
-    /// The loads as norms, with forces that attach further out by a lever \[m\].
+    /// The loads on the bearing as norms, if all forces attach further out along the axis by `lever_m` \[m\].
     #[inline(always)]
     pub(crate) fn with_lever(self, lever_m: V) -> Self {
         Self {
@@ -116,7 +123,7 @@ impl<V: Lanes> EightBearing<V> {
         }
     }
 
-    /// The lanes whose loads a bearing does not hold.
+    /// Bit mask of the lanes (arms) in which a load exceeds one of `limits`, the limits of a bearing.
     #[inline(always)]
     fn broken_by(&self, limits: &BearingLimits) -> u8 {
         let across = self.at_rest.across(limits);
@@ -130,7 +137,7 @@ impl<V: Lanes> EightBearing<V> {
     }
 }
 
-/// Two components of a load at rest and of what a ramp adds.
+/// Squared norms of two components: of the load at rest, s, and of what a ramp adds, d.
 #[derive(Clone, Copy)]
 struct Pair<V> {
     /// `|s|²` of the load at rest.
@@ -142,7 +149,8 @@ struct Pair<V> {
 }
 
 impl<V: Lanes> Pair<V> {
-    /// The components `first` and the next.
+    /// Squared norms over the components `first` and `first + 1` of `at_rest` (s) and `ramp` (d): |s|², |d|² and the
+    /// mixed term 2 |s·d|.
     #[inline(always)]
     fn new(at_rest: &[V; 5], ramp: &[V; 5], first: usize) -> Self {
         let (s, d) = ([at_rest[first], at_rest[first + 1]], [ramp[first], ramp[first + 1]]);
@@ -150,13 +158,13 @@ impl<V: Lanes> Pair<V> {
         Self { rest: s[0] * s[0] + s[1] * s[1], ramp: d[0] * d[0] + d[1] * d[1], both: both + both }
     }
 
-    /// The same with a ramp so many times as large.
+    /// These squared norms if the load d of the ramp is multiplied by `factor`.
     #[inline(always)]
     fn times(self, factor: V) -> Self {
         Self { rest: self.rest, ramp: self.ramp * factor * factor, both: self.both * factor }
     }
 
-    /// Square of the larger norm of the two signs of the ramp.
+    /// The larger of `|s + d|²` and `|s - d|²`, where s is the load at rest and d the load that a ramp adds.
     #[inline(always)]
     fn largest(self) -> V {
         self.rest + self.ramp + self.both
@@ -164,7 +172,8 @@ impl<V: Lanes> Pair<V> {
 }
 
 impl<V: Lanes> EightDemands<V> {
-    /// The demands on a joint with this motion, from static torques \[N m\] and outboard inertias \[kg m²\].
+    /// The demands on a joint with the motion `motion` in eight arms, from their static torques \[N m\] and the
+    /// inertias of everything outboard about the axis \[kg m²\].
     #[inline(always)]
     pub(crate) fn new(motion: &JointMotion, static_torque_nm: V, outboard_inertia_kgm2: V) -> Self {
         let statically = static_torque_nm.abs();
@@ -193,19 +202,21 @@ impl<V: Lanes> EightDemands<V> {
         }
     }
 
-    /// The same demands with loads on the output bearings.
+    /// These demands with `bearing` as the loads on the output bearings; `None`: the bearings are not checked.
     #[inline(always)]
     pub(crate) fn with_bearing(self, bearing: Option<EightBearing<V>>) -> Self {
         Self { bearing, ..self }
     }
 
-    /// The same demands with the room that the links leave to gear and motor \[m\].
+    /// These demands with `room` as the largest outer diameters of gear and motor that fit \[m\]; `None`: sizes are not
+    /// checked.
     #[inline(always)]
     pub(crate) fn with_room(self, room: Option<[V; 2]>) -> Self {
         Self { room, ..self }
     }
 
-    /// Those of the lanes `of` whose demand a drive holds.
+    /// Bit mask of the lanes (arms) in which a drive with these limits meets the demand. Only the lanes in the mask
+    /// `of` are tested.
     #[inline(always)]
     pub(crate) fn held_by(&self, limits: &DriveLimits, of: u8) -> u8 {
         let held = of
@@ -224,11 +235,12 @@ impl<V: Lanes> EightDemands<V> {
                     }
                     None => 0,
                 });
-        // heat costs the most to compare, and most drives that do not hold fail before
+        // the heat of the motor costs the most to compare, and most drives that fail do so in an earlier comparison
         if held == 0 { held } else { held & !V::splat(1.0).less(self.share_squared(&limits.heat)) }
     }
 
-    /// [`MotorHeat::share_squared`] of each lane.
+    /// Mean square of the motor's torque over its continuous torque, computed as [`MotorHeat::share_squared`] in each
+    /// lane.
     #[inline(always)]
     fn share_squared(&self, heat: &MotorHeat) -> V {
         let (weights, own) = (&self.heat_weights, V::splat(heat.own_share));
@@ -244,10 +256,11 @@ impl<V: Lanes> EightDemands<V> {
 }
 
 impl DriveTable<'_> {
-    /// The lightest drive that holds in each wanted lane, and the lanes that have one.
+    /// For each lane (arm) in the mask `wanted`, the index of the lightest drive that meets its demand, and the bit
+    /// mask of the lanes that have such a drive.
     ///
-    /// The search for the first step of the ladder that is within reach begins at `step` and stores there what it found.
-    /// The next search is for a similar demand and will be short.
+    /// The search for the first step of the ladder that may meet a demand begins at `step`, and stores there the step
+    /// that it found. Successive demands are similar, so the next search is short.
     #[inline(always)]
     pub(crate) fn first_fits<V: Lanes>(
         &self,
@@ -258,7 +271,8 @@ impl DriveTable<'_> {
         let ladder = self.ladder();
         let reach = ladder.reach;
         let mut start = (*step).min(reach.len());
-        // `reach` only grows along the ladder, so the first step at which some lane may hold is found from either side
+        // `reach` only grows along the ladder, so the first step that may meet the demand of some lane can be found
+        // from either side
         while start > 0 && demands.held_by(&reach[start - 1], wanted) != 0 {
             start -= 1;
         }

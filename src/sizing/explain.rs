@@ -1,4 +1,4 @@
-//! Explanations: why a part was rejected, and which relaxation helps if no drive holds.
+//! Explanations: why a part was rejected, and how far torque or speed must be reduced if no drive meets the demand.
 
 use super::bearing_checks::bearing_that_holds;
 use super::check::{Check, CheckState, digits_of};
@@ -13,28 +13,29 @@ use std::fmt;
 /// The part that a rejection is about.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RejectedPart {
-    /// A gear that fails with any motor.
+    /// A gear that fails a check whatever the motor.
     Gear {
-        /// The gear.
+        /// Name of the gear.
         gear: String,
     },
-    /// A gear that holds but for which no motor holds. The checks are those with the motor that comes nearest.
+    /// A gear that passes its own checks, but that has no motor which passes too. The checks listed are those with the
+    /// nearest motor: the motor whose smallest margin is the largest.
     GearWithoutMotor {
-        /// The gear.
+        /// Name of the gear.
         gear: String,
-        /// The motor that comes nearest.
+        /// Name of the nearest motor, whose smallest margin is the largest.
         nearest_motor: String,
     },
-    /// A motor that fails behind some of the gears that hold. The checks are those with the gear behind which it comes
-    /// nearest.
+    /// A motor that fails behind some of the gears that pass their own checks. The checks listed are those with the
+    /// nearest gear: the gear with which the smallest margin of the motor is the largest.
     Motor {
-        /// The motor.
+        /// Name of the motor.
         motor: String,
         /// The gear with which the checks were made.
         nearest_gear: String,
-        /// All gears that hold and behind which this motor does not.
+        /// Names of all gears that pass and behind which this motor fails.
         rejected_with: Vec<String>,
-        /// All gears behind which this motor holds.
+        /// Names of all gears behind which this motor passes.
         fits_with: Vec<String>,
     },
 }
@@ -44,21 +45,22 @@ pub enum RejectedPart {
 pub struct Rejection {
     /// Name of the joint.
     pub joint: String,
-    /// The part.
+    /// The part that was rejected.
     pub part: RejectedPart,
-    /// Every check that does not hold, at least one. The worst comes first; checks that could not be made come last.
+    /// Every check that excludes the part, at least one. The smallest margin comes first; checks that could not be
+    /// made come last.
     pub checks: Vec<Check>,
 }
 
 impl Rejection {
-    /// Whether the part fails no check, but ratings are missing for some.
+    /// Whether the part exceeds no limit and is excluded only because ratings are blank.
     pub fn is_not_checked(&self) -> bool {
         self.checks.iter().all(|c| matches!(c.state, CheckState::NotChecked(_)))
     }
 }
 
 impl fmt::Display for Rejection {
-    /// `joint j2: HFUC-40-100 peak 568 N m needed, 523 allowed`.
+    /// A message such as `joint j2: HFUC-40-100 peak 568 N m needed, 523 allowed`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "joint {}: ", self.joint)?;
         match &self.part {
@@ -78,29 +80,30 @@ impl fmt::Display for Rejection {
     }
 }
 
-/// What can be relaxed.
+/// Which quantity a [`Relaxation`] reduces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RelaxationKind {
-    /// Every torque on the joint, by less payload, outboard mass or reach.
+    /// Every torque on the joint. It falls with less payload, outboard mass or reach.
     Torque,
     /// Speed and acceleration, with the same ramp time.
     Speed,
 }
 
-/// A relaxation with which some drive holds.
+/// A reduction of torque or speed with which at least one drive meets the demand.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Relaxation {
-    /// What is relaxed.
+    /// Which quantity is reduced.
     pub kind: RelaxationKind,
-    /// Factor on torque or speed, below 1 and in whole percents.
+    /// Factor on torque or speed, below 1 and a whole number of percent.
     pub factor: f64,
-    /// The lightest drive that holds then.
+    /// Name of the lightest drive that meets the reduced demand.
     pub drive: String,
 }
 
 impl Relaxation {
-    /// The factor on the payload alone, if the fraction `payload_share` of the torque comes from the payload. `None` if
-    /// not even an arm without payload would do.
+    /// The factor on the payload that reduces the torque as much as this relaxation does. `payload_share` is the
+    /// fraction of the torque that comes from the payload. `None` if speed is reduced, or if even an arm without
+    /// payload would not meet the limits.
     pub fn payload_factor(&self, payload_share: f64) -> Option<f64> {
         let factor = 1.0 - (1.0 - self.factor) / payload_share;
         (self.kind == RelaxationKind::Torque && factor >= 0.0).then_some(factor)
@@ -120,16 +123,16 @@ impl fmt::Display for Relaxation {
     }
 }
 
-/// What is missing if no drive holds.
+/// What is missing at a joint for which no drive meets the demand.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shortfall {
     /// Name of the joint.
     pub joint: String,
-    /// The nearest drive: its worst margin is the largest.
+    /// Name of the nearest drive: the one whose smallest margin is the largest.
     pub drive: String,
-    /// The worst check of this drive.
+    /// The check of this drive that has the smallest margin.
     pub check: Check,
-    /// Relaxations that help, the smallest first; empty if neither torque nor speed alone helps.
+    /// Reductions of torque or speed that help, the smallest reduction first. Empty if neither helps alone.
     pub relaxations: Vec<Relaxation>,
 }
 
@@ -155,7 +158,7 @@ impl fmt::Display for Shortfall {
     }
 }
 
-/// A gear that holds with a motor, and the checks of the motor that do not hold.
+/// A gear that passes its own checks, combined with a motor, and the checks that this motor fails.
 struct Trial<'c> {
     drive: Drive<'c>,
     worst_margin: f64,
@@ -163,8 +166,9 @@ struct Trial<'c> {
 }
 
 impl<'c> DriveTable<'c> {
-    /// Why parts were rejected. The list has every gear that fails by itself, every gear that holds but finds no motor, and
-    /// every motor that fails behind some gear that holds. Gears come first, and each kind is in catalog order.
+    /// Why parts were rejected for `demand`. The list has every gear that fails by itself, every gear that passes but
+    /// has no motor that passes behind it, and every motor that fails behind some gear that passes. Gears come first;
+    /// gears and motors are each in the order of the catalog.
     pub fn explain(&self, demand: &JointDemand) -> Vec<Rejection> {
         let (mut rejections, trials) = (Vec::new(), self.trials(demand));
         for gear in self.gears() {
@@ -182,8 +186,8 @@ impl<'c> DriveTable<'c> {
         rejections
     }
 
-    /// The nearest drive if none holds, with what it lacks and what would help. `None` if a drive holds, or if no drive has
-    /// all ratings that the checks need.
+    /// The nearest drive if no drive meets the demand, with its worst check and the reductions that would help.
+    /// `None` if a drive meets the demand, or if no drive has all ratings that the checks need.
     pub fn smallest_shortfall(&self, demand: &JointDemand) -> Option<Shortfall> {
         if self.first_fit(demand).is_some() {
             return None;
@@ -197,7 +201,7 @@ impl<'c> DriveTable<'c> {
         Some(Shortfall { joint: self.joint().to_string(), drive: drive.name(), check, relaxations })
     }
 
-    /// The checks of a gear, and what of its torsion is blank where the joint needs it.
+    /// The checks of a gear, and its blank torsion ratings if the deflection of the joint is to be computed.
     fn checks_of_gear(&self, gear: &Gear, demand: &JointDemand) -> Vec<Check> {
         let mut checks =
             gear_checks(gear, self.gear_mass(), self.bearing_of(gear).as_ref(), self.motion(), demand);
@@ -207,12 +211,13 @@ impl<'c> DriveTable<'c> {
         checks
     }
 
-    /// How near the nearest drive comes to a demand that none holds: its worst margin as a factor on torque.
+    /// The smallest margin of the nearest drive, as a factor on torque, for a demand that no drive meets. The nearest
+    /// drive is the one whose smallest margin is the largest. 0 if no drive could be checked.
     pub(crate) fn nearest_margin(&self, demand: &JointDemand) -> f64 {
         self.nearest(demand).and_then(|(_, check)| check.torque_margin()).unwrap_or(0.0)
     }
 
-    /// Every gear that holds, with every motor that goes with it.
+    /// Every gear that passes its own checks, combined with every motor that goes with it.
     fn trials(&self, demand: &JointDemand) -> Vec<Trial<'c>> {
         let mut trials = Vec::new();
         for gear in self.gears() {
@@ -222,7 +227,7 @@ impl<'c> DriveTable<'c> {
             for motor in self.motors().iter().filter(|motor| gear.goes_with(motor)) {
                 let drive = self.pair(gear, motor);
                 let checks = motor_checks(&drive, self.motion(), demand);
-                // a motor that cannot be checked at all is the farthest from holding
+                // a motor for which no check could be made counts as the worst
                 let worst_margin = binding(&checks).and_then(Check::torque_margin).unwrap_or(0.0);
                 trials.push(Trial { drive, worst_margin, failed: not_holding(checks) });
             }
@@ -265,7 +270,8 @@ impl<'c> DriveTable<'c> {
         Rejection { joint: self.joint().to_string(), part, checks }
     }
 
-    /// The drive whose worst margin is the largest, among those for which every check could be made.
+    /// The nearest drive and its check with the smallest margin. It is the drive whose smallest margin is the largest,
+    /// among the drives for which every check could be made.
     fn nearest(&self, demand: &JointDemand) -> Option<(Drive<'c>, Check)> {
         let mut best: Option<(f64, Drive<'c>, Check)> = None;
         for drive in self.all_drives().filter(|drive| self.knows_torsion(drive.gear)) {
@@ -282,7 +288,8 @@ impl<'c> DriveTable<'c> {
         best.map(|(_, drive, check)| (drive, check))
     }
 
-    /// The largest factor in whole percents at which some drive holds.
+    /// The largest factor below 1, in whole percents, such that some drive meets `demand` with its torque or its speed
+    /// (`kind`) multiplied by the factor. `None` if not even 1 % suffices.
     fn relaxation(&self, kind: RelaxationKind, demand: &JointDemand) -> Option<Relaxation> {
         (1..100).rev().find_map(|percent| {
             let factor = f64::from(percent) / 100.0;
@@ -294,7 +301,9 @@ impl<'c> DriveTable<'c> {
         })
     }
 
-    /// The lightest drive that holds when the motion is slowed. Its speeds hold again, so drives outside of the table count.
+    /// The lightest drive that meets `demand` if speed and acceleration are multiplied by `factor`. All pairs of gear
+    /// and motor are tried, not only those of the table: a pair that was excluded as too fast may pass at the lower
+    /// speed.
     fn lightest_when_slowed(&self, factor: f64, demand: &JointDemand) -> Option<Drive<'c>> {
         let motion = self.motion().slowed(factor);
         let slower = motion
@@ -311,13 +320,14 @@ impl<'c> DriveTable<'c> {
     }
 }
 
-/// The trial with the largest worst margin, then the fewest failures, then the first.
+/// The pair of gear and motor whose smallest margin is the largest. Equal ones are ranked by the number of failed
+/// checks, then by their order.
 fn nearest_trial<'t, 'c: 't>(trials: impl Iterator<Item = &'t Trial<'c>>) -> Option<&'t Trial<'c>> {
     let nearness = |t: &Trial| (t.worst_margin, std::cmp::Reverse(t.failed.len()));
     trials.reduce(|best, t| if nearness(t) > nearness(best) { t } else { best })
 }
 
-/// The checks that do not hold. The worst comes first; checks that could not be made come last.
+/// Those of `checks` that exclude a part. The smallest margin comes first; checks that could not be made come last.
 pub(super) fn not_holding(checks: Vec<Check>) -> Vec<Check> {
     let mut failed: Vec<_> = checks.into_iter().filter(|c| !c.holds()).collect();
     let key = |c: &Check| c.torque_margin().unwrap_or(f64::INFINITY);
@@ -478,7 +488,7 @@ mod tests {
     fn less_speed_takes_its_share_off_the_linear_torque() {
         let (gears, motors) = ([hfuc_40_100()], [f11_10()]);
         let table = table(&gears, &motors);
-        // A vertical axis: linear torque only, 568 of 600 N m allowed.
+        // A vertical axis has linear torque only: 600 N m, while the gear's repeated peak allows 568 N m.
         let shortfall = table.smallest_shortfall(&motion().demand_of_torques(0.0, 600.0)).unwrap();
         let slower = shortfall.relaxations.iter().find(|r| r.kind == RelaxationKind::Speed).unwrap();
         assert_eq!(slower.factor, 0.90, "1200 N m in an emergency stop, 1080 allowed");

@@ -1,11 +1,11 @@
-//! Whether the parts of a joint fit where they go.
+//! Checks of size: whether gear and motor fit into the space at their joint.
 //!
 //! | asked | compared |
 //! |---|---|
-//! | gear beside the link that the joint carries | outer diameter of the gear; a factor times the width of the link across the joint's axis |
+//! | gear at the link that the joint carries | outer diameter of the gear; factor times width of the link |
 //! | motor in the hollow of that link | outer diameter of the motor; the smaller clear width of the hollow |
-//! | cables along the axis | bore of the gear, and of a motor behind it; the smallest bore asked for |
-//! | room at the joint | length of the gear, with that of a motor behind it; the largest length asked for |
+//! | cables along the axis | bore of the gear, and of a motor behind it; the smallest bore that the study states |
+//! | space at the joint | length of the gear, plus that of a motor behind it; the largest length stated |
 //!
 //! A size that the catalog leaves blank is not checked and excludes nothing; of component sets it has no sizes at all. The first two follow from the link, so they are part
 //! of the [demand](super::demand::JointDemand) on the joint; the others exclude a drive whatever the arm. Where a part is does
@@ -13,15 +13,16 @@
 
 use crate::catalog::envelope::Envelope;
 
-/// A part that is just as wide as its room fits; rounding of a factor times a width must not decide.
+/// Relative tolerance of the comparisons of size. A part exactly as wide as its space fits, whatever the rounding of
+/// a factor times a width.
 const ROUNDING: f64 = 1e-9;
 
-/// What a study asks of the sizes of a joint's parts; nothing by default.
+/// Limits that a study sets to the sizes of a joint's parts. By default there are none; `None` means no limit.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FitRequirement {
     /// Largest ratio of the gear's outer diameter to the width of the link that the joint carries.
     pub gear_to_link_max: Option<f64>,
-    /// Where the motor is.
+    /// Where the motor is mounted.
     pub motor: MotorPlace,
     /// Smallest diameter of the passage along the axis \[m\].
     pub cable_bore_min_m: Option<f64>,
@@ -29,7 +30,7 @@ pub struct FitRequirement {
     pub drive_length_max_m: Option<f64>,
 }
 
-/// Where the motor of a joint is.
+/// Where the motor of a joint is mounted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum MotorPlace {
     /// On the axis, behind the gear: cables pass through it, and its length adds to that of the gear.
@@ -37,20 +38,22 @@ pub enum MotorPlace {
     Behind,
     /// In the hollow of the link that the joint carries.
     InLink,
-    /// Somewhere else, where there is room.
+    /// Somewhere else; its size is not checked.
     Beside,
 }
 
-/// The room that the link leaves to the parts of the joint that carries it; infinite where nothing is asked.
+/// Largest diameters of the parts of a joint, as given by the link that the joint carries. Infinite if the study sets
+/// no limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinkRoom {
-    /// Largest outer diameter of the gear \[m\].
+    /// Largest outer diameter that the gear may have \[m\]; infinite if there is no limit.
     pub gear_m: f64,
-    /// Largest outer diameter of the motor \[m\].
+    /// Largest outer diameter that the motor may have \[m\]; infinite if there is no limit.
     pub motor_m: f64,
 }
 
-/// How wide a drive is where its study asks; zero where nothing is asked or the catalog is blank.
+/// Outer diameters of gear and motor of a drive \[m\]. A diameter is zero if the study does not limit it, or if the
+/// catalog leaves it blank.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DriveWidths {
     /// Outer diameter of the gear \[m\].
@@ -66,15 +69,15 @@ impl Default for LinkRoom {
 }
 
 impl LinkRoom {
-    /// Room for everything.
+    /// No limit on any size.
     pub const ANY: Self = Self { gear_m: f64::INFINITY, motor_m: f64::INFINITY };
 
-    /// Each number the larger of two.
+    /// The larger of the diameters of this room and of `other`, one by one.
     pub(crate) fn max(self, other: Self) -> Self {
         Self { gear_m: self.gear_m.max(other.gear_m), motor_m: self.motor_m.max(other.motor_m) }
     }
 
-    /// Each number the smaller of two.
+    /// The smaller of the diameters of this room and of `other`, one by one.
     pub(crate) fn min(self, other: Self) -> Self {
         Self { gear_m: self.gear_m.min(other.gear_m), motor_m: self.motor_m.min(other.motor_m) }
     }
@@ -90,23 +93,24 @@ impl DriveWidths {
         }
     }
 
-    /// Whether the parts fit into a room.
+    /// Whether gear and motor fit into `room`: neither diameter exceeds the largest one that the link allows.
     #[inline]
     pub fn fit(&self, room: &LinkRoom) -> bool {
         (self.gear_m <= room.gear_m) & (self.motor_m <= room.motor_m)
     }
 
-    /// The smaller of each width.
+    /// The smaller of the diameters of this drive and of `other`, one by one.
     pub(super) fn min(&self, other: &Self) -> Self {
         Self { gear_m: self.gear_m.min(other.gear_m), motor_m: self.motor_m.min(other.motor_m) }
     }
 
-    /// The larger of each width.
+    /// The larger of the diameters of this drive and of `other`, one by one.
     pub(super) fn max(&self, other: &Self) -> Self {
         Self { gear_m: self.gear_m.max(other.gear_m), motor_m: self.motor_m.max(other.motor_m) }
     }
 
-    /// Whether these parts fit wherever the others fit.
+    /// Whether neither part of this drive is wider than the same part of `other`, so that this drive fits wherever
+    /// `other` fits.
     #[inline]
     pub(super) fn cover(&self, other: &Self) -> bool {
         (self.gear_m <= other.gear_m) & (self.motor_m <= other.motor_m)
@@ -114,17 +118,18 @@ impl DriveWidths {
 }
 
 impl FitRequirement {
-    /// Whether anything is asked.
+    /// Whether the study limits any size.
     pub fn is_asked(&self) -> bool {
         self.asks_of_link() || self.cable_bore_min_m.is_some() || self.drive_length_max_m.is_some()
     }
 
-    /// Whether the link decides what fits.
+    /// Whether a limit depends on the link that the joint carries.
     pub fn asks_of_link(&self) -> bool {
         self.gear_to_link_max.is_some() || self.motor == MotorPlace::InLink
     }
 
-    /// The room that a link of a width across the joint's axis and with a hollow leaves \[m\].
+    /// The largest diameters of gear and motor \[m\] next to a link of width `width_m` across the joint's axis \[m\],
+    /// whose hollow has the clear width `hollow_m` \[m\].
     pub(crate) fn room(&self, width_m: f64, hollow_m: f64) -> LinkRoom {
         let any = f64::INFINITY;
         let in_link = self.motor == MotorPlace::InLink;
@@ -149,12 +154,12 @@ impl FitRequirement {
             && (self.motor != MotorPlace::Behind || bore_holds(motor.hollow_bore_m))
     }
 
-    /// Smallest bore, but for rounding \[m\].
+    /// Smallest bore that passes \[m\], reduced by the tolerance for rounding; `None` if bores are not limited.
     pub(super) fn least_bore_m(&self) -> Option<f64> {
         self.cable_bore_min_m.map(|least_m| least_m * (1.0 - ROUNDING))
     }
 
-    /// Largest length, but for rounding \[m\].
+    /// Largest length that passes \[m\], increased by the tolerance for rounding; `None` if the length is not limited.
     pub(super) fn most_length_m(&self) -> Option<f64> {
         self.drive_length_max_m.map(|most_m| most_m * (1.0 + ROUNDING))
     }

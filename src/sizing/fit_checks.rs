@@ -1,4 +1,4 @@
-//! The checks of the sizes of parts, one by one, for people.
+//! The single checks of the sizes of parts, for printing.
 
 use super::check::{Check, CheckKind, check};
 use super::drive::{Drive, Rating, known};
@@ -29,7 +29,7 @@ pub(super) fn gear_fits(
         .flatten()
 }
 
-/// What is asked of the sizes of a motor, and of motor and gear together.
+/// The checks of the diameter and the bore of a motor, and of the length of motor and gear together.
 pub(super) fn motor_fits(
     drive: &Drive,
     fit: &FitRequirement,
@@ -52,7 +52,7 @@ pub(super) fn motor_fits(
     checks.into_iter().flatten()
 }
 
-/// Whether a size is at most what there is room for; `None` if there is no end of room.
+/// The check that a size is at most `room_m` \[m\]; `None` if `room_m` is infinite, which means no limit.
 fn at_most(kind: CheckKind, size: Rating, room_m: f64) -> Option<Check> {
     let in_mm = |m: f64| m * 1e3;
     let needed =
@@ -60,7 +60,7 @@ fn at_most(kind: CheckKind, size: Rating, room_m: f64) -> Option<Check> {
     room_m.is_finite().then(needed)
 }
 
-/// Whether cables that need a passage of this diameter go through a bore.
+/// The check that a bore is at least `least_m` wide \[m\].
 fn bore_check(kind: CheckKind, least_m: f64, bore: Rating) -> Check {
     check(kind, Ok(least_m * 1e3), bore.map(|m| m * 1e3), least_m, bore)
 }
@@ -81,7 +81,8 @@ mod tests {
         MotionRequirement::default().joint_motion(1.35, None)
     }
 
-    /// The ample drive with sizes, in a joint that asks for them: the link is 150 mm wide with a hollow of 140 mm.
+    /// Messages of the failed checks of a drive with ample ratings, after one change. The link is 150 mm wide and has
+    /// a hollow of 140 mm.
     fn misfits(change: fn(&mut Gear, &mut Motor, &mut FitRequirement)) -> Vec<String> {
         let mut fit = FitRequirement {
             gear_to_link_max: Some(1.2),

@@ -1,30 +1,34 @@
-//! Heat of a motor: the root mean square of its torque over the joint's cycle, against what it gives continuously.
+//! Heating of a motor: the root mean square of its torque over the joint's cycle must not exceed its continuous
+//! torque.
 //!
-//! With T the static and T_lin the linear torque at the joint, the torque X at the output and that of the motor are
+//! With T the static and T_lin the linear torque at the joint, the torque X at the output and the torque of the motor
+//! are
 //!
 //! | phase | X | motor |
 //! |---|---|---|
 //! | speeding up | T + T_lin | X / (N η) + J_in N α |
 //! | at speed | T | X / (N η) |
-//! | slowing down | T - T_lin | X / (N η) - J_in N α, or X η / N - J_in N α if X is negative: the load then drives |
+//! | slowing down | T - T_lin | X / (N η) - J_in N α; if X < 0 (the load drives the motor), X η / N - J_in N α |
 //! | at rest | T | X / (N η); 0 if a brake holds the joint |
 //!
-//! Losses of the gear add to what the motor gives where it drives the load, and help it where it is driven. The cycle lifts
-//! the load. Lowering it heats the motor less as long as the cycle slows down no longer than it speeds up, which
-//! [`MotionRequirement::validate`](super::MotionRequirement::validate) demands. With s = T + T_lin, x = |T - T_lin| and
-//! q = J_in N α, the squares of both ramps of a lift exceed those of a lowering by
+//! Losses of the gear add to the torque of the motor where the motor drives the load, and reduce it where the load
+//! drives the motor. The cycle is taken as a lift of the load. Lowering heats the motor less, provided that the cycle
+//! slows down no longer than it speeds up; [`MotionRequirement::validate`](super::MotionRequirement::validate)
+//! demands this. With s = T + T_lin, x = |T - T_lin| and q = J_in N α, the sum of the squares of both ramps of a lift
+//! exceeds that of a lowering by
 //!
 //! (s² ∓ x²)(1/η² - η²) / N² + 2 q (s - x)(1/η - η) / N ≥ 0,
 //!
-//! with - where T_lin is larger than T.
+//! The sign is - where T_lin is larger than T, else +.
 //!
-//! *Every number counts one way.* Let the cycle slow down no longer than it speeds up. The mean square then grows with T,
-//! with T_lin, and with each number of a [`MotorHeat`]: the phase of speeding up has the largest torque and rises at least
-//! as fast as that of slowing down falls. So the demand of the least T and T_lin of a box of designs, on the least of each
-//! number of a box of drives, is a lower bound for every member, and a drive that has no number larger than another holds
-//! whatever the other holds. `tests` below hold this against random members, and against a motion simulated step by step.
+//! *Monotonicity.* If the cycle slows down no longer than it speeds up, the mean square grows with T, with T_lin, and
+//! with each number of a [`MotorHeat`]: the phase of speeding up has the largest torque and rises at least as fast as
+//! that of slowing down falls. Two things follow. The least T and T_lin of a box of designs, put on the least numbers
+//! of a box of drives, give a lower bound for every member. And a drive that has no number larger than another drive
+//! passes wherever the other passes. The `tests` check this against random members, and against a motion simulated
+//! step by step.
 //!
-//! *Continuous torque.* It is that at the motor's speed while the joint cruises; [`motor_curve`] has it.
+//! *Continuous torque.* It is taken at the motor's speed while the joint cruises, see [`motor_curve`].
 //!
 //! Source of the rule (root mean square within the continuous torque): the selection guides of motor vendors, such as
 //! Oriental Motor, "Motor Sizing Basics Part 3: Acceleration Torque (and RMS Torque)".
@@ -33,25 +37,29 @@ use super::demand::{JointDemand, JointMotion};
 use super::drive::Drive;
 use super::motor_curve;
 
-/// What a motor behind its gear uses of its continuous torque T_c. A drive that holds more has smaller numbers.
+/// Numbers of a drive from which the ratio of the motor's torque to its continuous torque T_c follows for any demand.
+/// The smaller the numbers, the larger the demand that the drive meets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotorHeat {
-    /// Per torque at the joint that the motor drives: 1 / (N η T_c) \[1/(N m)\].
+    /// Where the motor drives the load: ratio of motor torque to T_c for each newton metre at the joint, 1 / (N η T_c)
+    /// \[1/(N m)\].
     pub driving_per_nm: f64,
-    /// Per torque at the joint that drives the motor: η / (N T_c) \[1/(N m)\].
+    /// Where the load drives the motor: ratio of motor torque to T_c for each newton metre at the joint, η / (N T_c)
+    /// \[1/(N m)\].
     pub driven_per_nm: f64,
-    /// For its own inertia while the joint accelerates: J_in N α / T_c.
+    /// Ratio to T_c of the torque that accelerates rotor and gear input while the joint accelerates: J_in N α / T_c.
     pub own_share: f64,
-    /// Mean square over the duty that the study states for the joint.
+    /// Mean square of the ratio of motor torque to T_c over the duty that the study states for the joint; 0 without
+    /// such a duty.
     pub stated_share_squared: f64,
 }
 
 impl MotorHeat {
-    /// No torque heats the motor: the check is not made.
+    /// All numbers are zero, for a study that does not check heating of motors.
     pub const NONE: Self =
         Self { driving_per_nm: 0.0, driven_per_nm: 0.0, own_share: 0.0, stated_share_squared: 0.0 };
 
-    /// The numbers of a drive under a motion.
+    /// The numbers of `drive` in a joint with the motion `motion`, or the name of the rating that is blank.
     pub(super) fn of(drive: &Drive, motion: &JointMotion) -> Result<Self, super::MissingRating> {
         if !motion.checks_motor_heat {
             return Ok(Self::NONE);
@@ -71,8 +79,8 @@ impl MotorHeat {
         Ok(Self { stated_share_squared: stated, ..heat })
     }
 
-    /// Mean square of the motor's torque over the cycle, as a share of the square of its continuous torque. The motor does
-    /// not overheat up to 1.
+    /// Mean square of the motor's torque over the cycle under `demand`, divided by the square of its continuous torque.
+    /// The motor passes if it is at most 1.
     #[inline]
     pub fn share_squared(&self, demand: &JointDemand) -> f64 {
         let (statically, linear, weights) =
@@ -88,10 +96,10 @@ impl MotorHeat {
             + weights.difference * (down * down)
     }
 
-    /// The largest factor on the torques of a demand at which the motor does not overheat; never less than the true one.
-    /// The mean square at the factor k is A k² + 2 B k + C.
+    /// The largest factor on the torques of `demand` with which the motor passes. The result may be too large by
+    /// rounding, but never too small. With the factor k, the mean square of the torque ratio is A k² + 2 B k + C.
     pub(crate) fn multiple_of(&self, demand: &JointDemand) -> f64 {
-        /// Rounding of the root is on the safe side by this much.
+        /// Relative allowance for rounding of the root.
         const ALLOWANCE: f64 = 1e-12;
         let (statically, linear, weights) =
             (demand.static_torque_nm, demand.linear_torque_nm, &demand.heat_weights);
@@ -112,12 +120,14 @@ impl MotorHeat {
         }
     }
 
-    /// The smaller of each number: of two drives, what the better one could have.
+    /// The smaller of the numbers of this drive and of `other`, one by one. If one of the two drives passes under a
+    /// demand, a drive with these numbers passes too.
     pub(crate) fn least(&self, other: &Self) -> Self {
         self.each(other, f64::min)
     }
 
-    /// The larger of each number.
+    /// The larger of the numbers of this drive and of `other`, one by one. A drive with these numbers passes only where
+    /// both drives pass.
     pub(crate) fn greatest(&self, other: &Self) -> Self {
         self.each(other, f64::max)
     }
@@ -131,7 +141,8 @@ impl MotorHeat {
         }
     }
 
-    /// Whether no number is larger than that of another drive.
+    /// Whether no number of this drive is larger than the same number of `other`. This drive then passes wherever
+    /// `other` does.
     #[inline]
     pub(crate) fn covers(&self, other: &Self) -> bool {
         (self.driving_per_nm <= other.driving_per_nm)

@@ -1,4 +1,5 @@
-//! Tests of the heat of motors: against a motion that is stepped through in time, and of random members of boxes.
+//! Tests of the heating of motors: comparison with a motion that is stepped through in time, and bounds over random
+//! members of boxes.
 
 use super::super::duty::{DutyCycle, HeatWeights, Phase, PhaseKind};
 use super::super::limits::DriveLimits;
@@ -83,7 +84,7 @@ fn the_mean_square_is_that_of_the_worse_direction_stepped_through_in_time() {
 
 #[test]
 fn a_vertical_axis_heats_its_motor_by_its_ramps_alone() {
-    // 4 kg m² behind 1:100 with η = 0.78; 5 rad/s²
+    // inertia outboard 4 kg m², ratio 100, η = 0.78, acceleration 5 rad/s²
     let (gear, motor) = parts();
     let drive = drive(&gear, &motor);
     let demand = motion().demand(0.0, 4.0);
@@ -96,7 +97,7 @@ fn a_vertical_axis_heats_its_motor_by_its_ramps_alone() {
 
 #[test]
 fn the_worked_example_of_a_vertical_axis() {
-    // CSG-20-100 with MF0060008 under 82.94 N m of linear torque at the base of a six-axis arm: 5 / 1.35 rad/s²
+    // CSG-20-100 with MF0060008 at the base of a six-axis arm: linear torque 82.94 N m, acceleration 5 / 1.35 rad/s²
     let motion = MotionRequirement::default().joint_motion(1.35, None);
     let mut gear = gear("CSG-20-100", [52.0, 107.0, 64.0, 191.0], [6500.0, 3500.0], 1.93e-5, [0.28, 0.98]);
     gear.efficiency = Some(0.78);
@@ -134,7 +135,7 @@ fn a_stated_duty_heats_the_motor_phase_by_phase() {
     let phases =
         vec![phase(200.0, 0.3, 7.0), phase(100.0, 3.0, 14.0), phase(-50.0, 0.4, 7.0), phase(90.0, 0.3, 0.0)];
     let duty = StatedDuty { phases };
-    // ramps to and from 14 rpm in 0.3 s and 0.4 s; own inertia 0.00155 kg m²
+    // ramps to and from 14 rpm in 0.3 s and 0.4 s; inertia of rotor and gear input 0.00155 kg m²
     let speed = 14.0 * std::f64::consts::PI / 30.0;
     let own = |ramp_s: f64| 0.00155 * 100.0 * speed / ramp_s;
     let motor_nm = [200.0 / 78.0 + own(0.3), 100.0 / 78.0, -50.0 * 0.78 / 100.0 - own(0.4), 90.0 / 78.0];
@@ -172,7 +173,7 @@ fn any_heat() -> impl Strategy<Value = MotorHeat> {
     })
 }
 
-/// A cycle that slows down no longer than it speeds up.
+/// Weights of a random cycle that slows down no longer than it speeds up.
 fn any_cycle() -> impl Strategy<Value = HeatWeights> {
     (0.0..0.3f64, 0.0..0.4f64, 0.0..=1.0f64, 0.0..0.3f64).prop_map(|(sum, steady, part, standing)| {
         HeatWeights { sum, steady, difference: part * sum, standing }
@@ -182,7 +183,8 @@ fn any_cycle() -> impl Strategy<Value = HeatWeights> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(4000))]
 
-    /// The bound of the exact search: the least torques of a box of designs on the least numbers of a box of drives.
+    /// The lower bound of the exact search: the least torques of a box of designs, put on the least numbers of a box
+    /// of drives, heat no member more.
     #[test]
     fn the_least_numbers_of_a_box_bound_the_heat_of_every_member(
         drives in prop::collection::vec(any_heat(), 1..5),
@@ -222,7 +224,7 @@ proptest! {
         }
     }
 
-    /// Dominance of drives: one that covers another holds whatever the other holds.
+    /// Dominance of drives: a drive that covers another meets every demand that the other meets.
     #[test]
     fn a_drive_that_covers_another_holds_what_it_holds(
         gears in prop::array::uniform2(any_gear()), motors in prop::array::uniform2(any_motor()),

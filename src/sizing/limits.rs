@@ -1,10 +1,9 @@
-//! Limits: a drive under a fixed motion, reduced to thresholds of torque.
+//! Thresholds of torque of a drive under a fixed motion.
 //!
-//! The study fixes speed, acceleration and duty cycle of a joint, so every check of a drive compares one torque with one
-//! number. [`DriveLimits`] has these numbers. Three checks are not one torque: that of the output bearing (see
-//! [`BearingLimits`]), that of heat, which compares a mean square with 1, and that of the room ([`DriveWidths`]). A search
-//! compares these numbers and nothing else. The printed checks ([`checks`](super::checks)) are decided by the same
-//! thresholds.
+//! The study fixes speed, acceleration and duty cycle of a joint, so most checks of a drive compare one torque with
+//! one number. [`DriveLimits`] has these numbers. Three checks need more than one torque: the output bearing (see
+//! [`BearingLimits`]), motor heat, which compares a mean square with 1, and sizes ([`DriveWidths`]). A search
+//! compares these numbers and nothing else. The printed checks ([`checks`](super::checks)) use the same thresholds.
 
 use super::bearing::BearingLimits;
 use super::check::CheckKind;
@@ -16,8 +15,8 @@ use super::motor_curve;
 use crate::catalog::gear::{Gear, GearKind};
 use crate::catalog::motor::Motor;
 
-/// Thresholds of a drive under a fixed motion, on the output side. The drive holds a demand exactly if no threshold is
-/// exceeded.
+/// Thresholds of a drive under a fixed motion, on the output side. The drive passes every check of a demand exactly
+/// if no threshold is exceeded.
 ///
 /// ```
 /// use armwright::catalog::Catalogs;
@@ -35,30 +34,31 @@ use crate::catalog::motor::Motor;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DriveLimits {
-    /// Largest static torque (motor, continuously) \[N m\].
+    /// Largest static torque, as given by the motor's continuous torque \[N m\].
     pub static_torque_nm: f64,
-    /// Largest static plus linear torque (gear, repeated; motor, for the ramp) \[N m\].
+    /// Largest static plus linear torque, as given by the gear's limit for repeated peaks and the motor's peak torque
+    /// \[N m\].
     pub peak_torque_nm: f64,
-    /// Largest torque in an emergency stop (gear, momentary) \[N m\].
+    /// Largest torque in an emergency stop, as given by the gear \[N m\].
     pub stop_torque_nm: f64,
-    /// Cube of the largest cubic mean torque (gear, average limit and life) \[(N m)³\].
+    /// Cube of the largest cubic mean torque, as given by the gear's average limit and its life \[(N m)³\].
     pub mean_torque_cubed_nm3: f64,
-    /// What the output bearing holds.
+    /// Limits of the output bearing.
     pub bearing: BearingLimits,
-    /// How wide the parts are.
+    /// Outer diameters of the parts.
     pub widths: DriveWidths,
-    /// What the motor uses of its continuous torque.
+    /// Ratios of the motor's torque to its continuous torque.
     pub heat: MotorHeat,
 }
 
-/// Why a drive is excluded at every torque.
+/// Why a drive is excluded whatever the torque.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Obstacle {
     /// The joint turns faster than the gear or the motor may.
     TooFast,
-    /// The gear does not bear so many emergency stops.
+    /// The gear does not withstand as many emergency stops as the study asks for.
     TooManyStops,
-    /// The drive is too long for the joint, or has no passage for its cables.
+    /// The drive is too long for its joint, or its bore is too narrow for the cables.
     DoesNotFit,
     /// A rating that a check needs is blank.
     Lacks(MissingRating),
@@ -71,11 +71,11 @@ impl From<MissingRating> for Obstacle {
 }
 
 impl DriveLimits {
-    /// The thresholds of a drive.
+    /// The thresholds of a drive under a motion.
     ///
     /// # Errors
-    /// [`Obstacle`] if the drive is excluded at every torque. A blank rating of the bearing does not exclude the drive; it is
-    /// then not checked.
+    /// [`Obstacle`] if the drive is excluded whatever the torque. A blank rating of the bearing does not exclude the
+    /// drive; the bearing is then not checked.
     pub fn of(drive: &Drive, motion: &JointMotion) -> Result<Self, Obstacle> {
         drive.mass_kg()?;
         if !speeds_hold(drive, motion)? {
@@ -103,10 +103,10 @@ impl DriveLimits {
         })
     }
 
-    /// Whether the drive holds a demand.
+    /// Whether the drive passes every check of `demand`: no torque, load or size exceeds its threshold.
     #[inline]
     pub fn hold(&self, demand: &JointDemand) -> bool {
-        // `&` and not `&&`: comparisons without a branch
+        // `&` instead of `&&`, so that the compiler emits no branches
         (demand.static_torque_nm <= self.static_torque_nm)
             & (demand.peak_torque_nm() <= self.peak_torque_nm)
             & (demand.stop_torque_nm <= self.stop_torque_nm)
@@ -116,7 +116,8 @@ impl DriveLimits {
             & (self.heat.share_squared(demand) <= 1.0)
     }
 
-    /// The larger of two drives' limits, one by one, of heat and widths the smaller numbers: it holds whatever one of them holds.
+    /// For each limit the weaker of the values of this drive and of `other`: the larger one, but for heat and widths
+    /// the smaller one. If one of the two drives meets a demand, the demand is within these limits.
     pub(crate) fn max(&self, other: &Self) -> Self {
         Self {
             static_torque_nm: self.static_torque_nm.max(other.static_torque_nm),
@@ -129,7 +130,8 @@ impl DriveLimits {
         }
     }
 
-    /// The smaller of two drives' limits, one by one: both hold whatever it holds.
+    /// For each limit the stricter of the values of this drive and of `other`: the smaller one, but for heat and widths
+    /// the larger one. Both drives meet every demand that is within these limits.
     pub(crate) fn min(&self, other: &Self) -> Self {
         Self {
             static_torque_nm: self.static_torque_nm.min(other.static_torque_nm),
@@ -142,8 +144,8 @@ impl DriveLimits {
         }
     }
 
-    /// The largest factor on a demand that the drive still holds, or slightly more; infinite if the demand is zero. The room is
-    /// not asked about: no factor changes it.
+    /// The largest factor on the loads of `demand` with which the drive still passes, or slightly more by rounding.
+    /// Infinite if the demand is zero. Sizes are not checked, because no factor on the loads changes them.
     pub(crate) fn multiple_of(&self, demand: &JointDemand) -> f64 {
         let times = |limit: f64, asked: f64| if asked > 0.0 { limit / asked } else { f64::INFINITY };
         times(self.static_torque_nm, demand.static_torque_nm)
@@ -154,7 +156,8 @@ impl DriveLimits {
             .min(self.heat.multiple_of(demand))
     }
 
-    /// Whether every limit is at least as large as the limit of `other`. Then this drive holds whatever the other holds.
+    /// Whether no limit of this drive is stricter than the same limit of `other`. This drive then meets every demand
+    /// that `other` meets.
     #[inline]
     pub fn cover(&self, other: &Self) -> bool {
         (self.static_torque_nm >= other.static_torque_nm)
@@ -174,7 +177,8 @@ fn speeds_hold(drive: &Drive, motion: &JointMotion) -> Result<bool, MissingRatin
     Ok(gear_max && gear_mean && drive.motor_speed_rpm(motion) <= motor_max_speed_rpm(drive.motor)?)
 }
 
-/// A limit of a gear; none, which is infinite, where its kind has no such limit and its row states none.
+/// The limit `rating` of a gear. It is infinite if it is blank and gears of this kind have no such limit; otherwise a
+/// blank is an error with the name of the rating.
 fn limit(gear: &Gear, rating: Option<f64>, name: &'static str) -> Rating {
     if_any(gear, rating, f64::INFINITY, name)
 }
@@ -187,25 +191,26 @@ pub(super) fn gear_average_speed_rpm(gear: &Gear) -> Rating {
     limit(gear, gear.average_input_speed_limit_rpm, "average_input_speed_limit_rpm")
 }
 
-/// Speed that a motor may reach at the end of a ramp: its largest speed, or the rated one if only that is known; never more
-/// than the last of its torque curve.
+/// Largest speed of a motor at the end of a ramp \[rpm\]: its stated largest speed, or its rated speed if only that
+/// is known, but never beyond the last point of its torque curve.
 pub(super) fn motor_max_speed_rpm(motor: &Motor) -> Rating {
     let of_curve = motor_curve::largest_speed_rpm(motor);
     let stated = motor.max_speed_rpm.or(motor.rated_speed_rpm);
     known(stated.into_iter().chain(of_curve).reduce(f64::min), "motor max_speed_rpm")
 }
 
-/// Static torque that the motor must hold without end: without limit if a brake holds the joint at rest.
+/// Largest static torque at the joint that the motor may hold permanently \[N m\]. Infinite if a brake holds the
+/// joint at rest.
 pub(super) fn motor_hold_nm(drive: &Drive, motion: &JointMotion) -> Rating {
     if motion.has_brake { Ok(f64::INFINITY) } else { motor_continuous_nm(drive) }
 }
 
-/// Static torque at which the motor gives the torque that it holds without end: T_rated N η.
+/// Static torque at the joint at which the motor gives its continuous torque at rest: T_rated N η \[N m\].
 pub(super) fn motor_continuous_nm(drive: &Drive) -> Rating {
     Ok(motor_curve::standing_torque_nm(drive.motor)? * drive.gain()?)
 }
 
-/// Output torque at which the accelerating motor gives its peak torque: (T_peak - J_in N α) N η.
+/// Output torque at which the accelerating motor gives its peak torque: (T_peak - J_in N α) N η \[N m\].
 pub(super) fn motor_peak_nm(drive: &Drive, motion: &JointMotion) -> Rating {
     let peak = motor_curve::peak_torque_nm(drive.motor, drive.motor_speed_rpm(motion))?;
     Ok((peak - drive.rotary_torque_motor_nm(motion)?) * drive.gain()?)
@@ -235,16 +240,18 @@ pub(super) fn gear_ratcheting_nm(gear: &Gear) -> Rating {
     known(gear.ratcheting_torque_nm, "ratcheting_torque_nm")
 }
 
-/// Largest torque in an emergency stop: the momentary limit, and what of buckling and ratcheting torque is known.
+/// Largest torque in an emergency stop \[N m\]: the smallest of the limit for momentary peaks, buckling torque and
+/// ratcheting torque. The last two count only where they are known.
 fn gear_stop_nm(gear: &Gear) -> Rating {
     let unknown = f64::INFINITY;
     let jumps_nm = gear_ratcheting_nm(gear).unwrap_or(unknown);
     Ok(gear_momentary_nm(gear)?.min(gear_buckling_nm(gear).unwrap_or(unknown)).min(jumps_nm))
 }
 
-/// Number of momentary peaks that a gear may bear: 1e4 / (2 n t / 60), n being the input speed in rpm and t the duration of
-/// a peak in seconds; never more than 1e4. The wave generator passes with two waves in each turn. `None`: the rule is for
-/// strain-wave gears only.
+/// Number of emergency stops (momentary peaks) that a gear may see in its life: 1e4 / (2 n t / 60), with n the input
+/// speed in rpm and t the duration of a stop in seconds; never more than 1e4. The factor 2 is there because the wave
+/// generator deforms the flexspline twice in each turn. `None` if the gear is no strain-wave gear, for which alone
+/// the rule is made.
 ///
 /// Source: Harmonic Drive AG, manual 1019658, glossary (momentary peaks only in an emergency, their number by the selection
 /// procedure); the formula as in the public program AimanHaidar/harmonic-drive-selector.
@@ -257,7 +264,7 @@ pub(super) fn stops_allowed(gear: &Gear, motion: &JointMotion) -> Option<f64> {
     Some(WAVES / waves_in_a_stop.max(1.0))
 }
 
-/// Whether a gear has no such limit, so that there is nothing to check.
+/// Whether a gear has no limit for the check `kind`, so that the check is left out.
 pub(super) fn is_unlimited(gear: &Gear, kind: CheckKind) -> bool {
     let limit = match kind {
         CheckKind::GearPeak => gear_peak_nm(gear),
@@ -266,7 +273,7 @@ pub(super) fn is_unlimited(gear: &Gear, kind: CheckKind) -> bool {
         CheckKind::GearSpeed => gear_max_speed_rpm(gear),
         CheckKind::GearMeanSpeed => gear_average_speed_rpm(gear),
         CheckKind::GearLife => return !has_life(gear),
-        // what buckles and ratchets is a flexspline
+        // only a flexspline can buckle or ratchet
         CheckKind::GearBuckling => return !has_flexspline(gear) && gear.buckling_torque_nm.is_none(),
         CheckKind::GearRatcheting => return !has_flexspline(gear) && gear.ratcheting_torque_nm.is_none(),
         _ => return false,
@@ -278,12 +285,13 @@ fn has_flexspline(gear: &Gear) -> bool {
     gear.kind == GearKind::StrainWave
 }
 
-/// Whether the life of a gear is checked: its kind wears out, or its row states a life.
+/// Whether the life of a gear is checked: gears of its kind wear out, or its catalog row states a life.
 pub(super) fn has_life(gear: &Gear) -> bool {
     gear.kind.wears_out() || gear.life.rated_h.is_some()
 }
 
-/// Life at a mean torque of 1 N m \[h (N m)^p\]: L_rated T_rated^p (n_rated / n_mean), p being the exponent of the gear's law.
+/// Life at a mean torque of 1 N m \[h (N m)^p\]: L_rated T_rated^p (n_rated / n_mean). p is the exponent of the
+/// gear's life formula.
 fn life_product(gear: &Gear, motion: &JointMotion) -> Rating {
     let rated_h = known(gear.life.rated_h, "rated_life_h")?;
     let rated_rpm = known(gear.life.rated_speed_rpm, "rated_life_speed_rpm")?;
@@ -295,12 +303,12 @@ fn life_product(gear: &Gear, motion: &JointMotion) -> Rating {
     Ok(rated_h * rated_power * (rated_rpm / mean_input_speed_rpm(gear, motion)))
 }
 
-/// Life under a mean torque, given by its cube \[h\].
+/// Life of a gear \[h\] under a mean torque, whose cube is `mean_cubed_nm3` \[(N m)³\].
 pub(super) fn gear_life_h(gear: &Gear, motion: &JointMotion, mean_cubed_nm3: f64) -> Rating {
     Ok(life_product(gear, motion)? / power(mean_cubed_nm3, gear.life.exponent / 3.0))
 }
 
-/// Cube of the mean torque at which the life of the gear is just the required one.
+/// Cube of the mean torque at which the gear just reaches the required life \[(N m)³\].
 pub(super) fn gear_life_cubed_nm3(gear: &Gear, motion: &JointMotion) -> Rating {
     match has_life(gear) {
         true => Ok(power(life_product(gear, motion)? / motion.life_h, 3.0 / gear.life.exponent)),
@@ -308,7 +316,7 @@ pub(super) fn gear_life_cubed_nm3(gear: &Gear, motion: &JointMotion) -> Rating {
     }
 }
 
-/// A power; the first is the number itself, to the last digit.
+/// The number `x` raised to the power `exponent`. The first power returns the number itself, without any rounding.
 fn power(x: f64, exponent: f64) -> f64 {
     if exponent == 1.0 { x } else { libm::pow(x, exponent) }
 }

@@ -1,4 +1,4 @@
-//! The parts of a table that cannot be checked, with the figures they lack.
+//! The parts of a drive table that cannot be checked, with the ratings that they lack.
 
 use super::select::DriveTable;
 use crate::catalog::needs::{Lack, words};
@@ -7,8 +7,8 @@ use crate::catalog::needs::{Lack, words};
 const NAMED: usize = 4;
 
 impl DriveTable<'_> {
-    /// What the parts lack that cannot be checked, in words, the user's own parts first; `None` if every part has all its
-    /// figures.
+    /// In words, the parts that cannot be checked and the ratings that they lack. Parts of the user's own catalogs
+    /// come first. `None` if every part has all its ratings.
     ///
     /// `PLE-60-40: no rated_life_h (life), no efficiency_rated_2000rpm (motor torque)`
     pub fn missing_figures(&self) -> Option<String> {
@@ -16,7 +16,7 @@ impl DriveTable<'_> {
         let motors = self.motors().iter().map(|m| (&m.id, &m.provenance, m.lacks()));
         let mut lacking: Vec<(&String, bool, Vec<Lack>)> = Vec::new();
         for (id, from, lacks) in gears.chain(motors).filter(|(.., lacks)| !lacks.is_empty()) {
-            // an actuator is a gear and a motor of one name
+            // an actuator is listed both as a gear and as a motor, under the same name
             match lacking.iter_mut().find(|(other, ..)| *other == id) {
                 Some((.., all)) => all.extend(lacks),
                 None => lacking.push((id, from.is_built_in(), lacks)),
@@ -32,7 +32,8 @@ impl DriveTable<'_> {
         (!named.is_empty()).then(|| format!("{}{more}", named.join("; ")))
     }
 
-    /// What the gears and the user's own motors lack: what is said beside a drive that comes nearest.
+    /// In words, the parts that cannot be checked and the ratings that they lack, for messages that also name the
+    /// nearest drive. `None` if only built-in motors lack ratings.
     pub fn also_missing_figures(&self) -> Option<String> {
         let gears = self.gears().iter().any(|gear| !gear.lacks(self.gear_mass()).is_empty());
         let own = self.motors().iter().any(|m| !m.provenance.is_built_in() && !m.lacks().is_empty());

@@ -1,15 +1,16 @@
 //! Sizing: which drive each joint needs (Eqs 7-12).
 //!
-//! This room knows nothing of arms. From the demand on a joint it finds the pairs of gear and motor that hold. The walk
-//! over an arm from tip to base is in [`space`](crate::space), which uses this room.
+//! This module knows nothing of arms. For the demand on a joint it finds the pairs of gear and motor that pass every
+//! check. The walk over an arm from tip to base is in [`space`](crate::space), which uses this module.
 //!
 //! - [`MotionRequirement`] is the motion that a study asks of the tip, [`JointMotion`] the motion that follows for a joint.
 //! - [`JointDemand`] has the torques on the joint, which follow from static torque and outboard inertia.
 //! - [`Drive`] is a gear and a motor, [`Check`] compares one limit of one part with one demand.
-//! - [`MotorHeat`] is what a motor uses of its continuous torque over the cycle, [`StatedDuty`] a cycle in numbers.
+//! - [`MotorHeat`] compares the motor's torque over the cycle with its continuous torque; [`StatedDuty`] is a duty
+//!   cycle given in numbers.
 //! - [`DriveLimits`] has all checks of a drive under a fixed motion, reduced to thresholds.
-//! - [`DriveTable`] has every drive of a joint that the study allows, sorted by mass. It finds first fits and all fits, and
-//!   says why a part was rejected.
+//! - [`DriveTable`] has every drive of a joint that the study allows, sorted by mass. It finds the lightest drive or
+//!   all drives that meet a demand, and says why a part was rejected.
 //! - [`JointSizingRow`] has the numbers of one joint for the sizing table.
 //!
 //! | symbol | meaning | unit |
@@ -24,10 +25,10 @@
 //! is N times as large. Every name states its side: `input` and `motor` for the fast side, `output` or nothing for the
 //! joint.
 //!
-//! *Validity.* Efficiency is a single number of the catalog, for rated torque and 2000 rpm at the input. It is also used
-//! for holding, where friction in truth helps the motor. Where the catalog has no torque-speed curve of a motor, its peak
-//! torque is taken as available up to the largest speed, and the continuous torque as falling with constant power beyond the
-//! rated speed.
+//! *Validity.* The efficiency is a single number of the catalog, for rated torque and 2000 rpm at the input. It is
+//! also used for holding at rest, where friction in reality helps the motor. Where the catalog has no torque-speed
+//! curve of a motor, its peak torque is taken as available up to the largest speed, and its continuous torque as
+//! falling with constant power beyond the rated speed.
 
 pub(crate) mod bearing;
 pub(crate) mod bearing_advice;
@@ -74,10 +75,10 @@ pub use select::{DriveFilter, DriveTable};
 pub use sheet::{JointSizingRow, render_rows};
 pub use stated::{StatedDemand, StatedDuty, StatedHeat, StatedPhase};
 
-/// One revolution a minute in rad/s.
+/// 1 rpm in rad/s.
 const RAD_S_PER_RPM: f64 = std::f64::consts::PI / 30.0;
 
-/// Speed in rpm, the unit of the vendors.
+/// Converts a speed from rad/s to rpm, the unit of the vendors.
 pub fn rpm_from_rad_s(speed_rad_s: f64) -> f64 {
     speed_rad_s / RAD_S_PER_RPM
 }

@@ -1,15 +1,17 @@
-//! What a motor gives at a speed: by its torque curve where the catalog has one, else by its single figures.
+//! Torque that a motor can give at a speed: from its torque curve if the catalog has one, else from its rated and
+//! peak torque.
 //!
-//! *Continuous torque.* Linear between the points of the curve, level before the first. Without a curve a motor gives its
-//! rated torque up to the rated speed; beyond it constant power is assumed, T_rated n_rated / n. Where the catalog has no
-//! rated speed, the rated torque is taken at every speed.
+//! *Continuous torque.* It is interpolated linearly between the points of the curve and constant below the first
+//! point. Without a curve the motor gives its rated torque up to the rated speed. Beyond it constant power is
+//! assumed, T_rated n_rated / n. If the rated speed is blank, the rated torque is taken at every speed.
 //!
-//! *Peak torque.* A ramp needs it at every speed up to the cruising one, so the least of the curve up to there counts.
+//! *Peak torque.* A ramp passes through every speed up to the cruising speed, so the smallest peak torque of the
+//! curve up to there counts.
 
 use super::drive::{Rating, known};
 use crate::catalog::motor::{Motor, MotorCurvePoint};
 
-/// Torque that the motor gives without end at a speed \[N m\].
+/// Torque that the motor gives permanently at a speed \[N m\].
 pub(super) fn continuous_torque_nm(motor: &Motor, speed_rpm: f64) -> Rating {
     if let Some(torque_nm) = at(motor, |point| point.continuous_torque_nm, speed_rpm) {
         return Ok(torque_nm);
@@ -21,12 +23,12 @@ pub(super) fn continuous_torque_nm(motor: &Motor, speed_rpm: f64) -> Rating {
     })
 }
 
-/// Torque that the motor holds without end at rest \[N m\].
+/// Torque that the motor holds permanently at rest \[N m\].
 pub(super) fn standing_torque_nm(motor: &Motor) -> Rating {
     continuous_torque_nm(motor, 0.0)
 }
 
-/// Torque that the motor gives for a short time at every speed up to one \[N m\].
+/// Torque that the motor gives for a short time at every speed from rest up to `speed_rpm` \[N m\].
 pub(super) fn peak_torque_nm(motor: &Motor, speed_rpm: f64) -> Rating {
     let peak = |point: &MotorCurvePoint| point.peak_torque_nm;
     match at(motor, peak, speed_rpm) {
@@ -38,12 +40,13 @@ pub(super) fn peak_torque_nm(motor: &Motor, speed_rpm: f64) -> Rating {
     }
 }
 
-/// The last speed of the curve \[rpm\].
+/// Speed of the last point of the torque curve \[rpm\]; `None` without a curve.
 pub(super) fn largest_speed_rpm(motor: &Motor) -> Option<f64> {
     motor.curve.last().map(|point| point.speed_rpm)
 }
 
-/// A torque of the curve at a speed, linear between the points that state it, level beyond them; `None` if none does.
+/// The torque that `torque_nm` takes from the points of the motor's curve, at a speed \[N m\]: linear between the
+/// points that state it, constant outside of them. `None` if no point states it.
 fn at(motor: &Motor, torque_nm: impl Fn(&MotorCurvePoint) -> Option<f64>, speed_rpm: f64) -> Option<f64> {
     let points: Vec<[f64; 2]> =
         motor.curve.iter().filter_map(|point| Some([point.speed_rpm, torque_nm(point)?])).collect();

@@ -9,28 +9,30 @@ use super::fit::FitRequirement;
 pub struct MotionRequirement {
     /// Speed v of the tip \[m/s\].
     pub tip_speed_m_s: f64,
-    /// Time t_a in which this speed is reached \[s\].
+    /// Time t_a in which the tip reaches its speed from rest \[s\].
     pub ramp_time_s: f64,
-    /// Deceleration of the tip in an emergency stop \[m/s²\]; `None`: twice v / t_a.
+    /// Deceleration of the tip in an emergency stop \[m/s²\]; `None` means twice the normal acceleration v / t_a.
     pub emergency_deceleration_m_s2: Option<f64>,
-    /// Smallest lever by which tip speed becomes joint speed \[m\]. With a lever of 0.05 m a roll joint would need 191 rpm.
+    /// Smallest distance from axis to tip that is used to convert tip speed to joint speed \[m\]. Without it a roll
+    /// joint would have to turn infinitely fast; with 0.05 m it would need 191 rpm.
     pub min_lever_m: f64,
-    /// The cycle over which mean torque and mean speed are taken.
+    /// The duty cycle over which mean torque, mean speed and motor heat are taken.
     pub duty_cycle: DutyCycle,
     /// Required life of the gear, L10 \[h\].
     pub life_h: f64,
-    /// Reading of Eq 8.
+    /// Which interpretation of Eq 8 is used.
     pub linear_reading: LinearReading,
     /// Gravity \[m/s²\], used by the paper's reading of Eq 8.
     pub gravity_m_s2: f64,
-    /// Whether the heat of the motors is checked: the root mean square of their torque over the cycle.
+    /// Whether heating of the motors is checked: the root mean square of their torque over the cycle.
     pub checks_motor_heat: bool,
-    /// Number of emergency stops that every gear must bear in its life; `None`: not asked.
+    /// Number of emergency stops that every gear must withstand in its life; `None` means that this is not checked.
     pub emergency_stops: Option<f64>,
 }
 
 impl Default for MotionRequirement {
-    /// The paper's 1 m/s in 0.20 s, with a smallest lever of 0.3 m (at most 191 degrees per second) and 10 000 h.
+    /// The paper's 1 m/s reached in 0.20 s, a smallest lever of 0.3 m (joint speeds up to 191 degrees per second) and
+    /// 10 000 h of life.
     fn default() -> Self {
         Self {
             tip_speed_m_s: 1.0,
@@ -53,7 +55,7 @@ impl MotionRequirement {
         self.tip_speed_m_s / self.ramp_time_s
     }
 
-    /// Ratio of emergency deceleration to acceleration.
+    /// Ratio of the deceleration of the tip in an emergency stop to its normal acceleration.
     pub fn stop_factor(&self) -> f64 {
         match self.emergency_deceleration_m_s2 {
             Some(deceleration) => deceleration / self.tip_acceleration_m_s2(),
@@ -63,8 +65,8 @@ impl MotionRequirement {
 
     /// The motion of a joint whose axis is at most `reach_m` \[m\] away from the tip.
     ///
-    /// The speed ω is `max_speed_rad_s` \[rad/s\] if the study gives one, else v / r with r = max(reach, smallest lever). The
-    /// acceleration is α = ω / t_a, which is a / r (Eq 10, output side).
+    /// The speed ω is `max_speed_rad_s` \[rad/s\] if the study states one, else v / r with r the larger of `reach_m`
+    /// and the smallest lever. The acceleration is α = ω / t_a, which equals a / r (Eq 10, output side).
     ///
     /// ```
     /// use armwright::sizing::MotionRequirement;
@@ -101,7 +103,7 @@ impl MotionRequirement {
     /// Checks that every number is usable.
     ///
     /// # Errors
-    /// [`RequirementError`] for the first number that is not.
+    /// [`RequirementError`] for the first number that cannot be used.
     pub fn validate(&self) -> Result<(), RequirementError> {
         positive("tip_speed_m_s", self.tip_speed_m_s)?;
         positive("ramp_time_s", self.ramp_time_s)?;
@@ -123,7 +125,7 @@ impl MotionRequirement {
     }
 }
 
-/// Relative difference of two times that count as equal.
+/// Relative difference up to which the two ramp times count as equal.
 const SAME_TIME: f64 = 1e-9;
 
 impl Phase {
@@ -137,7 +139,7 @@ impl Phase {
     }
 }
 
-/// Why a requirement cannot be used.
+/// Why a motion requirement cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RequirementError {
     /// A number that must be greater than zero is not.
@@ -148,7 +150,7 @@ pub enum RequirementError {
         /// Value of the number.
         value: f64,
     },
-    /// A number that must not be negative is.
+    /// A number that must not be negative is negative.
     #[error("{field} = {value} must be a finite number, not negative")]
     Negative {
         /// Name of the number.
@@ -156,15 +158,16 @@ pub enum RequirementError {
         /// Value of the number.
         value: f64,
     },
-    /// A cycle speeds up longer than it slows down, or the other way round, at one acceleration.
+    /// The ramps up and the ramps down of a cycle take different total times. The joint has one acceleration, so it
+    /// would not come back to rest.
     #[error(
         "duty_cycle speeds up for {up_s} s and slows down for {down_s} s; both happen at one acceleration, so they take \
          equally long"
     )]
     UnequalRamps {
-        /// Time of speeding up \[s\].
+        /// Total time of speeding up \[s\].
         up_s: f64,
-        /// Time of slowing down \[s\].
+        /// Total time of slowing down \[s\].
         down_s: f64,
     },
 }

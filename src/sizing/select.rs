@@ -1,7 +1,7 @@
-//! Selection of a drive for one joint. A drive table has every legal pair of gear and motor, sorted by mass.
+//! Selection of a drive for one joint. A drive table has every admissible pair of gear and motor, sorted by mass.
 //!
-//! A pair is *legal* if the study allows both parts, every rating that a check needs is known, and the speeds hold. Whether
-//! it holds a demand is then a question of torques alone.
+//! A pair is admissible (*legal*) if the study allows both parts, every rating that a check needs is known, and no
+//! speed limit is exceeded. Whether it then meets a demand depends on torques, bearing loads and widths only.
 
 use super::demand::{JointDemand, JointMotion};
 use super::drive::Drive;
@@ -13,37 +13,37 @@ use crate::catalog::gear::{Gear, GearKind, GearMass};
 use crate::catalog::motor::{Motor, MotorKind};
 use std::ops::Range;
 
-/// Which parts of the catalogs a joint may use. `None` allows all.
+/// Which parts of the catalogs a joint may use. A list that is `None` allows all parts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DriveFilter {
-    /// Which mass of a gear counts.
+    /// Which mass of a gear counts: component set or housed unit.
     pub gear_mass: GearMass,
     /// Where the output bearing of the joint comes from.
     pub bearing: BearingSource,
-    /// Where the masses beyond gear, motor and bearing come from.
+    /// Where the masses of a joint other than gear, motor and bearing come from: stated, or estimated from the parts.
     pub extras: ExtrasSource,
     /// Stage between motor and gear.
     pub stage: Stage,
     /// Whether a gear must have a torsion curve, because the arm's deflection is computed.
     pub needs_torsion: bool,
-    /// Series of gears, such as `CSG`.
+    /// Allowed series of gears, such as `CSG`.
     pub gear_series: Option<Vec<String>>,
-    /// Reduction ratios.
+    /// Allowed reduction ratios.
     pub ratios: Option<Vec<f64>>,
-    /// Kinds of gears; actuators are asked for by [`Self::actuator_ids`].
+    /// Allowed kinds of gears. For actuators [`Self::actuator_ids`] counts instead.
     pub gear_kinds: Option<Vec<GearKind>>,
-    /// Gears by name.
+    /// Names of the allowed gears.
     pub gear_ids: Option<Vec<String>>,
-    /// Actuators by model.
+    /// Models of the allowed actuators.
     pub actuator_ids: Option<Vec<String>>,
-    /// Kinds of motors; an actuator has its own motor, whatever is asked.
+    /// Allowed kinds of motors. An actuator brings its own motor, which this list does not exclude.
     pub motor_kinds: Option<Vec<MotorKind>>,
-    /// Motors by name.
+    /// Names of the allowed motors.
     pub motor_ids: Option<Vec<String>>,
 }
 
 impl DriveFilter {
-    /// Allows everything in the catalogs.
+    /// A filter that allows all parts of the catalogs. `gear_mass` says which mass of a gear counts.
     pub fn everything(gear_mass: GearMass) -> Self {
         Self {
             gear_mass,
@@ -61,7 +61,7 @@ impl DriveFilter {
         }
     }
 
-    /// Whether a gear may be used.
+    /// Whether the filter allows this gear for the joint.
     pub fn allows_gear(&self, gear: &Gear) -> bool {
         if gear.kind == GearKind::Actuator {
             return allows(&self.actuator_ids, &gear.id);
@@ -72,7 +72,7 @@ impl DriveFilter {
             && allows(&self.gear_ids, &gear.id)
     }
 
-    /// Whether a motor may be used.
+    /// Whether the filter allows this motor for the joint.
     pub fn allows_motor(&self, motor: &Motor) -> bool {
         if motor.kind == MotorKind::OfActuator {
             return allows(&self.actuator_ids, &motor.id);
@@ -85,17 +85,17 @@ fn allows<T: PartialEq>(list: &Option<Vec<T>>, item: &T) -> bool {
     list.as_ref().is_none_or(|list| list.contains(item))
 }
 
-/// A pair of parts, by their places in the lists of the table.
+/// A gear and a motor, as indices into the lists `gears` and `motors` of the table.
 #[derive(Debug, Clone, Copy)]
 struct Pair {
     gear: u32,
     motor: u32,
 }
 
-/// Every legal drive of one joint under its motion, lightest first. Drives of equal mass are sorted by the names of gear
-/// and motor.
+/// Every legal drive of one joint under its motion, lightest first. Drives of equal mass are sorted by the names of
+/// gear and motor.
 ///
-/// A drive that may not turn so fast, or that lacks a figure that a check needs, has no index.
+/// A drive that would turn too fast, or that lacks a rating that a check needs, is not in the table.
 /// [`DriveTable::explain`] says why.
 #[derive(Debug, Clone)]
 pub struct DriveTable<'c> {
@@ -111,20 +111,22 @@ pub struct DriveTable<'c> {
     pairs: Vec<Pair>,
     masses_kg: Vec<f64>,
     limits: Vec<DriveLimits>,
-    /// Indices of the drives that can be a first fit: no lighter drive has all limits as large.
+    /// Indices of the drives that can be the lightest one for some demand, lightest first. A drive is left out if a
+    /// lighter one has no stricter limit.
     ladder: Vec<u32>,
     ladder_limits: Vec<DriveLimits>,
-    /// Entry i has, for each limit, the largest value among the steps 0 to i of the ladder. No step before the first entry
-    /// that holds a demand can hold the demand, so the search for the first fit starts there.
+    /// For each step of the ladder, the largest value of each limit among the drives up to this step. If these limits
+    /// do not meet a demand, no drive up to this step does, so the search for the lightest drive starts behind it.
     ladder_reach: Vec<DriveLimits>,
-    /// Largest limits of each flight of [`FLIGHT`] steps.
+    /// For each group of [`FLIGHT`] successive steps of the ladder, the largest value of each limit.
     ladder_flights: Vec<DriveLimits>,
 }
 
-/// Number of steps of the ladder that are skipped together if their largest limits do not hold.
+/// Number of successive steps of the ladder that are skipped together if even their largest limits do not meet a
+/// demand.
 const FLIGHT: usize = 8;
 
-/// The ladder: the drives that can be a first fit, lightest first.
+/// The ladder: the drives that can be the lightest one for some demand, lightest first.
 #[derive(Clone, Copy)]
 pub(super) struct Ladder<'t> {
     pub indices: &'t [u32],
@@ -134,7 +136,8 @@ pub(super) struct Ladder<'t> {
 }
 
 impl<'t> Ladder<'t> {
-    /// The steps from `start` on, flight by flight, with the largest limits of each flight.
+    /// The steps of the ladder from `start` on, in groups of [`FLIGHT`]: the largest limits of each group, and the
+    /// range of its steps.
     #[inline(always)]
     pub(super) fn flights_from(self, start: usize) -> impl Iterator<Item = (&'t DriveLimits, Range<usize>)> {
         let flights = self.flights.iter().enumerate().skip(start / FLIGHT);
@@ -193,7 +196,8 @@ impl<'c> DriveTable<'c> {
         table
     }
 
-    /// Tabulates the legal pairs.
+    /// Fills the table with the legal pairs of gear and motor (fast enough, and with all ratings that a check needs),
+    /// sorted by mass.
     fn fill(&mut self) {
         let mut legal = Vec::new();
         for (drive, pair) in self.all_pairs().filter(|(drive, _)| self.knows_torsion(drive.gear)) {
@@ -203,28 +207,45 @@ impl<'c> DriveTable<'c> {
                 legal.push((mass_kg, drive, pair, limits));
             }
         }
-        // names settle ties, so that the order of the catalog files does not matter
-        legal.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| parts(&a.1).cmp(&parts(&b.1))));
-        for (mass_kg, _, pair, limits) in legal {
-            self.pairs.push(pair);
-            self.masses_kg.push(mass_kg);
-            self.limits.push(limits);
+        // places are sorted, because the limits are large; names settle ties, so that the order of the catalog files does
+        // not matter
+        let mut places: Vec<usize> = (0..legal.len()).collect();
+        places.sort_by(|&a, &b| {
+            let (a, b) = (&legal[a], &legal[b]);
+            a.0.total_cmp(&b.0).then_with(|| parts(&a.1).cmp(&parts(&b.1)))
+        });
+        for place in places {
+            let (mass_kg, _, pair, limits) = &legal[place];
+            self.pairs.push(*pair);
+            self.masses_kg.push(*mass_kg);
+            self.limits.push(*limits);
         }
     }
 
-    /// Builds the ladder.
+    /// Builds the ladder: the legal drives that can be the lightest one for some demand, lightest first.
     fn raise_ladder(&mut self) {
-        for (index, limits) in self.limits.iter().enumerate() {
+        for index in 0..self.limits.len() {
+            let limits = self.limits[index];
             // whatever a covered drive holds, a lighter one holds too
-            if !self.ladder_limits.iter().any(|lighter| lighter.cover(limits)) {
-                self.ladder.push(index as u32);
-                self.ladder_limits.push(*limits);
-                self.ladder_reach.push(self.ladder_reach.last().map_or(*limits, |reach| reach.max(limits)));
+            if self.is_covered(&limits) {
+                continue;
             }
+            if self.ladder.len().is_multiple_of(FLIGHT) {
+                self.ladder_flights.push(limits);
+            } else if let Some(most) = self.ladder_flights.last_mut() {
+                *most = most.max(&limits);
+            }
+            self.ladder.push(index as u32);
+            self.ladder_limits.push(limits);
+            self.ladder_reach.push(self.ladder_reach.last().map_or(limits, |reach| reach.max(&limits)));
         }
-        let most =
-            |flight: &[DriveLimits]| flight[1..].iter().fold(flight[0], |most, limits| most.max(limits));
-        self.ladder_flights = self.ladder_limits.chunks(FLIGHT).map(most).collect();
+    }
+
+    /// Whether a step of the ladder covers these limits. No step of a flight does if the largest limits of the flight do not.
+    fn is_covered(&self, limits: &DriveLimits) -> bool {
+        let flights = self.ladder_flights.iter().zip(self.ladder_limits.chunks(FLIGHT));
+        let mut near = flights.filter(|(most, _)| most.cover(limits)).flat_map(|(_, flight)| flight);
+        near.any(|lighter| lighter.cover(limits))
     }
 
     fn all_pairs(&self) -> impl Iterator<Item = (Drive<'c>, Pair)> + '_ {
@@ -239,7 +260,7 @@ impl<'c> DriveTable<'c> {
         self.pair(self.gears[pair.gear as usize], self.motors[pair.motor as usize])
     }
 
-    /// The drive of a gear and a motor in this joint.
+    /// The drive that a gear and a motor make in this joint.
     pub(crate) fn pair(&self, gear: &'c Gear, motor: &'c Motor) -> Drive<'c> {
         Drive {
             gear,
@@ -251,17 +272,17 @@ impl<'c> DriveTable<'c> {
         }
     }
 
-    /// Where the output bearing of the joint comes from.
+    /// Where the output bearing of the joint comes from: from the gear, or stated by the study.
     pub(super) fn bearing_source(&self) -> &BearingSource {
         &self.bearing
     }
 
-    /// The output bearing of the joint with a gear.
+    /// The output bearing of the joint if `gear` is its gear; `None` if the joint then has no bearing.
     pub(super) fn bearing_of(&self, gear: &Gear) -> Option<Bearing> {
         self.bearing.with_gear(gear, self.gear_mass)
     }
 
-    /// Whether the torsion of a gear is known as far as this joint needs it.
+    /// Whether the joint does not need the torsion curve of a gear, or the curve of `gear` is known.
     pub(super) fn knows_torsion(&self, gear: &Gear) -> bool {
         !self.needs_torsion || gear.missing_of_torsion().is_empty()
     }
@@ -276,17 +297,17 @@ impl<'c> DriveTable<'c> {
         &self.motion
     }
 
-    /// Which mass of a gear counts.
+    /// Which mass of a gear counts: component set or housed unit.
     pub fn gear_mass(&self) -> GearMass {
         self.gear_mass
     }
 
-    /// Gears that the filter allows, legal or not.
+    /// Gears that the filter allows, whether or not they are in a legal drive.
     pub fn gears(&self) -> &[&'c Gear] {
         &self.gears
     }
 
-    /// Motors that the filter allows, legal or not.
+    /// Motors that the filter allows, whether or not they are in a legal drive.
     pub fn motors(&self) -> &[&'c Motor] {
         &self.motors
     }
@@ -301,40 +322,41 @@ impl<'c> DriveTable<'c> {
         self.pairs.is_empty()
     }
 
-    /// The drive at an index.
+    /// The drive with the index `index` in the table.
     pub fn drive(&self, index: usize) -> Drive<'c> {
         self.drive_of(self.pairs[index])
     }
 
-    /// Mass of the drive at an index with its extras \[kg\].
+    /// Mass of the drive with the index `index`, including extras \[kg\].
     #[inline]
     pub fn mass_kg(&self, index: usize) -> f64 {
         self.masses_kg[index]
     }
 
-    /// Thresholds of the drive at an index.
+    /// Thresholds of torque, load and size of the drive with the index `index`.
     #[inline]
     pub fn limits(&self, index: usize) -> &DriveLimits {
         &self.limits[index]
     }
 
-    /// Whether there is a drive at an index and it holds a demand.
+    /// Whether the table has a drive at `index` and this drive meets `demand`.
     #[inline]
     pub(crate) fn holds(&self, index: usize, demand: &JointDemand) -> bool {
         self.limits.get(index).is_some_and(|limits| limits.hold(demand))
     }
 
-    /// Index of a legal drive by the names of its parts.
+    /// Index of the legal drive with these names of gear and motor; `None` if there is none.
     pub fn index_of(&self, gear_id: &str, motor_id: &str) -> Option<usize> {
         (0..self.len()).find(|&i| parts(&self.drive(i)) == (gear_id, motor_id))
     }
 
-    /// Indices of the drives that can be a first fit. No lighter drive holds everything that one of these holds.
+    /// Indices of the drives that can be the lightest one for some demand, lightest first. A drive is left out if a
+    /// lighter one has no stricter limit.
     pub fn first_fit_candidates(&self) -> &[u32] {
         &self.ladder
     }
 
-    /// Index of the lightest drive that holds a demand, which is the paper's choice; `None` if none holds.
+    /// Index of the lightest drive that meets `demand`; `None` if no drive does. The paper chooses drives in this way.
     #[inline]
     pub fn first_fit(&self, demand: &JointDemand) -> Option<usize> {
         let start = self.first_step_within_reach(demand);
@@ -342,7 +364,7 @@ impl<'c> DriveTable<'c> {
         Some(self.ladder[step] as usize)
     }
 
-    /// The drives that can be a first fit.
+    /// The drives that can be the lightest one for some demand, with their limits.
     pub(super) fn ladder(&self) -> Ladder<'_> {
         Ladder {
             indices: &self.ladder,
@@ -352,8 +374,8 @@ impl<'c> DriveTable<'c> {
         }
     }
 
-    /// The earliest step of the ladder that can hold a demand. Strides are doubled and then bisected, since most demands
-    /// are met near the beginning.
+    /// The first step of the ladder up to which some drive may meet `demand`. Most demands are met near the beginning,
+    /// so the stride is doubled until the step is passed, and then the interval is bisected.
     #[inline]
     fn first_step_within_reach(&self, demand: &JointDemand) -> usize {
         let reach = &self.ladder_reach;
@@ -364,14 +386,14 @@ impl<'c> DriveTable<'c> {
         low + reach[low..high.min(reach.len())].partition_point(|reach| !reach.hold(demand))
     }
 
-    /// Indices of all drives that hold a demand, lightest first.
+    /// Indices of all drives that meet `demand`, lightest first.
     #[inline]
     pub fn all_fits<'t>(&'t self, demand: &'t JointDemand) -> impl Iterator<Item = usize> + 't {
         let holding = self.limits.iter().enumerate().filter(|(_, limits)| limits.hold(demand));
         holding.map(|(index, _)| index)
     }
 
-    /// Every pair that the filter allows, legal or not.
+    /// Every pair of gear and motor that the filter allows, even if it turns too fast or lacks a rating.
     pub(super) fn all_drives(&self) -> impl Iterator<Item = Drive<'c>> + '_ {
         self.all_pairs().map(|(drive, _)| drive)
     }

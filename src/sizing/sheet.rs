@@ -1,4 +1,4 @@
-//! The sizing table: the numbers of one joint in a row, from the tip to the base.
+//! The sizing table: one row of numbers for each joint, from the tip to the base.
 
 use super::bearing_checks::{BlankRatings, RigidBearing, bearing_margin};
 use super::check::{Check, CheckKind, CheckState};
@@ -11,7 +11,7 @@ use crate::arm::bearing::BearingSource;
 use crate::catalog::gear::Gear;
 use serde::Serialize;
 
-/// One joint, sized. A number is `None` if a blank rating of the catalog leaves it unknown.
+/// The sizing result of one joint. A number is `None` if it depends on a rating that the catalog leaves blank.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct JointSizingRow {
     /// Name of the joint.
@@ -24,27 +24,28 @@ pub struct JointSizingRow {
     pub rotary_torque_motor_nm: Option<f64>,
     /// Rotary torque referred to the joint, N times as large \[N m\].
     pub rotary_torque_output_nm: Option<f64>,
-    /// Eq 12 on one side: the sum of static, linear and rotary torque at the joint \[N m\].
+    /// Sum of static, linear and rotary torque, all referred to the joint \[N m\] (Eq 12).
     pub total_torque_nm: Option<f64>,
-    /// Torque of the motor at the peak, with the losses of the gear \[N m\].
+    /// Torque of the motor while the joint accelerates, with the losses of the gear \[N m\].
     pub motor_peak_torque_nm: Option<f64>,
     /// Torque in an emergency stop \[N m\].
     pub stop_torque_nm: f64,
     /// Cubic mean torque over the duty cycle \[N m\].
     pub mean_torque_nm: f64,
-    /// Root mean square of the motor's torque over the cycle \[N m\]; `None` also if it is not checked.
+    /// Root mean square of the motor's torque over the cycle \[N m\]; `None` also if heating is not checked.
     pub motor_rms_torque_nm: Option<f64>,
-    /// What the motor gives continuously at the cruising speed \[N m\]; `None` also if it is not checked.
+    /// Continuous torque of the motor at the cruising speed \[N m\]; `None` also if heating is not checked.
     pub motor_continuous_torque_nm: Option<f64>,
-    /// The second over the first. Also `None` if nothing is needed.
+    /// Continuous torque divided by root mean square torque of the motor. `None` also if the latter is 0.
     pub motor_rms_margin: Option<f64>,
-    /// Efficiency of the gear at the mean speed and torque of the cycle, by representative curves; the checks use the rated
-    /// one.
+    /// Efficiency of the gear at the mean speed and torque of the cycle, from representative curves. For information
+    /// only: the checks use the rated efficiency.
     pub cycle_efficiency: Option<f64>,
-    /// The margin of the motor's heat at this efficiency.
+    /// Margin of the motor's heat (continuous torque divided by root mean square torque) if the gear has the efficiency
+    /// `cycle_efficiency`.
     pub motor_rms_margin_at_cycle_efficiency: Option<f64>,
-    /// Largest moment across the axis at the centre of the output bearing while a joint is in its ramp \[N m\]; like all
-    /// numbers of the bearing `None` if the joint has none.
+    /// Largest moment across the axis at the centre of the output bearing while a joint is in its ramp \[N m\]. Like
+    /// all numbers of the bearing, it is `None` if the joint has no bearing.
     pub bearing_moment_nm: Option<f64>,
     /// Moment that the bearing permits while the joint turns \[N m\].
     pub bearing_moment_permissible_nm: Option<f64>,
@@ -52,48 +53,51 @@ pub struct JointSizingRow {
     pub bearing_safety_at_rest: Option<f64>,
     /// Static safety of the bearing in an emergency stop.
     pub bearing_safety_in_a_stop: Option<f64>,
-    /// L10 of the bearing \[h\].
+    /// L10 life of the bearing \[h\].
     pub bearing_life_h: Option<f64>,
-    /// The factor by which all loads on the bearing may grow until one of its checks fails. Also `None` if nothing loads it
-    /// or no check could be made.
+    /// The factor by which all loads on the bearing may grow until one of its checks fails. `None` also if nothing
+    /// loads the bearing or no check could be made.
     pub bearing_margin: Option<f64>,
-    /// Speed of the joint \[rpm\].
+    /// Largest speed of the joint \[rpm\].
     pub joint_speed_rpm: f64,
-    /// Speed of the motor \[rpm\].
+    /// Largest speed of the motor \[rpm\].
     pub motor_speed_rpm: f64,
     /// Speed of the gear's input while the joint cruises \[rpm\]: that of the motor, unless a stage lies between.
     pub input_speed_rpm: f64,
     /// Mean speed of the motor over the cycle, rests included \[rpm\].
     pub mean_input_speed_rpm: f64,
-    /// Number of emergency stops that the gear may bear in its life.
+    /// Number of emergency stops that the gear may see in its life. `None` also for gears that have no such limit.
     pub emergency_stops_allowed: Option<f64>,
-    /// Gear chosen.
+    /// Name of the chosen gear.
     pub gear: String,
-    /// Motor chosen.
+    /// Name of the chosen motor.
     pub motor: String,
-    /// The check with the smallest torque margin.
+    /// Label of the check with the smallest torque margin.
     pub binds: Option<&'static str>,
-    /// Torque margin of this check: allowed over needed, for life the cube root of it. Also `None` if nothing is needed.
+    /// Torque margin of the binding check: allowed over needed torque. For a life it is a root of the ratio of lives,
+    /// see [`Check::torque_margin`]. `None` also if nothing is needed.
     pub margin: Option<f64>,
-    /// L10 of the wave-generator bearing \[h\].
+    /// L10 life of the wave-generator bearing \[h\].
     pub life_h: Option<f64>,
     /// Whether the joint slides: its torques are then forces \[N\], and its speed is in m/s times 30/π.
     pub slides: bool,
     /// Mass of the drive \[kg\].
     pub mass_kg: Option<f64>,
-    /// Mass outboard of the next joint inward, as far as this joint: everything outboard, and this drive \[kg\].
+    /// Mass that the next joint inward carries from this joint outward: everything outboard of this joint, and this
+    /// drive \[kg\].
     pub mass_passed_inward_kg: f64,
-    /// Every check, whether it could be made or not.
+    /// Every check, including those that could not be made.
     #[serde(skip)]
     pub checks: Vec<Check>,
-    /// Checks that fail, in words; a fixed selection may have some.
+    /// Messages of the checks that fail. There are some only if the drive was fixed by the user.
     pub fails: Vec<String>,
     /// Checks that could not be made, and a bearing that counts as rigid for want of a stiffness, in words.
     pub not_checked: Vec<String>,
 }
 
 impl JointSizingRow {
-    /// The row of a joint with its drive.
+    /// The row of the joint named `joint` with this drive, under its motion and its demand. `mass_passed_inward_kg` is
+    /// the mass of everything outboard and of the drive \[kg\].
     pub fn new(
         joint: &str,
         drive: &Drive,
@@ -152,8 +156,8 @@ impl JointSizingRow {
 }
 
 impl JointSizingRow {
-    /// The same row with the efficiency that the gear has at the mean speed and torque of the cycle, and the margin of the
-    /// motor's heat at it.
+    /// This row, completed by the efficiency that the gear has at the mean speed and torque of the cycle, and by the
+    /// margin of the motor's heat at this efficiency.
     pub fn at_efficiency(
         self,
         efficiency: f64,
@@ -172,7 +176,7 @@ impl JointSizingRow {
     }
 }
 
-/// The checks in words, with the part that they are about.
+/// Messages of the checks, each with the kind of part that it is about.
 fn remarks<'c>(checks: impl Iterator<Item = &'c Check>) -> Vec<String> {
     checks.map(with_part).collect()
 }
@@ -187,7 +191,7 @@ pub(crate) fn with_part(check: &Check) -> String {
     format!("{part}{check}")
 }
 
-/// What could not be checked, in words. One line is enough for a bearing, whatever it lacks.
+/// Messages of the checks that could not be made. A bearing gets one line, however many of its ratings are blank.
 fn not_checked(drive: &Drive, checks: &[Check]) -> Vec<String> {
     let open = |c: &&Check| matches!(c.state, CheckState::NotChecked(_)) && !c.kind.is_bearing();
     let mut out = remarks(checks.iter().filter(open));
@@ -205,7 +209,7 @@ fn not_checked(drive: &Drive, checks: &[Check]) -> Vec<String> {
 /// Largest number of characters of a motor's name in the table.
 const MOTOR_WIDTH: usize = 14;
 
-/// Header and unit of a column, and whether it is aligned to the right.
+/// Header and unit of a column of the table, and whether the column is aligned to the right.
 type Header = (&'static str, &'static str, bool);
 
 const HEADERS: [Header; 15] = [
@@ -226,7 +230,7 @@ const HEADERS: [Header; 15] = [
     ("inward", "kg", true),
 ];
 
-/// What follows from the whole cycle.
+/// Columns of the second table: numbers that depend on the whole duty cycle.
 const CYCLE_HEADERS: [Header; 9] = [
     ("joint", "", false),
     ("mean", "N m", true),
@@ -261,12 +265,12 @@ const BEARING_HEADERS: [Header; 7] = [
     ("margin", "-", true),
 ];
 
-/// What the tilde means.
+/// Footnote that explains the tilde in the headers.
 const REPRESENTATIVE: &str = "~ at the gear's efficiency at the mean speed and torque of the cycle, by representative \
     curves; the checks use the rated one\n";
 
-/// The rows as text tables of about 120 characters a line: the drives, the whole cycle, and the output bearings if there
-/// are any. Remarks on checks that failed or could not be made follow them.
+/// The rows as text tables of about 120 characters a line: first the drives, then numbers of the whole cycle, then
+/// the output bearings if there are any. Remarks on checks that failed or could not be made follow.
 pub fn render_rows(rows: &[JointSizingRow]) -> String {
     let (sliding, turning): (Vec<_>, Vec<_>) = rows.iter().partition(|row| row.slides);
     let mut text = String::new();
@@ -313,7 +317,7 @@ fn digits(x: f64, n: usize) -> String {
     format!("{x:.n$}")
 }
 
-/// A number, or a question mark if a blank rating leaves it open.
+/// A number with `n` decimals, or a question mark if it is unknown because a rating is blank.
 fn or_open(x: Option<f64>, n: usize) -> String {
     x.map_or("?".to_string(), |x| digits(x, n))
 }
@@ -368,7 +372,7 @@ fn bearing_cells(row: &JointSizingRow) -> [String; 7] {
     ]
 }
 
-/// A life in hours, in scientific notation from a million on.
+/// A life in hours; in scientific notation from one million on.
 fn life_text(life_h: f64) -> String {
     if life_h < 1e6 { format!("{life_h:.0}") } else { format!("{life_h:.1e}") }
 }

@@ -1,4 +1,5 @@
-//! A duty that the study states for a joint: torques, times and speeds at its output, as a vendor's worked example has them.
+//! A duty cycle that the study states for one joint: torques, times and speeds at its output, as in a vendor's worked
+//! example.
 
 use super::RAD_S_PER_RPM;
 
@@ -13,11 +14,12 @@ pub struct StatedPhase {
     pub speed_rpm: f64,
 }
 
-/// The duty of a joint, which repeats for its whole life. It takes the place of the study's cycle in the mean torque, the
-/// mean speed and the heat of the motor. Poses and masses still ask for their static torque, peak and emergency stop.
+/// The duty of a joint, which repeats for its whole life. In the mean torque, the mean speed and the motor's heat it
+/// takes the place of the study's cycle. The static torque, peak and emergency stop that follow from poses and masses
+/// are still checked.
 ///
-/// A phase at half the speed of the next one is its ramp up, a phase at half the speed of the one before its ramp down.
-/// There rotor and wave generator are accelerated too.
+/// A phase at half the speed of the next one is a ramp up to it; a phase at half the speed of the one before is a
+/// ramp down from it. In ramps rotor and wave generator are accelerated too.
 ///
 /// ```
 /// use armwright::sizing::{StatedDuty, StatedPhase};
@@ -37,18 +39,18 @@ pub struct StatedDuty {
     pub phases: Vec<StatedPhase>,
 }
 
-/// What a stated duty asks of a drive, whatever the arm.
+/// What a stated duty asks of a drive; it is the same for every arm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StatedDemand {
-    /// Largest torque \[N m\].
+    /// Largest torque of a phase, without its sign \[N m\].
     pub peak_torque_nm: f64,
     /// Cube of the cubic mean torque \[(N m)³\].
     pub mean_torque_cubed_nm3: f64,
-    /// What the motor's heat follows from.
+    /// Sums from which the motor's heat is computed for any drive.
     pub heat: StatedHeat,
 }
 
-/// Relative difference up to which one speed is half of another.
+/// Relative tolerance within which the speed of a phase counts as half the speed of a neighbouring phase.
 const SAME_SPEED: f64 = 1e-6;
 
 impl StatedDuty {
@@ -57,7 +59,7 @@ impl StatedDuty {
         self.phases.iter().map(|phase| phase.time_s).sum()
     }
 
-    /// Largest speed \[rpm\].
+    /// Largest speed of a phase \[rpm\].
     pub fn fastest_rpm(&self) -> f64 {
         self.phases.iter().map(|phase| phase.speed_rpm.abs()).fold(0.0, f64::max)
     }
@@ -74,18 +76,18 @@ impl StatedDuty {
         if travel > 0.0 { cubes.sum::<f64>() / travel } else { self.peak_torque_nm().powi(3) }
     }
 
-    /// Largest torque \[N m\].
+    /// Largest torque of a phase, without its sign \[N m\].
     pub fn peak_torque_nm(&self) -> f64 {
         self.phases.iter().map(|phase| phase.torque_nm.abs()).fold(0.0, f64::max)
     }
 
-    /// Duration of the first ramp up \[s\]; `None` if no phase is one.
+    /// Duration of the first ramp up \[s\]; `None` if no phase is a ramp up.
     pub fn ramp_time_s(&self) -> Option<f64> {
         let ramps = self.phases.iter().zip(self.accelerations_rad_s2());
         ramps.filter(|(_, acceleration)| *acceleration > 0.0).map(|(phase, _)| phase.time_s).next()
     }
 
-    /// Acceleration in each phase, negative where the joint slows down \[rad/s²\].
+    /// Acceleration of the joint in each phase \[rad/s²\]: positive in a ramp up, negative in a ramp down, else 0.
     fn accelerations_rad_s2(&self) -> Vec<f64> {
         let count = self.phases.len();
         let is_half = |phase: &StatedPhase, of: &StatedPhase| {
@@ -104,7 +106,7 @@ impl StatedDuty {
         self.phases.iter().enumerate().map(of_phase).collect()
     }
 
-    /// What it asks of a drive. A brake carries the torque of a phase at rest.
+    /// What this duty asks of any drive. If the joint has a brake, phases at rest do not heat the motor.
     pub(super) fn demand(&self, has_brake: bool) -> StatedDemand {
         let mut heat = StatedHeat::default();
         for (phase, acceleration) in self.phases.iter().zip(self.accelerations_rad_s2()) {
@@ -126,42 +128,45 @@ impl StatedDuty {
 }
 
 impl StatedPhase {
-    /// Speed times time \[rpm s\].
+    /// Speed multiplied by time \[rpm s\]. It is the weight of the phase in the mean torque.
     fn travel(&self) -> f64 {
         self.speed_rpm.abs() * self.time_s
     }
 }
 
 impl StatedDemand {
-    /// The same duty with every acceleration times a factor.
+    /// What this duty asks of a drive if every acceleration is multiplied by `factor`.
     pub(super) fn slowed(self, factor: f64) -> Self {
         Self { heat: self.heat.slowed(factor), ..self }
     }
 }
 
-/// The motor's torque over a stated duty: sums from which the mean square of any drive follows. A phase of time share w
-/// with torque T and acceleration α counts as w (T p + α c)², p being the share for each newton metre and c that for each
-/// rad/s² of the joint.
+/// The motor's torque over a stated duty, as sums from which the mean square of any drive follows. A phase that takes
+/// the fraction w of the time, with torque T and acceleration α, adds w (T p + α c)². Here p is the ratio of motor
+/// torque to continuous torque for each newton metre at the joint, and c is this ratio for each rad/s² of the joint.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct StatedHeat {
-    /// Sum of w T² where the motor drives, and where it is driven \[(N m)²\].
+    /// Sum of w T² \[(N m)²\]: first over the phases in which the motor drives, then over those in which the load
+    /// drives it.
     torque_nm2: [f64; 2],
-    /// Sum of w T α, in the same order \[N m rad/s²\].
+    /// Sum of w T α over the phases in which the motor drives, then over those in which the load drives it \[N m
+    /// rad/s²\].
     mixed_nm_rad_s2: [f64; 2],
-    /// Sum of w α² \[rad²/s⁴\].
+    /// Sum of w α² over all phases \[rad²/s⁴\].
     acceleration_rad2_s4: f64,
 }
 
 impl StatedHeat {
-    /// Mean square as a share of the square of the continuous torque, of a drive with these shares per torque that the motor
-    /// drives and per torque that drives it \[1/(N m)\], and for each rad/s² of the joint \[s²\].
+    /// Mean square of the motor's torque, divided by the square of its continuous torque. `per_nm` has the ratio p
+    /// where the motor drives and where the load drives it \[1/(N m)\]; `inertia_s2` is the ratio c for each rad/s²
+    /// of the joint \[s²\].
     pub(super) fn share_squared(&self, per_nm: [f64; 2], inertia_s2: f64) -> f64 {
         let torque: f64 = (0..2).map(|i| self.torque_nm2[i] * per_nm[i] * per_nm[i]).sum();
         let mixed: f64 = (0..2).map(|i| self.mixed_nm_rad_s2[i] * per_nm[i]).sum();
         torque + 2.0 * inertia_s2 * mixed + inertia_s2 * inertia_s2 * self.acceleration_rad2_s4
     }
 
-    /// The same duty with every acceleration times a factor.
+    /// The sums of this duty if every acceleration of the joint is multiplied by `factor`.
     fn slowed(self, factor: f64) -> Self {
         Self {
             mixed_nm_rad_s2: self.mixed_nm_rad_s2.map(|x| x * factor),

@@ -1,4 +1,4 @@
-//! Parts for tests: some rows of the catalogs written out, and random parts.
+//! Parts for tests: some rows of the catalogs copied as code, and generators of random parts.
 
 use super::bearing::{BearingDemand, BearingLoad};
 use super::demand::JointMotion;
@@ -23,7 +23,7 @@ fn provenance() -> Provenance {
     }
 }
 
-/// A housed gear with its motor and nothing else.
+/// A drive of a housed gear and a motor, without extras.
 pub(crate) fn housed<'c>(gear: &'c Gear, motor: &'c Motor) -> Drive<'c> {
     Drive {
         gear,
@@ -35,7 +35,8 @@ pub(crate) fn housed<'c>(gear: &'c Gear, motor: &'c Motor) -> Drive<'c> {
     }
 }
 
-/// A gear and a motor that hold 300 N m of static and 100 N m of linear torque at 1.35 m in every respect.
+/// A gear and a motor that pass every check under 300 N m of static and 100 N m of linear torque, 1.35 m from the
+/// tip.
 pub(crate) fn ample() -> (Gear, Motor) {
     let mut gear = gear("CSG-50-100", [600.0, 900.0, 700.0, 2000.0], [3500.0, 2500.0], 0.00125, [3.2, 8.9]);
     gear.life.rated_h = Some(10_000.0);
@@ -49,7 +50,7 @@ pub(crate) fn ample() -> (Gear, Motor) {
     (gear, motor("M", [10.0, 20.0], [2000.0, 3000.0], 0.0003, 4.0))
 }
 
-/// A gear with every rating that a check needs, in the order of `gears.csv`.
+/// A gear with every rating that a check needs. The arrays are in the order of the columns of `gears.csv`.
 pub(crate) fn gear(
     id: &str,
     torques_nm: [f64; 4],
@@ -95,7 +96,8 @@ pub(crate) fn gear(
     }
 }
 
-/// A motor with every rating: torques \[N m\], speeds \[rpm\], inertia \[kg m²\], mass \[kg\].
+/// A motor with every rating: rated and peak torque \[N m\], rated and largest speed \[rpm\], inertia \[kg m²\], mass
+/// \[kg\].
 pub(crate) fn motor(
     id: &str,
     torques_nm: [f64; 2],
@@ -144,7 +146,7 @@ pub(crate) fn f11_10() -> Motor {
     motor
 }
 
-/// `catalogs/motors.csv`, row J 8.2 (129-): no rotor inertia.
+/// `catalogs/motors.csv`, row J 8.2 (129-). Its rotor inertia is blank.
 pub(crate) fn char_lynn_j_8_2() -> Motor {
     let mut motor = motor("J 8.2 (129-)", [13.7, 16.2], [1992.0, 2390.0], 0.0, 2.0);
     motor.kind = MotorKind::HydraulicOrbital;
@@ -152,13 +154,13 @@ pub(crate) fn char_lynn_j_8_2() -> Motor {
     motor
 }
 
-/// A rating in a range; one in twenty is blank.
+/// A random rating within a range; one in twenty is blank.
 fn rating_in(range: std::ops::Range<f64>) -> impl Strategy<Value = Option<f64>> {
     prop_oneof![19 => range.prop_map(Some), 1 => Just(None)]
 }
 
 prop_compose! {
-    /// A gear of random ratings.
+    /// A gear with random ratings.
     pub fn any_gear()(
         series in prop_oneof![Just("CSG"), Just("HFUC")],
         life in any_life(),
@@ -192,7 +194,7 @@ prop_compose! {
     }
 }
 
-/// A kind of gear with the law of its life; hours and speed may be blank.
+/// A random kind of gear with its life formula; rated hours and speed may be blank.
 fn any_life() -> impl Strategy<Value = (GearKind, LifeLaw)> {
     let kind = prop_oneof![
         4 => Just(GearKind::StrainWave),
@@ -210,7 +212,7 @@ fn any_life() -> impl Strategy<Value = (GearKind, LifeLaw)> {
 }
 
 prop_compose! {
-    /// A motor of random ratings.
+    /// A motor with random ratings.
     pub fn any_motor()(
         torques in prop::array::uniform2(rating_in(1.0..60.0)),
         speeds in prop::array::uniform2(rating_in(300.0..6000.0)),
@@ -228,7 +230,7 @@ prop_compose! {
 }
 
 prop_compose! {
-    /// The motion of a joint.
+    /// The motion of a joint at a random distance from the tip.
     pub fn any_motion()(
         reach in 0.2..2.0f64, ramp in 0.1..1.0f64, life in 1e3..5e4f64, fit in any_fit(),
     ) -> JointMotion {
@@ -237,7 +239,7 @@ prop_compose! {
     }
 }
 
-/// Sizes of a part; some are blank.
+/// Random sizes of a part; some are blank.
 fn any_envelope() -> impl Strategy<Value = Envelope> {
     let size = |range: std::ops::Range<f64>| prop_oneof![4 => range.prop_map(Some), 1 => Just(None)];
     (size(0.03..0.2), size(0.02..0.1), size(0.0..0.05)).prop_map(
@@ -245,7 +247,7 @@ fn any_envelope() -> impl Strategy<Value = Envelope> {
     )
 }
 
-/// What a study may ask of sizes, often nothing.
+/// Random limits on sizes; often there is none.
 fn any_fit() -> impl Strategy<Value = FitRequirement> {
     let asked = |range: std::ops::Range<f64>| prop_oneof![1 => range.prop_map(Some), 3 => Just(None)];
     let motor = prop_oneof![Just(MotorPlace::Behind), Just(MotorPlace::InLink), Just(MotorPlace::Beside)];
@@ -259,12 +261,12 @@ fn any_fit() -> impl Strategy<Value = FitRequirement> {
     )
 }
 
-/// The room that a link leaves under a requirement; width and clear width \[m\].
+/// Width of a link and clear width of its hollow \[m\], at random.
 pub(crate) fn any_link_m() -> impl Strategy<Value = [f64; 2]> {
     (0.05..0.2f64, 0.0..1.0f64).prop_map(|(width_m, clear)| [width_m, clear * width_m])
 }
 
-/// Loads on a bearing with the moment as given \[N m\].
+/// Loads on a bearing whose moment while running is `moment_nm` \[N m\]; the other loads are in a fixed ratio to it.
 pub(crate) fn bearing_loads(moment_nm: f64) -> BearingDemand {
     let load = |times: f64| BearingLoad {
         moment_nm: times * moment_nm,
@@ -274,7 +276,7 @@ pub(crate) fn bearing_loads(moment_nm: f64) -> BearingDemand {
     BearingDemand { at_rest: load(0.6), running: load(1.0), in_stop: load(1.4) }
 }
 
-/// Static torque, linear torque and moment on the bearing; one in ten is zero.
+/// Static torque, linear torque and moment on the bearing at random \[N m\]; one in ten is zero.
 pub(crate) fn any_torques() -> impl Strategy<Value = [f64; 3]> {
     let torque = || prop_oneof![1 => Just(0.0), 9 => 0.0..800.0f64];
     (torque(), torque(), torque()).prop_map(|(a, b, c)| [a, b, c])

@@ -1,31 +1,39 @@
-//! Attributes of a link option that do not depend on the pose: mass, cost, slenderness and stress factors.
+//! Properties of a link option that do not depend on the pose: mass, cost, slenderness of the wall and stress
+//! factors.
 
 use super::design_space::{DesignSpace, LinkOption};
 use super::station::Place;
 use nalgebra::{Vector3, Vector6};
 
-/// What the search needs to know of a link option in addition to its mechanics.
+/// Properties of a link option that limits and objectives need in addition to its mechanics.
 pub(crate) struct OptionAttributes {
+    /// Mass of the link \[kg\].
     pub mass_kg: f64,
-    /// Number of the material; `None` for a tube that is not chosen, which belongs to no group.
+    /// Index of the material in the study's list. `None` for a tube that the study gives: it has no influence on the
+    /// group (material) of a design.
     pub material: Option<usize>,
     /// Cost of the material \[EUR\]; `None` if unknown.
     pub cost_eur: Option<f64>,
-    /// `None` if the strength of the material is unknown.
+    /// Factors from which the stress in the link is computed; `None` if the strength of the material is unknown.
     pub stress: Option<StressCheck>,
     /// Whether the wall is more slender than the study allows.
     pub slender: bool,
 }
 
-/// Von Mises stress at the ends of a link, from force and moment in the section frame of the link.
-///
-/// `per_axial_n` is in \[1/m²\], the other factors are in \[1/m³\].
+/// Factors with which the forces and moments at an end of a link give its von Mises stress. Forces and moments are in
+/// the section frame of the link.
 pub(crate) struct StressCheck {
+    /// Normal stress per axial force \[1/m²\].
     pub per_axial_n: f64,
+    /// Largest normal stress per bending moment about the section's y axis \[1/m³\].
     pub per_moment_y: f64,
+    /// Largest normal stress per bending moment about the section's z axis \[1/m³\].
     pub per_moment_z: f64,
+    /// Largest shear stress per torsion \[1/m³\].
     pub per_torsion: f64,
+    /// Whether the section is round. The stresses of the two bending moments then add as vectors.
     pub round: bool,
+    /// Strength with which the stress is compared \[Pa\].
     pub strength_pa: f64,
 }
 
@@ -43,12 +51,14 @@ impl StressCheck {
         })
     }
 
-    /// Ratio of the von Mises stress of bending, axial force and torsion to the strength. `wrench` is the load about the
-    /// world's origin, `at_m` the end of the link at which the stress is asked for.
+    /// Ratio of the von Mises stress (bending, axial force and torsion) to the strength, at the point `at_m` \[m\] of
+    /// the link's axis. `wrench` is the force and moment that the section there transmits, with the moment taken about
+    /// the world's origin. `place` is the position and attitude of the link.
     pub(crate) fn ratio(&self, wrench: &Vector6<f64>, at_m: &Vector3<f64>, place: &Place) -> f64 {
         let [axial_n, torsion_nm, moment_y_nm, moment_z_nm] = place.local(wrench, at_m);
         let (y, z) = (moment_y_nm.abs() * self.per_moment_y, moment_z_nm.abs() * self.per_moment_z);
-        // the stresses of both bending moments meet in the corner of a rectangle, but not in one point of a circle
+        // in a corner of a rectangle the stresses of both bending moments add; in a circle their maxima are at
+        // different points
         let bending = if self.round { libm::hypot(y, z) } else { y + z };
         let normal = axial_n.abs() * self.per_axial_n + bending;
         let shear = torsion_nm.abs() * self.per_torsion;
@@ -56,12 +66,13 @@ impl StressCheck {
     }
 }
 
-/// Von Mises stress of a normal and a shear stress, in their unit.
+/// Von Mises stress of a normal stress and a shear stress. The result has the unit of the arguments.
 pub(crate) fn von_mises(normal: f64, shear: f64) -> f64 {
     (normal * normal + 3.0 * shear * shear).sqrt()
 }
 
-/// The attributes of an option for a link of this length \[m\].
+/// The properties of `option` as the section of a link with the length `length_m` \[m\], checked against the limits of
+/// `space`.
 pub(crate) fn attributes_of(space: &DesignSpace, option: &LinkOption, length_m: f64) -> OptionAttributes {
     let mass_kg = option.mass_kg_per_m() * length_m;
     OptionAttributes {

@@ -1,12 +1,13 @@
 //! Loads on output bearings, from the masses outboard of a joint.
 //!
-//! A bearing carries the force and the moment of everything outboard: of gravity and load, and of the ramp or the stop of
-//! one joint while the others are at rest. A joint *outboard* of the bearing moves only what is outboard of itself; the
-//! joint of the bearing and those *inboard* of it move everything outboard of the bearing. In this way the stop of a
-//! shoulder tilts the bearing of the waist below it.
+//! A bearing transmits the force and the moment of everything outboard of it: of gravity and load, and of the
+//! acceleration or emergency stop of one joint while the others are at rest. A joint *outboard* of the bearing
+//! accelerates only what is outboard of that joint. The joint of the bearing and the joints *inboard* of it
+//! accelerate everything outboard of the bearing. In this way the stop of a shoulder tilts the bearing of the waist
+//! below it.
 //!
-//! Forces are added as vectors before their norms are taken. A lever along the axis, to where the link attaches, adds
-//! lever times radial force to the moment, as in the vendor's `M = F_r (L_r + R) + F_a L_a`.
+//! Forces are added as vectors before their norms are taken. The link attaches at some distance along the axis (the
+//! lever). The lever times the radial force is added to the moment, as in the vendor's `M = F_r (L_r + R) + F_a L_a`.
 
 use super::bearing_loads::{Components, PosedBearing};
 use super::problem::ArmProblem;
@@ -14,17 +15,22 @@ use super::state::StationState;
 use super::station::StationSlot;
 use crate::sizing::bearing::{BearingDemand, BearingLoad};
 
-/// The largest loads so far: forces across and moments as squares.
+/// The largest loads found so far, each as three numbers: the square of the moment \[N² m²\], the square of the
+/// radial force \[N²\], and the axial force \[N\].
 #[derive(Default)]
 struct Largest {
+    /// Largest loads under weight and tip load alone.
     at_rest: [f64; 3],
+    /// Largest loads while a joint accelerates in normal operation.
     running: [f64; 3],
+    /// Largest loads while a joint makes an emergency stop.
     in_stop: [f64; 3],
 }
 
 impl Largest {
-    /// Takes a load at rest with what a ramp adds or takes away, and `stop_factor` times as much in a stop. Of the two
-    /// signs the larger norm is `|s|² + |d|² + 2 |s·d|`.
+    /// Raises the largest loads to those of a moving arm: the load `rest` at rest, combined with the load `ramp` that
+    /// the acceleration of one joint adds. The acceleration may have either sign, and in an emergency stop it is
+    /// `stop_factor` times as large. The larger norm of `s ± d` is the root of `|s|² + |d|² + 2 |s·d|`.
     fn moving(&mut self, rest: &Components, ramp: &Components, stop_factor: f64) {
         let larger = |first: usize, times: f64| {
             let (s, d) = ([rest[first], rest[first + 1]], [ramp[first] * times, ramp[first + 1] * times]);
@@ -79,7 +85,8 @@ impl ArmProblem<'_> {
         largest.demand().with_lever(lever.lever_m(options))
     }
 
-    /// Takes the loads at the face of the flange in one case.
+    /// Raises `largest` to the loads on the bearing of the joint in `slot` in one case, taken at the face of the
+    /// joint's flange. `state` is the state of the arm outboard of the joint in this case.
     fn load_bearing(&self, case: usize, state: &StationState, slot: usize, largest: &mut Largest) {
         let station = &self.stations()[case];
         let StationSlot::Joint(joint) = &station.slots[slot] else { return };
@@ -96,7 +103,9 @@ impl ArmProblem<'_> {
         }
     }
 
-    /// Keeps what the joint in a slot, which is about to be added, does to bearings inboard of it.
+    /// Stores in each state the wrench with which the joint in `slot`, when it accelerates, loads the bearings inboard
+    /// of it. The function is called just before the joint is added to the arm, when the state has everything outboard
+    /// of the joint.
     pub(crate) fn keep_ramp(&self, slot: usize, states: &mut [StationState]) {
         let loads = self.bearing_loads();
         let Some(k) = loads.movers.iter().position(|mover| mover.slot == slot).filter(|_| loads.any()) else {

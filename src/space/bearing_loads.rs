@@ -1,5 +1,5 @@
-//! What loads output bearings, apart from the masses: where links attach, how joints move, and which components of a wrench
-//! a bearing feels.
+//! What loads output bearings, apart from the masses: where links attach, how joints accelerate, and which components
+//! of a wrench load a bearing.
 
 use super::design_space::{DesignSpace, SpaceJoint, SpacePiece};
 use super::slot::Slot;
@@ -14,9 +14,9 @@ use crate::mechanics::{Wrench, angular, linear};
 use crate::sizing::bearing::BearingLimits;
 use nalgebra::Vector3;
 
-/// What is needed to load the bearings of a space, apart from the pose.
+/// What must be known of a space, in addition to poses and masses, to compute the loads on output bearings.
 pub(crate) struct BearingLoads {
-    /// The joints of the chain, tip first.
+    /// The driven joints of the chain, tip first.
     pub movers: Vec<Mover>,
     /// Where the link attaches to the joint in each slot; `None` if it has no bearing.
     pub levers: Vec<Option<Lever>>,
@@ -26,28 +26,32 @@ pub(crate) struct BearingLoads {
     pub stop_factor: f64,
 }
 
-/// A joint that moves while the others are at rest.
+/// A joint that accelerates while the others are at rest.
 pub(crate) struct Mover {
+    /// Slot of the joint.
     pub slot: usize,
-    /// Acceleration of the joint in a ramp \[rad/s²\].
+    /// Acceleration of the joint in normal operation \[rad/s²\].
     pub acceleration_rad_s2: f64,
 }
 
-/// Lever along the axis of a joint from the face of its flange to where the link attaches.
+/// The lever: the distance, along the axis of a joint, from the face of its flange to the point at which the link
+/// attaches.
 pub(crate) struct Lever {
-    /// Slot of the link.
+    /// Slot of the link on which the lever depends; `None` if the lever does not depend on a link.
     pub link_slot: Option<usize>,
-    /// Lever \[m\] by the option of the link; a single one if the study states it.
+    /// Lever \[m\] for each option of the link; a single entry if it does not depend on the option.
     pub lever_m: Vec<f64>,
 }
 
 impl Lever {
-    /// The lever with the options of an arm \[m\].
+    /// The lever \[m\] if the arm has these `options`, one for each slot.
     pub(crate) fn lever_m(&self, options: &[u32]) -> f64 {
         self.link_slot.map_or(self.lever_m[0], |slot| self.lever_m[options[slot] as usize])
     }
 
-    /// A joint whose link attaches at a stated offset, or at half the width of the link that is next to it.
+    /// The lever of `joint`: the offset that the study states, or else half the width of the link next to the joint. It
+    /// is zero if the next piece is no tube. `piece` is the number of the joint in the chain, and `piece_slots` has the
+    /// slot of each piece.
     pub(crate) fn new(space: &DesignSpace, piece: usize, joint: &SpaceJoint, piece_slots: &[usize]) -> Self {
         let half_m =
             |vector_m: &Vector3<f64>, section: &Section| half_width_m(&joint.axis, vector_m, section);
@@ -64,14 +68,14 @@ impl Lever {
             Some(SpacePiece::Link(Link { vector_m, body: LinkBody::Tube { section, .. }, .. })) => {
                 Self { link_slot, lever_m: vec![half_m(vector_m, section)] }
             }
-            // forces act where the geometry of the chain says
+            // without a tube next to the joint, the force acts at the point that the chain's geometry gives
             _ => Self { link_slot: None, lever_m: vec![0.0] },
         }
     }
 }
 
-/// The bearing of a joint of an arm with its lever resolved: the offset of the flange, and half the extent of the link that is
-/// next to the joint.
+/// The bearing of a joint with its lever as a number. If the arm states no lever, it is the offset of the flange plus
+/// half the extent of the link `next` to the joint along the joint's `axis`.
 pub(crate) fn resolved(bearing: Bearing, axis: &Vector3<f64>, next: Option<&Element>) -> Bearing {
     let half_m = match next {
         Some(Element::Link(Link { vector_m, body: LinkBody::Tube { section, .. }, .. })) => {
@@ -83,16 +87,17 @@ pub(crate) fn resolved(bearing: Bearing, axis: &Vector3<f64>, next: Option<&Elem
     Bearing { offset_m: bearing.offset_m.or(Some(lever_m)), ..bearing }
 }
 
-/// Half the extent of a link along the axis of the joint that carries it \[m\].
+/// Half the extent of a link along the axis of the joint to which it attaches \[m\].
 fn half_width_m(axis: &Vector3<f64>, vector_m: &Vector3<f64>, section: &Section) -> f64 {
     let along = section_frame(vector_m).tr_mul(axis);
     let (width_m, height_m) = section.outer_m();
-    // exact for a box seen along one of its sides, and for a round tube that is not oblique
+    // exact for a box with one side across the axis, and for a round tube at right angles to the axis
     libm::hypot(width_m / 2.0 * along.y, height_m / 2.0 * along.z)
 }
 
 impl BearingLoads {
-    /// The loads of a space whose slots are known. `reaches_m` are in order from the base.
+    /// The data of a space. `piece_slots` has the slot of each piece, base to tip. `reaches_m` has the reach of each
+    /// joint, base to tip \[m\].
     pub(crate) fn new(space: &DesignSpace, slots: &[Slot], piece_slots: &[usize], reaches_m: &[f64]) -> Self {
         let mut levers: Vec<Option<Lever>> = slots.iter().map(|_| None).collect();
         let mut checked = vec![false; slots.len()];
@@ -103,7 +108,7 @@ impl BearingLoads {
             let slot = piece_slots[piece];
             let reach_m = reaches_m.next().copied().unwrap_or_default();
             let motion = joint.motion(&space.motion, reach_m);
-            // a passive joint moves with its drivers
+            // a passive joint moves only together with its driving joints, so it is not a mover of its own
             if joint.coupled.is_none() {
                 movers.push(Mover { slot, acceleration_rad_s2: motion.acceleration_rad_s2 });
             }
@@ -136,31 +141,33 @@ fn is_checked(slot: &Slot, joint: &SpaceJoint) -> bool {
         Slot::Sized(sized) => {
             (0..sized.table.len()).any(|i| sized.table.limits(i).bearing != BearingLimits::NONE)
         }
-        // the thresholds of a rating that is known are finite at any speed and life
+        // every known rating gives a finite limit, whatever speed and life are; so 1 is good enough for both
         _ => BearingLimits::of(joint.bearing.stated().as_ref(), 1.0, 1.0) != BearingLimits::NONE,
     }
 }
 
-/// What a bearing feels of a wrench: force along two axes across the joint's axis and along the axis \[N\], and moment
-/// about the two axes across \[N m\].
+/// The components of a wrench that load a bearing: the force along two axes at right angles to the joint's axis and
+/// along the joint's axis \[N\], then the moment about the two axes at right angles \[N m\].
 pub(crate) type Components = [f64; 5];
 
-/// The bearing of a joint in a pose: it takes the components of wrenches about the world's origin.
+/// The bearing of a joint in a pose. It turns wrenches about the world's origin into the components that load the
+/// bearing.
 pub(crate) struct PosedBearing {
+    /// Centre of the joint \[m\].
     at_m: Vector3<f64>,
-    /// Two axes across the joint's axis, and the axis.
+    /// Two axes at right angles to the joint's axis, and the joint's axis.
     axes: [Vector3<f64>; 3],
 }
 
 impl PosedBearing {
-    /// The bearing of a joint.
+    /// The output bearing of a joint in a pose.
     pub(crate) fn new(joint: &StationJoint) -> Self {
         let axis = angular(&joint.twist);
         let [u, v] = across(&axis);
         Self { at_m: joint.at_m, axes: [u, v, axis] }
     }
 
-    /// Components of a wrench.
+    /// The components of a wrench (about the world's origin) that load the bearing.
     pub(crate) fn components(&self, wrench: &Wrench) -> Components {
         let force_n = linear(wrench);
         let moment_nm = angular(wrench) - self.at_m.cross(&force_n);

@@ -1,7 +1,8 @@
-//! One complete design: its number, its parts, its arm, and its objectives by the full model.
+//! One complete design: its number and name, its parts, its arm, and its objectives by the full model.
 
 use super::bearing_loads::resolved;
 use super::design_space::{DriveChoice, LinkOption, MotorPlace, SpaceJoint, SpacePiece};
+pub(crate) use super::full_model::full_deflection_m;
 pub use super::full_model::{full_objectives, objectives_with};
 use super::levels::OutwardIn;
 use super::prismatic::SpacePrismatic;
@@ -15,35 +16,35 @@ use crate::pareto::objectives::Objectives;
 use crate::sizing::drive::Drive;
 use nalgebra::Matrix3;
 
-/// The part chosen for one piece of the arm.
+/// The part that a design has at one piece of the arm.
 #[derive(Debug, Clone)]
 pub enum Part<'a> {
-    /// A drive of the catalogs.
+    /// The part is a drive from the catalogs.
     Drive(Drive<'a>),
-    /// A material and section.
+    /// The part is a link, with its material and cross-section.
     Link(&'a LinkOption),
-    /// The study gives this piece; nothing was chosen.
+    /// The study gives this piece, so no part is chosen for it.
     Given,
 }
 
-/// A design judged by the full model.
+/// A design that was evaluated by the full model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evaluated {
-    /// Number of the design in its space.
+    /// Number of the design in its design space.
     pub number: u128,
-    /// Objectives by the full model.
+    /// Objectives of the design by the full model.
     pub objectives: Objectives,
     /// Group (material) of the design; `None` if its links are of several materials.
     pub group: Option<usize>,
 }
 
-/// Number of the design with these options, one for each level. It is a mixed-radix number with the level of the tip as
-/// the most significant digit.
+/// Number of the design with these options, one for each level, tip first. It is a mixed-radix number in which the
+/// level nearest to the tip is the most significant digit.
 pub fn number(level_sizes: &[u32], options: &[u32]) -> u128 {
     level_sizes.iter().zip(options).fold(0, |n, (&size, &option)| n * u128::from(size) + u128::from(option))
 }
 
-/// Options of a numbered design, one for each level; `None` if no design has this number.
+/// Options of the design with this number, one for each level, tip first; `None` if no design has this number.
 pub fn options(level_sizes: &[u32], mut number: u128) -> Option<Vec<u32>> {
     let mut out = vec![0; level_sizes.len()];
     for (slot, &size) in out.iter_mut().zip(level_sizes).rev() {
@@ -53,8 +54,8 @@ pub fn options(level_sizes: &[u32], mut number: u128) -> Option<Vec<u32>> {
     (number == 0).then_some(out)
 }
 
-/// What the name of a design begins with. Spreadsheets take names such as `463e8` and `0012` for numbers, but none that
-/// begins with a letter.
+/// First character of the name of a design. Spreadsheets read names such as `463e8` or `0012` as numbers, but no name
+/// that begins with a letter.
 pub const ID_PREFIX: char = 'x';
 
 /// Name of a design in files: `x` and its number in base 36.
@@ -68,13 +69,15 @@ pub fn id_of(mut number: u128) -> String {
     digits.iter().rev().collect()
 }
 
-/// Number of the design with this name; `None` if it is no name of a design. The names in results of earlier versions
-/// lack the `x` and are read too, unless they begin with an `x` of their own: [`number_of_earlier`].
+/// Number of the design with this name; `None` if the name is not that of a design. Names in results of earlier
+/// versions lack the `x` and are read as well. An earlier name that happens to begin with `x` must be read by
+/// [`number_of_earlier`] instead.
 pub fn number_of(id: &str) -> Option<u128> {
     number_of_earlier(id.strip_prefix(ID_PREFIX).unwrap_or(id))
 }
 
-/// Number of the design with this name in a result of an earlier version: a number in base 36.
+/// Number of the design with this name in a result of an earlier version, where a name is only a number in base 36.
+/// `None` if it is not such a number.
 pub fn number_of_earlier(id: &str) -> Option<u128> {
     if id.is_empty() {
         return None;
@@ -83,12 +86,12 @@ pub fn number_of_earlier(id: &str) -> Option<u128> {
 }
 
 impl<'c> ArmProblem<'c> {
-    /// The parts of the design with these options, base to tip; `None` if the design cannot hold.
+    /// The parts of the design with these options, base to tip; `None` if the design breaks a limit.
     pub fn parts(&self, options: &[u32]) -> Option<Vec<Part<'c>>> {
         Some(self.parts_of(&self.walk(options, |_, _| {}).ok()?))
     }
 
-    /// The parts of a complete arm, base to tip.
+    /// The parts of a complete arm, one for each piece, base to tip.
     pub(crate) fn parts_of(&self, complete: &Partial) -> Vec<Part<'c>> {
         self.space()
             .pieces
@@ -105,12 +108,13 @@ impl<'c> ArmProblem<'c> {
             .collect()
     }
 
-    /// The arm of a design, with every part resolved to numbers; `None` if the design cannot hold.
+    /// The design with these `options` as an arm in which every part is given in numbers. `None` if the design breaks a
+    /// limit.
     pub fn arm(&self, options: &[u32]) -> Option<Arm> {
         self.arm_of(&self.walk(options, |_, _| {}).ok()?)
     }
 
-    /// A complete arm with every part resolved to numbers; `None` if the catalog leaves a mass blank.
+    /// A complete design as an arm in which every part is given in numbers. `None` if the catalog leaves a mass blank.
     pub(crate) fn arm_of(&self, complete: &Partial) -> Option<Arm> {
         let space = self.space();
         let parts = self.parts_of(complete);
@@ -147,7 +151,8 @@ impl<'c> ArmProblem<'c> {
         })
     }
 
-    /// What the joints of a design weigh beyond drives and bearings \[kg\]; `None` if the design cannot hold.
+    /// Mass of those parts at the joints of a design that are neither drive nor bearing \[kg\]. `None` if the design
+    /// breaks a limit.
     pub fn extras_mass_kg(&self, options: &[u32]) -> Option<f64> {
         let joints = self.space().pieces.iter().zip(self.parts(options)?);
         let extras_kg = joints.map(|(piece, part)| match (piece, part) {
@@ -156,11 +161,11 @@ impl<'c> ArmProblem<'c> {
             _ => 0.0,
         });
         const PER_KG: f64 = 1e9;
-        // to the microgram, like the mass of a drive
+        // rounded to the microgram, as the mass of a drive is
         Some((extras_kg.sum::<f64>() * PER_KG).round() / PER_KG)
     }
 
-    /// The judged cases, as load cases of the full model.
+    /// The judged cases of the study, as load cases of the full model.
     pub fn load_cases(&self) -> Vec<LoadCase> {
         let space = self.space();
         space
@@ -181,7 +186,7 @@ impl<'c> ArmProblem<'c> {
     }
 }
 
-/// The chain with the lever of every bearing resolved.
+/// The same chain with the lever of every output bearing as a number, computed from the link next to the bearing.
 fn with_levers(mut chain: Vec<Element>) -> Vec<Element> {
     for index in 0..chain.len() {
         let (inboard, outboard) = chain.split_at_mut(index + 1);
@@ -224,7 +229,7 @@ pub(crate) fn joint_with(joint: &SpaceJoint, drive: &Drive) -> Option<Joint> {
     })
 }
 
-/// A joint whose drive the study gives; `None` if it is sized.
+/// A joint whose drive the study gives; `None` if the drive is sized.
 fn given_joint(joint: &SpaceJoint) -> Option<Joint> {
     let DriveChoice::Given { curve, mass_kg, gear, motor } = &joint.drive else { return None };
     Some(Joint {
@@ -243,7 +248,8 @@ fn given_joint(joint: &SpaceJoint) -> Option<Joint> {
     })
 }
 
-/// Evaluates a numbered design by the full model. Returns `None` if there is no such design or if it cannot hold.
+/// Evaluates the design with this number by the full model. Returns `None` if there is no such design or if it breaks
+/// a limit.
 ///
 /// [`DesignSpace`](super::design_space::DesignSpace) has an example.
 pub fn evaluate(problem: &ArmProblem, number: u128) -> Option<Evaluated> {

@@ -1,4 +1,4 @@
-//! What there is to choose: an arm with open links and drives, and the task it must do.
+//! The design space: an arm whose links and drives are open, the cases in which it is judged, and its limits.
 
 use super::constraint::Constraints;
 use super::prismatic::SpacePrismatic;
@@ -28,10 +28,11 @@ use nalgebra::{Unit, Vector3};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// An arm with open choices, the cases in which it is judged, and the limits that every design must keep.
+/// An arm with open choices, the cases in which it is judged, and the limits that every design must meet.
 ///
-/// A study file is the usual source: `read_study` and `resolve` of [`study`](crate::study) make a design space of it. A
-/// program can also fill in the fields itself, as below: a steel upper arm of two possible walls on one given joint.
+/// A study file is the usual source: `read_study` and `resolve` of [`study`](crate::study) turn it into a design
+/// space. A program can also fill in the fields itself, as below. The example has a steel upper arm with a choice of
+/// two walls, on one given joint.
 ///
 /// ```
 /// use armwright::arm::{BearingSource, Curve, ExtrasSource, JointModel, LinkMaterial, LinkModel, Payload, Section};
@@ -119,64 +120,65 @@ use std::sync::Arc;
 pub struct DesignSpace {
     /// Name of the arm.
     pub name: String,
-    /// Gravity \[m/s²\].
+    /// Gravitational acceleration \[m/s²\].
     pub gravity_m_s2: f64,
     /// Direction of gravity in the world, a unit vector: -z for an arm that stands upright.
     pub down: Vector3<f64>,
-    /// Joints and links from base to tip.
+    /// Joints and links of the arm, from base to tip.
     pub pieces: Vec<SpacePiece>,
-    /// Every case in which the arm is judged or sized.
+    /// Every case of the study: those in which the arm is judged and those in which it is sized.
     pub cases: Vec<Case>,
-    /// Indices of the cases over which the objectives are taken. The worst of these cases counts.
+    /// Indices of the cases over which the objectives are taken. Of these cases the worst one counts.
     pub judged_cases: Vec<usize>,
     /// Indices of the cases in which joints are sized and stress is checked.
     pub sizing_cases: Vec<usize>,
-    /// The motion that the tip must do; joints are sized for it.
+    /// The motion that the tip must be able to do. The drives are sized for it.
     pub motion: MotionRequirement,
-    /// Physics of the links.
+    /// Model of the links: rigid, or with bending alone, or with all deformations.
     pub links: LinkModel,
-    /// Physics of the joints.
+    /// Model of the joints: which slopes of a torsion curve count.
     pub joints: JointModel,
-    /// What every design must meet.
+    /// The limits that every design must meet.
     pub constraints: Constraints,
-    /// Physics beyond the nominal model. Effects that describe a test are left out of every calculation.
+    /// Effects: physics beyond the nominal model. Effects that describe a test are left out of every calculation.
     pub effects: Vec<Effect>,
-    /// Springs that balance every design; their elements are numbered as the pieces are.
+    /// Springs that balance every design. Their ends refer to elements by the numbers of `pieces`.
     pub springs: Vec<Spring>,
 }
 
-/// One case of a study: a pose, a load, and what is around the arm.
+/// One case of a study: a pose, a load, and the medium around the arm.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Case {
-    /// Name.
+    /// Name of the case.
     pub name: String,
-    /// One entry per driven joint, base to tip: an angle \[deg\], or the travel of a prismatic joint \[mm\].
+    /// Pose of the arm: one entry per driven joint, base to tip. An entry is an angle \[deg\], or the travel of a
+    /// prismatic joint \[mm\].
     pub pose_deg: Vec<f64>,
-    /// What the arm holds.
+    /// What the arm holds at the tip.
     pub payload: Payload,
-    /// Force at the tip, world \[N\].
+    /// Force on the tip, in world axes \[N\].
     pub tip_force_n: Vector3<f64>,
-    /// Moment at the tip, world \[N m\].
+    /// Moment on the tip, in world axes \[N m\].
     pub tip_moment_nm: Vector3<f64>,
-    /// The water the arm is in.
+    /// The water around the arm; `None` in air.
     pub water: Option<Water>,
 }
 
 /// One piece of the chain.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SpacePiece {
-    /// A joint.
+    /// A joint that turns.
     Joint(SpaceJoint),
-    /// A prismatic joint, which the study gives.
+    /// A prismatic joint. Its numbers are given by the study.
     Prismatic(SpacePrismatic),
-    /// A link or offset without a choice.
+    /// A given link, or a rigid offset.
     Link(Link),
-    /// A link whose material and section are chosen.
+    /// A link whose material and section the search chooses.
     Choice(LinkChoice),
 }
 
 impl SpacePiece {
-    /// Name.
+    /// Name of the piece.
     pub fn name(&self) -> &str {
         match self {
             Self::Joint(joint) => &joint.name,
@@ -206,7 +208,7 @@ impl SpacePiece {
         }
     }
 
-    /// The choices of a link, to be changed; `None` for a piece that leaves no section open.
+    /// The options of a link, for changing them; `None` for a piece that leaves no section open.
     pub(crate) fn as_choice_mut(&mut self) -> Option<&mut LinkChoice> {
         match self {
             Self::Choice(choice) => Some(choice),
@@ -215,36 +217,38 @@ impl SpacePiece {
     }
 }
 
-/// A joint and how its drive is found.
+/// A joint that turns, and how its drive is found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpaceJoint {
-    /// Name.
+    /// Name of the joint.
     pub name: String,
-    /// Axis, in the frame that the joints before it carry.
+    /// Axis of the joint, in the frame that the joints inboard of it carry along.
     pub axis: Unit<Vector3<f64>>,
-    /// Where the output bearing of the joint comes from.
+    /// Where the output bearing of the joint comes from: it is stated, or it comes with the chosen gear.
     pub bearing: BearingSource,
     /// Where the masses beyond gear, motor and bearing come from.
     pub extras: ExtrasSource,
-    /// Rigid bodies that the joint carries beyond all these.
+    /// Rigid bodies at the joint, in addition to drive, bearing and extras.
     pub bodies: JointBodies,
-    /// How the drive of the joint is found.
+    /// How the drive of the joint is found: given, by first fit, or chosen by the search.
     pub drive: DriveChoice,
-    /// Largest speed that the study asks for \[rad/s\]; `None`: the speed that follows from the tip's.
+    /// Largest speed that the study asks of the joint \[rad/s\]; `None` if the speed follows from the speed of the
+    /// tip.
     pub max_speed_rad_s: Option<f64>,
-    /// Smallest and largest angle to which the joint turns \[deg\]; `None`: not stated.
+    /// Smallest and largest angle of the joint \[deg\]; `None` if the study does not state them.
     pub range_deg: Option<[f64; 2]>,
-    /// Whether a brake holds the joint at rest, so that the motor need not.
+    /// Whether a brake holds the joint at rest, so that the motor does not need a holding torque.
     pub has_brake: bool,
-    /// A duty that the study states for this joint, in place of its cycle.
+    /// Duty that the study states for this joint in numbers; `None` if the duty follows from the study's cycle.
     pub duty: Option<StatedDuty>,
-    /// What the study asks of the sizes of the joint's parts.
+    /// Limits of the study on the sizes of the joint's parts.
     pub fit: FitRequirement,
-    /// Compliance of the connections at the joint as a share of that of its gear and its bearing. What the study states in
-    /// numbers has it already.
+    /// Compliance of the connections at the joint, as a fraction of the compliance of gear and bearing (0.1 is 10 %).
+    /// Compliances that the study states in numbers include the connections already.
     pub connection_share: f64,
-    /// The angle of a passive joint: a sum of factors times the angles of driven joints inboard of it. `None` for a driven
-    /// joint, which has an entry in every pose.
+    /// For a passive joint, the driven joints inboard that turn it, each by name and with its factor: the angle of the
+    /// passive joint is the sum of the factors times their angles. `None` for a driven joint, which has an entry in
+    /// every pose.
     pub coupled: Option<Vec<(String, f64)>>,
     /// Stages between motor, gear and joint. Those of a drive that is given yield in its curve already.
     pub stages: Stages,
@@ -266,51 +270,51 @@ pub struct MotorPlace {
     pub point_m: Vector3<f64>,
 }
 
-/// How a joint's drive is found.
+/// How the drive of a joint is found.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DriveChoice {
-    /// The study gives the drive in numbers, with the names of its parts if they are in a catalog.
+    /// The study gives the drive in numbers. It may name its gear and motor, if they are in a catalog.
     Given {
-        /// Torsion curve.
+        /// Torsion curve of the drive.
         curve: Curve,
-        /// Mass \[kg\].
+        /// Mass of the drive \[kg\].
         mass_kg: f64,
-        /// Gear by name.
+        /// Name of the gear; `None` if the study names none.
         gear: Option<String>,
-        /// Motor by name.
+        /// Name of the motor; `None` if the study names none.
         motor: Option<String>,
     },
-    /// The lightest drive of the catalogs that holds (the paper's way).
+    /// The lightest drive of the catalogs that meets the demand, as in the paper.
     FirstFit(DriveFilter),
-    /// Every drive of the catalogs that holds.
+    /// Every drive of the catalogs that meets the demand. The search chooses between them.
     AllFits(DriveFilter),
 }
 
-/// A link whose material and section are chosen.
+/// A link whose material and section the search chooses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinkChoice {
-    /// Name.
+    /// Name of the link.
     pub name: String,
-    /// From root to end \[m\].
+    /// Vector from the root to the end of the link \[m\].
     pub vector_m: Vector3<f64>,
-    /// The materials and sections to choose from; shared, so that a copy of a space of many is cheap.
+    /// The materials and sections to choose from. Copies of a space share this list, because it may be long.
     pub options: Arc<[LinkOption]>,
-    /// Rigid bodies that the link carries, whichever tube it has.
+    /// Rigid bodies attached to the link, the same for every option.
     pub bodies: Vec<RigidBody>,
-    /// The places of these options in the whole list; `None` if this is the whole list.
+    /// Which options of the whole list these are; `None` if this is the whole list.
     pub excerpt: Option<Excerpt>,
 }
 
-/// Which options of a longer list were kept.
+/// Which options of the whole list of a link were kept in a reduced space.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Excerpt {
-    /// Place of each option in the whole list, ascending.
+    /// Index of each kept option in the whole list, ascending.
     pub places: Vec<u32>,
     /// Number of options in the whole list.
     pub of: u32,
 }
 
-/// One material and section.
+/// One material and cross-section of a link.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LinkOption {
     /// Number of the material in the study. A material has the same number on every link.
@@ -319,25 +323,27 @@ pub struct LinkOption {
     pub material_name: String,
     /// Elastic properties and density of the material.
     pub material: LinkMaterial,
-    /// Cross-section.
+    /// Cross-section of the link.
     pub section: Section,
-    /// Designation, if the section is a catalog profile.
+    /// Designation of the catalog profile; `None` if the section is not from a catalog.
     pub profile: Option<String>,
-    /// Strength of the material \[Pa\]; that in tension if it has another in compression.
+    /// Strength of the material \[Pa\]. If the strength in compression differs, this is the strength in tension.
+    /// `None` if unknown.
     pub strength_pa: Option<f64>,
-    /// Strength of the material in compression \[Pa\]; `None` if it is the same.
+    /// Strength of the material in compression \[Pa\]; `None` if it equals the strength in tension.
     pub compressive_strength_pa: Option<f64>,
-    /// Cost of the material \[EUR/kg\].
+    /// Cost of the material \[EUR/kg\]; `None` if unknown.
     pub cost_eur_per_kg: Option<f64>,
 }
 
 impl SpaceJoint {
-    /// Whether the bearing depends on the gear that is chosen.
+    /// Whether the output bearing depends on the gear that is chosen.
     pub(crate) fn bearing_is_open(&self) -> bool {
         self.bearing == BearingSource::OfGear && self.drive.is_sized()
     }
 
-    /// Torsion curve of the joint with a gear of the catalogs, its connections included; rigid if the gear has none.
+    /// Torsion curve of the joint with a catalog gear. It includes the compliance of the connections at the joint. The
+    /// curve is rigid if the catalog has none for this gear.
     pub(crate) fn curve_with(&self, gear: &Gear) -> Curve {
         let yields = 1.0 + self.connection_share;
         let of_gear =
@@ -350,7 +356,8 @@ impl SpaceJoint {
         self.motor_place.and(drive.motor.mass_kg).unwrap_or(0.0)
     }
 
-    /// Output bearing of the joint with a drive of the catalogs, its connections included.
+    /// Output bearing of the joint with a catalog drive. It includes the compliance of the connections at the joint.
+    /// `None` if there is no bearing.
     pub(crate) fn bearing_with(&self, drive: &Drive) -> Option<Bearing> {
         match self.bearing {
             BearingSource::Stated(bearing) => bearing,
@@ -360,7 +367,8 @@ impl SpaceJoint {
         }
     }
 
-    /// The motion of the joint when its axis is at most `reach_m` \[m\] away from the tip.
+    /// The motion of the joint that follows from the motion asked of the tip. The tip is at most `reach_m` \[m\] away
+    /// from the axis of the joint.
     pub(crate) fn motion(&self, asked: &MotionRequirement, reach_m: f64) -> JointMotion {
         let motion = asked.joint_motion(reach_m, self.max_speed_rad_s);
         let motion = motion.of_joint(self.max_speed_rad_s, self.has_brake, self.duty.as_ref());
@@ -382,19 +390,20 @@ impl DriveChoice {
         matches!(self, DriveChoice::AllFits(_))
     }
 
-    /// Whether the drive is found by sizing.
+    /// Whether a drive from the catalogs is sized for the joint, by first fit or as a choice of the search.
     pub fn is_sized(&self) -> bool {
         !matches!(self, DriveChoice::Given { .. })
     }
 }
 
 impl LinkOption {
-    /// The tube as the mechanics sees it, without any effect.
+    /// The tube as the mechanics needs it, without any effect.
     pub fn beam(&self) -> Beam {
         Beam { material: self.material, section: self.section, flexibility: 1.0 }
     }
 
-    /// The option of a tube that the study gives: it has no strength and no cost.
+    /// The only option of a tube that the study gives. Strength and cost are unknown, so that no limit on them
+    /// applies.
     pub(crate) fn given(material: LinkMaterial, section: Section) -> Self {
         Self {
             material_index: 0,
@@ -408,19 +417,20 @@ impl LinkOption {
         }
     }
 
-    /// The strength that a stress is compared with \[Pa\]. Bending pulls one side of a link and presses the other, so that
-    /// the lower one counts.
+    /// The strength with which a stress is compared \[Pa\]; `None` if unknown. Bending puts one side of a link in
+    /// tension and the other in compression, so the lower of both strengths counts.
     pub fn lower_strength_pa(&self) -> Option<f64> {
         let tensile_pa = self.strength_pa?;
         Some(self.compressive_strength_pa.map_or(tensile_pa, |pa| pa.min(tensile_pa)))
     }
 
-    /// Mass per length \[kg/m\].
+    /// Mass of the link per length \[kg/m\].
     pub fn mass_kg_per_m(&self) -> f64 {
         self.material.density_kg_m3 * self.section.properties(self.material.poisson).area_m2
     }
 
-    /// Wall slenderness: the larger flat width (or the diameter) over the wall thickness. A bar has none.
+    /// Wall slenderness: ratio of the larger flat width (or of the diameter) to the wall thickness. It is 0 for a
+    /// section that is not a tube.
     pub fn wall_slenderness(&self) -> f64 {
         let (width, height) = self.section.outer_m();
         let wall = self.section.wall_m();
@@ -438,13 +448,15 @@ impl LinkOption {
 /// A joint that turns another beside its own drive, by the numbers of their pieces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SpaceLinkage {
+    /// Piece of the driven joint.
     pub driver: usize,
+    /// Piece of the passive joint.
     pub passive: usize,
-    /// Rotation of the passive joint per rotation of the driver.
+    /// Rotation of the passive joint per rotation of the driven joint.
     pub factor: f64,
 }
 
-/// A list in words; `None` if it is empty.
+/// Joins the texts in `list` that are present by "and". `None` if there is none.
 fn in_words(list: [Option<String>; 2]) -> Option<String> {
     let words: Vec<String> = list.into_iter().flatten().collect();
     (!words.is_empty()).then(|| words.join(" and "))
@@ -466,7 +478,8 @@ impl DesignSpace {
         self.pieces.iter().any(|piece| matches!(piece, SpacePiece::Prismatic(slide) if slide.drive.is_some()))
     }
 
-    /// What the bounds of the exact search do not cover in this space, in words for people; `None` if they cover all of it.
+    /// Describes in words what of this space the bounds of the exact search do not cover; `None` if they
+    /// cover all of it.
     pub(crate) fn beyond_exact(&self) -> Option<String> {
         let is_known =
             |effect: &&Effect| effect.is_of_test() || effect.kind().is_none_or(|kind| kind.traits.in_bounds);
@@ -479,13 +492,13 @@ impl DesignSpace {
         in_words([in_words([turns, motors]), law])
     }
 
-    /// What the bounds of the verifier and of the relaxation do not cover in this space, in words for people; `None` if they
-    /// cover all of it.
+    /// Describes in words what of this space the bounds of the verifier and of the linear program
+    /// (relaxation) do not cover; `None` if they cover all of it.
     pub fn beyond_bounds(&self) -> Option<String> {
         in_words([self.beyond_exact(), (!self.springs.is_empty()).then(|| "springs".into())])
     }
 
-    /// Whether a piece is a tube, or may be one.
+    /// Whether a piece is a tube, or a link whose tube is chosen.
     pub(crate) fn is_tube(&self, piece: usize) -> bool {
         match &self.pieces[piece] {
             SpacePiece::Choice(_) => true,
@@ -494,13 +507,13 @@ impl DesignSpace {
         }
     }
 
-    /// Whether a spring pulls on a tube.
+    /// Whether a balancing spring pulls on a tube.
     pub(crate) fn pulls_on_tubes(&self) -> bool {
         let on_tube = |side| matches!(side, Side::Moving(piece) if self.is_tube(piece));
         self.springs.iter().flat_map(Spring::sides).any(on_tube)
     }
 
-    /// The joints with the numbers of their pieces, base to tip.
+    /// The joints that turn, each with the number of its piece, base to tip.
     pub(crate) fn joints(&self) -> impl Iterator<Item = (usize, &SpaceJoint)> {
         self.pieces.iter().enumerate().filter_map(|(piece, what)| match what {
             SpacePiece::Joint(joint) => Some((piece, joint)),
@@ -526,7 +539,8 @@ impl DesignSpace {
         self.joints().flat_map(of).collect()
     }
 
-    /// Every driven joint with its entry in the pose of a case \[rad, m\].
+    /// Every driven joint with its entry in the pose of a case: an angle \[rad\], or the travel of a prismatic joint
+    /// \[m\].
     fn entries_si(&self, case: &Case) -> Vec<(DrivenJoint, f64)> {
         let driven = self.pieces.iter().filter_map(|piece| match piece {
             SpacePiece::Joint(joint) if joint.coupled.is_none() => Some(DrivenJoint::turning(&joint.name)),
@@ -539,13 +553,13 @@ impl DesignSpace {
         entries.map(|(joint, entry)| (joint.clone(), joint.motion.si(*entry))).collect()
     }
 
-    /// Travel of every prismatic joint in a case, base to tip \[m\].
+    /// Travel of every prismatic joint in the pose of a case, base to tip \[m\].
     pub(crate) fn travels_m(&self, case: &Case) -> Vec<f64> {
         let entries = self.entries_si(case).into_iter();
         entries.filter(|(joint, _)| joint.motion == Motion::Slides).map(|(_, travel_m)| travel_m).collect()
     }
 
-    /// Angle of every joint in a case, base to tip, those of passive joints too \[rad\].
+    /// Angle of every joint in a case, base to tip \[rad\]. The angles of passive joints are included.
     pub(crate) fn angles_rad(&self, case: &Case) -> Vec<f64> {
         let entries = self.entries_si(case);
         let of = |name: &String| {
@@ -558,8 +572,8 @@ impl DesignSpace {
         self.joints().map(angle).collect()
     }
 
-    /// Stress at peak load over stress at rest: by the paper's reading the acceleration a adds a/g times the static load.
-    /// Without gravity no stress is limited, and the factor is 1.
+    /// Ratio of the stress at peak load to the stress at rest. As the paper does, it assumes that an acceleration a
+    /// of the tip adds a/g times the static load. Without gravity no stress is limited, and the ratio is 1.
     pub(crate) fn peak_factor(&self) -> f64 {
         match self.gravity_m_s2 > 0.0 {
             true => 1.0 + self.motion.tip_acceleration_m_s2() / self.gravity_m_s2,
@@ -567,7 +581,7 @@ impl DesignSpace {
         }
     }
 
-    /// Number of options of all open links together.
+    /// Number of options of all open links, added up.
     pub fn link_options(&self) -> usize {
         let options = |piece: &SpacePiece| match piece {
             SpacePiece::Choice(choice) => choice.options.len(),
@@ -576,7 +590,7 @@ impl DesignSpace {
         self.pieces.iter().map(options).sum()
     }
 
-    /// Names of the materials that links can be made of, in the study's order.
+    /// Names of the materials that links can be made of, in the order of the study.
     pub fn material_names(&self) -> Vec<String> {
         let choices = self.pieces.iter().filter_map(SpacePiece::as_choice);
         let options = choices.flat_map(|choice| choice.options.iter());

@@ -1,8 +1,9 @@
-//! The effects of a study, as pieces that the search adds to the arm.
+//! The arm of a study and its effects, as *layers*: what the search adds to the arm, step by step from the tip inward.
 //!
-//! An effect changes the law of a joint or the tube of a link, or it adds a piece of its own to the chain: a spring that
-//! tilts, or a mass. The code that applies an effect to an arm file applies it here too, so the search, `analyze` and
-//! `reconcile` compute the same thing. Stations, rows and lanes know pieces only; they know nothing of effects.
+//! An effect changes the joint law of a joint (its angle as a function of torque) or the tube of a link, or it adds
+//! an element to the chain: a spring that tilts, or a mass. The code that applies an effect to an arm file applies it
+//! here too, so that the search, `analyze` and `reconcile` compute the same thing. The code that evaluates designs
+//! knows only these elements, and nothing of effects.
 
 use super::design_space::{DesignSpace, MotorPlace, SpaceJoint, SpacePiece};
 use super::prismatic::SpacePrismatic;
@@ -19,29 +20,30 @@ use crate::mechanics::beam::section_frame;
 use crate::mechanics::chain::across;
 use nalgebra::{Rotation3, Vector3};
 
-/// What the search adds to an arm in one step.
+/// A layer: what the search adds to an arm in one step. Each layer becomes one slot.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Layer<'s> {
-    /// A piece of the chain.
+    /// A joint, link or prismatic joint of the chain.
     Piece(&'s SpacePiece),
-    /// A spring about an axis across the axis of a joint.
+    /// A spring that lets a joint tilt about an axis at right angles to the joint's axis.
     Tilt(Tilt<'s>),
-    /// A spring of the guide of a prismatic joint.
+    /// A rotational spring of the guide of a prismatic joint.
     Guide(GuideSpring<'s>),
-    /// A spring of the output bearing of the gear that is chosen for a joint.
+    /// A spring of the output bearing that comes with the gear chosen for a joint.
     Bearing(BearingSpring<'s>),
     /// The motor of a joint further out whose drive is sized.
     Motor(MotorElsewhere),
     /// A point mass at a joint that an effect adds: it weighs, but is none of the links and drives whose mass counts
     /// \[kg\].
     Mass(f64),
-    /// The same at the moved point of a prismatic joint \[kg\].
+    /// A point mass \[kg\] that an effect adds at the moving point of a prismatic joint. It has weight and inertia, but
+    /// does not count in the mass of the design.
     Travelling(f64),
-    /// A point mass at a joint that counts in the mass of the design, such as a bearing of its own \[kg\].
+    /// A point mass \[kg\] at a joint that counts in the mass of the design, such as a separate output bearing.
     Extra(f64),
-    /// Rigid bodies, which count in the mass of the design.
+    /// Rigid bodies of a piece. They count in the mass of the design.
     Bodies(Carried<'s>),
-    /// What the springs that balance the arm do to a part of it.
+    /// Forces and moments of the springs that balance the arm, on one side of a joint or on a link.
     Springs(Side),
 }
 
@@ -58,18 +60,20 @@ pub(crate) struct MotorElsewhere {
 /// Rigid bodies of a piece.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Carried<'s> {
+    /// The rigid bodies.
     pub bodies: &'s [RigidBody],
+    /// The frame or tube to which the bodies are attached.
     pub by: Carrier,
 }
 
-/// What carries bodies.
+/// The frame or tube to which the bodies of a piece are attached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Carrier {
-    /// The frame in which the piece begins.
+    /// The frame in which the piece begins, inboard of any rotation of the piece itself.
     Frame,
-    /// The frame after the rotation or the travel of the joint.
+    /// The frame after the rotation or travel of the joint.
     RotatedFrame,
-    /// The axis of a tube, which the bodies bend; otherwise they move with its root.
+    /// The axis of a tube. The weight of the bodies bends the tube, but their mass moves with the root of the tube.
     Tube,
 }
 
@@ -80,65 +84,69 @@ impl Carried<'_> {
     }
 }
 
-/// Layer of some bodies; none if there are no bodies.
+/// The layer of the bodies `bodies`, which are attached to `by`. `None` if there are none.
 fn carried(bodies: &[RigidBody], by: Carrier) -> Option<Layer<'_>> {
     (!bodies.is_empty()).then_some(Layer::Bodies(Carried { bodies, by }))
 }
 
-/// The axis about which a spring turns.
+/// The axis about which a rotational spring turns.
 #[derive(Debug, Clone, Copy)]
 enum About<'s> {
-    /// One of the two axes across the axis of a joint.
+    /// One of the two axes at right angles to the axis of a joint; the number (0 or 1) says which.
     Across(&'s SpaceJoint, usize),
-    /// An axis of the frame that the spring stands in.
+    /// An axis in the frame to which the spring is attached.
     Fixed(Vector3<f64>),
-    /// An axis of the world.
+    /// An axis in the world.
     World(Vector3<f64>),
 }
 
-/// A spring of a bearing that tilts, of a frame that yields, or of the base.
+/// A rotational spring: of a bearing that tilts, of a compliant frame at the root of a link, or of the base.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Tilt<'s> {
     about: About<'s>,
-    /// Twist under a moment.
+    /// Angle of the spring \[rad\] as a function of the moment \[N m\].
     law: JointLaw,
 }
 
-/// One of the two springs of the bearing of a joint whose gear is chosen.
+/// One of the two springs of the output bearing of a joint whose gear is chosen.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BearingSpring<'s> {
+    /// The joint that has the bearing.
     pub joint: &'s SpaceJoint,
+    /// Which of the two axes at right angles to the joint's axis the spring turns about (0 or 1).
     which: usize,
 }
 
-/// A spring of the guide of a prismatic joint.
+/// A rotational spring of the guide of a prismatic joint.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct GuideSpring<'s> {
+    /// The prismatic joint.
     slide: &'s SpacePrismatic,
+    /// Axis of the spring: 0 along the travel, 1 and 2 at right angles to it.
     which: usize,
-    /// Tilt per moment \[rad/(N m)\].
+    /// Compliance of the spring \[rad/(N m)\].
     rad_per_nm: f64,
 }
 
 impl GuideSpring<'_> {
-    /// Axis of the spring in the world. `rotation` is the attitude of the frame that the joint stands in.
+    /// Axis of the spring in the world. `rotation` is the attitude of the frame in which the joint begins.
     pub(crate) fn axis(&self, rotation: &Rotation3<f64>) -> Vector3<f64> {
         rotation * section_frame(&self.slide.joint.axis).column(self.which)
     }
 
-    /// Twist of the spring under a moment.
+    /// Angle of the spring \[rad\] as a function of the moment \[N m\].
     pub(crate) fn law(&self) -> JointLaw {
         linear_law(self.rad_per_nm)
     }
 }
 
-/// The law of a spring that yields in proportion.
+/// The joint law of a linear spring with this compliance (rad/(N m), or m/N for a prismatic joint).
 fn linear_law(compliance: f64) -> JointLaw {
     JointLaw { connection_rad_per_nm: compliance, ..JointLaw::from(Curve::Rigid) }
 }
 
 impl<'s> Layer<'s> {
-    /// Whether the layer stands where its piece ends rather than where it begins.
+    /// Whether the layer is placed at the end of its piece rather than at its beginning.
     pub(crate) fn is_at_end(&self) -> bool {
         let is_carriage = |slide: &SpacePrismatic| slide.joint.moves == Moves::Carriage;
         match self {
@@ -150,7 +158,7 @@ impl<'s> Layer<'s> {
         }
     }
 
-    /// The joint about whose axes across this spring tilts; `None` for what is no spring of a bearing that is known.
+    /// The joint of which this layer is a spring of the stated bearing; `None` for every other layer.
     pub(crate) fn bearing_of(&self) -> Option<&'s SpaceJoint> {
         match self {
             Layer::Tilt(Tilt { about: About::Across(joint, _), .. }) => Some(joint),
@@ -160,14 +168,14 @@ impl<'s> Layer<'s> {
 }
 
 impl BearingSpring<'_> {
-    /// Axis of the spring in the world. `rotation` is the attitude of the frame that the joint stands in.
+    /// Axis of the spring in the world. `rotation` is the attitude of the frame in which the joint begins.
     pub(crate) fn axis(&self, rotation: &Rotation3<f64>) -> Vector3<f64> {
         across(&(rotation * self.joint.axis))[self.which]
     }
 }
 
 impl Tilt<'_> {
-    /// Axis of the spring in the world. `rotation` is the attitude of the frame that the spring stands in.
+    /// Axis of the spring in the world. `rotation` is the attitude of the frame to which the spring is attached.
     pub(crate) fn axis(&self, rotation: &Rotation3<f64>) -> Vector3<f64> {
         match self.about {
             About::Across(joint, which) => across(&(rotation * joint.axis))[which],
@@ -176,23 +184,24 @@ impl Tilt<'_> {
         }
     }
 
-    /// A spring that yields in proportion to the moment.
+    /// A linear spring that turns about the axis `about` with the compliance `rad_per_nm` \[rad/(N m)\].
     fn linear(about: About<'_>, rad_per_nm: f64) -> Tilt<'_> {
         Tilt { about, law: JointLaw { connection_rad_per_nm: rad_per_nm, ..JointLaw::from(Curve::Rigid) } }
     }
 
-    /// Twist of the spring under a moment.
+    /// Angle of the spring \[rad\] as a function of the moment \[N m\].
     pub(crate) fn law(&self) -> JointLaw {
         self.law
     }
 }
 
 impl DesignSpace {
-    /// Everything that the search adds, tip first, each with the number of the piece (base to tip) at which it stands.
+    /// All layers that the search adds, tip first, each with the number of its piece (base to tip).
     ///
-    /// All three springs of a joint turn about the same point, so their order does not matter. The springs of a bearing
-    /// that is known come before the torsion of the joint: they are computed once and not once for each drive. Those of
-    /// the bearing of a gear that is chosen follow the gear.
+    /// All three springs of a joint turn about the same point, so their order does not change the mechanics. If the
+    /// bearing of a joint is stated, its springs are added before the torsion of the joint, because they can then be
+    /// computed once and not once for each drive. If the bearing comes with the gear, its springs are added after the
+    /// gear is chosen.
     pub(crate) fn layers(&self) -> Vec<(usize, Layer<'_>)> {
         let mut out = Vec::with_capacity(self.pieces.len());
         for (index, piece) in self.pieces.iter().enumerate().rev() {
@@ -259,7 +268,8 @@ impl DesignSpace {
         out
     }
 
-    /// Adds the layers of a prismatic joint: what travels, drive and guide, what stays.
+    /// Adds the layers of a prismatic joint, tip first: the bodies that travel, the drive and the guide, and the
+    /// bodies that stay in place.
     fn add_prismatic<'s>(
         &'s self,
         index: usize,
@@ -284,7 +294,7 @@ impl DesignSpace {
         out.extend(self.motors_on(index, false));
     }
 
-    /// A prismatic joint with the effects at it.
+    /// A prismatic joint with the effects that act on it.
     fn prismatic_piece(&self, slide: &SpacePrismatic) -> PrismaticPiece {
         let nominal = slide.joint.piece(0);
         match self.affected(Piece::Prismatic(nominal.clone())) {
@@ -293,12 +303,14 @@ impl DesignSpace {
         }
     }
 
-    /// Way of a prismatic joint along its travel under a force, as a law of a coordinate \[m/N\].
+    /// The linear law by which a prismatic joint deflects elastically along its travel: the displacement as a function
+    /// of the force \[m/N\]. Effects on the joint are included.
     pub(crate) fn slide_law(&self, slide: &SpacePrismatic) -> JointLaw {
         linear_law(self.prismatic_piece(slide).m_per_n)
     }
 
-    /// Where along a piece springs pull (0 to 1), in the order in which they load it; none if it is no tube.
+    /// The points of the link at `piece` at which springs pull, from 0 (root) to 1 (end), in the order in which the
+    /// springs load it. Empty for a joint.
     pub(crate) fn pulled_at(&self, piece: usize) -> Vec<f64> {
         let vector_m = match &self.pieces[piece] {
             SpacePiece::Link(link) => link.vector_m,
@@ -313,7 +325,8 @@ impl DesignSpace {
         here.map(|end| along(&vector_m, &end.point_m)).collect()
     }
 
-    /// Layer of what springs do to a part of a piece; none if they do not load it.
+    /// The layer with the forces of springs on the side `on` of the joint at `piece`, or on the link there. `None` if
+    /// no spring acts there.
     fn pulled(&self, piece: usize, on: Side) -> Option<(usize, Layer<'_>)> {
         let is_pulled = self.springs.iter().any(|spring| spring.sides().contains(&on));
         is_pulled.then_some((piece, Layer::Springs(on)))
@@ -334,8 +347,8 @@ impl DesignSpace {
         springs.map(|(axis, c)| Layer::Tilt(Tilt::linear(About::Fixed(axis), c)))
     }
 
-    /// A joint with this torsion curve and bearing, under the joint model of the study and with the effects at the joint. The mass of
-    /// the piece is what the effects add.
+    /// The joint with the torsion curve `curve` and the output bearing `bearing`. The joint model of the study and the
+    /// effects at the joint are applied. The mass of the returned piece is only the mass that the effects add \[kg\].
     pub(crate) fn joint_piece(
         &self,
         joint: &SpaceJoint,
@@ -348,12 +361,12 @@ impl DesignSpace {
             Some(Piece::Joint(joint)) => joint,
             _ => nominal,
         };
-        // an effect may bring a curve of its own
+        // an effect may replace the curve, so the joint model is applied to it again
         affected.law.curve = affected.law.curve.reduced(self.joints);
         affected
     }
 
-    /// A link with the effects at this link.
+    /// A link with the effects that act on it.
     pub(crate) fn link_piece(&self, link: &Link) -> LinkPiece {
         let nominal = link_piece(link);
         match self.affected(Piece::Link(nominal.clone())) {
@@ -362,17 +375,17 @@ impl DesignSpace {
         }
     }
 
-    /// The surroundings of the arm: gravity, the base and water, as a structure without pieces.
+    /// Gravity, base and water around the arm with all effects, as a structure without pieces.
     pub(crate) fn surroundings(&self) -> Structure {
         self.with_effects(Vec::new())
     }
 
-    /// The torque that acts on a joint beside weight and load.
+    /// The torque that effects exert on a joint in addition to weight and load, as a function of the joint's angle.
     pub(crate) fn joint_torque(&self, joint: &SpaceJoint) -> JointTorque {
         self.joint_piece(joint, Curve::Rigid, None).torque
     }
 
-    /// Mass that the effects add to the links and drives of the arm \[kg\]. It is the same for every design.
+    /// Mass that the effects add to the joints and links of the arm \[kg\]. It is the same for every design.
     pub fn effects_mass_kg(&self) -> f64 {
         self.nominal_structure()
             .pieces
@@ -386,8 +399,8 @@ impl DesignSpace {
             .sum()
     }
 
-    /// Names and kinds of all pieces without any effect, to check where effects can sit. Joints are rigid and have no
-    /// mass; open links have their first option.
+    /// All pieces of the arm without any effect, to check at which pieces an effect can act. Joints are rigid and
+    /// have no mass. Links that are chosen have their first option.
     pub fn nominal_structure(&self) -> Structure {
         let piece = |piece: &SpacePiece| match piece {
             SpacePiece::Joint(joint) => Piece::Joint(nominal_joint(joint, Curve::Rigid)),
@@ -403,7 +416,7 @@ impl DesignSpace {
         self.structure_of(self.pieces.iter().map(piece).collect())
     }
 
-    /// A structure of pieces under the gravity of the study, without any effect.
+    /// A structure of these pieces under the gravity of the study, without any effect.
     pub(crate) fn structure_of(&self, pieces: Vec<Piece>) -> Structure {
         Structure { down: self.down, ..Structure::nominal(self.gravity_m_s2, pieces) }
     }
@@ -433,13 +446,13 @@ fn nominal_joint(joint: &SpaceJoint, curve: Curve) -> JointPiece {
     }
 }
 
-/// The two springs of a bearing or base that tilts; none if it is rigid.
+/// The two springs of a bearing or base that tilts; none if it is rigid. The compliance of each is `rad_per_nm`.
 fn tilts(axes: [About<'_>; 2], rad_per_nm: f64) -> impl Iterator<Item = Layer<'_>> {
     let present = axes.into_iter().filter(move |_| rad_per_nm > 0.0);
     present.map(move |about| Layer::Tilt(Tilt::linear(about, rad_per_nm)))
 }
 
-/// Where along a link a point of its frame is nearest (0 to 1).
+/// The point of a link's axis that is nearest to a point of the link's frame, from 0 (root) to 1 (end).
 pub(crate) fn along(vector_m: &Vector3<f64>, point_m: &Vector3<f64>) -> f64 {
     (vector_m.dot(point_m) / vector_m.norm_squared()).clamp(0.0, 1.0)
 }

@@ -1,48 +1,56 @@
-//! Excerpts: a design space reduced to the options that some of its designs use.
+//! Excerpts: a design space reduced to the options that a few of its designs use.
 //!
 //! A space may have a hundred thousand sections for each link, while its front has a few thousand designs. An
-//! [`ArmProblem`] tabulates every option in every pose, so one of the excerpt is much smaller than one of the whole
-//! space. A design keeps its number in the whole space, and with it its name.
+//! [`ArmProblem`] has tables of every option in every pose, so that an `ArmProblem` of an excerpt is much smaller. A
+//! design keeps the number that it has in the whole space, and with it its name.
 
 use super::design::{number, options};
 use super::design_space::{DesignSpace, Excerpt, LinkChoice, LinkOption, SpacePiece};
+use super::joints::TabulatedJoints;
 use super::problem::ArmProblem;
-use super::slot::{Slot, joint_slot};
-use super::station::reaches_m;
+use super::slot::Slot;
 use crate::catalog::Catalogs;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
 impl DesignSpace {
-    /// Number of options of each level, tip first. It is found without tabulating the options of links.
+    /// Number of options of each level, tip first. The tables of link options are not needed for it.
     pub fn level_sizes(&self, catalogs: &Catalogs) -> Vec<u32> {
-        let sizing = self.sizing_cases.iter().map(|&i| &self.cases[i]);
-        let mut reaches = reaches_m(self, sizing).into_iter();
-        let mut sizes: Vec<u32> = self
-            .pieces
-            .iter()
-            .filter_map(|piece| match piece {
-                SpacePiece::Joint(joint) => {
-                    let slot = joint_slot(self, joint, reaches.next().unwrap_or_default(), catalogs);
-                    slot.is_level().then(|| slot.options())
-                }
-                SpacePiece::Choice(choice) => Some(choice.options.len() as u32),
-                SpacePiece::Prismatic(_) | SpacePiece::Link(_) => None,
-            })
-            .collect();
+        self.level_sizes_with(&TabulatedJoints::new(self, catalogs))
+    }
+
+    /// As [`level_sizes`](Self::level_sizes), of joints that are tabulated already.
+    fn level_sizes_with(&self, joints: &TabulatedJoints) -> Vec<u32> {
+        let size = |(place, piece): (usize, &SpacePiece)| match piece {
+            SpacePiece::Joint(_) => joints.get(place).filter(|slot| slot.is_level()).map(Slot::options),
+            SpacePiece::Choice(choice) => Some(choice.options.len() as u32),
+            SpacePiece::Prismatic(_) | SpacePiece::Link(_) => None,
+        };
+        let mut sizes: Vec<u32> = self.pieces.iter().enumerate().filter_map(size).collect();
         sizes.reverse();
         sizes
     }
 
-    /// Number of designs; `None` if it does not fit into 128 bits.
+    /// Number of designs in the space; `None` if it does not fit into 128 bits.
     pub fn designs(&self, catalogs: &Catalogs) -> Option<u128> {
-        self.level_sizes(catalogs).into_iter().try_fold(1u128, |n, size| n.checked_mul(u128::from(size)))
+        self.designs_with(&TabulatedJoints::new(self, catalogs))
     }
 
-    /// The space reduced to the link options that the designs with these numbers use; `None` if one of the designs is
-    /// not in the space.
+    /// As [`designs`](Self::designs), of joints that are tabulated already.
+    pub(crate) fn designs_with(&self, joints: &TabulatedJoints) -> Option<u128> {
+        let sizes = self.level_sizes_with(joints);
+        sizes.into_iter().try_fold(1u128, |n, size| n.checked_mul(u128::from(size)))
+    }
+
+    /// The space reduced to the link options that the designs with these numbers use; `None` if a number belongs to
+    /// no design of the space.
     pub fn excerpt(&self, catalogs: &Catalogs, designs: &[u128]) -> Option<DesignSpace> {
-        let sizes = self.level_sizes(catalogs);
+        self.excerpt_with(&TabulatedJoints::new(self, catalogs), designs)
+    }
+
+    /// As [`excerpt`](Self::excerpt), of joints that are tabulated already.
+    pub(crate) fn excerpt_with(&self, joints: &TabulatedJoints, designs: &[u128]) -> Option<DesignSpace> {
+        let sizes = self.level_sizes_with(joints);
         let mut used: Vec<BTreeSet<u32>> = vec![BTreeSet::new(); sizes.len()];
         for &design in designs {
             for (used, option) in used.iter_mut().zip(options(&sizes, design)?) {
@@ -53,8 +61,8 @@ impl DesignSpace {
         self.of_options(&lists)
     }
 
-    /// The space reduced to the link options listed for each level. Levels are in order from the tip, and the numbers of a
-    /// level are ascending. Returns `None` if a level has no list.
+    /// The space reduced to the link options that are listed for each level. Levels are in order from the tip, and
+    /// the options of a level are in ascending order. Returns `None` if there are fewer lists than levels.
     pub fn of_options(&self, lists: &[Vec<u32>]) -> Option<DesignSpace> {
         let mut out = self.clone();
         let mut levels = lists.iter();
@@ -71,7 +79,7 @@ impl DesignSpace {
         Some(out)
     }
 
-    /// The space with at most `most` options for every open link: those of middling mass.
+    /// The space with at most `most` options for each open link: those in the middle of the order by mass.
     pub fn middle(&self, most: u32) -> DesignSpace {
         let mut out = self.clone();
         for piece in &mut out.pieces {
@@ -89,7 +97,7 @@ impl DesignSpace {
         out
     }
 
-    /// Numbers the materials that are left without gaps, in the order of the study.
+    /// Numbers the remaining materials from 0 without gaps, in the order of the study.
     pub(crate) fn renumber_materials(&mut self) {
         let choices = self.pieces.iter().filter_map(SpacePiece::as_choice);
         let used: BTreeSet<usize> =
@@ -104,8 +112,7 @@ impl DesignSpace {
 }
 
 impl LinkChoice {
-    /// Keeps the options at these places of the whole list.
-    /// Places of the options from the lightest to the heaviest; among equals, as they are listed.
+    /// Indices of the options from the lightest to the heaviest; options of equal mass are in the order of the list.
     pub(crate) fn by_mass(&self) -> Vec<u32> {
         let kg_per_m: Vec<f64> = self.options.iter().map(LinkOption::mass_kg_per_m).collect();
         let mut places: Vec<u32> = (0..self.options.len() as u32).collect();
@@ -113,7 +120,8 @@ impl LinkChoice {
         places
     }
 
-    /// Keeps at most `most` options, the lightest, the heaviest, and others spread evenly between them by mass.
+    /// Reduces the options to at most `most`: the lightest, the heaviest, and others at equal steps between them in the
+    /// order by mass.
     pub(crate) fn spread(&mut self, most: u32) {
         let by_mass = self.by_mass();
         let (last, steps) = (by_mass.len().saturating_sub(1), most.max(2) as usize - 1);
@@ -124,6 +132,7 @@ impl LinkChoice {
         }
     }
 
+    /// Keeps only the options at these indices of the list, and remembers the indices.
     fn keep(&mut self, places: Vec<u32>) {
         let of = self.options.len() as u32;
         self.options = places.iter().map(|&i| self.options[i as usize].clone()).collect();
@@ -132,8 +141,8 @@ impl LinkChoice {
 }
 
 impl ArmProblem<'_> {
-    /// Whether two designs are ties: they differ in drives of equal mass and equal torsion curve alone. Both are given by
-    /// their options in the whole space.
+    /// Whether two designs are ties: they differ only in drives of equal mass, torsion curve and bearing stiffness.
+    /// Both designs are given by their options in the whole space, one for each level.
     pub fn are_ties(&self, a: &[u32], b: &[u32]) -> bool {
         let pairs = self.level_slots().iter().zip(a.iter().zip(b));
         pairs.into_iter().all(|(&slot, (a, b))| match &self.slots()[slot] {
@@ -142,10 +151,10 @@ impl ArmProblem<'_> {
         })
     }
 
-    /// Number in the whole space of a design of this space.
+    /// Number that a design of this (reduced) space has in the whole space.
     pub fn whole_number(&self, design: u128) -> u128 {
         let here = options(self.level_sizes_slice(), design).unwrap_or_default();
-        // a level that keeps its whole list has the same sizes and places in both spaces
+        // a level that was not reduced has the same size and the same options in both spaces
         let (sizes, places): (Vec<u32>, Vec<u32>) = self
             .excerpts()
             .zip(here.iter().zip(self.level_sizes_slice()))
@@ -156,8 +165,8 @@ impl ArmProblem<'_> {
         number(&sizes, &places)
     }
 
-    /// Options in this space of a design of the whole space, one for each level; `None` if the design needs an option that
-    /// was not kept.
+    /// Options, in this (reduced) space, of a design of the whole space, one for each level; `None` if the design
+    /// uses an option that was not kept.
     pub fn options_of_whole(&self, design: u128) -> Option<Vec<u32>> {
         let excerpts: Vec<Option<&Excerpt>> = self.excerpts().collect();
         let sizes: Vec<u32> = excerpts
@@ -175,7 +184,7 @@ impl ArmProblem<'_> {
             .collect()
     }
 
-    /// The excerpt of each level, tip first; `None` for a level with its whole list.
+    /// The excerpt of each level, tip first; `None` for a level that was not reduced.
     fn excerpts(&self) -> impl Iterator<Item = Option<&Excerpt>> {
         self.level_slots().iter().map(|&slot| match &self.space().pieces[self.piece_of_slot(slot)] {
             SpacePiece::Choice(choice) => choice.excerpt.as_ref(),

@@ -1,7 +1,7 @@
-//! The room that links leave to the parts of the joints that carry them.
+//! The room that links leave for the gears and motors of the joints to which they attach.
 //!
-//! A joint carries the first tube between it and the next joint outboard. With rigid offsets alone it carries no link, and
-//! what a study asks of the link is not checked there.
+//! The link of a joint is the first tube between it and the next joint outboard. If there are only rigid offsets, the
+//! joint has no link here, and the limits that refer to a link are not checked at it.
 
 use super::design_space::{SpaceJoint, SpacePiece};
 use crate::arm::section::Section;
@@ -10,19 +10,20 @@ use crate::mechanics::beam::section_frame;
 use crate::sizing::fit::{FitRequirement, LinkRoom};
 use nalgebra::{Unit, Vector3};
 
-/// Cosine between the axis of a joint and its link from which on the joint rolls the link; as for the frames of sections.
+/// Cosine of the angle between the axis of a joint and its link, above which the joint counts as one that rolls the
+/// link. The section frame of a link uses the same limit.
 const ROLLS: f64 = 0.99;
 
-/// The room at one joint.
+/// The room that the link of one joint leaves for gear and motor.
 pub(crate) struct RoomAtJoint {
-    /// Slot of the link.
+    /// Slot of the link that leaves the room.
     pub link_slot: usize,
-    /// Room by the option of the link; a single one if the study gives the link.
+    /// The room for each option of the link; a single entry if the study gives the link.
     pub rooms: Vec<LinkRoom>,
 }
 
 impl RoomAtJoint {
-    /// The rooms in all slots; `None` where nothing depends on a link.
+    /// The rooms at the joints in all slots; `None` for a slot where no limit refers to a link.
     pub(crate) fn all(pieces: &[SpacePiece], piece_slots: &[usize], slots: usize) -> Vec<Option<Self>> {
         let mut rooms: Vec<Option<Self>> = (0..slots).map(|_| None).collect();
         for (place, &slot) in piece_slots.iter().enumerate() {
@@ -31,8 +32,8 @@ impl RoomAtJoint {
         rooms
     }
 
-    /// The room at the joint in a place of the chain; `None` if nothing is asked of its link, or it carries none.
-    /// `piece_slots` are the slots of the chain's pieces.
+    /// The room at the joint with number `place` in the chain; `None` if no limit refers to its link, or if it has no
+    /// link. `piece_slots` are the slots of all pieces.
     pub(crate) fn new(pieces: &[SpacePiece], place: usize, piece_slots: &[usize]) -> Option<Self> {
         let SpacePiece::Joint(joint) = &pieces[place] else { return None };
         let link = carried_link(pieces, place).filter(|_| joint.fit.asks_of_link())?;
@@ -50,13 +51,14 @@ impl RoomAtJoint {
         Some(Self { link_slot: piece_slots[link], rooms })
     }
 
-    /// The room with the options of an arm.
+    /// The room that the link leaves if the arm has these `options`, one for each slot.
     pub(crate) fn of(&self, options: &[u32]) -> LinkRoom {
         self.rooms[options[self.link_slot] as usize]
     }
 }
 
-/// Place of the link that the joint in a place of the chain carries; `None` if there is none before the next joint.
+/// Number of the link that belongs to the joint with number `place` in the chain; `None` if there is no tube before
+/// the next joint.
 pub(crate) fn carried_link(pieces: &[SpacePiece], place: usize) -> Option<usize> {
     let outboard = pieces.iter().enumerate().skip(place + 1);
     let mut before_next_joint =
@@ -69,7 +71,7 @@ pub(crate) fn carried_link(pieces: &[SpacePiece], place: usize) -> Option<usize>
     before_next_joint.find(|(_, piece)| is_tube(piece)).map(|(link, _)| link)
 }
 
-/// Names of the joints of which a study asks something that depends on a link, and which carry none.
+/// Names of the joints for which a study limits sizes in relation to a link, but which have no link.
 pub(crate) fn joints_without_link(pieces: &[SpacePiece]) -> Vec<&str> {
     let asks = |joint: &SpaceJoint| joint.drive.is_sized() && joint.fit.asks_of_link();
     let without = pieces.iter().enumerate().filter_map(|(place, piece)| match piece {
@@ -92,15 +94,16 @@ fn room(
     fit.room(width_across_m(axis, vector_m, section), hollow_m)
 }
 
-/// Width of a link across the axis of the joint that carries it \[m\]: of a joint that turns the link, its extent in the plane in
-/// which it turns; of a joint that rolls it, the smaller of its sides.
+/// Width of a link across the axis of its joint \[m\]. If the joint turns the link, it is the extent of the section
+/// in the plane of the rotation. If the joint rolls the link about the link's own axis, it is the smaller side of the
+/// section.
 fn width_across_m(axis: &Unit<Vector3<f64>>, vector_m: &Vector3<f64>, section: &Section) -> f64 {
     let along = section_frame(vector_m).tr_mul(axis);
     let (width_m, height_m) = section.outer_m();
     if along.x.abs() > ROLLS {
         return width_m.min(height_m);
     }
-    // exact for a box that lies along the axis with one of its sides, and for a round tube
+    // exact for a box with one side along the axis, and for a round tube
     libm::hypot(width_m * along.z, height_m * along.y) / libm::hypot(along.y, along.z)
 }
 

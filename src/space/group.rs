@@ -1,16 +1,19 @@
-//! Of which material the chosen links of a design are.
+//! The material of the chosen links of a design, which decides in which group the design is.
 
-/// The material of the links so far.
+/// The material that the chosen links of a partial arm have in common.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) enum Group {
     #[default]
+    /// No link has been chosen so far.
     None,
+    /// All chosen links are of the material with this number.
     One(usize),
+    /// The chosen links are of several materials.
     Mixed,
 }
 
 impl Group {
-    /// The material, if all links so far are of one.
+    /// Number of the material, if all links so far are of one material; otherwise `None`.
     pub(crate) fn material(self) -> Option<usize> {
         match self {
             Group::One(material) => Some(material),
@@ -18,7 +21,8 @@ impl Group {
         }
     }
 
-    /// The group with one more link. A given tube has no material here and changes nothing.
+    /// The group after a link of this material is added. A link that the study gives has no material here (`None`) and
+    /// changes nothing.
     pub(crate) fn with(self, material: Option<usize>) -> Self {
         match (self, material) {
             (group, None) => group,

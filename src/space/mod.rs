@@ -1,13 +1,13 @@
-//! The design space, compiled for speed.
+//! The design space, prepared for fast evaluation of many designs.
 //!
 //! A design is one option at each level of a tree. The levels go from the tip to the base, because a joint can be sized
 //! only when everything outboard of it is known.
 //!
-//! - [`design_space`] says what there is to choose.
-//! - `problem` puts the arm behind the trait [`levels::OutwardIn`]. The trait extends a partial arm by an option, finds
-//!   that no design with this beginning can hold, and evaluates a complete arm.
-//! - `station` compiles one case: everything about a pose that does not depend on the design.
-//! - [`design`] judges one design by the full model.
+//! - [`design_space`] has the description of a space: what is open, in which cases the arm is judged, and the limits.
+//! - `problem` presents an arm as the tree of designs of [`levels::OutwardIn`]. The trait adds an option to a partial
+//!   arm, finds out that no design with this beginning meets the limits, and evaluates a complete arm.
+//! - `station` has everything about one case that does not depend on the design.
+//! - [`design`] evaluates one design by the full model.
 
 pub(crate) mod attributes;
 pub(crate) mod bearing_demand;
@@ -21,6 +21,7 @@ pub(crate) mod fit;
 pub(crate) mod fixed;
 pub(crate) mod full_model;
 pub(crate) mod group;
+pub(crate) mod joints;
 pub(crate) mod levels;
 pub(crate) mod posed;
 pub mod prismatic;

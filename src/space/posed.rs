@@ -1,8 +1,8 @@
-//! Compiles the cases of a space into stations, slot by slot.
+//! Computes the stations of a space, one for each case, slot by slot.
 //!
-//! A link may have a hundred thousand options, and each takes some kilobytes in each case. Options are therefore condensed a
-//! few at a time, put into every case with the same surroundings, and forgotten. What remains is the stations: their
-//! memory grows as options times cases.
+//! A link may have a hundred thousand options, and the data of a condensed link take some kilobytes in each case.
+//! Options are therefore condensed a few at a time, converted for every case with the same surroundings, and dropped.
+//! What remains in memory are the stations, which grow with the number of options times the number of cases.
 
 use super::design_space::{Case, DesignSpace, SpaceJoint, SpacePiece};
 use super::effects::{Carried, Layer, along};
@@ -22,19 +22,20 @@ use crate::mechanics::{Twist, Wrench, body_inertia, displacement_at, rotation_tw
 use nalgebra::{Matrix3, Matrix3x6, Matrix6, SMatrix, SVector, Vector3};
 use rayon::prelude::*;
 
-/// Number of options that are condensed at a time.
+/// Number of link options that are condensed at a time, to limit memory.
 const AT_A_TIME: usize = 1024;
 
-/// Motions within the x-z plane (x, z, rotation about y) and across it (y, rotations about x and z).
+/// Indices of the motions within the x-z plane (x, z, rotation about y) and of those across it (y, rotations about x
+/// and z).
 const PLANES: [[usize; 3]; 2] = [[0, 2, 4], [1, 3, 5]];
-/// All six motions: three displacements and three rotations.
+/// Indices of all six motions: three displacements and three rotations.
 const ALL: [usize; 6] = [0, 1, 2, 3, 4, 5];
 
-/// Largest part of a direction that counts as rounding.
+/// Largest component of a unit vector (or relative entry of a matrix) that counts as zero.
 const ROUNDING: f64 = 1e-12;
 
 impl Station {
-    /// Compiles every case of a space.
+    /// Computes the station of every case of a space.
     pub(crate) fn all(space: &DesignSpace) -> Vec<Self> {
         let layers = space.layers();
         let mut posed: Vec<Posed> = space.cases.iter().map(|case| Posed::new(space, case, &layers)).collect();
@@ -57,16 +58,20 @@ impl Station {
     }
 }
 
-/// A tube or a harness, independent of the pose.
+/// A tube or a harness, condensed, without any pose.
 struct Tube {
+    /// The condensed link.
     condensed: CondensedLink,
+    /// Length of the link \[m\].
     length_m: f64,
-    /// Net weight: buoyancy is subtracted.
+    /// Weight per length \[N/m\]. Buoyancy is subtracted.
     weight_n_per_m: f64,
 }
 
 impl Tube {
-    /// Condenses a link, on which springs pull at these places (0 to 1); `None` for a rigid offset without mass along it, or without length.
+    /// Condenses a link to the motions of its end. Springs pull on it at the points `pulled_at` (0 at the root, 1 at
+    /// the end). `structure` has gravity and water, and `model` tells which deformations count. `None` for a rigid
+    /// offset that has no mass along it, and for a link without length.
     fn new(link: &LinkPiece, structure: &Structure, model: LinkModel, pulled_at: &[f64]) -> Option<Self> {
         let beam = PreparedBeam::new(link, structure, model)?;
         let condensed = CondensedLink::new(&beam, pulled_at);
@@ -74,7 +79,8 @@ impl Tube {
     }
 }
 
-/// The tubes of a layer, in the order of its options; none if the layer is no link.
+/// The condensed tubes of a layer, in the order of its options and in lists of at most `AT_A_TIME`. There are none
+/// if the layer is not a link.
 fn few_at_a_time<'a>(
     space: &'a DesignSpace,
     structure: &'a Structure,
@@ -101,17 +107,20 @@ fn few_at_a_time<'a>(
         .map(move |first| (first..options.min(first + AT_A_TIME)).into_par_iter().filter_map(tube).collect())
 }
 
-/// A case of which the options of links are still to be added.
+/// A case of which all slots are placed, but whose links have no options yet.
 struct Posed {
+    /// Gravity, base and water around the arm.
     structure: Structure,
+    /// Position of the tip in the pose \[m\].
     tip_m: Vector3<f64>,
+    /// The station of the case, as far as it is computed.
     station: Station,
 }
 
 impl Posed {
     fn new(space: &DesignSpace, case: &Case, layers: &[(usize, Layer)]) -> Self {
         let around = space.surroundings();
-        // the water of a case comes before the water of an effect
+        // the water of the case replaces the water that an effect states
         let structure = Structure { water: case.water.or(around.water), ..around };
         let walk = Walk::new(space, case);
         let (start_wrench, start_inertia) = payload_in(space, case, structure.water, &walk);
@@ -146,13 +155,14 @@ impl Posed {
         }
     }
 
-    /// Puts options of the link in a slot into the pose; nothing if there is no link.
+    /// Adds the options `tubes` to the link in `slot`, placed in the pose. Does nothing if the slot is not a link.
     fn add_options(&mut self, slot: usize, tubes: &[Tube]) {
         let down = &self.structure.down;
         let StationSlot::Link { options, place, carried } = &mut self.station.slots[slot] else { return };
         let placed = |tube: &Tube| {
             let mut placed = tube.condensed.place(&place.root_m, &place.end_m, &place.frame, down);
-            // the slot inboard has the bodies, as they move with the root
+            // the bodies move with the root of the tube and have a slot of their own inboard, so their inertia is
+            // subtracted here
             let mut root = placed.inertia[0].fixed_view_mut::<6, 6>(0, 0);
             root -= carried.inertia;
             placed
@@ -175,15 +185,17 @@ impl Posed {
     }
 }
 
-/// Builds the slot at one place of a pose, without the options of links.
+/// Computes the slot at one place of a pose. The options of links are added later.
 struct Builder<'a> {
     space: &'a DesignSpace,
     structure: &'a Structure,
+    /// Position \[m\] and attitude of the frame in which the slot is.
     place: &'a (Vector3<f64>, nalgebra::Rotation3<f64>),
-    /// Angle of the joint that stands here \[rad\].
+    /// Angle of the joint in this place \[rad\]; 0 for a link.
     angle_rad: f64,
+    /// Position of the tip in the pose \[m\].
     tip_m: &'a Vector3<f64>,
-    /// What springs do to the arm in the pose.
+    /// Forces and moments of the springs on the arm in the pose.
     springs: &'a [EndLoad],
 }
 
@@ -218,7 +230,7 @@ impl Builder<'_> {
         }
     }
 
-    /// A joint at its angle, with the torque that acts on it beside weight and load.
+    /// The joint at its angle in the pose. A torque that acts on it in addition to weight and load is included.
     fn joint(&self, joint: &SpaceJoint) -> StationSlot {
         let (_, rotation) = self.place;
         let mut slot = self.hinge(&(rotation * joint.axis));
@@ -229,12 +241,12 @@ impl Builder<'_> {
         slot
     }
 
-    /// A joint or a spring that turns about an axis of the world through this place.
+    /// A joint or a spring that turns about an axis through this place. The axis is given in world axes.
     fn hinge(&self, axis: &Vector3<f64>) -> StationSlot {
         self.spring(rotation_twist(axis, &self.place.0))
     }
 
-    /// A joint or a spring at this place that moves everything outboard by a twist.
+    /// A joint or a spring at this place. `twist` is the motion of everything outboard per unit of its coordinate.
     fn spring(&self, twist: Twist) -> StationSlot {
         self.mass_on(twist, &self.place.0)
     }
@@ -253,14 +265,14 @@ impl Builder<'_> {
             own_nm: 0.0,
             inertia_per_kg: body_inertia(1.0, at_m, &Matrix3::zeros()),
             weight_per_kg: weight_wrench(self.structure.gravity_m_s2, &self.structure.down, at_m),
-            // rounding leaves traces of the other plane in an axis that was turned
+            // rounding leaves small components of the other plane in an axis that was rotated
             block: usize::from(PLANES[1].iter().any(|&i| twist[i].abs() > ROUNDING * twist.amax())),
             turns: Vec::new(),
             is_passive: false,
         })
     }
 
-    /// A point mass.
+    /// The slot of a point mass \[kg\] at a point.
     fn body(&self, mass_kg: f64, centre_m: &Vector3<f64>) -> StationSlot {
         StationSlot::Body {
             inertia: body_inertia(mass_kg, centre_m, &Matrix3::zeros()),
@@ -268,7 +280,7 @@ impl Builder<'_> {
         }
     }
 
-    /// A given tube, or a rigid offset with its point mass and the harness along it.
+    /// The slot of a given link: a tube, or a rigid offset with its point mass and the harness along it.
     fn link(&self, number: usize, link: &Link) -> StationSlot {
         let (at_m, rotation) = self.place;
         let piece = self.space.link_piece(link);
@@ -278,7 +290,7 @@ impl Builder<'_> {
             return self.tube(number, (&link.vector_m, &link.bodies), 1);
         }
         let StationSlot::Body { inertia, weight } = point else { return point };
-        // a harness on a rigid offset has mass and no compliance, so both together are one rigid body
+        // a harness on a rigid offset has mass but no compliance, so both together are one rigid body
         let place = self.place_of(&link.vector_m);
         let down = &self.structure.down;
         let placed = tube.condensed.place(&place.root_m, &place.end_m, &place.frame, down);
@@ -286,7 +298,8 @@ impl Builder<'_> {
         StationSlot::Body { inertia: inertia + along.inertia, weight: weight + along.weight }
     }
 
-    /// A tube with room for its options: its vector and its bodies.
+    /// The slot of a tube that belongs to the piece `piece`, with memory for `options` options, which are added later.
+    /// `vector_m` leads from its root to its end \[m\], and `bodies` are attached to it.
     fn tube(
         &self,
         piece: usize,
@@ -313,7 +326,7 @@ impl Builder<'_> {
         StationSlot::Link { options: Vec::with_capacity(options), place, carried }
     }
 
-    /// What springs do to a part of the arm.
+    /// The forces and moments of springs on one side of a joint or on a link.
     fn springs_on(&self, side: Side) -> impl Iterator<Item = &EndLoad> {
         self.springs.iter().filter(move |load| load.on == side)
     }
@@ -325,7 +338,9 @@ impl Builder<'_> {
     }
 }
 
-/// One option of a link in a pose.
+/// The data of one option of a link in a pose. `tube` is the condensed option, `placed` the same in world axes, `place`
+/// the position and attitude of the link. `tip_m` is the position of the tip \[m\], and `down` the direction of
+/// gravity.
 fn station_link(
     tube: &Tube,
     placed: &PlacedLink,
@@ -336,9 +351,10 @@ fn station_link(
     let tips: Vec<Vector3<f64>> =
         (0..6).map(|g| displacement_at(&placed.end.column(g).into(), tip_m)).collect();
     StationLink {
-        // to order 0 in λ, over the motion of the root: the link as a rigid body
+        // the part of the inertia that does not depend on the frequency, for motions of the root: that of the link as
+        // a rigid body
         inertia: placed.inertia[0].fixed_view::<6, 6>(0, 0).into_owned(),
-        // a uniform weight acts at mid-length
+        // the weight of a uniform tube acts at mid-length
         weight: weight_wrench(tube.weight_n_per_m * tube.length_m, down, &place.centre_m),
         end: placed.end,
         own_weight_end: placed.end_per_weight * tube.weight_n_per_m + placed.end_under_bodies,
@@ -349,7 +365,7 @@ fn station_link(
     }
 }
 
-/// Tells every driver which passive joints it turns.
+/// Enters at every driven joint which passive joints it turns.
 fn link_up(space: &DesignSpace, layers: &[(usize, Layer)], slots: &mut [StationSlot]) {
     let of_piece = |piece: usize| {
         layers
@@ -380,14 +396,14 @@ fn put_into_one_block(slot: &mut StationSlot) {
     }
 }
 
-/// Whether an inertia does not couple the motions within the x-z plane with those across it.
+/// Whether the inertia matrix `m` has no terms that couple motions within the x-z plane with motions across it.
 fn uncoupled(m: &Matrix6<f64>) -> bool {
     let largest = m.amax();
     PLANES[0].iter().all(|&i| PLANES[1].iter().all(|&j| m[(i, j)].abs() <= ROUNDING * largest))
 }
 
-/// Whether the motions within the x-z plane and those across it are coupled nowhere: by no inertia, no joint axis and no
-/// link.
+/// Whether motions within the x-z plane and motions across it are independent of each other in the whole arm: no
+/// inertia, no joint axis and no link couples them.
 fn planar(slots: &[StationSlot], payload: &Matrix6<f64>) -> bool {
     uncoupled(payload)
         && slots.iter().all(|slot| match slot {
@@ -401,7 +417,8 @@ fn planar(slots: &[StationSlot], payload: &Matrix6<f64>) -> bool {
         })
 }
 
-/// Whether the x-z plane is a plane of symmetry of a link: it lies in that plane, and one axis of its section is across it.
+/// Whether a link is symmetric about the x-z plane: its axis lies in the plane, and one axis of its section is across
+/// the plane.
 fn is_symmetric(place: &Place) -> bool {
     let size_m = place.root_m.amax().max(place.end_m.amax());
     let in_plane = |point_m: &Vector3<f64>| point_m.y.abs() <= ROUNDING * size_m;
@@ -409,14 +426,15 @@ fn is_symmetric(place: &Place) -> bool {
     in_plane(&place.root_m) && in_plane(&place.end_m) && place.frame.row(1).iter().all(|y| one_of(*y))
 }
 
-/// The block of each end coordinate of a link that lies symmetric to the x-z plane; each block gets three.
+/// The block of each end coordinate of a link that is symmetric about the x-z plane: 0 within the plane, 1 across it.
+/// Each block gets three coordinates.
 fn ends_by_block(placed: &PlacedLink) -> [usize; 6] {
     let part = |column: usize, plane: usize| {
         let motions = placed.end.column(column);
         PLANES[plane].iter().map(|&i| motions[i].abs()).fold(0.0, f64::max)
     };
-    // a coordinate that moves nothing (a direction without compliance) can stand in either block: those come last and
-    // fill up the blocks
+    // a coordinate that moves nothing (a direction without compliance) can be in either block; such coordinates come
+    // last and fill up the blocks
     let mut order = ALL;
     order.sort_by_key(|&g| part(g, 0).max(part(g, 1)) == 0.0);
     let (mut blocks, mut counts) = ([0; 6], [0; 2]);
@@ -429,7 +447,7 @@ fn ends_by_block(placed: &PlacedLink) -> [usize; 6] {
     blocks
 }
 
-/// The slots restricted to the given motions, with room for the options of links.
+/// The slots of an arm, restricted to the given motions (indices from 0 to 5). The options of links are added later.
 fn block<const N: usize>(slots: &[StationSlot], payload: &Matrix6<f64>, motions: [usize; N]) -> Block<N> {
     let select = |m: &Matrix6<f64>| SMatrix::<f64, N, N>::from_fn(|i, j| m[(motions[i], motions[j])]);
     let restricted = |slot: &StationSlot| match slot {
@@ -444,7 +462,7 @@ fn block<const N: usize>(slots: &[StationSlot], payload: &Matrix6<f64>, motions:
 }
 
 impl<const N: usize> Block<N> {
-    /// Adds options to the link in a slot.
+    /// Adds the options `placed` of the link in `slot`, restricted to the given motions (indices from 0 to 5).
     fn add(&mut self, slot: usize, placed: &[PlacedLink], motions: [usize; N]) {
         if let BlockSlot::Links(options) = &mut self.slots[slot] {
             options.par_extend(placed.par_iter().map(|placed| block_link(placed, motions)));
@@ -452,10 +470,11 @@ impl<const N: usize> Block<N> {
     }
 }
 
-/// One option of a link restricted to the given motions, with the end coordinates that belong to them.
+/// One option of a link, restricted to the given motions (indices from 0 to 5) and to the end coordinates that belong
+/// to them.
 fn block_link<const N: usize>(placed: &PlacedLink, motions: [usize; N]) -> BlockLink<N> {
     let mut ends = [0; N];
-    // in one block of six every end coordinate takes part; in two blocks each takes the three that move it
+    // one block of six motions has all end coordinates; of two blocks, each has the three coordinates that move it
     if N == 6 {
         ends.copy_from_slice(&ALL[..N]);
     } else {
@@ -467,7 +486,7 @@ fn block_link<const N: usize>(placed: &PlacedLink, motions: [usize; N]) -> Block
     let part = |rows: [usize; N], columns: [usize; N]| {
         placed.inertia.map(|m| SMatrix::<f64, N, N>::from_fn(|i, j| m[(rows[i], columns[j])]))
     };
-    // a condensed link has the root motion in rows 0-5 and the end coordinates in rows 6-11
+    // in the matrices of a condensed link, rows 0-5 are the motion of the root and rows 6-11 the end coordinates
     let inner = ends.map(|g| 6 + g);
     BlockLink {
         root: part(motions, motions),

@@ -33,20 +33,20 @@ impl RailDrive {
 /// A prismatic joint of a study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpacePrismatic {
-    /// The joint.
+    /// Stiffness, guide, masses and axis of the joint.
     pub joint: Prismatic,
-    /// Smallest and largest travel \[mm\]; `None`: not stated.
+    /// Smallest and largest travel \[mm\]; `None` if the study does not state them.
     pub range_mm: Option<[f64; 2]>,
     /// How its drive is sized; `None`: the stiffness of the joint is that of a given drive.
     pub drive: Option<RailDrive>,
     /// All that stays where the joint begins.
     pub(crate) staying: Vec<RigidBody>,
-    /// All that travels, measured from the moved point.
+    /// All masses that travel. Their positions are measured from the moving point.
     pub(crate) travelling: Vec<RigidBody>,
 }
 
 impl SpacePrismatic {
-    /// A joint with a range of travel \[mm\].
+    /// A prismatic joint. `range_mm` is its smallest and largest travel \[mm\].
     pub fn new(joint: Prismatic, range_mm: Option<[f64; 2]>) -> Self {
         let mut out = Self { joint, range_mm, drive: None, staying: Vec::new(), travelling: Vec::new() };
         out.collect_bodies();

@@ -1,8 +1,8 @@
-//! The arm as a tree of designs.
+//! An arm as a tree of designs.
 //!
 //! The arm is built from the tip to the base. Each joint is sized when everything outboard of it is known (Eqs 7-12).
-//! With every piece the wrench, the inertia and the displacement of the tip are updated (Eqs 13-16), so that a partial
-//! arm has all that its extensions need.
+//! With every piece that is added, the wrench, the inertia and the displacement of the tip are updated (Eqs 13-16),
+//! so that a partial arm has all the data that the next pieces need.
 
 use super::attributes::OptionAttributes;
 use super::bearing_loads::BearingLoads;
@@ -11,10 +11,11 @@ use super::effects::Layer;
 use super::fit::RoomAtJoint;
 use super::full_model::full_objectives;
 use super::group::Group;
+use super::joints::TabulatedJoints;
 use super::levels::OutwardIn;
 pub(crate) use super::slot::SizedJoint;
 pub(crate) use super::slot::Slot;
-use super::slot::{choice_slot, joint_slot, link_slot, rail_slot};
+use super::slot::{choice_slot, link_slot};
 use super::state::StationState;
 use super::station::{Block, BlockSlot, Modal, Station, StationSlot, reaches_m};
 use crate::arm::joint_law::{Curve, JointLaw};
@@ -29,46 +30,56 @@ use crate::sizing::demand::{JointDemand, JointMotion, linear_torque_nm};
 use crate::sizing::fit::LinkRoom;
 use nalgebra::Vector3;
 
-/// A design space as the search sees it: the drives are tabulated and the poses are compiled.
+/// A design space as the search uses it, with tables of all drives and with stations for all cases.
 ///
-/// `ArmProblem` implements [`OutwardIn`], the tree that a search walks. It can also give the [parts](ArmProblem::parts)
-/// and the [arm](ArmProblem::arm) of one design. [`DesignSpace`] has an example.
+/// `ArmProblem` implements [`OutwardIn`], the tree of designs that a search evaluates. It can also give the
+/// [parts](ArmProblem::parts) and the [arm](ArmProblem::arm) of one design. [`DesignSpace`] has an example.
 pub struct ArmProblem<'c> {
     space: &'c DesignSpace,
-    /// What is added in each step, tip first.
+    /// The slots of the arm: what is added in each step, tip first.
     slots: Vec<Slot<'c>>,
-    /// Slot of each piece, base to tip. Effects may have slots of their own in addition to these.
+    /// Slot of each piece, base to tip. Effects may have further slots.
     piece_slots: Vec<usize>,
     /// Slot of each level, tip first.
     level_slots: Vec<usize>,
+    /// Number of options of each level, tip first.
     level_sizes: Vec<u32>,
+    /// The row level: the level whose options are evaluated together.
     row_level: usize,
-    /// The cases, in the order of the design space.
+    /// The station of each case, in the order of the design space.
     stations: Vec<Station>,
-    /// Number of materials, each of which has a front of its own.
+    /// Number of materials. Each material has a front of its own.
     materials: usize,
-    /// Stress at peak load over stress at rest.
+    /// Ratio of the stress at peak load to the stress at rest.
     peak_factor: f64,
+    /// The data from which the loads on output bearings are computed.
     bearing_loads: BearingLoads,
-    /// The room that links leave to the joint in each slot; `None` where nothing depends on a link.
+    /// For each slot, the room that the link of its joint leaves for gear and motor; `None` where no limit refers to
+    /// a link.
     rooms: Vec<Option<RoomAtJoint>>,
 }
 
-/// A partial arm: everything from the tip to some level.
+/// A partial arm: everything from the tip to the next level.
 #[derive(Debug, Clone, Default)]
 pub struct Partial {
+    /// The slot (step in which the arm is built) that is added next.
     next_slot: usize,
-    /// Demand on the joint in the next slot, if its drive is a choice: all its options share it.
+    /// Demand on the joint in the next slot. The demand does not depend on the joint's own drive. `None` if the next
+    /// slot is not a sized joint.
     pub(crate) next_demand: Option<JointDemand>,
+    /// Mass of the partial arm \[kg\].
     pub(crate) mass_kg: f64,
+    /// Cost of the material of the links in the partial arm \[EUR\]. Unknown costs count as 0.
     pub(crate) cost_eur: f64,
+    /// The material that the chosen links of the partial arm have in common.
     pub(crate) group: Group,
-    /// Largest ratio of stress to strength at peak load, over the links of known strength.
+    /// Largest ratio of stress to strength at peak load over the links of the partial arm whose strength is known.
     pub(crate) stress_ratio: f64,
-    /// Option of each slot.
+    /// Option of each slot, tip first; 0 for slots that are not added yet.
     pub(crate) options: Vec<u32>,
-    /// Mass of the drive in each slot \[kg\].
+    /// Mass of the drive in each slot \[kg\], tip first.
     pub(crate) masses_kg: Vec<f64>,
+    /// The state of the arm in each case.
     pub(crate) stations: Vec<StationState>,
 }
 
@@ -80,15 +91,18 @@ impl Partial {
 }
 
 impl<'c> ArmProblem<'c> {
-    /// Tabulates the drives of the catalogs and compiles the cases.
+    /// Makes the tables of drives from the catalogs and the stations of the cases.
     ///
-    /// The work grows with the number of link options and of cases; a space may be reduced first
+    /// The work grows with the number of link options times the number of cases. A space can be reduced first
     /// ([`DesignSpace::excerpt`]).
     pub fn new(space: &'c DesignSpace, catalogs: &'c Catalogs) -> Self {
+        Self::with_joints(space, &TabulatedJoints::new(space, catalogs))
+    }
+
+    /// As [`new`](Self::new), of joints that are tabulated already.
+    pub(crate) fn with_joints(space: &'c DesignSpace, joints: &TabulatedJoints<'c>) -> Self {
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
         let reaches = reaches_m(space, sizing);
-        // reaches are in order from the base and layers from the tip
-        let mut reaches_from_tip = reaches.iter().rev();
         let mut piece_slots = vec![0; space.pieces.len()];
         let mut slots: Vec<Slot> = Vec::new();
         for (piece, layer) in space.layers() {
@@ -96,10 +110,10 @@ impl<'c> ArmProblem<'c> {
                 piece_slots[piece] = slots.len();
             }
             slots.push(match layer {
-                Layer::Piece(SpacePiece::Joint(joint)) => {
-                    joint_slot(space, joint, reaches_from_tip.next().copied().unwrap_or_default(), catalogs)
+                Layer::Piece(SpacePiece::Joint(_) | SpacePiece::Prismatic(_)) => {
+                    // every joint of the space is tabulated
+                    joints.slot(piece).unwrap_or(Slot::Offset { mass_kg: 0.0 })
                 }
-                Layer::Piece(SpacePiece::Prismatic(slide)) => rail_slot(space, slide, catalogs),
                 Layer::Piece(SpacePiece::Link(link)) => link_slot(space, link),
                 Layer::Piece(SpacePiece::Choice(choice)) => choice_slot(space, choice),
                 Layer::Bearing(_) => Slot::bearing(piece_slots[piece], &slots),
@@ -108,7 +122,7 @@ impl<'c> ArmProblem<'c> {
                 Layer::Bodies(carried) => Slot::Offset { mass_kg: carried.mass_kg() },
                 Layer::Tilt(tilt) => Slot::Given { law: tilt.law(), mass_kg: 0.0 },
                 Layer::Guide(spring) => Slot::Given { law: spring.law(), mass_kg: 0.0 },
-                // the station has its weight and inertia; the mass of a design is that of its links and drives alone
+                // the station has the weight and inertia of these; they do not count in the mass of a design
                 Layer::Mass(_) | Layer::Travelling(_) | Layer::Springs(_) => Slot::Offset { mass_kg: 0.0 },
             });
         }
@@ -134,7 +148,8 @@ impl<'c> ArmProblem<'c> {
         self.space
     }
 
-    /// The sized joint that is piece number `piece`, base to tip; `None` if the piece is a link or a given joint.
+    /// The sized joint that is piece number `piece` (base to tip); `None` if the piece is not a joint or its drive is
+    /// given.
     pub fn sized_joint(&self, piece: usize) -> Option<&SizedJoint<'c>> {
         match &self.slots[self.piece_slots[piece]] {
             Slot::Sized(sized) => Some(sized),
@@ -147,7 +162,7 @@ impl<'c> ArmProblem<'c> {
         (partial.stress_ratio > 0.0).then(|| 1.0 / partial.stress_ratio)
     }
 
-    /// Cost of the material of the chosen links \[EUR\]; `None` if a cost is unknown.
+    /// Cost of the material of the chosen links \[EUR\]; `None` if the cost of some material is unknown.
     pub fn material_cost_eur(&self, partial: &Partial) -> Option<f64> {
         let known = self.slots.iter().zip(&partial.options).all(|(slot, &option)| match slot {
             Slot::Link { options, open: true } => options[option as usize].cost_eur.is_some(),
@@ -156,7 +171,7 @@ impl<'c> ArmProblem<'c> {
         known.then_some(partial.cost_eur)
     }
 
-    /// Largest wall slenderness of the chosen links of a complete arm.
+    /// Largest wall slenderness over the chosen links of a complete arm; 0 if it has none.
     pub fn wall_slenderness(&self, complete: &Partial) -> f64 {
         let chosen = self.space.pieces.iter().zip(self.options(complete));
         chosen
@@ -172,21 +187,21 @@ impl<'c> ArmProblem<'c> {
         partial.mass_kg
     }
 
-    /// Option of every piece of a complete arm, base to tip.
+    /// Option of every piece of a complete arm, base to tip. For a sized joint it is the index of its drive.
     pub fn options<'p>(&'p self, complete: &'p Partial) -> impl Iterator<Item = u32> + 'p {
         self.piece_slots.iter().map(|&slot| complete.options[slot])
     }
 
-    /// Demand on the joint in a slot, when the partial arm is everything outboard of it.
+    /// Demand on the joint in `slot` over the sizing cases. `partial` is the arm outboard of the joint.
     pub fn demand_at(&self, partial: &Partial, slot: usize) -> JointDemand {
         self.demand(partial, slot, self.slots[slot].motion())
     }
 
-    /// Builds the design with these options, one for each level. Before each piece is added, `see` is called with its slot
-    /// and the arm outboard of it, tip first.
+    /// Builds the design with these options, one for each level, tip first. Before each piece is added, the function
+    /// calls `see` with the slot of the piece and the arm outboard of it.
     ///
     /// # Errors
-    /// The slot at which the design fails, if it cannot hold.
+    /// The slot at which the design breaks a limit.
     pub fn walk(&self, options: &[u32], mut see: impl FnMut(usize, &Partial)) -> Result<Partial, usize> {
         let mut partial = self.empty();
         let mut levels = options.iter();
@@ -203,7 +218,8 @@ impl<'c> ArmProblem<'c> {
         Ok(partial)
     }
 
-    /// The arm with these options, one for each slot, drives that first fit would choose among them; `None` if it cannot hold.
+    /// The arm with these `options`, one for each slot. For a sized joint the option is the index of its drive, and
+    /// this drive is taken even where first fit would take another one. `None` if the arm breaks a limit.
     pub(crate) fn assemble(&self, options: &[u32]) -> Option<Partial> {
         let mut partial = self.empty();
         let mut adds = |(slot, &option): (usize, &u32)| match &self.slots[slot] {
@@ -217,8 +233,9 @@ impl<'c> ArmProblem<'c> {
         options.iter().enumerate().all(&mut adds).then_some(partial)
     }
 
-    /// The first piece from the tip that some cases overload, with the drive's check that fails; `None` in place of a check
-    /// stands for the stress of a link. `options` has the option of every slot.
+    /// The first piece from the tip that is overloaded in one of `cases`, for an arm with these `options`, one for each
+    /// slot. Returns its number, and the check that its drive fails; `None` in the place of the check means that the
+    /// piece is a link whose stress is too high. `None` if no piece is overloaded.
     pub(crate) fn overload(&self, options: &[u32], cases: &[usize]) -> Option<(usize, Option<Check>)> {
         let mut partial = self.empty();
         for (slot, &option) in options.iter().enumerate() {
@@ -239,12 +256,12 @@ impl<'c> ArmProblem<'c> {
         None
     }
 
-    /// The piece (base to tip) that stands in a slot (tip first).
+    /// Number of the piece (base to tip) in a slot (numbered tip first); 0 if the slot belongs to an effect.
     pub fn piece_of_slot(&self, slot: usize) -> usize {
         self.piece_slots.iter().position(|&s| s == slot).unwrap_or_default()
     }
 
-    /// The piece of the chain that stands in a slot; `None` if the slot belongs to an effect.
+    /// The piece of the chain in a slot; `None` if the slot belongs to an effect.
     pub(crate) fn piece_in_slot(&self, slot: usize) -> Option<&'c SpacePiece> {
         self.piece_slots.iter().position(|&s| s == slot).map(|piece| &self.space.pieces[piece])
     }
@@ -261,7 +278,7 @@ impl<'c> ArmProblem<'c> {
         &self.level_sizes
     }
 
-    /// Slot of the row level; `None` if there is no level.
+    /// Slot of the row level; `None` if the space has no level.
     pub(crate) fn row_slot(&self) -> Option<usize> {
         self.level_slots.get(self.row_level).copied()
     }
@@ -306,7 +323,8 @@ impl<'c> ArmProblem<'c> {
         }
     }
 
-    /// Adds the pieces without a choice up to the next level. Returns `false` if the arm cannot hold with one of them.
+    /// Adds the slots inboard of `partial` in which nothing is chosen, up to the next level. Returns `false` if the arm
+    /// breaks a limit with one of them.
     fn advance(&self, partial: &mut Partial) -> bool {
         while partial.next_slot < self.slots.len() && !self.slots[partial.next_slot].is_level() {
             if !self.add(partial.next_slot, 0, partial) {
@@ -322,7 +340,7 @@ impl<'c> ArmProblem<'c> {
         true
     }
 
-    /// Adds one piece inboard. Returns `false` if the arm cannot hold with it.
+    /// Adds the next slot, `slot`, with this option to the arm `to`. Returns `false` if the arm breaks a limit with it.
     fn add(&self, slot: usize, option: u32, to: &mut Partial) -> bool {
         to.next_slot = slot + 1;
         to.options[slot] = option;
@@ -340,7 +358,7 @@ impl<'c> ArmProblem<'c> {
             Slot::Link { options, .. } => self.add_link(slot, option, &options[option as usize], to),
             Slot::Offset { mass_kg } => self.add_offset(slot, *mass_kg, to),
         };
-        // no piece takes mass away, so the limit on mass can be checked after each
+        // every slot adds mass or leaves it the same, so the limit on mass can be checked after each slot
         added && self.space.constraints.mass_max_kg.is_none_or(|max| to.mass_kg <= max)
     }
 
@@ -354,17 +372,17 @@ impl<'c> ArmProblem<'c> {
         index.is_some_and(|index| self.add_drive(slot, sized, index, to))
     }
 
-    /// Adds a drive that holds. It is recorded like an option even where first fit took it, so that the parts can be read
-    /// from the arm.
+    /// Adds the drive `index` to the joint in `slot`; it is known to meet the demand. The index is stored as the option
+    /// of the slot even where first fit chose it, so that the parts of the arm can be read later.
     fn add_drive(&self, slot: usize, sized: &SizedJoint, index: usize, to: &mut Partial) -> bool {
         to.options[slot] = index as u32;
         self.add_joint(slot, &sized.laws[index], sized.table.mass_kg(index) - sized.away_kg[index], to)
     }
 
-    /// Demand on a joint: the largest static torque (Eq 7, and what acts on the joint beside weight and load) and the
-    /// largest outboard inertia over the sizing cases, which the motion turns into torques (Eqs 8-12). The two may come from
-    /// different cases; their combination is on the safe side. The paper's reading of Eq 8 takes the torque of weight and
-    /// load alone: a counterbalance takes nothing off what must be accelerated.
+    /// Demand on a joint over the sizing cases. It is made of the largest static torque (Eq 7, plus torque that acts
+    /// on the joint in addition to weight and load) and of the largest inertia outboard. The motion turns both into
+    /// torques (Eqs 8-12). The two may come from different cases, so the demand is on the safe side. As in the paper,
+    /// Eq 8 uses the torque of weight and load alone: a counterbalance does not reduce what must be accelerated.
     pub(crate) fn demand(
         &self,
         outboard: &Partial,
@@ -374,7 +392,7 @@ impl<'c> ArmProblem<'c> {
         self.demand_in(&self.space.sizing_cases, outboard, slot, motion)
     }
 
-    /// Demand on a joint in some of the cases.
+    /// Demand on the joint in `slot` over the given cases, made in the same way as by [`demand`](Self::demand).
     fn demand_in(
         &self,
         cases: &[usize],
@@ -398,7 +416,8 @@ impl<'c> ArmProblem<'c> {
         torques.with_bearing(bearing).with_room(room)
     }
 
-    /// Adds a joint to every case. It always holds: a sized drive was checked before, and a given one excludes nothing.
+    /// Adds the joint in `slot` with the joint law `law` and a drive of the mass `mass_kg` to the state of every case.
+    /// It always returns `true`: a sized drive was checked before, and a given drive excludes no design.
     fn add_joint(&self, slot: usize, law: &JointLaw, mass_kg: f64, to: &mut Partial) -> bool {
         to.mass_kg += mass_kg;
         to.masses_kg[slot] = mass_kg;
@@ -426,7 +445,7 @@ impl<'c> ArmProblem<'c> {
             return false;
         }
         to.mass_kg += link.mass_kg;
-        // with a limit on cost, materials of unknown cost were refused when the study was read
+        // with a limit on cost, a study with a material of unknown cost was refused when it was read
         to.cost_eur += link.cost_eur.unwrap_or(0.0);
         to.group = to.group.with(link.material);
         if self.space.constraints.material_cost_max_eur.is_some_and(|max| to.cost_eur > max) {
@@ -437,10 +456,10 @@ impl<'c> ArmProblem<'c> {
             let outboard = state.wrench;
             state.add_link(&options[option as usize]);
             let Some(stress) = &link.stress else { continue };
-            // in a sizing case the arm accelerates; in the other cases it stands still
+            // in a sizing case the arm accelerates; in the other cases it is at rest
             let factor = if self.space.sizing_cases.contains(&case) { self.peak_factor } else { 1.0 };
-            // between the ends only the weight of the link, its bodies and springs change force and moment: the ends are
-            // checked, and the places where springs pull
+            // between the ends, only the weight of the link, its bodies and the springs change force and moment: so
+            // the stress is checked at both ends and at the points where springs pull
             let at_root = state.wrench + carried.weight;
             for (wrench, at_m) in [(&outboard, &place.end_m), (&at_root, &place.root_m)] {
                 to.stress_ratio = to.stress_ratio.max(stress.ratio(wrench, at_m, place) * factor);
@@ -454,7 +473,7 @@ impl<'c> ArmProblem<'c> {
         self.space.constraints.stress_safety_factor_min.is_none_or(|least| to.stress_ratio * least <= 1.0)
     }
 
-    /// The judged cases, each with what the complete arm does in it.
+    /// The judged cases: the station of each, and the state of a complete arm in it.
     fn judged<'s>(
         &'s self,
         complete: &'s Partial,
@@ -463,8 +482,9 @@ impl<'c> ArmProblem<'c> {
     }
 }
 
-/// The level whose options stand side by side in lanes: the innermost link, unless it has too few options to fill them.
-/// Drives inboard of it are the same for a whole row.
+/// Selects the row level, whose options are evaluated eight at a time. It is the innermost link. If this link has fewer
+/// than eight options and fewer than the innermost level, it is the innermost level. The drives inboard of the row
+/// level are the same for a whole row.
 fn row_level(slots: &[Slot], level_slots: &[usize], level_sizes: &[u32]) -> usize {
     let innermost = level_slots.len().saturating_sub(1);
     let link = level_slots.iter().rposition(|&slot| matches!(slots[slot], Slot::Link { .. }));
@@ -472,7 +492,8 @@ fn row_level(slots: &[Slot], level_slots: &[usize], level_sizes: &[u32]) -> usiz
         .unwrap_or(innermost)
 }
 
-/// Objectives of a complete arm from its states in the judged cases.
+/// Objectives of the arm `complete`. `judged` are the judged cases: the station of each, and the state of the arm in
+/// it.
 pub(crate) fn objectives_over<'s>(
     judged: impl Iterator<Item = (&'s Station, &'s StationState)> + Clone,
     complete: &Partial,
@@ -482,7 +503,7 @@ pub(crate) fn objectives_over<'s>(
     Objectives { tip_deflection_m, mass_kg: complete.mass_kg, lowest_mode_hz }
 }
 
-/// Smallest first natural frequency over the cases \[Hz\].
+/// Smallest lowest natural frequency \[Hz\] of the arm `complete` over the cases `judged`.
 fn lowest_mode_hz<'s>(
     judged: impl Iterator<Item = (&'s Station, &'s StationState)>,
     complete: &Partial,
@@ -514,8 +535,8 @@ fn block_eigenvalue<const N: usize>(
     lowest_eigenvalue(&steps, trace_s2)
 }
 
-/// The steps of the pass for the lowest mode over the first `slots` slots of an arm, tip first. The payload comes first.
-/// Pieces that neither yield nor weigh are left out.
+/// The steps in which the lowest mode of a block (motions that do not couple with the others) is computed, tip first.
+/// They are the payload and the first `slots` slots of the arm. Slots with neither compliance nor mass are left out.
 pub(crate) fn block_steps<'a, const N: usize>(
     block: &'a Block<N>,
     arm: &'a Partial,

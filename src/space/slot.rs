@@ -1,4 +1,4 @@
-//! Slots: the pieces of an arm as the search adds them, tip first. A piece is given, sized or chosen.
+//! Slots: the elements of an arm in the order in which the search adds them, tip first.
 
 use super::attributes::{OptionAttributes, attributes_of};
 use super::design_space::{DesignSpace, DriveChoice, LinkChoice, LinkOption, SpaceJoint};
@@ -10,30 +10,32 @@ use crate::arm::{Link, LinkBody};
 use crate::catalog::Catalogs;
 use crate::sizing::demand::{JointDemand, JointMotion};
 use crate::sizing::select::{DriveFilter, DriveTable};
+use std::sync::Arc;
 
-/// What the search adds in one step.
+/// One slot: the piece of an arm that the search adds in one step.
 pub(crate) enum Slot<'c> {
-    /// A joint with a given drive, or a spring that an effect adds.
+    /// A joint whose drive the study gives, or a spring that an effect adds.
     Given { law: JointLaw, mass_kg: f64 },
     /// A joint whose drive comes from the catalogs.
-    Sized(SizedJoint<'c>),
+    Sized(Arc<SizedJoint<'c>>),
     /// A spring of the bearing of a sized joint: the slot of the joint, and the law by its drives.
     Bearing { joint: usize, laws: Vec<JointLaw> },
     /// The motor of a sized joint, which stands elsewhere: the slot of the joint, and the mass by its drives \[kg\].
     Motor { joint: usize, masses_kg: Vec<f64> },
     /// A tube. It is a choice of the search if it is `open`; a given tube has one option.
     Link { options: Vec<OptionAttributes>, open: bool },
-    /// A rigid offset with its point mass.
+    /// A rigid offset with its point mass. Bodies, masses of effects and spring forces have such slots too.
     Offset { mass_kg: f64 },
 }
 
-/// A joint whose drive comes from the catalogs.
+/// A joint whose drive is sized from the catalogs.
 pub struct SizedJoint<'c> {
-    /// Every drive that the study allows, lightest first.
+    /// Every drive that the study allows for this joint, lightest first.
     pub table: DriveTable<'c>,
-    /// Joint law with each drive of the table, effects included.
+    /// Joint law (angle as a function of torque) with each drive of the table. Effects are included.
     pub(crate) laws: Vec<JointLaw>,
-    /// Tilt of the output bearing of each drive per moment \[rad/(N m)\]: the gear's, and what an effect adds.
+    /// Compliance of the output bearing against tilt \[rad/(N m)\], one entry for each drive. It is the compliance of
+    /// the gear's bearing plus that which effects add.
     pub(crate) tilts_rad_per_nm: Vec<f64>,
     /// Mass of each drive that does not sit at the joint \[kg\]: of a motor elsewhere.
     pub(crate) away_kg: Vec<f64>,
@@ -42,17 +44,17 @@ pub struct SizedJoint<'c> {
 }
 
 impl SizedJoint<'_> {
-    /// Whether the search chooses the drive.
+    /// Whether the search chooses the drive of the joint.
     pub fn is_level(&self) -> bool {
         self.all_fits
     }
 
-    /// The drives of the joint, sorted into kinds. The drives of a kind have equal mass and an equal torsion curve, so no
-    /// objective tells them apart; each has its own torque limits. Kinds are in the order of their first drives, and the
-    /// drives of a kind are in ascending order.
+    /// The drives of the joint, sorted into kinds. The drives of a kind have equal mass and an equal torsion curve,
+    /// so no objective differs between them, but each has torque limits of its own. Kinds are in the order of their
+    /// first drives. The drives of a kind are in ascending order.
     pub(crate) fn kinds(&self) -> Vec<Vec<u32>> {
         let mut kinds: Vec<Vec<u32>> = Vec::new();
-        // the table is sorted by mass, so only kinds of the present mass can get another drive
+        // drives are sorted by mass, so a drive can belong only to a kind of the same mass
         let mut first_of_mass = 0;
         for index in 0..self.table.len() {
             let of_kind = |kind: &&mut Vec<u32>| self.are_ties(kind[0] as usize, index);
@@ -67,7 +69,8 @@ impl SizedJoint<'_> {
         kinds
     }
 
-    /// The ties of the drive `index` that hold a demand: the drives of its kind, itself among them.
+    /// The drives that meet `demand` and are ties of the drive `index`, that is, equal to it in mass, torsion curve and
+    /// bearing. The drive itself is among them if it meets the demand.
     pub(crate) fn ties_of<'t>(
         &'t self,
         index: usize,
@@ -76,7 +79,7 @@ impl SizedJoint<'_> {
         self.table.all_fits(demand).filter(move |other| self.are_ties(*other, index))
     }
 
-    /// Whether two drives are ties: equal in mass and in torsion curve.
+    /// Whether two drives are ties: equal in mass, torsion curve and bearing compliance.
     pub(crate) fn are_ties(&self, a: usize, b: usize) -> bool {
         self.table.mass_kg(a) == self.table.mass_kg(b)
             && self.laws[a] == self.laws[b]
@@ -86,7 +89,8 @@ impl SizedJoint<'_> {
 }
 
 impl<'c> Slot<'c> {
-    /// A spring of the bearing of the joint in an earlier slot.
+    /// The slot of one of the two springs of an output bearing. The bearing belongs to the joint in slot `joint`, which
+    /// comes earlier in `slots`.
     pub(crate) fn bearing(joint: usize, slots: &[Slot<'c>]) -> Self {
         let spring = |rad_per_nm: &f64| JointLaw {
             connection_rad_per_nm: *rad_per_nm,
@@ -110,12 +114,17 @@ impl<'c> Slot<'c> {
 }
 
 impl Slot<'_> {
-    /// Whether the search chooses here.
+    /// Whether the search chooses the option of this slot.
     pub(crate) fn is_level(&self) -> bool {
-        matches!(self, Slot::Link { open: true, .. } | Slot::Sized(SizedJoint { all_fits: true, .. }))
+        match self {
+            Slot::Link { open, .. } => *open,
+            Slot::Sized(sized) => sized.all_fits,
+            _ => false,
+        }
     }
 
-    /// Number of options.
+    /// Number of options of this slot; 1 if nothing is chosen. For a sized joint it is the number of drives in its
+    /// table.
     pub(crate) fn options(&self) -> u32 {
         match self {
             Slot::Link { options, .. } => options.len() as u32,
@@ -124,7 +133,7 @@ impl Slot<'_> {
         }
     }
 
-    /// Mass of a given joint or offset \[kg\]; `None` for joints that are sized and for tubes.
+    /// Mass of the slot \[kg\] if it is the same for all options; `None` for sized joints and for tubes.
     pub(crate) fn fixed_kg(&self) -> Option<f64> {
         match self {
             Slot::Given { mass_kg, .. } | Slot::Offset { mass_kg } => Some(*mass_kg),
@@ -133,7 +142,7 @@ impl Slot<'_> {
         }
     }
 
-    /// A tube that the study gives; `None` if the slot is something else or its tube is chosen.
+    /// The tube of the slot if the study gives it; `None` if the slot is not a tube or the search chooses the tube.
     pub(crate) fn given_tube(&self) -> Option<&OptionAttributes> {
         match self {
             Slot::Link { options, open: false } => options.first(),
@@ -141,7 +150,8 @@ impl Slot<'_> {
         }
     }
 
-    /// Joint law with one of the drives; `None` if the piece is no joint.
+    /// The joint law (angle as a function of torque) that the slot has with the drive `option`. `None` if the slot has
+    /// no joint or spring.
     pub(crate) fn law(&self, option: usize) -> Option<&JointLaw> {
         match self {
             Slot::Given { law, .. } => Some(law),
@@ -151,7 +161,7 @@ impl Slot<'_> {
         }
     }
 
-    /// The motion that a sized joint must do.
+    /// The motion that a sized joint must be able to do; `None` for other slots.
     pub(crate) fn motion(&self) -> Option<&JointMotion> {
         match self {
             Slot::Sized(sized) => Some(sized.table.motion()),
@@ -160,7 +170,7 @@ impl Slot<'_> {
     }
 }
 
-/// The slot of a joint whose tip is at most `reach_m` away from its axis.
+/// The slot of a joint that turns. The tip is at most `reach_m` \[m\] away from its axis.
 pub(crate) fn joint_slot<'c>(
     space: &DesignSpace,
     joint: &SpaceJoint,
@@ -198,7 +208,7 @@ pub(crate) fn joint_slot<'c>(
     let laws = pieces.iter().map(|piece| piece.law).collect();
     let tilts_rad_per_nm = pieces.iter().map(|piece| piece.tilt_rad_per_nm).collect();
     let away_kg = (0..table.len()).map(|i| joint.away_kg(&table.drive(i))).collect();
-    Slot::Sized(SizedJoint { table, laws, tilts_rad_per_nm, away_kg, all_fits })
+    Slot::Sized(Arc::new(SizedJoint { table, laws, tilts_rad_per_nm, away_kg, all_fits }))
 }
 
 /// The slot of a prismatic joint.
@@ -227,10 +237,10 @@ pub(crate) fn rail_slot<'c>(
     let tilts_rad_per_nm = vec![0.0; table.len()];
     // screw and motor stay where the joint begins
     let away_kg = (0..table.len()).map(|i| table.mass_kg(i)).collect();
-    Slot::Sized(SizedJoint { table, laws, tilts_rad_per_nm, away_kg, all_fits: false })
+    Slot::Sized(Arc::new(SizedJoint { table, laws, tilts_rad_per_nm, away_kg, all_fits: false }))
 }
 
-/// The slot of a link that the study gives.
+/// The slot of a link that the study gives: a tube with one option, or a rigid offset.
 pub(crate) fn link_slot<'c>(space: &DesignSpace, link: &Link) -> Slot<'c> {
     match &link.body {
         LinkBody::Offset { mass_kg } => Slot::Offset { mass_kg: *mass_kg },
@@ -243,7 +253,7 @@ pub(crate) fn link_slot<'c>(space: &DesignSpace, link: &Link) -> Slot<'c> {
     }
 }
 
-/// The slot of a link whose material and section are chosen.
+/// The slot of a link whose material and section the search chooses.
 pub(crate) fn choice_slot<'c>(space: &DesignSpace, choice: &LinkChoice) -> Slot<'c> {
     let length_m = choice.vector_m.norm();
     Slot::Link {
@@ -253,14 +263,15 @@ pub(crate) fn choice_slot<'c>(space: &DesignSpace, choice: &LinkChoice) -> Slot<
 }
 
 impl DesignSpace {
-    /// A torsion curve under the study's joint model.
+    /// The torsion curve `curve` as the joint model of the study uses it: with the middle slope K2 alone, or with all
+    /// three segments.
     pub fn curve(&self, curve: Curve) -> Curve {
         curve.reduced(self.joints)
     }
 }
 
 impl LinkChoice {
-    /// The link with one of its options.
+    /// The link with `option` as its material and section, in the form of a link that the study gives.
     pub fn link(&self, option: &LinkOption) -> Link {
         Link {
             name: self.name.clone(),
@@ -274,7 +285,7 @@ impl LinkChoice {
         }
     }
 
-    /// The link with its first option; a rigid offset if there is none.
+    /// The link with its first option; a rigid offset without mass if there is no option.
     pub(crate) fn first_link(&self) -> Link {
         let nothing = || Link {
             name: self.name.clone(),

@@ -1,12 +1,12 @@
-//! Stations: the cases of a study, compiled ([`posed`](super::posed)). A station has everything about a pose that does not
-//! depend on the design.
+//! Stations: the cases of a study, prepared for the search ([`posed`](super::posed)). A station has everything about
+//! a case that does not depend on the design.
 //!
-//! Twists and wrenches are taken about the world's origin, so that what an option does can be tabulated once and then
-//! added for every design that has it.
+//! Twists (velocities and angular velocities) and wrenches (forces and moments) are taken about the world's origin.
+//! Thus the contribution of an option can be computed once, and then added for every design that has this option.
 //!
-//! A pose is *planar* if every joint axis, link and load in it is symmetric about the x-z plane. Then the motions within
-//! the plane (x, z, rotation about y) and those across it (y, rotations about x and z) do not couple. The lowest mode is
-//! then found in two blocks of three motions instead of one block of six, which is less work.
+//! A pose is *planar* if every joint axis, link and mass in it is symmetric about the x-z plane. Then motions within
+//! the plane (x, z, rotation about y) and motions across it (y, rotations about x and z) do not couple. The lowest
+//! mode is found in two blocks of three motions instead of one block of six, which is less work.
 
 use super::design_space::{Case, DesignSpace, SpacePiece};
 use super::effects::Layer;
@@ -17,54 +17,60 @@ use crate::mechanics::lowest::BlockLink;
 use crate::mechanics::{Twist, Wrench, angular, body_inertia, force_wrench, linear, stack};
 use nalgebra::{Matrix3, Matrix3x6, Matrix6, Rotation3, SMatrix, SVector, Vector3, Vector6};
 
-/// A pose with its load, compiled for the slots of an arm.
+/// One case (a pose with its load), prepared for the slots of an arm.
 pub(crate) struct Station {
-    /// Each slot in this pose, tip first.
+    /// The data of each slot in this pose, tip first.
     pub slots: Vec<StationSlot>,
-    /// The same slots as the pass for the lowest mode needs them.
+    /// The same slots, as the computation of the lowest mode needs them.
     pub modal: Modal,
-    /// Payload and tip force, as a wrench.
+    /// Force and moment of the payload's weight and of the tip load, as a wrench.
     pub start_wrench: Wrench,
-    /// Inertia of the payload.
+    /// Inertia matrix of the payload about the world's origin.
     pub start_inertia: Matrix6<f64>,
-    /// Direction of gravity in the world.
+    /// Direction of gravity in the world, a unit vector.
     pub down: Vector3<f64>,
 }
 
-/// What the search adds in one step, in a pose.
+/// The data of one slot in a pose.
 pub(crate) enum StationSlot {
-    /// A joint.
+    /// A joint or a spring.
     Joint(StationJoint),
-    /// A rigid body: a point mass, or a rigid offset with the harness along it.
+    /// A rigid body with its inertia matrix and its weight (both about the world's origin): a point mass, a body of a
+    /// piece, a spring force, or a rigid offset with the harness along it.
     Body { inertia: Matrix6<f64>, weight: Wrench },
-    /// A tube, with one entry for each option.
+    /// A tube: the data of each option, the position of the tube, and the loads of bodies and springs on it.
     Link { options: Vec<StationLink>, place: Place, carried: OnTube },
 }
 
-/// The bodies on a tube in a pose and what springs do to it, as they are if the tube does not yield. They have slots of their
-/// own inboard of the tube; what they add to the bending of the tube is in its options.
+/// The bodies on a tube in a pose and the pull of springs on it, as they act on a tube without deformation. The
+/// bodies have slots of their own inboard of the tube. What they add to the bending of the tube is in the options of
+/// the tube.
 pub(crate) struct OnTube {
+    /// Inertia matrix of the bodies about the world's origin.
     pub inertia: Matrix6<f64>,
+    /// Weight of the bodies and pull of the springs, as one wrench.
     pub weight: Wrench,
     /// Whether every body is symmetric about the x-z plane.
     pub is_symmetric: bool,
-    /// The weight of each body and the pull of each spring.
+    /// The weight of each body and the pull of each spring, each with its point on the axis.
     pub loads: Vec<OnAxis>,
-    /// Where springs pull, and their force and moment about that place of the axis in the section frame.
+    /// The points at which springs pull (0 at the root, 1 at the end), each with the force and moment of the spring
+    /// about this point, in the section frame.
     pub pulls: Vec<(f64, Wrench)>,
 }
 
-/// What acts on a tube at a place of its axis.
+/// A load on a tube, at a point of its axis.
 pub(crate) struct OnAxis {
-    /// The place, 0 at the root and 1 at the end.
+    /// The point, from 0 (root) to 1 (end).
     pub xi: f64,
-    /// Force and moment about the world's origin.
+    /// Force and moment of the load, about the world's origin.
     pub wrench: Wrench,
 }
 
 impl OnTube {
-    /// Where springs pull on the tube, and the load of everything outboard of that place about the world's origin: without
-    /// and with what acts there. `outboard` is the load on the end of the tube, `own` its own weight.
+    /// The points of the tube at which springs pull, each with the load on the section just outboard of the point and
+    /// on the section just inboard of it. The two differ by what acts at the point itself. Both are taken about the
+    /// world's origin. `outboard` is the load on the end of the tube, and `own` is the weight of the tube.
     pub(crate) fn at_pulls(
         &self,
         place: &Place,
@@ -84,51 +90,60 @@ impl OnTube {
     }
 }
 
-/// A joint in a pose.
+/// A joint or a spring in a pose.
 pub(crate) struct StationJoint {
-    /// Motion of everything outboard per radian of the joint's rotation.
+    /// Motion (velocity and angular velocity) of everything outboard per radian of the joint's rotation; per metre
+    /// for a prismatic joint.
     pub twist: Twist,
-    /// Where the joint is.
+    /// Position of the joint in the world \[m\].
     pub at_m: Vector3<f64>,
-    /// Displacement of the tip per radian.
+    /// Displacement of the tip per radian of the joint's rotation \[m/rad\].
     pub tip_m_per_rad: Vector3<f64>,
-    /// Angle of the joint \[rad\].
+    /// Angle of the joint in the pose \[rad\]; 0 for a spring.
     pub angle_rad: f64,
-    /// Torque that acts on the joint beside weight and load \[N m\].
+    /// Torque that acts on the joint in addition to weight and load \[N m\].
     pub own_nm: f64,
-    /// Inertia and weight of one kilogram at the joint.
+    /// Inertia matrix of a mass of one kilogram at the joint, about the world's origin.
     pub inertia_per_kg: Matrix6<f64>,
+    /// Weight of a mass of one kilogram at the joint, as a wrench.
     pub weight_per_kg: Wrench,
-    /// The block in which the joint moves the arm: 0 within the plane, 1 across it.
+    /// The block of motions that the joint belongs to: 0 within the x-z plane, 1 across it. It is 0 if the pose is
+    /// not planar.
     pub block: usize,
-    /// What a linkage turns together with the joint, each with the slot of the passive joint. All of them are outboard.
+    /// The passive joints that a linkage turns together with this joint. All of them are outboard of it.
     pub turns: Vec<Turned>,
-    /// Whether a linkage turns the joint.
+    /// Whether a linkage turns the joint, so that it has no entry in the pose.
     pub is_passive: bool,
 }
 
-/// A passive joint as its driver turns it.
+/// A passive joint, per radian of the joint that drives it.
 pub(crate) struct Turned {
+    /// Slot of the passive joint.
     pub slot: usize,
-    /// Motion of everything outboard of the passive joint per radian of the driver.
+    /// Motion of everything outboard of the passive joint, per radian of the driving joint.
     pub twist: Twist,
-    /// Displacement of the tip by the passive joint per radian of the driver.
+    /// Displacement of the tip through the passive joint, per radian of the driving joint \[m/rad\].
     pub tip_m_per_rad: Vector3<f64>,
-    /// What the passive joint's own torque is on the driver \[N m\].
+    /// Torque on the driving joint from the torque that acts on the passive joint in addition to weight and load \[N
+    /// m\].
     pub own_nm: f64,
 }
 
-/// Where a link is in a pose.
+/// Position and attitude of a link in a pose.
 pub(crate) struct Place {
+    /// Position of the root of the link \[m\].
     pub root_m: Vector3<f64>,
+    /// Position of the middle of the link \[m\].
     pub centre_m: Vector3<f64>,
+    /// Position of the end of the link \[m\].
     pub end_m: Vector3<f64>,
-    /// Section frame in the world: columns x (along the link), y and z.
+    /// Axes of the section frame in the world, as columns: x (along the link), y and z.
     pub frame: Matrix3<f64>,
 }
 
 impl Place {
-    /// Axial force \[N\], torsion and both bending moments \[N m\] of a wrench at a point of the link.
+    /// Axial force \[N\], torsion and both bending moments \[N m\] that the section at the point `at_m` of the link
+    /// transmits. `wrench` is the load outboard of it, about the world's origin.
     pub(crate) fn local(&self, wrench: &Wrench, at_m: &Vector3<f64>) -> [f64; 4] {
         let force = self.frame.tr_mul(&linear(wrench));
         let moment = self.frame.tr_mul(&(angular(wrench) - at_m.cross(&linear(wrench))));
@@ -136,69 +151,78 @@ impl Place {
     }
 }
 
-/// One option of a link in a pose.
+/// The data of one option of a link in a pose.
 ///
-/// The end coordinates are the six motions of the condensed link's end, scaled to unit stiffness
+/// The end coordinates are the six motions of the end of a condensed link, scaled to unit stiffness
 /// ([`condensed`](crate::mechanics::condensed)).
 pub(crate) struct StationLink {
-    /// Inertia of the link as a rigid body.
+    /// Inertia matrix of the link as a rigid body, about the world's origin.
     pub inertia: Matrix6<f64>,
+    /// Weight of the link less buoyancy, as a wrench.
     pub weight: Wrench,
-    /// Twist of everything outboard per end coordinate.
+    /// Motion (velocity and angular velocity) of everything outboard, per unit of each end coordinate: one column for
+    /// each.
     pub end: Matrix6<f64>,
-    /// End coordinates under the link's own weight.
+    /// Values of the six end coordinates (motions of the link's end) under the weight of the link, the bodies on it and
+    /// the pull of springs.
     pub own_weight_end: Vector6<f64>,
-    /// Displacement of the tip per end coordinate.
+    /// Displacement of the tip per unit of each end coordinate: one column for each.
     pub tip: Matrix3x6<f64>,
-    /// Inertia of the link itself in each end coordinate.
+    /// Inertia of the link itself for a unit of each end coordinate (motion of the link's end). It is a term of
+    /// Dunkerley's sum \[s²\], because the stiffness of each end coordinate is 1.
     pub end_inertia: Vector6<f64>,
-    /// Block of each end coordinate.
+    /// Block to which each end coordinate belongs: 0 within the x-z plane, 1 across it.
     pub block: [usize; 6],
-    /// Sum of `1/λ` over the inner modes \[s²\].
+    /// Sum of `1/λ` over the inner modes of the link \[s²\]. These modes do not move the end of the link, so the end
+    /// coordinates do not contain them.
     pub inner_trace_s2: f64,
 }
 
 impl StationLink {
-    /// Its net weight, along the direction of gravity \[N\].
+    /// Weight of the link less buoyancy \[N\], positive in the direction of gravity `down`.
     pub(crate) fn weight_n(&self, down: &Vector3<f64>) -> f64 {
         down.dot(&linear(&self.weight))
     }
 
-    /// Displacement of the tip per unit of the wrench on the link's end.
+    /// Displacement of the tip per unit of each of the six components of the wrench on the link's end \[m/N and m/(N
+    /// m)\].
     pub(crate) fn flexibility(&self) -> Matrix3x6<f64> {
         // the end coordinates have unit stiffness: a wrench w deflects them by endᵀ w
         self.tip * self.end.transpose()
     }
 
-    /// Displacement of the tip by the link's own weight \[m\].
+    /// Displacement of the tip \[m\] by the weight of the link, the bodies on it and the pull of springs.
     pub(crate) fn own_weight_deflection_m(&self) -> Vector3<f64> {
         self.tip * self.own_weight_end
     }
 }
 
-/// The slots as the pass for the lowest mode sees them: in two blocks if the pose is planar, else in one.
+/// The slots as the computation of the lowest mode needs them: in two blocks of three motions if the pose is planar,
+/// otherwise in one block of six.
 pub(crate) enum Modal {
     Planar(Box<[Block<3>; 2]>),
     Spatial(Box<Block<6>>),
 }
 
-/// The slots restricted to `N` of the six motions.
+/// The slots, restricted to `N` of the six motions: those that do not couple with the others.
 pub(crate) struct Block<const N: usize> {
-    /// Inertia of the payload.
+    /// Inertia matrix of the payload.
     pub payload: SMatrix<f64, N, N>,
+    /// The slots, tip first.
     pub slots: Vec<BlockSlot<N>>,
 }
 
-/// One slot restricted to `N` motions.
+/// One slot, restricted to `N` of the six motions.
 pub(crate) enum BlockSlot<const N: usize> {
     Joint { twist: SVector<f64, N>, inertia_per_kg: SMatrix<f64, N, N> },
     Body(SMatrix<f64, N, N>),
     Links(Vec<BlockLink<N>>),
 }
 
-/// Payload and tip force as a wrench, and the inertia of the payload, both about the world's origin.
+/// Payload and tip load as a wrench, and the inertia matrix of the payload, both about the world's origin.
 ///
-/// Water takes buoyancy from the weight of the payload. Its inertia stays, and no added mass is counted.
+/// In water, the buoyancy is subtracted from the weight of the payload. Its inertia stays the same, and no added mass
+/// is counted.
 pub(crate) fn payload_in(
     space: &DesignSpace,
     case: &Case,
@@ -218,24 +242,26 @@ pub(crate) fn payload_in(
     (wrench, body_inertia(payload.mass_kg, &cg_m, &inertia_kgm2))
 }
 
-/// The wrench of a weight \[N\] at a point; `down` is the direction of gravity.
+/// The wrench of a weight \[N\] at the point `at_m`. `down` is the direction of gravity.
 pub(crate) fn weight_wrench(weight_n: f64, down: &Vector3<f64>, at_m: &Vector3<f64>) -> Wrench {
     force_wrench(&(down * weight_n), at_m)
 }
 
-/// Where each piece is in a pose.
+/// Positions of all pieces in a pose.
 pub(crate) struct Walk {
-    /// Start and attitude of each piece, base to tip, then those of the tip. A joint has the attitude before its own
-    /// rotation.
+    /// Position \[m\] and attitude of the beginning of each piece, base to tip; the last entry is the tip. The
+    /// attitude of a joint is the one before its own rotation.
     pub(crate) places: Vec<(Vector3<f64>, Rotation3<f64>)>,
     /// Angle of each piece, base to tip \[rad\]; 0 for links.
     pub(crate) angles_rad: Vec<f64>,
+    /// Position of the tip \[m\].
     pub(crate) tip_m: Vector3<f64>,
+    /// Attitude of the tip.
     pub(crate) tip_rotation: Rotation3<f64>,
 }
 
 impl Walk {
-    /// Forward kinematics of a case, base to tip.
+    /// Positions of all pieces in the pose of a case (forward kinematics), base to tip.
     pub(crate) fn new(space: &DesignSpace, case: &Case) -> Self {
         let mut angles = space.angles_rad(case).into_iter();
         let mut travels = space.travels_m(case).into_iter();
@@ -262,7 +288,7 @@ impl Walk {
 }
 
 impl Walk {
-    /// What springs do to the arm in the pose.
+    /// The forces and moments of all springs on the arm in the pose.
     pub(crate) fn spring_loads(&self, space: &DesignSpace) -> Vec<EndLoad> {
         if space.springs.is_empty() {
             return Vec::new();
@@ -274,7 +300,7 @@ impl Walk {
                     let hinge = ((rotation * joint.axis).into_inner(), self.angles_rad[index]);
                     ElementFrame { at_m, rotation: self.places[index + 1].1, hinge: Some(hinge) }
                 }
-                // a spring on a prismatic joint pulls at what travels
+                // a spring on a prismatic joint pulls at the part that travels
                 SpacePiece::Prismatic(_) => {
                     ElementFrame { at_m: self.places[index + 1].0, rotation, hinge: None }
                 }
@@ -285,13 +311,15 @@ impl Walk {
         end_loads(&space.springs, &frames)
     }
 
-    /// The place and attitude in which a layer of a piece stands.
+    /// Position and attitude of a layer of the piece with the number `piece`: at the beginning of the piece, or at its
+    /// end.
     pub(crate) fn place(&self, piece: usize, layer: &Layer) -> &(Vector3<f64>, Rotation3<f64>) {
         &self.places[piece + usize::from(layer.is_at_end())]
     }
 }
 
-/// Inertia and weight of bodies whose piece begins at a place of a pose, about the world's origin.
+/// Inertia matrix and weight of bodies, about the world's origin. `at_m` and `rotation` are the beginning of their
+/// piece in a pose.
 pub(crate) fn bodies_at(
     bodies: &[RigidBody],
     space: &DesignSpace,
@@ -307,8 +335,8 @@ pub(crate) fn bodies_at(
     (inertia, weight)
 }
 
-/// Reach of each joint \[m\], base to tip: the largest way of the tip per radian over some cases. That is the distance of the
-/// tip from the axis, unless the joint turns passive joints too.
+/// Reach of each joint, base to tip \[m\]: the largest displacement of the tip per radian of the joint over the given
+/// cases. It is the distance of the tip from the joint's axis, unless the joint drives passive joints.
 pub(crate) fn reaches_m<'a>(space: &DesignSpace, cases: impl Iterator<Item = &'a Case>) -> Vec<f64> {
     let joints: Vec<(usize, Vector3<f64>)> = space
         .pieces

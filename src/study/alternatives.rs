@@ -1,4 +1,4 @@
-//! Alternatives to each part of a design: other drives that are strong enough there, and other tubes.
+//! Alternatives to each part of a design: other drives that meet the demand at the same joint, and other tubes.
 
 use crate::arm::file::windup_of;
 use crate::arm::structure::Beam;
@@ -13,7 +13,9 @@ use crate::space::design_space::DesignSpace;
 use crate::space::design_space::{LinkChoice, LinkOption, SpaceJoint, SpacePiece};
 use crate::space::problem::ArmProblem;
 
-/// The alternatives of the whole space for each piece, by name.
+/// For each element of the chain of `arm`, the parts that may replace its part, each as a name and as the element with
+/// this part. `options` are the options of the design, tip first; the parts are taken from the space `whole`, of which
+/// `problem` may have an excerpt.
 pub(super) fn alternatives(
     problem: &ArmProblem,
     whole: &DesignSpace,
@@ -37,8 +39,9 @@ pub(super) fn alternatives(
     Some(others)
 }
 
-/// The drives that hold at a joint, lightest first, each with its bearing and extras; each is stiffer than every lighter one,
-/// in a segment of its torsion curve or in its bearing.
+/// Names and elements of the joint `asked` with each of `drives` (drives that meet the demand, lightest first), its
+/// bearing and its extras. A drive is listed only if it is stiffer than every lighter one, in a segment of its torsion
+/// curve or in its bearing.
 fn drives<'c>(asked: &SpaceJoint, drives: impl Iterator<Item = Drive<'c>>) -> Vec<(String, Element)> {
     let mut out: Vec<(String, Element)> = Vec::new();
     let mut kept: Vec<[f64; 4]> = Vec::new();
@@ -58,8 +61,8 @@ fn drives<'c>(asked: &SpaceJoint, drives: impl Iterator<Item = Drive<'c>>) -> Ve
     out
 }
 
-/// The tubes that are no softer than the present one along either axis of the section. Each is stiffer than
-/// all lighter ones along one axis or along both together.
+/// The tubes that a link may have and that are no softer than its present tube `now` along either axis of the section,
+/// lightest first. Each is stiffer than all lighter ones, along one axis or along both together.
 fn tubes(choice: &LinkChoice, limits: &Constraints, now: &Element) -> Vec<(String, Element)> {
     let Element::Link(Link { body: LinkBody::Tube { material, section, .. }, .. }) = now else {
         return Vec::new();
@@ -88,7 +91,8 @@ fn tubes(choice: &LinkChoice, limits: &Constraints, now: &Element) -> Vec<(Strin
     by_mass.into_iter().map(named).collect()
 }
 
-/// Deflection per load of a cantilever by bending and shear, along either axis of its section and along both \[m/N\].
+/// Deflection of a cantilever by bending and shear, per force at its end \[m/N\]: along z of its section, along y, and
+/// the sum of both.
 fn end_compliances(beam: &Beam, length_m: f64) -> [f64; 3] {
     let [bending_y, bending_z, shear, ..] = line_stiffnesses(beam);
     let [along_z, along_y] =
@@ -96,7 +100,7 @@ fn end_compliances(beam: &Beam, length_m: f64) -> [f64; 3] {
     [along_z, along_y, along_z + along_y]
 }
 
-/// Size and material of a tube, sizes to four digits at most: `60 x 40 x 2 mm Aluminium 6061-T6`.
+/// Size and material of a tube in words, with at most four digits per size: `60 x 40 x 2 mm Aluminium 6061-T6`.
 fn section_words(option: &LinkOption) -> String {
     let mm = |m: f64| {
         let digits = significant(m * 1e3, 4);

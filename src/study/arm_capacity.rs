@@ -1,32 +1,37 @@
-//! How much an arm file holds at rest: the largest payload in each pose for which no joint bears more torque than it may.
+//! How much an arm file holds at rest: the largest payload in each pose for which no joint bears more torque, and no output bearing
+//! more load, than it may.
 //!
-//! An arm file says nothing of motion and duty, so only static torques are judged. They are affine in the mass of the payload, whose
-//! centre stays where the case has it. A joint's torque is limited by what a file states, such as the `import.json` of a robot; else
-//! by the average torque of its gear and the continuous torque of its motor, if the catalogs know them.
+//! An arm file says nothing of motion and duty, so only static loads are judged. The payload's centre stays where the case has it.
+//! Torques are affine in the mass of the payload. A joint's torque is limited by what a file states, such as the `import.json` of a
+//! robot; else by the average torque of its gear and the continuous torque of its motor, if the catalogs know them. An output bearing
+//! is limited by its permissible moment and by its static safety at rest, if it has these ratings.
 
 use super::capacity::{AtPose, Capacity, Limit};
-use crate::arm::Arm;
 use crate::arm::load::LoadCase;
+use crate::arm::{Arm, Element};
 use crate::catalog::Catalogs;
 use crate::input::json::{Document, Faults, Node};
 use crate::mechanics::chain::Chain;
+use crate::mechanics::statics::JointLoad;
+use crate::sizing::bearing::{BearingLimits, BearingLoad};
+use crate::space::bearing_loads::resolved;
 
-/// The most torque that a joint may bear at rest.
+/// The largest torque that a joint may hold at rest.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct TorqueLimit {
     /// Name of the joint.
     pub joint: String,
-    /// What limits it.
+    /// Name of the limit, such as the continuous torque of the motor.
     pub check: &'static str,
-    /// The torque \[N m\].
+    /// Largest permitted torque \[N m\].
     pub most_nm: f64,
 }
 
-/// Reads the limits of a file with `{"joints": [{"name": "j1", "max_torque_nm": 87}]}`, such as `import.json`. Joints without a number
-/// have no limit.
+/// Reads the torque limits of a file with `{"joints": [{"name": "j1", "max_torque_nm": 87}]}`, such as `import.json`.
+/// Joints without a number have no limit.
 ///
 /// # Errors
-/// All faults of the file.
+/// All faults of the file at once.
 pub(crate) fn read_limits(document: Document) -> Result<Vec<TorqueLimit>, Faults> {
     let root = document.root();
     let limits = match root.value().get("joints") {
@@ -61,7 +66,7 @@ fn joints(root: &Node) -> Option<Vec<TorqueLimit>> {
     Some(read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect())
 }
 
-/// The limits of the gears and motors that an arm names.
+/// The torque limits of joints at rest that follow from the ratings of the gears and motors that an arm names.
 pub(crate) fn limits_of_parts(arm: &Arm, catalogs: &Catalogs) -> Vec<TorqueLimit> {
     let of_joint = |joint: &crate::arm::Joint| {
         let gear = joint.gear.as_ref().and_then(|name| catalogs.gear(name).ok());
@@ -84,7 +89,8 @@ pub(crate) fn limits_of_parts(arm: &Arm, catalogs: &Catalogs) -> Vec<TorqueLimit
     arm.joints().filter(|joint| joint.coupled.is_none()).flat_map(of_joint).flatten().collect()
 }
 
-/// The largest payload of an arm in its cases.
+/// The largest payload of an arm at rest, in each of its cases and in all of them, with which no joint exceeds its
+/// limit in `limits`.
 pub(crate) fn arm_capacity(arm: &Arm, cases: &[LoadCase], limits: &[TorqueLimit]) -> Capacity {
     let mut table: Vec<AtPose> = cases
         .iter()
@@ -109,7 +115,8 @@ pub(crate) fn arm_capacity(arm: &Arm, cases: &[LoadCase], limits: &[TorqueLimit]
     Capacity { limit, pose, table }
 }
 
-/// The largest payload in a case.
+/// The largest payload in one case, and the joint that limits it. The torques are linear in the payload's mass, so two
+/// masses suffice to find it.
 fn limit(arm: &Arm, case: &LoadCase, limits: &[TorqueLimit]) -> Limit {
     let chain = Chain::new(&arm.structure_in(case), case.links);
     let torques_nm = |payload_kg: f64| {
@@ -118,7 +125,7 @@ fn limit(arm: &Arm, case: &LoadCase, limits: &[TorqueLimit]) -> Limit {
         chain.pose(&loaded).statics().joint_torques_nm
     };
     let (empty, one_kg) = (torques_nm(0.0), torques_nm(1.0));
-    let mut least = Limit { payload_kg: f64::INFINITY, piece: String::new(), check: String::new() };
+    let mut least = limit_of_bearings(arm, case);
     for limit in limits {
         let Some(index) = empty.iter().position(|(name, _)| *name == limit.joint) else { continue };
         let (without_nm, per_kg) = (empty[index].1, one_kg[index].1 - empty[index].1);
@@ -134,6 +141,92 @@ fn limit(arm: &Arm, case: &LoadCase, limits: &[TorqueLimit]) -> Limit {
     least
 }
 
+/// The ratings of an output bearing of an arm, with the lever at which its link attaches.
+struct RatedBearing {
+    /// Name of the joint.
+    joint: String,
+    /// Lever along the axis from the centre of the bearing to the link \[m\].
+    lever_m: f64,
+    limits: BearingLimits,
+}
+
+impl RatedBearing {
+    /// The load at rest as a part of what is allowed, for both checks that a standing bearing has to pass.
+    fn uses(&self, load: &JointLoad) -> [(f64, &'static str); 2] {
+        let JointLoad { moment_nm, radial_n, axial_n } = *load;
+        let load = BearingLoad { moment_nm, radial_n, axial_n }.with_lever(self.lever_m);
+        [
+            (self.limits.moment_nm(&load) / self.limits.running_moment_nm, "bearing moment"),
+            (self.limits.static_load_n(&load) / self.limits.at_rest_n, "bearing static safety"),
+        ]
+    }
+}
+
+/// The output bearings of an arm.
+fn rated_bearings(arm: &Arm) -> impl Iterator<Item = RatedBearing> + '_ {
+    arm.chain.iter().enumerate().filter_map(|(at, element)| {
+        let Element::Joint(joint) = element else { return None };
+        let bearing = resolved(joint.bearing?, &joint.axis, arm.chain.get(at + 1));
+        Some(RatedBearing {
+            joint: joint.name.clone(),
+            lever_m: bearing.offset_m.unwrap_or_default().abs(),
+            // speed and life limit what a bearing bears while it turns, and an arm file says nothing of motion
+            limits: BearingLimits::of(Some(&bearing), 0.0, 0.0),
+        })
+    })
+}
+
+/// Whether any output bearing of an arm has a rating that limits its load at rest.
+pub(crate) fn has_rated_bearings(arm: &Arm) -> bool {
+    rated_bearings(arm).any(|b| b.limits.running_moment_nm.min(b.limits.at_rest_n).is_finite())
+}
+
+/// The largest payload in a case that all output bearings hold at rest. Their loads are norms of what is affine in the payload's mass,
+/// and so convex: those of no payload and of the largest one hold everything between.
+fn limit_of_bearings(arm: &Arm, case: &LoadCase) -> Limit {
+    let chain = Chain::new(&arm.structure_in(case), case.links);
+    let bearings: Vec<RatedBearing> = rated_bearings(arm).collect();
+    let worst = |payload_kg: f64| {
+        let mut loaded = case.clone();
+        loaded.payload.mass_kg = payload_kg;
+        let statics = chain.pose(&loaded).statics();
+        let loads = statics.joint_torques_nm.iter().zip(&statics.bearing_loads);
+        loads
+            .filter_map(|((name, _), load)| Some((bearings.iter().find(|b| b.joint == *name)?, load)))
+            .flat_map(|(bearing, load)| bearing.uses(load).map(|(part, check)| (part, bearing, check)))
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let none = Limit { payload_kg: f64::INFINITY, piece: String::new(), check: String::new() };
+    let fails = |payload_kg: f64| worst(payload_kg).is_some_and(|(part, ..)| part > 1.0);
+    let (mut held_kg, mut failed_kg) = (0.0, 1.0);
+    if fails(0.0) {
+        failed_kg = 0.0;
+    } else {
+        while !fails(failed_kg) {
+            (held_kg, failed_kg) = (failed_kg, 2.0 * failed_kg);
+            if failed_kg > MOST_PAYLOAD_KG {
+                return none;
+            }
+        }
+        while failed_kg - held_kg > SAME_PAYLOAD * failed_kg {
+            let middle_kg = 0.5 * (held_kg + failed_kg);
+            if fails(middle_kg) { failed_kg = middle_kg } else { held_kg = middle_kg }
+        }
+    }
+    match worst(failed_kg) {
+        Some((_, bearing, check)) => {
+            Limit { payload_kg: held_kg, piece: bearing.joint.clone(), check: check.into() }
+        }
+        None => none,
+    }
+}
+
+/// Payload beyond which nothing is said to limit an arm \[kg\].
+const MOST_PAYLOAD_KG: f64 = 1e9;
+
+/// Relative width of the interval in which the largest payload of the bearings is found.
+const SAME_PAYLOAD: f64 = 1e-13;
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -142,7 +235,8 @@ mod tests {
 
     #[test]
     fn a_lever_holds_what_its_torque_allows() {
-        // 2 kg in the middle of 1 m and m at its end, on 50 N m: m = (50/9.81 - 1)/1; folded up nothing limits it
+        // 2 kg in the middle of 1 m and m at its end, with a limit of 50 N m: m = (50/9.81 - 1)/1; folded up, nothing
+        // limits m
         let text = r#"{"chain": [{"type": "joint", "name": "j", "axis": [0, 1, 0], "stiffness_nm_per_rad": null},
             {"type": "link", "name": "l", "vector_m": [1, 0, 0], "mass_kg": 2}]}"#;
         let arm = read_arm_document(Document::parse("a", text).expect("JSON"), &Catalogs::default())

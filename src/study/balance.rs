@@ -1,11 +1,12 @@
-//! Springs and counterweights of a study, and what is said of them.
+//! Springs and counterweights of a study, and remarks on them.
 
 use crate::arm::springs::Spring;
 use crate::arm::springs_file::{BodiesOf, Named, hang, read_counterweights, read_springs};
 use crate::input::json::Object;
 use crate::space::design_space::{DesignSpace, SpacePiece};
 
-/// Reads the springs of a study, and hangs its counterweights on the pieces that carry them.
+/// Reads the springs of a study from `root`, and adds its counterweights as bodies to those of `pieces` that carry
+/// them.
 pub(super) fn read_balance(root: &Object, pieces: &mut [SpacePiece]) -> Option<Vec<Spring>> {
     let named: Vec<Named> = pieces.iter().map(|p| (p.name(), matches!(p, SpacePiece::Joint(_)))).collect();
     let (springs, counterweights) = (read_springs(root, &named), read_counterweights(root, &named));
@@ -24,7 +25,7 @@ pub(super) fn read_balance(root: &Object, pieces: &mut [SpacePiece]) -> Option<V
     springs
 }
 
-/// What results say beside the numbers of an arm with springs; nothing without springs.
+/// Remarks that results print with the numbers of an arm with springs; empty without springs.
 pub(super) fn balance_remarks(space: &DesignSpace) -> Vec<String> {
     if space.springs.is_empty() {
         return Vec::new();

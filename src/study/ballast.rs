@@ -1,5 +1,5 @@
-//! Designs that are on a front only because extra weight loads a gear into the stiffer part of its curve, as
-//! a table.
+//! Ballast: a table of the designs that are on a front only because extra weight loads a gear into the stiffer part
+//! of its torsion curve.
 
 use super::outcome::{Front, Judged};
 use super::table::link_words;
@@ -17,7 +17,7 @@ use crate::space::problem::ArmProblem;
 use rayon::prelude::*;
 use serde_json::json;
 
-/// A flagged design of a front.
+/// A design of a front that has ballast, as a table row and in words.
 #[derive(Debug, Clone, PartialEq)]
 struct Flagged {
     row: Vec<String>,
@@ -25,14 +25,14 @@ struct Flagged {
     by_segment: bool,
 }
 
-/// The designs of a front that have a heavy part only for its weight.
+/// The designs of a front that have a heavy part only for its weight (ballast).
 #[derive(Debug, Clone, PartialEq)]
 pub struct BallastFlags {
     flagged: Vec<Flagged>,
     front: usize,
 }
 
-/// Name of the file that lists them.
+/// Name of the file that lists the designs with ballast.
 pub(crate) const FILE: &str = "ballast.csv";
 
 const COLUMNS: [&str; 13] = [
@@ -51,9 +51,11 @@ const COLUMNS: [&str; 13] = [
     "lighter_lowest_mode_hz",
 ];
 
-/// Flags the designs of a front that have a heavy part only for its weight.
+/// Finds the designs of a front that have a heavy part only for its weight. None are reported for a study with linkages
+/// or springs, because the effect of extra weight on the joint torques is not known here.
 pub fn ballast_flags(problem: &ArmProblem, front: &Front) -> BallastFlags {
-    // what a linkage carries past a joint is not known here, and weight may relieve a joint against its spring
+    // with linkages the torque on a driving joint is not known here, and with springs extra weight may also unload a
+    // joint
     if problem.space().beyond_bounds().is_some() {
         return BallastFlags { flagged: Vec::new(), front: front.len() };
     }
@@ -96,23 +98,23 @@ fn flagged(problem: &ArmProblem, judged: &Judged, ballast: &Ballast) -> Option<F
 }
 
 impl BallastFlags {
-    /// Number of designs.
+    /// Number of designs with ballast.
     pub fn len(&self) -> usize {
         self.flagged.len()
     }
 
-    /// Whether no design is flagged.
+    /// Whether no design has ballast.
     pub fn is_empty(&self) -> bool {
         self.flagged.is_empty()
     }
 
-    /// One row a flagged design.
+    /// The table as CSV, one row for each design with ballast.
     pub fn to_csv(&self) -> Vec<u8> {
         let rows = self.flagged.iter().map(|f| f.row.clone()).collect();
         FrontTable { columns: COLUMNS.map(String::from).into(), rows }.to_csv()
     }
 
-    /// How many there are and why, in a sentence.
+    /// Number of designs with ballast and the reason why they are on the front, in one sentence.
     pub fn sentence(&self) -> String {
         let are = if self.len() == 1 { "is" } else { "are" };
         let presses = match self.flagged.iter().all(|f| f.by_segment) {
@@ -126,7 +128,7 @@ impl BallastFlags {
         )
     }
 
-    /// Everything that a result reports about them.
+    /// Everything that a result reports about ballast: file, sections, entry of `run.json`, terminal text.
     pub fn supplement(&self) -> Supplement {
         let run = Some(("ballast_designs", json!(self.len())));
         if self.is_empty() {
@@ -141,7 +143,7 @@ impl BallastFlags {
         }
     }
 
-    /// The section of a page.
+    /// The section on ballast for the HTML page, with the first five designs in words.
     pub fn section(&self) -> PageSection {
         let words =
             std::iter::once(self.sentence()).chain(self.flagged.iter().take(5).map(|f| f.words.clone()));
@@ -153,7 +155,7 @@ impl BallastFlags {
         }
     }
 
-    /// The section of a summary: the first few in words.
+    /// The section on ballast for the Markdown summary, with the first five designs in words.
     pub fn to_markdown(&self) -> String {
         let lines: Vec<String> = self.flagged.iter().take(5).map(|f| format!("- {}\n", f.words)).collect();
         format!("\n## Ballast\n\n{}\n\n{}", self.sentence(), lines.concat())

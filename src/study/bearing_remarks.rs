@@ -1,4 +1,5 @@
-//! Output bearings of a front that could not be checked or are overloaded, so that it can be said beside the front.
+//! Remarks on output bearings of a front that are overloaded or could not be checked. They are printed with the
+//! front.
 
 use crate::arm::bearing::BearingSource;
 use crate::catalog::Catalogs;
@@ -7,7 +8,7 @@ use crate::report::words::capital;
 use crate::sizing::bearing_checks::{BlankRatings, RigidBearing};
 use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint, SpacePiece};
 
-/// The most names in one sentence.
+/// Largest number of names in one sentence.
 const MOST_NAMES: usize = 4;
 
 /// Bearings by what they lack, in the order of the chain.
@@ -61,13 +62,15 @@ pub(crate) fn bearing_remarks(space: &DesignSpace, catalogs: &Catalogs, front: &
         .collect()
 }
 
-/// Whether the joint has a bearing, and a drive without the name of a gear or motor.
+/// Whether the joint has a bearing and a given drive without the name of its gear or its motor, so that the bearing
+/// cannot be checked.
 fn is_unnamed(joint: &SpaceJoint) -> bool {
     let is_named = matches!(&joint.drive, DriveChoice::Given { gear: Some(_), motor: Some(_), .. });
     !joint.drive.is_sized() && !is_named && joint.bearing.stated().is_some()
 }
 
-/// The bearing of a drive that is given and excludes no design, if it carries too much in one.
+/// A remark if the bearing of a given drive is overloaded in some design of the front. The checks of a given drive
+/// exclude no design.
 fn overloaded(joint: &SpaceJoint, front: &FrontTable) -> Option<String> {
     let margins = front.numbers(&format!("{}_bearing_margin", joint.name)).into_iter().flatten();
     let margins: Vec<f64> = margins.filter(|margin| *margin < 1.0).collect();
@@ -81,7 +84,7 @@ fn overloaded(joint: &SpaceJoint, front: &FrontTable) -> Option<String> {
     ))
 }
 
-/// The bearings that lack ratings.
+/// The bearings of `joints` that lack ratings in some design of the front, so that a check could not be made.
 fn unchecked<'s>(
     joints: impl Iterator<Item = &'s SpaceJoint>,
     catalogs: &Catalogs,
@@ -143,7 +146,7 @@ fn bearing_of(joint: &SpaceJoint) -> String {
     format!("the bearing of {}", joint.name)
 }
 
-/// The gears that the designs of a front have at a joint.
+/// Names of the gears that the designs of a front have at a joint, each once.
 fn gears_of<'f>(front: &'f FrontTable, joint: &SpaceJoint) -> impl Iterator<Item = &'f str> {
     let column = front.column(&format!("{}_gear", joint.name));
     let mut ids: Vec<&str> =

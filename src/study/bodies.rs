@@ -1,10 +1,10 @@
-//! What a study says about rigid bodies that no solid can be.
+//! The remark of a study on rigid bodies with an inertia that no solid can have.
 
 use crate::arm::body::RigidBody;
 use crate::report::words::and;
 use crate::space::design_space::{DesignSpace, SpacePiece};
 
-/// Says which pieces have a body that no solid can be.
+/// Names the pieces with a body whose inertia no solid can have, in a sentence; `None` if there is none.
 pub(super) fn impossible_bodies_remark(space: &DesignSpace) -> Option<String> {
     let is_impossible = |piece: &&SpacePiece| match piece {
         SpacePiece::Joint(joint) => joint.bodies.iter().any(RigidBody::is_impossible),

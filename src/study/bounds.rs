@@ -1,4 +1,5 @@
-//! Lower bounds on the mass of a design that is as good as a pick.
+//! Lower bounds on the mass of every design that is at least as stiff as a pick and has at least as high a lowest
+//! mode.
 
 use crate::catalog::Catalogs;
 use crate::exact::domain_reduction::DomainReduction;
@@ -7,29 +8,30 @@ use crate::relax::relaxation::{MassBound, Relaxation};
 use crate::space::design_space::DesignSpace;
 use crate::space::problem::ArmProblem;
 
-/// If the links have more options than this, they are not tabulated for the whole space: the bound of each
-/// pick is computed from the options that a design as good as the pick may have.
+/// Largest number of link options that are tabulated for the whole space. With more options, the bound of each pick
+/// is computed only from those options that a design as good as the pick may have.
 const MOST_TABULATED: usize = 10_000;
 
-/// The source of the bounds.
+/// From which options the bounds are computed.
 pub(super) enum MassBounds<'a> {
-    /// From the options of the whole space.
+    /// The bounds are computed from all options of the space, which are tabulated once.
     Tabulated(&'a ArmProblem<'a>, Relaxation<'a>),
-    /// From the options that a design as good as the pick may have.
+    /// The bound of each pick is computed from the options that a design as good as this pick may have.
     InReach { space: &'a DesignSpace, catalogs: &'a Catalogs, reach: Option<DomainReduction<'a>> },
 }
 
 impl MassBounds<'_> {
-    /// Whether every option of a space can be tabulated.
+    /// Whether the space has few enough options to tabulate all of them.
     pub(super) fn can_tabulate(space: &DesignSpace) -> bool {
         space.link_options() <= MOST_TABULATED
     }
 
-    /// A lower bound on the mass of every design that is as good as a known one, given by its number in the
-    /// whole space. `None` if it cannot be computed.
+    /// A lower bound on the mass of every design that is as good as a known design in deflection and lowest mode.
+    /// `known` is the number of this design in the whole space, `objectives` are its objectives. `None` if the bound
+    /// cannot be computed.
     pub(super) fn below(&self, known: u128, objectives: &Objectives) -> Option<MassBound> {
         match self {
-            // the relaxation knows neither linkages, springs nor laws
+            // the linear program covers neither linkages nor springs nor some effects
             Self::Tabulated(problem, _) if problem.space().beyond_bounds().is_some() => None,
             Self::Tabulated(problem, relaxation) => bound(problem, relaxation, known, objectives),
             Self::InReach { space, catalogs, reach } => {

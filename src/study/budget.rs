@@ -1,11 +1,12 @@
-//! The stiffness budget of a front's picks: what one more kilogram buys at each joint and link, and how far a
-//! pick is from the lightest arm that could do as well.
+//! The stiffness budget of a front's picks: what one more kilogram at each joint and link buys in deflection and
+//! frequency, and how far a pick is from the lightest arm that could be as good.
 //!
-//! Each piece has two answers, both by the full model with all other parts unchanged. *In place*: the piece's mass and
-//! stiffness grow in proportion (a thicker wall, a gear scaled up together with its output bearing), a central difference
-//! over 0.1 % of its mass. *Next part*: the heavier catalog part that fits there, improves anything, and has the best
-//! change of deflection per kilogram; this is the difference between two parts that one can buy. Drives
-//! further inboard are not sized again. The output bearing of a joint has a row of its own, with its share of the deflection.
+//! For each piece there are two answers. Both are computed by the full model with all other parts unchanged. *In
+//! place*: mass and stiffness of the piece grow in proportion (a thicker wall, or a gear scaled up together with its
+//! output bearing); the derivative is a central difference over 0.1 % of the piece's mass. *Next part*: among the
+//! heavier catalog parts that fit there and improve anything, the part with the best change of deflection per
+//! kilogram. This is a difference between two parts that one can buy. Drives further inboard are not sized again. The
+//! output bearing of a joint has a row of its own, with its part of the deflection.
 
 use super::alternatives::alternatives;
 use super::bounds::MassBounds;
@@ -21,7 +22,9 @@ use crate::relax::relaxation::Relaxation;
 use crate::report::budget::{BudgetRow, Gain, NextPart, PickBound, PickBudget, PieceKind};
 use crate::report::front_table::FrontTable;
 use crate::report::picks::{Pick, designs, picks};
-use crate::space::design::{evaluate, full_objectives, number, number_of, objectives_with};
+use crate::space::design::{
+    evaluate, full_deflection_m, full_objectives, number, number_of, objectives_with,
+};
 use crate::space::design_space::DesignSpace;
 use crate::space::design_space::SpacePiece;
 use crate::space::levels::OutwardIn;
@@ -29,12 +32,13 @@ use crate::space::problem::ArmProblem;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-/// Relative step of the derivative in place.
+/// Relative change of mass and stiffness for the derivative *in place*, to either side.
 const STEP: f64 = 1e-3;
-/// A part that adds more than this fraction of the arm's mass is not considered.
+/// Largest mass that a *next part* may add, as a fraction of the arm's mass.
 const MOST_OF_ARM: f64 = 0.25;
 
-/// Budgets of the picks of a front. `problem` has the options of the whole space or of an excerpt.
+/// The stiffness budgets of the picks of a front. `table` is the front; `problem` has the options of the whole space or
+/// of an excerpt; `whole` is the whole space.
 pub fn budgets(
     problem: &ArmProblem,
     whole: &DesignSpace,
@@ -97,25 +101,15 @@ fn budget(
     let heaviest_kg = objectives.mass_kg * MOST_OF_ARM;
     let row = |(piece, element): (usize, &Element)| {
         let mass_kg = element.mass_kg();
-        let with = |other: &Element| {
-            let mut changed = arm.clone();
-            changed.chain[piece] = other.clone();
-            gain(objectives, &full_objectives(&changed, &cases))
-        };
         let heavier = |kg: f64| kg > mass_kg * (1.0 + 1e-6) && kg - mass_kg <= heaviest_kg;
-        let next_part = others[piece]
-            .iter()
-            .filter(|(_, other)| heavier(other.mass_kg()))
-            .map(|(name, other)| NextPart { name: name.clone(), mass_kg: other.mass_kg(), gain: with(other) })
-            .filter(|next| next.gain.helps())
-            .min_by(|a, b| a.gain.mm_per_kg.total_cmp(&b.gain.mm_per_kg));
+        let others = others[piece].iter().filter(|(_, other)| heavier(other.mass_kg()));
         BudgetRow {
             piece: element.name().to_string(),
             kind: if matches!(element, Element::Link(_)) { PieceKind::Link } else { PieceKind::Joint },
             mass_kg,
             share: shares.of_element(element.name()).unwrap_or(0.0),
             in_place: Some(in_place(&arm, piece, &cases)),
-            next_part,
+            next_part: next_part(&arm, piece, others, objectives, &cases),
         }
     };
     let rows = |(piece, element): (usize, &Element)| {
@@ -124,6 +118,36 @@ fn budget(
     };
     let rows: Vec<Vec<BudgetRow>> = arm.chain.par_iter().enumerate().map(rows).collect();
     Some(rows.concat())
+}
+
+/// The heavier part that helps and has the best change of deflection per kilogram; among equals the first.
+///
+/// Deflections say which it is. The modes of the others are not asked for: they take most of the time of the full model.
+fn next_part<'o>(
+    arm: &Arm,
+    piece: usize,
+    others: impl Iterator<Item = &'o (String, Element)>,
+    objectives: &Objectives,
+    cases: &[LoadCase],
+) -> Option<NextPart> {
+    let with = |other: &Element| {
+        let mut changed = arm.clone();
+        changed.chain[piece] = other.clone();
+        changed
+    };
+    let mm_per_kg = |other: &Element| {
+        let changed = with(other);
+        let tip_deflection_m = full_deflection_m(&changed, cases);
+        gain(objectives, &Objectives { tip_deflection_m, mass_kg: changed.mass_kg(), ..*objectives })
+            .mm_per_kg
+    };
+    let mut by_deflection: Vec<(f64, &(String, Element))> =
+        others.map(|other| (mm_per_kg(&other.1), other)).collect();
+    by_deflection.sort_by(|a, b| a.0.total_cmp(&b.0));
+    by_deflection.into_iter().find_map(|(_, (name, other))| {
+        let gain = gain(objectives, &full_objectives(&with(other), cases));
+        gain.helps().then(|| NextPart { name: name.clone(), mass_kg: other.mass_kg(), gain })
+    })
 }
 
 /// Change from one design to another per kilogram.
@@ -135,7 +159,8 @@ fn gain(from: &Objectives, to: &Objectives) -> Gain {
     }
 }
 
-/// Each element's share of the tip deflection in the worst case, along its direction.
+/// For each element, the fraction of the tip deflection that it causes, along the direction of the deflection, in the
+/// judged case with the largest deflection.
 struct Shares(Vec<(String, f64)>);
 
 impl Shares {
@@ -150,12 +175,12 @@ impl Shares {
         Self(worst.shares_m.iter().map(|(name, moved)| (name.clone(), share(moved))).collect())
     }
 
-    /// The share of an element; `None` if nothing of this name yields.
+    /// The fraction of the tip deflection that an element causes; `None` if no compliant element has this name.
     fn of_element(&self, name: &str) -> Option<f64> {
         self.0.iter().find(|(n, _)| n == name).map(|(_, share)| *share)
     }
 
-    /// The row of the bearing or the guide of a joint, if it yields.
+    /// The row of the budget for the bearing of a joint or the guide of a prismatic joint; `None` if it is rigid.
     fn bearing_row(&self, element: &Element) -> Option<BudgetRow> {
         let piece = match element {
             Element::Joint(joint) => format!("{}.bearing", joint.name),
@@ -174,7 +199,8 @@ impl Shares {
     }
 }
 
-/// Change per kilogram by a central difference; mass and stiffness of the piece vary in proportion.
+/// Change of deflection and lowest mode per kilogram if mass and stiffness of the element with the index `piece` grow
+/// in proportion. It is a central difference, with the element made lighter and heavier by [`STEP`].
 fn in_place(arm: &Arm, piece: usize, cases: &[LoadCase]) -> Gain {
     let mass_kg = arm.chain[piece].mass_kg();
     let with = |step: f64| Objectives {
@@ -184,8 +210,8 @@ fn in_place(arm: &Arm, piece: usize, cases: &[LoadCase]) -> Gain {
     gain(&with(-STEP), &with(STEP))
 }
 
-/// Increases mass and stiffness of a piece, that of a joint's bearing too, by the relative step; what effects add stays as
-/// it is.
+/// Increases mass and stiffness of `piece` by the fraction `step`, and also the tilting stiffness of a joint's bearing.
+/// `element` is the piece without effects: what effects add to the piece stays as it is.
 fn grow(piece: &mut Piece, element: &Element, step: f64) {
     let factor = 1.0 + step;
     match piece {

@@ -1,8 +1,8 @@
-//! How much an arm holds: the largest payload with the drives that it has, at every pose of a study and at all of them.
+//! Capacity: the largest payload of an arm with its drives unchanged, in each pose of a study and in all of them.
 //!
-//! The payload keeps its centre and its moments of inertia, and its mass grows until a drive, an output bearing or the stress
-//! of a link fails. The checks are those of sizing: in all poses together the largest static torque and the largest inertia
-//! count, which may come from different poses.
+//! The mass of the payload grows until a drive, an output bearing or the stress of a link exceeds its limit. The
+//! payload keeps its centre of gravity and its moments of inertia. The checks are those of sizing. For all poses
+//! together, the largest static torque and the largest inertia are combined, which may come from different poses.
 
 use super::chosen::{chosen_design, why_not_held};
 use super::definition::Study;
@@ -13,19 +13,19 @@ use crate::space::problem::ArmProblem;
 use crate::space::station::Walk;
 use serde_json::{Value, json};
 
-/// Payload beyond which nothing is looked for \[kg\].
+/// Largest payload that is tried \[kg\]. An arm that still passes with it is reported as having no limit.
 const MOST_KG: f64 = 1e6;
-/// Relative tolerance of a capacity.
+/// Relative tolerance of the bisection for the largest payload.
 const TOLERANCE: f64 = 1e-10;
 
-/// What ends the payload.
+/// The largest payload, and what limits it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Limit {
-    /// The largest payload that holds \[kg\]; infinite if nothing limits it.
+    /// The largest payload that passes every check \[kg\]; infinite if nothing limits it.
     pub payload_kg: f64,
-    /// The joint or link that fails beyond it; empty if nothing does.
+    /// Name of the joint or link that fails beyond this payload; empty if nothing limits it.
     pub piece: String,
-    /// The check that fails beyond it.
+    /// Label of the check that fails beyond this payload.
     pub check: String,
 }
 
@@ -34,20 +34,20 @@ pub struct Limit {
 pub struct AtPose {
     /// Name of the pose.
     pub pose: String,
-    /// Distance of the tip from the origin, in the plane across gravity \[m\].
+    /// Distance of the tip from the origin, measured perpendicular to gravity \[m\].
     pub reach_m: f64,
-    /// The largest payload there.
+    /// The largest payload in this pose.
     pub limit: Limit,
 }
 
-/// The largest payload of an arm.
+/// The largest payload of an arm, in all poses and in each of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Capacity {
-    /// The largest payload that holds in all poses together.
+    /// The largest payload that passes in all sizing poses together.
     pub limit: Limit,
-    /// The pose that allows least by itself.
+    /// Name of the sizing pose with the smallest payload.
     pub pose: String,
-    /// Each sizing pose by itself, the shortest reach first.
+    /// The largest payload in each sizing pose, sorted by reach, shortest first.
     pub table: Vec<AtPose>,
 }
 
@@ -59,7 +59,8 @@ impl Limit {
 }
 
 impl Capacity {
-    /// The capacity as `armwright capacity --json` prints it.
+    /// The capacity as JSON, as `armwright capacity --json` prints it: the limit in all poses together, and one entry
+    /// for each pose.
     pub fn to_json(&self) -> Value {
         let rows: Vec<Value> = self
             .table
@@ -74,10 +75,11 @@ impl Capacity {
     }
 }
 
-/// The capacity of a design of a study, by its `design_id`; without one, of links of median mass and the lightest drives.
+/// The capacity of the design with the `design_id` given as `id`. Without an id, it is the capacity of a design with
+/// links of median mass and the lightest drives.
 ///
 /// # Errors
-/// The study has no such design, or its drives do not hold the study's own payload.
+/// The study has no such design, or a drive of the design does not meet even the study's own payload.
 pub fn capacity_of(study: &Study, id: Option<&str>, catalogs: &Catalogs) -> Result<Capacity, Refusal> {
     let (space, chosen) = chosen_design(study, id, catalogs)?;
     let problem = ArmProblem::new(&space, catalogs);
@@ -85,7 +87,8 @@ pub fn capacity_of(study: &Study, id: Option<&str>, catalogs: &Catalogs) -> Resu
     Ok(capacity(&space, catalogs, arm.slot_options()))
 }
 
-/// The capacity of the design with these options, one for each slot of the arm, tip first. `space` has its links.
+/// The capacity of the design with these options, one for each slot of the arm (joint or link, in the order in which
+/// the arm is built), tip first. `space` is the space to which the options belong.
 pub(crate) fn capacity(space: &DesignSpace, catalogs: &Catalogs, options: &[u32]) -> Capacity {
     let upright = space.down;
     let at_pose = |&case: &usize| {
@@ -103,13 +106,14 @@ pub(crate) fn capacity(space: &DesignSpace, catalogs: &Catalogs, options: &[u32]
     Capacity { limit: limit(space, catalogs, options, &space.sizing_cases), pose, table }
 }
 
-/// The largest payload in some cases, by bisection: a heavier payload may pull against a tip force, but beyond the first
-/// payload that fails none is looked for.
+/// The largest payload in the cases with the indices `cases`, by bisection; all other cases are computed without
+/// payload. A heavier payload could pass again where it counteracts a tip force; only the first payload that fails
+/// counts.
 fn limit(space: &DesignSpace, catalogs: &Catalogs, options: &[u32], cases: &[usize]) -> Limit {
     let overload = |payload_kg: f64| {
         let mut loaded = space.clone();
         for (index, case) in loaded.cases.iter_mut().enumerate() {
-            // in the other cases the arm is empty, so that they cannot overload a link
+            // in all other cases the arm is empty, so that they cannot overload a link
             case.payload.mass_kg = if cases.contains(&index) { payload_kg } else { 0.0 };
         }
         let problem = ArmProblem::new(&loaded, catalogs);

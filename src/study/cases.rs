@@ -1,4 +1,4 @@
-//! Reads the cases of a study: its poses with their loads, each in every environment.
+//! Reads the cases of a study: its poses with their loads, each repeated for every environment.
 
 use super::keys::{ENVIRONMENT, POSE};
 use crate::arm::load::{Payload, Water, vector};
@@ -7,7 +7,7 @@ use crate::input::json::{Node, Object};
 use crate::space::design_space::Case;
 use nalgebra::Vector3;
 
-/// All cases, with the indices of those for judging and for sizing.
+/// All cases of a study, with the indices of the judged cases and of the sizing cases.
 #[derive(Default)]
 pub(super) struct Cases {
     pub cases: Vec<Case>,
@@ -15,21 +15,21 @@ pub(super) struct Cases {
     pub sizing: Vec<usize>,
 }
 
-/// One case as read, before it is put into every environment.
+/// One case as it is read, before it is repeated for every environment.
 struct ReadCase {
     case: Case,
     judged: bool,
     sizing: bool,
 }
 
-/// Reads the poses of a study, each in every environment. `joints` are its driven joints.
+/// Reads the poses of a study and repeats them for every environment. `joints` are the driven joints of the study.
 pub(super) fn read_cases(root: &Object, joints: &[DrivenJoint]) -> Option<Cases> {
     let payload = root.or("payload", Payload::default(), Payload::read);
     let force = root.or("tip_force_n", Vector3::zeros(), vector);
     let moment = root.or("tip_moment_nm", Vector3::zeros(), vector);
     let environments = root.or("environments", vec![Environment::default()], read_environments);
     let poses = root.required("poses").and_then(|n| n.array());
-    // faulty defaults must not hide faults of the poses
+    // a fault in the study's payload or force must not hide faults of the poses
     let usual = Load {
         payload: payload.unwrap_or_default(),
         tip_force_n: force.unwrap_or_default(),
@@ -68,7 +68,7 @@ pub(super) fn read_cases(root: &Object, joints: &[DrivenJoint]) -> Option<Cases>
     Some(out)
 }
 
-/// What the arm is in.
+/// The medium around the arm: air, or water.
 #[derive(Debug, Clone, Default)]
 struct Environment {
     name: String,
@@ -92,7 +92,7 @@ fn read_environments(node: &Node) -> Option<Vec<Environment>> {
     read.into_iter().collect()
 }
 
-/// What a pose is loaded with if it does not say.
+/// The load of a pose that states none.
 struct Load {
     payload: Payload,
     tip_force_n: Vector3<f64>,

@@ -1,4 +1,4 @@
-//! Finding fault with a finished front.
+//! Checks a finished front for faults: wrong rows, and missing designs.
 
 use super::definition::Study;
 use super::outcome::{Front, judge};
@@ -11,11 +11,13 @@ use crate::pareto::front::nondominated;
 use crate::pareto::objectives::Objectives;
 use crate::report::front_table::FrontTable;
 use crate::report::number::significant;
+use crate::search::resume::Resume;
 use crate::search::sweep::Candidate;
 use crate::space::design::{id_of, number, number_of, options};
 use crate::space::levels::OutwardIn;
 use crate::space::problem::ArmProblem;
 use crate::verify::judge::{Judge, Judged, Pick};
+use crate::verify::ledger::Ledger;
 use crate::verify::missing::conditions;
 use crate::verify::settings::Settings;
 use rayon::prelude::*;
@@ -23,60 +25,84 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-/// Allowance for rounding in a gap.
+/// Relative allowance for rounding when a gap is claimed.
 const ROUNDING: f64 = 1e-6;
-/// Largest relative difference of a number in a row from what the full model gives.
+/// Largest relative difference that is allowed between an objective that a row states and the same objective by the
+/// full model.
 const AGREE: f64 = 1e-9;
-/// Two rows may stand for each other if they differ by at most this fraction of the gap.
+/// Part of the claimed gap by which two designs may differ so that one of them may represent the other. The search for
+/// missing designs then reports only one of such designs.
 const APART: f64 = 0.45;
-/// At most this many faults of one kind are listed one by one.
+/// Largest number of faults of one kind that are listed one by one.
 const LISTED: usize = 10;
 
-/// The result of checking a front.
+/// The result of checking a finished front.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrontCheck {
-    /// What is wrong, in words; empty if nothing is.
+    /// The faults, in words; empty if the front is correct.
     pub faults: Vec<String>,
-    /// Rows checked.
+    /// Number of rows that were checked.
     pub rows: usize,
-    /// How it was proved that no design is missing, apart from those among the faults; or why it was not.
+    /// How it was proved that no design is missing except those among the faults, or the reason why it was not
+    /// proved.
     pub completeness: Result<Completeness, String>,
 }
 
-/// A completed search for missing designs.
+/// Facts of a completed search for missing designs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Completeness {
-    /// Boxes bounded.
+    /// Number of boxes that were bounded.
     pub boxes: u64,
-    /// For every design some row is worse by at most this fraction in each objective; 0 if no design is missing.
+    /// The gap that was proved: for every design of the study some row is worse by at most this fraction in each
+    /// objective. 0 means that no design is missing.
     pub gap: f64,
-    /// Why the exact search's own bounds had to be used; `None` if independent bounds were used.
+    /// The reason why the bounds of the exact search itself had to be used; `None` if independent bounds were used.
     pub by_exact_search: Option<String>,
 }
 
-/// What a finished front claims.
+/// What a finished front claims to be.
 #[derive(Debug, Clone, Copy)]
 pub struct Claim<'t> {
-    /// Its rows.
+    /// The rows of the front.
     pub table: &'t FrontTable,
-    /// For every design some row is worse by at most this fraction in each objective; 0 if the front is whole. `None` if
-    /// no such claim is made.
+    /// The claimed gap: for every design of the study some row is worse by at most this fraction in each objective. 0
+    /// claims the whole front; `None` claims nothing.
     pub gap: Option<f64>,
-    /// Whether designs that differ only in drives of equal mass and torsion curve all have rows.
+    /// Whether every design has a row even if it differs from another only in drives of equal mass and torsion curve.
     pub ties_listed: bool,
-    /// If not, the content of the file that lists them.
+    /// The content of `ties.csv`, which lists such drives if `ties_listed` is false.
     pub ties_csv: &'t [u8],
 }
 
-/// Checks a front against its study. Every row is computed again by the full model, rows are compared with
-/// each other, and a search that starts from the rows looks for missing designs.
+/// Checks a front against its study. Every row is computed again by the full model and compared with the others. Then
+/// a search that starts from the rows looks for missing designs.
 pub fn check_front(
     study: &Study,
     catalogs: &Catalogs,
-    Claim { table, gap, ties_listed, ties_csv }: &Claim,
+    claim: &Claim,
     stop: &AtomicBool,
     deadline: Option<Instant>,
 ) -> FrontCheck {
+    let until = (stop, deadline);
+    // without a state there is none that cannot be read
+    resume_check(study, catalogs, claim, until, None).unwrap_or_else(|why| FrontCheck {
+        faults: Vec::new(),
+        rows: 0,
+        completeness: Err(why),
+    })
+}
+
+/// As [`check_front`], from the state in `resume`; the states of this search for missing designs are kept.
+///
+/// # Errors
+/// The state is of another search, in words.
+pub fn resume_check(
+    study: &Study,
+    catalogs: &Catalogs,
+    Claim { table, gap, ties_listed, ties_csv }: &Claim,
+    until: (&AtomicBool, Option<Instant>),
+    resume: Option<Resume>,
+) -> Result<FrontCheck, String> {
     let mut faults = Vec::new();
     let ids: Vec<&str> = table.rows.iter().map(|row| row[0].as_str()).collect();
     let sizes = study.space.level_sizes(catalogs);
@@ -88,7 +114,8 @@ pub fn check_front(
         faults.push("a design_id is there twice, or is none".into());
     }
     let Some(space) = study.space.excerpt(catalogs, &known) else {
-        return FrontCheck { faults, rows: table.rows.len(), completeness: Err("no row is a design".into()) };
+        let completeness = Err("no row is a design".into());
+        return Ok(FrontCheck { faults, rows: table.rows.len(), completeness });
     };
     let problem = ArmProblem::new(&space, catalogs);
     let candidates: Vec<Candidate> = known.iter().filter_map(|&n| candidate(&problem, n)).collect();
@@ -108,7 +135,7 @@ pub fn check_front(
     let completeness = match gap {
         Some(gap) => {
             let front = Claimed { front: &front, gap: *gap, ties_listed: *ties_listed };
-            let look = look_for_missing(study, &judge, catalogs, &front, (stop, deadline));
+            let look = look_for_missing(study, &judge, catalogs, &front, until, resume)?;
             let missing = missing(study, &judge, catalogs, &front, (&problem, &rows), &look.designs);
             list(&mut faults, missing, "designs are missing");
             if *ties_listed && look.lacks_ties {
@@ -118,16 +145,16 @@ pub fn check_front(
         }
         None => Err("the run was stopped early and claims no more than its rows".into()),
     };
-    FrontCheck { faults, rows: table.rows.len(), completeness }
+    Ok(FrontCheck { faults, rows: table.rows.len(), completeness })
 }
 
-/// A row of a front, and its parts as the verifier names them.
+/// A row of a front, with its parts in the verifier's terms.
 struct Row<'f> {
     design: &'f super::outcome::Judged,
     picks: Vec<Pick>,
 }
 
-/// A front with its claimed gap.
+/// A front with the gap that it claims.
 struct Claimed<'f> {
     front: &'f Front,
     gap: f64,
@@ -135,43 +162,58 @@ struct Claimed<'f> {
 }
 
 impl Claimed<'_> {
-    /// The objectives of the rows, improved by the gap: a design that they do not dominate is missing.
+    /// The objectives of the rows, improved by the claimed gap. A design is missing from the front if none of these
+    /// dominates it.
     fn objectives(&self) -> Vec<Objectives> {
         let by = if self.gap > 0.0 { 1.0 + self.gap + ROUNDING } else { 1.0 };
         self.front.iter().map(|d| d.design.objectives.better_by(by)).collect()
     }
 }
 
-/// The result of looking for missing designs.
+/// The result of the search for missing designs.
 struct Look {
-    /// Designs that may be missing.
+    /// Designs that may be missing from the front.
     designs: Vec<Judged>,
-    /// Whether it came to its end.
+    /// Facts of the search if it was completed, else the reason why not.
     completeness: Result<Completeness, String>,
-    /// Whether ties were left out because they are too many.
+    /// Whether designs with equal objectives were left out of `designs`, because there are too many.
     lacks_ties: bool,
 }
 
-/// Looks for missing designs, with the independent bounds of `verify` if they can handle the study.
+/// Searches for designs that are missing from the front. It uses the independent bounds of `verify` if they can handle
+/// the study, else those of the exact search.
 fn look_for_missing(
     study: &Study,
     judge: &Judge,
     catalogs: &Catalogs,
     front: &Claimed,
     until: (&AtomicBool, Option<Instant>),
-) -> Look {
+    resume: Option<Resume>,
+) -> Result<Look, String> {
     let (stop, deadline) = until;
     let unseen = conditions(judge.question()).err();
     let (designs, boxes, open, lacks_ties) = match unseen {
         None => {
             let settings = Settings { apart: APART * front.gap, ..Default::default() };
-            let looked = judge.missing(&front.objectives(), settings, stop, deadline);
+            let keep = |state: &dyn Fn() -> Vec<u8>| {
+                let due = resume.filter(|resume| resume.keeper.is_due());
+                due.into_iter().for_each(|resume| resume.keeper.keep(&state()));
+            };
+            let ledger = match resume {
+                Some(Resume { from, .. }) => Ledger::resumed(from, &keep)?,
+                None => Ledger::default(),
+            };
+            let looked = judge.missing_since(&ledger, &front.objectives(), settings, until);
             let lacks_ties = front.gap == 0.0 && !looked.ties_listed;
             (looked.candidates, looked.boxes, looked.open, lacks_ties)
         }
         Some(_) => {
             let rows: Vec<Objectives> = front.front.iter().map(|d| d.design.objectives).collect();
             let search = Exact::new(&study.space, catalogs, stop, deadline).to_gap(front.gap);
+            let search = match resume {
+                Some(resume) => search.resumed(resume)?,
+                None => search,
+            };
             let found = search.run(&rows);
             let numbers: Vec<u128> = found.front.iter().map(|c| c.number).collect();
             let designs = judged(study, judge, catalogs, &numbers);
@@ -182,10 +224,11 @@ fn look_for_missing(
         0 => Ok(Completeness { boxes, gap: front.gap, by_exact_search: unseen }),
         open => Err(format!("stopped with {open} boxes or regions unopened")),
     };
-    Look { designs, completeness, lacks_ties }
+    Ok(Look { designs, completeness, lacks_ties })
 }
 
-/// Numbered designs of the whole study by the verifier's judge.
+/// Evaluates the designs with these numbers, which count in the whole study, by the verifier's own model. Designs that
+/// do not meet their limits by this model are left out.
 fn judged(study: &Study, judge: &Judge, catalogs: &Catalogs, numbers: &[u128]) -> Vec<Judged> {
     let Some(space) = study.space.excerpt(catalogs, numbers) else { return Vec::new() };
     let problem = ArmProblem::new(&space, catalogs);
@@ -193,7 +236,8 @@ fn judged(study: &Study, judge: &Judge, catalogs: &Catalogs, numbers: &[u128]) -
     numbers.iter().filter_map(design).collect()
 }
 
-/// Every row by the verifier's own drives and thresholds: does it hold, and has it the objectives that it should?
+/// Checks every row with the verifier's own drives, thresholds and model: the design must meet its limits and have the
+/// objectives that the row states. Faults are added to `faults`.
 fn judge_rows(judge: &Judge, rows: &[Row], problem: &ArmProblem, faults: &mut Vec<String>) {
     let fault = |row: &Row| {
         let id = id_of(problem.whole_number(row.design.design.number));
@@ -215,7 +259,8 @@ fn candidate(problem: &ArmProblem, whole: u128) -> Option<Candidate> {
     Some(Candidate { number, objectives })
 }
 
-/// Compares every row with what it should be.
+/// Compares every row of `table` with the row in `expected`, which the full model gives for the same design. Designs
+/// that others dominate, so that they are not in `front`, are faults too.
 fn compare_rows(
     expected: &FrontTable,
     table: &FrontTable,
@@ -263,8 +308,8 @@ fn broken_limits(study: &Study, front: &Front, problem: &ArmProblem, faults: &mu
     );
 }
 
-/// Designs found by the search that belong on the front but are neither on it nor close enough to one of its
-/// rows.
+/// The designs among `found` that are missing: they belong on the front, but are neither on it nor close enough to one
+/// of its rows. Each is described in a sentence.
 fn missing(
     study: &Study,
     judge: &Judge,
@@ -277,7 +322,7 @@ fn missing(
     let others: Vec<&Judged> = found.iter().filter(|d| !listed.contains(&d.picks[..])).collect();
     let own = claimed.objectives().into_iter().map(|o| o.minimized());
     let points: Vec<[f64; 3]> = own.chain(others.iter().map(|d| d.objectives.minimized())).collect();
-    // a tie that is not listed stands behind a row
+    // designs with equal objectives need no row of their own if ties are listed separately
     let behind: HashSet<Vec<Pick>> = match claimed.ties_listed {
         true => HashSet::new(),
         false => rows.iter().map(|row| judge.first_tie(&row.picks)).collect(),
@@ -311,7 +356,8 @@ fn missing(
     names.into_iter().map(sentence).collect()
 }
 
-/// Lists the first few of many faults, and their number.
+/// Appends the first few of the faults `found` to `faults`, and then the number of the others. `what` names them in the
+/// plural.
 fn list(faults: &mut Vec<String>, found: Vec<String>, what: &str) {
     let more = found.len().saturating_sub(LISTED);
     faults.extend(found.into_iter().take(LISTED));

@@ -3,7 +3,7 @@
 use crate::catalog::profile::ProfileShape;
 use crate::input::key::{Key, Kind, Shape, optional, required};
 
-/// The options of an open link.
+/// The keys of `choose`, the options of an open link.
 pub(super) static CHOOSE: Shape = Shape::new(
     "choose",
     "The options of an open link: every pair of a material and a section.",
@@ -27,7 +27,7 @@ pub(super) static CHOOSE: Shape = Shape::new(
 
 const SIZES: Kind = Kind::Either(&[Kind::Positive, Kind::List(&Kind::Positive), Kind::Object(&GRID)]);
 
-/// A grid of sizes.
+/// The keys of a grid of sizes.
 pub(super) static GRID: Shape = Shape::new(
     "grid",
     "Sizes from one to another by a step, ends included.",
@@ -52,7 +52,7 @@ const fn shape_key(word: &'static [&'static str]) -> Key {
     required("shape", Kind::Word(word), "-", "The shape.")
 }
 
-/// Rectangular tubes.
+/// The keys of a family of rectangular tubes.
 pub(super) static RECTANGULAR_TUBES: Shape = Shape::new(
     "rectangular tubes",
     "Rectangular tubes of all these sizes.",
@@ -60,7 +60,7 @@ pub(super) static RECTANGULAR_TUBES: Shape = Shape::new(
     &[],
 );
 
-/// Round tubes.
+/// The keys of a family of round tubes.
 pub(super) static ROUND_TUBES: Shape = Shape::new(
     "round tubes",
     "Round tubes of all these sizes.",
@@ -68,7 +68,7 @@ pub(super) static ROUND_TUBES: Shape = Shape::new(
     &[],
 );
 
-/// Rectangular bars.
+/// The keys of a family of rectangular bars.
 pub(super) static RECTANGULAR_BARS: Shape = Shape::new(
     "rectangular bars",
     "Solid rectangular bars of all these sizes.",
@@ -76,7 +76,7 @@ pub(super) static RECTANGULAR_BARS: Shape = Shape::new(
     &[],
 );
 
-/// Round bars.
+/// The keys of a family of round bars.
 pub(super) static ROUND_BARS: Shape = Shape::new(
     "round bars",
     "Solid round bars of all these sizes.",
@@ -84,7 +84,7 @@ pub(super) static ROUND_BARS: Shape = Shape::new(
     &[],
 );
 
-/// Profiles of the catalog, as a family of sections.
+/// The keys of a family of sections that consists of catalog profiles.
 pub(super) static PROFILES: Shape = Shape::new(
     "profiles",
     "Tubes that one can buy.",
@@ -92,7 +92,7 @@ pub(super) static PROFILES: Shape = Shape::new(
     &[],
 );
 
-/// Which profiles of the catalog.
+/// The keys that select profiles of the catalog.
 pub(super) static PROFILE_FILTER: Shape = Shape::new(
     "profile filter",
     "Which profiles of the catalog.",

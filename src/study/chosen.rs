@@ -1,4 +1,5 @@
-//! One design of a study: the one that is named, or one of links of median mass, and why its drives do not hold.
+//! One design of a study, either named or with links of median mass, and the reason if its drives do not meet the
+//! demand.
 
 use super::definition::Study;
 use super::joint_obstacle::{first_fit_at, obstacle_at};
@@ -16,8 +17,8 @@ use crate::space::design_space::{DesignSpace, SpacePiece};
 use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::SizedJoint;
 
-/// A design as an arm with every part resolved to numbers, and the cases in which it is judged; `None` if the study has no design
-/// of this number.
+/// The design with this number in the study: the arm with every part resolved to numbers, and the cases in which it is
+/// judged. `None` if the study has no such design.
 pub(crate) fn arm_of_number(
     study: &Study,
     number: u128,
@@ -29,21 +30,22 @@ pub(crate) fn arm_of_number(
     Some((arm, problem.load_cases()))
 }
 
-/// A design, by its `design_id`, as an arm with every part resolved to numbers, and the cases in which it is judged.
+/// The design with the `design_id` given as `id`: the arm with every part resolved to numbers, and the cases in which
+/// it is judged.
 ///
 /// # Errors
-/// The study has no such design.
+/// The study has no design with this id.
 pub fn arm_of_design(study: &Study, id: &str, catalogs: &Catalogs) -> Result<(Arm, Vec<LoadCase>), Refusal> {
     let found = number_of(id).and_then(|number| arm_of_number(study, number, catalogs));
     let (arm, cases) = found.ok_or_else(|| no_design(id, study))?;
     Ok((Arm { name: format!("{} {id}", study.name), ..arm }, cases))
 }
 
-/// The sizing of every joint of a design, tip first: the rows of `armwright size --json`. Without a `design_id` the links are
-/// those of median mass.
+/// The sizing of every joint of a design, tip first: the rows of `armwright size --json`. Without a `design_id`, the
+/// design has links of median mass.
 ///
 /// # Errors
-/// The study has nothing to choose from or no such design, or no drive holds at some joint.
+/// The study has nothing to choose from, or no design with this id, or no drive meets the demand at some joint.
 pub fn sizing_of(
     study: &Study,
     id: Option<&str>,
@@ -55,13 +57,14 @@ pub fn sizing_of(
     sizing_rows(&problem, catalogs, &chosen).map_err(|slot| why_not_held(&problem, &chosen, slot))
 }
 
-/// The most options of a link among which the one of median mass is looked for.
+/// Largest number of options of a link among which the option of median mass is chosen.
 const MOST_OPTIONS: u32 = 4096;
 
-/// The space of a design that is named, or of links among which that of median mass is taken, with its options.
+/// A design space and the options of one design in it, one for each open piece, tip first. It is the design with the
+/// `design_id` given as `id`, or without an id a design with links of median mass.
 ///
 /// # Errors
-/// The study has no such design.
+/// The study has no design with this id.
 pub(crate) fn chosen_design(
     study: &Study,
     id: Option<&str>,
@@ -83,7 +86,8 @@ fn no_design(id: &str, study: &Study) -> Refusal {
     Refusal::Unknown(format!("the study \"{}\" has no design \"{id}\"", study.name))
 }
 
-/// Takes the option of median mass of every open link and the first drive that holds for every joint with `all_fits`.
+/// The options of a design with links of median mass, tip first: of every open link the option of median mass, of every
+/// joint with `all_fits` the lightest drive that meets the demand.
 fn middle(problem: &ArmProblem) -> Vec<u32> {
     let mut out = Vec::new();
     for (piece, what) in problem.space().pieces.iter().enumerate().rev() {
@@ -98,7 +102,9 @@ fn middle(problem: &ArmProblem) -> Vec<u32> {
     out
 }
 
-/// The option nearest to the median that keeps the link's own limits; `by_mass` goes from the lightest to the heaviest.
+/// The option that is nearest to the median one in the order of mass and meets the link's own limits, or the median
+/// option if none does. `by_mass` lists the options of the link `piece` from the lightest to the heaviest; `outboard`
+/// are the options chosen outboard of it.
 fn nearest_to_median(problem: &ArmProblem, outboard: &[u32], piece: usize, by_mass: &[u32]) -> u32 {
     let median = by_mass.len() / 2;
     let mut order: Vec<usize> = (0..by_mass.len()).collect();
@@ -110,7 +116,8 @@ fn nearest_to_median(problem: &ArmProblem, outboard: &[u32], piece: usize, by_ma
     order.into_iter().map(|rank| by_mass[rank]).find(holds).unwrap_or(by_mass[median])
 }
 
-/// Why the drive of a slot does not hold: `slot` is where [`ArmProblem::walk`] ended.
+/// The reason why the options `chosen` give no design. `slot` is the place of the joint or link at which
+/// [`ArmProblem::walk`], which builds the arm from the tip inward, ended.
 pub(crate) fn why_not_held(problem: &ArmProblem, chosen: &[u32], slot: usize) -> Refusal {
     let mut last = Partial::default();
     let _ = problem.walk(chosen, |_, partial| last = partial.clone());
@@ -130,7 +137,8 @@ pub(crate) fn why_not_held(problem: &ArmProblem, chosen: &[u32], slot: usize) ->
     }
 }
 
-/// Why the drive of a design is too weak at a joint where another drive would hold.
+/// The reason why the drive chosen at the joint `piece` does not meet `demand`. `None` unless the joint has a choice of
+/// drives and another drive would meet the demand.
 fn too_weak(
     problem: &ArmProblem,
     chosen: &[u32],

@@ -1,16 +1,17 @@
-//! The compliance of the connections between gears and links, as a share of that of the gears.
+//! Compliance of the connections between gears and links, as a fraction of the compliance of the gears.
 //!
-//! Rivin counts the connections of motor to gear and of gear to arm among the sources of compliance of a robot; joined flanges
-//! yield about as much as the parts that they join. A share of the gear's own compliance is the least that can be said without
-//! a drawing.
+//! Rivin counts the connections of motor to gear and of gear to arm among the sources of compliance of a robot:
+//! flanges that are bolted together deflect about as much as the parts that they join. Without a drawing, nothing
+//! more exact than a fraction of the gear's own compliance can be stated.
 
 use crate::arm::bearing::BearingSource;
 use crate::input::json::Object;
 use crate::report::number::significant;
 use crate::space::design_space::{DesignSpace, DriveChoice, SpacePiece};
 
-/// The share of a joint's connections added to what the catalogs say of a given gear and of the bearing. What the study states
-/// in numbers has it already; a gear that is chosen gets it when it is known.
+/// Adds the compliance of connections, as the fraction `share` of the catalog compliance, to a given gear and to the
+/// bearing. Stiffnesses that the study states in numbers are taken to include it. A gear that the search chooses gets
+/// it later, when it is known.
 pub(super) fn with_connections(
     share: f64,
     object: &Object,
@@ -35,7 +36,8 @@ pub(super) fn with_connections(
     (drive, bearing)
 }
 
-/// The largest share of a study's connections; 0 if they are rigid.
+/// The compliance of connections as a fraction of the compliance of the gear, for the joint of the study where this
+/// fraction is largest. 0 if all connections are rigid.
 pub(super) fn connection_share(space: &DesignSpace) -> f64 {
     let shares = space.pieces.iter().map(|piece| match piece {
         SpacePiece::Joint(joint) => joint.connection_share,
@@ -44,8 +46,8 @@ pub(super) fn connection_share(space: &DesignSpace) -> f64 {
     shares.fold(0.0, f64::max)
 }
 
-/// What the share does to the numbers, in a sentence; `None` without one. No compliance is more than `1 + share` times what it
-/// would be, so no mode is more than its root lower.
+/// The effect of connections on the results, in a sentence; `None` if they are rigid. No compliance grows by more
+/// than the factor `1 + share`, so no natural frequency falls by more than the square root of this factor.
 pub(super) fn connections_remark(space: &DesignSpace) -> Option<String> {
     let share = connection_share(space);
     let percent = |part: f64| significant(100.0 * part, 2);
@@ -70,7 +72,8 @@ mod tests {
     use crate::study::read::read_study;
     use serde_json::{Value, json};
 
-    /// Objectives and remarks of an arm of one rigid link on one joint.
+    /// Objectives and remarks of an arm with one rigid link on one joint, in a study with the fraction `share` for
+    /// connections. `joint` has further keys of the joint.
     fn arm(share: f64, joint: Value) -> (Objectives, String) {
         let mut study = json!({"name": "one joint", "connection_share": share,
             "chain": [{"type": "joint", "name": "j1", "axis": [0, 1, 0]},

@@ -1,11 +1,12 @@
-//! Materials that creep: said wherever a study has links of them.
+//! Remarks on links of materials that creep.
 
 use crate::arm::pieces::{factors_sentence, without_factors};
 use crate::arm::{Link, LinkBody};
 use crate::catalog::Catalogs;
 use crate::space::design_space::{DesignSpace, SpacePiece};
 
-/// A sentence for each material of a link, given or to choose, that creeps, and one for stated factors.
+/// Remarks: one sentence for each material that creeps and that a link has or may have, and one for links with stated
+/// factors.
 pub(super) fn creep_remarks(space: &DesignSpace, catalogs: &Catalogs) -> Vec<String> {
     let mut links_of: Vec<(&str, Vec<&str>)> = Vec::new();
     let mut add = |material, link| match links_of.iter_mut().find(|(known, _)| *known == material) {
@@ -38,7 +39,8 @@ pub(super) fn creep_remarks(space: &DesignSpace, catalogs: &Catalogs) -> Vec<Str
     links_of.into_iter().filter_map(sentence).chain(factors).collect()
 }
 
-/// What is said of a material of links that creeps; `None` if it does not, or is not of the catalogs.
+/// A remark on the links named in `links`, whose material creeps; `None` if the material does not creep or is in no
+/// catalog.
 pub(crate) fn creep_sentence(catalogs: &Catalogs, material: &str, links: &str) -> Option<String> {
     let material = without_factors(material);
     let row = catalogs.materials.iter().find(|row| row.name == material)?;

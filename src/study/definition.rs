@@ -1,21 +1,21 @@
-//! What a study is.
+//! The definition of a study.
 
 use crate::space::design_space::DesignSpace;
 
 /// A study: a named question about an arm.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Study {
-    /// Name.
+    /// Name of the study.
     pub name: String,
-    /// The question in a sentence.
+    /// The question of the study in one sentence.
     pub question: String,
-    /// What may be chosen, and what the arm must do.
+    /// The choices that the study leaves open, and the requirements on the arm.
     pub space: DesignSpace,
-    /// An exact search ends when for every design of the study some listed one is worse by at most this fraction in each
-    /// objective.
+    /// The gap at which an exact search may end: for every design of the study, some listed design is worse by at
+    /// most this fraction in each objective.
     pub gap: f64,
-    /// Options left out because a rating that a check needs is unknown, in words.
+    /// Messages on options that were left out because a rating that a check needs is blank.
     pub not_checked: Vec<String>,
-    /// What a reader of the result should know of the question, in sentences.
+    /// Remarks on the question that a reader of the result should know, as sentences.
     pub remarks: Vec<String>,
 }

@@ -1,4 +1,5 @@
-//! Why no design meets a study, and the smallest relaxation that would help. Both searches and `size` ask here.
+//! The reason why no design meets a study, and the smallest change of its limits that would help. The searches and
+//! `size` call it.
 
 use super::definition::Study;
 use super::joint_obstacle::joint_obstacles;
@@ -7,17 +8,20 @@ use super::relaxed_limits::{Limited, Relaxation};
 use crate::catalog::Catalogs;
 use crate::space::constraint::Constraints;
 use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint, SpacePiece};
+use crate::space::joints::TabulatedJoints;
 use crate::space::prismatic::SpacePrismatic;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-/// The longest time in which relaxations are looked for.
+/// Longest time for the search for changes of the limits.
 const LONGEST: Duration = Duration::from_secs(60);
 
-/// The reason in words: every joint that no drive can move; or, if some drive holds at each, every limit that alone keeps
-/// the designs out, with the value that would suffice; or the fewest limits that do so together.
+/// The reason why no design meets the study, in words. If at some joint no drive meets the demand, it names every such
+/// joint. Otherwise it names every limit that by itself excludes all designs, with a value that would suffice. If there
+/// is no such limit, it names the smallest sets of limits that together exclude all designs.
 ///
-/// It takes some searches, which end at the deadline, after a minute, or when `stop` is set. The words then say so.
+/// This takes several searches. They end at the deadline, after a minute, or when `stop` is set; the words then say
+/// so.
 pub fn why_infeasible(
     study: &Study,
     catalogs: &Catalogs,
@@ -26,13 +30,15 @@ pub fn why_infeasible(
 ) -> String {
     let latest = Instant::now() + LONGEST;
     let deadline = deadline.map_or(latest, |deadline| deadline.min(latest));
-    let limited = Limited { space: &study.space, catalogs, stop, deadline };
+    let joints = TabulatedJoints::new(&study.space, catalogs);
+    let designs = study.space.designs_with(&joints);
+    let limited = Limited { space: &study.space, catalogs, joints, stop, deadline };
     let without_limits = DesignSpace { constraints: Constraints::default(), ..study.space.clone() };
     let reasons = match study.space.beyond_exact() {
         Some(unknown) => obstacles_alone(&without_limits, catalogs, &unknown),
         None => reasons(&limited, &without_limits),
     };
-    let head = match study.space.designs(catalogs) {
+    let head = match designs {
         Some(0) => format!("no design meets the study \"{}\"", study.name),
         Some(designs) => format!("no design of {designs} meets the study \"{}\"", study.name),
         None => format!("no design of more than 1e38 meets the study \"{}\"", study.name),
@@ -40,7 +46,8 @@ pub fn why_infeasible(
     format!("{head}\n  {}", reasons.join("\n  "))
 }
 
-/// What can be said of a space that the exact search does not cover: what its joints lack.
+/// The reasons for a space that the exact search does not cover because of `unknown`: joints without a sufficient
+/// drive. Which limits stand in the way is not searched for.
 fn obstacles_alone(without_limits: &DesignSpace, catalogs: &Catalogs, unknown: &str) -> Vec<String> {
     let mut reasons = joint_obstacles(without_limits, catalogs);
     reasons.push(format!(
@@ -49,7 +56,8 @@ fn obstacles_alone(without_limits: &DesignSpace, catalogs: &Catalogs, unknown: &
     reasons
 }
 
-/// The limits that stand in the way, or the joints that no drive can move.
+/// The reasons why no design is feasible, in words: joints at which no drive meets the demand, or else the limits that
+/// exclude all designs. `without_limits` is the space with all limits removed.
 fn reasons(limited: &Limited, without_limits: &DesignSpace) -> Vec<String> {
     let catalogs = limited.catalogs;
     match limited.holds_without_limits() {
@@ -66,13 +74,13 @@ fn reasons(limited: &Limited, without_limits: &DesignSpace) -> Vec<String> {
 const OUT_OF_TIME: &str = "the search for the smallest relaxation was stopped before it was done; a smaller one, or \
                            another, may help too";
 
-/// The limits that have to be relaxed, in words.
+/// The limits that have to be changed so that a design is feasible, in words.
 fn limits_in_the_way(limited: &Limited) -> Vec<String> {
     let constraints = &limited.space.constraints;
     let (relaxations, is_all) = limited.relaxations();
     let mut reasons: Vec<String> = relaxations.iter().map(|r| relaxation_words(r, constraints)).collect();
     if reasons.is_empty() && is_all {
-        // the designs that hold without limits reach each of them, but rounding lets none keep all of them
+        // without limits there are designs that reach each limit, but with rounding none meets all of them
         reasons
             .push("every limit is within the rounding of what a design reaches; relax one a little".into());
     }
@@ -82,7 +90,7 @@ fn limits_in_the_way(limited: &Limited) -> Vec<String> {
     reasons
 }
 
-/// A relaxation in words: what is missing at each limit, and the values that are enough.
+/// In words: how much is missing at each limit of a relaxation, and the values of the limits that suffice.
 fn relaxation_words(relaxation: &Relaxation, constraints: &Constraints) -> String {
     let words = |(quantity, reached): &(Quantity, f64)| {
         let missing = quantity.shortfall_words(constraints, *reached);
@@ -96,7 +104,7 @@ fn relaxation_words(relaxation: &Relaxation, constraints: &Constraints) -> Strin
     format!("{together}{}; relaxing {} is enough", missing.join("; "), enough.join(" and "))
 }
 
-/// The pieces without any option, in words; empty if every piece has one.
+/// The pieces for which the study leaves no option, in words; empty if every piece has one.
 pub fn empty_pieces(space: &DesignSpace, catalogs: &Catalogs) -> Vec<String> {
     let words = |piece: &SpacePiece| match piece {
         SpacePiece::Choice(choice) if choice.options.is_empty() => Some(format!(
@@ -111,10 +119,10 @@ pub fn empty_pieces(space: &DesignSpace, catalogs: &Catalogs) -> Vec<String> {
     space.pieces.iter().filter_map(words).collect()
 }
 
-/// Most pairs of gear and motor of all joints together: they take about a gigabyte.
+/// Largest number of pairs of gear and motor of all joints together. This many take about a gigabyte.
 const MOST_PAIRS: usize = 3_000_000;
 
-/// Why a space is too large to be worked with, in words; `None` if it is not.
+/// The reason why a space is too large to compute, in words; `None` if it is not.
 pub(crate) fn too_large(space: &DesignSpace, catalogs: &Catalogs) -> Option<String> {
     let pairs = space.pieces.iter().filter_map(|piece| match piece {
         SpacePiece::Joint(joint) => {
@@ -128,7 +136,7 @@ pub(crate) fn too_large(space: &DesignSpace, catalogs: &Catalogs) -> Option<Stri
     })
 }
 
-/// Number of gears and of motors that a joint may use; `None` if its drive is given.
+/// Number of gears and number of motors that a joint may use; `None` if its drive is given.
 fn parts_offered(joint: &SpaceJoint, catalogs: &Catalogs) -> Option<[usize; 2]> {
     let (DriveChoice::FirstFit(filter) | DriveChoice::AllFits(filter)) = &joint.drive else { return None };
     let gears = catalogs.gears.iter().filter(|gear| filter.allows_gear(gear));

@@ -1,6 +1,6 @@
-//! Reads `"drives"`: the parts among which the joints of a study are sized.
+//! Reads the key `drives`: the parts from which the joints of a study are sized.
 
-use super::keys::DRIVES;
+use super::drive_keys::DRIVES;
 use super::motor_kinds::{read_motor_kinds, usual_motor_kinds};
 use crate::arm::bearing::BearingSource;
 use crate::arm::extras::ExtrasSource;
@@ -11,14 +11,15 @@ use crate::catalog::motor::{Motor, MotorKind};
 use crate::input::json::{Node, Object, closest};
 use crate::sizing::select::DriveFilter;
 
-/// Where drives are taken from.
+/// The catalog parts from which drives are chosen.
 #[derive(Debug, Clone)]
 pub(super) struct Drives {
     pub filter: DriveFilter,
 }
 
 impl Default for Drives {
-    /// The strain-wave gears and the servo and hydraulic motors of the catalogs. Other kinds join a study that asks for them.
+    /// All strain-wave gears, and the servo and hydraulic motors of the catalogs. Other kinds are used only if a
+    /// study asks for them.
     fn default() -> Self {
         let filter = DriveFilter {
             gear_kinds: Some(vec![GearKind::StrainWave]),
@@ -30,7 +31,7 @@ impl Default for Drives {
     }
 }
 
-/// Keys that ask for gears.
+/// Keys that select gears.
 const GEAR_KEYS: [&str; 4] = ["gear_series", "gears", "gear_kinds", "ratios"];
 
 pub(super) fn read_drives(node: &Node, catalogs: &Catalogs) -> Option<Drives> {
@@ -75,7 +76,7 @@ pub(super) fn read_drives(node: &Node, catalogs: &Catalogs) -> Option<Drives> {
     })
 }
 
-/// `"all"`, or a list of models.
+/// Reads `"all"`, which means no restriction, or a list of models of actuators.
 fn read_actuators(node: &Node, catalogs: &Catalogs) -> Option<Option<Vec<String>>> {
     if node.value().as_str() == Some("all") {
         return Some(None);
@@ -84,7 +85,7 @@ fn read_actuators(node: &Node, catalogs: &Catalogs) -> Option<Option<Vec<String>
     list(node, &actuators.map(|g| g.id.as_str()).collect::<Vec<_>>()).map(Some)
 }
 
-/// A list of names that must all be known; without the key there is no restriction.
+/// Reads a list of names, all of which must be known. `None` (no restriction) without the key.
 fn names(object: &Object, key: &str, known: &[&str]) -> Option<Option<Vec<String>>> {
     object.or(key, None, |node| list(node, known).map(Some))
 }

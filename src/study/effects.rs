@@ -1,10 +1,9 @@
-//! The effects of a study: whether they fit its arm, and which corrections of a measured arm apply to it.
+//! The effects of a study: checks that they are possible in its arm, and applies the corrections of a measured arm.
 //!
-//! A study asks which arm to build; a campaign measured an arm that was built. The effects that were found in
-//! the measured arm are expected in the next one too, at the joints and links of the same name. Calibrated
-//! values within tolerance belong to the measured parts. They apply only where the study gives the same part,
-//! that is, to a joint with a given drive; a drive or a tube that the study chooses is another part and keeps
-//! its catalog ratings.
+//! A study asks which arm to build; a campaign measured an arm that was built. The effects found in the measured arm
+//! are expected in the next arm too, at the joints and links of the same name. Calibrated values within tolerance
+//! belong to the individual parts that were measured. They apply only where the study gives the same part, which is a
+//! joint with a given drive. A drive or a tube that the study chooses is another part and keeps its catalog ratings.
 
 use super::definition::Study;
 use crate::arm::effect::entry::Effect;
@@ -20,24 +19,24 @@ use serde_json::{Value, json};
 /// One correction of a measured arm, and whether it applies to a study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Correction {
-    /// The correction: `bearing_tilt at j3`, `j2.stiffness x 1.02`.
+    /// Name of the correction, such as `bearing_tilt at j3` or `j2.stiffness x 1.02`.
     pub what: String,
-    /// Whether it applies.
+    /// Whether the correction applies to the study.
     pub applied: bool,
-    /// What it changes, or why it does not apply.
+    /// What the correction changes, or the reason why it does not apply.
     pub words: String,
 }
 
-/// A study with corrections applied.
+/// A study to which corrections of a measured arm were applied.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CorrectedStudy {
-    /// The study's file with the corrections in it: a study like any other.
+    /// The file of the study with the corrections written into it. It can be read like any other study.
     pub file: Value,
     /// Every correction, applied or not.
     pub corrections: Vec<Correction>,
 }
 
-/// Records what is wrong with each effect of a study.
+/// Records a fault for each effect that is not possible in the study.
 pub(super) fn check_effects(space: &DesignSpace, root: &Object) -> Option<()> {
     let Some(node) = root.optional("effects") else { return Some(()) };
     let mut sound = true;
@@ -50,7 +49,7 @@ pub(super) fn check_effects(space: &DesignSpace, root: &Object) -> Option<()> {
     sound.then_some(())
 }
 
-/// Why an effect does not fit the arm of a study: the field, the problem, a hint.
+/// The reason why an effect is not possible in the arm of a study: field, problem, advice. `None` if it is possible.
 fn unfit(space: &DesignSpace, effect: &Effect) -> Option<(String, String, String)> {
     if let Some(fault) = effect.faults(&space.nominal_structure()).into_iter().next() {
         return Some((fault.field, fault.problem, fault.hint));
@@ -88,7 +87,8 @@ fn unfit(space: &DesignSpace, effect: &Effect) -> Option<(String, String, String
     }
 }
 
-/// Whether a negative extra mass, together with all others at its place, removes more mass than is there.
+/// Whether `effect`, a negative extra mass, removes more than there is: together with all other extra masses at the
+/// same place it exceeds `mass_kg`, the mass at this place.
 fn takes_too_much(space: &DesignSpace, effect: &Effect, mass_kg: f64) -> bool {
     let added_kg = |effects: Vec<Effect>| DesignSpace { effects, ..space.clone() }.effects_mass_kg();
     let of_place = |other: &&Effect| other.effect == effect.effect && other.at == effect.at;
@@ -96,7 +96,8 @@ fn takes_too_much(space: &DesignSpace, effect: &Effect, mass_kg: f64) -> bool {
         && mass_kg + added_kg(space.effects.iter().filter(of_place).cloned().collect()) < 0.0
 }
 
-/// The study's own effects that describe a test, which change nothing.
+/// The effects that the study itself has and that describe a test, as corrections that are not applied. They have no
+/// influence on its results.
 pub fn left_out(study: &Study) -> Vec<Correction> {
     let of_test = study.space.effects.iter().filter(|effect| effect.is_of_test());
     of_test.map(|effect| Correction { what: effect.label(), applied: false, words: OF_TEST.into() }).collect()
@@ -104,8 +105,8 @@ pub fn left_out(study: &Study) -> Vec<Correction> {
 
 const OF_TEST: &str = "it describes how the arm was tested, not the arm";
 
-/// Applies the corrections of a measured arm to the study's file: the effects of `arm`, and its calibrated
-/// factors such as `("j2.stiffness", 1.02)`.
+/// Applies the corrections of a measured arm to the file of a study. They are the effects of `arm`, and the factors in
+/// `calibrated`, such as `("j2.stiffness", 1.02)`.
 pub fn apply_corrections(
     file: &Value,
     study: &Study,
@@ -174,7 +175,9 @@ impl CorrectedStudy {
 }
 
 impl CorrectedStudy {
-    /// Writes a calibrated value of a prismatic joint, whose numbers the study gives.
+    /// Writes the calibrated value of a prismatic joint, which is its number in the study times `factor`, into the
+    /// file. `index` is the place of the joint in the chain; `quantity` names the number; `what` is the label of the
+    /// correction.
     fn calibrate_prismatic(
         &mut self,
         piece: &SpacePiece,
@@ -198,14 +201,15 @@ impl CorrectedStudy {
     }
 }
 
-/// The numbers of an effect: `stiffness_nm_per_rad = 200000`.
+/// The parameters of an effect in words, such as `stiffness_nm_per_rad = 200000`.
 fn parameters(effect: &Effect) -> String {
     let numbers = |list: &[f64]| list.iter().map(|x| significant(*x, 4)).collect::<Vec<_>>();
     let each = effect.parameters.iter().map(|(name, list)| format!("{name} = {}", numbers(list).join(", ")));
     each.collect::<Vec<_>>().join("; ")
 }
 
-/// Replaces the stiffness in a joint's entry.
+/// Writes the torsion curve `curve` into `entry`, the entry of a joint in a study file, in place of the stiffness
+/// there.
 fn write_curve(entry: &mut Value, curve: &Curve) {
     if let Some(entry) = entry.as_object_mut() {
         entry.shift_remove("stiffness_nm_per_rad");

@@ -1,4 +1,4 @@
-//! What a study asks of the sizes of parts, and what it says of that beside its results.
+//! The limits of a study on the sizes of parts, and the remarks on them in results.
 
 use super::keys::FIT;
 use crate::catalog::Catalogs;
@@ -10,7 +10,8 @@ use crate::sizing::select::DriveFilter;
 use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint, SpacePiece};
 use crate::space::fit::joints_without_link;
 
-/// Reads the key `fit` of a study or of a joint. What a joint does not say is as in `usual`; `null` asks nothing.
+/// Reads the key `fit` of a study or of a joint. Keys that are missing are taken from `usual`; `null` means no
+/// limits.
 pub(super) fn read_fit(object: &Object, usual: FitRequirement) -> Option<FitRequirement> {
     object.or("fit", usual, |node| match node.is_null() {
         true => Some(FitRequirement::default()),
@@ -50,8 +51,8 @@ fn read_motor_place(node: &Node) -> Option<MotorPlace> {
     }
 }
 
-/// What is asked of the sizes of parts, where it cannot be asked, and of how many parts the catalogs lack a size, in
-/// sentences; none if nothing is asked.
+/// Remarks: the limits on sizes, the joints at which they cannot be checked, and the number of parts whose size the
+/// catalogs leave blank. Empty if the study sets no such limits.
 pub(super) fn fit_remarks(space: &DesignSpace, catalogs: &Catalogs) -> Vec<String> {
     let asking: Vec<&SpaceJoint> = joints_that_ask(space).collect();
     if asking.is_empty() {
@@ -87,7 +88,7 @@ fn component_sets(asking: &[&SpaceJoint]) -> Option<String> {
     })
 }
 
-/// The sized joints of which a study asks that their parts fit.
+/// The joints with chosen drives for which the study limits the sizes of parts.
 pub(super) fn joints_that_ask(space: &DesignSpace) -> impl Iterator<Item = &SpaceJoint> {
     space.pieces.iter().filter_map(|piece| match piece {
         SpacePiece::Joint(joint) if joint.drive.is_sized() && joint.fit.is_asked() => Some(joint),
@@ -95,7 +96,7 @@ pub(super) fn joints_that_ask(space: &DesignSpace) -> impl Iterator<Item = &Spac
     })
 }
 
-/// What is asked, each time with the names of the joints of which it is asked.
+/// The limits on sizes in words, each with the names of the joints to which it applies.
 fn phrases(asking: &[&SpaceJoint]) -> Vec<String> {
     let mm = |m: f64| significant(m * 1e3, 4);
     let mut phrases: Vec<(String, Vec<&str>)> = Vec::new();
@@ -119,7 +120,7 @@ fn phrases(asking: &[&SpaceJoint]) -> Vec<String> {
     phrases.into_iter().map(|(phrase, names)| format!("{phrase} ({})", names.join(", "))).collect()
 }
 
-/// Of how many parts that the joints may have the catalogs lack a size that is asked about; `None` if of none.
+/// Number of allowed parts for which the catalogs lack a size that is limited, in words; `None` if there are none.
 fn unknown_sizes(asking: &[&SpaceJoint], catalogs: &Catalogs) -> Option<String> {
     let is_blank = |asked: bool, size_m: Option<f64>| asked && size_m.is_none();
     let by_any = |lacks: &dyn Fn(&FitRequirement, &DriveFilter) -> bool| {

@@ -5,11 +5,11 @@ use crate::arm::effect::harness_mass;
 use crate::space::design_space::{DesignSpace, SpacePiece};
 use serde_json::json;
 
-/// Name of the effect that adds them.
+/// Name of the effect that adds cables and hoses to a link.
 const EFFECT: &str = harness_mass::KIND.name;
 
-/// A harness of a mass per length \[kg/m\] along every link, as effects. A link for which the study has an effect of its own keeps
-/// that.
+/// The effects that add cables and hoses of `kg_per_m` \[kg/m\] along every link. A link that already has such an
+/// effect in `own`, the study's effects, keeps that one.
 pub(super) fn harness_effects(pieces: &[SpacePiece], kg_per_m: f64, own: &[Effect]) -> Vec<Effect> {
     let has_own = |link: &str| own.iter().any(|effect| effect.effect == EFFECT && effect.at == link);
     let links = pieces.iter().filter_map(|piece| match piece {
@@ -27,12 +27,12 @@ pub(super) fn harness_effects(pieces: &[SpacePiece], kg_per_m: f64, own: &[Effec
     carrying.map(effect).collect()
 }
 
-/// Whether some link carries cables.
+/// Whether some link has a harness.
 pub(super) fn has_harness(space: &DesignSpace) -> bool {
     space.effects.iter().any(|effect| effect.effect == EFFECT)
 }
 
-/// What the harness along every link weighs, in a sentence; `None` without one.
+/// The mass of cables and hoses along all links, in a sentence; `None` if the study states none.
 pub(super) fn harness_remark(space: &DesignSpace, kg_per_m: f64) -> Option<String> {
     let without = space.effects.iter().filter(|effect| effect.effect != EFFECT).cloned().collect();
     let without = DesignSpace { effects: without, ..space.clone() };
@@ -76,7 +76,7 @@ mod tests {
         let by_key = judge(json!({"harness_kg_per_m": 0.5}));
         assert_eq!(by_key, judge(json!({"effects": [effect("bracket", 0.5), effect("arm", 0.5)]})));
         assert!(by_key.tip_deflection_m > 1.05 * judge(json!({})).tip_deflection_m);
-        // a link keeps its own
+        // a link keeps its own harness effect
         let own = json!({"harness_kg_per_m": 0.5, "effects": [effect("arm", 2.0)]});
         assert_eq!(judge(own), judge(json!({"effects": [effect("arm", 2.0), effect("bracket", 0.5)]})));
     }

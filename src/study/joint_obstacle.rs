@@ -1,4 +1,5 @@
-//! Joints that no drive can move, whatever the limits of the study: which check fails, by how much, and what would help.
+//! Joints at which no drive meets the demand, whatever the limits of the study: the failing check, by how much it
+//! fails, and what would help.
 
 use super::limit::{short, toward};
 use crate::arm::joint_law::Curve;
@@ -11,12 +12,12 @@ use crate::space::design_space::{DesignSpace, DriveChoice, SpacePiece};
 use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::SizedJoint;
 
-/// Most sections of a link that are tried for the one that asks least of a joint.
+/// Largest number of sections of a link that are tried to find the one with which the demand on a joint is least.
 const MOST_SECTIONS: u32 = 64;
 
-/// Every joint for which no drive holds, from the tip inward, in words. Each is judged with the lightest links, and with
-/// the sections of single links that ask least of it. A joint without a drive is taken as rigid and without mass for those
-/// inboard of it.
+/// Messages for every joint at which no drive meets the demand, from the tip inward. Each joint is examined with the
+/// lightest links. Then links are given other sections one at a time, to find those with which the demand on the joint
+/// is least. When the joints inboard of it are examined, a joint without a drive is taken as rigid and without mass.
 pub(super) fn joint_obstacles(space: &DesignSpace, catalogs: &Catalogs) -> Vec<String> {
     let mut space = few_sections(space);
     let mut found = Vec::new();
@@ -42,7 +43,7 @@ pub(super) fn joint_obstacles(space: &DesignSpace, catalogs: &Catalogs) -> Vec<S
     found
 }
 
-/// The space with at most [`MOST_SECTIONS`] sections for each link, from the lightest to the heaviest.
+/// The space with at most [`MOST_SECTIONS`] sections for each link, spread from the lightest to the heaviest.
 fn few_sections(space: &DesignSpace) -> DesignSpace {
     let mut out = space.clone();
     for piece in &mut out.pieces {
@@ -54,7 +55,7 @@ fn few_sections(space: &DesignSpace) -> DesignSpace {
     out
 }
 
-/// The outermost joint for which no drive holds: its piece, and why.
+/// The outermost joint at which no drive meets the demand: the index of its piece, and the reason.
 fn first_obstacle(space: &DesignSpace, catalogs: &Catalogs) -> Option<(usize, String)> {
     let problem = ArmProblem::new(space, catalogs);
     let mut sections = lightest_sections(space);
@@ -80,7 +81,7 @@ fn first_obstacle(space: &DesignSpace, catalogs: &Catalogs) -> Option<(usize, St
     }
 }
 
-/// The lightest section of every link, by piece; 0 for what is no choice.
+/// Index of the lightest section of every link, by piece; 0 for pieces that are no open link.
 fn lightest_sections(space: &DesignSpace) -> Vec<u32> {
     let lightest = |piece: &SpacePiece| match piece {
         SpacePiece::Choice(choice) => choice.by_mass().first().copied().unwrap_or_default(),
@@ -89,14 +90,15 @@ fn lightest_sections(space: &DesignSpace) -> Vec<u32> {
     space.pieces.iter().map(lightest).collect()
 }
 
-/// The first joint on the way inward at which no drive holds.
+/// The first joint, from the tip inward, at which no drive meets the demand, with this demand.
 struct Stuck {
     slot: usize,
     piece: usize,
     demand: JointDemand,
 }
 
-/// Builds the arm with these sections and the lightest drives that hold; `None` if all hold.
+/// Builds the arm with the given sections (one index for each piece) and, at each joint, the lightest drive that meets
+/// the demand. Returns the joint at which no drive does; `None` if every joint gets a drive.
 fn stuck_at(problem: &ArmProblem, sections: &[u32]) -> Option<Stuck> {
     let mut options = Vec::new();
     for (piece, what) in problem.space().pieces.iter().enumerate().rev() {
@@ -113,7 +115,8 @@ fn stuck_at(problem: &ArmProblem, sections: &[u32]) -> Option<Stuck> {
     Some(Stuck { slot, piece: problem.piece_of_slot(slot), demand: problem.demand_at(&last, slot) })
 }
 
-/// The lightest drive that holds at a joint behind an arm; the first drive if none holds.
+/// Index of the lightest drive that meets the demand at the joint `piece`; 0 if no drive does. `outboard` are the
+/// options of the pieces outboard of the joint, tip first.
 pub(crate) fn first_fit_at(problem: &ArmProblem, outboard: &[u32], piece: usize) -> u32 {
     let mut index = 0;
     let _ = problem.walk(outboard, |slot, arm| {
@@ -126,10 +129,11 @@ pub(crate) fn first_fit_at(problem: &ArmProblem, outboard: &[u32], piece: usize)
     index
 }
 
-/// Sections with which the arm gets further; one link at a time takes each of its sections.
+/// Sections with which the joint at which the arm is `stuck` gets a drive, so that the arm can be built further inward.
+/// Starting from `sections`, one link at a time is given each of its sections.
 ///
 /// # Errors
-/// The demand to which some drive comes nearest, if no such sections are found.
+/// If there are no such sections: the demand for which the nearest drive has the largest margin.
 fn easier_sections(
     problem: &ArmProblem,
     sections: &[u32],
@@ -158,7 +162,7 @@ fn easier_sections(
     Err(Box::new(nearest))
 }
 
-/// Why no drive is strong enough at a joint, in words; `None` if one is.
+/// The reason why no drive of a table meets `demand`, in words; `None` if a drive does.
 pub(crate) fn obstacle_at(table: &DriveTable, demand: &JointDemand) -> Option<String> {
     match table.is_empty() {
         true => Some(no_legal_drive(table, demand)),
@@ -171,7 +175,7 @@ pub(crate) fn obstacle_at(table: &DriveTable, demand: &JointDemand) -> Option<St
     }
 }
 
-/// The reason if no drive is legal: none turns the joint fast enough, none fits, or all lack a rating.
+/// The reason if the table has no legal drive: none is fast enough, none fits, or all lack a rating.
 fn no_legal_drive(table: &DriveTable, demand: &JointDemand) -> String {
     let joint = table.joint();
     let needed_rad_s = table.motion().speed_rad_s;
@@ -199,18 +203,18 @@ fn no_legal_drive(table: &DriveTable, demand: &JointDemand) -> String {
     }
 }
 
-/// A shortfall, and the figures that other parts lack.
+/// The shortfall of the nearest drive in words, followed by the ratings that other parts lack.
 fn in_words(table: &DriveTable, shortfall: &Shortfall) -> String {
     format!("{shortfall}{}", missing_words(table))
 }
 
-/// The figures that parts lack, as the end of a sentence.
+/// The ratings that parts lack, as the end of a sentence; empty if none are missing.
 fn missing_words(table: &DriveTable) -> String {
     let missing = table.also_missing_figures();
     missing.map(|missing| format!("; not checked: {missing}")).unwrap_or_default()
 }
 
-/// The largest speed that a drive of a table allows \[rad/s\], and the names of the drive.
+/// The largest joint speed that any pair of gear and motor allows \[rad/s\], and the names of this pair.
 fn fastest(table: &DriveTable) -> Option<(f64, String)> {
     let pairs = table.gears().iter().flat_map(|gear| table.motors().iter().map(move |motor| (gear, motor)));
     let speeds = pairs.filter(|(gear, motor)| gear.goes_with(motor)).filter_map(|(gear, motor)| {

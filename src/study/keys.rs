@@ -1,8 +1,8 @@
-//! The keys of study files: what the readers of this room know, and what `armwright schema study` prints.
+//! The keys of study files. The readers use these lists, and `armwright schema study` prints them.
 
 use super::choose_keys::CHOOSE;
-use super::motor_kinds::MOTOR_WORDS;
-use super::rails::{RACKS, RAIL_DRIVES, SCREWS};
+use super::drive_keys::DRIVES;
+use super::rail_keys::PRISMATIC;
 use crate::arm::case_keys::{JOINT_MODELS, LINK_MODELS, POSE_RULES};
 use crate::arm::file_keys::{EFFECT_LIST, GIVEN_LINK_RULES};
 use crate::arm::keys::{
@@ -10,24 +10,21 @@ use crate::arm::keys::{
     LINK_BODIES, MASS_FACTOR, MOTOR_AT, MOTOR_MASS, MOTOR_POINT, PAYLOAD, PIECES, POSITIVE_OR_NULL, SECTION,
     SPRINGS, STIFFNESS_FACTOR, TRANSMISSION, TRANSMISSION_RULES, TURNS_WITH, VECTOR, WATER, WINDUP,
 };
-use crate::arm::prismatic_keys;
-use crate::catalog::gear::GearKind;
-use crate::input::key::{Key, Kind, Rule, SCHEMA_ADDRESS, Shape, optional, required, words_of};
+use crate::input::key::{Kind, Rule, SCHEMA_ADDRESS, Shape, optional, required};
 use crate::input::schema::FileKind;
 
-/// A study file.
+/// The format of a study file.
 pub const STUDY_FILE: FileKind = FileKind {
     name: "study",
     about: "A named question about an arm: what is fixed, what may be chosen, and what the arm must do.",
     root: Kind::Object(&STUDY),
 };
 
-const TEXTS: Kind = Kind::List(&Kind::Text);
 const EXTRAS_VALUE: Kind = Kind::Either(&[Kind::Word(&["usual", "none"]), Kind::Object(&EXTRAS)]);
 const FIT_VALUE: Kind = Kind::Either(&[Kind::Object(&FIT), Kind::Null]);
 const DUTY: Kind = Kind::NonEmpty(&Kind::Object(&STATED_PHASE));
 
-/// The whole study.
+/// The keys of a study.
 pub(super) static STUDY: Shape = Shape::new(
     "study",
     "A study.",
@@ -128,147 +125,9 @@ pub(super) static STUDY: Shape = Shape::new(
     &[],
 );
 
-/// A prismatic joint of a study.
-pub(super) static PRISMATIC: Shape = Shape::new(
-    "prismatic joint",
-    "A joint that slides everything after it along its axis; its drive is given in numbers or sized.",
-    &PRISMATIC_KEYS,
-    &[
-        Rule::Any(&["stiffness_n_per_m", "drive"]),
-        Rule::Refuses("drive", &["stiffness_n_per_m"]),
-        Rule::Needs("drives", &["drive"]),
-        Rule::Needs("screws", &["drive"]),
-        Rule::Needs("racks", &["drive"]),
-        Rule::Needs("max_speed_m_s", &["drive"]),
-        Rule::Needs("brake", &["drive"]),
-    ],
-);
-
-const PRISMATIC_KEYS: [Key; 16] = {
-    let mut keys = [RANGE_MM; 16];
-    let mut i = 0;
-    while i < prismatic_keys::KEYS.len() {
-        keys[i] = prismatic_keys::KEYS[i];
-        i += 1;
-    }
-    keys[prismatic_keys::STIFFNESS] = optional(
-        "stiffness_n_per_m",
-        POSITIVE_OR_NULL,
-        "N/m",
-        "that of the screw or rack",
-        "Stiffness of a given drive along the travel; null is rigid.",
-    );
-    let mut k = 0;
-    while k < RAIL_KEYS.len() {
-        keys[i + 1 + k] = RAIL_KEYS[k];
-        k += 1;
-    }
-    keys
-};
-
-/// Keys of a prismatic joint whose drive is sized.
-const RAIL_KEYS: [Key; 6] = [
-    optional(
-        "drive",
-        Kind::Word(&["first_fit"]),
-        "-",
-        "none",
-        "Size it: the lightest pair of a screw or rack and a motor that passes all checks.",
-    ),
-    optional("screws", SCREWS, "-", "[]", "Ball screws to choose from."),
-    optional("racks", RACKS, "-", "[]", "Racks to choose from."),
-    optional("drives", RAIL_DRIVES, "-", "the study's", "Which motors it may have; gears do not count."),
-    optional("max_speed_m_s", Kind::Positive, "m/s", "the tip's", "The speed that the joint must reach."),
-    optional(
-        "brake",
-        Kind::Flag,
-        "-",
-        "false",
-        "Whether a brake holds the joint at rest; then its motor need not.",
-    ),
-];
-
-const PART_NAME: Key =
-    required("name", Kind::Name, "-", "Name, unique among the screws and racks of the joint.");
-
-const PART_EFFICIENCY: Key =
-    optional("efficiency", Kind::Positive, "-", "0.9", "Part of the power that arrives, at most 1.");
-
-const PART_FORCE: Key = optional(
-    "max_force_n",
-    Kind::Positive,
-    "N",
-    "not checked",
-    "Largest force, reached in an emergency stop.",
-);
-
-/// Keys of a ball screw.
-pub(super) const SCREW_KEYS: [Key; 12] = [
-    PART_NAME,
-    required("lead_mm", Kind::Positive, "mm", "Way of the nut a turn."),
-    required("root_diameter_mm", Kind::Positive, "mm", "Diameter of the shaft at the root of the thread."),
-    required("length_mm", Kind::Positive, "mm", "Length between what holds the shaft."),
-    optional(
-        "ends",
-        Kind::Word(&["fixed_free", "supported_supported", "fixed_supported", "fixed_fixed"]),
-        "-",
-        "\"fixed_supported\"",
-        "How the ends of the shaft are held.",
-    ),
-    optional(
-        "dynamic_load_rating_n",
-        Kind::Positive,
-        "N",
-        "life is not checked",
-        "Dynamic load rating C of the nut.",
-    ),
-    PART_FORCE,
-    optional("max_speed_rpm", Kind::Positive, "rpm", "the critical speed", "Largest speed for the balls."),
-    PART_EFFICIENCY,
-    optional(
-        "nut_stiffness_n_per_m",
-        Kind::Positive,
-        "N/m",
-        "rigid",
-        "Stiffness of nut and end bearings in series.",
-    ),
-    optional("inertia_kgm2", Kind::NonNegative, "kg m²", "0", "Moment of inertia beyond that of the shaft."),
-    optional(
-        "mass_kg",
-        Kind::NonNegative,
-        "kg",
-        "0",
-        "Mass beyond that of the shaft, which stays where the joint begins.",
-    ),
-];
-
-/// Keys of a rack.
-pub(super) const RACK_KEYS: [Key; 9] = [
-    PART_NAME,
-    required("pinion_radius_mm", Kind::Positive, "mm", "Pitch radius of the pinion."),
-    optional("ratio", Kind::Positive, "-", "1", "Turns of the motor per turn of the pinion."),
-    PART_EFFICIENCY,
-    PART_FORCE,
-    optional("max_speed_rpm", Kind::Positive, "rpm", "not checked", "Largest speed of the motor's side."),
-    required("stiffness_n_per_m", Kind::Positive, "N/m", "Stiffness along the travel."),
-    optional("inertia_kgm2", Kind::NonNegative, "kg m²", "0", "Moment of inertia at the motor."),
-    optional("mass_kg", Kind::NonNegative, "kg", "0", "Mass, which stays where the joint begins."),
-];
-
-const RANGE_MM: Key = optional(
-    "range_mm",
-    Kind::Array(2, &Kind::Number),
-    "mm",
-    "the travels of the poses",
-    "Smallest and largest travel of the joint.",
-);
-
-/// Keys of parts of the catalogs, which a prismatic joint has none of.
-pub(super) const OF_CATALOG_DRIVE: [&str; 2] = ["gear", "motor"];
-
 const OF_GIVEN_DRIVE: [&str; 6] = ["stiffness_nm_per_rad", "windup", "gear", "motor", "gear_mass", "mass_kg"];
 
-/// A joint of a study.
+/// The keys of a joint of a study.
 pub(super) static JOINT: Shape = Shape::new(
     "joint",
     "A joint: its drive is searched for or given.",
@@ -377,7 +236,7 @@ pub(super) static JOINT: Shape = Shape::new(
     ],
 );
 
-/// A link of a study.
+/// The keys of a link of a study.
 pub(super) static LINK: Shape = Shape::new(
     "link",
     "A link: its tube is chosen or given, or it is a rigid offset.",
@@ -425,7 +284,7 @@ const LINK_RULES: [Rule; 7] = [
     Rule::Refuses("choose", &["material", "section", "mass_kg", "pieces", "stiffness_factor", "mass_factor"]),
 ];
 
-/// A pose of a study.
+/// The keys of a pose of a study.
 pub(super) static POSE: Shape = Shape::new(
     "pose",
     "A pose in which the arm is judged and sized.",
@@ -472,7 +331,7 @@ pub(super) static POSE: Shape = Shape::new(
     &POSE_RULES,
 );
 
-/// What the arm is in.
+/// The keys of an environment: the medium around the arm.
 pub(super) static ENVIRONMENT: Shape = Shape::new(
     "environment",
     "What the arm is in.",
@@ -483,7 +342,7 @@ pub(super) static ENVIRONMENT: Shape = Shape::new(
     &[],
 );
 
-/// What the tip must do.
+/// The keys of the motion that the tip must make.
 pub(super) static MOTION: Shape = Shape::new(
     "motion",
     "What the tip must do.",
@@ -530,7 +389,7 @@ pub(super) static MOTION: Shape = Shape::new(
     &[],
 );
 
-/// A phase of the cycle.
+/// The keys of a phase of the duty cycle.
 pub(super) static PHASE: Shape = Shape::new(
     "phase",
     "A phase of the cycle.",
@@ -553,7 +412,7 @@ pub(super) static PHASE: Shape = Shape::new(
     }],
 );
 
-/// A phase of a stated duty.
+/// The keys of a phase of a stated duty.
 pub(super) static STATED_PHASE: Shape = Shape::new(
     "duty phase",
     "A phase of a duty that is stated in numbers.",
@@ -561,41 +420,6 @@ pub(super) static STATED_PHASE: Shape = Shape::new(
         required("torque_nm", Kind::Number, "N m", "Torque; negative where the load drives the motor."),
         required("time_s", Kind::NonNegative, "s", "How long."),
         required("speed_rpm", Kind::NonNegative, "rpm", "Mean speed of the phase."),
-    ],
-    &[],
-);
-
-/// Which parts may be chosen.
-pub(super) static DRIVES: Shape = Shape::new(
-    "drives",
-    "Which catalog parts may be chosen; a part must pass every filter given.",
-    &[
-        optional("gear_series", TEXTS, "-", "all", "Series of gears."),
-        optional("gears", TEXTS, "-", "all", "Single gears by name."),
-        optional(
-            "gear_kinds",
-            Kind::List(&Kind::Word(&GearKind::WORDS)),
-            "-",
-            "strain_wave; all if gears or series are named",
-            "Kinds of gears.",
-        ),
-        optional("ratios", Kind::List(&Kind::Positive), "-", "all", "Ratios of gears."),
-        optional("gear_mass", GEAR_MASS, "-", "\"housed_unit\"", "Which mass of a gear counts."),
-        optional(
-            "actuators",
-            Kind::Either(&[Kind::Word(&["all"]), TEXTS]),
-            "-",
-            "none",
-            "Models of actuators, or all of them.",
-        ),
-        optional(
-            "motors",
-            Kind::List(&Kind::Word(&words_of::<_, 7>(&MOTOR_WORDS))),
-            "-",
-            "all but steppers",
-            "Kinds of motors.",
-        ),
-        optional("motor_models", TEXTS, "-", "all", "Single motors by name."),
     ],
     &[],
 );
@@ -631,7 +455,7 @@ pub(super) static FIT: Shape = Shape::new(
     &[],
 );
 
-/// Limits that every design must keep.
+/// The keys of the limits that every design must meet.
 pub(super) static CONSTRAINTS: Shape = Shape::new(
     "constraints",
     "Limits that every design must keep.",
@@ -690,7 +514,7 @@ pub(super) static CONSTRAINTS: Shape = Shape::new(
     &[Rule::Needs("servo_ratio", &["servo_bandwidth_hz"])],
 );
 
-/// Physics of links and joints.
+/// The keys of the models of links and joints.
 pub(super) static MODELS: Shape = Shape::new(
     "models",
     "Physics of links and joints.",

@@ -1,11 +1,12 @@
-//! The limits of a study that a design can break, one by one: what each is on, what is asked, and what a design reaches.
+//! The single limits of a study that a design can violate: which quantity each limits, the limit, and the value of a
+//! design.
 
 use crate::pareto::objectives::{Objective, Objectives};
 use crate::report::number::significant;
 use crate::space::constraint::Constraints;
 use crate::space::problem::{ArmProblem, Partial};
 
-/// What a limit is on.
+/// The quantity that a limit is on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Quantity {
     Deflection,
@@ -20,12 +21,13 @@ impl Quantity {
     const ALL: [Self; 6] =
         [Self::Deflection, Self::Mode, Self::Mass, Self::Stress, Self::Slenderness, Self::Cost];
 
-    /// The limits that some constraints state.
+    /// The quantities on which `constraints` has a limit.
     pub(super) fn limited(constraints: &Constraints) -> Vec<Self> {
         Self::ALL.into_iter().filter(|quantity| quantity.asked(constraints).is_some()).collect()
     }
 
-    /// The limit, in the unit of the library: m, Hz, kg, EUR or a ratio.
+    /// The limit on this quantity, in the unit of the library: m, Hz, kg, EUR or a ratio. `None` if it is not
+    /// limited.
     pub(super) fn asked(self, constraints: &Constraints) -> Option<f64> {
         match self {
             Self::Deflection => constraints.tip_deflection_max_m,
@@ -37,7 +39,7 @@ impl Quantity {
         }
     }
 
-    /// The constraints with another limit; `None` drops it.
+    /// Sets the limit on this quantity in `constraints`; `None` removes it.
     pub(super) fn set(self, constraints: &mut Constraints, limit: Option<f64>) {
         match self {
             Self::Deflection => constraints.tip_deflection_max_m = limit,
@@ -49,7 +51,8 @@ impl Quantity {
         }
     }
 
-    /// What a complete design reaches; `None` if a strength or a cost is unknown.
+    /// The value of this quantity for a complete design: `arm` is the arm as the search adds it up, `objectives` are
+    /// its objectives. `None` if a strength or a cost is unknown.
     pub(super) fn of(self, problem: &ArmProblem, arm: &Partial, objectives: &Objectives) -> Option<f64> {
         match self {
             Self::Deflection => Some(objectives.tip_deflection_m),
@@ -61,7 +64,7 @@ impl Quantity {
         }
     }
 
-    /// The objective that is limited, if it is one.
+    /// The objective that this quantity is, or `None` if it is no objective.
     pub(super) fn objective(self) -> Option<Objective> {
         match self {
             Self::Deflection => Some(Objective::TipDeflection),
@@ -71,7 +74,7 @@ impl Quantity {
         }
     }
 
-    /// Whether the limit is a minimum.
+    /// Whether the limit is a lower limit, as for the lowest mode and the safety factor.
     pub(super) fn is_least(self) -> bool {
         matches!(self, Self::Mode | Self::Stress)
     }
@@ -87,7 +90,8 @@ impl Quantity {
         }
     }
 
-    /// Unit in a study file, and how many of it are one of the library's.
+    /// Unit of this quantity in a study file, and the factor that converts from the library's unit (m, Hz, kg, EUR) to
+    /// it.
     fn unit(self) -> (&'static str, f64) {
         match self {
             Self::Deflection => ("mm", 1e3),
@@ -98,8 +102,8 @@ impl Quantity {
         }
     }
 
-    /// The keys of a study file that stand for the limit and would exclude a design that reaches this value, each with the
-    /// value that lets it in.
+    /// The keys of a study file that limit this quantity and that a design with the value `reached` violates. Each key
+    /// comes with a value that would admit the design.
     fn enough(self, constraints: &Constraints, reached: f64) -> Vec<(&'static str, f64)> {
         let round = |x: f64| toward(x, !self.is_least());
         let key = match self {
@@ -113,7 +117,7 @@ impl Quantity {
         vec![(key, round(reached * self.unit().1))]
     }
 
-    /// What is asked, what is reached, and what is missing.
+    /// The stated limit, the value `reached` by a design, and the difference between the two, in words.
     pub(super) fn shortfall_words(self, constraints: &Constraints, reached: f64) -> String {
         let (unit, scale) = self.unit();
         let words = |x: f64| match unit {
@@ -130,14 +134,16 @@ impl Quantity {
         )
     }
 
-    /// The keys that have to be relaxed, each with the value that is enough: `"mass_max_kg" to 31.7`.
+    /// The keys of the study file that have to be changed to admit a design with the value `reached`, each with a value
+    /// that suffices, such as `"mass_max_kg" to 31.7`.
     pub(super) fn enough_words(self, constraints: &Constraints, reached: f64) -> String {
         let keys = self.enough(constraints, reached).into_iter();
         keys.map(|(key, value)| format!("\"{key}\" to {value}")).collect::<Vec<_>>().join(" and ")
     }
 }
 
-/// The keys that ask for a higher lowest mode than is reached \[Hz\]. The servo's is a bandwidth, not a mode.
+/// The keys that demand a higher lowest mode than `reached_hz`, each with a value that this mode satisfies \[Hz\].
+/// The key of the servo states a bandwidth, which is the mode divided by a ratio.
 fn mode_keys(constraints: &Constraints, reached_hz: f64) -> impl Iterator<Item = (&'static str, f64)> {
     let stated = constraints.lowest_mode_min_hz.filter(|hz| *hz > reached_hz);
     let servo = constraints.servo.filter(|servo| servo.bandwidth_hz * servo.ratio > reached_hz);
@@ -145,12 +151,13 @@ fn mode_keys(constraints: &Constraints, reached_hz: f64) -> impl Iterator<Item =
     stated.into_iter().chain(servo.map(|servo| ("servo_bandwidth_hz", reached_hz / servo.ratio)))
 }
 
-/// Four significant digits.
+/// A number with four significant digits.
 pub(super) fn short(x: f64) -> String {
     significant(x, 4)
 }
 
-/// Rounds to five significant digits, up or down, so that a sufficient value stays sufficient.
+/// Rounds a number to five significant digits, up if `up` is true, else down. Limits are rounded to the side that
+/// admits more designs, so that a value that suffices still does so after rounding.
 pub(super) fn toward(x: f64, up: bool) -> f64 {
     let scale = 10f64.powi(4 - libm::log10(x.abs().max(f64::MIN_POSITIVE)).floor() as i32);
     let scaled = x * scale;

@@ -1,10 +1,10 @@
-//! Which joints may drive a passive joint of a study.
+//! Checks which joints may drive the passive joints of a study.
 
 use crate::input::json::Node;
 use crate::space::design_space::SpacePiece;
 
-/// Checks that every passive joint is turned by driven joints inboard of it. Drives are sized from the tip inward, so what a
-/// linkage hands to its driver must be known before the driver is.
+/// Checks that every passive joint is turned by driven joints inboard of it. Drives are sized from the tip inward, so
+/// the torque that a linkage transfers to its driving joint must be known before this joint is sized.
 pub(super) fn drivers_are_inboard(items: &[Node], pieces: &[SpacePiece]) -> Option<()> {
     let mut sound = Some(());
     let mut inboard: Vec<&str> = Vec::new();

@@ -1,4 +1,4 @@
-//! A study by its name or from its file, refused if there is nothing to choose from.
+//! Loads a study by its name or from its file, and refuses studies with nothing to choose from.
 
 use super::definition::Study;
 use super::diagnose::{empty_pieces, too_large};
@@ -9,7 +9,7 @@ use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use std::path::Path;
 
-/// The text of a study and the name it goes by in messages.
+/// The text of the study `name`, built in or from a file, and the name of the study in messages.
 fn study_text(name: &str) -> Result<(String, String), Refusal> {
     if let Some(text) = named(name) {
         return Ok((format!("{name} (built in)"), text.to_string()));
@@ -27,20 +27,22 @@ fn study_text(name: &str) -> Result<(String, String), Refusal> {
     }
 }
 
-/// Reads a study by name or file, with its text.
+/// Reads a study by its name or from its file. Returns the study and its text.
 ///
 /// # Errors
-/// [`Refusal::Unknown`] if it is neither a built-in study nor a file, [`Refusal::Unreadable`], or [`Refusal::Faulty`].
+/// [`Refusal::Unknown`] if `name` is neither a built-in study nor a file, [`Refusal::Unreadable`] if the file cannot
+/// be read, or [`Refusal::Faulty`] with all of its faults.
 pub fn load_study(name: &str, catalogs: &Catalogs) -> Result<(Study, String), Refusal> {
     let (file, text) = study_text(name)?;
     Ok((read_study(Document::parse(&file, &text)?, catalogs)?, text))
 }
 
-/// Refuses a study with nothing to choose from at some link or joint, or with too much. Whoever builds designs
-/// asks here.
+/// Refuses a study in which some link or joint has nothing to choose from, or which is too large. It is called before
+/// designs are built.
 ///
 /// # Errors
-/// [`Refusal::EmptySpace`] with every such link and joint; [`Refusal::Unknown`] with the limit that is exceeded.
+/// [`Refusal::EmptySpace`] with every link and joint without options; [`Refusal::Unknown`] with the limit on size
+/// that is exceeded.
 pub fn refuse_empty(study: &Study, catalogs: &Catalogs) -> Result<(), Refusal> {
     if let Some(why) = too_large(&study.space, catalogs) {
         return Err(Refusal::Unknown(format!("the study \"{}\": {why}", study.name)));

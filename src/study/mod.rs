@@ -1,4 +1,4 @@
-//! Named questions: read, resolve, run.
+//! Studies: named questions about an arm, which are read, checked, searched and reported.
 
 pub(crate) mod alternatives;
 pub(crate) mod arm_capacity;
@@ -17,8 +17,10 @@ mod connections;
 pub(crate) mod creep;
 pub(crate) mod definition;
 pub(crate) mod diagnose;
+mod drive_keys;
 mod drives;
 pub(crate) mod effects;
+pub(crate) mod exact_shards;
 mod fit;
 pub(crate) mod given_remarks;
 mod harness;
@@ -37,6 +39,7 @@ pub(crate) mod page;
 pub(crate) mod pick_poses;
 pub(crate) mod pose_search;
 pub mod question;
+mod rail_keys;
 mod rails;
 pub(crate) mod range;
 pub(crate) mod read;
@@ -56,11 +59,12 @@ pub(crate) mod worst_pose;
 pub use ballast::{BallastFlags, ballast_flags};
 pub use budget::budgets;
 pub use capacity::{AtPose, Capacity, Limit, capacity_of};
-pub use check::{Claim, Completeness, FrontCheck, check_front};
+pub use check::{Claim, Completeness, FrontCheck, check_front, resume_check};
 pub use chosen::{arm_of_design, sizing_of};
 pub use definition::Study;
 pub use diagnose::{empty_pieces, why_infeasible};
 pub use effects::{CorrectedStudy, Correction, apply_corrections, left_out};
+pub use exact_shards::{exact_shard, fronts_of, joined_exactly};
 pub use keys::STUDY_FILE;
 pub use load::{load_study, refuse_empty};
 pub use named::{NAMED, list, named, names};
@@ -75,7 +79,7 @@ pub use read::read_study;
 pub use refusal::Refusal;
 pub use same_drives::{PicksOnSameDrives, picks_on_same_drives};
 pub use search_method::{SearchMethod, SearchWish};
-pub use shards::{Swept, candidates_csv, gaps, joined, read_candidates};
+pub use shards::{Swept, candidates_csv, found_csv, gaps, joined, read_candidates, read_found};
 pub use table::front_table;
 pub use ties::{Ties, ties};
 pub use tolerance::{Sampling, Tolerance, part, scatter_front};

@@ -1,5 +1,5 @@
-//! Reads the motion that a study asks for: speeds and ramps, the cycle that every joint repeats, and the duty that one
-//! joint has of its own.
+//! Reads the motion that a study asks for: speeds and ramps, the duty cycle that every joint repeats, and the duty of
+//! a single joint.
 
 use super::keys::{MOTION, PHASE, STATED_PHASE};
 use crate::input::json::{Node, Object};
@@ -7,10 +7,10 @@ use crate::sizing::duty::{DutyCycle, Phase, PhaseKind};
 use crate::sizing::requirement::MotionRequirement;
 use crate::sizing::stated::{StatedDuty, StatedPhase};
 
-/// Relative difference of two times that count as equal.
+/// Relative difference up to which the two ramp times count as equal.
 const SAME_TIME: f64 = 1e-9;
 
-/// What the tip must do; without a key the paper's numbers.
+/// Reads the motion of the tip. Keys that are missing have the paper's values.
 pub(super) fn read_motion(node: &Node) -> Option<MotionRequirement> {
     let object = node.shaped(&MOTION)?;
     let default = MotionRequirement::default();
@@ -36,7 +36,7 @@ pub(super) fn read_motion(node: &Node) -> Option<MotionRequirement> {
     })
 }
 
-/// The cycle that every joint repeats, as a list of phases.
+/// Reads the duty cycle that every joint repeats, a list of phases.
 fn read_cycle(node: &Node) -> Option<DutyCycle> {
     let read: Vec<Option<Phase>> = node.array()?.iter().map(read_phase).collect();
     let cycle = DutyCycle { phases: read.into_iter().collect::<Option<_>>()? };
@@ -84,7 +84,7 @@ fn read_kind(node: &Node, phase: &Object) -> Option<PhaseKind> {
     Some(kind)
 }
 
-/// The duty of one joint, as a vendor's worked example gives it.
+/// Reads the duty of one joint in numbers, as in a vendor's worked example.
 pub(super) fn read_duty(node: &Node) -> Option<StatedDuty> {
     let read: Vec<Option<StatedPhase>> = node.array()?.iter().map(read_stated_phase).collect();
     let duty = StatedDuty { phases: read.into_iter().collect::<Option<_>>()? };

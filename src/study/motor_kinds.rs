@@ -1,9 +1,9 @@
-//! The words for kinds of motors in a study.
+//! The words for kinds of motors in study files.
 
 use crate::catalog::motor::MotorKind;
 use crate::input::json::Node;
 
-/// The words, each with its kinds.
+/// Each word with the kinds of motors that it stands for.
 pub(super) const MOTOR_WORDS: [(&str, &[MotorKind]); 7] = [
     (
         "electric",
@@ -22,12 +22,12 @@ pub(super) const MOTOR_WORDS: [(&str, &[MotorKind]); 7] = [
     ("stepper", &[MotorKind::Stepper]),
 ];
 
-/// The kinds of a study that asks for none: servo and hydraulic motors.
+/// The kinds of motors if a study names none: servo and hydraulic motors.
 pub(super) fn usual_motor_kinds() -> Vec<MotorKind> {
     MotorKind::ALL.into_iter().filter(|kind| *kind != MotorKind::Stepper).collect()
 }
 
-/// Reads a list of such words.
+/// Reads a list of words for kinds of motors.
 pub(super) fn read_motor_kinds(node: &Node) -> Option<Vec<MotorKind>> {
     let read: Vec<Option<&[MotorKind]>> = node
         .array()?

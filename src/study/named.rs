@@ -2,7 +2,7 @@
 
 use crate::paper::names::{NAMES, QUESTIONS};
 
-/// The built-in studies: name and text.
+/// Name and text of each built-in study.
 pub const NAMED: [(&str, &str); 7] = [
     ("compare-materials", include_str!("../../studies/compare-materials.json")),
     ("light-arm", include_str!("../../studies/light-arm.json")),
@@ -13,17 +13,17 @@ pub const NAMED: [(&str, &str); 7] = [
     ("paper-electric", include_str!("../../studies/paper-electric.json")),
 ];
 
-/// The text of a built-in study.
+/// The text of the built-in study with this name; `None` if there is none.
 pub fn named(name: &str) -> Option<&'static str> {
     NAMED.iter().find(|(n, _)| *n == name).map(|(_, text)| *text)
 }
 
-/// Names of all built-in studies, the paper's included.
+/// Names of all built-in studies, including those of the paper.
 pub fn names() -> Vec<&'static str> {
     NAMED.iter().map(|(name, _)| *name).chain(NAMES).collect()
 }
 
-/// The built-in studies with their questions, as a list.
+/// The built-in studies with their questions, as text for the terminal.
 pub fn list() -> String {
     let mut out = String::from("Built-in studies (armwright run NAME):\n");
     for (name, text) in NAMED {

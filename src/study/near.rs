@@ -1,4 +1,5 @@
-//! Designs near a front, as a table: useful if a part of the best design is not in stock.
+//! Near designs: a table of designs that are almost as good as the front. It helps if a part of the best design is
+//! not in stock.
 
 use super::outcome::by_full_model;
 use super::outcome::{Front, Judged, StudyOutcome};
@@ -21,26 +22,27 @@ use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashSet};
 use std::sync::atomic::AtomicBool;
 
-/// Name of the file that lists them.
+/// Name of the file that lists the near designs.
 pub(crate) const FILE: &str = "near.csv";
-/// Key in `run.json`.
+/// Key of the near designs in `run.json`.
 pub(crate) const KEY: &str = "within";
 
-/// The designs near a front.
+/// The designs near a front, with the extent of the list.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NearFront {
-    /// Largest shortfall asked for, as a fraction.
+    /// Slack: the largest shortfall of a near design, as a fraction.
     pub slack: f64,
-    /// The nearest of them with every choice, objective and margin, how near each is, and which parts may be
-    /// exchanged; nearest first.
+    /// The near designs, nearest first, with every choice, objective and margin. Further columns have the shortfall,
+    /// the nearest design of the front, by how much each objective is worse, and the parts that may be exchanged.
     pub table: FrontTable,
-    /// How many there are, including those that the cap left out; `None` if they were not counted.
+    /// Number of near designs, including those that are not listed; `None` if they were not counted.
     pub total: Option<u64>,
-    /// Whether the cap left some out.
+    /// Whether near designs are missing from the table because the number of its rows is limited.
     pub capped: bool,
 }
 
-/// Finds the designs near the front of an exhaustive search; `None` if the user stopped it.
+/// Finds the near designs of an exhaustive search, by a second search of the same space. `slack` says how much worse
+/// they may be. `None` if the user stopped it.
 pub fn near_front(
     problem: &ArmProblem,
     catalogs: &Catalogs,
@@ -48,7 +50,7 @@ pub fn near_front(
     slack: Slack,
     stop: &AtomicBool,
 ) -> Option<NearFront> {
-    // the sweep's candidates are more than the front: those that the full model took off it are near it
+    // candidates of the sweep that the full model removed from the front are near it, so they must not count as front
     let numbers: HashSet<u128> = outcome.front.iter().map(|j| j.design.number).collect();
     let on_front: Vec<_> =
         outcome.sweep.front.iter().filter(|c| numbers.contains(&c.number)).copied().collect();
@@ -57,7 +59,8 @@ pub fn near_front(
 }
 
 impl NearFront {
-    /// Evaluates the near designs with the full model.
+    /// Evaluates the near designs `found` by a search with the full model, and makes the table. Designs that are not
+    /// near by the full model are left out.
     pub fn of(
         problem: &ArmProblem,
         catalogs: &Catalogs,
@@ -81,12 +84,14 @@ impl NearFront {
     }
 }
 
-/// Three objectives rounded to twelve digits, as bits that can be compared.
+/// The three objectives of a design, rounded to twelve digits, as bit patterns. Designs for which these are equal count
+/// as ties.
 fn key(o: &Objectives) -> [u64; 3] {
     o.minimized().map(|x| rounded(x).to_bits())
 }
 
-/// Groups designs of equal objectives, the nearest group first.
+/// Groups near designs with equal objectives. Each item of `near` is the shortfall and the design. The group with the
+/// smallest shortfall comes first.
 fn grouped(near: Vec<(f64, Evaluated)>) -> Vec<Vec<(f64, Evaluated)>> {
     let mut groups: BTreeMap<[u64; 3], Vec<(f64, Evaluated)>> = BTreeMap::new();
     for (shortfall, design) in near {
@@ -139,8 +144,9 @@ fn table(
     table
 }
 
-/// The nearest design of the front, and by how much a design is worse than it in each objective. If several
-/// are equally near, the one that differs least.
+/// The number of the design of the front that is nearest to `design`, and the fractions by which `design` is worse in
+/// deflection, mass and lowest mode. Nearest is the one with the smallest largest fraction; among equals, the one with
+/// the smallest differences.
 fn nearest(front: &Front, design: &Objectives) -> (u128, [f64; 3]) {
     let shortfall = |worse: &[f64; 3]| worse.iter().fold(0.0f64, |most, part| most.max(*part));
     let apart = |worse: &[f64; 3]| worse.iter().fold(0.0f64, |most, part| most.max(part.abs()));
@@ -151,18 +157,19 @@ fn nearest(front: &Front, design: &Objectives) -> (u128, [f64; 3]) {
     .unwrap_or_default()
 }
 
-/// The choice in which `other` differs from `one`, if it is the only one.
+/// The entry of `other` that differs from the entry of `one` at the same place, if exactly one entry differs. Entries
+/// are the choices of a design in words.
 fn only_difference<'w>(one: &[String], other: &'w [String]) -> Option<&'w str> {
     let mut different = one.iter().zip(other).filter(|(a, b)| a != b);
     let (_, word) = different.next()?;
     different.next().is_none().then_some(word)
 }
 
-/// Designs that a page lists.
+/// Number of near designs that an HTML page lists.
 const NEAREST: usize = 12;
 
 impl NearFront {
-    /// Sentences about it.
+    /// Sentences about the near designs for summaries and the terminal.
     pub fn sentences(&self) -> Vec<String> {
         let percent = shortest((100.0 * self.slack * 1e9).round() / 1e9);
         let groups = self.tied_groups();
@@ -189,14 +196,14 @@ impl NearFront {
         out
     }
 
-    /// Number of groups of more than one design.
+    /// Number of groups of near designs with equal objectives. Groups of a single design do not count.
     fn tied_groups(&self) -> usize {
         let Some(column) = self.table.column("tie_group") else { return 0 };
         let groups: Vec<&str> = self.table.rows.iter().map(|r| r[column].as_str()).collect();
         groups.chunk_by(|a, b| a == b).filter(|group| group.len() > 1).count()
     }
 
-    /// Everything that a result reports about them.
+    /// Everything that a result reports about near designs: file, sections, entry of `run.json`, terminal text.
     pub fn supplement(&self) -> Supplement {
         Supplement {
             file: Some((FILE, self.table.to_csv())),
@@ -207,7 +214,7 @@ impl NearFront {
         }
     }
 
-    /// What `run.json` says of them.
+    /// The entry on near designs in `run.json`.
     fn to_json(&self) -> Value {
         json!({
             "slack_percent": 100.0 * self.slack,
@@ -217,7 +224,7 @@ impl NearFront {
         })
     }
 
-    /// The section of a page: how many there are, and the nearest.
+    /// The section on near designs for the HTML page: sentences, and a table of the nearest designs.
     pub fn section(&self) -> PageSection {
         let words = [("design_id", "design"), ("near_to", "near to")];
         let numbers = [
@@ -246,7 +253,7 @@ impl NearFront {
         }
     }
 
-    /// The section of a summary.
+    /// The section on near designs for the Markdown summary.
     pub fn to_markdown(&self) -> String {
         let lines: Vec<String> = self.sentences().iter().map(|s| format!("- {s}\n")).collect();
         format!("\n## Near the front\n\n{}", lines.concat())

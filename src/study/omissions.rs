@@ -1,4 +1,4 @@
-//! What the numbers of a study leave out, so that it can be said beside the numbers.
+//! Omissions: physics and checks that the results of a study do not include. They are printed with the results.
 
 use super::connections::connection_share;
 use super::fit::joints_that_ask;
@@ -7,7 +7,7 @@ use crate::arm::bearing::BearingSource;
 use crate::arm::extras::ExtrasSource;
 use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint, SpacePiece};
 
-/// What the numbers leave out, in sentences; none if no joint has a gear.
+/// Sentences on the physics and the checks that the results of a study do not include; empty if no joint has a gear.
 pub(super) fn omissions(space: &DesignSpace) -> Vec<String> {
     let with_gear: Vec<&SpaceJoint> = joints(space).filter(|joint| has_gear(joint)).collect();
     if with_gear.is_empty() {
@@ -42,7 +42,7 @@ pub(super) fn omissions(space: &DesignSpace) -> Vec<String> {
     [rigid, bare, bare_given, heat, Some(left_out_everywhere(space))].into_iter().flatten().collect()
 }
 
-/// What no number of a study has.
+/// Physics that no number of this study includes, such as temperature, as a sentence.
 fn left_out_everywhere(space: &DesignSpace) -> String {
     let fits = joints_that_ask(space).next().is_some();
     let rigid = connection_share(space) == 0.0;

@@ -1,4 +1,4 @@
-//! Running a study: the search uses the fast model, and the full model evaluates its candidates.
+//! Runs a study: a search with the fast model finds candidates, and the full model evaluates them.
 
 use super::definition::Study;
 use crate::catalog::Catalogs;
@@ -23,23 +23,24 @@ use std::time::{Duration, Instant};
 /// A design of a front, evaluated by the full model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judged {
-    /// The design and its objectives.
+    /// Number and objectives of the design.
     pub design: Evaluated,
-    /// Number of its tie group in the front, from 1.
+    /// Number of the tie group of the design, from 1: all designs of the front with the same objectives have the same
+    /// number.
     pub tie_group: usize,
 }
 
 /// A front: the designs that no other dominates, lightest first.
 pub type Front = Vec<Judged>;
 
-/// What a study found.
+/// The result of a study: fronts, and facts of the search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StudyOutcome {
-    /// The sweep's counts and candidates.
+    /// Counts and candidates of the search, by the fast model.
     pub sweep: SweepOutcome,
-    /// Front of all designs.
+    /// The front of all designs.
     pub front: Front,
-    /// The designs of one material, in the order of the study's materials.
+    /// The fronts of single materials, in the order of the study's materials.
     pub by_material: Vec<OfMaterial>,
 }
 
@@ -48,17 +49,18 @@ pub struct StudyOutcome {
 pub struct OfMaterial {
     /// Name of the material.
     pub name: String,
-    /// How their search ended.
+    /// How the search for this front ended.
     pub status: Status,
-    /// Their front.
+    /// The front of the designs of this material, lightest first.
     pub front: Front,
-    /// Whether designs that differ only in drives of equal mass and torsion curve are all in it, or only one
-    /// of each.
+    /// Whether the front lists all designs that differ only in drives of equal mass and torsion curve. If not, it has
+    /// only one of each such set.
     pub ties_listed: bool,
 }
 
-/// Visits every design of the study. `watch` runs on another thread; it gets a function that returns how many
-/// designs are done, and must return when its second argument is set.
+/// Runs an exhaustive search: evaluates every design of the study. `watch` runs on another thread to show progress.
+/// Its arguments are the number of designs, a function that returns how many are done, and a flag; it must return
+/// when the flag is set.
 pub fn run_study(
     study: &Study,
     catalogs: &Catalogs,
@@ -71,11 +73,12 @@ pub fn run_study(
     judge_swept(study, &problem, swept)
 }
 
-/// Visits the designs of a shard, and returns its candidates and the numbers of its designs. It goes on from the state that
-/// is given, and its own states are kept. `watch` is as in [`run_study`].
+/// Evaluates the designs of one shard, which is a range of design numbers. Returns the candidates of the shard and the
+/// range. The search continues from the saved state in `resume`, and saves its own states there. `watch` is as in
+/// [`run_study`].
 ///
 /// # Errors
-/// The state is of another search, in words.
+/// A message if the saved state belongs to another search.
 pub fn sweep_shard(
     study: &Study,
     catalogs: &Catalogs,
@@ -101,19 +104,19 @@ pub fn sweep_shard(
     };
     let outcome =
         watched(keep, || watched(|finished| watch(designs, &|| sweep.visited(), finished), || sweep.run()));
-    // what was visited is not visited again, whatever becomes of the result
+    // the state is saved even if the result is lost later, so that no design is evaluated twice
     if keeper.is_due() || stop.load(Ordering::Relaxed) {
         keeper.keep(&sweep.state().to_bytes());
     }
     Ok((outcome, range))
 }
 
-/// Time between two looks at whether the state of a search is to be kept \[s\].
+/// Time between two checks whether the state of a search is due to be saved.
 const LOOK_EVERY: Duration = Duration::from_millis(10);
 
-/// Judges the candidates of a sweep by the full model.
+/// Evaluates the candidates of a sweep (a search that visits every design) by the full model and finds the fronts.
 pub fn judge_swept(study: &Study, problem: &ArmProblem, outcome: SweepOutcome) -> StudyOutcome {
-    // a design may be a candidate of two fronts
+    // a design may be a candidate of two fronts, and is evaluated once
     let all = outcome.groups.iter().flatten().chain(&outcome.front).map(|c| c.number);
     let judged = by_full_model(problem, all.collect());
     let of_material = |(name, candidates): (String, &Vec<Candidate>)| {
@@ -131,7 +134,7 @@ pub fn judge_swept(study: &Study, problem: &ArmProblem, outcome: SweepOutcome) -
 }
 
 /// Does the work while another thread watches. The watcher is told when the work ends, even by a panic.
-fn watched<T>(watch: impl FnOnce(&AtomicBool) + Send, work: impl FnOnce() -> T) -> T {
+pub(super) fn watched<T>(watch: impl FnOnce(&AtomicBool) + Send, work: impl FnOnce() -> T) -> T {
     struct EndOnDrop<'f>(&'f AtomicBool);
     impl Drop for EndOnDrop<'_> {
         fn drop(&mut self) {
@@ -146,60 +149,63 @@ fn watched<T>(watch: impl FnOnce(&AtomicBool) + Send, work: impl FnOnce() -> T) 
     })
 }
 
-/// What an exact search found.
+/// The result of an exact search.
 #[derive(Debug, Clone)]
 pub struct ExactStudy {
-    /// The study, reduced to the link options of the designs that were found.
+    /// The study, reduced to the link options that occur in the designs found.
     pub study: Study,
-    /// Its fronts; those of the materials only if the front of all designs is whole.
+    /// The fronts. Those of single materials are searched only if the front of all designs is whole.
     pub outcome: StudyOutcome,
-    /// Boxes bounded for the front of all designs, and how many were left open.
+    /// Number of boxes bounded for the front of all designs, and number of boxes left open.
     pub boxes: [u64; 2],
-    /// The gap: for every design some listed one is worse by at most this fraction in each objective; 0 if the front is
-    /// whole.
+    /// The gap: for every design of the study, some listed design is worse by at most this fraction in each
+    /// objective. 0 means that the front is whole; `None` that no gap was proved.
     pub gap: Option<f64>,
-    /// The designs near the front; `None` if they were not asked for, or time ran out before all were found.
+    /// The near designs; `None` if they were not asked for, or if time ran out before all were found.
     pub near: Option<NearDesigns>,
-    /// Whether designs that differ only in drives of equal mass and torsion curve are all on the front, or
-    /// only one of each.
+    /// Whether the front lists all designs that differ only in drives of equal mass and torsion curve. If not, it has
+    /// only one of each such set.
     pub ties_listed: bool,
 }
 
-/// How far an exact search goes.
+/// How far an exact search goes before it may end.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Extent {
-    /// When to stop; `None` lets the search end by itself.
+    /// Time at which the search must stop; `None` means no time limit.
     pub deadline: Option<Instant>,
-    /// The search may end when for every design some listed one is worse by at most this fraction in each objective; 0
-    /// asks for the whole front.
+    /// The gap at which the search may end: for every design of the study, some listed design is worse by at most
+    /// this fraction in each objective. 0 asks for the whole front.
     pub gap: f64,
-    /// Which designs near the front are asked for.
+    /// Extent of the near designs that are asked for; `None` if none are.
     pub near: Option<Slack>,
 }
 
 /// What the searches found; designs are numbered in the whole space.
-struct Searched {
+pub(super) struct Searched {
     whole: ExactOutcome,
     by_material: Vec<(String, ExactOutcome)>,
     near: Option<NearDesigns>,
 }
 
 impl Searched {
-    /// Searches for the front of all designs, then, if that one is whole, for those of the materials and for the
-    /// designs near the front.
-    fn new(search: &Exact, space: &DesignSpace, near: Option<Slack>) -> Self {
-        let whole = search.run(&[]);
+    /// Takes the front of all designs, then, if that one is whole, finds those of the materials and the designs near the
+    /// front.
+    pub(super) fn new(
+        search: &Exact,
+        space: &DesignSpace,
+        (whole, of_material): (ExactOutcome, impl Fn(usize) -> ExactOutcome),
+        near: Option<Slack>,
+    ) -> Self {
         if whole.boxes_open > 0 || whole.gap != Some(0.0) || whole.front.is_empty() {
             return Self { whole, by_material: Vec::new(), near: None };
         }
         let names = space.material_names();
-        let of_material = |index: usize| match names.len() {
-            1 => whole.clone(),
-            _ => search.run_of_material(index),
+        let by_material: Vec<ExactOutcome> = match names.len() {
+            1 => vec![whole.clone()],
+            materials => (0..materials).map(of_material).collect(),
         };
-        let by_material: Vec<ExactOutcome> = (0..names.len()).map(of_material).collect();
         Self {
-            // among millions of ties of the front nothing else would be near it
+            // with millions of ties left out, they would be the only near designs
             near: near.filter(|_| whole.ties_listed).and_then(|slack| {
                 let most = slack.most + whole.front.len();
                 search.near(&whole.front, Slack { most, ..slack })
@@ -209,15 +215,15 @@ impl Searched {
         }
     }
 
-    /// The numbers of all designs found.
+    /// The numbers, in the whole space, of all designs that were found: those of the fronts and the near designs.
     fn numbers(&self) -> Vec<u128> {
         let fronts = std::iter::once(&self.whole).chain(self.by_material.iter().map(|(_, of)| of));
         let near = self.near.iter().flat_map(|near| near.nearest.iter().map(|n| n.candidate.number));
         fronts.flat_map(|of| of.front.iter().map(|c| c.number)).chain(near).collect()
     }
 
-    /// Converts the designs to an excerpt of the space and evaluates them with the full model: the fronts,
-    /// and at most so many designs near the front of all.
+    /// Evaluates the designs that were found with the full model: all those of the fronts, and at most `most` near
+    /// designs. `problem` is an excerpt of the space, so the numbers of the designs are converted to it.
     fn judged(&self, problem: &ArmProblem, most: Option<usize>) -> (StudyOutcome, Option<NearDesigns>) {
         let here = |candidate: &Candidate| {
             let options = problem.options_of_whole(candidate.number)?;
@@ -227,7 +233,7 @@ impl Searched {
         let Self { whole, by_material, near } = self;
         let front = all_here(whole);
         let groups: Vec<Vec<Candidate>> = by_material.iter().map(|(_, found)| all_here(found)).collect();
-        // a design may be a candidate of two fronts
+        // a design may be a candidate of two fronts, and is evaluated once
         let judged =
             by_full_model(problem, groups.iter().flatten().chain(&front).map(|c| c.number).collect());
         let of_material =
@@ -272,9 +278,9 @@ fn status(found: &ExactOutcome) -> Status {
     }
 }
 
-/// Finds the fronts of a space without visiting every design, and the designs near the front if they are
-/// asked for. It ends at the extent that is asked for or when `stop` is set. `watch` runs on another thread;
-/// it gets a function that returns what is known, and must return when its second argument is set.
+/// Runs an exact search: finds the fronts of a space without evaluating every design, and the near designs if they
+/// are asked for. It ends as `extent` says, or when `stop` is set. `watch` runs on another thread to show progress;
+/// it gets a function that returns what is known so far and a flag, and must return when the flag is set.
 pub fn run_exact(
     study: &Study,
     catalogs: &Catalogs,
@@ -286,10 +292,11 @@ pub fn run_exact(
     searched_by(&search, study, catalogs, extent, watch)
 }
 
-/// As [`run_exact`], from the state that `resume` has; the states of this search are kept.
+/// Runs an exact search as [`run_exact`] does, but continues from the state in `resume`, and saves its own states
+/// there.
 ///
 /// # Errors
-/// The state is of another search, in words.
+/// A message if the saved state belongs to another search.
 pub fn resume_exact(
     study: &Study,
     catalogs: &Catalogs,
@@ -309,9 +316,20 @@ fn searched_by(
     Extent { near, .. }: Extent,
     watch: impl FnOnce(&(dyn Fn() -> Known + Sync), &AtomicBool) + Send,
 ) -> ExactStudy {
+    let of_material = |index: usize| search.run_of_material(index);
+    let work = || Searched::new(search, &study.space, (search.run(&[]), of_material), near);
+    let searched = watched(|finished| watch(&|| search.known(), finished), work);
+    judged_exactly(&searched, study, catalogs, near)
+}
+
+/// Judges what was found by the full model, in an excerpt of the study's space.
+pub(super) fn judged_exactly(
+    searched: &Searched,
+    study: &Study,
+    catalogs: &Catalogs,
+    near: Option<Slack>,
+) -> ExactStudy {
     let most = near.map(|slack| slack.most);
-    let searched =
-        watched(|finished| watch(&|| search.known(), finished), || Searched::new(search, &study.space, near));
     let space = study.space.excerpt(catalogs, &searched.numbers()).unwrap_or_else(|| study.space.clone());
     let study = Study { space, ..study.clone() };
     let whole = &searched.whole;
@@ -321,19 +339,21 @@ fn searched_by(
     ExactStudy { study, outcome, boxes, gap, near, ties_listed }
 }
 
-/// Evaluates candidates with the full model and keeps those that are not dominated.
+/// Evaluates candidates with the full model and keeps those that no other one dominates.
 pub(super) fn judge(problem: &ArmProblem, candidates: &[Candidate]) -> Front {
     front_of(&by_full_model(problem, candidates.iter().map(|c| c.number).collect()), candidates)
 }
 
-/// Evaluates numbered designs with the full model, each once; infeasible ones are left out.
+/// Evaluates the designs with the given numbers by the full model, each once. Designs that it finds infeasible are left
+/// out.
 pub(super) fn by_full_model(problem: &ArmProblem, mut numbers: Vec<u128>) -> HashMap<u128, Evaluated> {
     numbers.sort_unstable();
     numbers.dedup();
     numbers.into_par_iter().filter_map(|n| Some((n, evaluate(problem, n)?))).collect()
 }
 
-/// The candidates that no other dominates.
+/// The designs of `candidates` that no other one dominates by the full model, with their tie groups. `judged` are the
+/// designs by number as the full model evaluates them; candidates that are not in it are infeasible.
 fn front_of(judged: &HashMap<u128, Evaluated>, candidates: &[Candidate]) -> Front {
     let judged: Vec<&Evaluated> = candidates.iter().filter_map(|c| judged.get(&c.number)).collect();
     let points: Vec<[f64; 3]> = judged.iter().map(|d| d.objectives.minimized()).collect();

@@ -1,4 +1,5 @@
-//! The page of a study: picks with their arms, the catalog rows behind them, the materials as beams.
+//! The HTML page of a study: picks with their arms, the catalog rows of their parts, and a comparison of the
+//! materials as beams.
 
 use super::definition::Study;
 use crate::arm::{Element, LinkBody};
@@ -15,7 +16,7 @@ use crate::report::svg::plot::Series;
 use crate::space::design::number_of;
 use crate::space::problem::ArmProblem;
 
-/// Everything on the page of a finished study except the facts of the run.
+/// The content of the page of a finished study, except for the facts of the run.
 pub fn study_page<'a>(
     study: &Study,
     problem: &ArmProblem,
@@ -38,7 +39,8 @@ pub fn study_page<'a>(
     }
 }
 
-/// A pick with its arm and drives.
+/// What the page shows of a pick: its arm, its cases and the sizing of its drives. `None` if the pick is no design of
+/// the problem.
 fn picked(
     study: &Study,
     problem: &ArmProblem,
@@ -59,7 +61,7 @@ fn picked(
     })
 }
 
-/// The catalog rows of every part in the picks, each once.
+/// The catalog rows of every part that a pick has, each row once.
 fn parts(catalogs: &Catalogs, picks: &[PickedArm]) -> Vec<CatalogRow> {
     let mut out: Vec<CatalogRow> = Vec::new();
     let mut add = |kind: &'static str, name: &str, provenance: &Provenance| {
@@ -96,7 +98,7 @@ fn parts(catalogs: &Catalogs, picks: &[PickedArm]) -> Vec<CatalogRow> {
     out
 }
 
-/// Designations of the catalog profiles in a pick's row.
+/// Designations of the catalog profiles that a pick has.
 fn profiles(pick: &PickedArm) -> impl Iterator<Item = &str> {
     pick.row
         .iter()
@@ -117,7 +119,8 @@ fn catalog_row(catalogs: &Catalogs, kind: &'static str, name: &str, provenance: 
     }
 }
 
-/// The study's materials as the paper's Figs 2 to 4 compare them: square tubes of growing size.
+/// A figure that compares the study's materials in the way of the paper's Figs 2 to 4, by square tubes of growing
+/// size. `None` if the study has fewer than two materials.
 fn beams(study: &Study, catalogs: &Catalogs) -> Option<Figure> {
     let names = study.space.material_names();
     let materials = names.iter().filter_map(|name| catalogs.materials.iter().find(|m| m.name == *name));

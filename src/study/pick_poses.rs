@@ -1,4 +1,4 @@
-//! What a result says of its picks in other poses than the judged ones, and of picks that deflect too far.
+//! Report on the picks of a front in other poses than the judged ones, with warnings for picks that deflect too far.
 
 use super::range::{range_words, ranges, stated_ranges};
 use super::worst_pose::{WorstPose, WorstPoses, loads, worst_poses};
@@ -17,15 +17,15 @@ use crate::space::problem::ArmProblem;
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 
-/// Key of `run.json`.
+/// Key of this report in `run.json`.
 pub(crate) const KEY: &str = "worst_poses";
-/// A pose is worse than the judged cases if it is worse by more than this fraction.
+/// Threshold: a pose is reported if it is worse than the judged cases by more than this fraction.
 const WORSE: f64 = 0.02;
-/// What the numbers leave out.
+/// Remark on what this search for poses leaves out.
 const LEFT_OUT: &str = "Not modelled in these poses: an arm that passes through itself, its base or the floor. Drives and stresses are \
                         checked in the sizing poses only. The poses were found by a search; worse ones are not excluded.";
 
-/// A pick and its worst poses.
+/// A pick, its reach, and the poses in which its deflection and its lowest mode are worst.
 #[derive(Debug, Clone, PartialEq)]
 struct PickPoses {
     pick: Pick,
@@ -37,14 +37,14 @@ struct PickPoses {
 #[derive(Debug, Clone, PartialEq)]
 pub struct PicksInPoses {
     picks: Vec<PickPoses>,
-    /// Each driven joint, its range \[deg, mm\] and whether the range is stated.
+    /// Each driven joint with its range \[deg or mm\], and whether the study states the range.
     ranges: Vec<(DrivenJoint, [f64; 2], bool)>,
     range_words: Vec<String>,
-    /// Whether the judged cases have several loads.
+    /// Whether the judged cases have different loads.
     has_loads: bool,
 }
 
-/// Looks for the worst poses of the picks of a front, which is given as its table.
+/// Searches for the worst poses of the picks of a front. `front` is the front as a table.
 pub fn picks_in_poses(problem: &ArmProblem, front: &FrontTable) -> PicksInPoses {
     let space = problem.space();
     let (cases, ranges) = (problem.load_cases(), ranges(space));
@@ -66,13 +66,15 @@ pub fn picks_in_poses(problem: &ArmProblem, front: &FrontTable) -> PicksInPoses 
 }
 
 impl WorstPose {
-    /// By how much it is worse than the judged cases, as a fraction of these; 0 if either is no number.
+    /// The fraction by which the objective in the worst pose is worse than in the judged cases; 0 if either value is
+    /// not a finite number.
     fn worse(&self) -> f64 {
         let by = (self.value - self.judged).abs() / self.judged;
         if by.is_finite() { by } else { 0.0 }
     }
 
-    /// Its facts for `run.json`, under the name of the quantity with its unit.
+    /// The worst pose for one objective, as an entry of `run.json`. `unit` is the unit in the names of keys, and
+    /// `of_unit` the factor from the library's unit to it.
     fn to_json(&self, driven: &[DrivenJoint], unit: &str, of_unit: f64) -> Value {
         let mut out = Map::new();
         out.insert(format!("judged_{unit}"), json!(of_unit * self.judged));
@@ -85,23 +87,25 @@ impl WorstPose {
     }
 }
 
-/// What the worst pose of an objective is worst in.
+/// The objective in words, as sentences on worst poses name it.
 fn name_of(objective: Objective) -> &'static str {
     if objective == Objective::Mode { "lowest mode" } else { "tip deflection" }
 }
 
 impl PickPoses {
-    /// Names and design.
+    /// Names of the pick and id of its design.
     fn title(&self) -> String {
         format!("{} ({})", self.pick.names.join(", "), self.pick.design.design_id)
     }
 
-    /// Deflection and mode, each with the objective and what it is multiplied by to get the objective's unit.
+    /// The worst pose for deflection and the worst pose for the lowest mode, each with its objective and the factor
+    /// from the library's unit to the printed one (mm, Hz).
     fn both(&self) -> [(Objective, f64, &WorstPose); 2] {
         [(Objective::Deflection, 1e3, &self.worst.deflection), (Objective::Mode, 1.0, &self.worst.mode)]
     }
 
-    /// Those that are worse than the judged cases.
+    /// The worst poses, of the two for deflection and for mode, in which the objective is worse than in the judged
+    /// cases by more than [`WORSE`].
     fn worse(&self) -> impl Iterator<Item = (Objective, f64, &WorstPose)> {
         self.both().into_iter().filter(|(_, _, pose)| pose.worse() > WORSE)
     }
@@ -143,7 +147,7 @@ impl PickPoses {
 }
 
 impl PicksInPoses {
-    /// A warning for each pick that deflects too far in the judged cases.
+    /// Warnings: a sentence for each pick that deflects too far already in the judged cases.
     fn warnings(&self) -> Vec<String> {
         let warning = |of: &PickPoses| {
             let words = too_far(of.worst.deflection.judged, of.reach_m)?;
@@ -152,12 +156,13 @@ impl PicksInPoses {
         self.picks.iter().filter_map(warning).collect()
     }
 
-    /// The driven joints.
+    /// The driven joints of the arm, base to tip.
     fn driven(&self) -> Vec<DrivenJoint> {
         self.ranges.iter().map(|(joint, _, _)| joint.clone()).collect()
     }
 
-    /// A sentence for each pick and objective that is worse than in the judged cases.
+    /// A sentence for each pick and each objective (deflection, lowest mode) that is worse in some pose than in the
+    /// judged cases by more than [`WORSE`].
     fn worse(&self) -> Vec<String> {
         let driven = self.driven();
         let of_pick = |of: &PickPoses| {
@@ -166,7 +171,7 @@ impl PicksInPoses {
         self.picks.iter().flat_map(of_pick).collect()
     }
 
-    /// Which poses were searched, and whether worse ones were found.
+    /// The introductory sentence: which poses were searched, and whether worse ones were found.
     fn lead(&self) -> String {
         let ranges = self.range_words.join("; ");
         match self.worse().is_empty() {
@@ -183,7 +188,7 @@ impl PicksInPoses {
         }
     }
 
-    /// Everything that a result reports about them.
+    /// Everything that a result reports about these poses: sections, entry of `run.json`, terminal text.
     pub fn supplement(&self) -> Supplement {
         let run = Some((KEY, self.to_json()));
         if self.picks.is_empty() {
@@ -204,7 +209,7 @@ impl PicksInPoses {
         }
     }
 
-    /// What `run.json` says of them.
+    /// The entry on the worst poses in `run.json`.
     fn to_json(&self) -> Value {
         let range = |(joint, [low, high], is_stated): &(DrivenJoint, [f64; 2], bool)| {
             let unit = joint.motion.unit();
@@ -218,7 +223,7 @@ impl PicksInPoses {
         })
     }
 
-    /// The section of a page.
+    /// The section on other poses for the HTML page.
     fn section(&self) -> PageSection {
         let words =
             self.warnings().into_iter().chain([self.lead()]).chain(self.worse()).chain([LEFT_OUT.into()]);
@@ -230,7 +235,7 @@ impl PicksInPoses {
         }
     }
 
-    /// The section of a summary.
+    /// The section on other poses for the Markdown summary.
     fn to_markdown(&self) -> String {
         let list = |words: Vec<String>| words.iter().map(|s| format!("- {s}\n")).collect::<String>();
         let (warnings, worse) = (list(self.warnings()), list(self.worse()));
@@ -244,7 +249,7 @@ impl PicksInPoses {
         )
     }
 
-    /// One row for each pick and objective.
+    /// The table of worst poses, one row for each pick and objective.
     fn table(&self) -> Table {
         let mut table = Table::new(vec![
             Column::left("pick"),

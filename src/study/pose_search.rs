@@ -1,47 +1,50 @@
-//! The pose with the largest score, looked for within ranges of angles.
+//! Searches for the pose with the largest score within ranges of the joints.
 //!
-//! The score is computed at a fixed set of poses: the corners, where every joint is at a multiple of 90 degrees or at an
-//! end of its range, and Halton's sequence between them. From the best of these that lie apart, a compass search climbs:
-//! it turns one joint at a time, or two at once where no single joint helps, by steps that become smaller. Nothing is
-//! random and nothing depends on the number of threads. The result is a pose that was found, not one that is proved.
+//! First, the score is computed at a fixed set of poses: the corners, where every joint is at a multiple of 90
+//! degrees or at an end of its range, and points of Halton's sequence between them. Then a compass search starts from
+//! the best of these poses that are far enough apart. It turns one joint at a time, or two at once where no single
+//! joint improves the score, by steps that become smaller. Nothing is random and nothing depends on the number of
+//! threads. The result is the best pose that was found; it is not proved to be the best of all.
 
 use crate::arm::pose::{DrivenJoint, Motion};
 use rayon::prelude::*;
 
-/// Most corners that are looked at; of more, so many are drawn by Halton's sequence.
+/// Largest number of corner poses at which the score is computed. If there are more, this many are selected by Halton's
+/// sequence.
 const MOST_CORNERS: usize = 1024;
-/// Poses between the corners.
+/// Number of poses between the corners.
 const SPREAD: usize = 512;
-/// Poses from which a search climbs.
+/// Number of poses from which a compass search (moves along one joint at a time) starts.
 const STARTS: usize = 6;
-/// Starts differ by at least this much in some joint \[deg\].
+/// Smallest distance between two starting poses: they differ by at least this angle in some joint \[deg\].
 const APART_DEG: f64 = 40.0;
-/// Of the starts, so many are followed to the top.
+/// Number of coarse searches that are continued with fine steps.
 const FOLLOWED: usize = 2;
-/// Steps of the climb from a start \[deg\].
+/// Step sizes of a coarse search, one after the other \[deg\].
 const COARSE_DEG: [f64; 3] = [24.0, 12.0, 6.0];
-/// Steps of the rest of the climb \[deg\].
+/// Step sizes of a fine search, one after the other \[deg\].
 const FINE_DEG: [f64; 5] = [6.0, 2.0, 0.7, 0.3, 0.1];
-/// Moves with one step at most; a climb that needs more goes on with a smaller step.
+/// Largest number of moves with one step size. After this many the search continues with the next smaller step.
 const MOST_MOVES: usize = 60;
-/// A smaller rise of the score than this fraction is rounding.
+/// Smallest relative increase of the score that counts as an improvement; less is rounding.
 const RISE: f64 = 1e-9;
-/// Bases of Halton's sequence.
+/// Bases of Halton's sequence, one for each joint.
 const PRIMES: [usize; 16] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53];
 
-/// The angles of one joint.
+/// The range of one joint: of its angle \[deg\], or of its travel \[mm\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Turn {
     low_deg: f64,
     high_deg: f64,
-    /// Whether the ends are the same angle.
+    /// Whether the range is a full turn, so that both ends are the same angle.
     is_full: bool,
-    /// What a step of one degree is here: of a travel \[mm\], a 360th of its range.
+    /// The step that corresponds to one degree of an angle: 1 for an angle, 1/360 of the range for a travel \[mm\].
     degree: f64,
 }
 
 impl Turn {
-    /// The angles of a range. Of a range of more than a full turn, that full turn is taken which is nearest to -180 to 180.
+    /// The range of an angle. If it is more than a full turn, it is reduced to the full turn within it that is nearest
+    /// to the range from -180 to 180.
     fn new([low_deg, high_deg]: [f64; 2]) -> Self {
         if high_deg - low_deg < 360.0 {
             return Self { low_deg, high_deg, is_full: false, degree: 1.0 };
@@ -50,16 +53,17 @@ impl Turn {
         Self { low_deg, high_deg: low_deg + 360.0, is_full: true, degree: 1.0 }
     }
 
-    /// The travels of a range \[mm\].
+    /// The range of a travel \[mm\], from the smallest to the largest.
     fn travel([low_mm, high_mm]: [f64; 2]) -> Self {
         let degree = (high_mm - low_mm) / 360.0;
         Self { low_deg: low_mm, high_deg: high_mm, is_full: false, degree }
     }
 
-    /// The angle of the range that is nearest to another, in tenths of a degree or at an end.
+    /// The value in the range that is nearest to `angle_deg`, rounded to tenths of a degree (or of a millimetre, for a
+    /// travel), or an end of the range.
     fn within(self, angle_deg: f64) -> f64 {
         let turned = match self.is_full {
-            // the upper end stays, because 180 reads better than -180
+            // the upper end is kept, because 180 reads better than -180
             true if angle_deg <= self.low_deg || angle_deg > self.high_deg => {
                 self.high_deg - (self.high_deg - angle_deg).rem_euclid(360.0)
             }
@@ -68,7 +72,8 @@ impl Turn {
         ((turned * 10.0).round() / 10.0).clamp(self.low_deg, self.high_deg)
     }
 
-    /// Multiples of 90 degrees, those near zero first, and the ends; of a travel its middle and the ends.
+    /// The values of a joint at corner poses, sorted from zero outward. For an angle they are multiples of 90 degrees
+    /// and the ends of the range, for a travel the middle and the ends.
     fn corners_deg(self) -> Vec<f64> {
         if self.degree != 1.0 {
             return vec![self.low_deg, self.within(0.5 * (self.low_deg + self.high_deg)), self.high_deg];
@@ -85,25 +90,26 @@ impl Turn {
     }
 }
 
-/// A pose \[deg\] and its score.
+/// A pose and its score.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Scored {
-    /// One angle per joint \[deg\].
+    /// One entry for each joint, base to tip \[deg\], or \[mm\] for a travel.
     pub pose_deg: Vec<f64>,
-    /// The score, in the unit of the score.
+    /// Score of the pose, in the unit of the function that is maximized.
     pub score: f64,
 }
 
-/// The angles of all joints, and which of them matter.
+/// The ranges of all joints, and which joints influence the score.
 #[derive(Debug, Clone)]
 pub(super) struct PoseRanges {
     turns: Vec<Turn>,
-    /// Numbers of the joints whose angle matters.
+    /// Indices of the joints that influence the score.
     free: Vec<usize>,
 }
 
 impl PoseRanges {
-    /// The ranges of all joints \[deg, mm\].
+    /// The ranges of all joints \[deg or mm\]. Until [`that_matter`](Self::that_matter) is called, every joint counts
+    /// as one that influences the score.
     pub(super) fn new(ranges: &[[f64; 2]], joints: &[DrivenJoint]) -> Self {
         let turn = |(range, joint): (&[f64; 2], &DrivenJoint)| match joint.motion {
             Motion::Turns => Turn::new(*range),
@@ -113,8 +119,9 @@ impl PoseRanges {
         Self { free: (0..turns.len()).collect(), turns }
     }
 
-    /// The same ranges without the joints whose angle changes nothing, such as a vertical first joint under weight
-    /// alone. These joints stay as near to zero as they can. `values` are compared, which are the scores at a pose.
+    /// These ranges, searched only over the joints that influence `values`: numbers of the arm at a pose, such as the
+    /// score. A joint is left out if turning it changes no number, as a vertical first joint under weight alone. It
+    /// then stays as near to zero as its range allows.
     pub(super) fn that_matter<const N: usize>(mut self, values: impl Fn(&[f64]) -> [f64; N]) -> Self {
         const TURNED_DEG: [f64; 2] = [31.7, 123.4];
         let differs =
@@ -134,7 +141,7 @@ impl PoseRanges {
         self
     }
 
-    /// The fixed set of poses from which a search begins.
+    /// The fixed set of poses at which the score is computed first.
     pub(super) fn first_poses(&self) -> Vec<Vec<f64>> {
         let corners: Vec<Vec<f64>> = self.free.iter().map(|&joint| self.turns[joint].corners_deg()).collect();
         let all = corners.iter().try_fold(1usize, |n, of| n.checked_mul(of.len()));
@@ -154,14 +161,16 @@ impl PoseRanges {
         (0..count).map(corner).chain((1..=SPREAD).map(|index| self.spread(index))).collect()
     }
 
-    /// The pose within the ranges that is nearest to another.
+    /// The pose within the ranges that is nearest to `pose_deg`. Joints that do not influence the score are set as near
+    /// to zero as their ranges allow.
     pub(super) fn nearest(&self, pose_deg: &[f64]) -> Vec<f64> {
         let mut out = self.home();
         self.free.iter().for_each(|&joint| out[joint] = self.turns[joint].within(pose_deg[joint]));
         out
     }
 
-    /// The best pose that climbs from the best of these poses reach; `None` without a pose.
+    /// The best pose that compass searches find which start from the best of the poses `from`; `None` if `from` is
+    /// empty. First coarse steps are used; the best results are then continued with fine steps.
     pub(super) fn climb(&self, from: &[Scored], score: impl Fn(&[f64]) -> f64 + Sync) -> Option<Scored> {
         let mut climbed: Vec<Scored> = self
             .starts(from)
@@ -176,7 +185,7 @@ impl PoseRanges {
         followed.into_iter().reduce(|best, other| if other.score > best.score { other } else { best })
     }
 
-    /// The best of some poses that lie apart.
+    /// The poses of `from` with the highest scores that are at least [`APART_DEG`] apart, at most [`STARTS`] of them.
     fn starts(&self, from: &[Scored]) -> Vec<Scored> {
         let mut order: Vec<&Scored> = from.iter().collect();
         order.sort_by(|a, b| b.score.total_cmp(&a.score));
@@ -189,7 +198,8 @@ impl PoseRanges {
         out
     }
 
-    /// The largest difference of an angle that matters.
+    /// The largest difference between the poses `one` and `other` in a joint that influences the score \[deg\]. A
+    /// travel is converted to degrees.
     fn apart_deg(&self, one: &Scored, other: &Scored) -> f64 {
         let apart = |&joint: &usize| {
             let by = (one.pose_deg[joint] - other.pose_deg[joint]).abs();
@@ -199,7 +209,8 @@ impl PoseRanges {
         self.free.iter().map(apart).fold(0.0, f64::max)
     }
 
-    /// Climbs from a pose with every step in turn, until no move with it helps.
+    /// The result of a compass search from the pose `start`. Each of `steps_deg` \[deg\] is used until no move with
+    /// this step improves the score. With `in_pairs`, two joints are turned at once where no single joint improves it.
     fn climbed(
         &self,
         start: Scored,
@@ -221,7 +232,8 @@ impl PoseRanges {
         here
     }
 
-    /// Turns each joint in turn, to the side that helps; `None` if none does.
+    /// Turns each joint by `step_deg`, one after the other, in the direction that improves the score. Turns that
+    /// improve it are kept. `None` if no turn does.
     fn turned_once(&self, from: &Scored, step_deg: f64, score: &impl Fn(&[f64]) -> f64) -> Option<Scored> {
         let mut best: Option<Scored> = None;
         for &joint in &self.free {
@@ -236,7 +248,8 @@ impl PoseRanges {
         best
     }
 
-    /// The first turn of two joints at once that helps.
+    /// Turns two joints by `step_deg` at once, and returns the first such pose that improves the score; `None` if there
+    /// is none.
     fn turned_in_pair(&self, from: &Scored, step_deg: f64, score: &impl Fn(&[f64]) -> f64) -> Option<Scored> {
         let pairs =
             self.free.iter().enumerate().flat_map(|(i, &a)| self.free[i + 1..].iter().map(move |&b| [a, b]));
@@ -245,7 +258,8 @@ impl PoseRanges {
             .find_map(|([a, b], [x, y])| self.moved(from, &[(a, x * step_deg), (b, y * step_deg)], score))
     }
 
-    /// The pose after some joints turned, if its score is higher.
+    /// The pose after joints of `from` were turned, if its score is higher; else `None`. Each item of `by_deg` is the
+    /// index of a joint and the angle \[deg\].
     fn moved(
         &self,
         from: &Scored,
@@ -263,7 +277,7 @@ impl PoseRanges {
         (score > from.score + RISE * from.score.abs()).then_some(Scored { pose_deg, score })
     }
 
-    /// A pose between the corners, in whole degrees.
+    /// The pose with the index `index` in Halton's sequence, within the ranges and in whole degrees.
     fn spread(&self, index: usize) -> Vec<f64> {
         let mut pose_deg = self.home();
         for (place, &joint) in self.free.iter().enumerate() {
@@ -274,13 +288,13 @@ impl PoseRanges {
         pose_deg
     }
 
-    /// Every joint as near to zero as it can be.
+    /// The pose in which every joint is as near to zero as its range allows.
     fn home(&self) -> Vec<f64> {
         self.turns.iter().map(|turn| turn.within(0.0)).collect()
     }
 }
 
-/// A number of Halton's low-discrepancy sequence, from 0 to 1.
+/// The number with this index in Halton's low-discrepancy sequence to this base. It is between 0 and 1.
 fn halton(mut index: usize, base: usize) -> f64 {
     let (mut part, mut sum) = (1.0, 0.0);
     while index > 0 {

@@ -1,7 +1,8 @@
-//! A study as the verifier asks it, and its designs in the verifier's terms.
+//! Translates a study and its designs into the terms of the verifier.
 //!
-//! The verifier must not learn from the search what can be chosen. So the study, as it was read, is copied field by field
-//! here; designs go to and fro by names of gears and motors and by places in the study's own lists of sections.
+//! The verifier must not learn from the search what can be chosen. So the study, as it was read, is copied here field
+//! by field. Designs are translated by the names of gears and motors and by positions in the study's own lists of
+//! sections.
 
 use crate::arm::load::LoadCase;
 use crate::catalog::Catalogs;
@@ -22,7 +23,7 @@ use crate::verify::question::{
     AskedPhaseKind, AskedPiece, AskedStage, AskedTube, Limits, LinearTorque, Question,
 };
 
-/// What a study asks, without anything that a search has made of it.
+/// The question of a study for the verifier, without anything that a search computed.
 pub fn question(space: &DesignSpace) -> Question {
     let case = |case: &crate::space::design_space::Case| LoadCase {
         name: case.name.clone(),
@@ -168,8 +169,8 @@ fn limits(constraints: &Constraints) -> Limits {
     }
 }
 
-/// A numbered design by its parts, base to tip, tubes by their places in the study's whole lists; `None` if it does not
-/// hold by the search's rules.
+/// The parts of the design with the number `design` in `problem`, base to tip. Tubes are given by their positions in
+/// the study's complete lists. `None` if the design does not meet its limits by the search's rules.
 pub fn picks(problem: &ArmProblem, catalogs: &Catalogs, design: u128) -> Option<Vec<Pick>> {
     let chosen = options(problem.level_sizes(), design)?;
     let parts = problem.parts(&chosen)?;
@@ -194,7 +195,8 @@ pub fn picks(problem: &ArmProblem, catalogs: &Catalogs, design: u128) -> Option<
     Some(picks)
 }
 
-/// The number in the whole study of a design by its parts; `None` if the search's tables lack one of its drives.
+/// The number, in the whole study, of the design with the parts `picks`. `whole_sizes` are the numbers of options of
+/// the levels of the whole study. `None` if the search's tables lack one of its drives.
 pub fn number_of_picks(
     problem: &ArmProblem,
     catalogs: &Catalogs,
@@ -218,7 +220,7 @@ pub fn number_of_picks(
     Some(number(whole_sizes, &chosen))
 }
 
-/// The drives and tubes of a design, in words.
+/// The drives and tubes of the design with the parts `picks` in words, for messages on designs without a number.
 pub fn words(space: &DesignSpace, catalogs: &Catalogs, picks: &[Pick]) -> String {
     let word = |(piece, pick): (&SpacePiece, &Pick)| match (piece, *pick) {
         (SpacePiece::Joint(joint), Pick::Drive { gear, motor }) => {

@@ -1,32 +1,16 @@
 //! Rails of a study whose drive is sized: which screws, racks and motors they may have.
 
 use super::drives::{Drives, read_drives};
-use super::keys::{DRIVES, RACK_KEYS, SCREW_KEYS};
+use super::rail_keys::{RACK, SCREW};
 use crate::arm::element_keys::read_name;
 use crate::catalog::Catalogs;
 use crate::catalog::gear::Gear;
 use crate::input::json::{Node, Object};
-use crate::input::key::{Kind, Shape};
 use crate::sizing::rail::{Ends, Rack, Screw};
 use crate::space::prismatic::RailDrive;
 
 /// Keys of a prismatic joint that need a drive which is sized.
 const OF_SIZED: [&str; 5] = ["drives", "screws", "racks", "max_speed_m_s", "brake"];
-
-/// A ball screw of a study.
-pub(super) static SCREW: Shape =
-    Shape::new("screw", "A ball screw with its nut, its shaft of steel.", &SCREW_KEYS, &[]);
-
-/// A rack of a study.
-pub(super) static RACK: Shape =
-    Shape::new("rack", "A rack with its pinion and the gear at it.", &RACK_KEYS, &[]);
-
-/// Lists of them.
-pub(super) const SCREWS: Kind = Kind::NonEmpty(&Kind::Object(&SCREW));
-pub(super) const RACKS: Kind = Kind::NonEmpty(&Kind::Object(&RACK));
-
-/// Which parts the drive of a rail may have.
-pub(super) const RAIL_DRIVES: Kind = Kind::Object(&DRIVES);
 
 /// Reads how the drive of a prismatic joint is sized; `None` within if the study gives it.
 pub(super) fn read_rail_drive(

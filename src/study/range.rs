@@ -1,4 +1,4 @@
-//! How far the joints of a study turn: reading the ranges, holding the poses to them, and saying them.
+//! Ranges of the joints of a study: reads them, checks the poses against them, and describes them in words.
 
 use crate::arm::pose::{DrivenJoint, Motion};
 use crate::input::json::{Node, Object};
@@ -6,10 +6,10 @@ use crate::report::number::shortest;
 use crate::report::words::and;
 use crate::space::design_space::{Case, DesignSpace, SpacePiece};
 
-/// The range of a joint whose range is not stated \[deg\]: a full turn.
+/// The range of a revolute joint that states none \[deg\]: a full turn.
 pub(crate) const NOT_STATED_DEG: [f64; 2] = [-180.0, 180.0];
 
-/// Reads a range: the smallest and the largest angle of a joint \[deg\], or travel \[mm\].
+/// Reads a range: smallest and largest angle of a joint \[deg\], or smallest and largest travel \[mm\].
 pub(super) fn read_range(node: &Node) -> Option<[f64; 2]> {
     match node.numbers::<2>()? {
         [low, high] if low < high => Some([low, high]),
@@ -24,16 +24,16 @@ pub(super) fn read_range(node: &Node) -> Option<[f64; 2]> {
 struct Ranged<'s> {
     name: &'s str,
     motion: Motion,
-    /// Smallest and largest entry in a pose \[deg, mm\]; `None`: not stated.
+    /// Smallest and largest entry in a pose \[deg or mm\]; `None` if it is not stated.
     range: Option<[f64; 2]>,
 }
 
-/// Reports every angle or travel of a pose beyond the range of its joint as a fault. Nothing is checked if the chain or the
-/// cases could not be read.
+/// Reports a fault for every angle or travel of a pose outside the range of its joint. Nothing is checked if the
+/// chain or the cases could not be read.
 pub(super) fn check_poses(root: &Object, chain: Option<&[SpacePiece]>, cases: Option<&[Case]>) -> Option<()> {
     let (Some(chain), Some(cases)) = (chain, cases) else { return Some(()) };
     let joints: Vec<Ranged> = joints(chain).collect();
-    // the first environment has the poses in the order of the file
+    // the cases of the first environment have the order of the poses in the file
     let poses = root.required("poses")?.array()?;
     let mut sound = Some(());
     for (pose, case) in poses.iter().zip(cases) {
@@ -62,7 +62,7 @@ pub(super) fn check_poses(root: &Object, chain: Option<&[SpacePiece]>, cases: Op
     sound
 }
 
-/// The ranges of a study's joints in words, joints of the same range together.
+/// The ranges of a study's joints in words. Joints with the same range are named together.
 pub(crate) fn range_words(space: &DesignSpace) -> Vec<String> {
     type Group<'s> = ((Motion, Option<[f64; 2]>), Vec<&'s str>);
     let mut groups: Vec<Group> = Vec::new();
@@ -81,8 +81,8 @@ pub(crate) fn range_words(space: &DesignSpace) -> Vec<String> {
     groups.into_iter().map(words).collect()
 }
 
-/// The range of each driven joint, base to tip \[deg, mm\]. Where none is stated it is a full turn, or the travels of the
-/// study's poses.
+/// The range of each driven joint, base to tip \[deg or mm\]. If none is stated, it is a full turn for a revolute
+/// joint, and the span of the travels in the study's poses for a prismatic joint.
 pub(crate) fn ranges(space: &DesignSpace) -> Vec<[f64; 2]> {
     let travels = |entry: usize| {
         let of = space.cases.iter().filter_map(|case| case.pose_deg.get(entry));
@@ -96,7 +96,7 @@ pub(crate) fn ranges(space: &DesignSpace) -> Vec<[f64; 2]> {
     joints(&space.pieces).enumerate().map(range).collect()
 }
 
-/// The driven joints, each of which has an entry in every pose, with the unit of their ranges and whether these are stated.
+/// The driven joints, base to tip, with the kind of motion, and whether the study states their ranges.
 pub(crate) fn stated_ranges(space: &DesignSpace) -> Vec<(DrivenJoint, bool)> {
     let stated = |joint: Ranged| {
         (DrivenJoint { name: joint.name.into(), motion: joint.motion }, joint.range.is_some())

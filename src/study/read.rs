@@ -1,8 +1,7 @@
-//! Reads a study file: an arm with open links and drives, the cases in which it is judged, and its
-//! requirements.
+//! Reads a study file: an arm with open links and drives, the cases in which it is judged, and its requirements.
 //!
-//! Lengths of sections and limits are in millimetres because that is how profiles are sold; everything
-//! else is SI. The resolved [`DesignSpace`] is SI throughout.
+//! In the file, lengths of sections and limits on lengths are in millimetres, because profiles are sold in
+//! millimetres. Everything else is in SI units. The resolved [`DesignSpace`] is entirely in SI units.
 
 use super::balance::{balance_remarks, read_balance};
 use super::bodies::impossible_bodies_remark;
@@ -15,10 +14,11 @@ use super::drives::{Drives, read_drives};
 use super::effects::check_effects;
 use super::fit::{fit_remarks, read_fit};
 use super::harness::{harness_effects, harness_remark};
-use super::keys::{CONSTRAINTS, JOINT, LINK, MODELS, OF_CATALOG_DRIVE, PRISMATIC, STUDY};
+use super::keys::{CONSTRAINTS, JOINT, LINK, MODELS, STUDY};
 use super::linkages::drivers_are_inboard;
 use super::motion::{read_duty, read_motion};
 use super::omissions::omissions;
+use super::rail_keys::{OF_CATALOG_DRIVE, PRISMATIC};
 use super::rails::read_rail_drive;
 use super::range::{check_poses, read_range};
 use super::sections::{Aside, MOST_OPTIONS, read_materials, read_sections};
@@ -26,9 +26,10 @@ use super::transmissions::{of_joint, place_transmissions, with_stages};
 use crate::arm::MOST_ELEMENTS;
 use crate::arm::bearing::{BearingSource, Stated, read_bearing};
 use crate::arm::body::{read_joint_bodies, read_link_bodies};
+use crate::arm::element_keys::read_coupling;
 use crate::arm::element_keys::{read_axis, read_name};
 use crate::arm::extras::{ExtrasSource, read_extras_source};
-use crate::arm::file::{NO_TYPE, read_coupling, read_curve, read_effects, read_gravity, read_joint_mass};
+use crate::arm::file::{NO_TYPE, motor_side_kg, read_curve, read_effects, read_gravity, read_joint_mass};
 use crate::arm::load::{vector, word};
 use crate::arm::pieces::{elements_of, read_links};
 use crate::arm::pose::{DrivenJoint, Motion};
@@ -110,7 +111,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     let mut motion = motion?;
     let (gravity_m_s2, down) = gravity?;
     weight_is_needed(&root, gravity_m_s2, &motion)?;
-    // without gravity nothing reads it
+    // without gravity the paper's reading of Eq 8 is refused, so the value is not used
     if gravity_m_s2 > 0.0 {
         motion.gravity_m_s2 = gravity_m_s2;
     }
@@ -145,8 +146,8 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks })
 }
 
-/// Checks that nothing is asked for that is measured by the weight, if there is no gravity: the paper's reading of Eq 8, and the
-/// stress at peak load, which is taken as 1 + a/g times the stress of the weight.
+/// Checks that a study without gravity asks for nothing that is defined as a multiple of the weight: the paper's
+/// reading of Eq 8, and the stress at peak load, which is taken as 1 + a/g times the stress under the weight.
 fn weight_is_needed(root: &Object, gravity_m_s2: f64, motion: &MotionRequirement) -> Option<()> {
     let stress = root.optional("constraints").filter(|n| n.value().get("stress_safety_factor_min").is_some());
     let node = match motion.linear_reading {
@@ -162,7 +163,7 @@ fn weight_is_needed(root: &Object, gravity_m_s2: f64, motion: &MotionRequirement
     }
 }
 
-/// A fraction, written in percent.
+/// Reads a fraction that is written in percent.
 fn read_gap(node: &Node) -> Option<f64> {
     match node.non_negative()? {
         percent if percent < 100.0 => Some(percent / 100.0),
@@ -172,7 +173,8 @@ fn read_gap(node: &Node) -> Option<f64> {
     }
 }
 
-/// The driven joints as written, so that poses are checked even when the chain is faulty.
+/// The driven joints as the file has them. They are read separately, so that poses are checked even if the chain is
+/// faulty.
 fn driven_joints(study: &Node) -> Vec<DrivenJoint> {
     let chain = study.value().get("chain").and_then(|c| c.as_array());
     let joint = |e: &Value| {
@@ -187,7 +189,8 @@ fn driven_joints(study: &Node) -> Vec<DrivenJoint> {
     chain.into_iter().flatten().filter_map(joint).collect()
 }
 
-/// A duty beside the chain. It is meant for a study of a single joint, such as the worked examples of vendors.
+/// Reads a duty that is stated for the whole study. It is allowed only if the study has a single joint, as in the
+/// worked examples of vendors.
 fn read_duty_of_only_joint(node: &Node, study: &Node) -> Option<StatedDuty> {
     let duty = read_duty(node);
     match driven_joints(study).len() {
@@ -197,7 +200,8 @@ fn read_duty_of_only_joint(node: &Node, study: &Node) -> Option<StatedDuty> {
     }
 }
 
-/// Numbers the materials of all links through the study, in the order in which they first appear.
+/// Gives each material an index that is the same for all links of the study, in the order in which materials first
+/// appear.
 fn number_materials(pieces: &mut [SpacePiece]) {
     let mut names: Vec<String> = Vec::new();
     let choices = pieces.iter_mut().filter_map(SpacePiece::as_choice_mut);
@@ -209,7 +213,8 @@ fn number_materials(pieces: &mut [SpacePiece]) {
     }
 }
 
-/// What an open piece is chosen from.
+/// What the file states for the whole study and not for one piece: the parts from which open pieces are chosen, and
+/// defaults for joints.
 struct Open<'a> {
     catalogs: &'a Catalogs,
     drives: &'a Drives,
@@ -217,7 +222,7 @@ struct Open<'a> {
     extras: ExtrasSource,
     fit: FitRequirement,
     connection_share: f64,
-    /// The duty that the study states for its only joint.
+    /// The duty that the study states for its only joint; `None` if it states none.
     duty: Option<&'a StatedDuty>,
 }
 
@@ -300,7 +305,10 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<(SpaceJoint, Option<Tran
         );
     }
     let coupled = object.or("coupled", None, |n| read_coupling(n).map(Some));
-    let (turns_with, transmission) = (read_turns_with(&object), Transmission::read(&object, open.catalogs));
+    let (turns_with, transmission) = (
+        read_turns_with(&object),
+        Transmission::read(&object, open.catalogs, motor_side_kg(&object, open.catalogs)),
+    );
     let drive = match object.optional("drive") {
         Some(drive) => {
             let given = [
@@ -335,7 +343,7 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<(SpaceJoint, Option<Tran
     };
     let (drive, bearing) = (drive?, read_bearing(&object, open.catalogs));
     let bearing = bearing_source(&object, bearing?, &drive, open.catalogs);
-    // the mass of a given drive is stated, and so are its extras
+    // the mass of a given drive is stated and includes its extras
     let usually = if drive.is_sized() { open.extras } else { ExtrasSource::NONE };
     let extras = read_extras_source(&object, usually);
     let bodies = read_joint_bodies(&object);
@@ -387,8 +395,8 @@ fn read_space_prismatic(node: &Node, open: &Open) -> Option<SpacePrismatic> {
     Some(SpacePrismatic { drive: drive?, ..SpacePrismatic::new(joint?, range_mm?) })
 }
 
-/// Where the bearing of a joint comes from. A component set has none of its own, so a joint that is sized with component
-/// sets must say what it turns on.
+/// Whether the bearing of a joint is the stated one or the one of its gear. A component set has no bearing, so a joint
+/// that is sized with component sets must state its bearing.
 fn bearing_source(
     object: &Object,
     stated: Stated,
@@ -414,7 +422,8 @@ fn bearing_source(
     }
 }
 
-/// Reports keys that another key makes meaningless as faults, because nothing in a file is silently ignored.
+/// Reports those of `keys` that `object` has as faults, because another key makes them meaningless. No key of a file is
+/// ignored silently.
 fn stray(object: &Object, keys: &[&str], problem: &str, hint: &str) {
     for node in keys.iter().filter_map(|key| object.optional(key)) {
         node.fault::<()>(problem, hint);

@@ -1,23 +1,23 @@
-//! Why a question about a study has no answer.
+//! Reasons why a question about a study has no answer.
 
 use crate::input::json::{Faults, InputError};
 
-/// Why a question about a study has no answer. The words say what to try.
+/// The reason why a question about a study has no answer. The message says what to try.
 #[derive(Debug, thiserror::Error)]
 pub enum Refusal {
-    /// A study, design or joint of this name is not known, or what is asked for does not suit the study.
+    /// No study, design or joint has this name, or the request does not suit the study.
     #[error("{0}")]
     Unknown(String),
     /// A file cannot be read.
     #[error("{0}")]
     Unreadable(String),
-    /// A file is faulty; all faults at once.
+    /// A file is faulty. The message lists all of its faults.
     #[error(transparent)]
     Faulty(Faults),
-    /// There is nothing to choose from.
+    /// Some link or joint of the study has nothing to choose from.
     #[error("{0}")]
     EmptySpace(String),
-    /// No design meets what is asked.
+    /// No design meets the requirements.
     #[error("{0}")]
     Infeasible(String),
 }

@@ -1,9 +1,9 @@
-//! Which limits stand in the way of every design, and how far they have to be relaxed.
+//! Finds the limits that exclude every design, and by how much they have to be relaxed.
 //!
-//! A limit is dropped, and an exact search is asked for the best design in the limited quantity that meets all else. If the
-//! quantity is no objective, the search is asked for any design, and the limit is bisected between what is asked and what
-//! that design reaches; each step asks for any design that meets the middle. If no limit helps alone, pairs are tried,
-//! then triples.
+//! A limit is dropped, and an exact search finds the design that is best in the limited quantity and meets all other
+//! limits. If the quantity is no objective, the search finds any design, and the limit is bisected between the stated
+//! limit and the value of that design; each step searches for any design that meets the middle. If no limit helps
+//! alone, pairs of limits are tried, then triples.
 
 use super::limit::Quantity;
 use crate::catalog::Catalogs;
@@ -11,44 +11,48 @@ use crate::exact::run::Exact;
 use crate::space::constraint::Constraints;
 use crate::space::design::{evaluate, number};
 use crate::space::design_space::DesignSpace;
+use crate::space::joints::TabulatedJoints;
 use crate::space::levels::OutwardIn;
 use crate::space::problem::ArmProblem;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-/// A limit is known well enough when it is bracketed to this (relative).
+/// Relative difference between the two ends of the interval at which the bisection of a limit ends.
 const CLOSE: f64 = 2e-6;
-/// A limit of zero is bisected from this part of what is reached: the middle is a geometric mean.
+/// Lower end of the bisection if the stated limit is zero, as a fraction of the value that a design reaches. Bisection
+/// takes geometric means, so it must not start at zero.
 const LEAST: f64 = 1e-12;
-/// A gap that any design closes.
+/// A gap so large that any design satisfies it. A search with this gap ends with the first design.
 const ANY: f64 = 1e9;
 
-/// Limits that have to be relaxed together, each with the value that is reached then.
+/// Limits that have to be relaxed together, each with the value that is then reached.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Relaxation {
     pub limits: Vec<(Quantity, f64)>,
-    /// Whether less would not do. If not, time ran out before this was known.
+    /// Whether it is known that a smaller relaxation does not suffice. It is not known if time ran out.
     pub is_smallest: bool,
 }
 
-/// Whether a space has a design.
+/// The answer to the question whether a space has a design that meets its limits.
 enum Answer<T> {
     Yes(T),
     No,
-    /// Time ran out.
+    /// Time ran out before the answer was known.
     Unknown,
 }
 
-/// A space whose limits can be changed.
+/// A space whose limits are changed, with the means to search it.
 pub(super) struct Limited<'a> {
     pub space: &'a DesignSpace,
     pub catalogs: &'a Catalogs,
+    /// The joints of the space, which no limit changes.
+    pub joints: TabulatedJoints<'a>,
     pub stop: &'a AtomicBool,
     pub deadline: Instant,
 }
 
 impl Limited<'_> {
-    /// Whether some design holds if all limits are dropped; `None` if time ran out before this was known.
+    /// Whether some design is feasible if all limits are dropped; `None` if time ran out before this was known.
     pub(super) fn holds_without_limits(&self) -> Option<bool> {
         match self.find(&Constraints::default(), Quantity::Mass, |search| search.to_gap(ANY)) {
             Answer::Yes(_) => Some(true),
@@ -57,7 +61,8 @@ impl Limited<'_> {
         }
     }
 
-    /// The relaxations that help, of as few limits as possible; with `false` if time ran out before all were tried.
+    /// The relaxations (sets of limits with changed values) that admit a design, each of as few limits as possible. The
+    /// flag is false if time ran out before all were tried.
     pub(super) fn relaxations(&self) -> (Vec<Relaxation>, bool) {
         let limits = Quantity::limited(&self.space.constraints);
         let mut is_all = true;
@@ -77,8 +82,8 @@ impl Limited<'_> {
         (Vec::new(), is_all)
     }
 
-    /// The smallest relaxation of some limits together: of the first as little as possible with the others dropped, then
-    /// of the second, and so on.
+    /// The smallest relaxation of the limits in `set` together. The first limit is relaxed as little as possible with
+    /// the others of the set dropped, then the second, and so on.
     fn relaxed(&self, set: &[Quantity]) -> Answer<Relaxation> {
         let mut constraints = self.space.constraints;
         set.iter().for_each(|quantity| quantity.set(&mut constraints, None));
@@ -89,7 +94,7 @@ impl Limited<'_> {
                 Answer::No => return Answer::No,
                 Answer::Unknown => return Answer::Unknown,
             };
-            // a little room, so that rounding does not exclude the design that reaches it
+            // slightly more than the value reached, so that rounding does not exclude the design that reaches it
             let roomy = if quantity.is_least() { reached / (1.0 + CLOSE) } else { reached * (1.0 + CLOSE) };
             quantity.set(&mut constraints, Some(roomy));
             limits.push((quantity, reached));
@@ -98,7 +103,8 @@ impl Limited<'_> {
         Answer::Yes(Relaxation { limits, is_smallest })
     }
 
-    /// The best value of a quantity under some limits, with `false` if time ran out before none was known to be better.
+    /// The best value of `quantity` that a design reaches under `constraints`. The flag is false if time ran out before
+    /// it was known that no design reaches a better value.
     fn best(&self, constraints: &Constraints, quantity: Quantity) -> Answer<(f64, bool)> {
         if let Some(objective) = quantity.objective() {
             return self.find(constraints, quantity, |search| search.toward(objective));
@@ -109,10 +115,10 @@ impl Limited<'_> {
         }
     }
 
-    /// The value of a limit nearest to what is asked that some design reaches, between what is asked, in vain, and what is
-    /// reached; with `false` if time ran out.
+    /// The value of `quantity` nearest to its stated limit that some design reaches. It lies between the stated limit,
+    /// which no design meets, and `reached`, the value of a known design. The flag is false if time ran out.
     fn bisected(&self, constraints: &Constraints, quantity: Quantity, reached: f64) -> (f64, bool) {
-        // what a limit costs rises from the value asked to the value reached, for minima from the reciprocals
+        // the cost of a limit rises from the stated limit to the value reached; for lower limits it is the reciprocal
         let cost = |value: f64| if quantity.is_least() { value.recip() } else { value };
         let asked = quantity.asked(&self.space.constraints).unwrap_or_default();
         let (mut in_vain, mut enough) = (cost(asked).max(cost(reached) * LEAST), cost(reached));
@@ -129,8 +135,8 @@ impl Limited<'_> {
         (cost(enough), true)
     }
 
-    /// The best value of a quantity among the designs that an exact search finds under some limits, and whether the search
-    /// was done. `how` says what it is to find.
+    /// The best value of `quantity` among the designs that an exact search finds under `constraints`, and whether the
+    /// search was completed. `how` sets the aim of the search, such as the best design or any design.
     fn find(
         &self,
         constraints: &Constraints,
@@ -139,10 +145,11 @@ impl Limited<'_> {
     ) -> Answer<(f64, bool)> {
         let space = DesignSpace { constraints: *constraints, ..self.space.clone() };
         let search = Exact::new(&space, self.catalogs, self.stop, Some(self.deadline));
-        let found = how(search.by_regions_from(f64::INFINITY)).run(&[]);
+        let search = search.with_joints(self.joints.clone()).by_regions_from(f64::INFINITY);
+        let found = how(search).run(&[]);
         let numbers: Vec<u128> = found.front.iter().map(|candidate| candidate.number).collect();
-        let best = space.excerpt(self.catalogs, &numbers).and_then(|part| {
-            let problem = ArmProblem::new(&part, self.catalogs);
+        let best = space.excerpt_with(&self.joints, &numbers).and_then(|part| {
+            let problem = ArmProblem::with_joints(&part, &self.joints);
             let values = numbers.iter().filter_map(|&design| reached(&problem, design, quantity));
             values.reduce(if quantity.is_least() { f64::max } else { f64::min })
         });
@@ -154,7 +161,8 @@ impl Limited<'_> {
     }
 }
 
-/// What a design of the whole space reaches by the full model; `None` if it does not meet the limits.
+/// The value of `quantity` by the full model for a design, given by its number in the whole space; `None` if the design
+/// does not meet the limits.
 fn reached(problem: &ArmProblem, design: u128, quantity: Quantity) -> Option<f64> {
     let options = problem.options_of_whole(design)?;
     let judged = evaluate(problem, number(problem.level_sizes(), &options))?;
@@ -165,7 +173,7 @@ fn reached(problem: &ArmProblem, design: u128, quantity: Quantity) -> Option<f64
     quantity.of(problem, &arm, &judged.objectives)
 }
 
-/// The subsets of a size, in the order of the list.
+/// All subsets of `list` with `size` elements. The elements of each are in the order of the list.
 fn subsets<T: Copy>(list: &[T], size: usize) -> Vec<Vec<T>> {
     match (size, list) {
         (0, _) => vec![Vec::new()],

@@ -1,5 +1,5 @@
-//! Picks that are on a front only because their weight made first fit take a larger drive: for each, the lighter arm on
-//! the same drives.
+//! Finds picks that are on a front only because of their weight: first fit gave them larger drives for it. For each
+//! such pick, there is a lighter arm with the same drives.
 
 use super::table::link_words;
 use crate::pareto::objectives::Objectives;
@@ -15,25 +15,25 @@ use crate::space::problem::ArmProblem;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-/// Key of `run.json`.
+/// Key of this report in `run.json`.
 pub(crate) const KEY: &str = "lighter_on_same_drives";
 
-/// A pick and the lighter arm on its drives.
+/// A pick, and a lighter arm with the same drives that is at least as good.
 #[derive(Debug, Clone, PartialEq)]
 struct Beaten {
     pick: Pick,
-    /// The exchanged pieces, each with its part in the lighter arm.
+    /// The pieces that differ, each with its part in the lighter arm.
     exchanged: Vec<(String, String)>,
-    /// Joints that first fit would give a smaller drive.
+    /// Names of the joints for which first fit would choose a smaller drive in the lighter arm.
     joints: Vec<String>,
     lighter: Objectives,
 }
 
-/// The picks of a front to which an arm on the same drives is superior.
+/// The picks of a front that a lighter arm with the same drives dominates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PicksOnSameDrives(Vec<Beaten>);
 
-/// Looks for a lighter arm on the drives of each pick, among the options of `problem`.
+/// Searches for a lighter arm with the drives of each pick, among the options of `problem`.
 pub fn picks_on_same_drives(problem: &ArmProblem, front: &FrontTable) -> PicksOnSameDrives {
     let beaten = |pick: Pick| {
         let options = problem.options_of_whole(number_of(&pick.design.design_id)?)?;
@@ -95,12 +95,12 @@ impl Beaten {
     }
 }
 
-/// What to do about it.
+/// Advice to the user.
 const ADVICE: &str = "That arm is not a design of this study, because first fit would give it smaller drives. With `\"drive\": \"all_fits\"` at \
                       these joints the search chooses the drives itself.";
 
 impl PicksOnSameDrives {
-    /// Everything that a result reports about them.
+    /// Everything that a result reports about these picks: sections, entry of `run.json`, terminal text.
     pub fn supplement(&self) -> Supplement {
         let run = Some((KEY, self.0.iter().map(Beaten::to_json).collect()));
         if self.0.is_empty() {

@@ -1,9 +1,10 @@
-//! What it would cost to visit every design of a study, and what an exact search would cost.
+//! Estimates the cost of evaluating every design of a study and the cost of an exact search.
 //!
-//! A visit costs a known time for each design, piece and case, less where drives or stresses exclude the design early. How
-//! much an exact search can discard, no formula tells. Both are therefore tried on thinned spaces, which have some of the
-//! sections and gears of the study. The share of designs that hold, and the power by which the number of boxes grows with the
-//! number of designs, are taken from there. Only counts enter, no clock: the same study gets the same search on every machine.
+//! Evaluating every design costs a known time for each design, piece and case, and less where drives or stresses
+//! exclude a design early. No formula tells how much an exact search can discard. Both searches are therefore tried
+//! on thinned spaces, which have some of the sections and gears of the study. From these come the fraction of
+//! feasible designs, and the exponent with which the number of boxes grows with the number of designs. Only counts
+//! are used and no clock, so the same study gets the same search on every machine.
 
 use crate::catalog::Catalogs;
 use crate::exact::run::Exact;
@@ -15,32 +16,36 @@ use crate::space::levels::OutwardIn;
 use crate::space::problem::ArmProblem;
 use std::sync::atomic::AtomicBool;
 
-/// Processor time of a visit for each design, piece and case \[s\]: `benches/growth.py` prints 12e-9 to 50e-9.
+/// Processor time of an exhaustive search for each design, piece and case \[s\]. `benches/growth.py` measures 12e-9
+/// to 50e-9.
 const VISIT_S: f64 = 25e-9;
-/// Share of that time which a design takes that cannot hold.
+/// Time for a design that is excluded early, as a fraction of the time for a feasible design.
 const EXCLUDED: f64 = 0.1;
-/// Processor time of an exact search for each box, piece and case \[s\], from the named studies.
+/// Processor time of an exact search for each box, piece and case \[s\], measured with the built-in studies.
 const BOX_S: f64 = 2.5e-6;
-/// A visit that takes less than this is made without asking what an exact search would cost \[s\].
+/// If an exhaustive search takes less than this, it runs without an estimate of the exact search \[s\].
 const QUICK_S: f64 = 10.0;
-/// A visit that would take longer than this is not thought of \[s\].
+/// If an exhaustive search would take longer than this, it is ruled out without an estimate of the exact search
+/// \[s\].
 const HOPELESS_S: f64 = 1e6;
-/// Numbers of designs of the thinned spaces.
+/// Largest numbers of designs of the two thinned spaces.
 const THINNED: [f64; 2] = [1e4, 1e5];
-/// An exact search has to be so many times cheaper. A visit needs no trust in bounds, and it counts what each limit excludes.
+/// Factor by which an exact search must be cheaper to be chosen. An exhaustive search relies on no bounds, and it
+/// counts the designs that each limit excludes.
 const CHEAPER: f64 = 2.0;
 
-/// Estimated processor times of both searches on one core.
+/// Estimated processor times of both searches on one core \[s\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SearchCost {
-    /// Of a visit to every design \[s\].
+    /// Time of evaluating every design \[s\].
     pub(crate) exhaustive_core_s: f64,
-    /// Of an exact search \[s\]; `None` if it was not worked out, because a visit is quick or out of the question.
+    /// Time of an exact search \[s\]; `None` if it was not estimated, because an exhaustive search is quick or ruled
+    /// out.
     pub(crate) exact_core_s: Option<f64>,
 }
 
 impl SearchCost {
-    /// Estimates both for a study with so many designs.
+    /// Estimates the times of both searches for a study with `designs` designs.
     pub(crate) fn of(space: &DesignSpace, catalogs: &Catalogs, designs: f64) -> Self {
         let each = (space.pieces.len() * space.cases.len()) as f64;
         let exhaustive_core_s = designs * each * VISIT_S;
@@ -54,7 +59,7 @@ impl SearchCost {
         }
     }
 
-    /// Both costs and the choice in a sentence; `None` if there was nothing to compare.
+    /// Both estimated times and the search that is chosen, in a sentence; `None` if the exact search was not estimated.
     pub(crate) fn words(&self) -> Option<String> {
         let seconds = |s: f64| format!("{} s", significant(s, 1));
         let exact_core_s = self.exact_core_s?;
@@ -67,7 +72,8 @@ impl SearchCost {
         ))
     }
 
-    /// Whether an exact search suits the study better.
+    /// Whether the exact search is estimated to be cheaper by the factor [`CHEAPER`], or an exhaustive search is ruled
+    /// out.
     pub(crate) fn speaks_for_exact(&self) -> bool {
         match self.exact_core_s {
             Some(exact_core_s) => exact_core_s * CHEAPER < self.exhaustive_core_s,
@@ -76,12 +82,13 @@ impl SearchCost {
     }
 }
 
-/// Both searches of a thinned space.
+/// Counts from both searches of a thinned space.
 struct Trial {
     designs: f64,
-    /// Share of the designs that hold.
+    /// Fraction of the designs that are feasible.
     held: f64,
-    /// Boxes of the exact searches for the front and for those of the materials.
+    /// Number of boxes (sets of designs) that the exact searches for the front and for the fronts of single materials
+    /// bounded.
     boxes: f64,
 }
 
@@ -107,27 +114,29 @@ impl Trial {
     }
 }
 
-/// Boxes of a space with so many designs, by the power that two smaller spaces show.
+/// Estimated number of boxes of an exact search in a space with `designs` designs. It is extrapolated with the exponent
+/// that the trials in two smaller spaces show.
 fn grown(small: &Trial, large: &Trial, designs: f64) -> f64 {
     let growth = libm::log(large.boxes.max(1.0) / small.boxes.max(1.0));
     let of_designs = libm::log(large.designs / small.designs);
-    // two spaces of nearly the same size show no power; then no box is spared
+    // two spaces of nearly the same size show no exponent; then boxes are taken as proportional to designs
     let power = if of_designs > 0.1 { (growth / of_designs).clamp(0.0, 1.0) } else { 1.0 };
     large.boxes.max(1.0) * libm::pow((designs / large.designs).max(1.0), power)
 }
 
-/// The space with at most so many designs, made by dropping every second option of the piece that has most of them.
+/// The space thinned to at most `most` designs. Every second option of the piece with the most options is dropped,
+/// repeatedly.
 fn thinned(space: &DesignSpace, catalogs: &Catalogs, most: f64) -> DesignSpace {
     let mut space = space.clone();
     while space.designs(catalogs).is_none_or(|designs| designs as f64 > most)
         && drop_half(&mut space, catalogs)
     {}
-    // a material of which no section is left has no front
+    // a material of which no section is left would be a group without designs
     space.renumber_materials();
     space
 }
 
-/// Drops every second option of the piece that has most of them; `false` if none has two.
+/// Drops every second option of the piece with the most options. Returns false if no piece has two options.
 fn drop_half(space: &mut DesignSpace, catalogs: &Catalogs) -> bool {
     let largest = space.pieces.iter_mut().max_by_key(|piece| options(piece, catalogs));
     let Some(largest) = largest.filter(|piece| options(piece, catalogs) > 1) else { return false };
@@ -147,7 +156,7 @@ fn drop_half(space: &mut DesignSpace, catalogs: &Catalogs) -> bool {
     true
 }
 
-/// Number of sections of a link, or of pairs of a gear and a motor.
+/// Number of sections of an open link, or of pairs of gear and motor of a joint with `all_fits`; else 0.
 fn options(piece: &SpacePiece, catalogs: &Catalogs) -> usize {
     match piece {
         SpacePiece::Choice(choice) => choice.options.len(),
@@ -159,7 +168,7 @@ fn options(piece: &SpacePiece, catalogs: &Catalogs) -> usize {
     }
 }
 
-/// Names of the gears and of the motors that a joint may take.
+/// Names of the gears and names of the motors that the filter allows.
 fn allowed(filter: &DriveFilter, catalogs: &Catalogs) -> [Vec<String>; 2] {
     let gears = catalogs.gears.iter().filter(|gear| filter.allows_gear(gear)).map(|gear| gear.id.clone());
     let motors =
@@ -212,7 +221,7 @@ mod tests {
         let trial = |designs: f64, boxes: f64| Trial { designs, held: 1.0, boxes };
         let by_root = grown(&trial(1e4, 100.0), &trial(1e6, 1000.0), 1e8);
         assert!((by_root - 1e4).abs() < 1e-6, "{by_root}");
-        // a power above one or below zero is an accident of two small spaces
+        // an exponent above one or below zero is an accident of two small spaces
         assert_eq!(grown(&trial(1e4, 10.0), &trial(1e5, 1e4), 1e6), 1e5);
         assert_eq!(grown(&trial(1e4, 10.0), &trial(1e5, 5.0), 1e6), 5.0);
     }

@@ -1,4 +1,5 @@
-//! Which search finds the front of a study: the one that is asked for, or the one that is estimated to cost less.
+//! Chooses the search for the front of a study: the method that the user asked for, or the one that is estimated to
+//! cost less.
 
 use super::definition::Study;
 use super::load::refuse_empty;
@@ -17,25 +18,25 @@ pub enum SearchMethod {
     Exact,
 }
 
-/// What is asked of a search.
+/// What the user asked of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct SearchWish {
-    /// The method, if one is asked for.
+    /// The method, if the user asked for one.
     pub method: Option<SearchMethod>,
-    /// Whether a gap is asked for, at which the search may end.
+    /// Whether the user asked for a gap at which the search may end.
     pub has_gap: bool,
-    /// Whether the search ends at a time.
+    /// Whether the user set a time limit.
     pub has_time_limit: bool,
 }
 
-/// Above this many designs an exhaustive search would take years.
+/// Largest number of designs for which an exhaustive search is accepted. With more designs it would take years.
 const MOST_CONCEIVABLE: u128 = 1_000_000_000_000_000;
 
 impl SearchWish {
-    /// The method that was asked for, or the one that is estimated to cost less, with the estimate in words.
+    /// The method that the user asked for, or the one that is estimated to cost less, with the estimate in words.
     ///
     /// # Errors
-    /// It does not suit the study, or would take years.
+    /// The method does not suit the study, or it would take years.
     pub fn method(
         &self,
         study: &Study,
@@ -50,10 +51,10 @@ impl SearchWish {
         })
     }
 
-    /// Checks that what was asked for suits the study, and counts its designs.
+    /// Checks that the request suits the study, and returns its number of designs.
     ///
     /// # Errors
-    /// The study has nothing to choose from, what was asked for does not suit it, or it would take years.
+    /// The study has nothing to choose from, the request does not suit it, or the search would take years.
     pub fn check(&self, study: &Study, catalogs: &Catalogs) -> Result<u128, Refusal> {
         refuse_empty(study, catalogs)?;
         let refused = |why: String| Err(Refusal::Unknown(why));
@@ -85,7 +86,7 @@ impl SearchWish {
     }
 }
 
-/// The search that is estimated to cost less, with both costs in words.
+/// The search method that is estimated to cost less processor time, with both estimated times in words.
 fn cheaper(study: &Study, catalogs: &Catalogs, designs: f64) -> (SearchMethod, Option<String>) {
     let cost = SearchCost::of(&study.space, catalogs, designs);
     let method = if cost.speaks_for_exact() { SearchMethod::Exact } else { SearchMethod::Exhaustive };

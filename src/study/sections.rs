@@ -1,4 +1,4 @@
-//! The options of an open link: materials times sections.
+//! The options of an open link: each of its materials combined with each of its sections.
 
 use super::choose_keys::{
     GRID, PROFILE_FILTER, PROFILES, RECTANGULAR_BARS, RECTANGULAR_TUBES, ROUND_BARS, ROUND_TUBES,
@@ -13,37 +13,37 @@ use crate::space::design_space::LinkOption;
 use std::collections::{BTreeSet, HashSet};
 
 const DEFAULT_POISSON: f64 = 0.3;
-/// Most points of a grid; more would be a mistake in the step.
+/// Largest number of points of a grid. More are a sign of a mistake in the step.
 const MOST_POINTS: usize = 100_000;
-/// Most sections of a family.
+/// Largest number of sections that one family of a study file may have, before walls that do not fit are left out.
 const MOST_SECTIONS: usize = 1_000_000;
-/// Most choices of material and section of all links together: they take about a gigabyte.
+/// Largest number of options (pairs of material and section) of all links together. This many take about a gigabyte.
 pub(super) const MOST_OPTIONS: usize = 3_000_000;
 
-/// Sections to choose from.
+/// The sections from which an open link is chosen, each with its profile name if it is a catalog profile.
 pub(super) struct Sections {
     sections: Vec<(Section, Option<ProfileName>)>,
 }
 
-/// What is said beside the result about options of links.
+/// Messages on options of links, collected while a study is read.
 #[derive(Default)]
 pub(super) struct Aside {
-    /// Options left out because a rating that a check needs is unknown.
+    /// Messages on options that were left out because a rating that a check needs is blank.
     pub not_checked: Vec<String>,
-    /// What a reader of the result should know.
+    /// Remarks for the reader of the result.
     pub remarks: Vec<String>,
-    /// Number of choices of material and section of all links so far.
+    /// Number of options of all links read so far.
     pub options: usize,
 }
 
-/// A profile and the family of materials it is sold in.
+/// The designation of a catalog profile, and the family of materials in which it is sold.
 #[derive(Clone, PartialEq, Eq, Hash)]
 struct ProfileName {
     designation: String,
     family: String,
 }
 
-/// Reads a list of material names, none of them twice.
+/// Reads a list of names of materials. A name must not occur twice.
 pub(super) fn read_materials<'c>(node: &Node, catalogs: &'c Catalogs) -> Option<Vec<&'c Material>> {
     let items = node.array()?;
     if items.is_empty() {
@@ -88,13 +88,13 @@ impl Sections {
 pub(super) fn read_sections(node: &Node, catalogs: &Catalogs) -> Option<Sections> {
     let read: Vec<_> = node.array()?.iter().map(|n| read_family(n, catalogs)).collect();
     let mut sections = read.into_iter().collect::<Option<Vec<_>>>()?.concat();
-    // a tube that several grids hold is one tube
+    // a tube that occurs in several grids is one option
     let mut seen = HashSet::new();
     sections.retain(|section| seen.insert(identity(section)));
     Some(Sections { sections })
 }
 
-/// The identity of a section, to find duplicates.
+/// What identifies a section, to find duplicates: shape, sizes, profile.
 fn identity((section, profile): &Named) -> (&'static str, [u64; 3], Option<ProfileName>) {
     let (width_m, height_m) = section.outer_m();
     (section.shape(), [width_m, height_m, section.wall_m()].map(f64::to_bits), profile.clone())
@@ -141,7 +141,8 @@ fn read_rectangular_bar(node: &Node) -> Option<Vec<Named>> {
     Some(outlines.into_iter().map(bar).collect())
 }
 
-/// Reads `width_mm` and `height_mm`: every pair of them, or squares where no height is given.
+/// Reads `width_mm` and `height_mm` as outer sizes \[mm\]. The result has every pair of a width and a height, or
+/// squares if no height is given.
 fn read_outlines(object: &Object) -> Option<Vec<(f64, f64)>> {
     let widths = object.required("width_mm").and_then(|n| read_grid(&n));
     if object.optional("height_mm").is_none_or(|n| n.value().as_str() == Some("=width")) {
@@ -224,7 +225,7 @@ fn profile_section(profile: &Profile) -> Named {
     (section, Some(name))
 }
 
-/// A fault if two grids together have more sections than a family may.
+/// Reports a fault if two grids together give more sections than a family may have.
 fn refuse_too_many(node: &Node, [a, b]: [usize; 2]) -> Option<()> {
     match a.saturating_mul(b) {
         0..=MOST_SECTIONS => Some(()),
@@ -235,7 +236,7 @@ fn refuse_too_many(node: &Node, [a, b]: [usize; 2]) -> Option<()> {
     }
 }
 
-/// Reads a number, a list of numbers, or `{"from", "to", "step"}`, all greater than zero.
+/// Reads a grid: a number, a list of numbers, or `{"from", "to", "step"}`. All numbers must be greater than zero.
 fn read_grid(node: &Node) -> Option<Vec<f64>> {
     if node.value().is_number() {
         return Some(vec![node.positive()?]);
@@ -257,7 +258,8 @@ fn read_grid(node: &Node) -> Option<Vec<f64>> {
     Some((0..=points as usize).map(|i| from + i as f64 * step).collect())
 }
 
-/// Whether a profile of a family can be bought in a material: the family's name stands in the material's.
+/// Whether profiles of the family `family` are sold in `material`: the name of the family occurs in the name of the
+/// material.
 fn sold_in(family: &str, material: &Material) -> bool {
     let name = material.name.to_lowercase();
     match family {
@@ -266,11 +268,11 @@ fn sold_in(family: &str, material: &Material) -> bool {
     }
 }
 
-/// Word in the names of stainless steels, and their family of profiles.
+/// The word in the names of stainless steels, which is also the name of their family of profiles.
 const STAINLESS: &str = "stainless";
 
-/// Says so where a link of catalog profiles offers stainless steel, but no profile that is sold in it: structural steel
-/// sections are not.
+/// A remark if `link` may be of stainless steel and of catalog profiles, but none of the profiles is sold in stainless
+/// steel. Profiles of structural steel are not sold in it.
 fn stainless_without_profiles(materials: &[&Material], sections: &Sections, link: &str) -> Option<String> {
     let families: HashSet<&str> =
         sections.sections.iter().filter_map(|(_, profile)| Some(profile.as_ref()?.family.as_str())).collect();
@@ -285,7 +287,8 @@ fn stainless_without_profiles(materials: &[&Material], sections: &Sections, link
     })
 }
 
-/// Materials times sections. Options that lack a rating that a constraint needs are left out and listed.
+/// Each material combined with each section. Materials that lack a rating that a constraint needs are left out, and a
+/// message on each is added to `aside`.
 pub(super) fn options(
     materials: &[&Material],
     sections: &Sections,

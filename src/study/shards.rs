@@ -1,15 +1,17 @@
-//! Shards of an exhaustive search: what each found, and how they become one front.
+//! Shards of a search: the files of what each found, and how those of an exhaustive search become one front.
 //!
-//! A shard keeps the candidates of its range of design numbers. A candidate that another shard clearly dominates is dropped
-//! when they are joined, and the full model judges the rest, as after a search on one machine: the front has the same bytes.
+//! A shard keeps the candidates in its range of design numbers. When shards are joined, a candidate that one of
+//! another shard clearly dominates is dropped, and the full model evaluates the rest. This is the same as after a
+//! search on one machine, so the files of the front are equal byte by byte.
 
+use crate::exact::outcome::FoundInShard;
 use crate::pareto::objectives::Objectives;
 use crate::search::sweep::{Candidate, Status, SweepOutcome, clear_dominated};
 use std::fmt::Write;
 use std::ops::Range;
 
-/// The candidates of a sweep as CSV: `all` or the number of a material, the number of the design, its objectives by the fast
-/// model in m, kg and Hz. Numbers have their shortest form that reads back to the same bits.
+/// The candidates of a sweep as CSV. The columns are `all` or the index of a material, the number of the design, and
+/// its objectives by the fast model in m, kg and Hz. Numbers have the shortest form that reads back to the same bits.
 pub fn candidates_csv(swept: &SweepOutcome) -> String {
     let mut out = String::from(HEADER);
     let groups = swept.groups.iter().enumerate().map(|(k, group)| (k.to_string(), group));
@@ -24,39 +26,94 @@ pub fn candidates_csv(swept: &SweepOutcome) -> String {
 
 const HEADER: &str = "front,number,tip_deflection_m,mass_kg,lowest_mode_hz\n";
 
-/// Reads [`candidates_csv`] of a study with so many materials.
+/// Reads the text of [`candidates_csv`] for a study with this number of materials.
 ///
 /// # Errors
-/// The number of the first line that is no candidate.
+/// The number of the first line that is not a candidate.
 pub fn read_candidates(text: &str, materials: usize) -> Result<(Vec<Candidate>, Vec<Vec<Candidate>>), usize> {
     let mut front = Vec::new();
     let mut groups = vec![Vec::new(); materials];
     let rows = text.strip_prefix(HEADER).ok_or(1usize)?;
     for (line, row) in rows.lines().enumerate() {
-        let fault = || line + 2;
         let cells: Vec<&str> = row.split(',').collect();
-        let [of, number, tip, mass, mode] = cells[..] else { return Err(fault()) };
-        let value = |cell: &str| cell.parse::<f64>().map_err(|_| fault());
-        let candidate = Candidate {
-            number: number.parse().map_err(|_| fault())?,
-            objectives: Objectives {
-                tip_deflection_m: value(tip)?,
-                mass_kg: value(mass)?,
-                lowest_mode_hz: value(mode)?,
-            },
+        let mut read = || -> Option<()> {
+            let (of, rest) = cells.split_first()?;
+            let (of, candidate) = (front_at(of)?, candidate(rest)?);
+            match of.checked_sub(1) {
+                None => front.push(candidate),
+                Some(material) => groups.get_mut(material)?.push(candidate),
+            }
+            Some(())
         };
-        match of {
-            "all" => front.push(candidate),
-            k => groups.get_mut(k.parse::<usize>().map_err(|_| fault())?).ok_or_else(fault)?.push(candidate),
-        }
+        read().ok_or(line + 2)?;
     }
     Ok((front, groups))
+}
+
+/// The place of a front among those of a search, from its name: `all`, or the number of a material.
+fn front_at(name: &str) -> Option<usize> {
+    if name == ALL { Some(0) } else { name.parse::<usize>().ok()?.checked_add(1) }
+}
+
+/// Reads number and objectives.
+fn candidate(cells: &[&str]) -> Option<Candidate> {
+    let [number, tip, mass, mode] = cells[..] else { return None };
+    let value = |cell: &str| cell.parse::<f64>().ok();
+    let objectives =
+        Objectives { tip_deflection_m: value(tip)?, mass_kg: value(mass)?, lowest_mode_hz: value(mode)? };
+    Some(Candidate { number: number.parse().ok()?, objectives })
+}
+
+/// Name of the front of all designs; that of a material is its number.
+const ALL: &str = "all";
+
+/// What a shard of an exact search found, front by front, as CSV: as in [`candidates_csv`], and whether it is decided that a
+/// design holds.
+pub fn found_csv(fronts: &[FoundInShard]) -> String {
+    let mut out = String::from(FOUND_HEADER);
+    for (at, found) in fronts.iter().enumerate() {
+        let name = at.checked_sub(1).map_or(ALL.to_string(), |material| material.to_string());
+        let decided = found.decided.iter().map(|candidate| (candidate, "yes"));
+        for (Candidate { number, objectives: o }, word) in
+            decided.chain(found.undecided.iter().map(|candidate| (candidate, "no")))
+        {
+            let Objectives { tip_deflection_m, mass_kg, lowest_mode_hz } = o;
+            let _ = writeln!(out, "{name},{word},{number},{tip_deflection_m},{mass_kg},{lowest_mode_hz}");
+        }
+    }
+    out
+}
+
+const FOUND_HEADER: &str = "front,decided,number,tip_deflection_m,mass_kg,lowest_mode_hz\n";
+
+/// Reads [`found_csv`] of so many fronts. Only the designs are filled in.
+///
+/// # Errors
+/// The number of the first line that is no candidate.
+pub fn read_found(text: &str, fronts: usize) -> Result<Vec<FoundInShard>, usize> {
+    let mut out = vec![FoundInShard::default(); fronts];
+    let rows = text.strip_prefix(FOUND_HEADER).ok_or(1usize)?;
+    for (line, row) in rows.lines().enumerate() {
+        let cells: Vec<&str> = row.split(',').collect();
+        let mut read = || -> Option<()> {
+            let [of, decided, rest @ ..] = &cells[..] else { return None };
+            let found = out.get_mut(front_at(of)?)?;
+            match *decided {
+                "yes" => found.decided.push(candidate(rest)?),
+                "no" => found.undecided.push(candidate(rest)?),
+                _ => return None,
+            }
+            Some(())
+        };
+        read().ok_or(line + 2)?;
+    }
+    Ok(out)
 }
 
 /// What one shard found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Swept {
-    /// Number of designs that hold and were judged.
+    /// Number of designs that no drive, link or limit excludes, so that their objectives were computed.
     pub designs_evaluated: u64,
     /// Candidates of the front of all designs.
     pub front: Vec<Candidate>,
@@ -64,7 +121,8 @@ pub struct Swept {
     pub groups: Vec<Vec<Candidate>>,
 }
 
-/// The sweep of a whole space from that of its shards, which must cover it.
+/// The result of an exhaustive search of a whole space, joined from the results of its shards, which together must
+/// cover the space.
 pub fn joined(shards: Vec<Swept>, designs_total: u128) -> SweepOutcome {
     let materials = shards.iter().map(|shard| shard.groups.len()).max().unwrap_or_default();
     let (mut front, mut groups, mut designs_evaluated) = (Vec::new(), vec![Vec::new(); materials], 0u64);
@@ -87,7 +145,8 @@ pub fn joined(shards: Vec<Swept>, designs_total: u128) -> SweepOutcome {
     }
 }
 
-/// The parts of `0..total` that no range covers, and the first number that two ranges share.
+/// The ranges of design numbers in `0..total` that none of `ranges` covers, and the first number that two of `ranges`
+/// have in common (`None` if there is none).
 pub fn gaps(mut ranges: Vec<Range<u128>>, total: u128) -> (Vec<Range<u128>>, Option<u128>) {
     ranges.retain(|range| !range.is_empty());
     ranges.sort_unstable_by_key(|range| range.start);
@@ -129,6 +188,25 @@ mod tests {
         assert_eq!(read_candidates(&text, 2), Ok((swept.front.clone(), swept.groups.clone())));
         assert_eq!(read_candidates(&text, 1), Err(3), "a material that the study does not have");
         assert_eq!(read_candidates(&text.replace("0.3333", "x"), 2), Err(2));
+    }
+
+    #[test]
+    fn what_an_exact_shard_found_reads_back_to_the_same_bits() {
+        let candidate = |number, mass_kg| Candidate {
+            number,
+            objectives: Objectives { tip_deflection_m: 1e-5 / 7.0, mass_kg, lowest_mode_hz: 1.0 / 3.0 },
+        };
+        let found = |decided, undecided| FoundInShard { decided, undecided, ..FoundInShard::default() };
+        let fronts = vec![
+            found(vec![candidate(u128::MAX, 0.1 + 0.2)], vec![candidate(5, 2e-308)]),
+            found(vec![], vec![]),
+            found(vec![candidate(0, 7.0)], vec![]),
+        ];
+        let text = found_csv(&fronts);
+        assert_eq!(read_found(&text, 3), Ok(fronts));
+        assert_eq!(read_found(&text, 2), Err(4), "a front that the study does not have");
+        assert_eq!(read_found(&text.replace(",no,", ",maybe,"), 3), Err(3));
+        assert_eq!(read_found(HEADER, 3), Err(1), "candidates of a sweep");
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! A front as a table: every choice, objective and margin of every design.
+//! A front as a table, with every choice, objective and margin of every design.
 
 use super::outcome::Front;
 use crate::catalog::Catalogs;
@@ -13,7 +13,7 @@ use crate::space::design_space::{DriveChoice, LinkOption, SpacePiece};
 use crate::space::levels::OutwardIn;
 use crate::space::problem::{ArmProblem, Partial};
 
-/// The table of a front.
+/// A front as a table: one row for each design, with its choices, objectives and margins.
 pub fn front_table(problem: &ArmProblem, catalogs: &Catalogs, front: &Front) -> FrontTable {
     FrontTable {
         columns: columns(problem, catalogs),
@@ -48,7 +48,7 @@ fn columns(problem: &ArmProblem, catalogs: &Catalogs) -> Vec<String> {
     out
 }
 
-/// Columns of every joint with a gear and a motor.
+/// Columns of every joint that has a gear and a motor.
 const JOINT_COLUMNS: [&str; 6] =
     ["margin", "binds", "bearing_margin", "motor_rms_margin", "input_rpm", "critical_rpm"];
 
@@ -107,32 +107,33 @@ fn link_cells(option: &LinkOption) -> [String; 6] {
     ]
 }
 
-/// A tube in words: `120 x 100 x 3 mm Aluminium 6061-T6`.
+/// Size and material of a tube in words: `120 x 100 x 3 mm Aluminium 6061-T6`.
 pub(super) fn link_words(option: &LinkOption) -> String {
     let [material, shape, width, height, wall, _] = link_cells(option);
     format!("{} {material}", tube_size(&shape, [&width, &height, &wall]))
 }
 
-/// A length as the millimetres it was given in: the shortest decimal that reads back the same.
+/// A length in millimetres, written as the user gave it: the shortest decimal that reads back to the same length.
 fn millimetres(length_m: f64) -> String {
     let near = (length_m * 1e3 * 1e9).round() / 1e9;
     number(if near / 1e3 == length_m { near } else { length_m * 1e3 })
 }
 
-/// The shortest decimal that reads back as the same number.
+/// The shortest decimal that reads back to the same number.
 fn number(x: f64) -> String {
     format!("{x}")
 }
 
-/// The sizing of every joint with a drive from the catalogs, chosen or given, tip first; or the slot at which
-/// no drive holds.
+/// The sizing of every joint of the design with the options `chosen` that has a drive from the catalogs, chosen or
+/// given, tip first. The error is the slot (place in the order in which the arm is built) at which no drive meets the
+/// demand.
 pub(crate) fn sizing_rows(
     problem: &ArmProblem,
     catalogs: &Catalogs,
     chosen: &[u32],
 ) -> Result<Vec<JointSizingRow>, usize> {
     let mut rows = Vec::new();
-    // the drive of a sized joint is known once it is added: its row follows at the next slot
+    // the drive of a sized joint is known only after it is added, so its row is completed at the next slot
     let mut open: Option<(usize, JointDemand, f64)> = None;
     let complete = problem.walk(chosen, |slot, partial| {
         rows.extend(close(problem, catalogs, open.take(), partial));
@@ -169,7 +170,8 @@ fn joint_name<'p>(problem: &'p ArmProblem, piece: usize) -> &'p str {
     }
 }
 
-/// The row of a sized joint whose drive is now known.
+/// Completes the sizing row of a joint whose drive is now known. `open` is the joint's slot, its demand and the mass
+/// outboard of it \[kg\]; `with_it` is the arm up to this joint with its drive. `None` if no row is open.
 fn close(
     problem: &ArmProblem,
     catalogs: &Catalogs,
@@ -186,7 +188,8 @@ fn close(
     Some(at_cycle_efficiency(row, catalogs, &drive, table.motion(), &demand))
 }
 
-/// The row with the efficiency of the gear at the mean speed and torque of the cycle, where ratings allow it.
+/// Adds to `row` the efficiency of the gear at the mean speed and mean torque of the duty cycle, if the catalogs have
+/// the data. Otherwise the row is returned unchanged.
 fn at_cycle_efficiency(
     row: JointSizingRow,
     catalogs: &Catalogs,

@@ -1,5 +1,5 @@
-//! Drives that can replace those of a design without changing any objective. They are listed separately if
-//! the designs with them are too many to be rows of the front.
+//! Ties: drives that can replace those of a design without changing any objective. They are listed in a file of their
+//! own if the designs with them are too many to be rows of the front.
 
 use super::outcome::{Front, Judged};
 use crate::report::front_table::FrontTable;
@@ -15,7 +15,7 @@ use crate::space::problem::ArmProblem;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// The drives of equal mass and torsion curve of every design of a front.
+/// For every design of a front, the drives of equal mass and torsion curve that may replace its own.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ties {
     rows: Vec<Vec<String>>,
@@ -24,15 +24,15 @@ pub struct Ties {
     designs: f64,
 }
 
-/// Name of the file that lists them.
+/// Name of the file that lists the ties.
 pub(crate) const FILE: &str = "ties.csv";
 
 const COLUMNS: [&str; 4] = ["design_id", "at", "part", "instead"];
 
-/// Separator between drives that may be exchanged.
+/// Separator between drives that may replace each other.
 const OR: &str = "; ";
 
-/// Finds the ties of a front. The drives of one joint may be exchanged independently of those of the others.
+/// Finds the ties of a front. The drives of one joint may be exchanged independently of those of other joints.
 pub fn ties(problem: &ArmProblem, front: &Front) -> Ties {
     let of_designs: Vec<(Vec<Vec<String>>, f64)> =
         front.par_iter().filter_map(|judged| ties_of(problem, judged)).collect();
@@ -41,7 +41,7 @@ pub fn ties(problem: &ArmProblem, front: &Front) -> Ties {
     Ties { rows, front: front.len(), designs }
 }
 
-/// The rows of one design, and how many designs it stands for.
+/// The rows of one design in `ties.csv`, and the number of designs with the same objectives that it represents.
 fn ties_of(problem: &ArmProblem, judged: &Judged) -> Option<(Vec<Vec<String>>, f64)> {
     let mut demands: Vec<(usize, JointDemand)> = Vec::new();
     let chosen = options(problem.level_sizes(), judged.design.number)?;
@@ -75,12 +75,13 @@ fn ties_of(problem: &ArmProblem, judged: &Judged) -> Option<(Vec<Vec<String>>, f
 }
 
 impl Ties {
-    /// One row for each joint of a design that may have other drives.
+    /// The table as CSV, with one row for each joint of a design that has alternatives.
     pub fn to_csv(&self) -> Vec<u8> {
         FrontTable { columns: COLUMNS.map(String::from).into(), rows: self.rows.clone() }.to_csv()
     }
 
-    /// Differences between these ties and a file that should list them, in words.
+    /// Differences, in words, between these ties and the content of a `ties.csv` that should list them. Empty if there
+    /// are none.
     pub fn faults_of(&self, file: &[u8]) -> Vec<String> {
         let mut reader = csv::Reader::from_reader(file);
         let columns: Vec<String> =
@@ -103,7 +104,7 @@ impl Ties {
         lacks.chain(adds).collect()
     }
 
-    /// How many designs the front stands for, in a sentence.
+    /// A sentence that says how many designs with the same objectives the rows of the front stand for.
     pub fn sentence(&self) -> String {
         format!(
             "The {} rows of the front stand for {} designs with the same objectives: at some joints several drives have \
@@ -113,7 +114,7 @@ impl Ties {
         )
     }
 
-    /// Everything that a result reports about them.
+    /// Everything that a result reports about ties: file, sections, terminal text.
     pub fn supplement(&self) -> Supplement {
         Supplement {
             file: Some((FILE, self.to_csv())),
@@ -124,7 +125,7 @@ impl Ties {
         }
     }
 
-    /// The section of a page.
+    /// The section on ties for the HTML page.
     pub fn section(&self) -> PageSection {
         PageSection {
             title: "Drives that may be exchanged".into(),
@@ -134,7 +135,7 @@ impl Ties {
         }
     }
 
-    /// The section of a summary.
+    /// The section on ties for the Markdown summary.
     pub fn to_markdown(&self) -> String {
         format!("\n## Drives that may be exchanged\n\n{}\n", self.sentence())
     }

@@ -1,10 +1,11 @@
-//! A front under scatter: catalog ratings are averages, and a real part differs from them.
+//! Scatter: catalog ratings are averages, and real parts differ from them. Sampling shows which designs stay on a
+//! front.
 //!
-//! A stated scatter of `p` is a log-normal factor on a catalog rating, its median 1: 95 % of the factors lie
-//! between `1/(1+p)` and `1+p`, as with the tolerances of a campaign. One factor belongs to one row of a
-//! catalog, and so to every joint and design that uses it. Each rating has a stream of random numbers of its
-//! own, made from the seed and the row's name: its factors do not depend on what else is on the front, on the
-//! number of samples or on threads.
+//! A stated scatter of `p` is a log-normal factor on a catalog rating with the median 1: 95 % of the factors lie
+//! between `1/(1+p)` and `1+p`, like the tolerances of a campaign. One factor belongs to one row of a catalog, and so
+//! to every joint and design that uses this part. Each rating has its own stream of random numbers, made from the
+//! seed and the name of the row. Its factors therefore do not depend on other parts on the front, on the number of
+//! samples or on threads.
 //!
 //! | scatter | of | default | source |
 //! |---|---|---|---|
@@ -32,37 +33,38 @@ use std::f64::consts::TAU;
 use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Number of samples per batch.
+/// Number of samples that are computed between two checks for a stop.
 const BATCH: u32 = 256;
-/// 95 % of a normal distribution lie within this many standard deviations.
+/// Number of standard deviations within which 95 % of a normal distribution lie.
 const SIGMAS_95: f64 = 1.959_963_984_540_054;
 
-/// Names of what may scatter, with the scatter that a name alone stands for.
+/// Names of the ratings that may scatter, each with the default scatter for a name without a value.
 const KINDS: [(&str, f64); 4] =
     [("gear_stiffness", 0.20), ("bearing_stiffness", 0.20), ("modulus", 0.03), ("mass", 0.02)];
 
-/// Scatter of catalog ratings, as fractions: 0.2 is 20 %.
+/// Scatter of catalog ratings, as fractions: 0.2 means 20 %.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Tolerance {
-    /// Of [`KINDS`], in that order; 0 is exact.
+    /// Scatter of each rating in the order of [`KINDS`]; 0 means no scatter.
     parts: [f64; 4],
 }
 
-/// A scatter with how it is sampled.
+/// A scatter, with the number of samples and the seed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sampling {
-    /// The scatter.
+    /// Scatter of each catalog rating.
     pub tolerance: Tolerance,
-    /// Number of samples.
+    /// Number of samples to draw.
     pub samples: u32,
-    /// Seed.
+    /// Seed of the random numbers.
     pub seed: u64,
 }
 
 impl FromStr for Tolerance {
     type Err = String;
 
-    /// `gear_stiffness=20%,bearing_stiffness=20%,modulus=3%,mass=2%`; a name alone stands for its default.
+    /// Reads a text such as `gear_stiffness=20%,bearing_stiffness=20%,modulus=3%,mass=2%`. A name without a value has
+    /// its default scatter.
     fn from_str(text: &str) -> Result<Self, String> {
         let mut parts = [0.0; 4];
         for item in text.split(',').map(str::trim) {
@@ -81,7 +83,7 @@ impl FromStr for Tolerance {
     }
 }
 
-/// A percentage or a fraction between 0 and 1: `20%`, `0.2`.
+/// Reads a percentage or a fraction between 0 and 1, such as `20%` or `0.2`.
 pub fn part(text: &str) -> Result<f64, String> {
     let (number, scale) = text.strip_suffix('%').map_or((text, 1.0), |n| (n.trim_end(), 0.01));
     match number.parse::<f64>() {
@@ -91,12 +93,12 @@ pub fn part(text: &str) -> Result<f64, String> {
 }
 
 impl Tolerance {
-    /// What scatters, by name.
+    /// Name and scatter (a fraction) of each kind of rating whose scatter is not zero.
     fn named(&self) -> impl Iterator<Item = (&'static str, f64)> {
         KINDS.iter().zip(self.parts).map(|((name, _), part)| (*name, part)).filter(|(_, part)| *part > 0.0)
     }
 
-    /// Scatter of a rating.
+    /// The scatter of the rating `figure` as a fraction; 0 if ratings of its kind do not scatter.
     fn of(&self, figure: &Rating) -> f64 {
         let [gear_stiffness, bearing_stiffness, modulus, mass] = self.parts;
         match figure {
@@ -123,35 +125,36 @@ impl Stream {
         }
     }
 
-    /// A number in (0, 1].
+    /// A uniformly distributed number in (0, 1].
     fn uniform(&mut self) -> f64 {
         ((self.generator.next_u64() >> 11) + 1) as f64 / (1u64 << 53) as f64
     }
 
-    /// The next factor: Box and Muller's normal number as the logarithm.
+    /// The next random factor on the rating. Its logarithm is a normally distributed number, by the method of Box and
+    /// Muller.
     fn factor(&mut self) -> f64 {
         let (radius, angle) = ((-2.0 * libm::log(self.uniform())).sqrt(), TAU * self.uniform());
         libm::exp(self.sigma * radius * libm::cos(angle))
     }
 }
 
-/// What one sample shows.
+/// The result of one sample.
 struct Sample {
     keeps_limits: Vec<bool>,
     on_front: Vec<usize>,
-    /// Design that is each of [`PICKS`].
+    /// For each of [`PICKS`], the index of the design that is this pick in the sample.
     picked: [Option<usize>; 4],
-    /// The nominal picks as they come out.
+    /// The picks of the nominal front, with their objectives in the sample.
     picks: Vec<Design>,
 }
 
-/// A front at work under scatter.
+/// A front whose designs are evaluated with scattered ratings.
 struct Trial<'a> {
     parts: &'a ChosenParts<'a, 'a>,
     constraints: &'a Constraints,
-    /// The front with the catalog ratings.
+    /// The designs of the front, with their nominal objectives.
     designs: &'a [Design],
-    /// Places of the nominal picks in it.
+    /// Indices of the nominal picks in `designs`.
     picks: &'a [usize],
 }
 
@@ -178,7 +181,8 @@ impl Trial<'_> {
     }
 }
 
-/// A design with the objectives of a sample; its row is its place in the list.
+/// A copy of `design` with the objectives `o` of one sample. `row` is the index of the design in the list of all
+/// designs.
 fn with_objectives(design: &Design, row: usize, o: &Objectives) -> Design {
     Design {
         tip_deflection_mm: o.tip_deflection_m * 1e3,
@@ -189,7 +193,8 @@ fn with_objectives(design: &Design, row: usize, o: &Objectives) -> Design {
     }
 }
 
-/// Samples a front; `designs` are its rows. `None` if it was stopped.
+/// Samples a front: draws ratings of its parts and finds out which designs are then on the front. `designs` are the
+/// rows of the front. `None` if the user stopped it.
 pub fn scatter_front(
     problem: &ArmProblem,
     catalogs: &Catalogs,
@@ -198,7 +203,7 @@ pub fn scatter_front(
     sampling: &Sampling,
     stop: &AtomicBool,
 ) -> Option<Scattered> {
-    // what a sample tabulates again is tabulated for the options of these designs alone
+    // tables that every sample computes again are made for the options of these designs only
     let numbers: Vec<u128> = designs.iter().map(|d| front[d.row].design.number).collect();
     let place = |(row, design): (usize, &Design)| Design { row, ..design.clone() };
     let designs: &[Design] = &designs.iter().enumerate().map(place).collect::<Vec<_>>();
@@ -233,7 +238,8 @@ pub fn scatter_front(
     Some(tally.told(designs, &nominal, sampling))
 }
 
-/// The problem's space without its excerpt, so that designs are numbered within it.
+/// The space of the problem, marked as if it were a whole space and not an excerpt, so that designs have their numbers
+/// within it.
 fn without_excerpt(problem: &ArmProblem) -> DesignSpace {
     let mut space = problem.space().clone();
     for piece in &mut space.pieces {
@@ -244,13 +250,13 @@ fn without_excerpt(problem: &ArmProblem) -> DesignSpace {
     space
 }
 
-/// Counts over samples.
+/// Counts over all samples.
 struct Tally {
     on_front: Vec<u32>,
     keeps_limits: Vec<u32>,
     picked: Vec<[u32; 4]>,
     without_design: u32,
-    /// Every sample of each nominal pick.
+    /// For each nominal pick, its objectives in every sample.
     picks: Vec<Vec<Design>>,
 }
 
@@ -304,7 +310,7 @@ impl Tally {
     }
 }
 
-/// A percentage without the rounding of its conversion.
+/// A percentage, rounded so that it has no error from its conversion from a fraction.
 fn round(percent: f64) -> f64 {
     (percent * 1e9).round() / 1e9
 }
@@ -332,7 +338,7 @@ mod tests {
         let share = |within: &dyn Fn(f64) -> bool| {
             factors.iter().filter(|f| within(**f)).count() as f64 / factors.len() as f64
         };
-        // three standard errors of a share of 40,000
+        // tolerances: three standard errors of a fraction that is estimated from 40,000 samples
         assert!((share(&|f| (1.0 / 1.2..=1.2).contains(&f)) - 0.95).abs() < 0.0033);
         assert!((share(&|f| f > 1.2) - 0.025).abs() < 0.0024);
         assert!((share(&|f| f < 1.0) - 0.5).abs() < 0.0075);

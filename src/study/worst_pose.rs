@@ -1,7 +1,7 @@
 //! The worst poses of a front's picks within the ranges of their joints.
 //!
-//! A study judges its designs in the poses that it lists. Here each pick is put into other poses, under the loads of the
-//! judged cases, and the pose with the largest tip deflection and the pose with the lowest mode are looked for.
+//! A study judges its designs in the poses that it lists. Here each pick is put into other poses, under the loads of
+//! the judged cases. The search finds the pose with the largest tip deflection and the pose with the lowest mode.
 
 use super::pose_search::{PoseRanges, Scored};
 use crate::arm::Arm;
@@ -10,30 +10,31 @@ use crate::mechanics::chain::{Chain, Posed};
 use crate::space::design::full_objectives;
 use rayon::prelude::*;
 
-/// The worst value of one objective over poses.
+/// The worst value of one objective over all poses searched.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WorstPose {
-    /// The pose: one entry per driven joint, base to tip: an angle \[deg\], or the travel of a prismatic joint \[mm\].
+    /// The pose, with one entry for each driven joint, base to tip: an angle \[deg\], or the travel of a prismatic
+    /// joint \[mm\].
     pub pose_deg: Vec<f64>,
-    /// Name of the judged case whose load the arm has in it.
+    /// Name of the judged case whose load the arm has in this pose.
     pub load_of: String,
-    /// The value there, in the unit of the objective (m or Hz).
+    /// Value of the objective in this pose (m or Hz).
     pub value: f64,
-    /// The worst value over the judged cases.
+    /// Worst value of the objective over the judged cases (m or Hz).
     pub judged: f64,
 }
 
 /// The worst poses of an arm.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WorstPoses {
-    /// The pose of the largest tip deflection found \[m\].
+    /// The pose with the largest tip deflection found \[m\].
     pub deflection: WorstPose,
-    /// The pose of the lowest mode found \[Hz\].
+    /// The pose with the lowest mode found \[Hz\].
     pub mode: WorstPose,
 }
 
-/// Looks for the worst poses of an arm within ranges \[deg, mm\], one for each driven joint; passive joints follow. Every
-/// load of the cases is tried in every pose. `None` without a case.
+/// Searches for the worst poses of an arm. `ranges` has the range of each driven joint, base to tip \[deg or mm\];
+/// passive joints follow. The arm is tried with the load of each case. `None` if there is no case.
 pub fn worst_poses(arm: &Arm, cases: &[LoadCase], ranges: &[[f64; 2]]) -> Option<WorstPoses> {
     let judged = full_objectives(arm, cases);
     let found: Vec<[WorstPose; 2]> =
@@ -48,7 +49,8 @@ pub fn worst_poses(arm: &Arm, cases: &[LoadCase], ranges: &[[f64; 2]]) -> Option
     })
 }
 
-/// The first case of each load.
+/// One case for each different load. Cases with the same payload, tip force, tip moment, water and models have the same
+/// load; the first of them is taken.
 pub(super) fn loads(cases: &[LoadCase]) -> Vec<&LoadCase> {
     let same = |a: &LoadCase, b: &LoadCase| {
         a.payload == b.payload
@@ -66,7 +68,8 @@ pub(super) fn loads(cases: &[LoadCase]) -> Vec<&LoadCase> {
     out
 }
 
-/// The worst poses under the load of one case: of the deflection, and of the mode.
+/// The worst poses under the load of the case `load`: the one with the largest deflection, and the one with the lowest
+/// mode.
 fn worst_under(
     arm: &Arm,
     load: &LoadCase,

@@ -1,46 +1,48 @@
-//! What an output bearing holds: the vendor's selection procedure for crossed-roller bearings.
+//! Checks of an output bearing by the vendor's selection procedure for crossed-roller bearings.
 //!
 //! | check | demand | limit |
 //! |---|---|---|
-//! | running | largest moment at the centre of the bearing, `M + R F_r` | the permissible moment, which is one of deflection |
+//! | running | largest moment at the centre of the bearing, `M + R F_r` | the permissible moment (limits deflection) |
 //! | static safety | `P₀ = F_r + 2 (M + R F_r) / d_p + 0.44 F_a` | `C₀ / 3` at rest (high precision), `C₀ / 2` in a stop (shocks) |
 //! | life | `10⁶ / (60 n) · (C / (f_w P_c))^(10/3)`, `P_c = X (F_r + 2 (M + R F_r) / d_p) + Y F_a` at rest | the study's hours |
 //!
-//! (Harmonic Drive LLC, FHA-C manual, pages 20 to 23; Harmonic Drive AG, engineering data 1021387, pages 23, 43 and 45.)
-//! A number that the catalog leaves blank limits nothing, and without a pitch diameter only the moment does.
+//! (Harmonic Drive LLC, FHA-C manual, pages 20 to 23; Harmonic Drive AG, engineering data 1021387, pages 23, 43
+//! and 45.)
+//! A rating that the catalog leaves blank limits nothing. Without a pitch diameter only the moment is checked.
 //!
-//! Nothing of `sizing` is used: a wrong limit there must not be repeated here.
+//! Nothing of `sizing` is used, so that an error in a limit there is not repeated here.
 
 use crate::arm::bearing::{Bearing, BearingSource};
 use crate::catalog::gear::{Gear, GearMass};
 
-/// The load on a bearing, or a limit of it from one side.
+/// The load on an output bearing; also a lower or an upper bound of the load over several designs.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct BearingLoad {
     /// Moment across the axis where the link attaches \[N m\].
     pub moment_nm: f64,
-    /// Force across the axis \[N\].
+    /// Force across the axis of the joint (radial) \[N\].
     pub radial_n: f64,
-    /// Force along the axis \[N\].
+    /// Force along the axis of the joint \[N\].
     pub axial_n: f64,
 }
 
-/// The loads on a bearing that a study asks for.
+/// The largest loads that a study puts on the bearing of one joint over the sizing cases: at rest, while a joint ramps,
+/// and while a joint makes an emergency stop.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct BearingDemand {
     pub at_rest: BearingLoad,
-    /// While one joint speeds up or slows down.
+    /// Load while one joint speeds up or slows down and the others are at rest.
     pub running: BearingLoad,
-    /// While one joint stops in an emergency.
+    /// Load while one joint stops in an emergency and the others are at rest.
     pub in_stop: BearingLoad,
 }
 
-/// What a bearing holds.
+/// The limits of one bearing in its joint. An infinite limit is not checked.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct BearingRatings {
-    /// Lever from the centre of the bearing to the face of its flange, R \[m\].
+    /// Distance R along the axis from the centre of the bearing to the face of its flange \[m\].
     centre_m: f64,
-    /// Force that makes a moment of 1 N m over the rollers' circle, `2 / d_p` \[1/m\].
+    /// Radial force at the pitch circle that stands for a moment of 1 N m, `2 / d_p` \[1/m\].
     per_moment_per_m: f64,
     running_nm: f64,
     at_rest_n: f64,
@@ -48,14 +50,16 @@ pub(super) struct BearingRatings {
     life_n: f64,
 }
 
-/// Static safety `C₀ / P₀` at rest: the vendor's for high precision.
+/// Static safety `C₀ / P₀` at rest. The vendor asks for this value where precision is high.
 const SAFETY_AT_REST: f64 = 3.0;
-/// Static safety in a stop: the vendor's for shocks.
+/// Static safety `C₀ / P₀` in an emergency stop. The vendor asks for this value under shocks.
 const SAFETY_IN_A_STOP: f64 = 2.0;
-/// Load factor f_w of the life: the vendor's for its own tables.
+/// Load factor f_w of the life: the value for which the vendor's own tables hold.
 const LOAD_FACTOR: f64 = 1.3;
 
-/// The bearing that a joint has with a gear: a housed unit brings its own.
+/// The output bearing that a joint has with `gear`. `source` tells whether the study states the bearing or it comes
+/// with the gear, and `which` whether the gear is a housed unit or a component set. `None` if the bearing would come
+/// with a component set, which has none.
 pub(super) fn with_gear(source: &BearingSource, gear: &Gear, which: GearMass) -> Option<Bearing> {
     match (source, which) {
         (BearingSource::Stated(bearing), _) => *bearing,
@@ -76,7 +80,8 @@ impl BearingLoad {
         Self { moment_nm: moment_nm * factor, radial_n: radial_n * factor, axial_n: axial_n * factor }
     }
 
-    /// The same forces further out along the axis.
+    /// The load if the same forces attach further out along the axis, by `lever_m` \[m\]. The radial force times this
+    /// lever then adds to the moment.
     fn with_lever(self, lever_m: f64) -> Self {
         Self { moment_nm: self.moment_nm + lever_m * self.radial_n, ..self }
     }
@@ -88,19 +93,19 @@ impl BearingDemand {
         Self { at_rest: change(at_rest), running: change(running), in_stop: change(in_stop) }
     }
 
-    /// Every load times a factor.
+    /// This demand with every load multiplied by `factor`.
     pub(super) fn times(self, factor: f64) -> Self {
         self.with_each(|load| load.times(factor))
     }
 
-    /// The same forces where the link attaches, further out along the axis.
+    /// This demand if the forces attach further out along the axis, by `lever_m` \[m\].
     pub(super) fn with_lever(self, lever_m: f64) -> Self {
         self.with_each(|load| load.with_lever(lever_m))
     }
 }
 
 impl BearingRatings {
-    /// No load is too much.
+    /// Limits of a bearing that is not checked: all are infinite.
     pub(super) const UNLIMITED: Self = Self {
         centre_m: 0.0,
         per_moment_per_m: 0.0,
@@ -110,11 +115,12 @@ impl BearingRatings {
         life_n: f64::INFINITY,
     };
 
-    /// What a bearing holds in a joint of this mean speed \[rad/s\] and required life \[h\].
+    /// The limits of a bearing. `duty` is the mean speed of the joint \[rad/s\] and its required life \[h\]. Without a
+    /// bearing nothing is limited.
     pub(super) fn of(bearing: Option<&Bearing>, duty: [f64; 2]) -> Self {
         let Some(bearing) = bearing else { return Self::UNLIMITED };
         let printed = &bearing.ratings;
-        // a stated offset begins at the centre
+        // a stated offset is measured from the centre of the bearing, so that no further lever is added
         let centre_m = bearing.offset_m.map_or(printed.offset_m.unwrap_or(0.0), |_| 0.0);
         let running_nm = bearing.permissible_moment_nm.unwrap_or(f64::INFINITY);
         let of_moment = Self { centre_m, running_nm, ..Self::UNLIMITED };
@@ -130,18 +136,19 @@ impl BearingRatings {
         }
     }
 
-    /// Moment at the centre of the bearing \[N m\], and radial force with the forces that make it \[N\].
+    /// The moment at the centre of the bearing \[N m\], and the equivalent radial force \[N\]: the radial force plus
+    /// the moment converted to a force at the pitch circle.
     fn across(&self, load: &BearingLoad) -> (f64, f64) {
         let moment_nm = load.moment_nm + self.centre_m * load.radial_n;
         (moment_nm, load.radial_n + self.per_moment_per_m * moment_nm)
     }
 
-    /// `P₀` \[N\].
+    /// Static equivalent load `P₀` of the bearing under `load` \[N\].
     fn static_n(&self, load: &BearingLoad) -> f64 {
         self.across(load).1 + 0.44 * load.axial_n
     }
 
-    /// `P_c` \[N\].
+    /// Dynamic equivalent load `P_c` of the bearing under `load` \[N\].
     fn dynamic_n(&self, load: &BearingLoad) -> f64 {
         let (_, across_n) = self.across(load);
         let is_radial = load.axial_n <= 1.5 * across_n;
@@ -149,7 +156,7 @@ impl BearingRatings {
         x * across_n + y * load.axial_n
     }
 
-    /// Whether the bearing holds what is asked.
+    /// Whether the bearing passes all of its checks under the demand `asked`.
     pub(super) fn hold(&self, asked: &BearingDemand) -> bool {
         self.across(&asked.running).0 <= self.running_nm
             && self.static_n(&asked.at_rest) <= self.at_rest_n
@@ -157,14 +164,14 @@ impl BearingRatings {
             && self.dynamic_n(&asked.at_rest) <= self.life_n
     }
 
-    /// Whether it holds whatever the other holds.
+    /// Whether this bearing passes its checks under every load under which the bearing `other` does.
     pub(super) fn cover(&self, other: &Self) -> bool {
         let limits = self.limits().into_iter().zip(other.limits());
         let levers = self.levers().into_iter().zip(other.levers());
         limits.into_iter().all(|(a, b)| a >= b) && levers.into_iter().all(|(a, b)| a <= b)
     }
 
-    /// The larger of each limit with the smaller of each lever.
+    /// Ratings at least as good as these and as `other`: the larger of each limit, with the smaller of each lever.
     pub(super) fn max(&self, other: &Self) -> Self {
         Self {
             centre_m: self.centre_m.min(other.centre_m),
@@ -185,7 +192,8 @@ impl BearingRatings {
     }
 }
 
-/// The load under which a bearing of dynamic rating C \[N\] lasts just as long as the joint must \[N\].
+/// The dynamic equivalent load \[N\] under which a bearing of dynamic rating C \[N\] reaches exactly the required
+/// life.
 fn life_load_n(rating_n: f64, [mean_speed_rad_s, life_h]: [f64; 2]) -> f64 {
     let mean_rpm = mean_speed_rad_s * 30.0 / std::f64::consts::PI;
     let million_turns = 60.0 * mean_rpm * life_h / 1e6;
@@ -221,7 +229,7 @@ mod tests {
         BearingLoad { moment_nm, radial_n, axial_n }
     }
 
-    /// The largest factor on a demand that the bearing holds.
+    /// The largest factor by which the demand can be multiplied so that the bearing still passes.
     fn most(ratings: &BearingRatings, demand: &BearingDemand) -> f64 {
         let (mut low, mut high) = (0.0, 1e9);
         for _ in 0..200 {

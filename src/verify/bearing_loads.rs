@@ -1,10 +1,11 @@
-//! Loads on the output bearings in a pose, as sums over the weights and inertias of parts.
+//! Loads on the output bearings in a pose, as linear functions of the weights and inertias of parts.
 //!
-//! A bearing carries everything outboard of its joint: its weight, and the inertia forces of one joint at a time that
-//! ramps or stops while the others are at rest. By virtual work, the component of an inertia force or moment along a
-//! direction is the coupling `Σ m (v · w)` of two motions: that of the joint which accelerates, and a *probe*, which moves
-//! or tilts everything outboard of the bearing along that direction. Couplings are entries of the inertia matrix of
-//! [`super::pose`] with probes as further coordinates. What is not outboard of both joints stands still in one of the two.
+//! A bearing is loaded by the weight of everything outboard of its joint, and by the inertia forces of one joint at
+//! a time that ramps or stops while the others are at rest. By virtual work, the component of an inertia force or
+//! moment along a direction is the coupling `Σ m (v · w)` of two motions: the motion of the joint that accelerates,
+//! and a *probe*. A probe is a virtual motion that shifts or tilts everything outboard of the bearing along that
+//! direction. Couplings are entries of the inertia matrix of [`super::pose`] with probes as further coordinates.
+//! Only mass outboard of both joints contributes, because all other mass is at rest in one of the two motions.
 
 use super::bearing::{BearingDemand, BearingLoad};
 use super::layout::{Coordinate, Point};
@@ -13,23 +14,27 @@ use super::span::{Linear, Span};
 use crate::arm::load::LoadCase;
 use nalgebra::Vector3;
 
-/// Force along two axes across the axis of a joint and along it, and moment about the two axes across.
+/// Components of the load on a bearing: forces along two axes across the axis of the joint, the force along the
+/// axis, and moments about the two axes across.
 type Components<T> = [T; COMPONENTS];
 const COMPONENTS: usize = 5;
 
-/// The bearing of a joint in a case.
+/// The loads on the output bearing of one joint in one case, as functions of the weights and inertias of the parts.
 pub(super) struct PosedBearing {
-    /// Of the weights, linear in the loads.
+    /// The five components of the load at rest, each a linear function of the weights of the parts.
     rest: Components<Linear>,
-    /// Of the ramp of each joint, linear in the inertias.
+    /// The five components of the load that the ramp of each joint adds, one entry per joint, base first. Each is a
+    /// linear function of the inertias of the parts.
     ramps: Vec<Components<Linear>>,
 }
 
-/// The least and the most that the loads on a bearing are so far.
+/// Lower and upper bounds of the largest loads on a bearing over the cases treated so far. First index: at rest, in a
+/// ramp, in a stop. Second index: moment, radial force, axial force.
 #[derive(Default)]
 pub(super) struct Largest([[Span; 3]; 3]);
 
-/// The bearings of all joints in a case; `None` where nothing is checked. Joint by joint `accelerations_rad_s2` is the ramp's.
+/// The bearings of all joints in a case, base first; `None` for a joint whose bearing is not checked.
+/// `accelerations_rad_s2` has the acceleration of each joint in a ramp.
 pub(super) fn bearings(
     builder: &Builder,
     case: &LoadCase,
@@ -62,7 +67,7 @@ pub(super) fn bearings(
         .collect()
 }
 
-/// Motions of everything outboard of a joint, one for each component.
+/// Virtual motions of everything outboard of a joint, one for each component of the load.
 fn probes_of(joint: usize) -> Components<Coordinate> {
     [
         Coordinate::Shift(joint, 0),
@@ -73,7 +78,8 @@ fn probes_of(joint: usize) -> Components<Coordinate> {
     ]
 }
 
-/// What the weights outboard do.
+/// The five components of the load on the bearing of `joint` that the weights outboard of it make, each as a linear
+/// function of these weights.
 fn at_rest(builder: &Builder, joint: usize) -> Components<Linear> {
     let placed = &builder.layout.joints[joint];
     let carried = builder.carried(&Point { at_m: placed.at_m, rank: placed.rank, inside_m: None });
@@ -84,7 +90,8 @@ fn at_rest(builder: &Builder, joint: usize) -> Components<Linear> {
 }
 
 impl PosedBearing {
-    /// Takes the loads of this case, with the loads and inertias of parts as spans.
+    /// Raises `largest` to the loads on this bearing in this case. `loads` and `inertias` are the intervals of the
+    /// weights and inertias of the parts. `stop_factor` is the acceleration in a stop divided by that in a ramp.
     pub(super) fn load(&self, loads: &[Span], inertias: &[Span], stop_factor: f64, largest: &mut Largest) {
         let rest = self.rest.each_ref().map(|component| component.over(loads));
         let [at_rest, running, in_stop] = &mut largest.0;
@@ -100,7 +107,8 @@ impl PosedBearing {
     }
 }
 
-/// Takes moment, radial and axial force of some components where they are larger.
+/// Raises the largest moment, radial force and axial force to those of one load. The load is given by its forces and
+/// moments along the three axes, as intervals.
 fn take(largest: &mut [Span; 3], [u_n, v_n, axial_n, u_nm, v_nm]: &Components<Span>) {
     let norm = |a: &Span, b: &Span| Span {
         least: libm::hypot(a.least_size(), b.least_size()),
@@ -113,7 +121,7 @@ fn take(largest: &mut [Span; 3], [u_n, v_n, axial_n, u_nm, v_nm]: &Components<Sp
 }
 
 impl Largest {
-    /// The loads at least and at most.
+    /// Lower and upper bound of the largest loads.
     pub(super) fn demands(&self) -> [BearingDemand; 2] {
         [|span: &Span| span.least, |span: &Span| span.most].map(|end: fn(&Span) -> f64| {
             let [at_rest, running, in_stop] = self.0.each_ref().map(|[moment, radial, axial]| BearingLoad {

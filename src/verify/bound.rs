@@ -1,4 +1,5 @@
-//! Bounds of the members of a box: least mass, least deflection, and the stiffest and lightest arm.
+//! Bounds for the members of a box: least mass, least deflection, and the ideal arm (every stiffness greatest,
+//! every inertia least).
 
 use super::bearing::BearingDemand;
 use super::bearing_loads::Largest;
@@ -14,29 +15,32 @@ use super::span::Span;
 use super::tubes::{DENSITIES, STIFFNESSES, TubeRange};
 use nalgebra::Vector3;
 
-/// Margin for rounding where a value is compared with a limit (relative).
+/// Relative margin for rounding in comparisons with a limit.
 pub(super) const ROUNDING: f64 = 1e-9;
 
-/// The members of a box or region, as ranges of the numbers of their parts.
+/// The members of a box or region, given by the interval of each number of their parts.
 pub(super) struct Members<'w> {
-    /// For each joint, the range of the drives that may hold.
+    /// For each joint, base first, the range of the drives that may meet its demand.
     pub drives: Vec<DriveRange>,
     pub tubes: Vec<&'w TubeRange>,
-    /// Masses of the drives, then weights per length of the tubes, in each of the study's surroundings.
+    /// Intervals of the loads: the masses of the drives \[kg\], followed by the weights per length of the tubes
+    /// \[N/m\]. There is one list for each medium around the arm (air, water) in the study.
     pub loads: Vec<Vec<Span>>,
 }
 
-/// A mass and a deflection that no member improves on, one by one.
+/// A mass and a deflection that no member improves on. Each is bounded by itself, so that no single member need
+/// have both.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct IdealPoint {
     pub mass_kg: f64,
     pub tip_m: f64,
-    /// The judged case that bounds the deflection, and the direction of the tip's displacement there.
+    /// Index among the poses of the judged case that bounds the deflection, and the direction of the tip's
+    /// displacement there.
     pub worst: usize,
     pub direction: Vector3<f64>,
 }
 
-/// Intervals of the static torque and the inertia that a joint's drive must hold, over the members.
+/// The loads on a joint over the members: intervals of the static torque \[N m\] and of the inertia outboard \[kg m²\].
 #[derive(Default)]
 struct Asked {
     static_nm: Span,
@@ -44,7 +48,7 @@ struct Asked {
 }
 
 impl<'w> Members<'w> {
-    /// Members with these tubes, and with drives about which nothing is known yet: their masses are zero.
+    /// Members with these tubes, and with drives whose masses are not known yet and count as zero.
     pub(super) fn new(drives: Vec<DriveRange>, tubes: Vec<&'w TubeRange>, waters: usize) -> Self {
         let loads = |water: usize| {
             let drives = drives.iter().map(|_| Span::default());
@@ -53,14 +57,15 @@ impl<'w> Members<'w> {
         Self { loads: (0..waters).map(loads).collect(), drives, tubes }
     }
 
-    /// Sets the range of drives of a joint.
+    /// Sets the range of the drives of a joint, and with it their masses among the loads.
     pub(super) fn set_drive(&mut self, joint: usize, range: DriveRange) {
         self.drives[joint] = range;
         let mass = Span { least: range.least_kg, most: range.most_kg };
         self.loads.iter_mut().for_each(|loads| loads[joint] = mass);
     }
 
-    /// Masses of drives, then inertias per length of tubes, in some surroundings.
+    /// Intervals of the masses of the drives, followed by those of the inertias per length of the tubes. `water` is the
+    /// index of the medium around the arm.
     fn inertias(&self, water: usize) -> impl Iterator<Item = Span> {
         let of_drives = self.loads[water][..self.drives.len()].iter().copied();
         let of_tubes = self.tubes.iter().flat_map(move |tube| {
@@ -72,7 +77,7 @@ impl<'w> Members<'w> {
 }
 
 impl Skeleton {
-    /// Least and greatest demand on a joint's drive over the members, with a margin for rounding.
+    /// Least and greatest demand on a joint's drive over the members, widened by a margin for rounding.
     pub(super) fn demands(&self, joint: usize, duty: &Duty, members: &Members) -> [Demand; 2] {
         let asked = self.asked(joint, members);
         let (statics, inertia) = (asked.static_nm, asked.inertia_kgm2);
@@ -93,7 +98,8 @@ impl Skeleton {
         ]
     }
 
-    /// The loads on a joint's bearing over the cases it is sized in, where the link attaches; zero if it is not checked.
+    /// Lower and upper bound, over the members, of the largest loads on a joint's bearing in the sizing cases. They are
+    /// taken at the face where the link attaches. Zero if the bearing is not checked.
     fn bearing_demands(&self, joint: usize, duty: &Duty, members: &Members) -> [BearingDemand; 2] {
         let mut largest = Largest::default();
         for (pose, bearings) in self.poses.iter().zip(&self.bearings) {
@@ -112,7 +118,7 @@ impl Skeleton {
         [least.with_lever(levers_m[0]), most.with_lever(levers_m[1])]
     }
 
-    /// The most and the least room that the members' tubes leave to the parts of a joint.
+    /// The widest and the narrowest space that the members' tubes leave to the gear and motor of a joint \[m\].
     fn rooms(&self, joint: usize, members: &Members) -> [Widths; 2] {
         self.first_tubes[joint].map_or([ANY_WIDTH; 2], |tube| {
             let TubeRange { least, most, .. } = members.tubes[tube];
@@ -120,8 +126,8 @@ impl Skeleton {
         })
     }
 
-    /// Intervals of the worst static torque and inertia on a joint over the sizing cases. Everything outboard of the
-    /// joint must be known.
+    /// Intervals, over the members, of the largest static torque on a joint and of the largest inertia about it in the
+    /// sizing cases. The drives outboard of the joint must be set in `members`.
     fn asked(&self, joint: usize, members: &Members) -> Asked {
         let mut asked = Asked::default();
         for pose in self.poses.iter().filter(|pose| pose.sizing) {
@@ -137,8 +143,8 @@ impl Skeleton {
         asked
     }
 
-    /// Inertia, about a joint's axis, of everything outboard: the diagonal entry of the mass matrix at the twist of
-    /// the joint.
+    /// Interval, over the members, of the inertia of everything outboard about a joint's axis \[kg m²\]. It is the
+    /// diagonal entry of the inertia matrix that belongs to the joint.
     fn inertia_about(&self, pose: &Pose, joint: usize, members: &Members) -> Span {
         let entry = joint * (joint + 3) / 2;
         let fixed = Span { least: pose.inertia[entry], most: pose.inertia[entry] };
@@ -148,8 +154,8 @@ impl Skeleton {
             .fold(fixed, |sum, (number, per)| sum.plus(number.times(per[entry])))
     }
 
-    /// Whether the stress at both ends of every tube keeps the required safety factor in some member, as far as the
-    /// least stress tells.
+    /// Whether some member may have the required safety factor at both ends of every tube. The least stress over
+    /// the members is compared with the strength, so that `false` is a proof that no member is strong enough.
     pub(super) fn strong_enough(&self, members: &Members) -> bool {
         let Some(safety) = self.limits.stress_safety_factor_min else { return true };
         self.poses.iter().all(|pose| {
@@ -168,7 +174,8 @@ impl Skeleton {
         })
     }
 
-    /// A mass and a deflection that no member improves on; `None` if either breaks a limit.
+    /// A mass and a deflection that no member improves on; `None` if one of them is above its limit, so that no
+    /// member meets the limits.
     pub(super) fn ideal_point(&self, members: &Members) -> Option<IdealPoint> {
         let drives: f64 = members.drives.iter().map(|drive| drive.least_kg).sum();
         let tubes: f64 = members.tubes.iter().map(|tube| tube.least.mass_kg).sum();
@@ -191,7 +198,7 @@ impl Skeleton {
             .then_some(ideal)
     }
 
-    /// The greatest stiffness of each coordinate over the members, in a pose.
+    /// The greatest stiffness of each coordinate over the members, in a pose. The order is that of `coordinates`.
     pub(super) fn stiffnesses(&self, pose: &Pose, members: &Members) -> Vec<f64> {
         let loads = &members.loads[pose.water];
         let stiffness = |coordinate: &Coordinate| match *coordinate {
@@ -203,7 +210,7 @@ impl Skeleton {
                 members.tubes[tube].most.stiffnesses[which] * integral_m
             }
             Coordinate::Tilt(joint, _) => members.drives[joint].greatest_tilt_stiffness(),
-            // nothing yields like that
+            // a shift is a virtual motion for loads: no element deflects in this way
             Coordinate::Shift(..) => f64::INFINITY,
             Coordinate::Spring(spring) => self.spring_stiffnesses[spring],
         };
@@ -227,7 +234,7 @@ fn weight(tube: &TubeRange, water: usize) -> Span {
     Span { least: tube.least.around[water].weight_n_per_m, most: tube.most.around[water].weight_n_per_m }
 }
 
-/// Range of each compliance over a set of tubes.
+/// Interval of each compliance over a set of tubes.
 pub(super) fn compliances(tube: &TubeRange) -> [Span; STIFFNESSES] {
     std::array::from_fn(|i| Span {
         least: 1.0 / tube.most.stiffnesses[i],
@@ -235,8 +242,8 @@ pub(super) fn compliances(tube: &TubeRange) -> [Span; STIFFNESSES] {
     })
 }
 
-/// Approximate direction in which the tip of the stiffest arm moves; `None` if the tip does not move. Every direction
-/// gives a valid bound.
+/// Approximate direction in which the tip of the stiffest arm moves; `None` if the tip does not move. The
+/// displacement along any direction is a valid lower bound, so the direction need not be exact.
 pub(super) fn direction(pose: &Pose, members: &Members) -> Option<Vector3<f64>> {
     let loads = &members.loads[pose.water];
     let joints = members.drives.iter().zip(&pose.torques).zip(&pose.tip_m_per_rad).map(
@@ -254,13 +261,13 @@ pub(super) fn direction(pose: &Pose, members: &Members) -> Option<Vector3<f64>> 
     joints.chain(tubes).chain(tilts).chain(springs).sum::<Vector3<f64>>().try_normalize(0.0)
 }
 
-/// Least displacement of the tip along a direction over the members \[m\].
+/// Lower bound of the displacement of the tip along a direction, over the members \[m\].
 fn tip_along(pose: &Pose, members: &Members, direction: &Vector3<f64>) -> f64 {
     let loads = &members.loads[pose.water];
     let joints = members.drives.iter().zip(&pose.torques).zip(&pose.tip_m_per_rad).map(
         |((drive, torque), tip_m_per_rad)| {
             let tip_m_per_rad = tip_m_per_rad.dot(direction);
-            // a twist that moves the tip back counts with its sign turned
+            // if a joint's twist moves the tip backward along the direction, torque and lever change their signs
             let torque = torque.over(loads).times(1.0f64.copysign(tip_m_per_rad));
             if tip_m_per_rad == 0.0 { 0.0 } else { drive.least_angle_rad(torque) * tip_m_per_rad.abs() }
         },

@@ -1,4 +1,5 @@
-//! A question prepared for its boxes: the trees of all levels, and what bounds a box.
+//! The search question prepared for boxes: the option trees of all levels, and the data from which boxes are
+//! bounded.
 
 use super::bound::Members;
 use super::drive_range::DriveRange;
@@ -12,7 +13,7 @@ use super::tubes::{TubeRange, Tubes};
 use crate::catalog::Catalogs;
 use std::sync::Arc;
 
-/// A question, prepared for bounding boxes of its designs.
+/// A question prepared for branch and bound over boxes of its designs.
 pub struct Boxes {
     pub(super) skeleton: Arc<Skeleton>,
     pub(super) joints: Vec<Drives>,
@@ -20,7 +21,7 @@ pub struct Boxes {
 }
 
 impl Boxes {
-    /// Prepares a question. Drives of equal mass, torsion curve and tilt stay separate options.
+    /// Prepares a question. Drives of equal mass, torsion curve and bearing stiffness stay separate options.
     pub fn new(question: &Question, catalogs: &Catalogs) -> Self {
         let offers = joint_offers(question, catalogs);
         let skeleton = Skeleton::new(question, &offers);
@@ -28,7 +29,7 @@ impl Boxes {
         Self::of(Arc::new(skeleton), parts)
     }
 
-    /// The boxes that can be made of these parts.
+    /// Prepares the boxes of an arm whose parts are not chosen (`skeleton`), with trees over the options in `parts`.
     pub(super) fn of(skeleton: Arc<Skeleton>, parts: Parts) -> Self {
         let joints = parts.joints.into_iter().map(Drives::new).collect();
         Self { skeleton, joints, tubes: parts.tubes.iter().map(Tubes::new).collect() }
@@ -41,7 +42,8 @@ impl Boxes {
         some.then(|| PartsBox(vec![0; self.skeleton.levels.len()]))
     }
 
-    /// A box divided into two by the options of one level; `None` if the level has only one option.
+    /// The two boxes into which the box `parts` is divided by the options of one level; `None` if the level has only
+    /// one option.
     pub fn halves(&self, parts: &PartsBox, level: usize) -> Option<[PartsBox; 2]> {
         let halves = self.tree(level).halves(parts.0[level])?;
         Some(halves.map(|node| {
@@ -51,7 +53,7 @@ impl Boxes {
         }))
     }
 
-    /// The options that a box has at each level, tip first.
+    /// Indices of the options that the box `parts` has at each level, tip first.
     pub fn options(&self, parts: &PartsBox) -> Vec<Vec<u32>> {
         let levels = self.skeleton.levels.iter().zip(&parts.0);
         levels
@@ -67,18 +69,20 @@ impl Boxes {
             .collect()
     }
 
-    /// A mass \[kg\] and a tip deflection \[m\] that no member of a box improves on; `None` if no member holds.
+    /// A mass \[kg\] and a tip deflection \[m\] below which no member of the box `parts` lies. `None` if it is proved
+    /// that no member meets the limits.
     pub fn least_mass_and_deflection(&self, parts: &PartsBox) -> Option<[f64; 2]> {
         let ideal = self.skeleton.ideal_point(&self.members(parts)?)?;
         Some([ideal.mass_kg, ideal.tip_m])
     }
 
-    /// Whether it is proved that every member of a box that holds has a lowest mode of at most `hz`.
+    /// Whether it is proved that no member of a box that meets its checks and limits has a lowest mode above `hz`.
     pub fn proves_none_faster(&self, parts: &PartsBox, hz: f64) -> bool {
         self.members(parts).is_none_or(|members| self.skeleton.slowest(&members, hz).is_none())
     }
 
-    /// Ranges of a box's parts, worked out from the tip inward; `None` if no member holds.
+    /// The interval of each number of a part over the designs of a box, computed from the tip inward. `None` if it is
+    /// proved that no member passes its checks.
     pub(super) fn members(&self, nodes: &PartsBox) -> Option<Members<'_>> {
         let tubes: Vec<&TubeRange> =
             self.tubes.iter().map(|tube| &tube.nodes[self.node(tube.level, nodes)]).collect();
@@ -114,7 +118,8 @@ impl Boxes {
         }
     }
 
-    /// The design of a box that has one option at every level, with all designs that tie with it.
+    /// The single design of a box that has one option at every level, with all designs that tie with it. `None` if a
+    /// level has several options.
     pub(super) fn design(&self, parts: &PartsBox) -> Option<Design> {
         let members = self.members(parts)?;
         let choice = |(place, &node): (&Place, &u32)| match *place {
@@ -132,7 +137,7 @@ impl Boxes {
         self.skeleton.levels.iter().zip(&parts.0).map(choice).collect()
     }
 
-    /// Levels with more than one option left.
+    /// Levels at which the box has more than one option.
     pub(super) fn open_levels(&self, parts: &PartsBox) -> Vec<usize> {
         let is_open = |&level: &usize| self.tree(level).halves(parts.0[level]).is_some();
         (0..self.skeleton.levels.len()).filter(is_open).collect()

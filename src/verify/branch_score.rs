@@ -1,4 +1,4 @@
-//! Which level of a box to halve.
+//! The choice of the level at which a box is divided.
 
 use super::bound::{IdealPoint, Members, compliances};
 use super::boxes::Boxes;
@@ -22,7 +22,8 @@ pub(super) struct BranchScore<'a> {
 }
 
 impl BranchScore<'_> {
-    /// How much worse the ideal point becomes if a level has an average part.
+    /// How much worse the ideal point becomes if the level has an average part. The number is a sum of relative
+    /// changes of mass, deflection and squared frequency.
     pub(super) fn score_of(&self, level: usize) -> f64 {
         let node = self.parts.0[level];
         let [mass_kg, tip_m, eigenvalue] = match self.boxes.skeleton.levels[level] {
@@ -38,7 +39,9 @@ impl BranchScore<'_> {
             + 0.5 * libm::log1p(slower)
     }
 
-    /// By how much an average drive makes mass \[kg\], deflection \[m\] and `λ` \[1/s²\] worse.
+    /// By how much the ideal point becomes worse if `joint` has an average drive and not the best one: the mass \[kg\],
+    /// the deflection \[m\] and the squared angular frequency `λ` of the lowest mode \[1/s²\]. `node` is the node of
+    /// the joint's tree in the box.
     fn of_joint(&self, joint: usize, node: u32) -> [f64; 3] {
         let (range, whole) = (&self.members.drives[joint], self.boxes.joints[joint].range(node));
         let mass_kg = 0.5 * (whole.most_kg.min(range.most_kg) - range.least_kg);
@@ -58,17 +61,19 @@ impl BranchScore<'_> {
         [mass_kg, tip_m + self.deflection_per(joint) * mass_kg, eigenvalue]
     }
 
-    /// By how much an average bearing makes the strain of the mode less \[N m\].
+    /// By how much twice the strain energy of the lowest mode falls if `joint` has an average bearing and not the
+    /// stiffest one \[N m\]. `range` are the drives of the joint in the box.
     fn slower_by_tilt(&self, joint: usize, range: &DriveRange) -> f64 {
         let weaker = range.greatest_tilt_stiffness() - 1.0 / range.tilt_rad_per_nm.middle();
         let coordinates = self.boxes.skeleton.coordinates.iter().zip(&self.slow.mode);
         let tilts = coordinates.filter(|(c, _)| matches!(c, Coordinate::Tilt(j, _) if *j == joint));
         let strain: f64 = tilts.map(|(_, x)| weaker * x * x).sum();
-        // a bearing that may be rigid stands still in the mode
+        // a bearing that may be rigid does not tilt in the mode of the ideal arm
         if strain.is_finite() { strain } else { 0.0 }
     }
 
-    /// By how much an average tube makes mass \[kg\], deflection \[m\] and `λ` \[1/s²\] worse.
+    /// By how much the ideal point becomes worse if the link has an average tube and not the best one: the mass \[kg\],
+    /// the deflection \[m\] and the squared angular frequency `λ` of the lowest mode \[1/s²\].
     fn of_tube(&self, tube: usize) -> [f64; 3] {
         let range: &TubeRange = self.members.tubes[tube];
         let pose = &self.boxes.skeleton.poses[self.ideal.worst];
@@ -112,7 +117,8 @@ impl BranchScore<'_> {
         strain + self.slow.eigenvalue * inertia
     }
 
-    /// Deflection of the stiffest arm per unit of a load (the mass of a drive, or the weight per length of a tube).
+    /// Deflection of the stiffest arm of the box per unit of the load with the index `load` (the mass of a drive
+    /// \[kg\], or the weight per length of a tube \[N/m\]).
     fn deflection_per(&self, load: usize) -> f64 {
         let pose = &self.boxes.skeleton.poses[self.ideal.worst];
         let loads = &self.members.loads[pose.water];

@@ -1,18 +1,19 @@
-//! Which joint carries a piece of the chain.
+//! The joint to which each piece of the chain is attached.
 
 use super::question::{AskedJoint, AskedPiece, Question};
 use crate::arm::LinkBody;
 
-/// The joints that a piece has to do with.
+/// The joint inboard of a piece, where the piece is near enough to matter for the parts of that joint.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Carrier<'q> {
-    /// The joint next to it inboard, if nothing is in between.
+    /// The nearest joint inboard, if nothing lies between it and the piece; else `None`.
     pub next: Option<&'q AskedJoint>,
-    /// The joint that carries it, if no tube is in between.
+    /// The nearest joint inboard, if no tube lies between it and the piece; else `None`. A tube with such a joint
+    /// is the link in which the joint's parts must fit.
     pub of_first_tube: Option<&'q AskedJoint>,
 }
 
-/// Every piece with the joints inboard of it.
+/// All pieces in order from base to tip, each with the joint inboard of it.
 pub(super) fn carriers<'q>(question: &'q Question) -> impl Iterator<Item = (Carrier<'q>, &'q AskedPiece)> {
     let mut carrier = Carrier::default();
     question.pieces.iter().map(move |piece| {
@@ -27,7 +28,7 @@ pub(super) fn carriers<'q>(question: &'q Question) -> impl Iterator<Item = (Carr
     })
 }
 
-/// Whether a piece has a section, chosen or given.
+/// Whether a piece has a cross-section, chosen by the search or given by the study.
 pub(super) fn is_tube(piece: &AskedPiece) -> bool {
     match piece {
         AskedPiece::Joint(_) | AskedPiece::Prismatic(_) => false,

@@ -1,15 +1,18 @@
 //! The least and the most of each number over a set of drives.
 //!
-//! A set of drives is bounded by two torsion curves. Of each member's curve the slopes are first made to
-//! rise: lifted (each at least the one before) or lowered (each at most the one after). The largest lifted
-//! slopes with the least break points make a curve that at every torque is at least as steep as any
-//! member's, for a member that is in a later segment there has a slope that the later segment of the bound
-//! exceeds too. The least lowered slopes with the largest break points make one that is nowhere steeper.
+//! A set of drives is bounded by two torsion curves, a stiff and a soft one. First the slopes of each member are
+//! made monotonic: *lifted* (each slope is at least the one before) for the stiff bound, *lowered* (each slope is
+//! at most the one after) for the soft bound.
+//!
+//! The stiff bound has the largest of the lifted slopes and the least of the break points. At every torque it is at
+//! least as steep as each member: the bound enters each segment no later than the member does, and its slope there
+//! is no smaller. The soft bound has the least of the lowered slopes and the largest of the break points, and is
+//! nowhere steeper than a member.
 
 use super::span::Span;
 use crate::arm::joint_law::{Curve, JointLaw, LostMotion, Windup};
 
-/// Least and greatest numbers over a set of drives.
+/// A set of drives, described by the least and the greatest value of each number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct DriveRange {
     pub least_kg: f64,
@@ -20,13 +23,13 @@ pub(super) struct DriveRange {
     pub soft: Windup,
     /// Tilt of the output bearing per moment across the axis, effects included \[rad/(N m)\]; 0 is rigid.
     pub tilt_rad_per_nm: Span,
-    /// Greatest slope that a mode sees in any of the drives, if modes see one slope under every torque \[N m/rad\].
-    /// Infinite if for some drive the slope depends on the torque.
+    /// Greatest slope with which any of the drives vibrates \[N m/rad\], where the study lets modes use one slope
+    /// at every torque. Infinite if the slope of some drive depends on the torque.
     pub modal_nm_per_rad: f64,
     /// Lost motion of the joint, the same for all of its drives.
     pub lost_motion: Option<LostMotion>,
-    /// Half width of the joint's hysteresis \[rad\], the same for all of its drives. Friction holds back at most this
-    /// twist, and at most the twist that the torque would make with the slope K2.
+    /// Half width of the joint's hysteresis \[rad\], the same for all of its drives. Friction reduces the twist by
+    /// at most this angle, and by at most the torque divided by K2.
     pub friction_rad: f64,
 }
 
@@ -77,13 +80,14 @@ impl DriveRange {
         }
     }
 
-    /// Greatest stiffness of an output bearing against a tilt \[N m/rad\]; infinite if one of them is rigid.
+    /// Greatest tilt stiffness of the output bearings of the drives \[N m/rad\]; infinite if one of the bearings is
+    /// rigid.
     pub(super) fn greatest_tilt_stiffness(&self) -> f64 {
         1.0 / self.tilt_rad_per_nm.least
     }
 
-    /// Least twist under the torques of an interval, with its sign \[rad\]. Gear and lost motion twist least under
-    /// the least torque; friction holds back most under the greatest.
+    /// Least twist of the joint over the drives and over torques in an interval, with its sign \[rad\]. Gear and lost
+    /// motion twist least under the least torque, and friction reduces the twist most under the greatest torque.
     pub(super) fn least_angle_rad(&self, torque_nm: Span) -> f64 {
         let Span { least, most } = torque_nm;
         let gear = if least >= 0.0 { angle_rad(&self.stiff, least) } else { -angle_rad(&self.soft, -least) };
@@ -91,7 +95,7 @@ impl DriveRange {
         gear + closed - self.most_held_rad(most)
     }
 
-    /// Greatest twist that friction may hold back under any torque up to this one, with its sign \[rad\].
+    /// Greatest angle by which friction can reduce the twist under any torque up to `torque_nm`, with its sign \[rad\].
     fn most_held_rad(&self, torque_nm: f64) -> f64 {
         match torque_nm >= 0.0 {
             true => (torque_nm / self.soft.k2_nm_per_rad).min(self.friction_rad),
@@ -99,9 +103,10 @@ impl DriveRange {
         }
     }
 
-    /// Greatest slope for a small further torque, at any torque of at most this magnitude \[N m/rad\].
+    /// Greatest tangent stiffness that the joint has with any of the drives \[N m/rad\], under torques with a magnitude
+    /// of at most `torque_nm`.
     pub(super) fn largest_slope(&self, torque_nm: f64) -> f64 {
-        // beyond a break point by less than rounding counts as beyond
+        // a torque that is below a break point by less than rounding counts as beyond it
         let reach_nm = torque_nm * (1.0 + 1e-9) + 1e-9;
         let gear = self.stiff.tangent_nm_per_rad(reach_nm).min(self.modal_nm_per_rad);
         let open = self.lost_motion.map_or(0.0, |lost| lost.tangent_compliance_rad_per_nm(reach_nm));
@@ -119,7 +124,7 @@ fn curve(a: &Windup, b: &Windup, slope: fn(f64, f64) -> f64, break_point: fn(f64
     }
 }
 
-/// Twist under a torque that is not negative \[rad\]; break points may be infinite.
+/// Twist of a torsion curve under a torque that is not negative \[rad\]. Break points may be infinite.
 pub(super) fn angle_rad(curve: &Windup, torque_nm: f64) -> f64 {
     let first = torque_nm.min(curve.t1_nm);
     let second = torque_nm.min(curve.t2_nm) - first;

@@ -1,4 +1,4 @@
-//! The drives that a joint may have in a box or a region, and the tree that halves them.
+//! The drives that a joint may have in a box or a region, and the binary tree over them.
 
 use super::demand::{Demand, Quantity};
 use super::drive_range::DriveRange;
@@ -8,46 +8,52 @@ use super::parts_box::Choice;
 use super::ratings::Ratings;
 use super::tree::Tree;
 
-/// In sets of no more drives than this, every drive is compared with the demand.
+/// For sets of at most this many drives, every drive is compared with the demand. In larger sets only the greatest
+/// ratings of the whole set are compared.
 const FEW: usize = 64;
 
-/// The drives that a joint may have.
+/// The drives that a joint may have, as a list.
 pub(super) struct DriveOptions {
-    /// Index among the levels of the space; `None` if the drive is no choice.
+    /// Index of the joint's choice among the levels (choices) of the space; `None` if the search does not choose the
+    /// drive.
     pub level: Option<usize>,
-    /// The motion of the joint; `None` for a given drive, which is not checked.
+    /// The motion of the joint; `None` for a given drive, on which nothing is checked.
     pub duty: Option<Duty>,
-    /// The drives, lightest first.
+    /// The options, lightest first.
     pub options: Vec<DriveOption>,
 }
 
-/// A drive, or several drives of equal mass, torsion curve and tilt of the bearing.
+/// One option: a drive, or several drives of equal mass, torsion curve and bearing stiffness.
 #[derive(Debug, Clone)]
 pub(super) struct DriveOption {
     pub range: DriveRange,
-    /// Number of each drive, and the torques that the drive holds.
+    /// The drives of the option, each with its index among the joint's drives and its ratings.
     pub drives: Vec<(u32, Ratings)>,
 }
 
-/// Whether drives of equal mass, torsion curve and tilt, which no objective tells apart, are one option.
+/// How drives of equal mass, torsion curve and bearing stiffness are treated, which no objective tells apart:
+/// `Apart` makes one option of each, `Together` one option of all.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Ties {
     Apart,
     Together,
 }
 
-/// The drives that a joint may have, in a tree whose nodes are halved down to single options.
+/// The drives that a joint may have, as a binary tree. Branching halves its nodes down to single options.
 pub(super) struct Drives {
     pub level: Option<usize>,
     pub duty: Option<Duty>,
     pub tree: Tree,
-    /// For each node of the tree, range and greatest ratings of its drives.
+    /// For each node of the tree: the least and greatest numbers of the drives below it, and the greatest of their
+    /// ratings.
     nodes: Vec<(DriveRange, Ratings)>,
     options: Vec<DriveOption>,
 }
 
 impl DriveOptions {
-    /// All drives of a joint. `level` is used only if the drive is a choice.
+    /// All drives that a joint may have, as the catalogs offer them. `level` is the index of the joint's choice among
+    /// the levels; it is stored only if the search chooses the drive. `ties` tells whether drives that no objective
+    /// tells apart are one option.
     pub(super) fn new(offers: &JointOffers, level: usize, ties: Ties) -> Self {
         let offers = match offers {
             JointOffers::Given { law, tilt_rad_per_nm, mass_kg } => {
@@ -67,7 +73,7 @@ impl DriveOptions {
         Self { level: offers.is_choice.then_some(level), duty: Some(offers.duty.clone()), options }
     }
 
-    /// Some of the options, given by ascending indices.
+    /// The same list with only some of its options. `some` has the indices of these options in ascending order.
     pub(super) fn only(&self, some: &[u32]) -> Self {
         let options = some.iter().map(|&i| self.options[i as usize].clone()).collect();
         Self { level: self.level, duty: self.duty.clone(), options }
@@ -83,13 +89,13 @@ impl DriveOption {
         }
     }
 
-    /// Whether at least one drive of the option holds a demand.
+    /// Whether at least one drive of the option meets the demand `asked`.
     pub(super) fn holds(&self, asked: &Demand) -> bool {
         self.drives.iter().any(|(_, ratings)| ratings.hold(asked))
     }
 
-    /// The drives of the option that may hold a demand that lies between two, and whether the first of them surely
-    /// holds.
+    /// The drives of the option that may meet a demand of which only a least and a greatest value are known. Drives
+    /// that meet even the greatest come first; the flag of the choice tells whether there is such a drive.
     pub(super) fn holding(&self, [least, most]: &[Demand; 2]) -> Choice {
         let may = self.drives.iter().filter(|(_, ratings)| ratings.hold(least));
         let (mut drives, unsure): (Vec<&(u32, Ratings)>, Vec<_>) =
@@ -99,7 +105,7 @@ impl DriveOption {
         Choice { options: drives.into_iter().map(|&(number, _)| number).collect(), one_holds }
     }
 
-    /// The greatest rating of the option's drives for each quantity.
+    /// For each quantity, the greatest rating of any drive of the option.
     fn ratings(&self) -> Ratings {
         let (first, rest) = self.drives.split_first().expect("an option has a drive");
         rest.iter().fold(first.1, |ratings, (_, other)| ratings.max(other))
@@ -107,7 +113,7 @@ impl DriveOption {
 }
 
 impl Drives {
-    /// Builds the tree of the options.
+    /// Builds the tree over the options, and computes the least and greatest numbers of each node's drives.
     pub(super) fn new(DriveOptions { level, duty, options }: DriveOptions) -> Self {
         let all: Vec<u32> = (0..options.len() as u32).collect();
         let tree = Tree::new(all, &options.iter().map(keys).collect::<Vec<_>>());
@@ -121,12 +127,13 @@ impl Drives {
         Self { level, duty, tree, nodes, options }
     }
 
-    /// The options of a node.
+    /// The options below a node of the tree.
     pub(super) fn options(&self, node: u32) -> impl Iterator<Item = &DriveOption> {
         self.tree.options(node).iter().map(|&i| &self.options[i as usize])
     }
 
-    /// Range of a node's drives that may hold a demand of at least `asked`; `None` if there is none.
+    /// Least and greatest numbers of those drives below `node` that may meet a demand of at least `asked`. `None` if no
+    /// drive can.
     pub(super) fn holding(&self, node: u32, asked: &Demand) -> Option<DriveRange> {
         if self.tree.options(node).len() > FEW {
             let (range, ratings) = &self.nodes[node as usize];
@@ -136,26 +143,26 @@ impl Drives {
         holding.map(|option| option.range).reduce(|a, b| a.with(&b))
     }
 
-    /// Range of the drives that may be the lightest to hold a demand that lies between two. `None` if no drive holds
-    /// the least.
+    /// Least and greatest numbers of the drives that may be the lightest one to meet a demand. The demand lies between
+    /// `least` and `most`. `None` if no drive meets the least demand.
     pub(super) fn first_fits(&self, least: &Demand, most: &Demand) -> Option<DriveRange> {
         let fits = first_fits(self.options.iter().map(|option| ((), option)), least, most);
         fits.map(|(_, option)| option.range).reduce(|a, b| a.with(&b))
     }
 
-    /// Range of all drives of a node.
+    /// Least and greatest numbers of all drives below a node of the tree.
     pub(super) fn range(&self, node: u32) -> &DriveRange {
         &self.nodes[node as usize].0
     }
 
-    /// Whether there is no drive at all.
+    /// Whether the joint has no option at all.
     pub(super) fn is_empty(&self) -> bool {
         self.options.is_empty()
     }
 }
 
-/// The drives that may be the lightest to hold a demand that lies between two. These are all drives that hold the
-/// least demand, up to the first that holds the greatest.
+/// The drives that may be the lightest to meet a demand that lies between `least` and `most`. These are all drives
+/// that meet the least demand, up to the first one that also meets the greatest.
 pub(super) fn first_fits<'o, T>(
     options: impl Iterator<Item = (T, &'o DriveOption)>,
     least: &Demand,
@@ -170,7 +177,8 @@ pub(super) fn first_fits<'o, T>(
     options.scan(false, fit).filter(move |(_, option)| option.holds(&least))
 }
 
-/// The numbers by which the tree separates drives.
+/// The coordinates by which the tree groups similar drives, each with a weight. Any grouping gives a valid proof; a
+/// good one makes the bounds tight.
 fn keys(option: &DriveOption) -> Vec<f64> {
     let (drive, ratings) = (&option.range, option.ratings());
     let stiff = &drive.stiff;

@@ -1,6 +1,7 @@
-//! What one joint does, and the torques that its drive must hold (Eqs 8, 10; docs/sizing.md).
+//! The motion of one joint, and the torques that its drive must provide (Eqs 8, 10; docs/sizing.md).
 //!
-//! Everything here follows from the question and the geometry alone; torque and inertia come in when a demand is made.
+//! A `Duty` follows from the question and the geometry alone. Torque and inertia enter when a demand is computed
+//! from it.
 
 use super::bearing::BearingDemand;
 use super::demand::{Demand, QUANTITIES, Quantity};
@@ -14,16 +15,16 @@ use std::f64::consts::PI;
 /// The motion of one joint, on the output side of its gear.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Duty {
-    /// Largest speed \[rad/s\].
+    /// Largest speed of the joint \[rad/s\].
     pub speed_rad_s: f64,
-    /// Mean speed over the cycle, rests included \[rad/s\].
+    /// Mean speed of the joint over the cycle, rests included \[rad/s\].
     pub mean_speed_rad_s: f64,
-    /// Acceleration \[rad/s²\].
+    /// Acceleration of the joint in a ramp \[rad/s²\].
     pub acceleration_rad_s2: f64,
-    /// Required life \[h\].
+    /// Required life of the gear \[h\].
     pub life_h: f64,
-    /// Torque of linear acceleration per inertia \[rad/s²\], and per static torque. One of the two is zero, depending
-    /// on how Eq 8 is read.
+    /// Torque of linear acceleration for each kg m² of inertia \[rad/s²\], and for each N m of static torque. One
+    /// of the two is zero: Eq 8 can be read in either way, and the study states which one it takes.
     linear_per_inertia: f64,
     linear_per_static: f64,
     /// Torque of linear acceleration in an emergency stop, divided by that in a ramp.
@@ -31,7 +32,7 @@ pub(super) struct Duty {
     mean: MeanTorque,
     /// Duration of an emergency stop \[s\].
     pub stop_s: f64,
-    /// Number of emergency stops that are asked for.
+    /// Number of emergency stops that the gear must survive; `None` if the study asks for none.
     pub emergency_stops: Option<f64>,
     /// Whether a brake holds the joint at rest.
     pub has_brake: bool,
@@ -39,25 +40,26 @@ pub(super) struct Duty {
     pub stage: AskedStage,
     /// What is asked of the sizes of the parts.
     pub fit: AskedFit,
-    /// Whether the motor must not overheat.
+    /// Whether the motor's heat is checked.
     pub checks_heat: bool,
     shares: CycleShares,
-    /// What is stated for this joint, whatever the arm.
+    /// The part of the duty that the study states in numbers. It does not depend on the arm.
     pub stated: Stated,
 }
 
-/// A duty that is stated for a joint; without one, nothing.
+/// The part of a joint's torques that follows from a duty stated in numbers. All zero and without phases if none is
+/// stated.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Stated {
-    /// Largest torque \[N m\].
+    /// Largest torque of the stated phases \[N m\].
     peak_nm: f64,
-    /// Cubic mean \[(N m)³\].
+    /// Cube of the cubic mean torque \[(N m)³\].
     cubed_nm3: f64,
     pub phases: Vec<StatedPhase>,
 }
 
-/// Weights in the cube of the cubic mean: of static plus linear torque, of static torque, and of static minus linear
-/// torque, each cubed.
+/// Weights of three terms in the cube of the cubic mean torque. The terms are the cubes of static plus linear
+/// torque, of static torque, and of static minus linear torque.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct MeanTorque {
     of_sum: f64,
@@ -66,7 +68,8 @@ struct MeanTorque {
 }
 
 impl Duty {
-    /// The motion of a joint; the tip is at most `reach_m` from its axis.
+    /// The motion of `joint` that follows from the motion of the tip. `reach_m` is the largest distance of the tip from
+    /// the joint's axis \[m\].
     pub(super) fn new(motion: &AskedMotion, reach_m: f64, joint: &AskedJoint) -> Self {
         let speed_rad_s = speed_rad_s(motion, reach_m, joint);
         let ramp_s = first_ramp_s(&joint.duty).unwrap_or(motion.ramp_time_s);
@@ -98,7 +101,7 @@ impl Duty {
         if joint.duty.is_empty() { duty } else { duty.with_stated(&joint.duty) }
     }
 
-    /// The same with a duty in numbers in place of the cycle.
+    /// This motion with the duty `duty`, which the study states in numbers, in place of the study's cycle.
     fn with_stated(self, duty: &[AskedDutyPhase]) -> Self {
         let travel = |phase: &AskedDutyPhase| phase.speed_rpm * phase.time_s;
         let whole_s: f64 = duty.iter().map(|phase| phase.time_s).sum();
@@ -118,8 +121,9 @@ impl Duty {
         }
     }
 
-    /// The torques and the heat that a static torque and an inertia outboard ask of the drive, without any load on its
-    /// bearing. They grow with both (see [`AskedMotion::grows`]). `heat_room` is a factor on the heat of the motor.
+    /// The demand on a drive that follows from a static torque \[N m\] and an inertia outboard \[kg m²\]: torques and
+    /// motor heat, without any load on the bearing. Both grow with the torque and the inertia (see
+    /// [`AskedMotion::grows`]). `heat_room` multiplies the heat and is a margin for rounding.
     pub(super) fn demand(&self, static_nm: f64, inertia_kgm2: f64, heat_room: f64) -> Demand {
         let static_nm = static_nm.abs();
         let linear_nm = (self.linear_per_inertia * inertia_kgm2 + self.linear_per_static * static_nm).abs();
@@ -138,8 +142,9 @@ impl Duty {
     }
 }
 
-/// Largest speed of a joint \[rad/s\]: its own, or the tip's over its lever. A short lever would ask a roll joint for absurd
-/// speeds. A duty in numbers has its own largest speed.
+/// Largest speed of a joint \[rad/s\]. It is the maximum that the study states for the joint, or else the speed of the
+/// tip divided by the lever `reach_m`. The lever is taken as at least `min_lever_m`, because a short lever would give a
+/// roll joint an absurd speed. A duty in numbers has its own largest speed.
 fn speed_rad_s(motion: &AskedMotion, reach_m: f64, joint: &AskedJoint) -> f64 {
     let fastest_rpm = joint.duty.iter().map(|phase| phase.speed_rpm).fold(0.0, f64::max);
     match (joint.max_speed_rad_s, joint.duty.is_empty()) {
@@ -148,21 +153,22 @@ fn speed_rad_s(motion: &AskedMotion, reach_m: f64, joint: &AskedJoint) -> f64 {
     }
 }
 
-/// Duration of the first ramp up of a duty in numbers \[s\]; `None` if it has none.
+/// Duration of the first phase \[s\] in which a duty stated in numbers speeds up. `None` if it has no such phase.
 fn first_ramp_s(duty: &[AskedDutyPhase]) -> Option<f64> {
     let ramp = stated_phases(duty, false).iter().position(StatedPhase::speeds_up)?;
     Some(duty[ramp].time_s)
 }
 
 impl AskedMotion {
-    /// Acceleration of the tip \[m/s²\].
+    /// Acceleration of the tip in a ramp \[m/s²\].
     pub(super) fn tip_acceleration_m_s2(&self) -> f64 {
         self.tip_speed_m_s / self.ramp_time_s
     }
 
-    /// Whether no torque of a demand, and no heat, falls when static torque or inertia grows. Only while slowing down is the
-    /// linear torque subtracted from the static torque; speeding up outweighs this if it takes at least as long: there the
-    /// motor has the largest torque of the cycle, and that rises at least as fast as any falls.
+    /// Whether no torque of a demand and no heat decreases when static torque or inertia grows. Only while the
+    /// joint slows down is the linear torque subtracted from the static torque. If speeding up takes at least as
+    /// long, it outweighs this: the motor has its largest torque of the cycle there, and that torque grows at least
+    /// as fast as any other decreases.
     pub fn grows(&self) -> bool {
         let mean = self.mean_torque();
         mean.of_difference <= mean.of_sum
@@ -172,7 +178,7 @@ impl AskedMotion {
         self.phases.iter().map(AskedPhase::travel_s).sum()
     }
 
-    /// Time shares of the cycle's phases.
+    /// Fractions of the cycle's time that its kinds of phases take.
     fn shares(&self, has_brake: bool) -> CycleShares {
         let whole_s: f64 = self.phases.iter().map(|phase| phase.duration_s).sum();
         let mut shares = CycleShares::default();
@@ -200,8 +206,8 @@ impl AskedMotion {
         if whole_s > 0.0 { self.travel_s() / whole_s } else { 0.0 }
     }
 
-    /// Cubic mean weighted by time and speed (Harmonic Drive, engineering data 1019659, Eq 18.2). A joint that never
-    /// moves has its static torque as mean.
+    /// Weights of the three terms of the cubic mean torque. The mean is weighted by time and speed (Harmonic Drive,
+    /// engineering data 1019659, Eq 18.2). The mean torque of a joint that never moves is its static torque.
     fn mean_torque(&self) -> MeanTorque {
         let travel_s = self.travel_s();
         if travel_s <= 0.0 {
@@ -224,7 +230,8 @@ impl AskedMotion {
 }
 
 impl AskedPhase {
-    /// Time that the travel of the phase takes at full speed \[s\]: duration times mean speed over full speed.
+    /// Time in which the travel of the phase would be covered at full speed \[s\]: duration times mean speed over
+    /// full speed.
     fn travel_s(&self) -> f64 {
         self.duration_s
             * match self.kind {

@@ -1,15 +1,15 @@
-//! Whether the parts of a joint fit where they go (docs/study-format.md, "fit").
+//! Whether the parts of a joint fit into the space that they have (docs/study-format.md, "fit").
 //!
-//! | asked | compared |
-//! |---|---|
-//! | gear beside the link | outer diameter of the gear, a factor times the width of the link |
-//! | motor in the link | outer diameter of the motor, the clear width of the hollow |
-//! | cables | the bores of what is on the axis, the smallest one asked for |
-//! | room at the joint | the length of what is on the axis, the largest one asked for |
+//! | check | size of the parts | limit |
+//! |---|---|---|
+//! | gear next to the link | outer diameter of the gear | a factor times the width of the link |
+//! | motor in the link | outer diameter of the motor | the clear width of the hollow |
+//! | cables | the bores of the parts on the axis | the smallest bore asked for |
+//! | room at the joint | the length of the parts on the axis | the largest length asked for |
 //!
 //! The link of a joint is the first tube between it and the next joint. A size that the catalog lacks is not compared.
 //!
-//! Nothing of `sizing` or `space` is used: a wrong size there must not be repeated here.
+//! Nothing of `sizing` or `space` is used, so that an error in a size there is not repeated here.
 
 use super::question::{AskedFit, AskedJoint};
 use crate::arm::section::Section;
@@ -17,16 +17,18 @@ use crate::catalog::envelope::Envelope;
 use crate::mechanics::beam::section_frame;
 use nalgebra::Vector3;
 
-/// Part of a size by which two that are to fit may differ: they are products of decimals.
+/// Relative tolerance for comparing sizes. Sizes are products of decimal numbers, and equal ones may differ by
+/// rounding.
 const SAME_SIZE: f64 = 1e-9;
 
-/// The widest gear and the widest motor that a link leaves room for, or how wide those of a drive are \[m\].
+/// Widths of gear and motor \[m\]: the largest that a link leaves room for, or those of a drive.
 pub(super) type Widths = [f64; 2];
 
-/// No link, or nothing asked of it.
+/// Widths without a limit: there is no link, or the study asks nothing of it.
 pub(super) const ANY_WIDTH: Widths = [f64::INFINITY; 2];
 
-/// The room that a tube along a vector leaves to the parts of the joint that carries it.
+/// The largest widths of gear and motor that fit to a tube. The tube has the section `section` and runs along
+/// `vector_m` \[m\]. The gear and the motor belong to `joint`, the joint inboard of it.
 pub(super) fn room(joint: &AskedJoint, vector_m: &Vector3<f64>, section: &Section) -> Widths {
     let AskedFit { gear_to_link_max, motor_in_link, .. } = joint.fit;
     let [mut gear_m, mut motor_m] = ANY_WIDTH;
@@ -40,8 +42,8 @@ pub(super) fn room(joint: &AskedJoint, vector_m: &Vector3<f64>, section: &Sectio
     [gear_m, motor_m]
 }
 
-/// Width of a tube in the plane in which a joint turns it. A joint whose axis is along the tube, within the angle at which
-/// section frames change, sees its smaller side.
+/// Width of a tube in the plane in which a joint turns it \[m\]. If the joint's axis is along the tube (within the
+/// angle at which section frames change), it is the smaller of the two outer sizes.
 fn width_m(axis: &Vector3<f64>, vector_m: &Vector3<f64>, section: &Section) -> f64 {
     let frame = section_frame(vector_m);
     let (width_m, height_m) = section.outer_m();

@@ -1,24 +1,23 @@
-//! An index of the rows of a front: which frequency does a design need so that no row is as good?
+//! An index of a front that tells up to which frequency a design of known mass and deflection is dominated.
 
 use crate::pareto::objectives::Objectives;
 
-/// Objectives closer than this count as equal (relative).
+/// Relative difference up to which two objectives count as equal.
 const TIE: f64 = 1e-9;
-/// A design of the front must be better by this in one objective to discard a box (relative).
+/// A design of the front discards a box only if it is better by this margin in at least one objective (relative).
 const BETTER: f64 = 1e-7;
 
-/// The designs of a front, sorted by mass. The index finds the highest frequency among the designs up to a mass and a
-/// deflection.
-///
-/// Position `i` of `blocks` (from 1, as in a Fenwick tree) stands for the last `i & -i` designs up to the `i`-th:
-/// their deflections in ascending order, each with the highest frequency of the designs that deflect no more.
+/// The designs of a front, sorted by mass, in a form in which the highest frequency among the designs up to a given
+/// mass and deflection is found quickly. `blocks` is a Fenwick tree with positions counted from 1. Position `i` holds
+/// the last `i & -i` designs up to the `i`-th: their deflections in ascending order, each with the highest frequency of
+/// those designs of the block that deflect no more.
 pub(super) struct FrontIndex {
     masses_kg: Vec<f64>,
     blocks: Vec<Vec<(f64, f64)>>,
 }
 
 impl FrontIndex {
-    /// Sorts the designs of a front.
+    /// Builds the index of a front's designs.
     pub(super) fn new(front: &[Objectives]) -> Self {
         let mut rows = front.to_vec();
         rows.sort_by(|a, b| a.mass_kg.total_cmp(&b.mass_kg));
@@ -40,8 +39,8 @@ impl FrontIndex {
         }
     }
 
-    /// Highest frequency among the designs of the front that weigh no more and deflect no more \[Hz\]; zero if there
-    /// is none.
+    /// Highest frequency \[Hz\] among the designs of the front with at most this mass and at most this deflection;
+    /// zero if there is none.
     fn highest_hz(&self, mass_kg: f64, tip_m: f64) -> f64 {
         let mut end = self.masses_kg.partition_point(|row| *row <= mass_kg);
         let mut highest = 0.0f64;
@@ -54,9 +53,9 @@ impl FrontIndex {
         highest
     }
 
-    /// Greatest frequency at which a design of this mass and deflection is dominated by a design of the front \[Hz\].
-    /// The dominating design is no worse in all three objectives, with ties counted in its favour, and better in one.
-    /// Zero if there is no such frequency.
+    /// Highest frequency \[Hz\] up to which a design of this mass and this deflection is dominated by a design of the
+    /// front. The dominating design is no worse in all three objectives, with ties counted in its favour, and better in
+    /// one. Zero if the design is dominated at no frequency.
     pub(super) fn beaten_up_to_hz(&self, mass_kg: f64, tip_m: f64) -> f64 {
         let lighter = self.highest_hz(mass_kg * (1.0 - BETTER), tip_m * (1.0 + TIE));
         let stiffer = self.highest_hz(mass_kg * (1.0 + TIE), tip_m * (1.0 - BETTER));
@@ -64,7 +63,7 @@ impl FrontIndex {
         (lighter.max(stiffer) * (1.0 + TIE)).max(as_good * (1.0 - BETTER))
     }
 
-    /// Whether a design of the front dominates a design.
+    /// Whether some design of the front dominates `design`.
     pub(super) fn beats(&self, design: &Objectives) -> bool {
         design.lowest_mode_hz <= self.beaten_up_to_hz(design.mass_kg, design.tip_deflection_m)
     }

@@ -1,4 +1,4 @@
-//! What a search has come to, and what ends it early.
+//! Counters of a search, and the conditions that end it early.
 
 use super::parts_box::Design;
 use std::collections::BTreeSet;
@@ -6,7 +6,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-/// The search stops when more single designs than this are left: the front checked is then far from complete.
+/// The search stops when it has reached more single designs than this. The front that is checked is then far from
+/// complete.
 const MOST_DESIGNS: usize = 200_000;
 
 /// Number of boxes that a search has bounded, and number of those that it left open.
@@ -22,11 +23,11 @@ impl Found {
     }
 }
 
-/// The designs that a search has reached, and the conditions that end it early.
+/// The designs that a search has reached, together with the conditions that end it early.
 pub(super) struct Halt<'s> {
     pub stop: &'s AtomicBool,
     pub deadline: Option<Instant>,
-    /// Single designs that no bound discarded, and their number.
+    /// Single designs that no bound discarded. `count` is their number, which can be read without a lock.
     pub designs: Mutex<BTreeSet<Design>>,
     pub count: AtomicUsize,
 }
@@ -37,7 +38,8 @@ impl Halt<'_> {
         self.count.load(Ordering::Relaxed) > MOST_DESIGNS || self.out_of_time()
     }
 
-    /// Stores a design. It may have been found in another region already.
+    /// Stores a design that no bound discarded; `None` stores nothing. The designs are a set, because the same design
+    /// may be found in several regions.
     pub(super) fn note(&self, design: Option<Design>) {
         let mut designs = self.designs.lock().unwrap_or_else(PoisonError::into_inner);
         designs.extend(design);

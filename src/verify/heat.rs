@@ -1,54 +1,58 @@
 //! Whether a motor overheats over the cycle of its joint (docs/sizing.md, "Motor heat").
 //!
-//! Every phase is worked out by itself, once for a joint that lifts its load and once for one that lowers it: the torque
-//! at the joint in the direction of motion, then that of the motor, with the losses of the gear against whichever side
-//! drives. The worse of the two directions counts. The search uses a formula for lifting alone.
+//! Each phase is computed separately, once for a joint that lifts its load and once for one that lowers it. The
+//! torque at the joint in the direction of motion comes first, then the torque of the motor. The losses of the gear
+//! act against whichever side drives. The worse of the two directions counts. The search itself uses a formula for
+//! lifting alone.
 
 use super::question::{AskedDutyPhase, AskedStage};
 use crate::catalog::gear::{Gear, GearKind};
 use crate::catalog::motor::Motor;
 use std::f64::consts::PI;
 
-/// Torque of a motor as a share of what it gives continuously. Smaller numbers are better.
+/// Numbers of a drive from which the heat of its motor follows. They are torques of the motor divided by its continuous
+/// torque. Smaller numbers are better.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct MotorHeat {
-    /// For each newton metre at the joint that the motor drives.
+    /// Motor torque for each newton metre at the joint, where the motor drives the joint \[1/(N m)\].
     driving: f64,
-    /// For each newton metre at the joint that drives the motor.
+    /// Motor torque for each newton metre at the joint, where the joint drives the motor \[1/(N m)\].
     driven: f64,
-    /// For the acceleration of rotor and wave generator.
+    /// Motor torque that accelerates rotor and wave generator, as a fraction of the continuous torque.
     own: f64,
-    /// Mean square over a duty that is stated in numbers.
+    /// Mean square of the motor torque over a duty that the study states in numbers; 0 without one.
     stated: f64,
 }
 
-/// Torques and time shares of a cycle.
+/// What a joint asks of its motor over the cycle: torques at the joint and fractions of the cycle's time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct HeatDemand {
     pub static_nm: f64,
     pub linear_nm: f64,
     pub shares: CycleShares,
-    /// Factor on the mean square: room for rounding.
+    /// Factor on the mean square: a margin for rounding.
     pub room: f64,
 }
 
-/// Time shares of the phases of a cycle.
+/// Fraction of the cycle's time in each kind of phase.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct CycleShares {
     pub ramp_up: f64,
-    /// With the square of the fraction of the static torque.
+    /// Travel at constant speed. A phase with a stated fraction of the static torque counts times the square of
+    /// this fraction.
     pub travel: f64,
     pub ramp_down: f64,
-    /// With the square of the fraction; 0 if a brake holds the joint.
+    /// Rest, weighted with the square of its fraction of the static torque in the same way; 0 if a brake holds the
+    /// joint.
     pub rest: f64,
 }
 
 impl MotorHeat {
-    /// A motor that nothing heats.
+    /// A motor that is never too hot: all torques are zero.
     pub(super) const NONE: Self = Self { driving: 0.0, driven: 0.0, own: 0.0, stated: 0.0 };
 
-    /// The numbers of a drive whose joint cruises at a speed \[rad/s\], reached with an acceleration \[rad/s²\], or has a duty of
-    /// its own; `None` if the catalog leaves blank what they need.
+    /// The numbers of a drive with this gear and motor. The joint cruises at `speed_rad_s`, which it reaches with
+    /// `acceleration_rad_s2`, or has the stated duty `stated`. `None` if the catalog leaves a needed number blank.
     pub(super) fn of(
         (gear, motor, stage): (&Gear, &Motor, &AskedStage),
         speed_rad_s: f64,
@@ -72,13 +76,14 @@ impl MotorHeat {
         Some(Self { stated: stated.sum(), ..heat })
     }
 
-    /// Whether the root mean square of the motor's torque is within its continuous torque.
+    /// Whether the root mean square of the motor's torque over the cycle is within its continuous torque.
     pub(super) fn holds(&self, asked: &HeatDemand) -> bool {
         let worse = self.mean_square(asked, 1.0).max(self.mean_square(asked, -1.0));
         (worse + self.stated) * asked.room <= 1.0
     }
 
-    /// Mean square over the cycle of a joint that lifts its load (`against` is 1) or lowers it (-1).
+    /// Mean square over the cycle of the motor's torque, as a fraction of the continuous torque, if the joint lifts
+    /// its load (`against` is 1) or lowers it (-1).
     fn mean_square(&self, asked: &HeatDemand, against: f64) -> f64 {
         let (static_nm, linear_nm) = (against * asked.static_nm, asked.linear_nm);
         let square = |share: f64, joint_nm: f64, own: f64| {
@@ -92,12 +97,13 @@ impl MotorHeat {
             + asked.shares.rest * standing * standing
     }
 
-    /// Torque of the motor for a torque at the joint in the direction of motion; a negative one drives the motor.
+    /// Torque of the motor, as a fraction of its continuous torque, for the torque `joint_nm` at the joint in the
+    /// direction of motion. If that torque is negative, the joint drives the motor.
     fn at_motor(&self, joint_nm: f64) -> f64 {
         joint_nm * if joint_nm < 0.0 { self.driven } else { self.driving }
     }
 
-    /// The smaller of each number.
+    /// For each number, the smaller one of these and of `other`. The result is at least as good as both.
     pub(super) fn min(&self, other: &Self) -> Self {
         Self {
             driving: self.driving.min(other.driving),
@@ -107,7 +113,7 @@ impl MotorHeat {
         }
     }
 
-    /// Whether no number is larger than that of another drive.
+    /// Whether each number is at most that of `other`, so that this motor passes whenever the other one does.
     pub(super) fn covers(&self, other: &Self) -> bool {
         self.driving <= other.driving
             && self.driven <= other.driven
@@ -116,7 +122,7 @@ impl MotorHeat {
     }
 }
 
-/// Efficiency of a gear; a direct drive loses nothing.
+/// Efficiency of a gear (1 is no loss). A direct drive has 1. `None` if the catalog leaves it blank.
 pub(super) fn efficiency(gear: &Gear) -> Option<f64> {
     gear.efficiency.or((gear.kind == GearKind::Direct).then_some(1.0))
 }
@@ -128,7 +134,7 @@ pub(super) fn input_inertia_kgm2(gear: &Gear, motor: &Motor, stage: &AskedStage)
     Some(motor.rotor_inertia_kgm2? + stage.inertia_kgm2 + at_gear_kgm2 / stage.ratio.powi(2))
 }
 
-/// The largest torque that a motor gives at every speed from rest to a speed.
+/// The largest torque that a motor can give at every speed from rest up to this speed \[N m\].
 pub(super) fn peak_nm(motor: &Motor, speed_rpm: f64) -> Option<f64> {
     let points: Vec<(f64, f64)> =
         motor.curve.iter().filter_map(|p| Some((p.speed_rpm, p.peak_torque_nm?))).collect();
@@ -137,7 +143,8 @@ pub(super) fn peak_nm(motor: &Motor, speed_rpm: f64) -> Option<f64> {
     least.or(motor.peak_torque_nm)
 }
 
-/// A torque on a curve of speeds and torques, level beyond its ends; `None` without points.
+/// Torque at `speed_rpm`, interpolated linearly between the points (speed \[rpm\], torque \[N m\]) of a curve. Beyond
+/// the ends it is constant. `None` without points.
 fn on_curve(points: &[(f64, f64)], speed_rpm: f64) -> Option<f64> {
     let (first, last) = (points.first()?, points.last()?);
     let between = points.windows(2).find(|pair| (pair[0].0..=pair[1].0).contains(&speed_rpm));
@@ -151,7 +158,8 @@ fn on_curve(points: &[(f64, f64)], speed_rpm: f64) -> Option<f64> {
     })
 }
 
-/// What a motor gives continuously at a speed: by its curve, else its rated torque, beyond the rated speed its rated power.
+/// Torque that a motor gives continuously at a speed \[N m\]: from its torque curve, or else its rated torque.
+/// Beyond the rated speed it is limited by the rated power.
 pub(super) fn continuous_nm(motor: &Motor, speed_rpm: f64) -> Option<f64> {
     let points: Vec<(f64, f64)> =
         motor.curve.iter().filter_map(|p| Some((p.speed_rpm, p.continuous_torque_nm?))).collect();
@@ -162,24 +170,24 @@ pub(super) fn continuous_nm(motor: &Motor, speed_rpm: f64) -> Option<f64> {
     Some(motor.rated_torque_nm? / beyond)
 }
 
-/// A phase of a stated duty as its motor feels it.
+/// One phase of a stated duty: torque and acceleration at the joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct StatedPhase {
-    /// Share of the time.
+    /// Fraction of the duty's time.
     share: f64,
     torque_nm: f64,
     acceleration_rad_s2: f64,
 }
 
 impl StatedPhase {
-    /// Whether the joint speeds up.
+    /// Whether the joint speeds up in this phase.
     pub(super) fn speeds_up(&self) -> bool {
         self.acceleration_rad_s2 > 0.0
     }
 }
 
-/// The phases of a stated duty. A phase at half the speed of its successor or predecessor is the ramp between rest and that
-/// speed. With a brake, phases at rest need no motor.
+/// The phases of a stated duty. A phase at half the speed of the one after or before it is taken as the ramp
+/// between rest and that speed. With a brake, phases at rest need no motor torque and are left out.
 pub(super) fn stated_phases(duty: &[AskedDutyPhase], has_brake: bool) -> Vec<StatedPhase> {
     let whole_s: f64 = duty.iter().map(|phase| phase.time_s).sum();
     let full_rad_s = |place: usize| duty[place % duty.len()].speed_rpm * PI / 30.0;

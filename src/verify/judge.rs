@@ -1,8 +1,8 @@
-//! One design by the full model, and whether it holds.
+//! Evaluation of one design by the full model, with all checks and limits.
 //!
-//! The arm of a design is built from the question's own numbers and the catalog rows of its drives; statics and modes are
-//! those of `mechanics`, the full model that `armwright analyze` uses. What drives and tubes are asked for comes from
-//! this room's sums, with each weight known.
+//! The arm of a design is built from the question's own numbers and the catalog rows of its drives. Statics and
+//! modes are those of `mechanics`, the full model that `armwright analyze` uses. The demands on drives and tubes
+//! are computed by this folder, with each weight known exactly.
 
 use super::bound::Members;
 use super::carriers::carriers;
@@ -22,7 +22,7 @@ use std::sync::Arc;
 /// The part that a design has at one piece of the chain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Pick {
-    /// The part that the question gives, or that its rule determines: the lightest drive that holds.
+    /// The part that the question gives, or that its rule determines: the lightest drive that meets the demand.
     Given,
     /// A drive of the catalogs, given by the indices of its gear and motor.
     Drive {
@@ -31,14 +31,14 @@ pub enum Pick {
         /// Index of the motor in the catalogs.
         motor: usize,
     },
-    /// A tube, given by its index in the list of the link.
+    /// A tube, given by its index in the link's list of tubes.
     Tube(usize),
 }
 
 /// A design that meets every check and every limit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judged {
-    /// The part at each piece, base to tip. Drives that the first-fit rule determined are named.
+    /// The part at each piece, base to tip. Drives that the first-fit rule determined are named in full.
     pub picks: Vec<Pick>,
     /// The objectives of the design by the full model.
     pub objectives: Objectives,
@@ -51,7 +51,7 @@ pub struct Judge<'q> {
     pub(super) offers: Vec<JointOffers>,
 }
 
-/// The drive that a design has at a joint, with its range for the bounds.
+/// The drive that was determined for a joint of a design, and its numbers as the bounds need them.
 struct Fitted {
     range: DriveRange,
     pick: Pick,
@@ -69,11 +69,11 @@ impl<'q> Judge<'q> {
         self.question
     }
 
-    /// Judges a design. `None` if it does not hold, if it is not a design of the question, or if it names another
-    /// drive than the lightest that holds.
+    /// Judges a design. `None` if it fails a check or a limit, if it is not a design of the question, or if a joint
+    /// with the first-fit rule names another drive than the lightest that passes.
     ///
-    /// A torque within 1e-9 (relative) of what a drive holds counts as held, and so does a stress that close to its
-    /// limit.
+    /// A torque that exceeds a rating by less than 1e-9 (relative) still passes, and so does a stress that close to
+    /// its limit.
     pub fn judge(&self, picks: &[Pick]) -> Option<Judged> {
         let tubes = self.tubes(picks)?;
         let picks = self.with_drives(picks, &tubes)?;
@@ -88,8 +88,8 @@ impl<'q> Judge<'q> {
         holds.then_some(Judged { picks, objectives })
     }
 
-    /// The design with every drive replaced by the first drive of equal mass, torsion curve and tilt. Two designs differ
-    /// only in such drives if the result is the same for both.
+    /// The design with every drive replaced by the first drive of equal mass, torsion curve and bearing stiffness.
+    /// If the result is the same for two designs, they differ only in drives that tie.
     pub fn first_tie(&self, picks: &[Pick]) -> Vec<Pick> {
         let mut joints = self.offers.iter();
         let first = |(piece, pick): (&AskedPiece, &Pick)| {
@@ -103,7 +103,8 @@ impl<'q> Judge<'q> {
         self.question.pieces.iter().zip(picks).map(first).collect()
     }
 
-    /// The tubes of a design, each as a range of one tube, base to tip; `None` if a tube is too slender.
+    /// The tubes of a design, base to tip, each as a range of a single tube. `picks` are the parts of the design.
+    /// `None` if a tube is too slender.
     fn tubes(&self, picks: &[Pick]) -> Option<Vec<TubeRange>> {
         let (question, waters): (_, &[Option<Water>]) = (self.question, &self.skeleton.waters);
         let mut tubes = Vec::new();
@@ -128,8 +129,8 @@ impl<'q> Judge<'q> {
         Some(tubes)
     }
 
-    /// Checks from the tip inward whether every drive holds what is outboard of it, and names the drives of joints
-    /// with the first-fit rule. `None` if a drive does not hold.
+    /// Checks from the tip inward whether every drive meets the demand of everything outboard of it. Returns the parts
+    /// `picks` with the drives of the joints that take the lightest one filled in. `None` if a drive or a tube fails.
     fn with_drives(&self, picks: &[Pick], tubes: &[TubeRange]) -> Option<Vec<Pick>> {
         let pieces = self.question.pieces.iter().enumerate();
         let places: Vec<usize> = pieces
@@ -148,7 +149,8 @@ impl<'q> Judge<'q> {
         self.skeleton.strong_enough(&members).then_some(out)
     }
 
-    /// The drive of a joint; `None` if it does not hold. Everything outboard must be known.
+    /// The drive of a joint, as `pick` names it or as the first-fit rule determines it. `None` if it fails a check. The
+    /// drives outboard of the joint must be set in `members`.
     fn fitted(&self, joint: usize, pick: &Pick, members: &Members) -> Option<Fitted> {
         let offers = match &self.offers[joint] {
             JointOffers::Given { law, tilt_rad_per_nm, mass_kg } => {
@@ -164,7 +166,7 @@ impl<'q> Judge<'q> {
             (false, _) => offers.first_fit(&least)?,
         };
         if !offers.is_choice {
-            // none before it may hold for certain
+            // a drive before it in the list must not surely pass, or it would be the first that fits
             let before = offers.offers.iter().take_while(|other| *other != offer);
             before.into_iter().all(|other| !other.ratings.hold(&most)).then_some(())?;
         }
@@ -207,7 +209,7 @@ impl<'q> Judge<'q> {
         worst
     }
 
-    /// Cost of the chosen tubes, tip first \[EUR\]. Material of unknown cost counts as zero.
+    /// Cost of the chosen tubes \[EUR\]. Material of unknown cost counts as zero.
     fn material_cost_eur(&self, picks: &[Pick]) -> f64 {
         let costs = self.question.pieces.iter().zip(picks).rev().filter_map(|(piece, pick)| match piece {
             AskedPiece::Choice(choice) => {

@@ -1,8 +1,9 @@
-//! Where joints, tubes and masses are in a pose, and how every coordinate moves a point.
+//! Where joints, tubes and masses are in a pose, and how each coordinate moves a point.
 //!
-//! The coordinates are the twist of a joint, its tilts about two axes across, the tilt of an effect's spring and, for each tube, constant and linear curvature in
-//! both planes, and constant shear, twist and stretch. The full model has all of these, and more. A body that can move in
-//! fewer ways is stiffer, so its lowest mode is no lower than that of the full model.
+//! The coordinates are the angle of torsion of each joint, its tilts about two axes across, the springs of effects
+//! and of prismatic joints and, for each tube, constant and linear curvature in both planes, and constant shear,
+//! torsion and stretch. The full model has all of these, and more. A model with fewer ways to deform is stiffer, so
+//! its lowest mode is no lower than that of the full model.
 
 use crate::arm::LinkModel;
 use crate::arm::body::RigidBody;
@@ -13,15 +14,15 @@ use crate::mechanics::beam::section_frame;
 use crate::mechanics::chain::across;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
-/// Rank of the springs of the base.
+/// Rank of the springs on which the arm stands. No piece has a lower rank.
 const BASE_RANK: usize = 0;
 
-/// Rank of a piece's springs, and of what stays inboard of them, in the order from base to tip.
+/// Rank of the springs of a piece, and of masses inboard of these springs. Ranks order all elements from base to tip.
 fn spring_rank(piece: usize) -> usize {
     3 * piece + 1
 }
 
-/// Rank of a piece in that order. Its springs come before it.
+/// Rank of a piece itself. It is higher than the rank of the piece's springs, which are inboard of it.
 fn piece_rank(piece: usize) -> usize {
     3 * piece + 2
 }
@@ -31,11 +32,11 @@ pub(super) struct PlacedJoint {
     pub rank: usize,
     pub at_m: Vector3<f64>,
     pub axis: Vector3<f64>,
-    /// The axes about which its bearing tilts.
+    /// The two axes about which the bearing of the joint tilts.
     pub across: [Vector3<f64>; 2],
 }
 
-/// A tube in a pose; the frame's columns are its axis and the section's y and z.
+/// A tube in a pose. The columns of `frame` are the axis of the tube and the y and z axes of its section.
 pub(super) struct PlacedTube {
     pub rank: usize,
     pub root_m: Vector3<f64>,
@@ -43,14 +44,14 @@ pub(super) struct PlacedTube {
     pub length_m: f64,
 }
 
-/// A mass that no choice changes.
+/// A rigid mass that is the same in all designs.
 pub(super) struct PlacedMass {
-    /// The point of the arm with which it moves.
+    /// The point of the arm with which the mass moves.
     pub carrier: Point,
-    /// Way from that point to the centre of the mass \[m\].
+    /// Vector from that point to the centre of mass \[m\].
     pub arm_m: Vector3<f64>,
     pub mass_kg: f64,
-    /// Inertia about the centre, in axes of the world \[kg m²\].
+    /// Inertia about the centre of mass, in axes of the world \[kg m²\].
     pub inertia_kgm2: Matrix3<f64>,
 }
 
@@ -60,13 +61,13 @@ impl PlacedMass {
         Self { carrier, arm_m, mass_kg: body.mass_kg, inertia_kgm2 }
     }
 
-    /// Place of its centre in the world \[m\].
+    /// Position of the centre of mass in the world \[m\].
     pub(super) fn centre_m(&self) -> Vector3<f64> {
         self.carrier.at_m + self.arm_m
     }
 
-    /// Whether its weight is on the section of the arm at a point. At the root of a tube every body of the tube is, at the
-    /// end of the tube none.
+    /// Whether the mass loads the section of the arm at `point`. At the root of a tube all bodies of the tube load the
+    /// section, at its end none does.
     pub(super) fn is_outboard_of(&self, point: &Point) -> bool {
         match (self.carrier.rank.cmp(&point.rank), self.carrier.inside_m, point.inside_m) {
             (std::cmp::Ordering::Equal, Some(mass_m), Some(x)) => mass_m > x || x == 0.0,
@@ -75,19 +76,20 @@ impl PlacedMass {
     }
 }
 
-/// A spring that no choice changes: of an effect, or of a prismatic joint. It tilts everything outboard about an axis, or
-/// `slides` it along the axis.
+/// A spring that is the same in all designs: of an effect, or of a prismatic joint. It tilts everything outboard of
+/// it about an axis or, with `slides`, moves it along the axis.
 pub(super) struct PlacedSpring {
     pub rank: usize,
     pub at_m: Vector3<f64>,
     pub axis: Vector3<f64>,
     pub slides: bool,
-    /// Tilt per moment \[rad/(N m)\], or way per force \[m/N\].
+    /// Tilt per moment \[rad/(N m)\], or displacement per force \[m/N\] if the spring slides.
     pub compliance: f64,
 }
 
 impl PlacedSpring {
-    /// Displacement and rotation of a point outboard per unit of the spring.
+    /// Displacement and rotation of the point `at_m`, which is outboard of the spring, per unit of the spring's
+    /// coordinate.
     pub(super) fn way(&self, at_m: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
         match self.slides {
             true => (self.axis, Vector3::zeros()),
@@ -96,7 +98,7 @@ impl PlacedSpring {
     }
 }
 
-/// An arm in a pose, base to tip.
+/// The geometry of an arm in a pose. All lists are ordered from base to tip.
 pub(super) struct Layout {
     pub joints: Vec<PlacedJoint>,
     pub tubes: Vec<PlacedTube>,
@@ -129,7 +131,7 @@ impl Layout {
                     layout.joints.push(PlacedJoint { rank, at_m, axis, across: across(&axis) });
                     let angle = entries.next().copied().unwrap_or_default().to_radians();
                     rotation *= Rotation3::from_axis_angle(&joint.axis, angle);
-                    // outboard of the joint, and inboard of whatever comes next
+                    // these bodies are outboard of the joint, and inboard of the next piece
                     layout.add_bodies(piece_rank(place) + 1, &joint.bodies.rotating, &rotation);
                 }
                 Piece::Prismatic(joint) => {
@@ -146,8 +148,8 @@ impl Layout {
         layout
     }
 
-    /// Adds the springs on which the arm stands. They are inboard of the first piece, but in the list they come after
-    /// the springs of that piece.
+    /// Adds the springs on which the arm stands, such as those of a base that tilts. They are inboard of the first
+    /// piece, although the list has them after the springs of that piece.
     fn add_base(&mut self, structure: &Structure) {
         let fixed = structure.base_frame.springs();
         let level = [Vector3::x(), Vector3::y()].map(|axis| (axis, structure.base_tilt_rad_per_nm));
@@ -160,7 +162,8 @@ impl Layout {
         }
     }
 
-    /// Adds a prismatic joint: what stays and its springs, then what travels.
+    /// Adds the prismatic joint `joint`, the piece with the number `place`, at its travel `travel_m`: the fixed mass
+    /// with the springs of guide and drive, then the moving mass.
     fn add_prismatic(
         &mut self,
         place: usize,
@@ -185,8 +188,9 @@ impl Layout {
         self.add_bodies(piece_rank(place), &joint.bodies.rotating, rotation);
     }
 
-    /// Adds springs at the end of the chain so far, about axes in the world frame. Springs that do not yield are left
-    /// out.
+    /// Adds rotational springs at the present end of the chain. `springs` holds the axis of each in the world and its
+    /// compliance \[rad/(N m)\]. Springs without compliance are left out. `place` is the number of the piece to which
+    /// they belong.
     fn add_springs(&mut self, place: usize, springs: &[(Vector3<f64>, f64)]) {
         for &(axis, rad_per_nm) in springs.iter().filter(|(_, rad_per_nm)| *rad_per_nm > 0.0) {
             let (rank, at_m, compliance) = (spring_rank(place), self.tip_m, rad_per_nm);
@@ -205,7 +209,8 @@ impl Layout {
         }
     }
 
-    /// Adds bodies whose element begins at the end of the chain so far.
+    /// Adds rigid bodies whose positions are measured from the present end of the chain. `rank` is their place in the
+    /// order from base to tip.
     fn add_bodies(&mut self, rank: usize, bodies: &[RigidBody], rotation: &Rotation3<f64>) {
         for body in bodies {
             let carrier = Point { at_m: self.tip_m, rank, inside_m: None };
@@ -213,7 +218,8 @@ impl Layout {
         }
     }
 
-    /// Adds the bodies of a tube that begins at the end of the chain so far. Each moves with the nearest point of the axis.
+    /// Adds the bodies of a tube whose root is the present end of the chain. Each body moves with the point of the
+    /// tube's axis that is nearest to it.
     fn add_bodies_on_tube(&mut self, rank: usize, link: &LinkPiece, rotation: &Rotation3<f64>) {
         let length_m = link.vector_m.norm();
         for body in &link.bodies {
@@ -253,24 +259,24 @@ pub(super) fn has_line(link: &LinkPiece) -> bool {
     link.beam.is_some() || has_cables
 }
 
-/// A point of the arm. Everything of a lower rank is inboard of it. If it lies in a tube, its rank is that of the
+/// A point of the arm. Everything of a lower rank is inboard of the point. A point in a tube has the rank of that
 /// tube.
 #[derive(Clone, Copy)]
 pub(super) struct Point {
     pub at_m: Vector3<f64>,
     pub rank: usize,
-    /// Distance from the root of the tube that the point is in \[m\].
+    /// Distance from the root of the tube in which the point lies \[m\]; `None` if it lies in no tube.
     pub inside_m: Option<f64>,
 }
 
-/// A way in which a tube yields.
+/// One way in which a tube deforms.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Shape {
-    /// Curvature that moves the tube along z: constant, or falling linearly from 1 at the root to -1 at the end.
+    /// Curvature that bends the tube in z: constant, or falling linearly from 1 at the root to -1 at the end.
     BendZ {
         linear: bool,
     },
-    /// Curvature that moves the tube along y, in the same two forms.
+    /// Curvature that bends the tube in y: constant, or falling linearly from 1 at the root to -1 at the end.
     BendY {
         linear: bool,
     },
@@ -289,15 +295,15 @@ const BENDING: [Shape; 4] = [
 const REST: [Shape; 4] = [Shape::ShearZ, Shape::ShearY, Shape::Twist, Shape::Stretch];
 
 impl Shape {
-    /// Displacement and rotation of the section at `x` per unit of the shape, in the tube's frame. The root is
-    /// clamped.
+    /// Displacement and rotation of the section at the distance `x` from the root, per unit of the shape, in the
+    /// tube's frame. The root is clamped.
     fn field(self, x: f64, length_m: f64) -> (Vector3<f64>, Vector3<f64>) {
         let slope = |linear: bool| if linear { x - x * x / length_m } else { x };
         let moved =
             |linear: bool| if linear { x * x / 2.0 - x.powi(3) / (3.0 * length_m) } else { x * x / 2.0 };
         let none = Vector3::zeros();
         match self {
-            // a rotation about y lowers the end, one about z moves it along y
+            // a positive rotation about y moves the end along -z, one about z moves it along y
             Shape::BendZ { linear } => {
                 (Vector3::new(0.0, 0.0, moved(linear)), Vector3::new(0.0, -slope(linear), 0.0))
             }
@@ -312,7 +318,7 @@ impl Shape {
     }
 
     /// Index of the tube's stiffness that resists the shape, and the integral of the squared strain along the tube
-    /// \[m\].
+    /// \[m\]. Their product is the stiffness of the coordinate.
     pub(super) fn stiffness(self, length_m: f64) -> (usize, f64) {
         let bending = |linear: bool| if linear { length_m / 3.0 } else { length_m };
         match self {
@@ -325,23 +331,24 @@ impl Shape {
     }
 }
 
-/// One way in which the arm yields.
+/// One way in which the arm deforms elastically, or a virtual motion (`Shift`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Coordinate {
-    /// Twist of a joint.
+    /// Angle of torsion of a joint.
     Joint(usize),
-    /// Tilt of a joint's bearing about one of two axes across.
+    /// Tilt of a joint's bearing about one of the two axes across the joint's axis.
     Tilt(usize, usize),
-    /// Displacement of all that is outboard of a joint along one of the two axes across, or along its axis. Nothing yields
-    /// like that: it tells forces.
+    /// Displacement of everything outboard of a joint along one of the two axes across, or along the joint's axis
+    /// (index 2). The arm does not deform in this way: the motion is a virtual one, from which forces follow.
     Shift(usize, usize),
-    /// A shape of a tube.
+    /// Deformation of a tube in one shape.
     Tube(usize, Shape),
-    /// Tilt or way of a spring that no choice changes.
+    /// Tilt or displacement of a spring that is the same in all designs.
     Spring(usize),
 }
 
-/// All coordinates of an arm, twists of joints first; the bearings of some joints may tilt.
+/// All coordinates (ways to deform) of an arm, those of the joints first. `model` tells which deformations of links
+/// count, and `tilting` tells for each joint whether its bearing may tilt.
 pub(super) fn coordinates(layout: &Layout, model: LinkModel, tilting: &[bool]) -> Vec<Coordinate> {
     let shapes: &[&[Shape]] = match model {
         LinkModel::Rigid => &[],
@@ -359,7 +366,8 @@ pub(super) fn coordinates(layout: &Layout, model: LinkModel, tilting: &[bool]) -
 }
 
 impl Layout {
-    /// Displacement and rotation of a point per unit of a coordinate, in the world frame.
+    /// Displacement and rotation of `point` per unit of `coordinate`, in the world frame. Zero if the point is inboard
+    /// of the element that deforms.
     pub(super) fn motion(&self, coordinate: Coordinate, point: &Point) -> (Vector3<f64>, Vector3<f64>) {
         let still = (Vector3::zeros(), Vector3::zeros());
         let turned = |axis: &Vector3<f64>, at_m| (axis.cross(&(point.at_m - at_m)), *axis);
@@ -387,8 +395,8 @@ impl Layout {
 }
 
 impl PlacedTube {
-    /// Displacement and rotation, per unit of a shape, of a point in the tube or outboard of it, in the world frame.
-    /// `None` for a point inboard of the tube.
+    /// Displacement and rotation of `point` per unit of a shape of this tube, in the world frame. The point lies in the
+    /// tube or outboard of it. `None` for a point inboard of the tube.
     fn motion(&self, shape: Shape, point: &Point) -> Option<(Vector3<f64>, Vector3<f64>)> {
         let world = |x: f64| {
             let (moved, turned) = shape.field(x, self.length_m);

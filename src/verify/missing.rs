@@ -1,10 +1,11 @@
-//! Looking for designs that belong beside the rows of a front.
+//! Search for designs that belong on a front and are missing from it.
 
 use super::boxes::Boxes;
 use super::drives::Ties;
 use super::front_index::FrontIndex;
 use super::halt::{Found, Halt};
 use super::judge::{Judge, Judged, Pick};
+use super::ledger::{Branch, Ledger};
 use super::offers::JointOffers;
 use super::parts_box::{Choice, Design};
 use super::question::{AskedPiece, Question};
@@ -19,28 +20,30 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, PoisonError};
 use std::time::Instant;
 
-/// Number of single designs that are judged at a time.
+/// Number of single designs that are judged together. After each batch, the search looks whether it must stop.
 const BATCH: usize = 4096;
-/// Largest number of designs for which all ties are listed. If there are more, one of each set of ties is listed.
+/// Largest number of designs up to which all ties are listed. If there are more, one design of each set of ties is
+/// listed.
 const MOST_TIES: f64 = 2e4;
 
-/// The result of looking for missing designs.
+/// The result of a search for missing designs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Looked {
-    /// The designs that hold and that no design of the front dominates. The front's own designs are among them.
+    /// The designs that pass all checks and limits and that no design of the front dominates. The front's own
+    /// designs are among them.
     pub candidates: Vec<Judged>,
-    /// Boxes bounded.
+    /// Number of boxes that were bounded.
     pub boxes: u64,
-    /// Boxes that were not bounded because the search was stopped.
+    /// Number of boxes and designs that were not examined because the search was stopped.
     pub open: u64,
     /// Whether the candidates include every design that ties with another.
     pub ties_listed: bool,
 }
 
-/// Whether the verifier's bounds are valid for a question.
+/// Checks whether the verifier's bounds are valid for a question.
 ///
 /// # Errors
-/// What the bounds do not take into account, in words.
+/// A sentence that names what the bounds do not take into account.
 pub fn conditions(question: &Question) -> Result<(), String> {
     match question.motion.grows() {
         true => Ok(()),
@@ -51,9 +54,10 @@ pub fn conditions(question: &Question) -> Result<(), String> {
 }
 
 impl Judge<'_> {
-    /// Looks for designs that belong on a front but are missing from it. The question must meet the [`conditions`].
+    /// Searches for designs that belong on a front but are missing from it. The question must meet the
+    /// [`conditions`].
     ///
-    /// The answer does not depend on the number of threads unless the search is stopped.
+    /// The result does not depend on the number of threads, unless the search is stopped.
     pub fn missing(
         &self,
         front: &[Objectives],
@@ -61,13 +65,26 @@ impl Judge<'_> {
         stop: &AtomicBool,
         deadline: Option<Instant>,
     ) -> Looked {
+        self.missing_since(&Ledger::default(), front, settings, (stop, deadline))
+    }
+
+    /// As [`missing`](Self::missing), except for the branches that the ledger says are done. It must be of the same question
+    /// and front.
+    pub fn missing_since(
+        &self,
+        ledger: &Ledger,
+        front: &[Objectives],
+        settings: Settings,
+        (stop, deadline): (&AtomicBool, Option<Instant>),
+    ) -> Looked {
         let index = FrontIndex::new(front);
-        let halt = Halt { stop, deadline, designs: Default::default(), count: Default::default() };
+        let designs = ledger.designs();
+        let halt = Halt { stop, deadline, count: designs.len().into(), designs: designs.into() };
         let found = match self.designs().is_none_or(|designs| designs > settings.regions_from) {
-            false => self.explore_boxes(&index, &halt),
+            false => self.explore_boxes(&index, &halt, ledger),
             true => {
                 let parts = self.skeleton.parts(self.question, &self.offers, Ties::Together);
-                let work = Work { front, index: &index, settings, halt: &halt };
+                let work = Work { front, index: &index, settings, halt: &halt, ledger };
                 RegionSearch::explore_all(Arc::clone(&self.skeleton), parts, &work)
             }
         };
@@ -83,11 +100,11 @@ impl Judge<'_> {
         looked
     }
 
-    fn explore_boxes(&self, front: &FrontIndex, halt: &Halt) -> Found {
+    fn explore_boxes(&self, front: &FrontIndex, halt: &Halt, ledger: &Ledger) -> Found {
         let parts = self.skeleton.parts(self.question, &self.offers, Ties::Apart);
         let boxes = Boxes::of(Arc::clone(&self.skeleton), parts);
-        let search = Search { boxes: &boxes, front, upper: UpperBound::OPEN, halt };
-        boxes.root().map_or_else(Found::default, |root| search.explore(&root))
+        let search = Search { boxes: &boxes, front, upper: UpperBound::OPEN, halt, ledger };
+        boxes.root().map_or_else(Found::default, |root| search.explore(&root, Branch::ROOT))
     }
 
     /// Number of designs of the question; `None` if it exceeds 128 bits.
@@ -101,7 +118,8 @@ impl Judge<'_> {
         drives.chain(tubes).try_fold(1u128, |product, options| product.checked_mul(options as u128))
     }
 
-    /// Judges designs, and returns those that hold and that no design of the front dominates.
+    /// Judges designs by the full model. Returns those that pass all checks and limits and that no design of the front
+    /// dominates. Each design is given by its options, one for each level.
     fn unbeaten(&self, designs: &[Vec<u32>], front: &FrontIndex) -> Vec<Judged> {
         let judged = designs.par_iter().filter_map(|options| self.judge(&self.picks(options)));
         judged.filter(|design| !front.beats(&design.objectives)).collect()
@@ -126,8 +144,8 @@ impl Judge<'_> {
     }
 }
 
-/// The options of each single design, in ascending order, and whether all ties are among them. If there are too many,
-/// one of each set of ties is returned.
+/// The options of each single design, in ascending order, and a flag that tells whether all ties are listed. If there
+/// are too many, one design of each set of ties is listed.
 fn one_by_one(designs: &BTreeSet<Design>) -> (Vec<Vec<u32>>, bool) {
     let count = |design: &Design| design.iter().map(|choice| choice.options.len() as f64).product::<f64>();
     let is_one = |design: &Design| count(design) == 1.0;

@@ -1,28 +1,31 @@
-//! A second proof that a front lacks no design.
+//! A second, independent proof that a front lacks no design.
 //!
-//! This room shares no code with the searches, so that a mistake there shows here. It is given the [`Question`] as
-//! plain data, and works out the rest by itself from catalog rows, the arm and its mechanics. What it shares with the
-//! searches is the reader of studies and catalogs, `arm`, and the full model of `mechanics`, which judges single
-//! designs.
+//! This folder shares no code with the searches, so that a mistake in a search shows up here. It is given the
+//! [`Question`] as plain data, and computes the rest by itself from catalog rows, the arm and its mechanics. It
+//! shares with the searches only the reader of studies and catalogs, `arm`, and the full model of `mechanics`,
+//! which judges single designs.
 //!
 //! A box is, for each level, a node of a binary tree over the level's options (`tree`). The members of a
 //! box are bounded by
 //!
 //! - *mass*: the sum of the least masses;
 //! - *demand on joints*: torques by lever arms, loads on bearings by couplings of two motions (`bearing_loads`). Every
-//!   weight and every inertia is an interval that enters each sum once (`span`, `pose`). A box is discarded if none of its drives holds the least demand. The drive that fits first holds the least demand,
-//!   and does not come after the fit of the greatest (`drives`);
+//!   weight and every inertia is an interval that enters each sum once (`span`, `pose`). A box is discarded if none of
+//!   its drives meets the least demand. The first drive that fits meets the least demand, and does not come after the
+//!   first drive that meets the greatest (`drives`);
 //! - *deflection*: the method of the unit load along a fixed direction. A displacement is at least as long
 //!   as its component along any direction (`bound`);
-//! - *lowest mode*: that of an arm as stiff as the stiffest and as light as the lightest number of the box
-//!   allows. It has fewer ways to move than the full model, so its lowest mode is no lower (`pencil`, `layout`).
+//! - *lowest mode*: the lowest mode of an ideal arm, which has every stiffness of the box at its greatest and every
+//!   inertia at its least. It has fewer coordinates than the full model, so its lowest mode is no lower (`pencil`,
+//!   `layout`).
 //!
-//! A box is discarded if no member holds, or if a row of the front is no worse in all three objectives and better
-//! in one (`front_index`). Otherwise one of its levels is halved (`search`). Single designs are left. The full model
-//! judges them: those that hold and that no row beats belong on the front (`judge`). So every design of the question is
-//! either in a discarded box, and then a row beats it or it does not hold, or it is among those judged.
+//! A box is discarded if no member meets its checks and limits, or if a design of the front dominates every member: it
+//! is no worse in all three objectives and better in one (`front_index`). Otherwise one level of the box is halved
+//! (`search`), until single designs are left. The full model judges these: those that meet all limits and that no
+//! design of the front dominates belong on the front (`judge`). So every design of the question is accounted for.
+//! Either it was judged by itself, or it was in a discarded box and is dominated or fails.
 //!
-//! Vast spaces are searched region by region (`region`).
+//! Very large spaces are searched region by region (`region`).
 
 pub(crate) mod bearing;
 pub(crate) mod bearing_loads;
@@ -40,6 +43,7 @@ pub(crate) mod halt;
 pub(crate) mod heat;
 pub(crate) mod judge;
 pub(crate) mod layout;
+pub(crate) mod ledger;
 pub(crate) mod missing;
 pub(crate) mod modes;
 pub(crate) mod offers;
@@ -59,6 +63,7 @@ pub(crate) mod upper_bound;
 
 pub use boxes::Boxes;
 pub use judge::{Judge, Judged, Pick};
+pub use ledger::{Keep, Ledger};
 pub use missing::{Looked, conditions};
 pub use parts_box::PartsBox;
 pub use question::{

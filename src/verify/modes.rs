@@ -1,20 +1,22 @@
-//! The slowest case of a box's stiffest and lightest arm.
+//! The judged case in which the ideal arm of a box (every stiffness greatest, every inertia least) vibrates
+//! slowest.
 
 use super::bound::{Members, ROUNDING};
 use super::pencil::{Factor, Pencil};
 use super::pose::Pose;
 use super::skeleton::Skeleton;
 
-/// The judged case in which the ideal arm of a box has the lowest frequency, with the arm's mode there.
+/// The judged case in which the ideal arm of a box has the lowest frequency, with the mode of the arm in that case.
 pub(super) struct Slow<'w> {
     pub pose: &'w Pose,
     pub mode: Vec<f64>,
-    /// Rayleigh quotient of the mode \[1/s²\].
+    /// Rayleigh quotient of the mode, strain energy over kinetic energy \[1/s²\].
     pub eigenvalue: f64,
 }
 
 impl Skeleton {
-    /// The judged case in which the ideal arm is slowest; `None` if its frequency is `hz` or less in some case.
+    /// The judged case in which the ideal arm of `members` has the lowest frequency. `None` if this frequency is at
+    /// most `hz`.
     pub(super) fn slowest(&self, members: &Members, hz: f64) -> Option<Slow<'_>> {
         let eigenvalue = eigenvalue_of(hz);
         if !eigenvalue.is_finite() {

@@ -1,4 +1,5 @@
-//! What the catalogs offer a joint: every drive that may be used, turns fast enough and has all numbers that are needed.
+//! The drives that the catalogs offer for a joint. A drive is offered if the study allows it, if it turns fast
+//! enough and if the catalog has all numbers that the checks need.
 
 use super::bearing::{BearingRatings, with_gear};
 use super::demand::Demand;
@@ -14,30 +15,30 @@ use crate::catalog::gear::Gear;
 use crate::catalog::motor::Motor;
 use std::collections::HashMap;
 
-/// A gear and a motor.
+/// A drive of the catalogs for one joint: a gear and a motor.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Offer {
     /// Index of the gear in the catalogs.
     pub gear: usize,
     /// Index of the motor in the catalogs.
     pub motor: usize,
-    /// Mass of gear, motor and extras.
+    /// Mass of gear, motor and the joint's extra parts \[kg\].
     pub mass_kg: f64,
-    /// Mass of gear and motor.
+    /// Mass of gear and motor \[kg\].
     pub drive_kg: f64,
     pub extras: Extras,
     /// The gear's torsion curve.
     pub windup: Windup,
     /// The output bearing of the joint with this gear.
     pub bearing: Option<Bearing>,
-    /// Joint law with this gear, effects included.
+    /// Torque-to-twist law of the joint with this gear, effects included.
     pub law: JointLaw,
-    /// Tilt of the bearing per moment across the axis, effects included \[rad/(N m)\].
+    /// Tilt of the output bearing per moment across the axis, effects included \[rad/(N m)\].
     pub tilt_rad_per_nm: f64,
     pub ratings: Ratings,
 }
 
-/// The drive of a joint: given by the study, or offered by the catalogs.
+/// The drive of a joint: given by the study, or to be found in the catalogs.
 pub(super) enum JointOffers {
     Given { law: JointLaw, tilt_rad_per_nm: f64, mass_kg: f64 },
     Catalog(CatalogOffers),
@@ -46,16 +47,17 @@ pub(super) enum JointOffers {
 /// The drives of the catalogs that a joint may have.
 pub(super) struct CatalogOffers {
     pub duty: Duty,
-    /// Whether the search may choose any drive that holds. Otherwise the joint takes the lightest drive that holds.
+    /// Whether the search may choose any drive that meets the demand. Otherwise the joint takes the lightest one
+    /// that does.
     pub is_choice: bool,
-    /// The drives, lightest first; those of equal mass by the names of gear and motor.
+    /// The drives, lightest first. Drives of equal mass are ordered by the names of gear and motor.
     pub offers: Vec<Offer>,
     /// Index in `offers` of the drive with this gear and motor.
     places: HashMap<(usize, usize), u32>,
 }
 
 impl JointOffers {
-    /// The drives of a joint; the tip is at most `reach_m` from its axis.
+    /// The drives that `joint` may have. `reach_m` is the largest distance of the tip from the joint's axis \[m\].
     pub(super) fn new(question: &Question, joint: &AskedJoint, reach_m: f64, catalogs: &Catalogs) -> Self {
         let springs = |curve, bearing| {
             let piece = question.joint_piece(joint, curve, bearing);
@@ -83,7 +85,7 @@ impl JointOffers {
         }
     }
 
-    /// Whether some drive makes the joint tilt.
+    /// Whether the output bearing can tilt with at least one of the drives.
     pub(super) fn tilts(&self) -> bool {
         match self {
             Self::Given { tilt_rad_per_nm, .. } => *tilt_rad_per_nm > 0.0,
@@ -91,7 +93,7 @@ impl JointOffers {
         }
     }
 
-    /// Whether a bearing may be too weak.
+    /// Whether the bearing has a limit with at least one of the drives.
     pub(super) fn checks_bearing(&self) -> bool {
         let limits = |offer: &Offer| offer.ratings.bearing != BearingRatings::UNLIMITED;
         self.of_catalog().is_some_and(|offers| offers.offers.iter().any(limits))
@@ -99,12 +101,13 @@ impl JointOffers {
 }
 
 impl Offer {
-    /// The numbers of the drive as a range of one.
+    /// The numbers of the drive as a range that has only this drive.
     pub(super) fn range(&self) -> DriveRange {
         DriveRange::of(&self.law, self.tilt_rad_per_nm, self.mass_kg)
     }
 
-    /// Whether no objective tells two drives of equal mass apart.
+    /// Whether this drive and the drive `other`, which have equal mass, have the same stiffness in torsion and tilt.
+    /// Then no objective tells them apart.
     fn yields_like(&self, other: &Self) -> bool {
         self.law == other.law && self.tilt_rad_per_nm == other.tilt_rad_per_nm
     }
@@ -153,8 +156,8 @@ fn offers(
     offers
 }
 
-/// Mass of gear and motor \[kg\], rounded to the microgram. Sums that are equal on paper are then equal here, as ties
-/// require. `None` if a mass is unknown.
+/// Mass of gear and motor \[kg\], rounded to the microgram. Sums that are equal on paper are then equal in floating
+/// point, as ties require. `None` if a mass is unknown.
 fn drive_kg(allowed: &AllowedParts, gear: &Gear, motor: &Motor) -> Option<f64> {
     const PER_KG: f64 = 1e9;
     Some(((gear.mass_kg(allowed.gear_mass)? + motor.mass_kg?) * PER_KG).round() / PER_KG)
@@ -184,8 +187,8 @@ fn torsion_curve(gear: &Gear, joint: &AskedJoint) -> Option<Windup> {
 }
 
 impl CatalogOffers {
-    /// Indices of the drives that can be the lightest that holds. A drive cannot be if a lighter drive has ratings at
-    /// least as large in every quantity.
+    /// Indices of the drives that can be the lightest one to meet some demand. A drive is left out if a lighter drive
+    /// has ratings at least as large in every quantity.
     pub(super) fn first_fits(&self) -> Vec<u32> {
         let mut kept: Vec<u32> = Vec::new();
         for (place, offer) in self.offers.iter().enumerate() {
@@ -197,7 +200,8 @@ impl CatalogOffers {
         kept
     }
 
-    /// Indices of the drives, in sets of equal mass, torsion curve and tilt, which no objective tells apart.
+    /// Indices of the drives, in sets of equal mass, torsion curve and bearing stiffness, which no objective tells
+    /// apart.
     pub(super) fn ties(&self) -> Vec<Vec<u32>> {
         let mut sets: Vec<Vec<u32>> = Vec::new();
         let mut place = 0;
@@ -215,18 +219,18 @@ impl CatalogOffers {
         sets
     }
 
-    /// The lightest drive that holds a demand.
+    /// The lightest drive that meets `demand`; `None` if there is none.
     pub(super) fn first_fit(&self, demand: &Demand) -> Option<&Offer> {
         self.offers.iter().find(|offer| offer.ratings.hold(demand))
     }
 
-    /// The first drive of the same mass, torsion curve and tilt as this drive.
+    /// The first drive in the list with the same mass, torsion curve and bearing stiffness as the drive `offer`.
     pub(super) fn first_tie<'o>(&'o self, offer: &'o Offer) -> &'o Offer {
         let first = self.offers.partition_point(|other| other.mass_kg < offer.mass_kg);
         self.offers[first..].iter().find(|other| other.yields_like(offer)).unwrap_or(offer)
     }
 
-    /// The drive with this gear and motor.
+    /// The drive with the gear and the motor of these indices in the catalogs; `None` if it is not offered.
     pub(super) fn of(&self, gear: usize, motor: usize) -> Option<&Offer> {
         self.places.get(&(gear, motor)).map(|&place| &self.offers[place as usize])
     }

@@ -1,33 +1,37 @@
-//! Stiffness and inertia of an arm as dense matrices, and whether its lowest mode is below a number.
+//! Stiffness matrix K and inertia matrix M of an arm in a pose, and the test whether its lowest mode is below a
+//! given frequency.
 //!
-//! `K - λ M` is positive definite exactly if `λ` is below every `λ_i` of `K x = λ_i M x`, so one Cholesky
-//! factorization decides. With every stiffness of a box at its largest and every inertia at its least, `K`
-//! is at least and `M` at most that of any member (in the order of positive semidefinite differences), and
-//! then so is each Rayleigh quotient, and by Courant and Fischer `λ_1`.
+//! `K - λ M` is positive definite exactly if `λ` is below every eigenvalue `λ_i` of `K x = λ_i M x`, so one
+//! Cholesky factorization decides. For a box, `K` has every stiffness at its greatest and `M` every inertia at its
+//! least. Compared with any member, `K` is then at least and `M` at most as large (in the order of positive
+//! semidefinite differences), so no Rayleigh quotient is smaller, and by Courant and Fischer `λ_1` is no smaller
+//! either.
 
-/// Diagonal stiffness matrix `K` and inertia matrix `M` of an arm's coordinates in a pose.
+/// The matrix pencil of an arm in a pose: diagonal stiffness matrix `K` and inertia matrix `M` over its
+/// coordinates.
 pub(super) struct Pencil {
     stiffness: Vec<f64>,
     /// Lower triangle of the inertia matrix, row by row.
     inertia: Vec<f64>,
 }
 
-/// The Cholesky factor of `K - λ M`.
+/// The Cholesky factor of `K - λ M`, as a lower triangle row by row.
 pub(super) struct Factor {
     size: usize,
     lower: Vec<f64>,
 }
 
-/// Number of steps of inverse iteration towards a slower motion.
+/// Number of steps of inverse iteration that lower the Rayleigh quotient of a motion further.
 const STEPS: usize = 5;
 
-/// Number of entries of a lower triangle before row `i`.
+/// Index of the first entry of row `i` in a lower triangle that is stored row by row.
 fn row(i: usize) -> usize {
     i * (i + 1) / 2
 }
 
 impl Pencil {
-    /// The pencil of these matrices. Coordinates of infinite stiffness are held at rest.
+    /// The pencil with the stiffnesses `stiffness` (the diagonal of K) and the inertia matrix `inertia` (a lower
+    /// triangle). Coordinates of infinite stiffness cannot move, so their inertia is set to zero.
     pub(super) fn new(mut stiffness: Vec<f64>, mut inertia: Vec<f64>) -> Self {
         let size = stiffness.len();
         for i in 0..size {
@@ -40,14 +44,15 @@ impl Pencil {
         Self { stiffness, inertia }
     }
 
-    /// The factor of `K - λ M`; `None` if an eigenvalue is `λ` or less.
+    /// The Cholesky factor of `K - λ M` at `λ` = `eigenvalue`; `None` if an eigenvalue of the pencil is `λ` or less.
     pub(super) fn factor(&self, eigenvalue: f64) -> Option<Factor> {
         self.factor_or_slower(eigenvalue).ok()
     }
 
-    /// The factor of `K - λ M`, or a motion `x` with `xᵀ K x <= λ xᵀ M x`. The motion comes from the first pivot that
-    /// is not positive: it is one at the pivot's coordinate, zero at later coordinates, and in equilibrium at earlier
-    /// ones, so the pivot equals `xᵀ (K - λ M) x`.
+    /// The Cholesky factor of `K - λ M` at `λ` = `eigenvalue`. If there is none, a motion `x` with `xᵀ K x <= λ xᵀ M x`
+    /// is returned as the error. The motion comes from the first pivot that is not positive. It is one at the
+    /// coordinate of the pivot and zero at later coordinates; the earlier coordinates are in equilibrium. The pivot
+    /// then equals `xᵀ (K - λ M) x`.
     fn factor_or_slower(&self, eigenvalue: f64) -> Result<Factor, Vec<f64>> {
         let size = self.stiffness.len();
         let mut lower = vec![0.0; self.inertia.len()];
@@ -72,7 +77,8 @@ impl Pencil {
         Ok(Factor { size, lower })
     }
 
-    /// Approximation of the lowest mode by a few steps of inverse iteration, scaled to `xᵀ M x = 1`.
+    /// Approximation of the lowest mode by a few steps of inverse iteration with `factor`, the Cholesky factor of `K -
+    /// λ M`. The mode is scaled to `xᵀ M x = 1`.
     pub(super) fn lowest_mode(&self, factor: &Factor) -> Vec<f64> {
         let mut x = vec![1.0; self.stiffness.len()];
         for _ in 0..3 {
@@ -86,8 +92,8 @@ impl Pencil {
         x
     }
 
-    /// A motion whose Rayleigh quotient is at most `eigenvalue`, lowered further by a few steps of inverse iteration.
-    /// `None` if no motion has so low a quotient.
+    /// A motion whose Rayleigh quotient is at most `eigenvalue`, improved by a few steps of inverse iteration.
+    /// `None` if every motion has a larger quotient.
     pub(super) fn slower_motion(&self, eigenvalue: f64) -> Option<Vec<f64>> {
         let mut x = self.factor_or_slower(eigenvalue).err()?;
         for _ in 0..STEPS {
@@ -136,7 +142,8 @@ impl Factor {
         x
     }
 
-    /// Solves `Lᵀ x = b` with the factor `L`; `x` holds `b` at first.
+    /// Solves `Lᵀ x = b` for `x`, where `L` is this Cholesky factor. `x` holds `b` at first and the solution at the
+    /// end.
     fn solve_upper(&self, x: &mut [f64]) {
         let lower = |i: usize, j: usize| self.lower[row(i) + j];
         for i in (0..self.size).rev() {

@@ -1,12 +1,12 @@
 //! One case of a study as sums over parts: torques, deflection, stress and inertia.
 //!
-//! *Loads* are the masses of drives \[kg\] and the weights of tubes per length \[N/m\]; each adds in
-//! proportion to the torque on a joint (its lever arm) and to the force and moment in a tube's section.
+//! *Loads* are the masses of drives \[kg\] and the weights of tubes per length \[N/m\]. Each load adds in
+//! proportion to the torque on a joint (by its lever arm) and to the force and moment in a tube's section.
 //!
-//! *Deflection* is found by the method of the unit load: the tip's displacement along `e` is the work of the
-//! real internal loads, over the stiffness, on those of a unit force `e` at the tip,
-//! `Σ θ_j (a_j · (r_j x e)) + Σ ∫ (N n/EA + V·v/κGA + T t/GJ + M_y m_y/EI_y + M_z m_z/EI_z) dx`. Real loads
-//! are at most quadratic in `x`, virtual ones linear: the quadrature is exact.
+//! *Deflection* follows from the method of the unit load. The displacement of the tip along `e` is the work of the
+//! real internal loads, divided by the stiffness, on the internal loads of a unit force `e` at the tip: `Σ θ_j (a_j
+//! · (r_j x e)) + Σ ∫ (N n/EA + V·v/κGA + T t/GJ + M_y m_y/EI_y + M_z m_z/EI_z) dx`. Real loads are at most
+//! quadratic in `x` and virtual ones linear, so the quadrature is exact.
 //!
 //! *Inertia* is the kinetic energy of the coordinates of [`super::layout`], a sum over the masses of drives
 //! and the inertias of tubes per length.
@@ -19,7 +19,7 @@ use crate::arm::load::{LoadCase, Water};
 use crate::arm::structure::Structure;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
-/// Gauss-Legendre points and weights on 0..1, exact to degree 7.
+/// Points and weights of Gauss-Legendre quadrature on 0..1, exact for polynomials up to degree 7.
 const GAUSS: [(f64, f64); 4] = [
     (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
     (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
@@ -27,65 +27,69 @@ const GAUSS: [(f64, f64); 4] = [
     (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
 ];
 
-/// A case of the study, worked out for bounds.
+/// A case of the study, prepared for bounds: everything in it that does not depend on the design.
 pub(super) struct Pose {
     pub judged: bool,
     pub sizing: bool,
-    /// Index of the medium around the arm, among the study's surroundings.
+    /// Index of the medium around the arm (air or water), among the study's surroundings.
     pub water: usize,
-    /// Ratio of the stress while the arm accelerates to the stress of the static loads.
+    /// Ratio of the stress during acceleration to the stress under static loads. 1 if the case is not a sizing
+    /// case.
     pub stress_factor: f64,
-    /// Torque on each joint, as a linear function of the loads \[N m\].
+    /// Torque on each joint \[N m\], as a linear function of the loads (masses of drives, weights per length of tubes).
     pub torques: Vec<Linear>,
-    /// Displacement of the tip per unit twist of each joint \[m/rad\].
+    /// Displacement of the tip per radian of torsion of each joint \[m/rad\].
     pub tip_m_per_rad: Vec<Vector3<f64>>,
-    /// Displacement of the tip that each joint's bearing causes per compliance, as a linear function of the loads
-    /// \[m N m/rad\].
+    /// Displacement of the tip by the tilt of each joint's bearing, divided by the compliance of the bearing, as a
+    /// linear function of the loads \[m N m/rad\].
     pub by_tilts: Vec<LinearVector>,
-    /// Displacement of the tip that each spring of an effect causes, as a linear function of the loads \[m\].
+    /// Displacement of the tip that each spring of an effect or prismatic joint causes, as a linear function of the
+    /// loads \[m\].
     pub by_springs_m: Vec<LinearVector>,
-    /// For each tube and each of its stiffnesses, the displacement of the tip times the stiffness. Divided by the
-    /// stiffness it is the displacement.
+    /// For each tube and each of its stiffnesses, the tip displacement that the strain against this stiffness causes,
+    /// times the stiffness. It is a linear function of the loads.
     pub works: Vec<[LinearVector; STIFFNESSES]>,
     /// Force and moment at root and end of each tube, in the tube's frame, as linear functions of the loads.
     pub ends: Vec<[[Linear; 6]; 2]>,
-    /// Inertia matrix of everything that no choice changes: lower triangle, row by row.
+    /// Inertia matrix, over all coordinates, of everything that is the same in all designs: lower triangle, row by row.
     pub inertia: Vec<f64>,
-    /// Inertia matrix per unit mass of each drive, then per unit of each inertia per length of each tube.
+    /// Inertia matrices over all coordinates: one for each drive, per unit of its mass, then one for each inertia per
+    /// length of each tube, per unit of it. All are lower triangles, row by row.
     pub inertia_per: Vec<Vec<f64>>,
 }
 
-/// A force and a moment.
+/// A force and a moment on a section of the arm.
 #[derive(Debug, Clone, Copy, Default)]
 struct Wrench {
     force: Vector3<f64>,
     moment: Vector3<f64>,
 }
 
-/// Wrench on a section: of the fixed loads, and per unit of each load.
+/// Force and moment that a section of the arm transmits from everything outboard: the constant part, and the part per
+/// unit of each load.
 pub(super) struct Carried {
     fixed: Wrench,
     per_load: Vec<Wrench>,
 }
 
-/// The inputs from which the numbers of a case are computed.
+/// The inputs from which a [`Pose`] is computed.
 #[derive(Clone, Copy)]
 pub(super) struct Builder<'a> {
     pub layout: &'a Layout,
     gravity_m_s2: f64,
     down: Vector3<f64>,
-    /// Weight of the payload, and the tip force, each with the point where it acts \[m\].
+    /// Weight of the payload and tip force \[N\], each with the point where it acts \[m\].
     tip_loads: [(Vector3<f64>, Vector3<f64>); 2],
     tip_moment_nm: Vector3<f64>,
     coordinates: &'a [Coordinate],
 }
 
 impl Pose {
-    /// Works out the case with this index. `water` is the index of its surroundings.
+    /// Computes the case with this index. `water` is the index of its surroundings.
     pub(super) fn new(question: &Question, index: usize, water: usize, builder: &Builder) -> Self {
         let (case, layout) = (&question.cases[index], builder.layout);
         let sizing = question.sizing_cases.contains(&index);
-        // without gravity no stress is limited
+        // without gravity there is no ratio to the static stress, and the stress is not raised for acceleration
         let acceleration = match question.gravity_m_s2 > 0.0 {
             true => question.motion.tip_acceleration_m_s2() / question.gravity_m_s2,
             false => 0.0,
@@ -107,7 +111,7 @@ impl Pose {
     }
 }
 
-/// The water around the arm: stated by the case, or else by an effect.
+/// The water around the arm: as stated by the case, or else by an effect. `None` in air.
 pub(super) fn water_of(structure: &Structure, case: &LoadCase) -> Option<Water> {
     case.water.or(structure.water)
 }
@@ -130,7 +134,7 @@ impl Wrench {
         Self { force: self.force + other.force, moment: self.moment + other.moment }
     }
 
-    /// Components of the wrench along the axes of a frame: force, then moment.
+    /// Components of the wrench along the axes of `frame`: three of the force, then three of the moment.
     fn in_frame(&self, frame: &Matrix3<f64>) -> [f64; 6] {
         let (force, moment) = (frame.tr_mul(&self.force), frame.tr_mul(&self.moment));
         [force.x, force.y, force.z, moment.x, moment.y, moment.z]
@@ -138,7 +142,8 @@ impl Wrench {
 }
 
 impl Carried {
-    /// Its force or its moment along a direction.
+    /// Component along `direction` of the force, or of the moment if `is_force` is `false`, as a linear function of the
+    /// loads.
     pub(super) fn along(&self, is_force: bool, direction: &Vector3<f64>) -> Linear {
         let part = |wrench: &Wrench| direction.dot(if is_force { &wrench.force } else { &wrench.moment });
         Linear { fixed: part(&self.fixed), per_load: self.per_load.iter().map(part).collect() }
@@ -146,7 +151,7 @@ impl Carried {
 }
 
 impl<'a> Builder<'a> {
-    /// The inputs of a case, with the coordinates of its inertia matrix.
+    /// Collects the inputs of a case. `coordinates` are those over which its inertia matrices are made.
     pub(super) fn new(
         question: &Question,
         structure: &Structure,
@@ -166,14 +171,15 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The same with other coordinates.
+    /// The same inputs with the coordinates `coordinates` for the inertia matrices.
     pub(super) fn with_coordinates(&self, coordinates: &'a [Coordinate]) -> Self {
         Self { coordinates, ..*self }
     }
 }
 
 impl Builder<'_> {
-    /// Wrench at a point of everything outboard of it.
+    /// Force and moment that the section of the arm at `point` transmits from everything outboard, taken about this
+    /// point.
     pub(super) fn carried(&self, point: &Point) -> Carried {
         let down = |size: f64| self.down * size;
         let about_m = &point.at_m;
@@ -207,8 +213,8 @@ impl Builder<'_> {
         carried.along(false, &joint.axis)
     }
 
-    /// Displacement of the tip by a joint's bearing of unit compliance: its tilts under the moments about both axes
-    /// across times the way of the tip.
+    /// Displacement of the tip if the bearing of `joint` had a compliance of one: the moments about both axes across,
+    /// each times the displacement of the tip per tilt about this axis.
     fn by_tilt(&self, joint: usize) -> LinearVector {
         let joint = &self.layout.joints[joint];
         let carried = self.carried(&Point { at_m: joint.at_m, rank: joint.rank, inside_m: None });
@@ -219,8 +225,8 @@ impl Builder<'_> {
         LinearVector { fixed: moved(&carried.fixed), per_load: carried.per_load.iter().map(moved).collect() }
     }
 
-    /// Displacement of the tip by a spring: how far the spring yields to the moment about its axis, or to the force along it,
-    /// times the displacement of the tip per unit of that.
+    /// Displacement of the tip by a spring: the deflection of the spring under the moment about its axis (or the
+    /// force along it), times the displacement of the tip per unit of that deflection.
     fn by_spring(&self, spring: usize) -> LinearVector {
         let spring = &self.layout.springs[spring];
         let carried = self.carried(&Point { at_m: spring.at_m, rank: spring.rank, inside_m: None });
@@ -277,8 +283,8 @@ impl Builder<'_> {
         works
     }
 
-    /// Points of a tube \[m\] with the lengths that they stand for. A body on the tube makes a step in the loads, so that it
-    /// divides the tube.
+    /// Points of quadrature along a tube \[m\], each with its weight \[m\]. The tube is divided at every body on
+    /// it, because the internal loads have a step there.
     fn quadrature(&self, tube: usize) -> Vec<(f64, f64)> {
         let placed = &self.layout.tubes[tube];
         let on_tube = self.layout.masses.iter().filter(|mass| mass.carrier.rank == placed.rank);
@@ -293,7 +299,7 @@ impl Builder<'_> {
         parts.collect()
     }
 
-    /// Inertia matrix of the payload and of the masses that no choice changes.
+    /// Inertia matrix, over all coordinates, of the payload and of the masses that are the same in all designs.
     pub(super) fn fixed_inertia(&self, case: &LoadCase) -> Vec<f64> {
         let mut out = self.no_inertia();
         let rotation = &self.layout.tip_rotation;
@@ -333,7 +339,8 @@ impl Builder<'_> {
         drives.chain(tubes).collect()
     }
 
-    /// Inertia matrix per unit of each inertia per length of a tube.
+    /// Inertia matrices of a tube over all coordinates, one per unit of each of its inertias per length. Each is a
+    /// lower triangle, row by row.
     fn tube_inertia(&self, tube: usize) -> [Vec<f64>; DENSITIES] {
         let mut out: [Vec<f64>; DENSITIES] = std::array::from_fn(|_| self.no_inertia());
         let placed = &self.layout.tubes[tube];
@@ -349,7 +356,7 @@ impl Builder<'_> {
         out
     }
 
-    /// Displacement and rotation of a point per unit of every coordinate, in the world frame.
+    /// Displacements and rotations of `point` in the world frame, each list with one entry per unit of each coordinate.
     fn motions(&self, point: &Point) -> (Vec<Vector3<f64>>, Vec<Vector3<f64>>) {
         self.coordinates.iter().map(|&coordinate| self.layout.motion(coordinate, point)).unzip()
     }
@@ -360,8 +367,8 @@ impl Builder<'_> {
     }
 }
 
-/// For each stiffness, the product of the internal load that it resists and the same internal load of a unit tip
-/// force along each axis, times a length (method of the unit load).
+/// For each stiffness, the internal load that it resists, times the same internal load of a unit tip force along
+/// each world axis, times a length (method of the unit load).
 fn products(real: &[f64; 6], units: &[[f64; 6]; 3], length_m: f64) -> [Vector3<f64>; STIFFNESSES] {
     let product = |i: usize| Vector3::from_fn(|axis, _| real[i] * units[axis][i] * length_m);
     [product(4), product(5), product(1) + product(2), product(3), product(0)]
@@ -371,7 +378,7 @@ fn along(motions: &[Vector3<f64>], direction: &Vector3<f64>) -> Vec<f64> {
     motions.iter().map(|motion| motion.dot(direction)).collect()
 }
 
-/// Adds `weight · row rowᵀ` to a lower triangle.
+/// Adds the matrix `weight · row rowᵀ` to the lower triangle `triangle` of a symmetric matrix.
 fn add_square(triangle: &mut [f64], row: &[f64], weight: f64) {
     let mut entries = triangle.iter_mut();
     for (i, a) in row.iter().enumerate() {

@@ -1,8 +1,8 @@
-//! What a study asks, as plain data.
+//! The search question of a study, as plain data.
 //!
-//! The verifier must not learn the question from the code that it checks: not from the search's tables of drives, not
-//! from its list of pieces. So whoever asks copies the study into these types, field by field, and everything that
-//! follows from them (which drives hold, what a tube weighs, where a joint is) is worked out in this room.
+//! The verifier must not take the question from the code that it checks, for example from the search's tables of
+//! drives or its list of pieces. So the caller copies the study into these types, field by field. Everything that
+//! follows from them (which drives pass, what a tube weighs, where a joint is) is computed in this folder.
 
 use crate::arm::bearing::{Bearing, BearingSource};
 use crate::arm::body::{JointBodies, RigidBody};
@@ -18,70 +18,72 @@ use crate::catalog::gear::{Gear, GearKind, GearMass};
 use crate::catalog::motor::{Motor, MotorKind};
 use nalgebra::{Unit, Vector3};
 
-/// An arm with choices, what it must do, and how it is judged.
+/// An arm with open choices, the motion and limits that it must meet, and the cases by which it is judged.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Question {
-    /// Gravity \[m/s²\].
+    /// Magnitude of gravity \[m/s²\].
     pub gravity_m_s2: f64,
-    /// Its direction in the world, a unit vector.
+    /// Direction of gravity in the world, a unit vector.
     pub down: Vector3<f64>,
     /// Joints and links from base to tip.
     pub pieces: Vec<AskedPiece>,
     /// All poses and loads, each with the models of links and joints.
     pub cases: Vec<LoadCase>,
-    /// Indices of the cases that deflection and lowest mode are taken over.
+    /// Indices of the cases over which tip deflection and lowest mode are taken.
     pub judged_cases: Vec<usize>,
-    /// Indices of the cases in which drives must hold and the arm accelerates.
+    /// Indices of the sizing cases, in which drives are checked and stresses include acceleration.
     pub sizing_cases: Vec<usize>,
     /// The motion that the tip must be able to make.
     pub motion: AskedMotion,
-    /// Physics of the links.
+    /// Which deformations of the links are modelled.
     pub links: LinkModel,
-    /// Physics of the joints.
+    /// How the joints are modelled.
     pub joints: JointModel,
-    /// What every design must meet.
+    /// Limits that every design must meet.
     pub limits: Limits,
-    /// Physics of the product beyond the nominal model; effects of a test do not belong here.
+    /// Effects of the product beyond the nominal model. Effects of a test do not belong here.
     pub effects: Vec<Effect>,
 }
 
 /// One piece of the chain.
 #[derive(Debug, Clone, PartialEq)]
 pub enum AskedPiece {
-    /// A joint.
+    /// A joint that turns.
     Joint(AskedJoint),
-    /// A prismatic joint, which the study gives.
+    /// A prismatic joint. The study gives all of its numbers.
     Prismatic(Prismatic),
-    /// A link or offset without a choice.
+    /// A link or offset that the study gives.
     Link(Link),
-    /// A link whose tube is chosen.
+    /// A link whose tube the search chooses.
     Choice(AskedLink),
 }
 
-/// A joint and how its drive is found.
+/// A joint, with the rule by which its drive is found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AskedJoint {
-    /// Name.
+    /// Name of the joint.
     pub name: String,
-    /// Axis in the carried frame.
+    /// Axis of the joint in the carried frame.
     pub axis: Unit<Vector3<f64>>,
-    /// Where its output bearing comes from.
+    /// Where the output bearing of the joint comes from.
     pub bearing: BearingSource,
-    /// Where the masses beyond gear, motor and bearing come from.
+    /// Where the masses in addition to gear, motor and bearing come from.
     pub extras: ExtrasSource,
-    /// Rigid bodies that it carries beyond all these.
+    /// Rigid bodies at the joint in addition to all these.
     pub bodies: JointBodies,
-    /// How its drive is found.
+    /// How the drive of the joint is found.
     pub drive: AskedDrive,
-    /// Largest speed, if the study gives one \[rad/s\]; else it follows from the speed of the tip.
+    /// Largest speed of the joint, if the study gives one \[rad/s\]; otherwise it follows from the speed of the
+    /// tip.
     pub max_speed_rad_s: Option<f64>,
-    /// Whether a brake holds it at rest.
+    /// Whether a brake holds the joint at rest.
     pub has_brake: bool,
-    /// The duty that the study states for it in place of its cycle; empty if none.
+    /// The duty that the study states for this joint in place of its cycle; empty if none.
     pub duty: Vec<AskedDutyPhase>,
-    /// What is asked of the sizes of its parts.
+    /// Limits on the sizes of gear and motor.
     pub fit: AskedFit,
-    /// Compliance of its connections, as a share of that of a gear of the catalogs and of the gear's bearing.
+    /// Compliance of the joint's connections, as a fraction of the compliance of a catalog gear and of that gear's
+    /// bearing.
     pub connection_share: f64,
     /// The stage between motor and gear, of a drive that is sized.
     pub stage: AskedStage,
@@ -105,18 +107,18 @@ impl AskedStage {
     pub const NONE: Self = Self { ratio: 1.0, efficiency: 1.0, inertia_kgm2: 0.0, rad_per_nm: 0.0 };
 }
 
-/// What is asked of the sizes of a joint's parts; nothing by default.
+/// Limits on the sizes of a joint's gear and motor. By default there are none.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AskedFit {
-    /// Largest ratio of the gear's outer diameter to the width of the link that the joint carries.
+    /// Largest allowed ratio of the gear's outer diameter to the width of the link that follows the joint.
     pub gear_to_link_max: Option<f64>,
     /// Whether the motor must go into the hollow of that link.
     pub motor_in_link: bool,
-    /// Whether the motor is behind the gear on its axis.
+    /// Whether the motor is behind the gear on the joint's axis.
     pub motor_on_axis: bool,
-    /// Smallest bore of what is on the axis \[m\].
+    /// Smallest bore that each part on the axis must have \[m\].
     pub cable_bore_min_m: Option<f64>,
-    /// Largest length of what is on the axis \[m\].
+    /// Largest length of the parts on the axis together \[m\].
     pub drive_length_max_m: Option<f64>,
 }
 
@@ -125,7 +127,7 @@ pub struct AskedFit {
 pub struct AskedDutyPhase {
     /// Torque at the joint \[N m\]; negative where the load drives the motor.
     pub torque_nm: f64,
-    /// How long it lasts \[s\].
+    /// Duration of the phase \[s\].
     pub time_s: f64,
     /// Mean speed of the joint \[rpm\].
     pub speed_rpm: f64,
@@ -134,69 +136,70 @@ pub struct AskedDutyPhase {
 /// How a joint's drive is found.
 #[derive(Debug, Clone, PartialEq)]
 pub enum AskedDrive {
-    /// The study gives it.
+    /// The study gives the drive.
     Given {
-        /// Torsion curve.
+        /// Torsion curve of the joint.
         curve: Curve,
-        /// Mass \[kg\].
+        /// Mass of the drive \[kg\].
         mass_kg: f64,
     },
-    /// The lightest drive of the catalogs that holds; of equal masses the first by the names of gear and motor.
+    /// The lightest drive of the catalogs that meets the demand; of equal masses the first by the names of gear and
+    /// motor.
     FirstFit(AllowedParts),
-    /// Any drive of the catalogs that holds: a choice of the search.
+    /// Any drive of the catalogs that meets the demand. The search chooses it.
     AllFits(AllowedParts),
 }
 
-/// Which parts of the catalogs a joint may use; `None` allows all.
+/// The parts of the catalogs that a joint may use. `None` in a field allows all.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AllowedParts {
-    /// Whether a gear counts with the mass of its housed unit or of its component set.
+    /// Which of the two catalog masses of a gear counts: that of its housed unit or that of its component set.
     pub gear_mass: GearMass,
-    /// Series of gears.
+    /// Allowed series of gears.
     pub gear_series: Option<Vec<String>>,
-    /// Reduction ratios.
+    /// Allowed reduction ratios.
     pub ratios: Option<Vec<f64>>,
-    /// Kinds of gears other than actuators.
+    /// Allowed kinds of gears; actuators are not affected.
     pub gear_kinds: Option<Vec<GearKind>>,
-    /// Gears by name.
+    /// Allowed gears by name.
     pub gears: Option<Vec<String>>,
-    /// Actuators by model.
+    /// Allowed actuators by model.
     pub actuators: Option<Vec<String>>,
-    /// Kinds of motors other than those of actuators.
+    /// Allowed kinds of motors; those of actuators are not affected.
     pub motor_kinds: Option<Vec<MotorKind>>,
-    /// Motors by name.
+    /// Allowed motors by name.
     pub motors: Option<Vec<String>>,
 }
 
-/// A link whose tube is chosen.
+/// A link whose tube the search chooses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AskedLink {
-    /// Name.
+    /// Name of the link.
     pub name: String,
-    /// From root to end in the carried frame \[m\].
+    /// Vector from root to end in the carried frame \[m\].
     pub vector_m: Vector3<f64>,
-    /// The tubes it can be.
+    /// The tubes among which the search chooses.
     pub tubes: Vec<AskedTube>,
-    /// Rigid bodies that it carries, whichever tube it has.
+    /// Rigid bodies on the link, whichever tube it has.
     pub bodies: Vec<RigidBody>,
 }
 
-/// A tube that a link can be.
+/// A tube that the search may choose for a link.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AskedTube {
-    /// Elastic properties of its material.
+    /// Elastic properties of the material.
     pub material: LinkMaterial,
-    /// Cross-section.
+    /// Cross-section of the tube.
     pub section: Section,
-    /// Strength of the material in tension \[Pa\]; unknown strengths are not checked.
+    /// Tensile strength of the material \[Pa\]. The stress is not checked if it is unknown.
     pub strength_pa: Option<f64>,
-    /// Strength in compression \[Pa\], if it is another.
+    /// Compressive strength \[Pa\]; `None` if it equals the tensile strength.
     pub compressive_strength_pa: Option<f64>,
     /// Cost of the material \[EUR/kg\].
     pub cost_eur_per_kg: Option<f64>,
 }
 
-/// The motion that the tip must be able to make, and how long its gears must last.
+/// The motion that the tip must be able to make, and the life that gears must reach.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AskedMotion {
     /// Speed of the tip \[m/s\].
@@ -215,42 +218,42 @@ pub struct AskedMotion {
     pub linear_torque: LinearTorque,
     /// Gravity, used by [`LinearTorque::OfStaticTorque`] \[m/s²\].
     pub gravity_m_s2: f64,
-    /// Whether motors must not overheat over the cycle.
+    /// Whether the heat of motors over the cycle is checked.
     pub checks_motor_heat: bool,
-    /// Number of emergency stops that a gear must bear, if the study asks for one.
+    /// Number of emergency stops that a gear must survive; `None` if the study asks for none.
     pub emergency_stops: Option<f64>,
 }
 
-/// How Eq 8, the torque of linear acceleration, is read.
+/// The two ways in which Eq 8, the torque of linear acceleration, can be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LinearTorque {
-    /// Inertia of everything outboard about the axis, times the joint's acceleration.
+    /// Inertia of everything outboard about the joint's axis, times the joint's acceleration.
     OfInertia,
-    /// Acceleration of the tip over gravity, times the static torque, as the paper has it.
+    /// Acceleration of the tip divided by gravity, times the static torque. The paper reads Eq 8 in this way.
     OfStaticTorque,
 }
 
 /// One phase of the duty cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AskedPhase {
-    /// Duration \[s\].
+    /// Duration of the phase \[s\].
     pub duration_s: f64,
-    /// What the joint does.
+    /// Motion of the joint in this phase.
     pub kind: AskedPhaseKind,
 }
 
-/// What a joint does in one phase.
+/// Motion and torque of a joint in one phase.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum AskedPhaseKind {
-    /// Speeds up: static plus linear torque, half the speed on average.
+    /// The joint speeds up: static plus linear torque, half the full speed on average.
     Accelerate,
-    /// Turns at its speed under the static torque.
+    /// The joint turns at full speed under the static torque.
     Constant,
-    /// Slows down: the difference of static and linear torque, half the speed on average.
+    /// The joint slows down: static minus linear torque, half the full speed on average.
     Decelerate,
-    /// Stands still.
+    /// The joint stands still under the static torque.
     Rest,
-    /// Stated fractions of static torque and speed.
+    /// The joint has stated fractions of the static torque and of the full speed.
     Fraction {
         /// Fraction of the static torque.
         of_static_torque: f64,
@@ -259,22 +262,22 @@ pub enum AskedPhaseKind {
     },
 }
 
-/// What every design must meet; `None` is no limit.
+/// Limits that every design must meet; `None` means no limit.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Limits {
-    /// Largest tip deflection \[m\].
+    /// Largest allowed tip deflection \[m\].
     pub tip_deflection_max_m: Option<f64>,
-    /// Largest mass \[kg\].
+    /// Largest allowed mass of the arm \[kg\].
     pub mass_max_kg: Option<f64>,
-    /// Smallest lowest mode \[Hz\].
+    /// Lowest mode that is required at least \[Hz\].
     pub lowest_mode_min_hz: Option<f64>,
-    /// A servo's bandwidth \[Hz\], and the least ratio of the lowest mode to the bandwidth.
+    /// Bandwidth of the servo \[Hz\], and the smallest allowed ratio of the lowest mode to this bandwidth.
     pub servo_hz_and_ratio: Option<[f64; 2]>,
-    /// Smallest ratio of strength to stress.
+    /// Smallest allowed ratio of strength to stress.
     pub stress_safety_factor_min: Option<f64>,
-    /// Largest ratio of the flat width (or the diameter) to the wall thickness.
+    /// Largest ratio of the flat width (or of the diameter) of a tube to its wall thickness.
     pub wall_slenderness_max: Option<f64>,
-    /// Largest cost of the chosen links' material \[EUR\].
+    /// Largest material cost of the chosen links \[EUR\].
     pub material_cost_max_eur: Option<f64>,
 }
 
@@ -316,7 +319,7 @@ fn is_listed<T>(list: &Option<Vec<T>>, is_it: impl Fn(&T) -> bool) -> bool {
 }
 
 impl AskedDrive {
-    /// The parts that the catalogs may offer; `None` if the study gives the drive.
+    /// The parts from which the drive may be made; `None` if the study gives the drive.
     pub fn allowed(&self) -> Option<&AllowedParts> {
         match self {
             AskedDrive::Given { .. } => None,
@@ -324,14 +327,14 @@ impl AskedDrive {
         }
     }
 
-    /// Whether the drive is a choice of the search.
+    /// Whether the search chooses the drive.
     pub fn is_choice(&self) -> bool {
         matches!(self, AskedDrive::AllFits(_))
     }
 }
 
 impl AskedPiece {
-    /// Whether the part of this piece is a choice of the search.
+    /// Whether the search chooses the part of this piece.
     pub fn is_choice(&self) -> bool {
         match self {
             AskedPiece::Joint(joint) => joint.drive.is_choice(),
@@ -342,7 +345,8 @@ impl AskedPiece {
 }
 
 impl AskedJoint {
-    /// The arm's element for this joint, with a torsion curve and a mass of the drive, an output bearing and extras.
+    /// The arm element of this joint, built with a torsion curve, the mass of the drive, an output bearing and
+    /// extras.
     pub(super) fn with_drive(
         &self,
         curve: Curve,
@@ -368,7 +372,7 @@ impl AskedJoint {
 }
 
 impl AskedLink {
-    /// The arm's element for this link, with a tube.
+    /// The arm element of this link, built with a tube.
     pub(super) fn with_tube(&self, tube: &AskedTube) -> Link {
         let AskedTube { material, section, .. } = *tube;
         let body = LinkBody::Tube { material_name: String::new(), material, section };
@@ -377,7 +381,7 @@ impl AskedLink {
 }
 
 impl Question {
-    /// The arm of these elements, with the effects of the question.
+    /// The arm that consists of these elements, with the effects of the question.
     pub(super) fn arm(&self, chain: Vec<Element>) -> Arm {
         Arm {
             name: String::new(),
@@ -389,8 +393,8 @@ impl Question {
         }
     }
 
-    /// A joint with this torsion curve and bearing and with the effects that act on the joint. Its mass is only that of
-    /// the bearing and what the effects add.
+    /// A joint with this torsion curve and bearing, and with the effects that act on the joint. Only the bearing
+    /// and the effects contribute to its mass here.
     pub(super) fn joint_piece(
         &self,
         joint: &AskedJoint,
@@ -404,7 +408,7 @@ impl Question {
         }
     }
 
-    /// A link with the effects that act on the link.
+    /// A link, with the effects that act on it.
     pub(super) fn link_piece(&self, link: Link) -> LinkPiece {
         let arm = self.arm(vec![Element::Link(link)]);
         match arm.structure(self.joints).pieces.pop() {
@@ -413,8 +417,9 @@ impl Question {
         }
     }
 
-    /// The arm without its choices, effects applied: joints do not twist and have no drives, stated bearings are there, and
-    /// an open link has its first tube. It shows where the pieces are, and what effects put between them.
+    /// The arm without its choices, with effects applied. Joints are rigid and have no drives, stated bearings are
+    /// present, and an open link has its first tube. From this arm the verifier takes the positions of the pieces
+    /// and the springs and masses that effects add between them.
     pub(super) fn nominal_structure(&self) -> Structure {
         let element = |piece: &AskedPiece| match piece {
             AskedPiece::Joint(joint) => {

@@ -1,11 +1,11 @@
-//! What a drive holds, worked out from its catalog rows (Eqs 7-12; docs/sizing.md, "The checks").
+//! What loads a drive can take, computed from its catalog rows (Eqs 7-12; docs/sizing.md, "The checks").
 //!
-//! Speed and duty cycle of a joint are fixed, so every check of a drive compares one torque with one number. A torque
-//! that is asked for is a [`Quantity`]; a check is an entry of [`CHECKS`] and says which quantity it limits and to
-//! what. A further check is one more entry; a further torque is one more quantity, and [`Duty::demand`] says how
-//! large it is.
+//! Speed and duty cycle of a joint are fixed, so every check of a drive compares one torque with one number. The
+//! torques are those of [`Quantity`]. Each check is an entry of [`CHECKS`], which says which quantity it limits and
+//! to what value. A further check is one more entry. A further torque is one more quantity, and [`Duty::demand`]
+//! computes its value.
 //!
-//! Nothing of `sizing` is used: a wrong threshold there must not be repeated here.
+//! Nothing of `sizing` is used, so that an error in a threshold there is not repeated here.
 
 use super::bearing::BearingRatings;
 use super::demand::{Demand, QUANTITIES, Quantity};
@@ -18,8 +18,8 @@ use crate::catalog::envelope::Envelope;
 use crate::catalog::gear::{Gear, GearKind, LifeLaw};
 use crate::catalog::motor::Motor;
 
-/// The greatest torque of each quantity that a drive holds, what its output bearing holds, how its motor heats, and how wide
-/// its parts are.
+/// The limits of one drive: the greatest allowed torque of each quantity, the limits of the output bearing, the
+/// heat of the motor, and the widths of gear and motor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Ratings {
     most: [f64; QUANTITIES],
@@ -28,13 +28,14 @@ pub(super) struct Ratings {
     widths: Widths,
 }
 
-/// A limit of a drive on one quantity. `most` gives the limit; `None` if the catalog lacks a number that it needs.
+/// A limit of a drive on one quantity. `most` computes the limit; `None` if the catalog lacks a number that it
+/// needs.
 struct Check {
     on: Quantity,
     most: fn(&Gear, &Motor, &Duty) -> Option<f64>,
 }
 
-/// All checks of torques. A drive that lacks a number for one of them cannot be chosen.
+/// All checks of torques. A drive for which the catalog lacks a number of one of them is not offered.
 const CHECKS: [Check; 7] = [
     Check { on: Quantity::Static, most: motor_hold_nm },
     Check { on: Quantity::Peak, most: |gear, _, _| limit(gear, gear.repeated_peak_torque_nm) },
@@ -49,7 +50,7 @@ const CHECKS: [Check; 7] = [
 ];
 
 impl Ratings {
-    /// Ratings under which no check fails.
+    /// Ratings with which a drive passes every check.
     pub(super) const UNLIMITED: Self = Self {
         most: [f64::INFINITY; QUANTITIES],
         bearing: BearingRatings::UNLIMITED,
@@ -86,10 +87,9 @@ impl Ratings {
         (turns_as_fast(gear, motor, duty)? && bears_the_stops(gear, duty) && goes_in).then_some(ratings)
     }
 
-    /// Whether a drive with these ratings holds every torque and load of a demand and fits into its room, and its motor does
-    /// not overheat.
+    /// Whether a drive with these ratings passes every check under `demand`: torques, bearing, motor heat and widths.
     pub(super) fn hold(&self, demand: &Demand) -> bool {
-        // no branch on the way: nearly every box asks this of many drives
+        // the torques are compared without a branch, because nearly every box calls this for many drives
         let torques = self.most.iter().zip(&demand.torques);
         torques.fold(true, |held, (most, asked)| held & (asked <= most))
             && self.bearing.hold(&demand.bearing)
@@ -97,7 +97,7 @@ impl Ratings {
             && self.widths.iter().zip(&demand.room).all(|(width, room)| width <= room)
     }
 
-    /// Whether a drive with these ratings holds every demand that a drive with the other ratings holds.
+    /// Whether a drive with these ratings meets every demand that a drive with the ratings `other` meets.
     pub(super) fn cover(&self, other: &Self) -> bool {
         self.most.iter().zip(&other.most).all(|(a, b)| a >= b)
             && self.bearing.cover(&other.bearing)
@@ -105,9 +105,9 @@ impl Ratings {
             && self.widths.iter().zip(&other.widths).all(|(a, b)| a <= b)
     }
 
-    /// Ratings under which all holds that holds under one of the two: the larger rating for each quantity, and the smaller
-    /// of each number of heat and width, for heat grows with each of its numbers and with every torque (see
-    /// [`AskedMotion::grows`](super::question::AskedMotion::grows)).
+    /// Ratings that meet every demand that one of the two meets: the larger rating for each quantity, and the
+    /// smaller of each number of heat and width. Smaller numbers are better for heat, because the heat grows with
+    /// each of them and with every torque (see [`AskedMotion::grows`](super::question::AskedMotion::grows)).
     pub(super) fn max(&self, other: &Self) -> Self {
         Self {
             most: std::array::from_fn(|i| self.most[i].max(other.most[i])),
@@ -117,13 +117,14 @@ impl Ratings {
         }
     }
 
-    /// The rating of one quantity.
+    /// The greatest allowed torque of one quantity (static, peak, stop or mean).
     pub(super) fn on(&self, quantity: Quantity) -> f64 {
         self.most[quantity as usize]
     }
 }
 
-/// Whether gear and motor may turn as fast as the motion needs; `None` if the catalog lacks a number.
+/// Whether gear and motor are allowed to turn as fast as the motion of the joint needs. `None` if the catalog lacks a
+/// number that this needs.
 fn turns_as_fast(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<bool> {
     let of_curve = motor.curve.last().map(|point| point.speed_rpm);
     let of_row = motor.max_speed_rpm.or(motor.rated_speed_rpm);
@@ -137,7 +138,9 @@ fn turns_as_fast(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<bool> {
     )
 }
 
-/// A limit of a gear. A direct drive and an actuator have none but those that their rows state.
+/// The limit that a rating of a gear sets. For a direct drive or an actuator, a rating that the catalog leaves blank
+/// (`None`) means no limit, and the result is infinite. For other gears the limit is then unknown, and the result is
+/// `None`.
 fn limit(gear: &Gear, rating: Option<f64>) -> Option<f64> {
     match gear.kind {
         GearKind::Direct | GearKind::Actuator => Some(rating.unwrap_or(f64::INFINITY)),
@@ -145,13 +148,14 @@ fn limit(gear: &Gear, rating: Option<f64>) -> Option<f64> {
     }
 }
 
-/// The torque at which a gear buckles or its teeth jump, as far as the catalog knows it.
+/// The smaller of the torques at which the gear buckles or its teeth jump \[N m\]; infinite if the catalog has
+/// neither.
 fn breaks_nm(gear: &Gear) -> f64 {
     [gear.buckling_torque_nm, gear.ratcheting_torque_nm].into_iter().flatten().fold(f64::INFINITY, f64::min)
 }
 
-/// Whether the gear bears as many emergency stops as are asked for: 1e4 waves of the wave generator, two in a turn, and
-/// never fewer than one in a stop.
+/// Whether the gear survives the number of emergency stops that the study asks for. In stops it survives 1e4 waves of
+/// the wave generator. One turn of the wave generator counts as two waves, and a stop as at least one.
 fn bears_the_stops(gear: &Gear, duty: &Duty) -> bool {
     let waves = 2.0 * input_rpm(gear, duty.speed_rad_s) / 60.0 * duty.stop_s;
     let has_waves = gear.kind == GearKind::StrainWave;
@@ -168,7 +172,8 @@ fn gain(gear: &Gear, stage: &AskedStage) -> Option<f64> {
     Some(gear.ratio * efficiency(gear)? * stage.ratio * stage.efficiency)
 }
 
-/// Torque at the joint that the motor can hold without end: `T_rated N η` \[N m\]. A brake holds any.
+/// Torque at the joint that the motor can hold continuously at rest: `T_rated N η` \[N m\]. Infinite with a brake,
+/// which holds the joint instead.
 fn motor_hold_nm(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<f64> {
     match duty.has_brake {
         true => Some(f64::INFINITY),
@@ -176,8 +181,8 @@ fn motor_hold_nm(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<f64> {
     }
 }
 
-/// Torque at the joint when the motor gives its peak torque \[N m\]. The rotor's and the wave generator's own
-/// acceleration is subtracted (Eqs 9-12): `(T_peak - (J_rotor + J_input) N α) N η`.
+/// Torque at the joint when the motor gives its peak torque \[N m\]. The torque that accelerates the rotor and the
+/// wave generator is subtracted (Eqs 9-12): `(T_peak - (J_rotor + J_input) N α) N η`.
 fn motor_peak_nm(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<f64> {
     let stage = &duty.stage;
     let motor_rad_s2 = gear.ratio * stage.ratio * duty.acceleration_rad_s2;
@@ -186,8 +191,9 @@ fn motor_peak_nm(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<f64> {
     Some((peak_nm - own_nm) * gain(gear, stage)?)
 }
 
-/// Cube of the mean torque under which the gear lasts for the required life \[(N m)³\], from `L10 = L_rated (T_rated /
-/// T_mean)^p (n_rated / n_mean)`. A belt, a direct drive and an actuator have a life only if their rows state one.
+/// Cube of the mean torque under which the gear reaches the required life \[(N m)³\], from `L10 = L_rated (T_rated
+/// / T_mean)^p (n_rated / n_mean)`. The life of a belt, a direct drive or an actuator is checked only if its row
+/// states one.
 fn life_nm3(gear: &Gear, _: &Motor, duty: &Duty) -> Option<f64> {
     let LifeLaw { rated_h, rated_speed_rpm, exponent } = gear.life;
     if rated_h.is_none() && matches!(gear.kind, GearKind::Belt | GearKind::Direct | GearKind::Actuator) {
@@ -225,7 +231,8 @@ mod tests {
         }
     }
 
-    /// The paper's 1 m/s in 0.2 s; ramps of 0.2 s about 0.6 s of travel, then 1 s of rest.
+    /// The paper's motion: 1 m/s reached in 0.2 s; ramps of 0.2 s before and after 0.6 s of travel, then 1 s of
+    /// rest.
     fn duty() -> Duty {
         let phase = |duration_s, kind| AskedPhase { duration_s, kind };
         let motion = AskedMotion {

@@ -1,24 +1,30 @@
-//! Going through the boxes: each is discarded, halved, or a single design.
+//! The search through the boxes: each box is discarded, halved, or a single design.
 
 use super::boxes::Boxes;
 use super::branch_score::BranchScore;
 use super::front_index::FrontIndex;
 use super::halt::{Found, Halt};
+use super::ledger::{Branch, Ledger};
 use super::parts_box::PartsBox;
 use super::upper_bound::UpperBound;
 
-/// A search, box by box, for designs that a front lacks.
+/// A search, box by box, for designs that belong on a front and are missing from it.
 pub(super) struct Search<'s> {
     pub boxes: &'s Boxes,
     pub front: &'s FrontIndex,
-    /// Only designs below this upper bound are looked for.
+    /// Only designs below this upper bound are searched for.
     pub upper: UpperBound,
     pub halt: &'s Halt<'s>,
+    pub ledger: &'s Ledger<'s>,
 }
 
 impl Search<'_> {
-    /// Bounds a box and, unless it is discarded, explores its halves.
-    pub(super) fn explore(&self, parts: &PartsBox) -> Found {
+    /// Bounds a box and, unless it is discarded, explores its halves; unless that was done before.
+    pub(super) fn explore(&self, parts: &PartsBox, branch: Branch) -> Found {
+        self.ledger.of(branch, self.halt, || self.explore_now(parts, branch))
+    }
+
+    fn explore_now(&self, parts: &PartsBox, branch: Branch) -> Found {
         if self.halt.stopped() {
             return Found { open: 1, ..Found::default() };
         }
@@ -28,11 +34,13 @@ impl Search<'_> {
             self.halt.note(self.boxes.design(parts));
             return here;
         };
-        let (a, b) = rayon::join(|| self.explore(&a), || self.explore(&b));
+        let [of_a, of_b] = branch.halves();
+        let (a, b) = rayon::join(|| self.explore(&a, of_a), || self.explore(&b, of_b));
         here.with(a).with(b)
     }
 
-    /// The level to halve. `Some(None)` if the box is a single design, `None` if the box is discarded.
+    /// The level at which the box `parts` is to be halved. `None` if the box is discarded, and `Some(None)` if it is a
+    /// single design.
     fn level_to_halve(&self, parts: &PartsBox) -> Option<Option<usize>> {
         let boxes = self.boxes;
         let members = boxes.members(parts)?;

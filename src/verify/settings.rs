@@ -1,13 +1,14 @@
-//! When the verifier goes from box to box, and when from region to region.
+//! Settings that decide when the verifier searches box by box and when region by region.
 
-/// How to look for missing designs.
+/// Settings of the search for missing designs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// A space of more designs than this is searched region by region.
     pub regions_from: u128,
-    /// A region with no more designs left than this is searched box by box.
+    /// A region is searched box by box as soon as it has at most this many designs.
     pub boxes_to: f64,
-    /// Designs of the front that are closer to each other than this (relative) may stand for each other.
+    /// Relative step of the grid on which the front is thinned before regions are computed: of several designs in a
+    /// cell one is used. 0 uses all.
     pub apart: f64,
 }
 

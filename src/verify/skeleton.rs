@@ -1,4 +1,4 @@
-//! What all designs of a question have in common, and the parts that each piece of it may be.
+//! Data that all designs of a question have in common, and the options of each joint and tube.
 
 use super::bearing_loads::{PosedBearing, bearings};
 use super::carriers::{carriers, is_tube};
@@ -16,26 +16,27 @@ use crate::arm::load::Water;
 use crate::arm::structure::{Piece, Structure};
 use crate::catalog::Catalogs;
 
-/// An arm without its drives and tubes: everything that no choice changes.
+/// An arm without its drives and tubes: everything that is the same in all designs.
 pub(super) struct Skeleton {
     /// Lengths of the tubes \[m\].
     pub lengths_m: Vec<f64>,
     /// Mass of rigid offsets, of bodies and of bearings that the study states \[kg\].
     pub offsets_kg: f64,
     pub poses: Vec<Pose>,
-    /// Loads on the bearing of every joint in every case; none where it is not checked.
+    /// Loads on the bearing of every joint; first index the case, second the joint. The list of a case that is not a
+    /// sizing case is empty, and a bearing that is not checked is `None`.
     pub bearings: Vec<Vec<Option<PosedBearing>>>,
-    /// Where the link attaches to each joint.
+    /// For each joint, the lever: the distance along the axis from its bearing to where the link attaches.
     pub levers: Vec<Lever>,
-    /// Index of the first tube that each joint carries.
+    /// Index of the first tube between each joint and the next; `None` if there is none.
     pub first_tubes: Vec<Option<usize>>,
-    /// The different media around the arm in the cases: air, or water.
+    /// The distinct media around the arm in the cases: `None` is air.
     pub waters: Vec<Option<Water>>,
     pub coordinates: Vec<Coordinate>,
-    /// Stiffnesses of the springs that no choice changes \[N m/rad\]; \[N/m\] along a travel.
+    /// Stiffnesses of the springs that are the same in all designs \[N m/rad\]; \[N/m\] for a spring that slides.
     pub spring_stiffnesses: Vec<f64>,
     pub limits: Limits,
-    /// The piece that each level chooses, tip first.
+    /// The joint or tube whose part each level chooses, tip first.
     pub levels: Vec<Place>,
 }
 
@@ -45,12 +46,12 @@ pub(super) struct Parts {
     pub tubes: Vec<TubeOptions>,
 }
 
-/// Lever along the axis from the face of a joint's flange to where the link attaches.
+/// Distance along the axis from the face of a joint's flange to the point where the link attaches.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Lever {
-    /// As the study says \[m\].
+    /// The distance that the study states \[m\].
     Stated(f64),
-    /// Half the width of the tube with this index.
+    /// Half the width of the tube with this index (in the list of links with weight along their length).
     HalfOf(usize),
 }
 
@@ -103,7 +104,8 @@ impl Skeleton {
         }
     }
 
-    /// The options of every joint and tube.
+    /// The options of every joint and tube of the question. `offers` are the drives that the catalogs offer for each
+    /// joint, and `ties` tells whether drives that no objective tells apart are one option.
     pub(super) fn parts(&self, question: &Question, offers: &[JointOffers], ties: Ties) -> Parts {
         let level = |place: Place| self.levels.iter().position(|other| *other == place);
         let joints = offers.iter().enumerate().map(|(joint, offers)| {
@@ -126,7 +128,8 @@ impl Skeleton {
     }
 }
 
-/// The first tube between each joint and the next, base to tip, by its number among what has a weight along its length.
+/// The first tube between each joint and the next, base to tip, as an index into the list of links with weight along
+/// their length. `None` if there is no tube between them.
 fn first_tubes(question: &Question) -> Vec<Option<usize>> {
     let mut first: Vec<Option<usize>> = Vec::new();
     let mut tubes = 0;
@@ -148,7 +151,7 @@ fn first_tubes(question: &Question) -> Vec<Option<usize>> {
     first
 }
 
-/// Where the link attaches to every joint, base to tip.
+/// The lever of every joint, base to tip: the distance along its axis from the bearing to where the link attaches.
 fn levers(question: &Question) -> Vec<Lever> {
     let mut levers = Vec::new();
     let mut tubes = 0;
@@ -173,7 +176,7 @@ fn levers(question: &Question) -> Vec<Lever> {
     levers
 }
 
-/// Acceleration of every joint in its ramp \[rad/s²\].
+/// Acceleration of every joint in its ramp \[rad/s²\], base to tip.
 fn accelerations_rad_s2(question: &Question) -> Vec<f64> {
     let joints = question.joints().zip(reaches_m(question));
     let duty = |(joint, reach_m): (&AskedJoint, f64)| {
@@ -189,7 +192,7 @@ pub(super) fn joint_offers(question: &Question, catalogs: &Catalogs) -> Vec<Join
     joints.map(|(joint, reach_m)| JointOffers::new(question, joint, reach_m, catalogs)).collect()
 }
 
-/// Largest distance of the tip from each joint's axis over the sizing cases \[m\].
+/// Reach of each joint \[m\]: the largest distance of the tip from the joint's axis over the sizing cases.
 fn reaches_m(question: &Question) -> Vec<f64> {
     let structure = question.nominal_structure();
     let mut reaches_m = vec![0.0f64; question.joints().count()];
@@ -236,7 +239,8 @@ fn levels(question: &Question, structure: &Structure) -> Vec<Place> {
             }
             Piece::Prismatic(_) => continue,
             Piece::Link(link) => {
-                // an open link without any tube has no line either; it stands for itself
+                // an open link without any option of a tube has no weight along its length, but it still has a
+                // level
                 let is_tube = matches!(asked, AskedPiece::Choice(_)) || super::layout::has_line(link);
                 tubes += usize::from(is_tube);
                 Place::Tube(tubes.saturating_sub(1))

@@ -1,8 +1,8 @@
-//! Intervals, and sums that are linear in the weights of parts.
+//! Intervals, and functions that are linear in the weights of parts.
 
 use nalgebra::Vector3;
 
-/// An interval: all numbers from the least to the most.
+/// An interval: all numbers from `least` to `most`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Span {
     pub least: f64,
@@ -10,34 +10,35 @@ pub(super) struct Span {
 }
 
 impl Span {
-    /// The interval of a number times every number of the span.
+    /// The interval of `factor` times a number of this interval.
     pub(super) fn times(self, factor: f64) -> Self {
         let (a, b) = (self.least * factor, self.most * factor);
         Self { least: a.min(b), most: a.max(b) }
     }
 
-    /// The interval of the sums of a number of this span and a number of another.
+    /// The interval of the sums of a number of this interval and a number of `other`.
     pub(super) fn plus(self, other: Self) -> Self {
         Self { least: self.least + other.least, most: self.most + other.most }
     }
 
-    /// The numbers of both and all between them.
+    /// The smallest interval that contains this one and `other`.
     pub(super) fn with(self, other: Self) -> Self {
         Self { least: self.least.min(other.least), most: self.most.max(other.most) }
     }
 
-    /// The least product of a number of this span and a number of a span of compliances, none of which is negative.
+    /// The least product of a number of this interval and a compliance in the interval `compliance`. Compliances are
+    /// never negative.
     pub(super) fn least_product(self, compliance: Self) -> f64 {
         let factor = if self.least >= 0.0 { compliance.least } else { compliance.most };
         if self.least == 0.0 { 0.0 } else { self.least * factor }
     }
 
-    /// Least magnitude of a number of the span.
+    /// Smallest magnitude of the numbers in the interval. Zero if the interval contains zero.
     pub(super) fn least_size(self) -> f64 {
         self.least.max(-self.most).max(0.0)
     }
 
-    /// Largest magnitude of a number of the span.
+    /// Largest magnitude of the numbers in the interval.
     pub(super) fn largest_size(self) -> f64 {
         self.most.max(-self.least)
     }
@@ -47,7 +48,7 @@ impl Span {
     }
 }
 
-/// A linear function of the loads: a fixed part, and a part per unit of each load.
+/// A linear function of the loads: a constant, and a coefficient for each load.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Linear {
     pub fixed: f64,
@@ -55,15 +56,15 @@ pub(super) struct Linear {
 }
 
 impl Linear {
-    /// The interval of the function's values over intervals of the loads. Every load enters once, so the interval is
-    /// exact.
+    /// The interval of the function's values over intervals of the loads. It is exact, because every load enters
+    /// only once.
     pub(super) fn over(&self, loads: &[Span]) -> Span {
         let start = Span { least: self.fixed, most: self.fixed };
         self.per_load.iter().zip(loads).fold(start, |sum, (factor, load)| sum.plus(load.times(*factor)))
     }
 }
 
-/// Three linear functions of the loads: the components of a vector.
+/// A vector whose three components are linear functions of the loads.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct LinearVector {
     pub fixed: Vector3<f64>,
@@ -71,7 +72,7 @@ pub(super) struct LinearVector {
 }
 
 impl LinearVector {
-    /// The interval of the vector's component along a direction.
+    /// The interval of the component of this vector along `direction`, if each load lies in its interval of `loads`.
     pub(super) fn along(&self, direction: &Vector3<f64>, loads: &[Span]) -> Span {
         let fixed = self.fixed.dot(direction);
         let start = Span { least: fixed, most: fixed };
@@ -81,7 +82,7 @@ impl LinearVector {
             .fold(start, |sum, (factor, load)| sum.plus(load.times(factor.dot(direction))))
     }
 
-    /// The vector where every load is in the middle of its interval.
+    /// This vector, if each load is in the middle of its interval.
     pub(super) fn middle(&self, loads: &[Span]) -> Vector3<f64> {
         let sum = |sum, (factor, load): (&Vector3<f64>, &Span)| sum + factor * load.middle();
         self.per_load.iter().zip(loads).fold(self.fixed, sum)

@@ -1,4 +1,4 @@
-//! The options of one level halved again and again.
+//! The options of one level, halved again and again into a binary tree.
 
 use std::cmp::Ordering;
 
@@ -6,7 +6,7 @@ use std::cmp::Ordering;
 #[derive(Debug, Clone)]
 pub(super) struct Tree {
     nodes: Vec<Node>,
-    /// The options, in an order in which those of every node are neighbours.
+    /// The options, in an order in which the options of each node are next to each other.
     order: Vec<u32>,
 }
 
@@ -18,7 +18,8 @@ struct Node {
 }
 
 impl Tree {
-    /// Builds the tree. A set of options is halved at the median of the key in which the set is spread most.
+    /// Builds the tree over `options`. `keys` holds the coordinates of each option. A set of options is halved at the
+    /// median of the coordinate in which the set has the widest spread.
     pub(super) fn new(options: Vec<u32>, keys: &[Vec<f64>]) -> Self {
         let mut tree = Self { nodes: Vec::new(), order: options };
         if !tree.order.is_empty() {
@@ -43,24 +44,24 @@ impl Tree {
         place as u32
     }
 
-    /// Number of nodes; the root is node 0 and there is none if there are no options.
+    /// Number of nodes. The root is node 0; without options there is no node.
     pub(super) fn len(&self) -> usize {
         self.nodes.len()
     }
 
-    /// The options of a node.
+    /// The options below the node `node` of the tree.
     pub(super) fn options(&self, node: u32) -> &[u32] {
         let node = &self.nodes[node as usize];
         &self.order[node.first..node.end]
     }
 
-    /// The two halves of a node; a single option has none.
+    /// The two halves of a node; `None` for a single option.
     pub(super) fn halves(&self, node: u32) -> Option<[u32; 2]> {
         self.nodes[node as usize].halves
     }
 }
 
-/// Index of the key in which the options differ most.
+/// Index of the coordinate in `keys` in which the options differ most.
 fn widest(options: &[u32], keys: &[Vec<f64>]) -> usize {
     let width = |key: usize| {
         let values = options.iter().map(|&option| keys[option as usize][key]);

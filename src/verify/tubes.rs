@@ -1,4 +1,5 @@
-//! The numbers of a tube that mass, torques, deflection, stress and modes depend on, and their ranges over a set of tubes.
+//! The numbers of a tube that determine mass, torques, deflection, stress and modes, and their ranges over a set of
+//! tubes.
 
 use super::carriers::Carrier;
 use super::fit::{ANY_WIDTH, Widths, room};
@@ -14,59 +15,61 @@ use nalgebra::Vector3;
 
 /// Number of stiffnesses of a tube: `E I` about y and z, `κ G A`, `G J`, `E A`.
 pub(super) const STIFFNESSES: usize = 5;
-/// Number of inertias per length: against motion along the link and across it, and against rotation about the link's
-/// axis, its y and its z.
+/// Number of inertias per length: for motion along the link and across it, and for rotation about the link's axis
+/// and about the y and z axes of its section.
 pub(super) const DENSITIES: usize = 5;
-/// Number of stress coefficients: stress per axial force, per moment about y, per moment about z and per torque, each
-/// over the strength.
+/// Number of stress coefficients: stress per axial force, per moment about y, per moment about z and per torque,
+/// each divided by the strength.
 pub(super) const STRESSES: usize = 4;
 
-/// A tube in numbers.
+/// The numbers of one tube.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct TubeNumbers {
-    /// Mass \[kg\].
+    /// Mass of the tube \[kg\].
     pub mass_kg: f64,
-    /// Stiffnesses; infinite where the link model has no such strain.
+    /// Stiffnesses (see [`STIFFNESSES`]); infinite where the link model has no such strain.
     pub stiffnesses: [f64; STIFFNESSES],
-    /// Stress coefficients; zero if the strength is unknown.
+    /// Stress coefficients (see [`STRESSES`]); zero if the strength is unknown.
     pub stresses: [f64; STRESSES],
     /// 1 for a round tube, 0 for a rectangular one.
     pub round: f64,
-    /// Half its width along the axis of the joint that carries it; zero if there is none \[m\].
+    /// Half the width of the tube along the axis of the joint next to its root \[m\]; zero if it does not start at
+    /// a joint.
     pub half_width_m: f64,
-    /// The room that it leaves to the parts of the joint whose first tube it is.
+    /// The largest widths of gear and motor for which the tube leaves room, if it is the first tube of a joint.
     pub room: Widths,
-    /// Weight and inertias in each of the study's surroundings.
+    /// Weight and inertias of the tube in each of the study's surroundings.
     pub around: Vec<TubeAround>,
 }
 
 /// Numbers of a tube that depend on the medium around it, air or water.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct TubeAround {
-    /// Weight less buoyancy, per length \[N/m\].
+    /// Weight per length, less buoyancy \[N/m\].
     pub weight_n_per_m: f64,
-    /// Inertias per length.
+    /// Inertias per length, in the order of [`DENSITIES`].
     pub densities: [f64; DENSITIES],
 }
 
-/// The tubes that a link may have.
+/// The tubes that a link may have, as a list.
 pub(super) struct TubeOptions {
-    /// Index among the levels of the space; `None` if the tube is no choice.
+    /// Index of the link's choice among the levels (choices) of the space; `None` if the search does not choose the
+    /// tube.
     pub level: Option<usize>,
-    /// Each tube with its number. Tubes that are too slender are left out.
+    /// Each tube with its index in the link's list. Tubes whose walls are too slender are left out.
     pub tubes: Vec<(u32, TubeNumbers)>,
 }
 
-/// The tubes that a link may have, in a tree whose nodes are halved down to single tubes.
+/// The tubes that a link may have, as a binary tree. Branching halves its nodes down to single tubes.
 pub(super) struct Tubes {
     pub level: Option<usize>,
     pub tree: Tree,
     pub nodes: Vec<TubeRange>,
-    /// Number of each tube in the list of the link.
+    /// Index of each tube in the list of the link.
     pub numbers: Vec<u32>,
 }
 
-/// Least, greatest and middle numbers of a set of tubes.
+/// Least, greatest and mean value of each number over a set of tubes.
 #[derive(Debug, Clone)]
 pub(super) struct TubeRange {
     pub least: TubeNumbers,
@@ -75,7 +78,7 @@ pub(super) struct TubeRange {
 }
 
 impl TubeOptions {
-    /// The tubes of a link whose tube is chosen.
+    /// The tubes of a link whose tube the search chooses.
     pub(super) fn of_choice(
         question: &Question,
         carrier: Carrier,
@@ -89,8 +92,8 @@ impl TubeOptions {
         Self { level: Some(level), tubes: tubes.collect() }
     }
 
-    /// The tube of a link without a choice. Cables along a rigid offset count as a tube that does not yield. `None`
-    /// if the link has no weight along its length.
+    /// The tube of a link that the study gives. Cables along a rigid offset count as a rigid tube. `None` if the
+    /// link has no weight along its length.
     pub(super) fn of_link(
         question: &Question,
         carrier: Carrier,
@@ -103,7 +106,7 @@ impl TubeOptions {
                 LinkBody::Tube { section, .. } => is_too_slender(question, section),
                 LinkBody::Offset { .. } => false,
             };
-            // what cables weigh is no mass of a design, and the strength of a given tube is not known
+            // cables do not count in the mass of a design, and the strength of a given tube is not known
             let mass_kg = piece.beam.map_or(0.0, |_| piece.tube_kg_per_m() * piece.vector_m.norm());
             let numbers = TubeNumbers::new(question, carrier, &piece, mass_kg, waters);
             let tubes = if slender { Vec::new() } else { vec![(0, numbers)] };
@@ -111,12 +114,12 @@ impl TubeOptions {
         })
     }
 
-    /// Some of the options, given by ascending indices.
+    /// The same list with only some of its options. `some` has the indices of these options in ascending order.
     pub(super) fn only(&self, some: &[u32]) -> Self {
         Self { tubes: some.iter().map(|&i| self.tubes[i as usize].clone()).collect(), ..*self }
     }
 
-    /// The tree of all options.
+    /// The binary tree over all tubes of this list.
     pub(super) fn tree(&self) -> Tree {
         let all = (0..self.tubes.len() as u32).collect();
         Tree::new(all, &self.tubes.iter().map(|(_, tube)| keys(tube)).collect::<Vec<_>>())
@@ -124,7 +127,7 @@ impl TubeOptions {
 }
 
 impl Tubes {
-    /// Builds the tree of the options.
+    /// Builds the tree over the tubes, and computes the least and greatest numbers of each node's tubes.
     pub(super) fn new(options: &TubeOptions) -> Self {
         let tree = options.tree();
         let range = |node| TubeRange::over(tree.options(node).iter().map(|&i| &options.tubes[i as usize].1));
@@ -134,11 +137,12 @@ impl Tubes {
     }
 }
 
-/// Whether a tube's wall is thinner, for its width, than the question allows because of buckling.
+/// Whether the ratio of a tube's width to its wall is larger than the question allows because of buckling.
 pub(super) fn is_too_slender(question: &Question, section: &Section) -> bool {
     let (width_m, height_m) = section.outer_m();
     let wall_m = section.wall_m();
-    // catalog sizes often lie exactly on the limit, so the quotient is taken as the glossary defines it: flat over wall
+    // catalog sizes often lie exactly on the limit, so the quotient is formed as the study format defines it: flat
+    // over wall
     let slenderness = match section {
         Section::RectangularTube { .. } => (width_m.max(height_m) - 2.0 * wall_m) / wall_m,
         Section::RoundTube { .. } => width_m / wall_m,
@@ -150,8 +154,8 @@ pub(super) fn is_too_slender(question: &Question, section: &Section) -> bool {
     question.limits.wall_slenderness_max.is_some_and(|most| slenderness > most)
 }
 
-/// Half the width of a tube along a direction of its carried frame: the part of the half widths, as a vector in the
-/// section's plane, that its two sides have in that direction; zero for an offset \[m\].
+/// Half the extent of a link along `direction` \[m\]; zero for an offset. The half widths of both sides of the section
+/// are projected on the direction, and the root of the sum of their squares is taken.
 fn half_width_m(piece: &LinkPiece, direction: &Vector3<f64>) -> f64 {
     let Some(beam) = piece.beam else { return 0.0 };
     let [y, z] = [1, 2].map(|side| section_frame(&piece.vector_m).column(side).dot(direction));
@@ -159,15 +163,17 @@ fn half_width_m(piece: &LinkPiece, direction: &Vector3<f64>) -> f64 {
     ((width_m * y).powi(2) + (height_m * z).powi(2)).sqrt() / 2.0
 }
 
-/// The numbers by which the tree separates tubes.
+/// The position of a tube in the space in which the tree puts similar tubes together: logarithms of its mass, both
+/// bending stiffnesses and its torsional stiffness. Those of mass and torsional stiffness are multiplied by a factor
+/// (1.5 and 0.3).
 fn keys(tube: &TubeNumbers) -> Vec<f64> {
     let [bending_y, bending_z, _, torsion, _] = tube.stiffnesses.map(libm::log);
     vec![1.5 * libm::log(tube.mass_kg), bending_y, bending_z, 0.3 * torsion]
 }
 
-/// Stress per axial force, moment about y, moment about z and torque, each over the strength. A link in bending is pulled
-/// as much as it is pressed, so the lower of its two strengths decides. Bending and torsion are largest on the outside of
-/// a round tube.
+/// Stress per axial force, moment about y, moment about z and torque, each divided by the strength. In bending,
+/// tension and compression are equal, so the lower of the two strengths decides. In a round tube bending and
+/// torsion stress both have their maximum on the outside.
 fn stresses(tube: &AskedTube) -> [f64; STRESSES] {
     let Some(tensile_pa) = tube.strength_pa else { return [0.0; STRESSES] };
     let strength_pa = tensile_pa.min(tube.compressive_strength_pa.unwrap_or(f64::INFINITY));
@@ -182,7 +188,7 @@ fn stresses(tube: &AskedTube) -> [f64; STRESSES] {
     per_load.map(|per| per / strength_pa)
 }
 
-/// Stiffnesses of a tube; infinite where the link model has no such strain.
+/// Stiffnesses of a tube, in the order of [`STIFFNESSES`]; infinite where the link model has no such strain.
 fn stiffnesses(piece: &LinkPiece, model: LinkModel) -> [f64; STIFFNESSES] {
     let Some(beam) = piece.beam else { return [f64::INFINITY; STIFFNESSES] };
     let known = match model {
@@ -225,7 +231,7 @@ impl TubeRange {
 }
 
 impl TubeNumbers {
-    /// Numbers of a tube that a link may have.
+    /// Numbers of a tube that a link may have, with its strength.
     pub(super) fn of_choice(
         question: &Question,
         carrier: Carrier,
@@ -240,7 +246,7 @@ impl TubeNumbers {
         Self { stresses: stresses(tube), round: f64::from(u8::from(is_round)), ..numbers }
     }
 
-    /// Numbers of a tube whose strength is unknown.
+    /// Numbers of a tube whose strength is not checked.
     fn new(
         question: &Question,
         carrier: Carrier,

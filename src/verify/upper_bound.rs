@@ -1,4 +1,5 @@
-//! A local upper bound of a front: every design that no row beats lies below one.
+//! A local upper bound of a front. Every design that no design of the front dominates lies below at least one such
+//! bound.
 
 use super::bound::{IdealPoint, ROUNDING};
 use super::modes::eigenvalue_of;
@@ -12,10 +13,10 @@ pub(super) struct UpperBound {
 }
 
 impl UpperBound {
-    /// The bound below which every design lies.
+    /// The upper bound that excludes nothing: every design lies below it.
     pub(super) const OPEN: Self = Self { mass_kg: f64::INFINITY, tip_m: f64::INFINITY, hz: 0.0 };
 
-    /// Whether a design with this ideal mass and deflection may be below the bound.
+    /// Whether a design with the mass and the deflection of the ideal point `ideal` can lie below this bound.
     pub(super) fn is_in_reach_of(&self, ideal: &IdealPoint) -> bool {
         let most = 1.0 + ROUNDING;
         ideal.mass_kg <= self.mass_kg * most && ideal.tip_m <= self.tip_m * most
@@ -26,7 +27,7 @@ impl UpperBound {
         eigenvalue_of(self.hz)
     }
 
-    /// The least upper bound that covers two.
+    /// The smallest upper bound that covers this bound and `other`.
     pub(super) fn join(&self, other: &Self) -> Self {
         Self {
             mass_kg: self.mass_kg.max(other.mass_kg),
@@ -35,18 +36,18 @@ impl UpperBound {
         }
     }
 
-    /// Whether every design below this bound is also below another.
+    /// Whether every design below this bound is also below the bound `other`.
     pub(super) fn is_within(&self, other: &Self) -> bool {
         self.mass_kg <= other.mass_kg && self.tip_m <= other.tip_m && self.hz >= other.hz
     }
 
-    /// Whether a design of the front dominates some designs below this bound.
+    /// Whether `row`, the objectives of a design of the front, dominates a part of the region below this bound.
     pub(super) fn is_cut_by(&self, row: &UpperBound) -> bool {
         row.mass_kg < self.mass_kg && row.tip_m < self.tip_m && row.hz > self.hz
     }
 
-    /// The three bounds into which a design of the front divides what it leaves below this one: no heavier than this
-    /// design, deflecting no more, with no lower mode.
+    /// Three bounds that together cover what a design of the front leaves undominated below this bound. `row` are the
+    /// objectives of this design. Each of the three limits one objective to its value.
     pub(super) fn left_by(&self, row: &UpperBound) -> [Self; 3] {
         [
             Self { mass_kg: row.mass_kg, ..*self },

@@ -209,7 +209,7 @@ fn study_of_many_drives(seed: u64) -> Value {
 
 #[test]
 fn fronts_are_whole_where_most_drives_are_pointless() {
-    let points: usize = (0..8).map(|seed| agree(&study_of_many_drives(seed))).sum();
+    let points: usize = (0..8).map(|seed| agree(&study_of_many_drives(seed), seed % 3 == 0)).sum();
     println!("{points} designs, the same in both");
     assert!(points > 200, "{points}");
 }
@@ -276,7 +276,7 @@ fn a_rectangular_tube_bent_about_both_axes_is_as_weak_as_in_the_sweep() {
             "payload": {"mass_kg": 12}, "poses": [{"pose_deg": [0, 45]}],
             "constraints": {"stress_safety_factor_min": safety}})
     };
-    let sizes: Vec<usize> = (4..40).map(|k| agree(&study(0.5 * f64::from(k)))).collect();
+    let sizes: Vec<usize> = (4..40).map(|k| agree(&study(0.5 * f64::from(k)), k % 4 == 0)).collect();
     assert!(sizes[0] > sizes[sizes.len() - 1], "the limit binds: {sizes:?}");
 }
 
@@ -290,7 +290,7 @@ fn a_gear_that_softens_under_load_is_bounded_too() {
                 "sections": [{"shape": "rectangular_tube", "width_mm": [40, 60, 80, 120], "height_mm": [40, 60, 80, 120], "wall_mm": [2, 3, 5]}]}}],
             "payload": {"mass_kg": 6}, "poses": [{"pose_deg": [0]}]})
     };
-    assert!((50..130).step_by(5).map(|t| agree(&study(f64::from(t)))).sum::<usize>() > 100);
+    assert!((50..130).step_by(5).map(|t| agree(&study(f64::from(t)), t % 20 == 0)).sum::<usize>() > 100);
 }
 
 #[test]
@@ -474,13 +474,15 @@ fn study_with_effects(seed: u64) -> Value {
 #[test]
 fn effects_of_the_study_are_bounded_too() {
     // seeds that do not take long
-    let points: usize =
-        [1, 5, 6, 8, 9, 12, 13, 14].map(|seed| agree(&study_with_effects(seed))).into_iter().sum();
+    let points: usize = [1, 5, 6, 8, 9, 12, 13, 14]
+        .map(|seed| agree(&study_with_effects(seed), seed % 4 == 1))
+        .into_iter()
+        .sum();
     // a link far stiffer than its section says
     let mut stiffer = random_study(1);
     stiffer["effects"] =
         json!([{"effect": "link_flexibility", "at": "forearm", "parameters": {"factor": 0.2}}]);
-    let points = points + agree(&stiffer);
+    let points = points + agree(&stiffer, true);
     println!("{points} designs, the same in all searches");
     assert!(points > 300, "{points}");
 }
@@ -510,24 +512,25 @@ fn study_with_play(seed: u64) -> Value {
 fn play_of_the_joints_is_bounded_too() {
     // seeds that do not take long
     let seeds = [5, 7, 9, 12, 24, 30, 39, 47, 50];
-    let mut points: usize = seeds.map(|seed| agree(&study_with_play(seed))).into_iter().sum();
+    let mut points: usize = seeds.map(|seed| agree(&study_with_play(seed), seed % 3 == 0)).into_iter().sum();
     // weight outboard closes play, and so stiffens a joint; or friction holds more back the more it carries
     let softer =
         json!({"k1_nm_per_rad": 2e5, "k2_nm_per_rad": 2e5, "k3_nm_per_rad": 6e5, "t1_nm": 20, "t2_nm": 30});
     let straight = json!({"k1_nm_per_rad": 3.6e5, "k2_nm_per_rad": 3.6e5, "k3_nm_per_rad": 3.6e5, "t1_nm": 20, "t2_nm": 30});
     let lost = |half_width_rad: f64, torque_nm: f64| json!({"effect": "lost_motion", "at": "j2", "parameters": {"half_width_rad": half_width_rad, "torque_nm": torque_nm}});
     let friction = json!({"effect": "hysteresis", "at": "j2", "parameters": {"half_width_rad": 5e-3}});
-    for (windup, play) in [
+    let plays = [
         (&straight, lost(2e-3, 25.0)),
         (&straight, lost(5e-4, 15.0)),
         (&straight, lost(4e-3, 35.0)),
         (&softer, lost(1e-3, 30.0)),
         (&softer, friction),
-    ] {
+    ];
+    for (k, (windup, play)) in plays.into_iter().enumerate() {
         let mut study = ballast_study();
         study["chain"][0]["windup"] = windup.clone();
         study["effects"] = json!([play]);
-        points += agree(&study);
+        points += agree(&study, k % 2 == 0);
     }
     // a joint that twists by nothing else
     let chain = |axis: [f64; 3]| {
@@ -541,6 +544,7 @@ fn play_of_the_joints_is_bounded_too() {
         points += agree(
             &json!({"name": "rigid", "chain": chain(axis), "payload": {"mass_kg": 6}, "poses": [{"pose_deg": [0]}],
             "effects": effects.map(|(effect, parameters)| json!({"effect": effect, "at": "j1", "parameters": parameters}))}),
+            true,
         );
     }
     println!("{points} designs, the same in all searches");

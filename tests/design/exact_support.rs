@@ -86,10 +86,11 @@ pub fn both_searches(
     (sweep.front, listed)
 }
 
-/// Asserts that both searches find the same designs of a study, by boxes and by regions, and returns how many.
-pub fn agree(text: &Value) -> usize {
+/// Asserts that both searches find the same designs of a study, by boxes and if asked by regions, and returns how many.
+/// Regions are for spaces far larger, and take by far the longest on small ones.
+pub fn agree(text: &Value, by_regions: bool) -> usize {
     let catalogs = Catalogs::builtin();
-    both_searches(&read(text, &catalogs), &catalogs, true, &text.to_string()).1
+    both_searches(&read(text, &catalogs), &catalogs, by_regions, &text.to_string()).1
 }
 
 /// Writes another text into a file of a result and into the list of its files, as a program would that is wrong and not torn.

@@ -50,7 +50,7 @@ fn every_tie_of_drives_that_weigh_and_twist_alike_is_listed() {
     let (mut designs, mut points) = (0, 0);
     for seed in 0..5 {
         let text = study_of_ties(seed);
-        designs += agree(&text);
+        designs += agree(&text, seed % 2 == 0);
         let study = read(&text, &catalogs);
         let sweep = Sweep::new(
             &ArmProblem::new(&study.space, &catalogs),

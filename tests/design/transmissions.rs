@@ -180,9 +180,8 @@ fn drives_hold_the_work_of_the_weights_on_what_they_move() {
         let chain = chain_of(&arm_of(&json!(chain)).expect("sound"));
         let posed = chain.pose_rad(&pose, &Payload::default(), Vector3::zeros());
         let statics = posed.statics();
-        for i in 0..4 {
-            let work: f64 = rates[i].iter().zip(&masses).map(|(rate, m)| -m * G * rate.z).sum();
-            let (name, torque) = &statics.joint_torques_nm[i];
+        for (rates, (name, torque)) in rates.iter().zip(&statics.joint_torques_nm) {
+            let work: f64 = rates.iter().zip(&masses).map(|(rate, m)| -m * G * rate.z).sum();
             assert!((torque - work).abs() < 1e-6, "round {round}, {name}: {torque} and {work}");
         }
         let tip: Vector3<f64> = (0..4).map(|i| rates[i][3] * statics.joint_torques_nm[i].1 / k[i]).sum();

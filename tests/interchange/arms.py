@@ -128,6 +128,33 @@ def fixed_arms():
     return out
 
 
+def prismatic(name, axis, stiffness, guide=(None, None, None), **more):
+    guide = dict(zip(("roll_nm_per_rad", "pitch_nm_per_rad", "yaw_nm_per_rad"), guide))
+    return {"type": "prismatic", "name": name, "axis": axis, "stiffness_n_per_m": stiffness, "guide": guide, **more}
+
+
+def sliding(name, pose, mass=5.0, cg=(0.05, 0.0, 0.0), inertia=(0.01, 0.02, 0.015)):
+    out = case(name, [], mass, cg, inertia)
+    del out["pose_deg"]
+    return {**out, "pose": pose}
+
+
+def sliding_arms():
+    """Arms with prismatic joints; decks of CalculiX have none."""
+    gantry = arm("gantry", [
+        prismatic("rail", [1, 0, 0], 4e7, (2e5, 3e5, None), mass_kg=14.0, fixed_mass_kg=5.0, bodies=[{**body(6.0, (0, 0.1, 0.05), (0.3, 0.2, 0.1)), "travels": True}]),
+        box("bridge", [0, 0.6, 0.1], "aluminium", 0.16, 0.2, 0.008), prismatic("cross", [0, 1, 0], 3e7, (None, 2e5, 1.5e5), mass_kg=6.0),
+        box("hanger", [0.05, 0, -0.2], "steel", 0.08, 0.08, 0.004), prismatic("quill", [0, 0, -1], 2e7, (6e4, 8e4, 7e4), moves="ram", mass_kg=3.0),
+        offset("spindle", [0, 0, -0.15], 1.0)])
+    mixed = arm("arm-on-a-rail", [
+        prismatic("rail", [0, 1, 0], None, (3e5, 4e5, 4e5), mass_kg=20.0), joint("j1", [0, 0, 1], 3e5, 9.0, **bearing(5e5)),
+        box("column", [0, 0, 0.5], "steel", 0.16, 0.16, 0.008), joint("j2", [0, 1, 0], 2e5, 7.0), box("upper", [0.6, 0, 0], "aluminium", 0.12, 0.12, 0.006),
+        geared("j3", [0, 1, 0], 9e4, 40, 5.0), prismatic("boom", [1, 0, 0.2], 5e6, (5e4, 9e4, 9e4), moves="ram", mass_kg=2.5),
+        pipe("tube", [0.4, 0, 0.02], "carbon", 0.08, 0.004), joint("j4", [1, 0, 0], 2e4, 1.0), offset("tool", [0.08, 0.02, 0])])
+    return [("gantry", gantry, [sliding("middle", {"rail_mm": 700, "cross_mm": -350, "quill_mm": 250})]),
+            ("arm on a rail", mixed, [sliding("out", {"rail_mm": -400, "j1_deg": 25, "j2_deg": -30, "j3_deg": 50, "boom_mm": 320, "j4_deg": 40}, 4.0)])]
+
+
 def random_arm(seed):
     r = random.Random(seed)
     pick = lambda low, high: round(low + (high - low) * r.random(), 4)

@@ -50,10 +50,15 @@ def main(binary, folder, robots):
         out = os.path.join(folder, name)
         armwright(binary, "import", path, "--tip", tip, "--out", out)
         with open(os.path.join(out, "import.json")) as file:
-            joints = [j["name"] for j in json.load(file)["joints"] if j["coupled"] is None]
-        poses = np.random.default_rng(7).uniform(-2.5, 2.5, (POSES, len(joints)))
+            moving = [j for j in json.load(file)["joints"] if j.get("coupled") is None]
+        joints = [j["name"] for j in moving]
+        slides = np.array([j["type"] == "prismatic" for j in moving])
+        # rad, and a tenth of that many metres
+        poses = np.random.default_rng(7).uniform(-2.5, 2.5, (POSES, len(joints))) * np.where(slides, 0.1, 1)
+        keys = [f"{name}_{'mm' if slide else 'deg'}" for name, slide in zip(joints, slides)]
+        entries = np.where(slides, 1e3 * poses, np.degrees(poses))
         with open(os.path.join(out, "cases.json"), "w") as file:
-            json.dump([{"name": str(i), "pose_deg": list(np.degrees(pose))} for i, pose in enumerate(poses)], file)
+            json.dump([{"name": str(i), "pose": dict(zip(keys, pose))} for i, pose in enumerate(entries)], file)
         found = json.loads(armwright(binary, "analyze", f"{out}/arm.json", "--cases", f"{out}/cases.json", "--json"))
         m, follows, worst, largest = load(path), mimics(path), 0.0, 0.0
         d = mujoco.MjData(m)
@@ -64,12 +69,13 @@ def main(binary, folder, robots):
                 d.qpos[m.jnt_qposadr[j]] = value
                 slopes.append(slope)
             mujoco.mj_forward(m, d)
+            holding = {**ours["joint_torque_nm"], **ours.get("joint_force_n", {})}
             for joint in joints:
                 # what the drive of a joint holds of itself and of those that follow it
                 theirs = -sum(slope.get(joint, 0.0) * d.qfrc_bias[m.jnt_dofadr[j]] for j, slope in enumerate(slopes))
-                worst = max(worst, abs(theirs - ours["joint_torque_nm"][joint]))
+                worst = max(worst, abs(theirs - holding[joint]))
                 largest = max(largest, abs(theirs))
-        table.row(f"{name} ({len(joints)} joints, to {largest:.0f} Nm)", [(f"torque Nm, {POSES} poses", worst, TORQUE_NM)])
+        table.row(f"{name} ({len(joints)} joints, to {largest:.0f} Nm)", [(f"torque Nm or N, {POSES} poses" if slides.any() else f"torque Nm, {POSES} poses", worst, TORQUE_NM)])
     table.end()
 
 

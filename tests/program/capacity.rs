@@ -98,3 +98,37 @@ fn an_arm_file_whose_joints_have_no_limit_is_refused_with_what_to_give() {
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("give --limits FILE"));
 }
+
+/// A vertical first joint whose bearing holds the moment of everything outboard: 2 kg at 0.5 m and the payload at 1 m. The bearing's
+/// lever of 0.1 m does not count for a force along the axis.
+#[test]
+fn the_capacity_of_an_arm_file_ends_where_an_output_bearing_is_overloaded() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let bearing = json!({"tilt_stiffness_nm_per_rad": 1e5, "permissible_moment_nm": 40, "offset_m": 0.1,
+        "pitch_diameter_m": 0.05, "static_load_rating_n": 9000});
+    let mut arm = json!({"name": "a", "chain": [
+        {"type": "joint", "name": "waist", "axis": [0, 0, 1], "stiffness_nm_per_rad": 1e4, "bearing": bearing},
+        {"type": "link", "name": "l", "vector_m": [1, 0, 0], "mass_kg": 2}]});
+    let capacity = |arm: &Value| -> Value {
+        std::fs::write(dir.path().join("arm.json"), arm.to_string()).expect("written");
+        let output = armwright(&["capacity", "arm.json", "--json"], dir.path());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice(&output.stdout).expect("JSON")
+    };
+    let gravity_m_s2 = 9.81;
+    let by_moment = capacity(&arm);
+    let expected_kg = 40.0 / gravity_m_s2 - 1.0;
+    assert!((by_moment["payload_kg"].as_f64().expect("kg") - expected_kg).abs() < 1e-9, "{by_moment}");
+    assert_eq!((&by_moment["joint"], &by_moment["check"]), (&json!("waist"), &json!("bearing moment")));
+
+    // static safety 3 against C0: 2 M / d_p + 0.44 F_a = C0 / 3
+    arm["chain"][0]["bearing"]["permissible_moment_nm"] = json!(400);
+    let by_safety = capacity(&arm);
+    let (across, along) = (40.0, 0.44);
+    let expected_kg = (3000.0 / gravity_m_s2 - across - 2.0 * along) / (across + along);
+    assert!((by_safety["payload_kg"].as_f64().expect("kg") - expected_kg).abs() < 1e-9, "{by_safety}");
+    assert_eq!(by_safety["check"], "bearing static safety");
+
+    arm["chain"][0]["bearing"]["permissible_moment_nm"] = json!(5);
+    assert_eq!(capacity(&arm)["payload_kg"], 0.0);
+}

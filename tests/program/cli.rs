@@ -198,7 +198,10 @@ fn a_run_into_the_folder_of_another_leaves_nothing_of_it_but_what_is_the_users()
     std::fs::write(here.path().join("both.json"), study.to_string()).expect("written");
     offer_materials(&mut study, 1);
     std::fs::write(here.path().join("one.json"), study.to_string()).expect("written");
-    said(here.path(), &["run", "both.json", "--out", "out", "--within", "5%", "--tolerance", "mass"]);
+    said(
+        here.path(),
+        &["run", "both.json", "--out", "out", "--within", "5%", "--tolerance", "mass", "--samples", "50"],
+    );
     let files = || -> Vec<String> {
         let entries = std::fs::read_dir(here.path().join("out")).expect("a folder");
         entries.map(|entry| entry.expect("an entry").file_name().into_string().expect("text")).collect()

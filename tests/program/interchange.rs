@@ -274,6 +274,81 @@ fn prismatic_joints_come_in_with_ranges_and_given_springs() {
     assert!(close(&tip_m[2], -weight_n / 1e6 - 0.2 * tilt_rad), "{tip_m}");
 }
 
+/// A robot whose third joint slides.
+const SCARA: (&str, &str) = ("irb910sc", "tool0");
+
+#[test]
+fn a_scara_comes_in_and_its_quill_alone_holds_weight() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let file = urdf(SCARA.0).display().to_string();
+    done(&["import", &file, "--tip", SCARA.1, "--out", &at("rigid")]);
+    // the file to fill in asks for the springs that each kind of joint has
+    let mut given = read(folder.path().join("rigid/stiffness.json"));
+    assert_eq!(given["joints"]["axis_3"], json!({"stiffness_n_per_m": null, "guide": {}}));
+    let springs = json!({"stiffness_n_per_m": 4e5, "guide": {"roll_nm_per_rad": 4e3, "pitch_nm_per_rad": 9e3}, "moves": "ram"});
+    given["joints"]["axis_3"] = springs;
+    for (joint, nm_per_rad) in [("axis_1", 2e4), ("axis_2", 1e4)] {
+        given["joints"][joint] = json!({"stiffness_nm_per_rad": nm_per_rad});
+    }
+    let given = write(&folder.path().join("given.json"), &given);
+    let words = ["import", &file, "--tip", SCARA.1, "--stiffness", &given, "--out", &at("arm")];
+    done(&words);
+    assert!(
+        (read(folder.path().join("arm/import.json"))["mass_kg"].as_f64().expect("kg") - 24.5).abs() < 1e-9
+    );
+    let pose = "axis_1_deg=40,axis_2_deg=-70,axis_3_mm=-120,axis_4_deg=30";
+    let words = ["analyze", &at("arm/arm.json"), "--pose", pose, "--payload-kg", "3", "--json"];
+    let solved: Value = serde_json::from_str(&done(&words)).expect("JSON");
+    // what the quill holds: itself, the spindle and the payload; joints with vertical axes hold no weight
+    let weight_n = 9.81 * (1.0 + 0.2 + 3.0);
+    assert!((solved["joint_force_n"]["axis_3"].as_f64().expect("N") + weight_n).abs() < 1e-9, "{solved}");
+    for joint in ["axis_1", "axis_2", "axis_4"] {
+        assert!(solved["joint_torque_nm"][joint].as_f64().expect("Nm").abs() < 1e-9, "{solved}");
+    }
+    // the tip goes down by what the drive yields: the guide holds no moment but that of the spindle's small offset
+    let down_m = solved["tip_displacement_m"][2].as_f64().expect("m");
+    assert!((down_m + weight_n / 4e5).abs() < 1e-7, "{down_m}");
+    // it goes out to a simulator and back
+    done(&[
+        "export",
+        &at("arm/arm.json"),
+        "--pose",
+        pose,
+        "--payload-kg",
+        "3",
+        "--to",
+        "urdf",
+        "--out",
+        &at("out"),
+    ]);
+    let again = [
+        "import",
+        &at("out/arm.urdf"),
+        "--tip",
+        "tip",
+        "--stiffness",
+        &at("out/stiffness.json"),
+        "--out",
+        &at("back"),
+    ];
+    done(&again);
+    let words = ["analyze", &at("back/arm.json"), "--pose", pose, "--payload-kg", "3", "--json"];
+    let back: Value = serde_json::from_str(&done(&words)).expect("JSON");
+    for axis in 0..3usize {
+        let [a, b] = [&solved, &back].map(|value| value["tip_displacement_m"][axis].as_f64().expect("m"));
+        assert!((a - b).abs() < 1e-12, "{a} and {b} m");
+    }
+    let hz = |value: &Value| value["modes"][0]["frequency_hz"].as_f64().expect("Hz");
+    assert!((hz(&solved) / hz(&back) - 1.0).abs() < 1e-9, "{} and {} Hz", hz(&solved), hz(&back));
+    let words = ["export", &at("arm/arm.json"), "--to", "calculix", "--out", &at("fe")];
+    let output = armwright(&words);
+    assert!(
+        output.status.code() == Some(2) && String::from_utf8_lossy(&output.stderr).contains("axis_3"),
+        "{output:?}"
+    );
+}
+
 #[test]
 fn the_capacity_of_an_imported_robot_takes_a_joint_to_its_limit() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -490,8 +565,9 @@ fn mujoco_finds_the_torques_deflections_and_frequencies_of_exported_arms() {
 
 #[test]
 fn mujoco_finds_the_torques_of_imported_robots() {
-    let robots = ROBOTS.map(|(name, tip)| format!("{}:{tip}", urdf(name).display()));
-    let robots = robots.each_ref().map(String::as_str);
+    let all = ROBOTS.iter().chain(&[SCARA]);
+    let robots: Vec<String> = all.map(|(name, tip)| format!("{}:{tip}", urdf(name).display())).collect();
+    let robots: Vec<&str> = robots.iter().map(String::as_str).collect();
     match python() {
         Some(python) => compared(&python, "mujoco_import.py", &robots),
         None => eprintln!("SKIPPED: no Python with mujoco (set ARMWRIGHT_PYTHON)"),

@@ -59,6 +59,28 @@ fn standard_output_that_cannot_be_written_is_an_error_of_every_verb() {
     assert!(here.path().join("out/run.json").exists());
 }
 
+/// Where standard output is closed before the program begins, its run-time library opens `/dev/null` in that place, so that
+/// no file of a result can get its number. So a closed output is one that throws away, and no error.
+#[cfg(unix)]
+#[test]
+fn a_standard_output_that_was_closed_throws_away_and_no_text_gets_into_a_result() {
+    let here = folder_with_study();
+    let script = r#""$0" run study.json --out closed >&- && "$0" studies >&- 2>&- <&-"#;
+    let output = std::process::Command::new("sh")
+        .args(["-c", script, env!("CARGO_BIN_EXE_armwright")])
+        .current_dir(here.path())
+        .output()
+        .expect("a shell");
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(command(here.path(), &["check", "closed"]).status().expect("it runs").code(), Some(0));
+    assert_eq!(
+        command(here.path(), &["run", "study.json", "--out", "open"]).output().expect("runs").status.code(),
+        Some(0)
+    );
+    let same = ["check", "--same", "closed", "open"];
+    assert_eq!(command(here.path(), &same).status().expect("it runs").code(), Some(0));
+}
+
 #[test]
 fn a_piece_that_cannot_be_made_costs_no_other_and_is_named() {
     if !cfg!(debug_assertions) {

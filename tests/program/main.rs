@@ -27,6 +27,7 @@ mod links;
 mod mutations;
 mod operations;
 mod other_poses;
+mod output_schemas;
 mod pages;
 mod prismatic;
 mod progress;

@@ -110,6 +110,72 @@ fn a_disk_that_fills_while_a_state_is_kept_ends_no_search() {
     is_whole(here.path());
 }
 
+/// The same with a real disk that has no room left.
+#[test]
+fn a_small_disk_that_fills_while_states_are_kept_ends_no_search() {
+    let here = searched("exhaustive", EXHAUSTIVE);
+    let disk = here.path().join("disk");
+    fs::create_dir(&disk).expect("made");
+    let mount = |words: &[&str]| Command::new(words[0]).args(&words[1..]).arg(&disk).output();
+    let mounted = mount(&["mount", "-t", "tmpfs", "-o", "size=400k", "none"]);
+    if !mounted.is_ok_and(|output| output.status.success()) {
+        eprintln!("SKIPPED a full disk: this test may not mount one");
+        return;
+    }
+    let tried = std::panic::catch_unwind(|| {
+        let words = ["run", "study.json", "--search", "exhaustive", "--out", "disk/out"];
+        // room for a folder and a lock, and for some states or none, but not for the result
+        let filler = fs::write(disk.join("filler"), vec![0u8; 376 << 10]);
+        assert!(filler.is_ok(), "{filler:?}");
+        let mut command = command(here.path(), &words);
+        let (code, text) = said(command.env("ARMWRIGHT_KEEP_EVERY_MS", "0"));
+        assert!(code == 7 && text.contains("No space left"), "{code} {text}");
+        let went_on = text.contains("the search goes on, but a run after this one");
+        fs::remove_file(disk.join("filler")).expect("removed");
+        let text = succeeds(here.path(), &words);
+        eprintln!("a state did not fit: {went_on}; the next run went on: {}", text.contains(GOES_ON));
+        assert!(went_on || text.contains(GOES_ON), "no state was tried: {text}");
+        succeeds(here.path(), &["check", "--same", "whole", "disk/out"]);
+    });
+    std::thread::sleep(Duration::from_millis(10));
+    mount(&["umount"]).expect("unmounted");
+    tried.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+}
+
+/// Faults that the system makes and not the program: a rename that fails, and a process that dies at one.
+#[test]
+fn a_rename_that_the_system_refuses_or_kills_at_loses_nothing() {
+    let can = Command::new("strace")
+        .args(["-f", "-o", "/dev/null", "-e", "inject=rename:error=EIO:when=1", "true"])
+        .status();
+    if !can.is_ok_and(|status| status.success()) {
+        eprintln!("SKIPPED faults made by the system: no strace that may trace here");
+        return;
+    }
+    let here = searched("exact", EXACT);
+    for fault in ["error=EIO:when=1+", "error=ENOSPC:when=2+", "signal=KILL:when=1", "signal=KILL:when=4"] {
+        let inject = format!("inject=rename,renameat,renameat2:{fault}");
+        let mut command = Command::new("strace");
+        command.args([
+            "-f",
+            "--seccomp-bpf",
+            "-o",
+            "/dev/null",
+            "-e",
+            "trace=rename,renameat,renameat2",
+            "-e",
+            &inject,
+        ]);
+        command.arg(env!("CARGO_BIN_EXE_armwright")).args(run("exact"));
+        let (code, text) = said(command.current_dir(here.path()).env("ARMWRIGHT_KEEP_EVERY_MS", "0"));
+        let expected = if fault.starts_with("error") { 7 } else { -1 };
+        assert_eq!(code, expected, "{fault}: {text}");
+        assert!(!here.path().join("out/run.json").exists(), "{fault}: half a result");
+    }
+    succeeds(here.path(), &run("exact"));
+    is_whole(here.path());
+}
+
 #[test]
 fn another_study_in_the_same_folder_is_refused_until_it_is_asked_for_anew() {
     if !has_faults() {
@@ -154,6 +220,60 @@ fn a_shard_goes_on_too() {
     }
     succeeds(here.path(), &["merge", "parts", "--out", "out"]);
     is_whole(here.path());
+}
+
+#[test]
+fn a_shard_of_an_exact_search_goes_on_too() {
+    if !has_faults() {
+        return;
+    }
+    let here = searched("exact", EXACT);
+    for part in ["1/2", "2/2"] {
+        let out = format!("parts/{}", &part[..1]);
+        let words = ["run", "study.json", "--search", "exact", "--shard", part, "--out", &out];
+        let mut dies = command(here.path(), &words);
+        dies.env("ARMWRIGHT_KEEP_EVERY_MS", "0").env("ARMWRIGHT_FAULT", "kill:8");
+        assert_eq!(said(&mut dies).0, -1);
+        assert!(succeeds(here.path(), &words).contains(GOES_ON));
+        assert!(!here.path().join(out).join(".armwright").exists());
+    }
+    succeeds(here.path(), &["merge", "parts", "--out", "out"]);
+    for front in ["front.csv", "front.aluminium-6061-t6.csv"] {
+        let [whole, joined] =
+            ["whole", "out"].map(|dir| fs::read(here.path().join(dir).join(front)).expect("a front"));
+        assert!(whole == joined, "another {front}");
+    }
+}
+
+#[test]
+fn a_check_that_is_killed_goes_on_to_the_same_words() {
+    if !has_faults() {
+        return;
+    }
+    let here = searched("exact", 2);
+    let check = ["front", "check", "whole"];
+    let whole = succeeds(here.path(), &check);
+    // the first process dies before a state is in its place, the second after that, the third after the next one
+    for (step, goes_on) in [(2, false), (4, false), (3, true)] {
+        let mut command = command(here.path(), &check);
+        command.env("ARMWRIGHT_KEEP_EVERY_MS", "0").env("ARMWRIGHT_FAULT", format!("kill:{step}"));
+        let (code, text) = said(&mut command);
+        assert_eq!((code, text.contains(GOES_ON)), (-1, goes_on), "step {step}: {text}");
+    }
+    let text = succeeds(here.path(), &check);
+    assert!(text.contains(GOES_ON), "{text}");
+    let words = text.lines().filter(|line| !line.contains(GOES_ON)).collect::<Vec<_>>().join("\n");
+    assert_eq!(words.trim(), whole.trim(), "boxes that were bounded before count once");
+    assert!(!here.path().join("whole/.armwright").exists(), "the state is still there");
+    // the state of a check of another front is not used
+    let mut dies = command(here.path(), &check);
+    assert_eq!(said(dies.env("ARMWRIGHT_KEEP_EVERY_MS", "0").env("ARMWRIGHT_FAULT", "kill:4")).0, -1);
+    succeeds(here.path(), &["run", "study.json", "--search", "exact", "--gap", "5%", "--out", "other"]);
+    fs::create_dir(here.path().join("other/.armwright")).expect("made");
+    let state = |dir: &str| here.path().join(dir).join(".armwright/check.unfinished");
+    fs::copy(state("whole"), state("other")).expect("a state");
+    let text = succeeds(here.path(), &["front", "check", "other"]);
+    assert!(!text.contains(GOES_ON) && !state("other").exists(), "{text}");
 }
 
 fn spawn(command: &mut Command) -> Child {

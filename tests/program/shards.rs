@@ -117,9 +117,86 @@ fn shards_of_other_inputs_and_damaged_shards_are_refused() {
         let words = ["run", "study.json", "--shard", wrong, "--out", "none"];
         assert_eq!(armwright(here.path(), &words).0, 2, "{wrong}");
     }
-    let exact = ["run", "study.json", "--shard", "1/2", "--search", "exact", "--out", "none"];
-    let (code, said) = armwright(here.path(), &exact);
-    assert!(code == 2 && said.contains("one machine"), "{said}");
+    let limited =
+        ["run", "study.json", "--shard", "1/2", "--gap", "1%", "--time-limit", "9", "--out", "none"];
+    let (code, said) = armwright(here.path(), &limited);
+    assert!(code == 2 && said.contains("goes on with the same command"), "{said}");
+}
+
+const EXACT: [&str; 2] = ["--search", "exact"];
+
+/// The fronts of a result: of all designs and of each material.
+fn fronts(here: &Path, dir: &str) -> Vec<(String, Vec<u8>)> {
+    let entries = std::fs::read_dir(here.join(dir)).expect("a result").flatten();
+    let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    let mut names: Vec<String> = names.filter(|n| n.starts_with("front.") && n.ends_with(".csv")).collect();
+    names.sort();
+    names.into_iter().map(|n| (n.clone(), std::fs::read(here.join(dir).join(n)).expect("a front"))).collect()
+}
+
+#[test]
+fn shards_of_an_exact_search_join_to_the_fronts_of_one_machine() {
+    let here = with_study();
+    let here = here.path();
+    assert_eq!(armwright(here, &["run", "study.json", "--search", "exact", "--out", "whole"]).0, 0);
+    let whole = fronts(here, "whole");
+    assert_eq!(whole.len(), 3, "all designs and two materials");
+    sweep(here, "1/1", "first", &["--gap", "20%"]);
+    let incumbents = ["--search", "exact", "--incumbents", "first", "--threads", "1"];
+    for (shards, words) in [(1, &EXACT[..]), (3, &EXACT[..]), (2, &incumbents[..]), (60, &incumbents[..2])] {
+        let parts = format!("parts{shards}");
+        for k in 1..=shards {
+            // of many shards a few are enough to see that designs are missing
+            if shards < 10 || k % 20 == 1 {
+                sweep(here, &format!("{k}/{shards}"), &format!("{parts}/{k}-of-{shards}"), words);
+            }
+        }
+        let joined = format!("joined{shards}");
+        let (code, said) = armwright(here, &["merge", &parts, "--out", &joined]);
+        if shards > 10 {
+            let line = "run study.json --search exact --shard 2/60 --out parts60/2-of-60";
+            assert!(code == 10 && said.contains(line), "{said}");
+            continue;
+        }
+        assert_eq!(code, 0, "{said}");
+        assert!(fronts(here, &joined) == whole, "{shards} shards have another front");
+        let run: Value =
+            serde_json::from_slice(&std::fs::read(here.join(&joined).join("run.json")).expect("a run"))
+                .expect("JSON");
+        assert_eq!((run["status"].as_str(), run["gap"].as_f64()), (Some("certified"), Some(0.0)));
+        let (code, said) = armwright(here, &["front", "check", &joined]);
+        assert_eq!(code, 0, "{said}");
+    }
+    // a subtree that nobody searched is found, whatever the shards say of their number
+    let file = here.join("parts3/2-of-3/shard.json");
+    let mut shard = manifest(here, "parts3/2-of-3");
+    let gone = shard["fronts"][0]["subtrees"].as_array_mut().expect("subtrees").pop().expect("a subtree");
+    std::fs::write(&file, shard.to_string()).expect("written");
+    let (code, said) = armwright(here, &["merge", "parts3", "--out", "none"]);
+    let words = format!("subtree {gone} is in none");
+    assert!(code == 9 && said.contains(&words), "{said}");
+    // designs of another study are no incumbents
+    let other = ["run", "study.json", "--search", "exact", "--mass-max-kg", "40", "--shard", "1/2"];
+    let (code, said) = armwright(here, &[&other[..], &["--incumbents", "first", "--out", "none"]].concat());
+    assert!(code == 9 && said.contains("another study_hash"), "{said}");
+}
+
+#[test]
+fn shards_to_a_gap_join_to_a_front_that_has_it() {
+    let here = with_study();
+    let here = here.path();
+    sweep(here, "1/1", "first", &["--gap", "30%"]);
+    for k in 1..=2 {
+        let words = ["--gap", "5%", "--incumbents", "first"];
+        sweep(here, &format!("{k}/2"), &format!("parts/{k}-of-2"), &words);
+    }
+    let (code, said) = armwright(here, &["merge", "parts", "--out", "joined"]);
+    assert_eq!(code, 0, "{said}");
+    let run: Value =
+        serde_json::from_slice(&std::fs::read(here.join("joined/run.json")).expect("a run")).expect("JSON");
+    assert_eq!(run["gap"].as_f64(), Some(0.05));
+    let (code, said) = armwright(here, &["front", "check", "joined"]);
+    assert_eq!(code, 0, "{said}");
 }
 
 #[cfg(unix)]
@@ -152,6 +229,14 @@ echo 7
     let output = output.expect("a shell");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     assert_eq!(String::from_utf8_lossy(&output.stdout), "shards 7, merge 7\n");
+    let exact = ["slurm", "study.json", "--shards", "4", "--search", "exact", "--gap-first", "10%"];
+    let (code, script) = armwright(here.path(), &exact);
+    let (first, dependency) =
+        ("--search exact --gap 0.1 --shard 1/1 --threads 1", "--dependency=\"afterok:$first\"");
+    let shard = "--search exact --incumbents results/short-arm/incumbents --shard \"$SLURM";
+    for words in [first, dependency, shard] {
+        assert!(code == 0 && script.contains(words), "{words}: {script}");
+    }
     let whole = ["run", "study.json", "--search", "exhaustive", "--out", "whole"];
     assert_eq!(armwright(here.path(), &whole).0, 0);
     assert_eq!(

@@ -75,20 +75,36 @@ fn angles_of_another_sign_or_zero_are_named_by_their_joints() {
     assert!(said.contains("90 degrees are added to the angles of q2") && !said.contains("-90"), "{said}");
 }
 
+/// The joints after the first are parallel: for such an arm a mirrored frame is the same as a zero of the other sign.
+#[test]
+fn metres_in_a_mirrored_frame_with_a_zero_are_recognized() {
+    let (_, said) = said_of(&|([a, b, c], [x, y, z])| ([a, b - 90.0, c], [y, x, z].map(|x| x / 1e3)));
+    let said = said.expect("said");
+    for part in ["are in metres", "90 degrees are added to the angles of q2"] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+}
+
 #[test]
 fn an_arm_that_stands_where_it_should_has_its_axes_named() {
+    let said = said_of_a_standing_arm(&|own| [own.y, -own.x, own.z]);
+    assert!(said.contains("the frame's x, y, z are -y_mm, x_mm, z_mm of the file"), "{said}");
+    // metres, two axes swapped, and one turned round
+    let said = said_of_a_standing_arm(&|own| [own.z / 1e3, own.x / 1e3, -own.y / 1e3]);
+    for part in ["are in metres", "the frame's x, y, z are y_mm, -z_mm, x_mm of the file"] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+}
+
+/// What is said of an arm whose place is known, if its positions are written so \[mm\].
+fn said_of_a_standing_arm(written: &dyn Fn(Vector3<f64>) -> [f64; 3]) -> String {
     let folder = standard().write(&crate::positions_maker::Made::sagging);
     let statement = json!({"name": "made", "positions": {"tool_offset": true, "joint_offsets": true}});
     std::fs::write(folder.path().join("campaign.json"), statement.to_string()).expect("written");
     // where the arms of these tests stand
     let askew = Rotation3::from_euler_angles(0.3, -0.2, 2.1);
     let own = |at: [f64; 3]| askew.inverse() * (Vector3::from(at) - Vector3::new(1e3, -2e3, 5e2));
-    let written = |(angles, at): Row| {
-        let own = own(at);
-        (angles, [own.y, -own.x, own.z])
-    };
-    rewrite(folder.path(), &written);
-    let (_, said) = said(folder.path());
-    let said = said.expect("said");
-    assert!(said.contains("the frame's x, y, z are -y_mm, x_mm, z_mm of the file"), "{said}");
+    rewrite(folder.path(), &|(angles, at): Row| (angles, written(own(at))));
+    let (outcome, said) = said(folder.path());
+    said.unwrap_or_else(|| panic!("{}", outcome.to_text()))
 }

@@ -4,7 +4,7 @@
 //! environment variable ARMWRIGHT_MEASURED, and their tests say aloud when they are skipped.
 
 use crate::measured;
-use crate::positions_maker::{EVEN_RAD_PER_NM, LOPSIDED_RAD_PER_NM, Made, UNEVEN_RAD, standard};
+use crate::positions_maker::{EVEN_RAD_PER_NM, LOPSIDED_RAD_PER_NM, LOST_RAD, Made, UNEVEN_RAD, standard};
 
 use armwright::arm::JointModel;
 use armwright::arm::read_arm_document;
@@ -178,6 +178,23 @@ fn a_joint_that_turns_unevenly_is_named_with_its_error() {
     let at = outcome.stages.iter().position(|s| s.added.contains("transmission")).expect("a stage");
     let before = &outcome.stages[at - 1];
     assert!(median_mm(&outcome, "transmission") < 0.7 * before.median_mm, "on poses kept out");
+}
+
+#[test]
+fn a_joint_that_lags_in_the_sense_of_its_torque_has_lost_motion() {
+    let made = standard();
+    let campaign = read(made.write(&Made::lagging).path());
+    let outcome = reconcile(&campaign);
+    let at = outcome.stages.iter().position(|s| s.added == "lost_motion@q3");
+    let at = at.unwrap_or_else(|| panic!("{}", outcome.to_text()));
+    let [before_mm, after_mm] = [at - 1, at].map(|stage| outcome.stages[stage].median_mm);
+    // the lag moves the point by 0.7 mm and the noise of its length is 0.08 mm
+    assert!(after_mm < before_mm / 4.0, "on poses kept out: {before_mm} and {after_mm} mm");
+    let found = outcome.corrected.effects.iter().find(|e| e.effect == "lost_motion" && e.at == "q3");
+    let half_width_rad = found.expect("in the corrected arm").parameters[0].1[0];
+    // its torque is chosen out of five, before the joint's compliance is found: a fifth is what that leaves
+    assert!((half_width_rad / LOST_RAD - 1.0).abs() < 0.2, "{half_width_rad}");
+    assert!(predicted_median_mm(&campaign, &outcome) < 1.4 * 1.538 * made.sigma_mm);
 }
 
 #[test]

@@ -39,6 +39,8 @@ struct Truths {
     moved_m: f64,
     /// The third joint turns by this much further, in the sense in which it is turned.
     play_rad: f64,
+    /// The third joint lags by this much in the sense of its torque.
+    lost_rad: f64,
     /// Rotation of the base per moment about its axes \[rad/(N m)\].
     base_rad_per_nm: Matrix3<f64>,
 }
@@ -48,6 +50,9 @@ struct Truths {
 pub const LOPSIDED_RAD_PER_NM: [[f64; 3]; 2] = [[8e-6, 3e-6, 4e-6], [1e-6, 3e-6, -2e-6]];
 /// The third joint's error twice a turn \[rad\].
 pub const UNEVEN_RAD: f64 = 2e-3;
+/// Half width of the third joint's lost motion, and the torque at which three quarters of it are used up \[N m\].
+pub const LOST_RAD: f64 = 1.5e-3;
+const LOST_NM: f64 = 2.0;
 /// A base that tilts alike about x and y \[rad/(N m)\].
 pub const EVEN_RAD_PER_NM: f64 = 6e-6;
 
@@ -95,6 +100,11 @@ impl Made {
         self.truth(pose_rad, Truths { sag: true, play_rad: 3e-3, ..Truths::default() })
     }
 
+    /// Joints yield, and the third lags in the sense of its torque.
+    pub fn lagging(&self, pose_rad: &[f64; 3], _row: usize) -> Truth {
+        self.truth(pose_rad, Truths { sag: true, lost_rad: LOST_RAD, ..Truths::default() })
+    }
+
     /// Joints yield, and the point sat elsewhere in the first seven rows.
     pub fn put_back_soon(&self, pose_rad: &[f64; 3], row: usize) -> Truth {
         self.truth(
@@ -139,7 +149,8 @@ impl Made {
         for (j, (axis, pivot)) in places.iter().enumerate().filter(|_| truths.sag) {
             let outboard = bodies[j..].iter();
             let torque: f64 = outboard.map(|(m, cg)| axis.dot(&(cg - pivot).cross(&(down * *m)))).sum();
-            sag += axis.cross(&(point - pivot)) * (torque / STIFFNESS_NM_PER_RAD[j]);
+            let lost_rad = if j == 2 { truths.lost_rad * (torque / LOST_NM).tanh() } else { 0.0 };
+            sag += axis.cross(&(point - pivot)) * (torque / STIFFNESS_NM_PER_RAD[j] + lost_rad);
         }
         let moment: Vector3<f64> = bodies.iter().map(|(m, cg)| cg.cross(&(down * *m))).sum();
         sag += (truths.base_rad_per_nm * moment).cross(&point);

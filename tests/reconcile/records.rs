@@ -144,6 +144,42 @@ fn a_curve_and_a_play_are_found_and_a_plain_spring_has_neither() {
     }
 }
 
+/// A record whose link also lags behind its torque like a joint with friction play of this half width, or leads where that is
+/// negative.
+fn with_play(record: &str, half_width_rad: f64) -> String {
+    let mut lines = record.lines();
+    let head = lines.next().expect("a head");
+    let mut dragged_rad = 0.0f64;
+    let mut rows = vec![head.to_string()];
+    for line in lines {
+        let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
+        let twist_rad = (cells[1] - cells[2]).to_radians();
+        dragged_rad = dragged_rad.clamp(twist_rad - half_width_rad.abs(), twist_rad + half_width_rad.abs());
+        let further_rad = (dragged_rad - twist_rad) * half_width_rad.signum();
+        let link_deg = cells[2] - further_rad.to_degrees();
+        rows.push(format!("{},{},{link_deg:.8},{}", cells[0], cells[1], cells[3]));
+    }
+    rows.join("\n")
+}
+
+#[test]
+fn a_hysteresis_that_lags_is_found_and_one_that_leads_is_refused() {
+    let joint = Joint { shift_s: 0.0, ..middling() };
+    for (half_width_rad, state) in [(1.5e-4, State::Found), (-1.5e-4, State::Refused)] {
+        let folder = campaign(&joint, &test(), None, &mut Dice(45));
+        let path = folder.path().join("record.csv");
+        let text = std::fs::read_to_string(&path).expect("text");
+        std::fs::write(&path, with_play(&text, half_width_rad)).expect("written");
+        let outcome = outcome(folder.path());
+        println!("{}", outcome.to_text());
+        let stated = outcome.records[0].of("hysteresis").expect("stated");
+        assert_eq!(stated.state, state, "{half_width_rad}: {}", stated.words);
+        let is_named = outcome.effects.iter().any(|found| found.effect == "hysteresis");
+        assert_eq!(is_named, state == State::Found, "{}", outcome.to_text());
+        assert_eq!(stated.words.contains("wrong sign"), state == State::Refused, "{}", stated.words);
+    }
+}
+
 #[test]
 fn a_vertical_axis_hides_its_compliance_and_a_stated_rotor_shows_it() {
     let (joint, mut dice) = (Joint { gravity_nm: 0.0, ..middling() }, Dice(44));

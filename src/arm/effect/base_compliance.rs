@@ -1,4 +1,5 @@
-//! `base_compliance`: what the arm stands on tilts about world x and y at the chain's origin.
+//! `base_compliance`: the ground or base under the arm tilts elastically about world x and y, at the origin of the
+//! chain.
 
 use super::bearing_tilt;
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits, Yields};
@@ -7,7 +8,7 @@ use super::subject::Subject;
 const PARAMETERS: &[Parameter] =
     &[Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 5e5, Scale::Stiffness).expected(0.0, 6.0)];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "base_compliance",
     summary: "the base tilts about world x and y",

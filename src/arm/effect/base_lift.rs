@@ -1,5 +1,5 @@
-//! `base_lift`: the feet of the base lift off the floor. About world x and y the base is rigid up to a preload and yields
-//! beyond it.
+//! `base_lift`: the feet of the base lift off the floor. About world x and y the base is rigid up to a preload
+//! moment, and deflects elastically beyond it.
 
 use super::kind::{Kind, Parameter, Place, RARE, Scale, Scope, Setting, Traits};
 use super::subject::Subject;
@@ -10,7 +10,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter::number("preload_nm", 0.1, 1e6, 100.0, Scale::Log).expected(1.0, 1e4).within_torque(0.05, 0.95),
 ];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "base_lift",
     summary: "the feet of the base lift off beyond a preload",
@@ -29,7 +29,8 @@ pub(crate) const KIND: Kind = Kind {
     },
 };
 
-/// Feet that lift off early, in the middle and late, on soft and on stiff ground.
+/// Starting points of a fit: feet that lift off at 15 % to 85 % of the largest torque, each on soft and on stiffer
+/// ground.
 fn starts(setting: &Setting) -> Vec<Vec<f64>> {
     let preloads = [0.15, 0.35, 0.6, 0.85].map(|part| libm::log(part * setting.torque_nm));
     preloads.iter().flat_map(|preload| [0.1, 0.5].map(|soft| vec![soft, *preload])).collect()
@@ -60,7 +61,7 @@ mod tests {
             let shares = statics.shares_m.iter().find(|(n, _)| n == "base_lift");
             (shares.expect("share").1, statics.tangent_compliances[0].clone())
         };
-        // the tip is 1 m out along x: the moment is about y
+        // the tip is 1 m away along x, so the moment is about y
         let (standing, rigid) = share(29.0);
         assert_eq!((standing.norm(), rigid), (0.0, vec![0.0, 0.0]));
         let (lifted, soft) = share(50.0);

@@ -1,5 +1,5 @@
-//! `bearing_tilt`: a joint tilts beyond its nominal bearing, like equal rotational springs about the two axes across the
-//! joint's, in series with the bearing.
+//! `bearing_tilt`: a joint tilts more than its nominal bearing allows. The effect is two equal rotational springs
+//! about the two axes perpendicular to the joint's axis, in series with the bearing.
 
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits, Yields};
 use super::subject::Subject;
@@ -7,7 +7,7 @@ use super::subject::Subject;
 const PARAMETERS: &[Parameter] =
     &[Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 2e5, Scale::Stiffness).expected(0.0, 6.0)];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "bearing_tilt",
     summary: "the joint tilts beyond its nominal bearing, about the two axes across it",
@@ -41,7 +41,7 @@ mod tests {
         apply(&[2e5], "j1", &mut subject);
         subject.structure.gravity_m_s2 = 0.0;
         let chain = crate::mechanics::chain::Chain::new(&subject.structure, LinkModel::Rigid);
-        // j1 turns about z; 10 N down at the tip, 1 m out: moment 10 N m across the axis
+        // j1 turns about z; a force of 10 N downward at the tip, 1 m away, puts 10 N m across the axis
         let posed = chain.pose_rad(&[0.0, 0.0], &Payload::default(), Vector3::new(0.0, 0.0, -10.0));
         let share = posed.statics().shares_m.iter().find(|(n, _)| n == "j1.bearing").expect("share").1;
         assert!((share.z + 10.0 / 2e5).abs() < 1e-12, "{share}");

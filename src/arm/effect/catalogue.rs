@@ -1,4 +1,4 @@
-//! The list of every effect. A new effect needs one file in this folder, one line here and a page in
+//! The list of all effects. A new effect needs one file in this folder, one line in this list and a page in
 //! `docs/effects`.
 
 use super::kind::Kind;
@@ -12,7 +12,7 @@ use super::{
 
 const COUNT: usize = 31;
 
-/// Every effect, in the order of the documentation.
+/// The descriptions of all effects, in the order of the documentation.
 pub static KINDS: [&Kind; COUNT] = [
     &connection_compliance::KIND,
     &soft_windup::KIND,
@@ -58,7 +58,7 @@ pub(crate) static NAMES: [&str; COUNT] = {
     names
 };
 
-/// The kind of an effect by its name.
+/// The description of the effect with this name; `None` if there is no such effect.
 pub fn kind(name: &str) -> Option<&'static Kind> {
     KINDS.iter().copied().find(|k| k.name == name)
 }

@@ -1,4 +1,5 @@
-//! Measuring channels: the kinds of reading a campaign has, and how an instrument turns truth into a reading.
+//! Measuring channels: the kinds of reading that a campaign has, and how an instrument turns an actual value into a
+//! reading.
 
 /// A kind of reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -7,7 +8,7 @@ pub enum Channel {
     Static,
     /// Natural frequencies \[Hz\].
     Modal,
-    /// Torsion of one joint on a bench \[arcmin\].
+    /// Torsion of one joint under torque on a bench \[arcmin\].
     Windup,
     /// Absolute positions of points on the tool \[mm\].
     Positions,
@@ -27,12 +28,12 @@ impl Channel {
         }
     }
 
-    /// The channel that a word in a file names.
+    /// The channel that a word in a file names; `None` if there is no such channel.
     pub fn from_word(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|c| c.word() == word)
     }
 
-    /// How many numbers one reading of the channel has.
+    /// Number of components of one reading of the channel.
     pub fn components(self) -> usize {
         match self {
             Channel::Static | Channel::Positions => 3,
@@ -41,23 +42,25 @@ impl Channel {
     }
 }
 
-/// How a channel turns truth into a reading: `bent(factor x gain x truth) + bias + drift x (row - 1)`, in the unit of the
-/// channel's file, where `bent(d) = d + bend[0] d |d| / s + bend[1] d³ / s²` and s is `bend_scale`.
+/// How a channel turns an actual value into a reading: `bent(factor x gain x value) + bias + drift x (row - 1)`, in
+/// the unit of the channel's file. The nonlinearity is `bent(d) = d + bend[0] d |d| / s + bend[1] d³ / s²`, where s
+/// is `bend_scale`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
-    /// Factor on the truth.
+    /// Factor on the actual value.
     pub factor: f64,
-    /// Constant that is added; scalar channels use the first number only.
+    /// Constant that is added to each component; channels with one component use the first number only.
     pub bias: [f64; 3],
-    /// Change of the constant from each row of the file to the next.
+    /// Change of the added constant from each row of the file to the next.
     pub drift_per_row: [f64; 3],
-    /// Rows that are gross errors, counted from 1.
+    /// Numbers of the rows that are gross errors, counted from 1.
     pub outlier_rows: Vec<usize>,
-    /// Factor on each component beyond `factor`; scalar channels use the first number only.
+    /// Further factor on each component; channels with one component use the first number only.
     pub gain: [f64; 3],
-    /// How far the reading bends away from a straight line at `bend_scale`, as parts of it.
+    /// Coefficients of the nonlinearity. At a reading of `bend_scale`, each is the deviation from a straight line as a
+    /// fraction of this reading.
     pub bend: [f64; 2],
-    /// The reading at which the numbers of `bend` are its bend, in the unit of the channel's file.
+    /// The reading at which `bend` is the relative deviation from a straight line, in the unit of the channel's file.
     pub bend_scale: f64,
 }
 
@@ -76,7 +79,8 @@ impl Default for Reading {
 }
 
 impl Reading {
-    /// The reading for a true value. `component` is 0 to 2, `row` counts from 0.
+    /// The reading that the instrument shows for the actual value `truth`. `component` (0 to 2) is the direction of a
+    /// displacement, `row` is the row of the file, counted from 0.
     pub fn of(&self, truth: f64, component: usize, row: usize) -> f64 {
         let straight = self.factor * self.gain[component] * truth;
         let part = straight / self.bend_scale;

@@ -1,4 +1,5 @@
-//! `connection_compliance`: flange, shaft or bolts twist in series with the gear: `1/k = 1/k_gear + 1/c`.
+//! `connection_compliance`: a flange, shaft or bolts deflect in torsion in series with the gear:
+//! `1/k = 1/k_gear + 1/c`.
 
 use super::kind::{Kind, Needs, Parameter, Place, Scale, Scope, Traits, Yields};
 use super::subject::Subject;
@@ -6,7 +7,7 @@ use super::subject::Subject;
 const PARAMETERS: &[Parameter] =
     &[Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 1e6, Scale::Stiffness).expected(0.0, 4.0)];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "connection_compliance",
     summary: "flange, shaft or bolts twisting in series with the gear",

@@ -1,5 +1,5 @@
-//! `drift`: the zero of a sensor or of its mounting creeps. The reading is truth + rate x (row - 1) over the
-//! file.
+//! `drift`: the zero of a sensor or of its mounting changes steadily. The reading is the actual value plus rate x
+//! (row - 1), with rows counted from 1 in the file.
 
 use super::channel::Channel;
 use super::kind::{Kind, Measure, Parameter, Place, Scope, Traits};
@@ -9,7 +9,7 @@ const PARAMETERS: &[Parameter] = &[Parameter::vector("rate_mm_per_row", -0.1, 0.
     .expected(-0.01, 0.01)
     .growing_with(Measure::DisplacementPerRow, 1.0 / 4.0)];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "drift",
     summary: "the zero of a channel creeps from row to row",

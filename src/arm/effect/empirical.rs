@@ -1,28 +1,51 @@
 //! `empirical`: a law without a name, as it was found in readings. At a joint it is a further twist, a polynomial of the
-//! torque; at a channel it is a reading that bends or that has a gain of its own in each direction.
+//! torque, or a compliance that changes in the course of the tests; at the base a tilt that differs about x and y; at a channel it is a reading that bends, that has a gain
+//! of its own in each direction, or that shows how the base turned once.
 
 use super::channel::Channel;
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
+use super::setup::Turned;
 use super::subject::Subject;
+use super::warming::Softening;
 use crate::arm::joint_law::FurtherTwist;
+use nalgebra::{Matrix3, Vector3};
 
-/// Coefficients of a joint's further twist that change sign with its torque.
+/// Parameter: coefficients of a joint's further angle of torsion that change sign with the torque.
 pub(crate) const ODD_TWIST: &str = "odd_twist_rad";
-/// Coefficients of a joint's further twist that do not.
+/// Parameter: coefficients of a joint's further angle of torsion that do not change sign with the torque.
 pub(crate) const EVEN_TWIST: &str = "even_twist_rad";
-/// Torque at which these coefficients are the twist.
+/// Parameter: reference torque of the coefficients of the further angle. At this torque the angle is the sum of all
+/// coefficients.
 pub(crate) const TORQUE: &str = "torque_nm";
+/// Changes of a joint's compliance in the course of the static and of the modal tests.
+pub(crate) const SOFTENING: [&str; 2] = ["static_softening", "modal_softening"];
+/// The numbers of rows in which most of these changes come.
+pub(crate) const SOFTENING_ROWS: [&str; 2] = ["static_softening_rows", "modal_softening_rows"];
+/// Part of the change in the static tests that the reference of a displacement has.
+pub(crate) const SOFTENING_REFERENCE: &str = "static_softening_reference";
 /// How far readings bend.
 pub(crate) const BEND: &str = "bend";
-/// The reading at which that is the bend.
+/// Parameter: the reading at which the coefficients of the nonlinearity are the relative deviation from a straight
+/// line.
 pub(crate) const BEND_SCALE: &str = "bend_scale";
-/// Factor of each direction.
+/// Parameter: a factor on the reading for each direction.
 pub(crate) const GAIN: &str = "gain";
+/// Further tilt of the base per moment about world x and about y.
+pub(crate) const LEAN: &str = "tilt_rad_per_nm";
+/// Rotation by which the base turned once.
+pub(crate) const BASE_TURN: &str = "base_turn_rad";
+/// The first row after that, counted from 1.
+pub(crate) const BASE_TURN_ROW: &str = "base_turn_from_row";
 
 const OF_JOINT: &[Parameter] = &[
     optional(ODD_TWIST, 2, -0.1, 0.1, 0.0),
     optional(EVEN_TWIST, 2, -0.1, 0.1, 0.0),
     optional(TORQUE, 1, 1e-6, 1e9, 1.0),
+    optional(SOFTENING[0], 1, -0.9, 10.0, 0.0),
+    optional(SOFTENING_ROWS[0], 1, 0.1, 1e6, 1.0),
+    optional(SOFTENING[1], 1, -0.9, 10.0, 0.0),
+    optional(SOFTENING_ROWS[1], 1, 0.1, 1e6, 1.0),
+    optional(SOFTENING_REFERENCE, 1, 0.0, 1.0, 1.0),
 ];
 
 const OF_CHANNEL: &[Parameter] = &[
@@ -31,44 +54,96 @@ const OF_CHANNEL: &[Parameter] = &[
     optional(GAIN, 3, 0.01, 100.0, 1.0),
 ];
 
+const OF_BASE: &[Parameter] = &[optional(LEAN, 2, 0.0, 1.0, 0.0)];
+
+const OF_STATIC: &[Parameter] = &[
+    OF_CHANNEL[0],
+    OF_CHANNEL[1],
+    OF_CHANNEL[2],
+    optional(BASE_TURN, 3, -0.1, 0.1, 0.0),
+    optional(BASE_TURN_ROW, 1, 1.0, 1e9, 1.0),
+];
+
 /// A parameter that changes nothing where it is left out.
 const fn optional(name: &'static str, count: usize, low: f64, high: f64, default: f64) -> Parameter {
     let number = Parameter::number(name, low, high, default, Scale::Linear);
     Parameter { count, default: Some(default), ..number }
 }
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "empirical",
     summary: "a law without a name, as found in readings: a further twist of a joint, or a reading that bends",
     scope: Scope::Product,
     places: &[
         Place::Joint,
+        Place::Base,
         Place::Channel(Channel::Static),
         Place::Channel(Channel::Modal),
         Place::Channel(Channel::Windup),
     ],
-    parameters: |place| if place == Place::Joint { OF_JOINT } else { OF_CHANNEL },
+    parameters: |place| match place {
+        Place::Joint => OF_JOINT,
+        Place::Base => OF_BASE,
+        Place::Channel(Channel::Static) => OF_STATIC,
+        _ => OF_CHANNEL,
+    },
     apply,
     traits: Traits { is_sought: false, in_bounds: false, ..Traits::USUAL },
 };
 
+/// Whether a law of a joint with these parameters describes the tests alone: it has no further twist.
+pub(crate) fn is_of_tests_alone(parameters: &[(String, Vec<f64>)]) -> bool {
+    let is_twist = |(name, numbers): &(String, Vec<f64>)| {
+        [ODD_TWIST, EVEN_TWIST].contains(&name.as_str()) && numbers.iter().any(|x| *x != 0.0)
+    };
+    !parameters.iter().any(is_twist)
+}
+
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
-    if let Some(joint) = subject.structure.joint_mut(at) {
-        let [a, b, c, d, torque_nm] = numbers[..] else { return };
-        joint.law.further =
-            Some(added(joint.law.further, FurtherTwist { odd_rad: [a, b], even_rad: [c, d], torque_nm }));
+    if let [about_x, about_y] = *numbers {
+        subject.structure.base_frame.0 += Matrix3::from_diagonal(&Vector3::new(about_x, about_y, 0.0));
+    } else if let Some(joint) = subject.structure.joint_mut(at) {
+        let [a, b, c, d, torque_nm, softening @ ..] = numbers else { return };
+        if [a, b, c, d] != [&0.0; 4] {
+            let twist = FurtherTwist { odd_rad: [*a, *b], even_rad: [*c, *d], torque_nm: *torque_nm };
+            joint.law.further = Some(added(joint.law.further, twist));
+        }
+        soften(softening, at, subject);
     } else if let Some(reading) = subject.channel_mut(at) {
-        let [a, b, bend_scale, x, y, z] = numbers[..] else { return };
+        let [a, b, bend_scale, x, y, z, ref turn @ ..] = numbers[..] else { return };
         // one law bends, another has gains: where both stand, both act
         if [a, b] != [0.0; 2] {
             (reading.bend, reading.bend_scale) = ([a, b], bend_scale);
         }
         reading.gain.iter_mut().zip([x, y, z]).for_each(|(own, gain)| *own *= gain);
+        if let ([x, y, z, from_row], Some(setup)) = (turn, subject.setup_mut(at)) {
+            let turn_rad = Vector3::new(*x, *y, *z);
+            if turn_rad != Vector3::zeros() {
+                setup.turned = Some(Turned { turn_rad, from_row: (from_row.max(1.0) - 1.0) as usize });
+            }
+        }
     }
 }
 
-/// The sum of two further twists, with the torque of the second.
+/// Lets a joint soften in the course of the static and of the modal tests: a change, and the rows in which it comes, of each,
+/// and the part of the first that references have.
+fn soften(numbers: &[f64], at: &str, subject: &mut Subject) {
+    let [static_change, static_rows, modal_change, modal_rows, reference] = *numbers else { return };
+    for (channel, change, rows) in
+        [(Channel::Static, static_change, static_rows), (Channel::Modal, modal_change, modal_rows)]
+    {
+        if change != 0.0 {
+            let own = &mut subject.setups[channel as usize].softening;
+            // one law of the order of the tests is enough
+            own.retain(|(joint, _)| joint != at);
+            own.push((at.into(), Softening { change, rows, reference }));
+        }
+    }
+}
+
+/// The sum of the further angle of torsion `before`, if there is one, and `twist`. The result has the reference torque
+/// of `twist`.
 fn added(before: Option<FurtherTwist>, twist: FurtherTwist) -> FurtherTwist {
     let Some(before) = before else { return twist };
     let ratio = twist.torque_nm / before.torque_nm;
@@ -107,7 +182,7 @@ mod tests {
         apply(&[0.1, 0.02, 2.0, 1.0, 1.0, 1.0], "static", &mut subject);
         apply(&[0.0, 0.0, 1.0, 1.0, 1.1, 0.9], "static", &mut subject);
         let reading = &subject.channels[Channel::Static as usize];
-        // at the scale of 2 mm a reading of 2 mm bends by 12 % of it
+        // the scale is 2 mm: a reading of 2 mm deviates from a straight line by 12 %
         assert!(
             (reading.of(2.0, 0, 0) - 2.24).abs() < 1e-12 && (reading.of(-2.0, 0, 0) + 2.24).abs() < 1e-12
         );

@@ -1,4 +1,5 @@
-//! `extra_mass`: a point mass at a joint that its mass tolerance does not cover. At a prismatic joint it travels.
+//! `extra_mass`: a point mass at a joint that the tolerance of the joint's mass does not cover. At a prismatic joint
+//! it travels.
 
 use super::kind::{Kind, Measure, Parameter, Place, Removes, Scale, Scope, Traits};
 use super::subject::Subject;
@@ -7,7 +8,7 @@ const PARAMETERS: &[Parameter] = &[Parameter::number("delta_kg", -10.0, 50.0, 1.
     .expected(-3.0, 12.0)
     .growing_with(Measure::ArmMass, 1.0 / 8.0)];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "extra_mass",
     summary: "a point mass at a joint beyond tolerance",

@@ -1,5 +1,5 @@
-//! `frame_compliance`: a structure turns about three axes under a moment, each differently and coupled. It is
-//! what the arm stands on, or the casting behind a joint.
+//! `frame_compliance`: a structure rotates elastically about three axes, with a different compliance about each and
+//! with coupling between them. It is the ground under the arm, or the casting behind a joint.
 
 use super::kind::{Kind, Parameter, Place, Scope, Traits, Yields};
 use super::subject::Subject;
@@ -11,7 +11,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter::vector("coupling_rad_per_nm", -1.0, 1.0, 0.0),
 ];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "frame_compliance",
     summary: "the base or the structure behind a joint turns per moment about three axes, coupled",
@@ -29,7 +29,7 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
         None if at == "base" => {
             subject.structure.base_frame = FrameCompliance(subject.structure.base_frame.0 + added);
         }
-        // a part of an arm may lack the link, and then nothing changes
+        // a structure may be only a part of the arm and lack this link; then nothing changes
         None => {}
     }
 }
@@ -46,7 +46,8 @@ fn contradiction(numbers: &[f64]) -> Option<(&'static str, &'static str)> {
     ))
 }
 
-/// Whether the numbers describe a spring: no moment turns the frame against itself.
+/// Whether the compliance matrix is that of a spring, which means that it has no negative eigenvalue: no moment does
+/// negative work.
 fn is_spring(numbers: &[f64]) -> bool {
     let eigenvalues = SymmetricEigen::new(matrix(numbers)).eigenvalues;
     eigenvalues.min() >= -1e-9 * eigenvalues.max().abs()

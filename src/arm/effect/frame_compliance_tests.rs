@@ -7,7 +7,7 @@ use crate::arm::load::Payload;
 use crate::mechanics::chain::Chain;
 use nalgebra::Vector3;
 
-/// The displacement of the tip by a frame alone, under a force at the tip.
+/// The displacement of the tip that the frame compliance alone causes under a force at the tip.
 fn by_frame(numbers: &[f64], at: &str, pose_rad: &[f64], force_n: Vector3<f64>) -> Vector3<f64> {
     let mut subject = two_link_subject();
     subject.structure.gravity_m_s2 = 0.0;
@@ -23,12 +23,12 @@ fn by_frame(numbers: &[f64], at: &str, pose_rad: &[f64], force_n: Vector3<f64>) 
 fn the_tip_moves_by_the_matrix_times_the_moment_crossed_with_the_lever() {
     let numbers = [3e-6, 5e-6, 4e-6, 1e-6, -2e-6, 1.5e-6];
     let (q, force_n) = (0.7f64, Vector3::new(3.0, -8.0, -20.0));
-    // stretched, turned about z by q: the tip is 1 m out
+    // arm stretched and turned about z by q: the tip is 1 m away
     let tip = Vector3::new(libm::cos(q), libm::sin(q), 0.0);
     let rotation = matrix(&numbers) * tip.cross(&force_n);
     let base = by_frame(&numbers, "base", &[q, 0.0], force_n);
     assert!((base - rotation.cross(&tip)).norm() < 1e-15, "{base}");
-    // the forearm's root is half way, its frame is turned by q
+    // the root of the forearm is at half that distance, and its frame is turned by q
     let turn = nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), q);
     let rotation = turn * (matrix(&numbers) * (turn.inverse() * (tip / 2.0).cross(&force_n)));
     let link = by_frame(&numbers, "forearm", &[q, 0.0], force_n);

@@ -1,5 +1,5 @@
-//! `guide_tilt`: the guide of a prismatic joint tilts beyond its stated stiffnesses, like equal rotational springs about its
-//! three axes in series with them.
+//! `guide_tilt`: the guide of a prismatic joint tilts more than its stated stiffnesses allow. The effect is three
+//! equal rotational springs about its axes, in series with the stated ones.
 
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
 use super::subject::Subject;
@@ -7,7 +7,7 @@ use super::subject::Subject;
 const PARAMETERS: &[Parameter] =
     &[Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 2e5, Scale::Stiffness).expected(0.0, 6.0)];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "guide_tilt",
     summary: "the guide of a prismatic joint tilts beyond its stated stiffnesses",

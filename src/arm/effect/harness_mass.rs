@@ -1,4 +1,4 @@
-//! `harness_mass`: cables and hoses along a link add mass and weight on its axis, and no stiffness.
+//! `harness_mass`: cables and hoses along a link. They add mass and weight on the axis of the link, but no stiffness.
 
 use super::kind::{Kind, Measure, Parameter, Place, Scale, Scope, Traits};
 use super::subject::Subject;
@@ -7,7 +7,7 @@ const PARAMETERS: &[Parameter] = &[Parameter::number("kg_per_m", 0.0, 100.0, 2.0
     .expected(0.0, 15.0)
     .growing_with(Measure::ArmMassPerLength, 1.0 / 4.0)];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "harness_mass",
     summary: "cables and hoses along a link: mass without stiffness",

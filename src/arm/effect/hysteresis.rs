@@ -1,4 +1,5 @@
-//! `hysteresis`: by friction play the twist lags a reversal of torque by up to the half width.
+//! `hysteresis`: friction holds a joint back, so its angle of torsion lags a reversal of the torque by up to the half
+//! width.
 
 use super::kind::{Kind, Measure, Needs, Parameter, Place, Scale, Scope, Setting, Traits};
 use super::subject::Subject;
@@ -8,7 +9,7 @@ const PARAMETERS: &[Parameter] = &[Parameter::number("half_width_rad", 0.0, 0.1,
     .sought_up_to(5e-3)
     .growing_with(Measure::Angle, 1.0)];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "hysteresis",
     summary: "friction play: the twist lags a reversal of torque",
@@ -19,8 +20,9 @@ pub(crate) const KIND: Kind = Kind {
     traits: Traits { needs: Needs::TwistingJoint, starts, ..Traits::USUAL },
 };
 
-/// Half widths to start from. A joint whose play is as wide as its largest twist does not move, and a descent
-/// sees no slope. So no start is wider than 0.3 of that twist.
+/// Half widths of the friction play at which a fit starts. A joint whose friction play is as wide as its largest angle
+/// of torsion does not move, and the objective then has no slope to follow. So no start is wider than 0.3 of this
+/// angle.
 fn starts(setting: &Setting) -> Vec<Vec<f64>> {
     const WIDEST: f64 = 0.3;
     let usual_rad = [0.25e-4, 1e-4, 3e-4].into_iter().filter(|h| *h < WIDEST * setting.twist_rad);
@@ -56,7 +58,7 @@ mod tests {
         let mut subject = subject();
         apply(&[1e-4], "j1", &mut subject);
         let law = subject.structure.joint_mut("j1").expect("j1").law;
-        // k h = 10 N m: from the far edge at 0, up to 100, back to 50, back to 95
+        // the play follows at a distance of k h = 10 N m; the torque goes up to 100, back to 50 and to 45 N m
         let mut state = 10.0;
         let twist: Vec<f64> = [100.0, 50.0, 45.0].map(|t| law.play_angle_rad(t, &mut state)).to_vec();
         assert!((twist[0] - (1e-3 - 1e-4)).abs() < 1e-15);

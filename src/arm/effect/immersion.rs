@@ -1,11 +1,11 @@
-//! `immersion`: the arm is in water. Its links are sealed tubes, which lose weight by buoyancy and accelerate
-//! some water with them (added mass).
+//! `immersion`: the arm is in water. Its links are sealed tubes: they lose weight by buoyancy, and some water moves
+//! with them (added mass).
 
 use super::kind::{Absent, Kind, Parameter, Place, Scale, Scope, Traits};
 use super::subject::Subject;
 use crate::arm::load::Water;
 
-/// Name of the parameter for the payload's density, which a campaign may state.
+/// Name of the parameter for the density of the payload. A campaign may state its value.
 pub(crate) const PAYLOAD_DENSITY: &str = "payload_density_kg_m3";
 
 const PARAMETERS: &[Parameter] = &[
@@ -19,7 +19,7 @@ const PARAMETERS: &[Parameter] = &[
     },
 ];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "immersion",
     summary: "the arm is in water: buoyancy and added mass",

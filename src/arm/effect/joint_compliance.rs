@@ -1,4 +1,4 @@
-//! `joint_compliance`: a joint that the nominal model holds rigid twists.
+//! `joint_compliance`: a joint that is rigid in the nominal model deflects in torsion.
 
 use super::kind::{Kind, Needs, Parameter, Place, Scale, Scope, Traits, Yields};
 use super::subject::Subject;
@@ -6,7 +6,7 @@ use super::subject::Subject;
 const PARAMETERS: &[Parameter] =
     &[Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 2e5, Scale::Stiffness).expected(0.0, 20.0)];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "joint_compliance",
     summary: "a joint that the model holds rigid twists",

@@ -1,5 +1,5 @@
-//! `joint_torque`: a torque that nobody told of acts on a joint, `a + b sin q + c cos q`: a counterbalance, a cable, a
-//! spring. It moves the working point on the curve of the gear.
+//! `joint_torque`: an undeclared torque on a joint, `a + b sin q + c cos q` with the joint angle q, such as that of a
+//! counterbalance, a cable or a spring. It moves the working point on the torsion curve of the gear.
 
 use super::kind::{Absent, Kind, Needs, Parameter, Place, RARE, Scale, Scope, Setting, Traits};
 use super::subject::Subject;
@@ -11,7 +11,7 @@ const fn torque(name: &'static str) -> Parameter {
 
 const PARAMETERS: &[Parameter] = &[torque("offset_nm"), torque("sin_nm"), torque("cos_nm")];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "joint_torque",
     summary: "a torque that nobody told of acts on the joint",
@@ -36,8 +36,10 @@ pub(crate) const KIND: Kind = Kind {
     },
 };
 
-/// Parts of the largest torque on the joint, of either sign, for each number and for each two that follow the angle. A
-/// descent does not see past the steps of the frequencies at break points, so the starts cover the range.
+/// Starting points of a fit, as fractions of the largest torque on the joint, of either sign. Some vary one of the
+/// numbers a, b, c alone, others vary b and c (which depend on the angle) together. Natural frequencies jump where a
+/// torque passes a break point of the gear. A fit by descent cannot pass such a jump, so the starts cover the whole
+/// range.
 fn starts(setting: &Setting) -> Vec<Vec<f64>> {
     const PARTS: [f64; 6] = [-0.7, -0.35, -0.1, 0.1, 0.35, 0.7];
     let count = setting.values_at_one.len();

@@ -1,13 +1,13 @@
-//! What is known of an effect before any arm has it: its name, its places, its parameters, its law, and the
-//! answers that the search for effects and the studies ask of it.
+//! The description of a kind of effect: its name, its places, its parameters, how it changes an arm, and properties
+//! that the search for effects and the studies use.
 
 use super::channel::Channel;
 use super::subject::Subject;
 
-/// What kind of place an effect sits at.
+/// The kinds of places at which an effect can be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
-    /// A joint that turns, by name.
+    /// A revolute joint, by name.
     Joint,
     /// A prismatic joint, by name.
     Prismatic,
@@ -15,17 +15,17 @@ pub enum Place {
     Link,
     /// A link that is a tube, by name.
     Tube,
-    /// `base`.
+    /// The base of the arm; the word in files is `base`.
     Base,
-    /// `payload`.
+    /// The payload; the word in files is `payload`.
     Payload,
-    /// `arm`.
+    /// The whole arm; the word in files is `arm`.
     Arm,
-    /// A channel: `static`, `modal`, `windup` or `positions`.
+    /// A measuring channel, by its word: `static`, `modal`, `windup` or `positions`.
     Channel(Channel),
 }
 
-/// What an effect belongs to.
+/// Whether an effect belongs to the product or to the test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scope {
     /// The product: every calculation uses the effect.
@@ -34,48 +34,49 @@ pub enum Scope {
     Test,
 }
 
-/// How a fit moves a parameter: the number `u` that it varies, and the parameter's value at `u`.
+/// How a fit varies a parameter: the relation between the variable `u` of the fit and the value of the parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
-    /// `u` is the value over the parameter's typical size.
+    /// `u` is the value divided by the parameter's typical value.
     Linear,
-    /// `u` is the compliance over that of the joint where the effect sits; the value is a stiffness.
+    /// The value is a stiffness. `u` is its compliance divided by the compliance of the joint at which the effect is.
     Stiffness,
-    /// `u` is the reciprocal of the value, which is a factor on a stiffness.
+    /// The value is a factor on a stiffness. `u` is its reciprocal.
     Reciprocal,
     /// `u` is the natural logarithm of the value.
     Log,
-    /// `u` is the value, a torque, over the largest torque on the joint in the campaign.
+    /// The value is a torque. `u` is the value divided by the largest torque on the joint in the campaign.
     Torque,
 }
 
-/// The value at which the effect is absent.
+/// The value of a parameter at which its effect changes nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Absent {
-    /// 0: no size, or no compliance.
+    /// The value 0: an amplitude of zero, or no compliance.
     AtZero,
-    /// 1: a factor that changes nothing.
+    /// The value 1: a factor that changes nothing.
     AtOne,
-    /// None: the parameter says how the effect acts and not how large it is.
+    /// No such value: the parameter says how the effect acts and not how large it is.
     Never,
 }
 
-/// A measure of the arm or of its readings with which the expected size of a parameter grows.
+/// A property of the arm or of its readings to which the expected size of a parameter is proportional.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Measure {
     /// Mass of the arm \[kg\].
     ArmMass,
-    /// Mass of the arm over the length of its links \[kg/m\].
+    /// Mass of the arm divided by the sum of the lengths of its links \[kg/m\].
     ArmMassPerLength,
     /// Mass of the heaviest payload \[kg\].
     PayloadMass,
     /// Largest displacement reading \[mm\].
     Displacement,
-    /// Largest displacement reading over the number of static rows \[mm\].
+    /// Largest displacement reading divided by the number of static rows \[mm\].
     DisplacementPerRow,
     /// Largest wind-up reading \[arcmin\].
     Twist,
-    /// Largest displacement reading over the length of the links, or largest wind-up reading \[rad\].
+    /// Largest displacement reading divided by the sum of the lengths of the links, or the largest wind-up reading if
+    /// that is larger \[rad\].
     Angle,
 }
 
@@ -84,40 +85,43 @@ pub enum Measure {
 pub struct Parameter {
     /// Name with unit, as files write it.
     pub name: &'static str,
-    /// How many numbers it has: 1, or 3 for a vector.
+    /// Number of values: 1, or 3 for a vector.
     pub count: usize,
-    /// Smallest sensible value.
+    /// Smallest value that a file may give.
     pub low: f64,
-    /// Largest sensible value.
+    /// Largest value that a file may give.
     pub high: f64,
-    /// A typical value, where a fit starts.
+    /// A typical value. A fit starts there.
     pub typical: f64,
-    /// Where a fit expects it, every value as likely as another. A stiffness is given as the compliance over
-    /// that of its joint, a reciprocal as `1/factor`, a torque as part of the largest on its joint.
+    /// Range in which a fit expects the parameter, with equal probability everywhere in it. A stiffness is given as
+    /// its compliance divided by that of its joint, a reciprocal as `1/factor`, a torque as a fraction of the largest
+    /// torque on its joint.
     pub prior: (f64, f64),
-    /// How a fit moves it.
+    /// How a fit varies the parameter.
     pub scale: Scale,
-    /// The value at which the effect is absent.
+    /// The value at which the effect changes nothing.
     pub absent: Absent,
-    /// The value when it is left out. A parameter with a default is stated and not fitted.
+    /// The value if the parameter is left out. A parameter with a default is stated and not fitted, unless a variant
+    /// names it.
     pub default: Option<f64>,
-    /// Whether it names a channel. Files have the channel's word; here it is the channel's number.
+    /// Whether the value is a channel. Files write the word of the channel; here it is the index of the channel.
     pub is_channel: bool,
-    /// Another parameter that this one is not below.
+    /// Name of another parameter that is a lower limit of this one; `None` if there is none.
     pub not_below: Option<&'static str>,
-    /// The measure of the arm or of its readings with which the expected size grows, and the part of it
-    /// that is expected.
+    /// A property of the arm or its readings to which the expected size is proportional, and the factor of
+    /// proportionality.
     pub grows_with: Option<(Measure, f64)>,
-    /// The largest value that a search looks for in an arm and a campaign of usual size, if that is less than the
-    /// largest sensible one.
+    /// The largest value for which a search looks in an arm and a campaign of usual size. `None`: the largest value
+    /// that a file may give.
     pub sought_up_to: Option<f64>,
-    /// The limits of a torque, as parts of the largest torque on its joint in the campaign. A law that changes
-    /// where no torque reaches cannot be told from another.
+    /// For a torque: the limits of a search, as fractions of the largest torque on the joint in the campaign. A
+    /// change of the law beyond the torques that occur could not be recognized.
     pub torque_parts: Option<(f64, f64)>,
 }
 
 impl Parameter {
-    /// A single number that must be given.
+    /// A parameter with a single value that a file must give, between `low` and `high`. `typical` is a usual value,
+    /// `scale` says how a fit varies it.
     pub const fn number(name: &'static str, low: f64, high: f64, typical: f64, scale: Scale) -> Self {
         let absent = match scale {
             Scale::Linear | Scale::Stiffness | Scale::Torque => Absent::AtZero,
@@ -142,140 +146,151 @@ impl Parameter {
         }
     }
 
-    /// Three numbers that must be given.
+    /// A parameter with three values that a file must give, each between `low` and `high`. `typical` is a usual value.
     pub const fn vector(name: &'static str, low: f64, high: f64, typical: f64) -> Self {
         Self { count: 3, ..Self::number(name, low, high, typical, Scale::Linear) }
     }
 
-    /// The same parameter, expected within narrower limits.
+    /// This parameter, expected by a fit between `low` and `high` instead of in its whole range.
     pub const fn expected(self, low: f64, high: f64) -> Self {
         Self { prior: (low, high), ..self }
     }
 
-    /// The same parameter, not below another.
+    /// This parameter, which must not be smaller than the parameter named `other`.
     pub const fn at_least(self, other: &'static str) -> Self {
         Self { not_below: Some(other), ..self }
     }
 
-    /// The same parameter, with the effect absent at another value than its scale suggests.
+    /// This parameter, with `absent` as the value at which the effect changes nothing, in place of the value that
+    /// follows from its scale.
     pub const fn absent(self, absent: Absent) -> Self {
         Self { absent, ..self }
     }
 
-    /// The same parameter, expected larger where this part of a measure is larger.
+    /// This parameter, with an expected size of `part` times `measure`, a property of the arm or of its readings.
     pub const fn growing_with(self, measure: Measure, part: f64) -> Self {
         Self { grows_with: Some((measure, part)), ..self }
     }
 
-    /// The same parameter, looked for up to this value where arm and readings are of usual size.
+    /// This parameter, for which a search looks only up to `high` if arm and readings are of usual size. Files may give
+    /// larger values.
     pub const fn sought_up_to(self, high: f64) -> Self {
         Self { sought_up_to: Some(high), ..self }
     }
 
-    /// The same torque, within these parts of the largest torque on its joint.
+    /// This parameter, a torque, for which a search looks only between the fractions `low` and `high` of the largest
+    /// torque on its joint.
     pub const fn within_torque(self, low: f64, high: f64) -> Self {
         Self { torque_parts: Some((low, high)), ..self }
     }
 }
 
-/// What an effect needs of the nominal model at its place.
+/// What the nominal model must be like at a place so that an effect can be there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Needs {
-    /// Nothing.
+    /// Nothing: the effect is possible at every place of its kind.
     Nothing,
-    /// A joint that the model holds rigid: the effect is what such a model lacks.
+    /// A joint that is rigid in the model: the effect adds the missing compliance.
     RigidJoint,
-    /// A joint that twists: the effect acts in series with its gear.
+    /// A joint with compliance: the effect acts in series with the gear.
     TwistingJoint,
-    /// A driven joint that twists.
+    /// A driven joint with compliance.
     DrivenTwist,
-    /// A driven joint whose twist is not in proportion to its torque.
+    /// A driven joint whose angle of torsion is not proportional to its torque.
     CurvedJoint,
-    /// A link that the model holds rigid.
+    /// A link that is rigid in the model.
     RigidLink,
-    /// A link that bends.
+    /// A link that bends in the model.
     BendingLink,
 }
 
-/// The mass that an effect can take away, beyond which nothing would be left.
+/// A mass that an effect can reduce. The effect must not reduce it below zero.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Removes {
-    /// The mass of the joint where it sits.
+    /// The mass of the joint at which the effect is.
     JointMass,
     /// The mass of the payload.
     PayloadMass,
 }
 
-/// What turns under gravity where the effect sits, as absolute positions show it. The order is that in which
-/// positions are searched: an effect of a later class can imitate those of the classes before it.
+/// Which elastic rotation an effect adds under gravity, as readings of absolute positions show it. Positions are
+/// searched in this order: an effect of a later class can imitate those of the classes before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Yields {
-    /// A joint about its axis.
+    /// Rotation of a joint about its axis.
     AboutAxis,
-    /// A joint across its axis, or the base about both horizontal axes, equally.
+    /// Tilt of a joint about the two axes perpendicular to its axis, or of the base about both horizontal axes, with
+    /// equal compliance.
     Tilt,
-    /// The base or the structure behind a joint, about three axes that are coupled.
+    /// Rotation of the base or of the structure behind a joint about three axes, with coupling.
     Frame,
 }
 
-/// A parameter that a search frees: its name, and one component of it or all.
+/// A parameter that a search fits: its name, and the index of one of its numbers, or `None` for all of its numbers.
 pub type Freed = (&'static str, Option<usize>);
 
-/// How likely a search takes an effect to be before any reading, compared with a usual one, if it is seldom met.
+/// Prior probability of an effect that is seldom met, relative to a usual one, before any reading is considered.
 pub const RARE: f64 = 0.3;
 
-/// What is known of a joint in a campaign when an effect there proposes starting points for a fit.
+/// Properties of a joint in a campaign, from which an effect at this joint derives the starting points of a fit.
 pub struct Setting<'a> {
     /// Largest torque on the joint in the campaign, at least 1 \[N m\].
     pub torque_nm: f64,
-    /// The twist of the joint under that torque \[rad\].
+    /// Angle of torsion of the joint under this torque \[rad\].
     pub twist_rad: f64,
-    /// Number of rows of the longest file of readings of the whole arm.
+    /// Number of rows of the longest file of readings of the whole arm (not of a bench).
     pub rows: f64,
-    /// The value of each fitted number at `u = 1`.
+    /// The value of each fitted number at `u = 1`, see [`Scale`].
     pub values_at_one: &'a [f64],
 }
 
-/// Answers that reconcile and the studies ask of a kind. Most kinds change few of [`Traits::USUAL`].
+/// Properties of an effect that `reconcile` and the studies use. Most effects differ from [`Traits::USUAL`] in a few
+/// only.
 pub struct Traits {
-    /// Whether a search for effects tries the kind at every place.
+    /// Whether a search for effects tries this effect at every place.
     pub is_sought: bool,
-    /// The channels at which, or in which, the search tries a kind of channels; all if there are none here.
+    /// The channels for which the search tries an effect of a channel; empty means all.
     pub sought_in: &'static [Channel],
-    /// The sets of parameters that the search frees, each a candidate of its own. If there are none, it frees every
+    /// The sets of parameters that the search fits. Each set is a candidate of its own. Empty means a single set: every
     /// parameter without a default.
     pub variants: &'static [&'static [Freed]],
-    /// How likely the search takes it to be before any reading, compared with a usual effect at one place.
+    /// Prior probability of the effect, relative to a usual effect at one place, before any reading is considered.
     pub odds: f64,
-    /// What the nominal model must be like for the search to try it.
+    /// What the nominal model must be like at a place so that the search tries the effect there.
     pub needs: Needs,
-    /// Where fits start, each a list of `u` by number.
+    /// Starting points of fits. Each is a list of values of the fit's variable `u` ([`Scale`]), one for each fitted
+    /// number.
     pub starts: fn(&Setting) -> Vec<Vec<f64>>,
-    /// Whether the readings follow its parameters so crookedly that a confidence interval must follow the
-    /// profile of the objective.
+    /// Whether the readings depend on the parameters so nonlinearly that a confidence interval must be computed from
+    /// the profile of the objective.
     pub is_nonlinear: bool,
-    /// Whether a screening keeps the numbers that say how it acts at their starts: far from there the linear model misleads.
+    /// Whether screening, which is a linear fit, holds those parameters at their starting points that say how the
+    /// effect acts (not how large it is). Far from the starting points the linear model is wrong.
     pub screens_at_starts: bool,
-    /// Whether it replaces the torsion curve of a gear, with break points at which frequencies step.
+    /// Whether the effect replaces the torsion curve of a gear. Natural frequencies jump at its break points.
     pub is_gear_curve: bool,
-    /// Whether it changes the torques at which gears vibrate, so that frequencies step.
+    /// Whether the effect changes the static torques on gears. Natural frequencies then jump where a torque passes a
+    /// break point.
     pub moves_working_points: bool,
-    /// Whether it changes how a link bends.
+    /// Whether the effect changes how a link bends.
     pub changes_bending: bool,
-    /// Whether the bounds of the exact search, of the verifier and of the relaxation know its law.
+    /// Whether the bounds of the exact search, of the verifier and of the linear program for mass bounds include this
+    /// effect.
     pub in_bounds: bool,
-    /// The mass that it can take away.
+    /// The mass that the effect can reduce; `None` if it reduces none.
     pub removes: Option<Removes>,
-    /// What yields under gravity, if absolute positions are searched for it.
+    /// The elastic rotation under gravity by which absolute positions show the effect; `None` if positions are not
+    /// searched for it.
     pub yields: Option<Yields>,
-    /// The effect at the first joint that is the same thing where that joint is vertical.
+    /// Name of the effect at the first joint that is identical with this one if that joint is vertical.
     pub same_at_vertical_first_joint: Option<&'static str>,
-    /// What is wrong with numbers that are each within bounds: the problem and what to try.
+    /// Finds a contradiction between the values of all parameters, each of which is within its limits. Returns the
+    /// problem and the advice; `None` if there is no contradiction.
     pub contradiction: fn(&[f64]) -> Option<(&'static str, &'static str)>,
 }
 
 impl Traits {
-    /// What most kinds answer.
+    /// The properties that most effects have. The description of an effect states only what differs from them.
     pub const USUAL: Self = Self {
         is_sought: true,
         sought_in: &[],
@@ -297,26 +312,27 @@ impl Traits {
 }
 
 impl Traits {
-    /// Whether frequencies step as its parameters change.
+    /// Whether natural frequencies jump as the parameters of the effect change.
     pub fn steps_frequencies(&self) -> bool {
         self.is_gear_curve || self.moves_working_points
     }
 }
 
-/// What is known of an effect before any arm has it.
+/// The description of a kind of effect, independent of any arm.
 pub struct Kind {
     /// Name in files.
     pub name: &'static str,
-    /// One line on what it is.
+    /// One line that says what the effect is.
     pub summary: &'static str,
-    /// Product or test.
+    /// Whether the effect belongs to the product or to the test.
     pub scope: Scope,
-    /// Where it can sit.
+    /// The kinds of places at which the effect can be.
     pub places: &'static [Place],
-    /// Its parameters at such a place.
+    /// The parameters of the effect at a place of this kind.
     pub parameters: fn(Place) -> &'static [Parameter],
-    /// Puts it into the subject: the numbers of all parameters in order, and the place's name.
+    /// Applies the effect to a subject. The arguments are the values of all parameters in order, and the name of the
+    /// place.
     pub apply: fn(&[f64], &str, &mut Subject),
-    /// What reconcile and the studies ask of it.
+    /// Properties that `reconcile` and the studies use.
     pub traits: Traits,
 }

@@ -1,4 +1,4 @@
-//! `link_flexibility`: a link that the nominal model holds rigid bends, shears, twists and stretches. The
+//! `link_flexibility`: a link that is rigid in the nominal model deforms by bending, shear, torsion and stretch. The
 //! parameter is a factor on the compliance of its section.
 
 use super::kind::{Kind, Needs, Parameter, Place, Scale, Scope, Traits};
@@ -7,7 +7,7 @@ use super::subject::Subject;
 const PARAMETERS: &[Parameter] =
     &[Parameter::number("factor", 0.0, 20.0, 1.0, Scale::Linear).expected(0.0, 5.0)];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "link_flexibility",
     summary: "a link that the model holds rigid bends; 1 = as its section says",

@@ -1,4 +1,4 @@
-//! `lost_motion`: play closes smoothly as the torque grows: `theta += h tanh(T/T_c)`.
+//! `lost_motion`: clearance that closes smoothly as the torque T grows. It adds the angle `h tanh(T/T_c)`.
 
 use super::kind::{Kind, Measure, Needs, Parameter, Place, Scale, Scope, Setting, Traits};
 use super::subject::Subject;
@@ -14,7 +14,7 @@ const PARAMETERS: &[Parameter] = &[
         .within_torque(0.003, 1.0),
 ];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "lost_motion",
     summary: "play that closes smoothly as the torque grows",

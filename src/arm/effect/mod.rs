@@ -1,10 +1,11 @@
-//! Physics that an arm has beyond its nominal model. An effect is a piece of the arm: it changes the
-//! [`Structure`](super::structure::Structure) that mechanics works on, so statics, modes and search all include it.
+//! Effects: physics that an arm has beyond its nominal model. An effect changes the
+//! [`Structure`](super::structure::Structure) on which the mechanics works, so statics, modes and search all include
+//! it.
 //!
-//! Each effect has one file here with its [`Kind`]: its name, where it can sit, its parameters with unit,
-//! bounds and typical size, what it does to a [`Subject`], and what the search for effects must know of it.
-//! [`KINDS`] lists them all; no other room lists effects. Effects of the payload or of a measuring channel
-//! describe a test and not the product: only `predict` and `reconcile` use them.
+//! Each effect has a file here with its [`Kind`]: its name, the places where it can be, its parameters with unit,
+//! limits and typical values, how it changes a [`Subject`], and properties for the search for effects. [`KINDS`]
+//! lists them all; no other module has a list of effects. Effects of the payload or of a measuring channel describe a
+//! test and not the product. Only `predict` and `reconcile` use them.
 
 pub(crate) mod base_compliance;
 pub(crate) mod base_lift;
@@ -52,9 +53,9 @@ pub use catalogue::{KINDS, kind};
 pub use channel::{Channel, Reading};
 pub use entry::Effect;
 pub use kind::{Kind, Parameter, Place, Scale, Scope};
-pub use setup::Setup;
+pub use setup::{Setup, Turned};
 pub use subject::Subject;
 pub use validate::{EffectFault, fits_nominal};
-pub use warming::{Moment, Warming};
+pub use warming::{Moment, Softening, Warming};
 pub use waves::{transmission_rad, transmission_waves};
 pub use wrong_unit::SLIPS as UNIT_SLIPS;

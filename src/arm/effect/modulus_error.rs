@@ -1,5 +1,5 @@
-//! `modulus_error`: a factor on Young's modulus of one link, by its layup or bond lines. G and density are
-//! unchanged.
+//! `modulus_error`: a factor on Young's modulus of one link, for example because of its layup or its bond lines.
+//! Shear modulus and density are unchanged.
 
 use super::kind::{Kind, Needs, Parameter, Place, Scale, Scope, Traits};
 use super::subject::Subject;
@@ -7,7 +7,7 @@ use super::subject::Subject;
 const PARAMETERS: &[Parameter] =
     &[Parameter::number("factor", 0.05, 5.0, 0.85, Scale::Reciprocal).expected(0.5, 3.0)];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "modulus_error",
     summary: "one link has another modulus of elasticity than its material",

@@ -1,14 +1,15 @@
-//! `outlier`: single rows are gross errors, by a slipped reflector or a typing error.
+//! `outlier`: single rows of readings are gross errors, for example because a reflector slipped or a number was
+//! mistyped.
 
 use super::channel::Channel;
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
 use super::subject::Subject;
 
-/// The rows, as many as there are.
+/// The parameter of the effect: the numbers of the rows that are gross errors. There may be any number of them.
 const ROWS: &[Parameter] =
     &[Parameter { count: 0, ..Parameter::number("rows", 1.0, 1e9, 1.0, Scale::Linear) }];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "outlier",
     summary: "single rows are gross errors",

@@ -1,4 +1,5 @@
-//! `payload_cg_error`: the payload's centre of gravity is off the stated one, in the last frame.
+//! `payload_cg_error`: the centre of gravity of the payload is not at the stated position. The offset is written in
+//! the last frame.
 
 use super::kind::{Kind, Parameter, Place, Scope, Traits};
 use super::subject::Subject;
@@ -6,7 +7,7 @@ use nalgebra::Vector3;
 
 const PARAMETERS: &[Parameter] = &[Parameter::vector("offset_m", -0.5, 0.5, 0.01).expected(-0.1, 0.1)];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "payload_cg_error",
     summary: "the centre of gravity of the payload is not where it is stated",

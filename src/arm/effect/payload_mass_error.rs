@@ -1,4 +1,4 @@
-//! `payload_mass_error`: the payload weighs more or less than stated, wherever one is stated.
+//! `payload_mass_error`: the payload weighs more or less than stated. Load cases without a payload are unchanged.
 
 use super::kind::{Kind, Measure, Parameter, Place, Removes, Scale, Scope, Traits};
 use super::subject::Subject;
@@ -7,7 +7,7 @@ const PARAMETERS: &[Parameter] = &[Parameter::number("delta_kg", -20.0, 20.0, 0.
     .expected(-3.0, 3.0)
     .growing_with(Measure::PayloadMass, 1.0 / 4.0)];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "payload_mass_error",
     summary: "the payload weighs more or less than stated",

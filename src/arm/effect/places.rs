@@ -1,11 +1,12 @@
-//! Finds the pieces of an arm by name, and the places where an effect can sit.
+//! Finds the pieces of an arm by name, and the places where an effect can be.
 
 use super::kind::Place;
 use crate::arm::prismatic::PrismaticPiece;
 use crate::arm::structure::{JointPiece, LinkPiece, Piece, Structure};
 
 impl Structure {
-    /// The kind of place that a name denotes in this arm, out of those allowed.
+    /// Which kind of place the name `at` denotes in this arm. Only the kinds in `allowed` are tried; `None` if `at`
+    /// denotes none of them.
     pub fn place(&self, at: &str, allowed: &[Place]) -> Option<Place> {
         allowed.iter().copied().find(|place| match place {
             Place::Joint => self.joints().any(|j| j.name == at),
@@ -19,7 +20,7 @@ impl Structure {
         })
     }
 
-    /// The names of all places of a kind in this arm.
+    /// The names of all places of the kind `place` in this arm.
     pub fn places(&self, place: Place) -> Vec<String> {
         match place {
             Place::Joint => self.joints().map(|j| j.name.clone()).collect(),
@@ -33,7 +34,7 @@ impl Structure {
         }
     }
 
-    /// The rotary joints, base to tip.
+    /// The revolute joints, base to tip.
     pub fn joints(&self) -> impl Iterator<Item = &JointPiece> {
         self.pieces.iter().filter_map(|p| match p {
             Piece::Joint(joint) => Some(joint),
@@ -49,7 +50,7 @@ impl Structure {
         })
     }
 
-    /// The joint of a name.
+    /// The revolute joint with this name.
     pub fn joint_mut(&mut self, name: &str) -> Option<&mut JointPiece> {
         self.pieces.iter_mut().find_map(|p| match p {
             Piece::Joint(joint) if joint.name == name => Some(joint),
@@ -65,7 +66,7 @@ impl Structure {
         })
     }
 
-    /// The prismatic joint of a name.
+    /// The prismatic joint with this name.
     pub fn prismatic_mut(&mut self, name: &str) -> Option<&mut PrismaticPiece> {
         self.pieces.iter_mut().find_map(|p| match p {
             Piece::Prismatic(joint) if joint.name == name => Some(joint),
@@ -73,7 +74,7 @@ impl Structure {
         })
     }
 
-    /// The link of a name.
+    /// The link with this name.
     pub fn link_mut(&mut self, name: &str) -> Option<&mut LinkPiece> {
         self.pieces.iter_mut().find_map(|p| match p {
             Piece::Link(link) if link.name == name => Some(link),

@@ -1,4 +1,4 @@
-//! `sensor_bias`: the reading is the truth plus a constant.
+//! `sensor_bias`: the reading is the actual value plus a constant.
 
 use super::channel::Channel;
 use super::kind::{Kind, Measure, Parameter, Place, Scale, Scope, Traits};
@@ -18,7 +18,7 @@ fn parameters(place: Place) -> &'static [Parameter] {
     }
 }
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "sensor_bias",
     summary: "the sensor of a channel reads the truth plus a constant",

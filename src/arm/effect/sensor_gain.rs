@@ -1,4 +1,4 @@
-//! `sensor_gain`: the reading is a factor times the truth.
+//! `sensor_gain`: the reading is the actual value times a factor.
 
 use super::channel::Channel;
 use super::kind::{Absent, Kind, Parameter, Place, Scale, Scope, Traits};
@@ -7,7 +7,7 @@ use super::subject::Subject;
 const PARAMETERS: &[Parameter] =
     &[Parameter::number("gain", 0.2, 5.0, 1.03, Scale::Linear).expected(0.6, 1.6).absent(Absent::AtOne)];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "sensor_gain",
     summary: "the sensor of a channel reads a factor times the truth",

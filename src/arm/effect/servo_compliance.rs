@@ -1,10 +1,10 @@
-//! `servo_compliance`: a joint is softer in one kind of test, because a servo holds it there and not a brake.
+//! `servo_compliance`: a joint is softer in one kind of test, because a servo holds it there instead of a brake.
 
 use super::channel::Channel;
 use super::kind::{Kind, Needs, Parameter, Place, Scale, Scope, Traits};
 use super::subject::Subject;
 
-/// The parameter that names the kind of test.
+/// Name of the parameter that says in which channel the joint is softer.
 pub(crate) const CHANNEL: &str = "channel";
 
 const PARAMETERS: &[Parameter] = &[
@@ -12,7 +12,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter { is_channel: true, default: None, ..Parameter::number(CHANNEL, 0.0, 3.0, 1.0, Scale::Linear) },
 ];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "servo_compliance",
     summary: "the joint is softer in one kind of test: a servo holds it there and not a brake",

@@ -1,33 +1,76 @@
-//! Setups: what is special about the tests of one channel. Instruments hang on the arm in one kind of test only, and what
-//! holds a joint in one kind of test may yield more than what holds it in another.
+//! Setups: differences between the arm in the tests of one channel and the arm by itself. Instruments may hang on the
+//! arm in one kind of test only, and a servo that holds a joint in one kind of test may be softer than a brake in
+//! another.
 
+use super::warming::Softening;
 use crate::arm::structure::{FrameCompliance, LinkPiece, Piece, Structure};
 use nalgebra::Vector3;
+
+/// A base that turned once between two rows of a file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Turned {
+    /// Rotation vector about the origin of the chain \[rad\].
+    pub turn_rad: Vector3<f64>,
+    /// The first row after it, from 0.
+    pub from_row: usize,
+}
+
+impl Turned {
+    /// How far this has moved a point in a row of the file \[m\].
+    pub fn moved_m(&self, at_m: &Vector3<f64>, row: usize) -> Vector3<f64> {
+        if row < self.from_row { Vector3::zeros() } else { self.turn_rad.cross(at_m) }
+    }
+}
 
 /// What is special about the tests of one channel.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Setup {
-    /// Mass that hangs at the tip \[kg\].
+    /// Additional mass at the tip \[kg\].
     pub mass_kg: f64,
-    /// Centre of gravity of this mass from the tip, in the last frame \[m\].
+    /// Centre of gravity of the additional mass, measured from the tip in the last frame \[m\].
     pub cg_m: Vector3<f64>,
-    /// Joints that yield further about their axes: name and compliance \[rad/(N m)\].
+    /// Additional compliance of joints about their axes in these tests: name of the joint and compliance
+    /// \[rad/(N m)\].
     pub servo_rad_per_nm: Vec<(String, f64)>,
+    /// Joints that soften in the course of the tests, by name.
+    pub softening: Vec<(String, Softening)>,
+    /// The base turned in the course of the tests.
+    pub turned: Option<Turned>,
 }
 
 impl Setup {
-    /// Whether the tests of the channel are of the arm as it is.
+    /// Whether the structure in the tests of the channel is that of the arm as it is.
     pub fn is_plain(&self) -> bool {
-        self.mass_kg == 0.0 && self.servo_rad_per_nm.is_empty()
+        self.mass_kg == 0.0 && self.servo_rad_per_nm.is_empty() && self.is_steady()
     }
 
-    /// Further compliance of a joint about its axis \[rad/(N m)\].
+    /// Whether the structure is the same in all rows.
+    pub fn is_steady(&self) -> bool {
+        self.softening.is_empty()
+    }
+
+    /// How a joint softens; `None` if it does not.
+    pub fn softening_of(&self, joint: &str) -> Option<Softening> {
+        self.softening.iter().rfind(|(name, _)| name == joint).map(|(_, softening)| *softening)
+    }
+
+    /// Softens the joints of a structure, each by its factor.
+    pub(crate) fn soften(&self, structure: &mut Structure, factor: impl Fn(&Softening) -> f64) {
+        for (name, softening) in &self.softening {
+            if let Some(joint) = structure.joint_mut(name) {
+                joint.law = joint.law.softer(factor(softening));
+            }
+        }
+    }
+
+    /// Additional compliance of the joint named `joint` about its axis in these tests \[rad/(N m)\]; 0 if there is
+    /// none.
     pub fn servo_of(&self, joint: &str) -> f64 {
         self.servo_rad_per_nm.iter().filter(|(name, _)| name == joint).map(|(_, c)| c).sum()
     }
 
-    /// The arm as it is in a test of the channel. The mass hangs on two rigid offsets, to its centre of gravity and back, so
-    /// that the tip stays where it is.
+    /// The `structure` of an arm, changed to the arm in the tests of this channel. The additional mass is placed by two
+    /// rigid offsets, one forth and one back, so that the tip stays where it is.
     pub fn of(&self, structure: &Structure) -> Structure {
         let mut out = structure.clone();
         for (name, compliance) in &self.servo_rad_per_nm {
@@ -36,7 +79,7 @@ impl Setup {
             }
         }
         if self.mass_kg != 0.0 {
-            // a point mass sits at mid-length of its offset
+            // the point mass of an offset is at its mid-length, so the offset is twice as long as the way to the mass
             let there = offset("test_mass", 2.0 * self.cg_m, self.mass_kg);
             out.pieces.extend([there, offset("test_mass.back", -2.0 * self.cg_m, 0.0)]);
         }

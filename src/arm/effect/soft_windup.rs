@@ -1,11 +1,11 @@
-//! `soft_windup`: the gear's three-segment torsion curve replaces the joint's single stiffness.
+//! `soft_windup`: the three-segment torsion curve of a gear replaces the single stiffness of the joint.
 
 use super::kind::{Absent, Kind, Needs, Parameter, Place, Scale, Scope, Setting, Traits};
 use super::subject::Subject;
 use crate::arm::joint_law::{Curve, Windup};
 
-/// The nominal stiffness of a joint is usually the middle slope K2 of its gear. So K2 is expected near it, K1
-/// below and K3 above.
+/// Parameters of the effect: the slopes K1, K2, K3 and the break points. The nominal stiffness of a joint is usually
+/// the slope K2 of its gear. So a fit expects K2 near the nominal stiffness, K1 below and K3 above.
 const PARAMETERS: &[Parameter] = &[
     Parameter::number("k1_nm_per_rad", 1.0, 1e10, 1e5, Scale::Stiffness)
         .expected(1.02, 4.0)
@@ -23,8 +23,8 @@ const PARAMETERS: &[Parameter] = &[
         .at_least("t1_nm"),
 ];
 
-/// Break points to start from, as parts of the largest torque. A fit finds only break points near its start,
-/// so the pairs cover the range.
+/// Break points (T1, T2) at which a fit starts, as fractions of the largest torque. A fit finds only break points
+/// near its start, so the pairs cover the range.
 const BREAKS: [(f64, f64); 8] = [
     (0.08, 0.25),
     (0.08, 0.6),
@@ -36,7 +36,7 @@ const BREAKS: [(f64, f64); 8] = [
     (0.5, 0.85),
 ];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "soft_windup",
     summary: "the three-segment torsion curve replaces the single stiffness",

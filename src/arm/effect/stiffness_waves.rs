@@ -1,5 +1,5 @@
-//! `stiffness_waves`: the stiffness of a joint varies once and twice a turn,
-//! `k(q) = k / (1 + a sin(q + p) + b sin(2 q + r))`, by teeth, bearings and housings that are not round.
+//! `stiffness_waves`: the stiffness of a joint varies once and twice in each turn,
+//! `k(q) = k / (1 + a sin(q + p) + b sin(2 q + r))`, because teeth, bearings or housings are not perfectly round.
 
 use super::kind::{Absent, Kind, Needs, Parameter, Place, RARE, Scale, Scope, Setting, Traits};
 use super::subject::Subject;
@@ -21,7 +21,7 @@ const PARAMETERS: &[Parameter] = &[
     },
 ];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "stiffness_waves",
     summary: "the stiffness of the joint varies once and twice a turn",
@@ -45,7 +45,8 @@ pub(crate) const KIND: Kind = Kind {
     },
 };
 
-/// Waves of a usual size with phases in each quarter of a turn.
+/// Starting points of a fit: waves of the typical amplitude, with the phase in each quarter of a turn. If two waves are
+/// fitted, all pairs of phases are tried.
 fn starts(setting: &Setting) -> Vec<Vec<f64>> {
     const PHASES: [f64; 4] = [-FRAC_PI_2, 0.0, FRAC_PI_2, PI];
     match setting.values_at_one.len() {

@@ -1,34 +1,36 @@
-//! The arm under test: its structure, and how the test deviates from its description. This is what effects change.
+//! The arm under test: the product, and the deviations of the test from its description. Effects change it.
 
 use super::channel::{Channel, Reading};
 use super::setup::Setup;
-use super::warming::{Moment, Warming};
+use super::warming::{Moment, Softening, Warming};
 use super::waves::transmission_rad;
 use crate::arm::load::Payload;
 use crate::arm::structure::{JointAngle, LinkPiece, Piece, Structure};
 use nalgebra::Vector3;
 
-/// An arm under test: the product, and how the test deviates from its description.
+/// An arm under test: the product, and the deviations of the test from its description.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Subject {
-    /// The product.
+    /// The arm itself.
     pub structure: Structure,
-    /// True mass minus stated mass, wherever a payload is stated \[kg\].
+    /// Actual mass minus stated mass of the payload, in every load case with a payload \[kg\].
     pub payload_delta_kg: f64,
-    /// True centre of gravity minus the stated one, in the last frame \[m\].
+    /// Actual centre of gravity of the payload minus the stated one, in the last frame \[m\].
     pub payload_offset_m: Vector3<f64>,
-    /// Uneven joints: the joint's name, and the amplitudes of sine and cosine once and twice a turn \[rad\].
+    /// Transmission errors: the name of the joint, and the amplitudes \[rad\] of sine and cosine of the angle and of
+    /// twice the angle.
     pub transmissions_rad: Vec<(String, [f64; 4])>,
-    /// How each channel reads, in the order of [`Channel::ALL`].
+    /// How each channel turns actual values into readings, in the order of [`Channel::ALL`].
     pub channels: [Reading; 4],
-    /// What is special about the tests of each channel, in the same order.
+    /// Differences between the arm in the tests of each channel and the arm by itself, in the order of
+    /// [`Channel::ALL`].
     pub setups: [Setup; 4],
-    /// How the moduli of the links change meanwhile.
+    /// How the moduli of the links change in the course of the tests.
     pub warming: Warming,
 }
 
 impl Subject {
-    /// An arm whose test goes exactly as described.
+    /// The arm `structure` under test, with tests that do not deviate from their description.
     pub fn new(structure: Structure) -> Self {
         Self {
             structure,
@@ -41,7 +43,7 @@ impl Subject {
         }
     }
 
-    /// The angles to which the driven joints turn when `pose_rad` is commanded \[rad\].
+    /// The angles to which the driven joints actually turn when `pose_rad` is commanded \[rad\].
     pub fn turned_rad(&self, pose_rad: &[f64]) -> Vec<f64> {
         let mut out = pose_rad.to_vec();
         for (name, waves_rad) in &self.transmissions_rad {
@@ -53,35 +55,51 @@ impl Subject {
         out
     }
 
-    /// How the channel named `at` reads; `None` if there is no such channel.
+    /// How the channel named `at` turns actual values into readings; `None` if there is no such channel.
     pub fn channel_mut(&mut self, at: &str) -> Option<&mut Reading> {
         Channel::from_word(at).map(|c| &mut self.channels[c as usize])
     }
 
-    /// What is special about the tests of the channel named `at`; `None` if there is no such channel.
+    /// Differences between the arm in the tests of the channel named `at` and the arm by itself; `None` if there is
+    /// no such channel.
     pub fn setup_mut(&mut self, at: &str) -> Option<&mut Setup> {
         Channel::from_word(at).map(|c| &mut self.setups[c as usize])
     }
 
-    /// The arm as it is in a test of a channel.
+    /// The structure of the arm in the tests of a channel, with the additional mass and compliance of these tests.
     pub fn structure_in(&self, channel: Channel) -> Structure {
         self.setups[channel as usize].of(&self.structure)
     }
 
+    /// Whether the arm is the same in all tests of a channel.
+    pub fn is_steady(&self, channel: Channel) -> bool {
+        self.warming.is_none() && self.setups[channel as usize].is_steady()
+    }
+
     /// The arm as it is in a test of a channel at a moment.
     pub fn structure_at(&self, channel: Channel, when: &Moment) -> Structure {
+        self.softened(channel, when, |softening| softening.factor(when.row))
+    }
+
+    /// The arm as it was when the reference of a displacement was read.
+    pub fn reference_at(&self, when: &Moment) -> Structure {
+        self.softened(Channel::Static, when, |softening| softening.reference_factor(when.row))
+    }
+
+    fn softened(&self, channel: Channel, when: &Moment, factor: impl Fn(&Softening) -> f64) -> Structure {
         let mut out = self.structure_in(channel);
-        let factor = self.warming.factor(when);
+        self.setups[channel as usize].soften(&mut out, factor);
+        let stiffer = self.warming.factor(when);
         for piece in &mut out.pieces {
             if let Piece::Link(LinkPiece { beam: Some(beam), .. }) = piece {
-                beam.material.youngs_modulus_pa *= factor;
-                beam.material.shear_modulus_pa *= factor;
+                beam.material.youngs_modulus_pa *= stiffer;
+                beam.material.shear_modulus_pa *= stiffer;
             }
         }
         out
     }
 
-    /// The true payload where `stated` is stated. A load case without a payload stays without one.
+    /// The actual payload, given the payload that a load case states. A load case without a payload stays without one.
     pub fn payload(&self, stated: &Payload) -> Payload {
         if stated.mass_kg == 0.0 {
             return *stated;

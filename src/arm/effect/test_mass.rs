@@ -1,4 +1,4 @@
-//! `test_mass`: something hangs at the tip in one kind of test, such as accelerometers and their cables.
+//! `test_mass`: an additional mass at the tip in one kind of test, such as accelerometers and their cables.
 
 use super::channel::Channel;
 use super::kind::{Kind, Measure, Parameter, Place, RARE, Scale, Scope, Traits};
@@ -12,7 +12,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter { default: Some(0.0), ..Parameter::vector("cg_m", -0.5, 0.5, 0.05) }.expected(-0.2, 0.2),
 ];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "test_mass",
     summary: "something hangs at the tip in one kind of test",
@@ -25,7 +25,7 @@ pub(crate) const KIND: Kind = Kind {
     parameters: |_| PARAMETERS,
     apply,
     traits: Traits {
-        // static readings count from the unloaded arm, which carries the mass too
+        // static readings are differences to the unloaded arm, which carries this mass too; so they cannot show it
         sought_in: &[Channel::Modal],
         variants: &[&[("mass_kg", None)], &[("mass_kg", None), ("cg_m", None)]],
         odds: RARE,

@@ -1,12 +1,13 @@
-//! `thermal_modulus`: the moduli of all links follow the temperature of the arm, or the order of the tests while it warms.
+//! `thermal_modulus`: the moduli of all links change with the temperature of the arm, or with the order of the tests
+//! while it warms up.
 
 use super::kind::{Kind, Needs, Parameter, Place, RARE, Scale, Scope, Setting, Traits};
 use super::subject::Subject;
 
-/// The parameter that needs the temperature of each reading.
+/// Name of the parameter for the relative change of the moduli per kelvin. It needs the temperature of each reading.
 pub(crate) const PER_K: &str = "per_k";
 
-/// The number of rows in which most of the change comes.
+/// Name of the parameter for the number of rows after which 63 % of the change of the moduli is reached.
 pub(crate) const ROWS: &str = "rows";
 
 const PARAMETERS: &[Parameter] = &[
@@ -24,7 +25,7 @@ const PARAMETERS: &[Parameter] = &[
     },
 ];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "thermal_modulus",
     summary: "the moduli of all links follow the temperature or the order of the tests",
@@ -45,7 +46,8 @@ pub(crate) const KIND: Kind = Kind {
     },
 };
 
-/// With the order of the tests moduli change at once, in the middle, or to the end.
+/// Starting points of a fit. If the moduli change with the order of the tests, the starts let the change take place
+/// early, in the middle, or until the end of the tests.
 fn starts(setting: &Setting) -> Vec<Vec<f64>> {
     match setting.values_at_one.len() {
         1 => vec![vec![1.0]],
@@ -62,7 +64,7 @@ fn contradiction(numbers: &[f64]) -> Option<(&'static str, &'static str)> {
 
 fn apply(numbers: &[f64], _at: &str, subject: &mut Subject) {
     subject.warming.per_k += numbers[0];
-    // one law of the order of the tests is enough
+    // one change with the order of the tests is enough, so the last effect with such a change counts
     if numbers[1] != 0.0 {
         (subject.warming.change, subject.warming.rows) = (numbers[1], numbers[2]);
     }

@@ -1,4 +1,4 @@
-//! `time_shift`: the clock of a channel runs ahead or behind. This matters for time records only.
+//! `time_shift`: the clock of a channel is ahead or behind. It matters for time records only.
 
 use super::channel::Channel;
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
@@ -6,7 +6,7 @@ use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] = &[Parameter::number("seconds", -3600.0, 3600.0, 0.01, Scale::Linear)];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "time_shift",
     summary: "the clock of a channel runs ahead or behind (time records)",
@@ -23,5 +23,5 @@ pub(crate) const KIND: Kind = Kind {
 };
 
 fn apply(_numbers: &[f64], _at: &str, _subject: &mut Subject) {
-    // static, modal, bench and position readings carry no time
+    // readings of statics, modes, benches and positions have no time, so nothing changes
 }

@@ -1,4 +1,5 @@
-//! `transmission_error`: a joint turns unevenly by an error of its gear or its sensor, once and twice a turn.
+//! `transmission_error`: the angle of a joint has an error once and twice in each turn, because of its gear or its
+//! sensor.
 
 use super::kind::{Kind, Parameter, Place, Scope, Traits};
 use super::subject::Subject;
@@ -8,7 +9,7 @@ const PARAMETERS: &[Parameter] = &[Parameter {
     ..Parameter::vector("sin_cos_sin2_cos2_rad", -0.02, 0.02, 3e-4).expected(-0.003, 0.003)
 }];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "transmission_error",
     summary: "a joint turns unevenly, once and twice a turn; only absolute positions show it",

@@ -1,5 +1,5 @@
-//! `travel_compliance`: the drive of a prismatic joint is more compliant along its travel than stated, like a spring in
-//! series: 1/k = 1/k_stated + 1/c.
+//! `travel_compliance`: the drive of a prismatic joint deflects along its travel more than its stated stiffness
+//! allows. The effect is a spring in series: 1/k = 1/k_stated + 1/c.
 
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
 use super::subject::Subject;
@@ -7,7 +7,7 @@ use super::subject::Subject;
 const PARAMETERS: &[Parameter] =
     &[Parameter::number("stiffness_n_per_m", 1.0, 1e12, 2e7, Scale::Stiffness).expected(0.0, 6.0)];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "travel_compliance",
     summary: "the drive of a prismatic joint is more compliant along its travel than stated",

@@ -1,4 +1,4 @@
-//! Checks the effects of a file, and names those that a calculation leaves out.
+//! Checks the effects of a file, and lists those that a calculation leaves out.
 
 use super::catalogue::{KINDS, kind};
 use super::entry::Effect;
@@ -8,19 +8,20 @@ use crate::arm::structure::{Piece, Structure};
 use crate::arm::{Arm, JointModel};
 use crate::input::json::closest;
 
-/// One thing that is wrong with an effect: the key, the problem, and what to try.
+/// One fault of an effect: the key, the problem, and the advice.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EffectFault {
-    /// `effect`, `at` or `parameters.NAME`, relative to the effect.
+    /// The key at fault, relative to the effect: `effect`, `at` or `parameters.NAME`.
     pub field: String,
-    /// What is wrong.
+    /// What is wrong, in words.
     pub problem: String,
-    /// What is allowed.
+    /// What is allowed, in words.
     pub hint: String,
 }
 
 impl Effect {
-    /// Everything that is wrong with the effect for this arm.
+    /// All faults of the effect in the arm `structure`: an unknown name, a place where it cannot be, values out of
+    /// their limits. Empty if there are none.
     pub fn faults(&self, structure: &Structure) -> Vec<EffectFault> {
         let Some(kind) = kind(&self.effect) else { return vec![self.unknown_kind()] };
         match structure.place(&self.at, kind.places) {
@@ -94,7 +95,8 @@ impl Effect {
         Some(EffectFault { field: format!("parameters.{}", parameter.name), problem, hint })
     }
 
-    /// The parameter, with its value, that this one must not be below but is.
+    /// If the value of `parameter` is below that of another parameter that is its lower limit: name and value of the
+    /// other parameter. Otherwise `None`.
     fn is_below_another(&self, parameter: &Parameter, value: f64) -> Option<(&str, f64)> {
         let (name, numbers) =
             self.parameters.iter().find(|(name, _)| Some(name.as_str()) == parameter.not_below)?;
@@ -103,13 +105,14 @@ impl Effect {
 }
 
 impl Arm {
-    /// The effects that describe a test and not the product; `analyze` and studies leave them out.
+    /// The effects of this arm that describe a test and not the product. `analyze` and studies leave them out.
     pub fn ignored_effects(&self) -> Vec<&Effect> {
         self.effects.iter().filter(|e| e.is_of_test()).collect()
     }
 
-    /// The arm with all of its effects, including those of the payload and of the channels. A curve that an
-    /// effect brings is reduced as the joint model asks, like the arm's own.
+    /// The arm under test with all of its effects, including those of the payload and of the channels. An effect can
+    /// bring a new torsion curve; it is simplified to the model `joints` in the same way as the curve of the arm
+    /// itself.
     pub fn subject(&self, joints: JointModel) -> Subject {
         let mut subject = Subject::new(self.nominal_structure(joints));
         self.effects.iter().for_each(|effect| subject.apply(effect));
@@ -122,8 +125,9 @@ impl Arm {
     }
 }
 
-/// Whether an effect may sit at a place of this arm as it is. What a rigid model lacks is offered only where
-/// the model is rigid, and what twists in series only where something twists.
+/// Whether an effect of this kind can be at the place `at` of this arm. `structure` is the arm without effects. An
+/// effect that adds a missing compliance is possible only where the model is rigid, and an effect in series only where
+/// there is compliance already.
 pub fn fits_nominal(kind: &Kind, at: &str, structure: &Structure) -> bool {
     let rigid_joint = structure.joints().any(|j| j.name == at && j.law.is_rigid());
     let rigid_link = structure.links().any(|l| l.name == at && l.beam.is_some_and(|b| b.flexibility == 0.0));
@@ -134,7 +138,7 @@ pub fn fits_nominal(kind: &Kind, at: &str, structure: &Structure) -> bool {
         Needs::DrivenTwist => !rigid_joint && structure.joints().any(|j| j.name == at && j.is_driven()),
         Needs::CurvedJoint => structure.joints().any(|j| j.name == at && j.is_driven() && j.law.is_curved()),
         Needs::RigidLink => rigid_link,
-        // an effect of the whole arm needs a link that bends somewhere
+        // an effect of the whole arm needs at least one link that bends
         Needs::BendingLink if at == "arm" => {
             structure.links().any(|l| l.beam.is_some_and(|b| b.flexibility > 0.0))
         }

@@ -1,27 +1,58 @@
-//! Warming: how the moduli of the links change while an arm is tested, with its temperature or with the order of the tests.
+//! Warming: how the moduli of the links change while an arm is tested, with its temperature or with the order of the tests,
+//! and how joints soften with the order of the tests.
 
-/// When a reading was taken.
+/// When a reading was taken, as row and temperature.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Moment {
-    /// Row of its file, from 0.
+    /// Row of the reading in its file, counted from 0.
     pub row: usize,
     /// Temperature of the arm \[°C\], if it was measured.
     pub temperature_c: Option<f64>,
 }
 
-/// Temperature at which moduli are as drawn \[°C\].
+/// Temperature at which moduli have their nominal values \[°C\].
 pub(crate) const DRAWN_AT_C: f64 = 20.0;
-/// Least factor on a modulus: a law that is carried far beyond its readings must not turn a link around.
+/// Least factor on a modulus or a compliance: a law that is carried far beyond its readings must not turn it around.
 const LEAST: f64 = 0.05;
+
+/// How the compliance of a joint changes in the course of the tests of one channel: a gear warms up, bolts work loose.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Softening {
+    /// Change of the factor on the compliance after many rows.
+    pub change: f64,
+    /// Number of rows after which 63 % of this change is reached.
+    pub rows: f64,
+    /// Part of the change that the reference of a displacement has: 1 if it is read just before the displacement, 0 if it was
+    /// read before all tests.
+    pub reference: f64,
+}
+
+impl Softening {
+    /// Factor on the compliance of the joint in a row of the channel's file, from 0.
+    pub fn factor(&self, row: usize) -> f64 {
+        (1.0 + self.change * done(row, self.rows)).max(LEAST)
+    }
+
+    /// The same factor when the reference of that row's displacement was read.
+    pub fn reference_factor(&self, row: usize) -> f64 {
+        (1.0 + self.change * self.reference * done(row, self.rows)).max(LEAST)
+    }
+}
+
+/// Part of a change that is done in a row, where 63 % of it comes in `rows` rows.
+fn done(row: usize, rows: f64) -> f64 {
+    1.0 - libm::exp(-(row as f64) / rows)
+}
 
 /// How the moduli of all links change.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Warming {
-    /// Change of the factor on the moduli with the temperature \[1/K\].
+    /// Change of the factor on the moduli per kelvin of temperature \[1/K\].
     pub per_k: f64,
-    /// Change of the factor after many rows.
+    /// Change of the factor on the moduli that is approached after many rows; 0 means no change with the order of the
+    /// tests.
     pub change: f64,
-    /// Number of rows after which 63 % of this change is reached.
+    /// Number of rows after which 63 % of `change` is reached.
     pub rows: f64,
 }
 
@@ -32,15 +63,14 @@ impl Default for Warming {
 }
 
 impl Warming {
-    /// Whether moduli stay as they are.
+    /// Whether the moduli stay the same during all tests.
     pub fn is_none(&self) -> bool {
         self.per_k == 0.0 && self.change == 0.0
     }
 
-    /// Factor on the moduli of elasticity and shear.
+    /// Factor on Young's modulus and the shear modulus at the time of a reading.
     pub fn factor(&self, when: &Moment) -> f64 {
         let warmer_k = when.temperature_c.map_or(0.0, |c| c - DRAWN_AT_C);
-        let done = 1.0 - libm::exp(-(when.row as f64) / self.rows);
-        (1.0 + self.per_k * warmer_k + self.change * done).max(LEAST)
+        (1.0 + self.per_k * warmer_k + self.change * done(when.row, self.rows)).max(LEAST)
     }
 }

@@ -1,4 +1,4 @@
-//! `wrong_unit`: a channel is written in another unit than its column says: inches, metres, degrees.
+//! `wrong_unit`: a channel is written in another unit than its column states, such as inches, metres or degrees.
 
 use super::channel::Channel;
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
@@ -6,7 +6,7 @@ use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] = &[Parameter::number("factor", 1e-7, 1e7, 25.4, Scale::Log)];
 
-/// The effect.
+/// Description of the effect, for the list of all effects.
 pub(crate) const KIND: Kind = Kind {
     name: "wrong_unit",
     summary: "a channel is written in another unit than its column says",
@@ -28,7 +28,7 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
     }
 }
 
-/// The factors that unit slips leave in a column, each with its cause.
+/// Factors by which a column is wrong if its unit was mistaken, each with the cause.
 pub const SLIPS: &[(f64, &str)] = &[
     (25.4, "a value in mm stands 25.4 times too large: converted from inches twice"),
     (1.0 / 25.4, "inches in a column of mm"),

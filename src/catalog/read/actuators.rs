@@ -1,15 +1,16 @@
-//! Rows of `actuators.csv`: motor, gear and bearing in one part. A row becomes a gear and a motor that go with each other only.
+//! Rows of `actuators.csv`: motor, gear and bearing in one part. A row becomes a gear and a motor that go only with
+//! each other.
 //!
-//! The ratings of an actuator are those of the whole, at its output, losses included. They become the motor's, referred to
-//! its shaft through a gear without losses; the gear has none of its own but the torsion curve, the bearing, the whole mass
-//! and the largest torque, which no emergency stop can exceed.
+//! The ratings of an actuator hold at its output, with losses included. They become ratings of the motor, converted
+//! to its shaft through a gear without losses. The gear itself has only the torsion curve, the bearing, the whole
+//! mass and the largest torque, which limits emergency stops.
 
 use super::envelope::envelope;
 use super::row::Row;
 use crate::catalog::gear::{Gear, GearKind, LifeLaw};
 use crate::catalog::motor::{Motor, MotorKind};
 
-/// The gear of an actuator; `None` if its name or source was refused.
+/// The gear of an actuator; `None` if its name or source is blank or not valid.
 pub(crate) fn gear(row: &Row) -> Option<Gear> {
     check(row);
     Some(Gear {
@@ -48,7 +49,7 @@ pub(crate) fn gear(row: &Row) -> Option<Gear> {
     })
 }
 
-/// The motor of an actuator, its figures at the motor's shaft.
+/// The motor of an actuator, with the ratings converted to the motor's shaft.
 pub(crate) fn motor(row: &Row) -> Option<Motor> {
     let ratio = ratio(row);
     let at_shaft = |column: &str, factor: f64| row.number(column).map(|x| x * factor);
@@ -73,7 +74,7 @@ fn model(row: &Row) -> Option<String> {
     row.filled("model").map(String::from)
 }
 
-/// Only the speed that is printed of the motor depends on it: 1 if it is blank.
+/// Reduction ratio of an actuator; 1 if the cell is blank. Only the motor's printed speed depends on it.
 fn ratio(row: &Row) -> f64 {
     row.number("ratio").unwrap_or(1.0)
 }

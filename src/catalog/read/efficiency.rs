@@ -1,9 +1,9 @@
-//! Rows of `gears_efficiency.csv` and what must hold within one row.
+//! Rows of `gears_efficiency.csv`, and the checks within one row.
 
 use super::row::Row;
 use crate::catalog::efficiency::{EfficiencyKind, EfficiencyPoint};
 
-/// The point of a row; `None` if a core cell was refused.
+/// The point of an efficiency curve that a row states; `None` if a required cell is blank or not valid.
 pub(crate) fn point(row: &Row) -> Option<EfficiencyPoint> {
     let kind = EfficiencyKind::from_word(row.text("kind"));
     if let Some(kind) = kind {

@@ -3,7 +3,7 @@
 use super::row::Row;
 use crate::catalog::envelope::Envelope;
 
-/// Checks and reads a part's outer size.
+/// Checks and reads the outer size of a part.
 pub(crate) fn envelope(row: &Row) -> Envelope {
     let [outer, length, bore] =
         ["outer_diameter_mm", "length_mm", "hollow_bore_mm"].map(|c| (c, row.number(c)));

@@ -1,10 +1,10 @@
-//! Rows of `gears.csv` and what must hold within one row.
+//! Rows of `gears.csv`, and the checks within one row.
 
 use super::envelope::envelope;
 use super::row::Row;
 use crate::catalog::gear::{BearingRatings, Gear, GearKind, LifeLaw};
 
-/// The gear of a row; `None` if its name or source was refused.
+/// The gear that a row describes; `None` if its name or source is blank or not valid.
 pub(crate) fn gear(row: &Row) -> Option<Gear> {
     check(row);
     let (series, size, ratio) = (row.filled("series")?.to_string(), row.count("size")?, row.number("ratio")?);
@@ -45,12 +45,12 @@ pub(crate) fn gear(row: &Row) -> Option<Gear> {
     })
 }
 
-/// The kind of a row; blank is a strain-wave gear.
+/// The kind of gear that a row describes. A blank cell means a strain-wave gear.
 fn kind(row: &Row) -> GearKind {
     GearKind::from_word(row.text("kind")).unwrap_or(GearKind::StrainWave)
 }
 
-/// What the row says of its life, and what its kind says where the row is blank.
+/// The life equation of the gear that a row describes. Blank cells are filled with the values of its kind.
 fn life(row: &Row, kind: GearKind) -> LifeLaw {
     let usual = LifeLaw::usual(kind);
     LifeLaw {
@@ -69,8 +69,8 @@ fn bearing(row: &Row) -> BearingRatings {
     }
 }
 
-/// The word by which the row's series is also sold. A cell such as `HFUS outline` describes the series and
-/// is no other name of it; a remark in brackets is left away.
+/// Another name of the row's series; `None` if it has none. A cell of several words, such as `HFUS outline`,
+/// describes the series and is no name. A remark in brackets is ignored.
 pub(crate) fn alias<'r>(row: &'r Row) -> Option<&'r str> {
     let word = row.filled("alias_series")?.split('(').next()?.trim();
     (!word.is_empty() && !word.contains(' ')).then_some(word)
@@ -137,7 +137,8 @@ fn order(row: &Row, columns: &[&'static str], strict: bool, hint: &str) {
     row.ascending(&figures, strict, hint);
 }
 
-/// Warns of figures that are far from those of all known harmonic drives of that size: a slip of unit.
+/// Warns of numbers of a row that are far from the numbers of all known harmonic drives of the same size. Such a number
+/// is often in the wrong unit.
 fn usual_figures(row: &Row) {
     let Some(size) = row.count("size").map(f64::from) else { return };
     let scaled = |column: &str, scale: f64, [low, high]: [f64; 2], unit: &str| {
@@ -172,7 +173,7 @@ mod tests {
         bearing_offset_m,bearing_static_load_rating_n,bearing_dynamic_load_rating_n,buckling_torque_nm,\
         ratcheting_torque_nm,outer_diameter_mm,length_mm,hollow_bore_mm";
 
-    /// The gear of a row with these figures after the confidence, and the columns found at fault.
+    /// The gear of a row with these numbers after the confidence, and the columns that have faults.
     fn read(figures: &str) -> (Option<Gear>, Vec<String>) {
         let log = Log::default();
         let text = format!("{HEADER}\nA,25,100,a test,verified,{figures}\n");

@@ -3,22 +3,22 @@
 use crate::input::json::Fault;
 use std::cell::RefCell;
 
-/// What was found wrong (`faults`) or odd (`warnings`) so far.
+/// Everything that was found to be wrong or odd so far.
 #[derive(Debug, Default)]
 pub(crate) struct Log {
-    /// Reasons to refuse the file.
+    /// Faults, for which the file is refused.
     pub faults: RefCell<Vec<Fault>>,
-    /// Things to look at.
+    /// Warnings about unusual entries.
     pub warnings: RefCell<Vec<Fault>>,
 }
 
 impl Log {
-    /// Records a reason to refuse a file.
+    /// Records a fault, for which the file is refused.
     pub(crate) fn fault(&self, file: &str, line: Option<usize>, field: &str, problem: String, hint: String) {
         self.faults.borrow_mut().push(Fault { file: file.into(), line, field: field.into(), problem, hint });
     }
 
-    /// Records something to look at.
+    /// Records a warning about an unusual entry.
     pub(crate) fn warn(&self, file: &str, line: Option<usize>, field: &str, problem: String, hint: String) {
         self.warnings.borrow_mut().push(Fault {
             file: file.into(),

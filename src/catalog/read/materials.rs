@@ -1,9 +1,9 @@
-//! Rows of `materials.csv` and what must hold within one row.
+//! Rows of `materials.csv`, and the checks within one row.
 
 use super::row::Row;
 use crate::catalog::material::{Material, MaterialClass};
 
-/// The material of a row; `None` if its name, class, source or a core figure was refused.
+/// The material that a row describes; `None` if its name, class, source or a required number is blank or not valid.
 pub(crate) fn material(row: &Row) -> Option<Material> {
     check(row);
     Some(Material {
@@ -23,7 +23,7 @@ pub(crate) fn material(row: &Row) -> Option<Material> {
     })
 }
 
-/// What the column says; without it, whether the name has the word `UD`.
+/// Whether all fibres run along the link. The column says so; without it, the word `UD` in the name does.
 fn unidirectional(row: &Row) -> bool {
     match row.filled("unidirectional") {
         Some(word) => word.eq_ignore_ascii_case("yes"),
@@ -33,7 +33,7 @@ fn unidirectional(row: &Row) -> bool {
 
 fn check(row: &Row) {
     let class = MaterialClass::from_word(row.text("class"));
-    // metals and fibre composites are held to what is usual of them
+    // ranges for metals and fibre composites are narrower than those for other classes
     let (moduli_pa, shear_moduli_pa, densities, expansions) = match class.and_then(MaterialClass::caution) {
         None => ([1e10, 1e12], [1e9, 2e11], [1000.0, 9000.0], [-6e-6, 3e-5]),
         Some(caution) => {
@@ -64,7 +64,8 @@ fn check(row: &Row) {
     }
 }
 
-/// An isotropic material keeps 0 < nu < 1/2; a laminate need not. Returns whether nu is possible.
+/// Checks Poisson's ratio: 0 < nu < 1/2 for an isotropic material, a wider range for a laminate. Returns whether nu
+/// is possible.
 fn poisson(row: &Row) -> bool {
     let (Some(class), Some(nu)) = (MaterialClass::from_word(row.text("class")), row.number("poisson")) else {
         return true;
@@ -79,7 +80,7 @@ fn poisson(row: &Row) -> bool {
     is_possible
 }
 
-/// G = E/2(1+nu) for what is isotropic; metals are held to it.
+/// Checks G = E/2(1+nu) for isotropic materials. A deviation is a fault for metals and a warning for others.
 fn shear_modulus(row: &Row) {
     let class = MaterialClass::from_word(row.text("class"));
     let figures = (class, row.number("e_pa"), row.number("g_pa"), row.number("poisson"));
@@ -90,7 +91,7 @@ fn shear_modulus(row: &Row) {
         let refuse = match class {
             MaterialClass::Metal => 0.06,
             MaterialClass::MetalMatrix => 0.25,
-            // wood is orthotropic like a laminate, and a printed polymer is so too
+            // wood is orthotropic like a laminate, and so is a printed polymer
             _ => f64::INFINITY,
         };
         row.agrees("g_pa", g_pa, e_pa / (2.0 * (1.0 + nu)), "G = E/2(1+nu)", 0.06, refuse);

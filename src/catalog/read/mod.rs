@@ -1,7 +1,7 @@
-//! From the text of a catalog file to records, with every fault of it.
+//! From the text of a catalog file to parts, with a list of all faults.
 //!
-//! [`table`] cuts the text into rows, [`row`] checks single cells, one module a file knows what must hold
-//! within a row, [`trend`] looks across rows.
+//! [`table`] divides the text into rows, [`row`] checks single cells, and one module for each file has the checks
+//! within a row. [`trend`] compares rows with each other.
 
 pub(crate) mod actuators;
 pub(crate) mod efficiency;

@@ -1,4 +1,4 @@
-//! Rows of `motor_curves.csv`: torque of motors against their speed.
+//! Rows of `motor_curves.csv`: points of torque against speed.
 
 use super::log::Log;
 use super::row::Row;
@@ -7,7 +7,8 @@ use crate::catalog::motor::MotorCurvePoint;
 use crate::input::json::closest;
 use std::collections::BTreeMap;
 
-/// Gives the motors the curves of a file. A model's points replace all that an earlier file had of it.
+/// Adds the torque curves of a file to the motors of `catalogs`. The points that the file has for a model replace all
+/// points that an earlier file had for it.
 pub(crate) fn attach(catalogs: &mut Catalogs, rows: &[Row]) {
     let mut curves: BTreeMap<&str, Vec<(&Row, MotorCurvePoint)>> = BTreeMap::new();
     for row in rows {
@@ -45,7 +46,7 @@ fn no_motor(catalogs: &Catalogs, model: &str, row: &Row) {
     row.fault("model", format!("\"{model}\" is no motor"), &format!("{near}motors.csv names the motors"));
 }
 
-/// Warns of a curve whose torque begins beyond standstill: the first torque is then taken below it.
+/// Warns of a curve with a single point. Its torque is then taken at every speed.
 pub(crate) fn check(catalogs: &Catalogs, log: &Log) {
     for motor in catalogs.motors.iter().filter(|motor| motor.curve.len() == 1) {
         log.warn(

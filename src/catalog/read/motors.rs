@@ -1,11 +1,11 @@
-//! Rows of `motors.csv` and what must hold within one row.
+//! Rows of `motors.csv`, and the checks within one row.
 
 use super::envelope::envelope;
 use super::row::Row;
 use crate::catalog::motor::{Motor, MotorKind};
 use std::f64::consts::PI;
 
-/// The motor of a row; `None` if its name, type or source was refused.
+/// The motor that a row describes; `None` if its name, type or source is blank or not valid.
 pub(crate) fn motor(row: &Row) -> Option<Motor> {
     check(row);
     Some(Motor {
@@ -42,7 +42,7 @@ fn check(row: &Row) {
     inertia(row);
 }
 
-/// P = T w.
+/// Checks that the rated power of a row agrees with rated torque times rated speed, P = T ω.
 fn power(row: &Row) {
     let figures = (row.number("rated_torque_nm"), row.number("rated_speed_rpm"), row.number("rated_power_w"));
     if let (Some(torque_nm), Some(speed_rpm), Some(power_w)) = figures {
@@ -57,7 +57,8 @@ fn power(row: &Row) {
     }
 }
 
-/// The radius of gyration the rotor would have if all of the motor's mass turned.
+/// Warns if the rotor's inertia is unusual for the motor's mass: the radius of gyration sqrt(J/m) is compared with
+/// the usual range.
 fn inertia(row: &Row) {
     if let (Some(inertia_kgm2), Some(mass_kg)) = (row.number("rotor_inertia_kgm2"), row.number("mass_kg")) {
         let radius_m = (inertia_kgm2 / mass_kg).sqrt();

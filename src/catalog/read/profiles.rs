@@ -1,10 +1,10 @@
-//! Rows of `profiles.csv` and what must hold within one row.
+//! Rows of `profiles.csv`, and the checks within one row.
 
 use super::row::Row;
 use crate::catalog::profile::{Profile, ProfileShape};
 use std::f64::consts::PI;
 
-/// The profile of a row; `None` if its name, shape, source or a dimension was refused.
+/// The profile that a row describes; `None` if its name, shape, source or a dimension is blank or not valid.
 pub(crate) fn profile(row: &Row) -> Option<Profile> {
     check(row);
     Some(Profile {
@@ -22,7 +22,7 @@ pub(crate) fn profile(row: &Row) -> Option<Profile> {
     })
 }
 
-/// Outer width, outer height and wall \[m\].
+/// Outer width `b`, outer height `h` and wall `t` \[m\].
 #[derive(Clone, Copy)]
 struct Outline {
     b: f64,
@@ -44,7 +44,7 @@ fn check(row: &Row) {
         row.fault(
             "outer_h_m",
             format!("= {h} differs from outer_b_m = {b}"),
-            "write both alike, or shape rectangular",
+            "write both equal, or shape rectangular",
         );
     }
     if t >= b.min(h) / 2.0 {
@@ -56,12 +56,14 @@ fn check(row: &Row) {
     }
 }
 
-/// Printed area, second moment and mass against those of the outline.
+/// Checks that the printed area, second moment of area and mass of a profile agree with those computed from its
+/// outline.
 fn printed_properties(row: &Row, shape: ProfileShape, outline: Outline) {
     let area_m2 = row.number("area_m2");
     if let Some(printed) = area_m2 {
         let computed = area(shape, outline, corner_radii(row, outline.t));
-        // Without the corner radius only the sharp-cornered area is known, which is larger.
+        // Without the corner radius only the area with sharp corners can be computed, which is larger than the real
+        // one.
         let known = shape == ProfileShape::Round || row.number("corner_radius_outer_m").is_some();
         row.agrees("area_m2", printed, computed, "the outline", 0.025, if known { 0.025 } else { 0.12 });
     }
@@ -90,7 +92,8 @@ fn density_kg_m3(family: &str) -> Option<f64> {
     }
 }
 
-/// Outer and inner corner radius \[m\]; rolled steel has the wall as its inner radius.
+/// Outer and inner corner radius \[m\]; zero if the row gives none. For rolled steel the inner radius equals the
+/// wall.
 fn corner_radii(row: &Row, wall_m: f64) -> [f64; 2] {
     let Some(outer) = row.number("corner_radius_outer_m") else { return [0.0, 0.0] };
     let steel = row.text("material_family").eq_ignore_ascii_case("steel");

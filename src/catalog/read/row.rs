@@ -1,5 +1,5 @@
-//! One row of a catalog file. Every cell is checked once, by its column's kind; afterwards a cell that was
-//! refused reads as unknown, so that one bad cell makes one fault.
+//! One row of a catalog file. Every cell is checked once, by the kind of its column. A cell that is not valid is
+//! then read as unknown, so that it causes only one fault.
 
 use super::log::Log;
 use crate::catalog::schema::{CatalogFile, Cell};
@@ -7,7 +7,7 @@ use crate::catalog::{Confidence, Provenance};
 use crate::input::json::closest;
 use crate::input::names::{unfit_cell, unfit_name};
 
-/// One row: the cells in the order of the file's known columns, `None` where the column is absent.
+/// One row: the cells in the order of the file's known columns. `None` is the cell of an absent column.
 pub(crate) struct Row<'a> {
     file: CatalogFile,
     name: &'a str,
@@ -17,7 +17,8 @@ pub(crate) struct Row<'a> {
 }
 
 impl<'a> Row<'a> {
-    /// A row of `name`, a file of kind `file`.
+    /// The row in the line `line` of a file of the kind `file`. `name` is the name of the file in messages; faults and
+    /// warnings go to `log`.
     pub(crate) fn new(
         file: CatalogFile,
         name: &'a str,
@@ -28,23 +29,23 @@ impl<'a> Row<'a> {
         Self { file, name, line, cells, log }
     }
 
-    /// Line in the file, from 1.
+    /// Line in the file, counted from 1.
     pub(crate) fn line(&self) -> usize {
         self.line
     }
 
-    /// All cells with their columns, as they stand in the file; absent columns are blank.
+    /// All cells with their columns, as they are written in the file. Cells of absent columns are blank.
     pub(crate) fn printed(&self) -> Vec<(&'static str, String)> {
         let cells = self.cells.iter().map(|cell| cell.clone().unwrap_or_default());
         self.file.columns().iter().map(|c| c.name).zip(cells).collect()
     }
 
-    /// Records a reason to refuse the row.
+    /// Records a fault of the row, for which the file is refused.
     pub(crate) fn fault(&self, column: &str, problem: impl Into<String>, hint: &str) {
         self.log.fault(self.name, Some(self.line), column, problem.into(), hint.into());
     }
 
-    /// Records something to look at.
+    /// Records a warning about an unusual cell.
     pub(crate) fn warn(&self, column: &str, problem: impl Into<String>, hint: &str) {
         self.log.warn(self.name, Some(self.line), column, problem.into(), hint.into());
     }
@@ -54,24 +55,24 @@ impl<'a> Row<'a> {
         self.cells.get(place)?.as_deref()
     }
 
-    /// The text of a cell; empty if the cell is blank or the column absent.
+    /// The text of a cell; empty if the cell is blank or the column is absent.
     pub(crate) fn text(&self, column: &str) -> &str {
         self.cell(column).unwrap_or_default()
     }
 
-    /// The number in a cell; `None` if it is blank, absent or was refused.
+    /// The number in a cell; `None` if the cell is blank, absent or not valid.
     pub(crate) fn number(&self, column: &str) -> Option<f64> {
         let kind = self.file.columns().iter().find(|c| c.name == column)?.cell;
         read_number(kind, self.text(column)).ok()?
     }
 
-    /// The whole number in a cell; `None` if it is blank, absent or was refused.
+    /// The whole number in a cell; `None` if the cell is blank, absent or not valid.
     pub(crate) fn count(&self, column: &str) -> Option<u32> {
         self.text(column).parse().ok().filter(|&n| n > 0)
     }
 
-    /// Records what is wrong with any single cell: blank where it must be filled, not a number, not positive,
-    /// not an allowed word. An absent column has been reported with the header.
+    /// Records the faults of single cells: a required cell that is blank, or a cell that is not a number, not
+    /// positive or not an allowed word. Absent columns are reported with the header.
     pub(crate) fn check_cells(&self) {
         for (column, text) in self.file.columns().iter().zip(&self.cells) {
             match text.as_deref() {
@@ -94,7 +95,8 @@ impl<'a> Row<'a> {
         self.check_column_list("derived_fields");
     }
 
-    /// Where the row comes from.
+    /// Where the numbers of the row come from: source, confidence, file and line. `None` if the source is blank or the
+    /// confidence is not valid.
     pub(crate) fn provenance(&self) -> Option<Provenance> {
         Some(Provenance {
             source: self.filled("source")?.to_string(),
@@ -105,12 +107,13 @@ impl<'a> Row<'a> {
         })
     }
 
-    /// The text of a cell unless it is blank or absent.
+    /// The text of a cell; `None` if it is blank or absent.
     pub(crate) fn filled(&self, column: &str) -> Option<&str> {
         self.cell(column).filter(|text| !text.is_empty())
     }
 
-    /// The columns listed as unverified; `all` and `all except ...` stand for the filled figures.
+    /// The columns of this row that are listed as unverified. In the list, `all` and `all except ...` stand for the
+    /// filled cells with properties of the part.
     fn unverified_fields(&self) -> Vec<String> {
         let (all, named) = column_list(self.text("unverified_fields"));
         if !all {
@@ -132,8 +135,8 @@ impl<'a> Row<'a> {
         }
     }
 
-    /// Refuses figures that do not ascend in the order given; unknown ones are passed over.
-    /// `strict` also refuses equal neighbours.
+    /// Reports those of the numbers in `figures` (column and value) that are smaller than the number before them.
+    /// Unknown numbers are skipped. With `strict`, a number that equals the one before is reported too.
     pub(crate) fn ascending(&self, figures: &[(&str, Option<f64>)], strict: bool, hint: &str) {
         let known: Vec<_> = figures.iter().filter_map(|(column, x)| Some((*column, (*x)?))).collect();
         for pair in known.windows(2) {
@@ -145,8 +148,9 @@ impl<'a> Row<'a> {
         }
     }
 
-    /// Compares a printed figure with the same figure computed from others of the row: warns beyond the
-    /// share `warn`, refuses beyond `refuse`.
+    /// Compares `printed`, a number in the column `column`, with `computed`, the same number computed from others of
+    /// the row, which `from` names. A relative deviation of more than `warn` gives a warning, of more than `refuse` a
+    /// fault.
     pub(crate) fn agrees(
         &self,
         column: &str,
@@ -170,8 +174,8 @@ impl<'a> Row<'a> {
         }
     }
 
-    /// Refuses a figure outside what is physically possible, warns outside what is usual. Returns whether
-    /// the figure is possible.
+    /// Compares `x`, the number in the column `column`, with two ranges. Outside the physically possible range it is a
+    /// fault, outside the usual range a warning. Returns whether the number is possible.
     pub(crate) fn within(
         &self,
         column: &str,
@@ -192,7 +196,7 @@ impl<'a> Row<'a> {
     }
 }
 
-/// Why a cell is refused.
+/// Reason why a cell is not valid, with a hint.
 struct Refusal {
     problem: String,
     hint: String,
@@ -216,7 +220,8 @@ fn check_cell(kind: Cell, text: &str) -> Result<(), Refusal> {
     }
 }
 
-/// The number in a cell of a kind; blank is unknown.
+/// The number that the text of a cell states, or the reason why a cell of this kind must not have this text. `None` if
+/// the cell is blank.
 fn read_number(kind: Cell, text: &str) -> Result<Option<f64>, Refusal> {
     const BLANK: &str = "leave the cell blank if the figure is unknown";
     if text.is_empty() {
@@ -257,13 +262,14 @@ fn did_you_mean(word: &str, known: &[&str]) -> String {
     closest(word, known).map(|near| format!("did you mean \"{near}\"? ")).unwrap_or_default()
 }
 
-/// A list of columns: whether it begins with `all`, and the columns named (after `all except`, if so).
+/// What a list of columns in a cell says: whether it begins with `all`, and the columns that it names (after
+/// `all except`, if it begins so).
 fn column_list(text: &str) -> (bool, Vec<&str>) {
     let mut words = text.split([' ', ',', ';']).filter(|w| !w.is_empty()).peekable();
     let all = words.next_if_eq(&"all").is_some();
     if all {
         words.next_if_eq(&"except");
     }
-    // The trade name of a motor whose part number was seen is part of the column `model`.
+    // The trade name of a motor whose part number was verified is a part of the column `model`.
     (all, words.map(|word| if word == "model_name" { "model" } else { word }).collect())
 }

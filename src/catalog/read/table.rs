@@ -1,4 +1,4 @@
-//! The text of one catalog file cut into rows; what is wrong with its form is recorded, not returned.
+//! Divides the text of a catalog file into rows. Faults of its form are recorded in the log, not returned.
 
 use super::log::Log;
 use super::row::Row;
@@ -7,7 +7,8 @@ use crate::input::csv::{Csv, Record, is_repeated, other_separators};
 use crate::input::json::closest;
 use std::collections::BTreeMap;
 
-/// The rows of a catalog file that have the right number of fields.
+/// The rows of a catalog file. A row whose number of fields differs from that of the header is reported and left
+/// out.
 pub(crate) fn rows<'a>(file: CatalogFile, name: &'a str, bytes: &[u8], log: &'a Log) -> Vec<Row<'a>> {
     let mut records = records(name, bytes, log).into_iter();
     let Some(Record { line, cells: header }) = records.next() else {
@@ -38,10 +39,11 @@ pub(crate) fn rows<'a>(file: CatalogFile, name: &'a str, bytes: &[u8], log: &'a 
     out
 }
 
-/// Most parts of a catalog file. Every gear is paired with every motor, and every material with every section.
+/// Largest number of parts in a catalog file. It is limited because every gear is paired with every motor, and
+/// every material with every section.
 const MOST_PARTS: usize = 100_000;
 
-/// The records of a CSV text.
+/// The records of a CSV text. Records that cannot be read are reported and left out.
 fn records(name: &str, bytes: &[u8], log: &Log) -> Vec<Record> {
     let csv = Csv::parse_up_to(MOST_PARTS, bytes, None);
     for (line, problem) in csv.unreadable {
@@ -62,7 +64,8 @@ fn required(file: CatalogFile) -> String {
     names.join(",")
 }
 
-/// For each known column its place in the header; `None` if the text is not comma-separated at all.
+/// For each known column, its place in the header; `None` for a column that the header does not have. The whole result
+/// is `None` if the text is not separated by commas.
 fn header_places(
     file: CatalogFile,
     name: &str,
@@ -86,7 +89,7 @@ fn header_places(
     let columns = file.columns();
     let places: Vec<_> = columns.iter().map(|c| header.iter().position(|h| h == c.name)).collect();
     for (column, _) in columns.iter().zip(&places).filter(|(c, place)| c.required && place.is_none()) {
-        // An unknown column that looks like this one has been reported already.
+        // An unknown column with a similar name has been reported already.
         if !unknown.contains(&Some(column.name)) {
             let hint = format!("required columns: {}", required(file));
             log.fault(name, Some(line), column.name, "this column is missing".into(), hint);
@@ -95,7 +98,8 @@ fn header_places(
     Some(places)
 }
 
-/// Reports columns that are unknown or there twice; returns the known names nearest to the unknown ones.
+/// Reports columns that are unknown or repeated. Returns, for each unknown column, the known name that is most
+/// similar.
 fn unknown_columns(
     file: CatalogFile,
     name: &str,

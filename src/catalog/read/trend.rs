@@ -1,5 +1,5 @@
-//! What holds across the rows of a catalog: ratings grow with size and with ratio, other names of series
-//! are unique, curves meet the rated point. Exceptions are warnings: vendors print some.
+//! Checks that compare the rows of a catalog: ratings grow with size and with ratio, and efficiency curves agree
+//! with the rated point. Deviations are only warnings, because vendors print some.
 
 use super::log::Log;
 use crate::catalog::efficiency::EfficiencyKind;
@@ -9,7 +9,8 @@ use std::collections::BTreeMap;
 
 type Figure = (&'static str, fn(&Gear) -> Option<f64>);
 
-/// Figures that grow with the size at one series and ratio.
+/// Ratings that grow with the size of a gear, if series and ratio are the same: the column, and a function that gives
+/// the value.
 const GROW_WITH_SIZE: &[Figure] = &[
     ("rated_torque_nm", |g| g.rated_torque_nm),
     ("repeated_peak_torque_nm", |g| g.repeated_peak_torque_nm),
@@ -32,7 +33,8 @@ const GROW_WITH_SIZE: &[Figure] = &[
     ("max_input_speed_rpm", |g| g.max_input_speed_rpm.map(|speed| -speed)),
 ];
 
-/// Figures that do not fall with the ratio at one series and size.
+/// Ratings that do not decrease as the ratio of a gear grows, if series and size are the same: the column, and a
+/// function that gives the value.
 const GROW_WITH_RATIO: &[Figure] = &[
     ("rated_torque_nm", |g| g.rated_torque_nm),
     ("repeated_peak_torque_nm", |g| g.repeated_peak_torque_nm),
@@ -41,7 +43,8 @@ const GROW_WITH_RATIO: &[Figure] = &[
     ("k2_nm_per_rad", |g| g.k2_nm_per_rad),
 ];
 
-/// Warns of gears that break the trend of their series, and of curves that miss the rated efficiency.
+/// Warns of gears whose ratings break the trend of their series, and of efficiency curves that disagree with the rated
+/// efficiency.
 pub(crate) fn check(catalogs: &Catalogs, log: &Log) {
     let by_size = families(&catalogs.gears, |g| g.ratio, |g| f64::from(g.size));
     let by_ratio = families(&catalogs.gears, |g| f64::from(g.size), |g| g.ratio);
@@ -54,7 +57,8 @@ pub(crate) fn check(catalogs: &Catalogs, log: &Log) {
     catalogs.gears.iter().for_each(|gear| rated_point(catalogs, gear, log));
 }
 
-/// The gears of each series with the same `common` figure, sorted by the `rising` one.
+/// The strain-wave gears of each series in groups: `common` is equal for all gears of a group, and the group is sorted
+/// by `rising`. Both are numbers of a gear, such as its ratio and its size.
 fn families(gears: &[Gear], common: fn(&Gear) -> f64, rising: fn(&Gear) -> f64) -> Vec<Vec<&Gear>> {
     let mut families: BTreeMap<(&str, u64), Vec<&Gear>> = BTreeMap::new();
     for gear in gears.iter().filter(|gear| gear.kind == GearKind::StrainWave) {

@@ -1,29 +1,30 @@
-//! The decks: a static step with secant stiffnesses, and a frequency step with tangent ones.
+//! Input decks for CalculiX: a static step with secant stiffnesses, and a frequency step with tangent stiffnesses.
 
 use super::model::{Model, Solid};
 use crate::arm::structure::Beam;
 use nalgebra::Vector3;
 use std::fmt::Write;
 
-/// Stiffness of the springs that hold point masses to the ground \[N/m\]. CalculiX drops the inertia between degrees of freedom
-/// that no stiffness connects; springs so soft change nothing else.
+/// Stiffness of the springs that connect point masses to the ground \[N/m\]. CalculiX drops the coupling inertia
+/// between degrees of freedom that no stiffness connects. These springs connect the degrees of freedom, and are too
+/// soft to change anything else.
 const GROUNDING_N_PER_M: f64 = 1e-3;
-/// Poisson's ratios for which E and G are those of an isotropic material.
+/// Range of Poisson's ratio E / (2 G) - 1 within which E and G can belong to an isotropic material.
 const ISOTROPIC: std::ops::Range<f64> = -0.9..0.49;
-/// How many frequencies are asked for.
+/// Number of natural frequencies to compute.
 const MODES: usize = 6;
 
-/// What a deck computes.
+/// The analysis that a deck describes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Step {
-    /// Deflections, with secant stiffnesses.
+    /// A static analysis for deflections, with secant stiffnesses.
     Static,
-    /// Frequencies, with tangent stiffnesses.
+    /// A modal analysis for natural frequencies, with tangent stiffnesses.
     Frequency,
 }
 
-/// How many frequencies can be asked for; a model of hinges alone has few degrees of freedom, and the solver needs one more
-/// than it finds.
+/// Number of natural frequencies that the deck asks for. A model of hinges alone has few degrees of freedom, and the
+/// solver needs one more than the frequencies that it computes.
 pub(crate) fn modes(model: &Model) -> usize {
     match model.solids.is_empty() {
         false => MODES,
@@ -31,7 +32,7 @@ pub(crate) fn modes(model: &Model) -> usize {
     }
 }
 
-/// The deck of a model.
+/// The text of the input deck for the analysis `step` of a model.
 pub(crate) fn deck(model: &Model, step: Step, heading: &str, gravity_m_s2: &Vector3<f64>) -> String {
     let mut out = format!("*HEADING\n{}\n", heading.replace('\n', " "));
     let mut element = 0;
@@ -82,8 +83,9 @@ fn bricks(out: &mut String, solid: &Solid, k: usize, element: &mut usize) {
     let _ = writeln!(out, "*SOLID SECTION, ELSET=LINK{k}, MATERIAL=M{k}{orientation}");
 }
 
-/// The elastic constants of a link. E and G that no isotropic material has are those of a layup: they are engineering
-/// constants in the axes of the section.
+/// The elastic constants of a link as lines of the deck, and whether they are orthotropic. If no isotropic material has
+/// the E and G of the link, they belong to a layup. They are then written as engineering constants in the axes of the
+/// section.
 fn elastic(beam: &Beam) -> (String, bool) {
     let (e_pa, g_pa) = (
         beam.material.youngs_modulus_pa / beam.flexibility,
@@ -127,7 +129,8 @@ fn springs(out: &mut String, model: &Model, step: Step, element: &mut usize) {
     }
 }
 
-/// A spring from a degree of freedom to the ground.
+/// Writes a spring of the given stiffness \[N/m, or N m/rad at a hinge\] between a degree of freedom of a node and the
+/// ground. `element` counts the elements of the deck.
 fn spring(out: &mut String, element: &mut usize, node: usize, direction: usize, stiffness: f64) {
     *element += 1;
     let _ = writeln!(

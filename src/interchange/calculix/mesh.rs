@@ -1,24 +1,25 @@
-//! Meshes of straight links: quadratic bricks with reduced integration (C3D20R), regular along the link.
+//! Finite-element meshes of straight links: quadratic bricks with reduced integration (C3D20R), regular along the
+//! link.
 //!
-//! Sections with corners are cut by lines along their walls; each rectangle between the lines that has material is cut further.
-//! Round sections go round in layers of one brick through the wall. A round bar has a bore of a hundredth of its diameter,
-//! because bricks have no place at its axis; that is 1e-4 of its area.
+//! A rectangular or I section is divided by lines along its walls; each rectangle of material between the lines is
+//! divided further. A round section is a ring of bricks, with one brick through the wall. A round bar gets a bore of
+//! a hundredth of its diameter, because regular bricks cannot fill its axis; this removes 1e-4 of its area.
 
 use crate::arm::section::Section;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-/// Bricks round a round section.
+/// Number of bricks around a round section.
 const ROUND: usize = 16;
-/// Bricks along a side between two walls, and across a bar.
+/// Number of bricks along a side between two walls, and across a solid bar.
 const SIDE: usize = 4;
-/// Least and most bricks along a link.
+/// Smallest and largest number of bricks along a link.
 const ALONG: (usize, usize) = (8, 24);
-/// Part of a round bar's diameter that is its bore.
+/// Diameter of the bore of a round bar, as a fraction of the bar's diameter.
 const BORE: f64 = 0.01;
 
-/// Places of the 20 nodes of a brick, in half steps along three local directions.
+/// Positions of the 20 nodes of a brick, in half bricks along three local directions.
 const BRICK: [(usize, usize, usize); 20] = [
     (0, 0, 0),
     (2, 0, 0),
@@ -42,35 +43,37 @@ const BRICK: [(usize, usize, usize); 20] = [
     (0, 2, 1),
 ];
 
-/// A link as bricks.
+/// The mesh of a link.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Mesh {
-    /// Places of the nodes in the world \[m\].
+    /// Positions of the nodes in the world \[m\].
     pub nodes_m: Vec<Vector3<f64>>,
-    /// Nodes of each brick, from 0.
+    /// Indices of the 20 nodes of each brick.
     pub bricks: Vec<[usize; 20]>,
-    /// Nodes in each cross-section with corners of bricks, from root to end; the first and last are the faces.
+    /// Indices of the nodes in each cross-section between bricks, from root to end. The first and the last are the
+    /// end faces.
     pub stations: Vec<Vec<usize>>,
 }
 
-/// A section as points of a grid: two local directions, one of which may close on itself.
+/// The mesh of a cross-section: a grid in two local directions, the first of which may be closed to a ring.
 struct Grid {
-    /// Bricks in each direction.
+    /// Number of bricks in each direction.
     bricks: (usize, usize),
-    /// Whether the first direction closes.
+    /// Whether the grid's first direction runs around the section, as in a round tube.
     closes: bool,
-    /// Whether a brick of the grid has material.
+    /// Whether the brick with these indices has material.
     has: Box<dyn Fn(usize, usize) -> bool>,
-    /// Place of a node in half steps, along y and z of the section \[m\].
+    /// Position of the node with these indices (counted in half bricks), along y and z of the section \[m\].
     place: Box<dyn Fn(usize, usize) -> (f64, f64)>,
 }
 
-/// Whether a section can be cut into bricks; one of stated stiffness has no shape.
+/// Whether a section can be meshed. A section with stated stiffnesses cannot, because it has no known shape.
 pub(crate) fn has_shape(section: &Section) -> bool {
     !matches!(section, Section::Stated(_))
 }
 
-/// The bricks of a link from `root_m`, `length_m` along the first column of `frame`; `None` if the section has no shape.
+/// The mesh of a link that starts at `root_m` and has the length `length_m` along the first column of `frame`. `None`
+/// if the section has no known shape.
 pub(crate) fn mesh(
     section: &Section,
     root_m: &Vector3<f64>,
@@ -130,16 +133,17 @@ fn grid(section: &Section) -> Option<Grid> {
     })
 }
 
-/// Lines along the outside and the inside of two walls.
+/// Coordinates across a tube of the outer and inner faces of two opposite walls, in ascending order \[m\].
 fn walls(outer_m: f64, wall_m: f64) -> Vec<f64> {
     vec![-outer_m / 2.0, wall_m - outer_m / 2.0, outer_m / 2.0 - wall_m, outer_m / 2.0]
 }
 
-/// A grid of rectangles between lines. `has` says which of them have material; those in the middle are cut further.
+/// A grid of the rectangles between lines at `y_m` and `z_m` \[m\]. `has` says which rectangles have material.
+/// Rectangles between walls are divided further.
 fn cells(y_m: Vec<f64>, z_m: Vec<f64>, has: impl Fn(usize, usize) -> bool + 'static) -> Grid {
     let cut = |lines: &[f64]| {
         let rectangles = lines.len() - 1;
-        // walls have one brick through them
+        // a wall has a single brick through its thickness
         let counts: Vec<usize> =
             (0..rectangles).map(|r| if rectangles == 1 || r == 1 { SIDE } else { 1 }).collect();
         let owners: Vec<usize> = counts.iter().enumerate().flat_map(|(r, n)| vec![r; *n]).collect();
@@ -160,7 +164,7 @@ fn cells(y_m: Vec<f64>, z_m: Vec<f64>, has: impl Fn(usize, usize) -> bool + 'sta
     }
 }
 
-/// A grid round a tube, from the outside in.
+/// A grid around a round tube. The first direction goes around the tube, the second from the outside to the inside.
 fn ring(diameter_m: f64, wall_m: f64) -> Grid {
     Grid {
         bricks: (ROUND, 1),
@@ -178,8 +182,8 @@ fn ring(diameter_m: f64, wall_m: f64) -> Grid {
 mod tests {
     use super::*;
 
-    /// Volume of a brick by its Jacobian at eight Gauss points of the shape functions' corner terms: exact for bricks whose
-    /// edges are straight, so sections with corners are compared to rounding.
+    /// Volume of a brick from its Jacobian at eight Gauss points, with the shape functions of its eight vertices. It
+    /// is exact for bricks with straight edges, so rectangular sections are compared up to rounding.
     fn volume_m3(mesh: &Mesh) -> f64 {
         let g = 1.0 / 3f64.sqrt();
         let corner = |n: usize| {
@@ -226,7 +230,7 @@ mod tests {
             let exact = section.properties(0.3).area_m2 * 0.8;
             assert!((volume_m3(&mesh) / exact - 1.0).abs() < 1e-12, "{section:?}");
         }
-        // straight edges between 16 corners: a polygon's area, sin(2π/16)/(2π/16) of the circle's
+        // straight edges between 16 vertices: the area is that of a polygon, sin(2π/16)/(2π/16) of that of the circle
         let section = Section::RoundTube { diameter_m: 0.1, wall_m: 0.01 };
         let mesh = mesh(&section, &Vector3::zeros(), &frame, 0.8).expect("a shape");
         let step = TAU / ROUND as f64;

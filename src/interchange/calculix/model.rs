@@ -1,10 +1,12 @@
-//! An arm in a case as a finite-element model: bricks, rigid regions, hinges, point masses and loads.
+//! A finite-element model of an arm in a load case: bricks, rigid regions, hinges, point masses and loads.
 //!
-//! What moves as one rigid body is a *region*. A link's faces are rigid: its root face is in the region before it, its end face
-//! begins a new one, whose motion is that of a reference node and a rotation node. A hinge has a node of its own, whose displacement 1
-//! is its angle. The motion of any point of a region is thus linear in a few degrees of freedom, which is what an `*EQUATION` says:
-//! `u(p) = u_ref + θ × (p - p_ref) + Σ q_k t_k(p)`, where `t_k` is the twist of hinge `k`. Rigid bodies of the program and chains of
-//! constraints are not needed, and bearings, frames and linkages are more hinges.
+//! Everything that moves as one rigid body is a *region*. The end faces of a link are rigid: the root face belongs to
+//! the region before the link, and the end face begins a new region. The motion of a new region is described by a
+//! reference node (displacement) and a rotation node. A hinge has a node of its own, and displacement 1 of this node
+//! is the angle of the hinge. The displacement of any point of a region is thus a linear function of a few degrees of
+//! freedom, which an `*EQUATION` expresses: `u(p) = u_ref + θ × (p - p_ref) + Σ q_k t_k(p)`, where `t_k` is the
+//! motion by hinge `k`. This needs neither the rigid bodies of CalculiX nor constraints that depend on other
+//! constraints. Bearings, frames and linkages are further hinges.
 
 use super::mesh::{Mesh, has_shape, mesh};
 use crate::arm::RigidBody;
@@ -16,80 +18,82 @@ use crate::mechanics::chain::{Body, ElasticElement, Item, OwnMass, Yielding};
 use crate::mechanics::{Twist, angular, displacement_at};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
-/// Coefficients below this do not count, relative to the largest of an equation.
+/// Coefficients of an equation below this value are dropped as rounding errors.
 const ROUNDING: f64 = 1e-12;
 
-/// A term of an equation: node, direction from 0, coefficient.
+/// A term of an equation, or a load: index of the node, direction (0 to 2), coefficient.
 pub(crate) type Term = (usize, usize, f64);
 
-/// A link as bricks, with what they are made of.
+/// The mesh of a link, with its material.
 pub(crate) struct Solid {
     /// Name of the link.
     pub name: String,
-    /// Tube and material.
+    /// Section and material of the tube.
     pub beam: Beam,
-    /// Section frame in the world.
+    /// Axes of the section (columns), in the world.
     pub frame: Matrix3<f64>,
-    /// Density with which the bricks weigh as much as tube and cables \[kg/m³\].
+    /// Density of the bricks \[kg/m³\]. It is chosen such that they weigh as much as tube and harness.
     pub density_kg_m3: f64,
-    /// Numbers of the nodes of each brick in the model.
+    /// Indices of the 20 nodes of each brick, in the whole model.
     pub bricks: Vec<[usize; 20]>,
 }
 
-/// A hinge: its node, and the spring on displacement 1 of the node.
+/// A hinge: its node, and the spring that acts on displacement 1 of this node.
 pub(crate) struct HingeNode {
-    /// Name.
+    /// Name of the hinge.
     pub name: String,
-    /// Node.
+    /// Index of the node.
     pub node: usize,
-    /// Spring.
+    /// Load and stiffness of the spring in the case.
     pub working: Working,
 }
 
 /// A finite-element model.
 #[derive(Default)]
 pub(crate) struct Model {
-    /// Places of all nodes \[m\].
+    /// Positions of all nodes \[m\].
     pub nodes_m: Vec<Vector3<f64>>,
-    /// Links of bricks.
+    /// Links that are meshed with bricks.
     pub solids: Vec<Solid>,
-    /// Hinges.
+    /// Hinges of joints, bearings and frames.
     pub hinges: Vec<HingeNode>,
-    /// Equations; the first term is the one that follows from the others.
+    /// Linear equations between degrees of freedom. The first term of each is the dependent one.
     pub equations: Vec<Vec<Term>>,
-    /// Degrees of freedom that do not move: node and direction.
+    /// Degrees of freedom that are fixed: index of the node, and direction (0 to 2).
     pub held: Vec<(usize, usize)>,
-    /// Point masses.
+    /// Point masses: index of the node, and mass \[kg\].
     pub masses: Vec<(usize, f64)>,
-    /// Forces: node, direction, newtons; on a hinge newton metres.
+    /// Loads: index of the node, direction (0 to 2), and force \[N\], or moment \[N m\] on the node of a hinge.
     pub loads: Vec<Term>,
-    /// Node at the tip.
+    /// Index of the node at the tip.
     pub tip: usize,
-    /// Names of elements whose inertia no six masses have.
+    /// Names of elements with an inertia tensor that no solid can have, so that no point masses represent it.
     pub impossible: Vec<String>,
 }
 
-/// A link of bricks while bodies are put on it.
+/// A meshed link, while bodies are attached to it.
 struct Meshed<'m> {
     mesh: &'m Mesh,
-    /// Number of its first node in the model.
+    /// Index of the link's first node in the model.
     first: usize,
     own: &'m OwnMass,
     length_m: f64,
-    /// What its root face is in.
+    /// The region of the root face.
     root: Region,
 }
 
-/// What moves as one body.
+/// A part of the arm that moves as one rigid body.
 #[derive(Clone)]
 struct Region {
-    /// Reference node, rotation node and their place; the ground has none.
+    /// Reference node, rotation node and the position of the reference node \[m\]. `None` for the ground.
     frame: Option<(usize, usize, Vector3<f64>)>,
-    /// Hinges from this frame on: node and twist.
+    /// Hinges between this reference node and the region: index of the hinge's node, and motion per unit of its
+    /// angle.
     hinges: Vec<(usize, Twist)>,
 }
 
-/// The model of an arm in a case. Links that no mesh can be made of, and links without compliance, are rigid.
+/// The finite-element model of an arm in a case. Links without compliance, and links whose section cannot be meshed,
+/// are rigid bodies.
 pub(crate) fn model(snapshot: &Snapshot) -> Model {
     let posed = snapshot.posed();
     let mut builder = Builder {
@@ -102,7 +106,7 @@ pub(crate) fn model(snapshot: &Snapshot) -> Model {
     for item in &posed.items {
         match item {
             Item::Body(body) => builder.body(body),
-            // springs are taken away before (see `Remainder`)
+            // springs were removed before (see `Remainder`)
             Item::Load(_) => {}
             Item::Elastic(element) => {
                 let workings = workings.next().unwrap_or_default();
@@ -132,7 +136,8 @@ impl Builder<'_> {
         self.model.nodes_m.len() - 1
     }
 
-    /// Adds a hinge for each coordinate that yields, and the passive joints that follow a hinge of a driver.
+    /// Adds a hinge for each compliant coordinate of an element. `workings` are the states of its springs at the load
+    /// of the case. A passive joint also follows the hinges of its driving joints.
     fn springs(&mut self, element: &ElasticElement, workings: &[Working]) {
         for (i, (twist, working)) in element.twists.iter().zip(workings).enumerate() {
             if working.is_rigid() {
@@ -156,7 +161,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Lets a passive joint turn with the hinges of its drivers.
+    /// Makes the passive joint `passive` rotate with the hinges of its driving joints, by the factors of their
+    /// linkages.
     fn follow(&mut self, passive: &ElasticElement) {
         let posed = self.snapshot.posed();
         let linkages = posed.chain.linkages().iter().filter(|linkage| linkage.passive == passive.name);
@@ -167,12 +173,13 @@ impl Builder<'_> {
         }
     }
 
-    /// Adds a body as point masses of the region.
+    /// Adds a body as point masses that move with the rigid region that is being built.
     fn body(&mut self, body: &Body) {
         self.rigid(body.mass_kg, &body.cg_m, &body.inertia_kgm2, "body");
     }
 
-    /// Adds a rigid body as point masses of the region.
+    /// Adds a rigid body, given by mass, centre of gravity and inertia, as point masses that move with the rigid region
+    /// that is being built. `name` is for the list of bodies that no point masses can represent.
     fn rigid(&mut self, mass_kg: f64, cg_m: &Vector3<f64>, inertia_kgm2: &Matrix3<f64>, name: &str) {
         for (at_m, kg) in self.points(mass_kg, cg_m, inertia_kgm2, name) {
             let node = self.tied(at_m);
@@ -187,7 +194,8 @@ impl Builder<'_> {
         self.model.loads.extend(loads);
     }
 
-    /// Point masses with the mass, centre and inertia of a body: one, or two on each principal axis.
+    /// Point masses that together have the mass, centre of gravity and inertia of a body: one point, or two on each
+    /// principal axis.
     fn points(
         &mut self,
         mass_kg: f64,
@@ -208,7 +216,7 @@ impl Builder<'_> {
         }
         let mut out = Vec::new();
         for i in 0..3 {
-            // ∫x² dm along a principal axis is half of the other two moments minus its own
+            // ∫x² dm along a principal axis is half the sum of the three moments minus the moment about this axis
             let second = (sum / 2.0 - eigen.eigenvalues[i]).max(0.0);
             let arm_m = eigen.eigenvectors.column(i) * (3.0 * second / mass_kg).sqrt();
             out.extend([(cg_m + arm_m, mass_kg / 6.0), (cg_m - arm_m, mass_kg / 6.0)]);
@@ -216,7 +224,8 @@ impl Builder<'_> {
         out
     }
 
-    /// Adds a link: bricks, or a rigid body.
+    /// Adds a link as a mesh of bricks, or as a rigid body if it cannot deform or cannot be meshed. `own` has its mass
+    /// and its place.
     fn link(&mut self, element: &ElasticElement, own: &OwnMass) {
         let link = self.snapshot.link(own.piece).cloned();
         let flexible = link.as_ref().and_then(|link| {
@@ -250,7 +259,7 @@ impl Builder<'_> {
             bricks: mesh.bricks.iter().map(|brick| brick.map(|n| first + n)).collect(),
         });
         let meshed = Meshed { mesh: &mesh, first, own, length_m: link.vector_m.norm(), root };
-        // the carried frame at the link's root, from the section frame
+        // rotation from the carried frame at the root of the link to the world, by way of the section frame
         let turn = own.frame * section_frame(&link.vector_m).transpose();
         for body in &link.bodies {
             let in_world = RigidBody {
@@ -262,7 +271,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Adds a body, in world axes, that moves with the cross-section nearest to its centre.
+    /// Adds a body, given in world axes, to a meshed link. The body moves with the cross-section nearest to its centre
+    /// of gravity.
     fn body_on_link(&mut self, link: &Meshed, body: &RigidBody, name: &str) {
         let last = link.mesh.stations.len() - 1;
         let xi = link.own.frame.column(0).dot(&(body.cg_m - link.own.root_m)) / link.length_m;
@@ -282,7 +292,9 @@ impl Builder<'_> {
         }
     }
 
-    /// Lets a node move as the mean of a cross-section does: mean displacement, and the rotation that fits best.
+    /// Makes a node move with a cross-section of a mesh, as the average of its nodes: with their mean displacement, and
+    /// with the rotation that fits their displacements best (least squares). `station` has the nodes of the
+    /// cross-section, counted from the node `first`.
     fn average(&mut self, node: usize, first: usize, station: &[usize]) {
         let places: Vec<(usize, Vector3<f64>)> =
             station.iter().map(|n| (first + n, self.model.nodes_m[first + n])).collect();
@@ -300,7 +312,7 @@ impl Builder<'_> {
         for d in 0..3 {
             let mut terms = vec![(node, d, -1.0)];
             for (n, p) in &places {
-                // θ = S⁻¹ Σ r × u, and θ × a at the node
+                // best rotation θ = S⁻¹ Σ r × u; it moves the node by θ × a
                 let moved = Matrix3::identity() / count
                     - arm_m.cross_matrix() * inverse * (p - centre_m).cross_matrix();
                 terms.extend((0..3).map(|e| (*n, e, moved[(d, e)])));
@@ -309,14 +321,14 @@ impl Builder<'_> {
         }
     }
 
-    /// A new node of the region.
+    /// Adds a node at `at_m` \[m\] that moves with the rigid region that is being built, and returns its index.
     fn tied(&mut self, at_m: Vector3<f64>) -> usize {
         let node = self.node(at_m);
         self.tie(node);
         node
     }
 
-    /// Makes a node move with the region.
+    /// Makes a node move with the rigid region that is being built.
     fn tie(&mut self, node: usize) {
         let at_m = self.model.nodes_m[node];
         for d in 0..3 {
@@ -332,7 +344,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Adds an equation. Terms of one degree of freedom are joined; without others the first does not move.
+    /// Adds a linear equation between degrees of freedom. Terms with the same degree of freedom are added up. If only
+    /// the dependent term (the first one) remains, its degree of freedom is fixed.
     fn equation(&mut self, terms: Vec<Term>) {
         let mut joined: Vec<Term> = Vec::new();
         for (node, d, coefficient) in terms {
@@ -348,7 +361,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Adds force and moment at the tip.
+    /// Adds the force and the moment at the tip as loads.
     fn tip_load(&mut self, tip: usize, force_n: &Vector3<f64>, moment_nm: &Vector3<f64>) {
         let forces = (0..3).filter(|d| force_n[*d] != 0.0).map(|d| (tip, d, force_n[d]));
         self.model.loads.extend(forces);

@@ -1,4 +1,4 @@
-//! The cantilever of the figures: one section of one material, and its deflection.
+//! The cantilever of the figures: one cross-section of one material, and its deflection.
 
 use crate::arm::load::Payload;
 use crate::arm::section::{LinkMaterial, Section};
@@ -13,14 +13,14 @@ use nalgebra::Vector3;
 
 /// Length of the cantilever \[m\].
 pub const LENGTH_M: f64 = 0.8;
-/// Force at its end \[N\].
+/// Force at the end of the cantilever \[N\].
 pub const FORCE_N: f64 = 500.0;
-/// Wall thickness where it does not vary \[m\].
+/// Wall thickness in figures in which it does not vary \[m\].
 pub const WALL_M: f64 = 0.010;
 /// Smallest and largest outer size, in steps of 1 cm \[m\].
 pub const SIZES_M: (f64, f64) = (0.07, 0.16);
 
-/// One section of one material, with its weight and deflection.
+/// One cross-section of one material, with weight and deflection of the cantilever.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BeamPoint {
     /// Name of the material.
@@ -33,12 +33,12 @@ pub struct BeamPoint {
     pub weight_n_per_m: f64,
     /// Deflection of the end by bending (Eq 4) \[m\].
     pub deflection_m: f64,
-    /// Deflection of the end with shear, if the shear modulus is known \[m\].
+    /// Deflection of the end with bending and shear \[m\]; `None` if the shear modulus is unknown.
     pub full_deflection_m: Option<f64>,
 }
 
 impl BeamPoint {
-    /// A square tube of a material.
+    /// A cantilever with a square tube of a material.
     pub fn new(material: &Material, size_m: f64, wall_m: f64) -> Self {
         let section = Section::RectangularTube { width_m: size_m, height_m: size_m, wall_m };
         let properties = section.properties(material.poisson.unwrap_or(0.3));
@@ -54,12 +54,12 @@ impl BeamPoint {
         }
     }
 
-    /// Force over deflection at the end of the cantilever \[N/m\].
+    /// Force divided by deflection at the end of the cantilever \[N/m\].
     pub fn stiffness_n_per_m(&self) -> f64 {
         FORCE_N / self.deflection_m
     }
 
-    /// Stiffness over weight per length, N/m over N/m.
+    /// Stiffness divided by weight per length \[-\].
     pub fn stiffness_per_weight(&self) -> f64 {
         self.stiffness_n_per_m() / self.weight_n_per_m
     }
@@ -98,7 +98,7 @@ pub fn library_deflection_m(material: &Material, section: Section, links: LinkMo
     Some(-posed.statics().tip_displacement_m.z)
 }
 
-/// The sections of a figure: square tubes of 7 to 16 cm with the same wall.
+/// The sections of a figure: square tubes of 7 to 16 cm with the same wall thickness.
 pub(crate) fn sizes(material: &Material) -> Vec<BeamPoint> {
     (7..=16).map(|cm| BeamPoint::new(material, f64::from(cm) / 100.0, WALL_M)).collect()
 }
@@ -131,7 +131,7 @@ pub(crate) fn points_csv(points: &[BeamPoint]) -> String {
     table.to_csv()
 }
 
-/// A length in millimetres, rounded to the nanometre to remove conversion noise.
+/// A length in millimetres. It is rounded to the nanometre, to remove rounding errors of the conversion.
 fn millimetres(metres: f64) -> f64 {
     (metres * 1e9).round() / 1e6
 }

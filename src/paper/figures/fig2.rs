@@ -11,26 +11,26 @@ use crate::report::number::{fixed, shortest, significant};
 use crate::report::svg::plot::{Note, Plot, Series, Side};
 use crate::report::table::{Column, Table};
 
-/// The metals of the figure: name in the legend, name in the catalog.
+/// The metals of the figure: name in the legend, and name in the catalog.
 pub const METALS: [(&str, &str); 3] = [
     ("steel", "Structural steel S235"),
     ("titanium", "Titanium Ti-6Al-4V"),
     ("aluminium", "Aluminium 6082-T6"),
 ];
-/// Other rows of the catalog that the figure's metals could be.
+/// Other rows of the catalog that the paper's metals could be.
 const OTHERS: [&str; 4] =
     ["Structural steel S355", "Titanium grade 2", "Aluminium 6061-T6", "Aluminium 7075-T6"];
 
 /// One curve of the figure, for one metal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// Name in the legend.
+    /// Name of the metal in the legend.
     pub name: &'static str,
     /// Sections of the curve, smallest first.
     pub points: Vec<BeamPoint>,
 }
 
-/// The three curves.
+/// The three curves of the figure.
 ///
 /// # Errors
 /// The catalog lacks a material.
@@ -41,15 +41,15 @@ pub fn curves(catalogs: &Catalogs) -> Result<Vec<Curve>, PaperError> {
         .collect()
 }
 
-/// The figure's claims.
+/// The claims of the paper about the figure, checked.
 pub fn claims(curves: &[Curve]) -> Vec<Claim> {
     vec![falls(curves), converges(curves), in_ratio(curves), gains_more(curves), best_metal(curves)]
 }
 
-/// Runs the study.
+/// Computes Fig 2 of the paper (deflection against weight of a hollow beam in three metals) with its table and claims.
 ///
 /// # Errors
-/// The catalog lacks a material.
+/// A material of the figure is not in the catalog.
 pub fn run(catalogs: &Catalogs) -> Result<PaperStudyOutput, PaperError> {
     let curves = curves(catalogs)?;
     let figure = Figure {
@@ -103,7 +103,7 @@ fn range(points: &[BeamPoint]) -> String {
     format!("{} to {}", mm(points.first()), mm(points.last()))
 }
 
-/// For each size, the largest and the smallest deflection among the metals \[m\].
+/// For each outer size, the largest and the smallest deflection that any of the metals has \[m\].
 fn extremes(curves: &[Curve]) -> Vec<(f64, f64)> {
     let at = |i: usize| curves.iter().filter_map(move |c| c.points.get(i)).map(|p| p.deflection_m);
     let count = curves.first().map_or(0, |c| c.points.len());
@@ -140,7 +140,7 @@ fn ends(values: &[f64]) -> (f64, f64) {
     (values.first().copied().unwrap_or(f64::NAN), values.last().copied().unwrap_or(f64::NAN))
 }
 
-/// Stiffness per weight of the largest section, less that of the smallest.
+/// By how much the stiffness per weight of the largest section exceeds that of the smallest.
 fn rise(points: &[BeamPoint]) -> f64 {
     let values: Vec<f64> = points.iter().map(BeamPoint::stiffness_per_weight).collect();
     let (first, last) = ends(&values);
@@ -181,7 +181,7 @@ fn best_metal(curves: &[Curve]) -> Claim {
     )
 }
 
-/// A table of every steel, titanium and aluminium of the catalog that the figure may mean.
+/// A table of every steel, titanium and aluminium of the catalog that the paper may mean.
 fn alloys(catalogs: &Catalogs) -> Result<Table, PaperError> {
     let mut table = Table::new(vec![
         Column::left("material"),

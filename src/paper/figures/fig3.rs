@@ -12,28 +12,29 @@ use crate::report::svg::plot::{Axis, Plot, Series};
 use crate::report::svg::scale::Scale;
 use crate::report::table::{Column, Table};
 
-/// The figure's material.
+/// Material of the figure.
 pub const MATERIAL: &str = "Aluminium 6082-T6";
 /// Outer sizes for which the wall is thickened step by step \[m\].
 const THICKENED_M: [f64; 3] = [0.07, 0.10, 0.13];
-/// Largest weight per length of the thickened sections, over that of the section with the largest outer size.
+/// Largest weight per length of the thickened sections, divided by that of the section with the largest outer size.
 const WEIGHT_SHOWN: f64 = 1.1;
 
 /// A section that is made heavier by the same factor in two ways: with larger outer dimensions, and with a thicker
 /// wall.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Growth {
-    /// The section before the change.
+    /// The section before it is made heavier.
     pub from: BeamPoint,
-    /// Weight after the change over weight before.
+    /// Weight after the change, divided by the weight before.
     pub weight_ratio: f64,
-    /// Stiffness after the change over stiffness before, if the outer dimensions grow.
+    /// Stiffness after the change, divided by the stiffness before, if the outer dimensions grow.
     pub by_width: f64,
-    /// Stiffness after the change over stiffness before, if the wall grows inward; `None` if there is no room.
+    /// Stiffness after the change, divided by the stiffness before, if the wall grows inward. `None` if the hollow
+    /// is too small for this.
     pub by_wall: Option<f64>,
 }
 
-/// Every base section of the figure, made heavier by a tenth and by half.
+/// Every base section of the figure, made heavier by 10 % and by 50 %.
 ///
 /// # Errors
 /// The catalog lacks the material.
@@ -43,8 +44,8 @@ pub fn growths(catalogs: &Catalogs) -> Result<Vec<Growth>, PaperError> {
     Ok(sizes(material).iter().flat_map(|from| ratios.map(|ratio| growth(material, from, ratio))).collect())
 }
 
-/// Makes a section heavier in both ways. A square tube's area is 4 t (b - t); it is solved for b with t kept, and for
-/// t with b kept.
+/// Makes the section `from` heavier by the factor `weight_ratio` in two ways. The area of a square tube with outer size
+/// b and wall t is 4 t (b - t). This is solved for b with t unchanged, and for t with b unchanged.
 fn growth(material: &Material, from: &BeamPoint, weight_ratio: f64) -> Growth {
     let (b, t) = (from.size_m, from.wall_m);
     let area_m2 = weight_ratio * 4.0 * t * (b - t);
@@ -55,7 +56,7 @@ fn growth(material: &Material, from: &BeamPoint, weight_ratio: f64) -> Growth {
     Growth { from: from.clone(), weight_ratio, by_width: gain(&wider), by_wall: thicker.as_ref().map(gain) }
 }
 
-/// The figure's claims.
+/// The claim of the paper about the figure, checked.
 pub fn claims(growths: &[Growth]) -> Vec<Claim> {
     let pairs: Vec<(f64, f64)> =
         growths.iter().filter_map(|g| Some((g.by_width - 1.0, g.by_wall? - 1.0))).collect();
@@ -76,10 +77,11 @@ pub fn claims(growths: &[Growth]) -> Vec<Claim> {
     )]
 }
 
-/// Runs the study.
+/// Computes Fig 3 of the paper (whether wall thickness or outer size is the better use of weight) with its table and
+/// claims.
 ///
 /// # Errors
-/// The catalog lacks the material.
+/// The material of the figure is not in the catalog.
 pub fn run(catalogs: &Catalogs) -> Result<PaperStudyOutput, PaperError> {
     let material = parts::material(catalogs, MATERIAL)?;
     let growths = growths(catalogs)?;
@@ -120,8 +122,8 @@ fn curves(material: &Material) -> (Vec<Series>, Vec<BeamPoint>) {
     (series, points)
 }
 
-/// Sections of one outer size, with walls from 4 mm in steps of 2 mm. The hole is at least a fifth of the size, and
-/// the weight per length at most `most_n_per_m`.
+/// Sections of one outer size, with walls from 4 mm in steps of 2 mm. The hollow is at least a fifth of the size
+/// wide, and the weight per length is at most `most_n_per_m`.
 fn thickening(material: &Material, size_m: f64, most_n_per_m: f64) -> Vec<BeamPoint> {
     (2..)
         .map(|i| f64::from(i) * WALL_M / 5.0)

@@ -1,8 +1,8 @@
 //! `fig4-composites`: boron, kevlar and silicon-carbide composites against aluminium.
 //!
-//! Anything that carries torsion needs a quasi-isotropic laminate. Unidirectional rows are drawn dashed and
-//! marked axial: their modulus along the fibre counts in bending only, and their small shear modulus shows in
-//! the deflection with shear.
+//! A link that is loaded in torsion needs a quasi-isotropic laminate. Curves of unidirectional laminates are dashed
+//! and marked "axial". Their modulus along the fibre matters in bending only, and the effect of their small shear
+//! modulus is seen in the deflection with shear.
 
 use super::beam::{BeamPoint, WALL_M, sizes};
 use super::figure::{Figure, deflection_plot};
@@ -47,10 +47,10 @@ const ROWS: [Row; 7] = [
     Row { name: "SiC/Al 55 vol%", material: "SiC particle/Al 55 vol% infiltrated", style: 4, axial: false },
 ];
 
-/// One material of the figure.
+/// One curve of the figure, for one material.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// Name in the legend.
+    /// Name of the material in the legend.
     pub name: &'static str,
     /// Whether all fibres of the material run along the link.
     pub axial: bool,
@@ -58,13 +58,13 @@ pub struct Curve {
     pub style: usize,
     /// Sections of the curve, smallest first.
     pub points: Vec<BeamPoint>,
-    /// The section whose deflection in bending (Eq 4) is the reference.
+    /// The section with [`REFERENCE_M`] deflection in bending (Eq 4); `None` if it cannot be computed.
     pub at_reference: Option<BeamPoint>,
-    /// The section whose deflection in bending and shear is the reference.
+    /// The section with [`REFERENCE_M`] deflection in bending and shear; `None` if the shear modulus is unknown.
     pub at_reference_with_shear: Option<BeamPoint>,
 }
 
-/// The figure's curves, aluminium first.
+/// The curves of the figure, aluminium first.
 ///
 /// # Errors
 /// The catalog lacks a material.
@@ -84,7 +84,8 @@ pub fn curves(catalogs: &Catalogs) -> Result<Vec<Curve>, PaperError> {
         .collect()
 }
 
-/// The section whose deflection is the reference, by bisection of the outer size between 21 mm and 1 m.
+/// The square tube of this material that deflects by [`REFERENCE_M`]. `deflection_m` returns the deflection of a tube,
+/// and the outer size is found by bisection between 21 mm and 1 m.
 fn section_for(material: &Material, deflection_m: impl Fn(&BeamPoint) -> Option<f64>) -> Option<BeamPoint> {
     let (mut small, mut large) = (2.1 * WALL_M, 1.0);
     for _ in 0..60 {
@@ -98,7 +99,7 @@ fn section_for(material: &Material, deflection_m: impl Fn(&BeamPoint) -> Option<
     Some(BeamPoint::new(material, large, WALL_M))
 }
 
-/// The figure's claims.
+/// The claims of the paper about the figure, checked.
 pub fn claims(curves: &[Curve]) -> Vec<Claim> {
     let Some((aluminium, composites)) = curves.split_first() else { return Vec::new() };
     vec![
@@ -146,7 +147,7 @@ fn dimensions(curves: &[Curve]) -> Claim {
     )
 }
 
-/// The effect of shear, which Eq 4 leaves out: it is large for unidirectional laminates.
+/// Checks whether Eq 4, which leaves out shear, is accurate for unidirectional laminates.
 fn shear_of_axial_rows(curves: &[Curve]) -> Claim {
     let share = |c: &Curve| {
         let point = c.at_reference.as_ref()?;
@@ -164,10 +165,10 @@ fn shear_of_axial_rows(curves: &[Curve]) -> Claim {
     )
 }
 
-/// Runs the study.
+/// Computes Fig 4 of the paper (deflection against weight of composite tubes) with its table and claims.
 ///
 /// # Errors
-/// The catalog lacks a material.
+/// A material of the figure is not in the catalog.
 pub fn run(catalogs: &Catalogs) -> Result<PaperStudyOutput, PaperError> {
     let curves = curves(catalogs)?;
     let figure = Figure {

@@ -1,4 +1,4 @@
-//! What the study of a figure writes: the picture, its points, the claims and a summary.
+//! The outputs of a figure's study: the picture, its points, the claims and a summary.
 
 use super::beam::{BeamPoint, points_csv};
 use crate::paper::claim::{self, Claim};
@@ -7,7 +7,7 @@ use crate::report::svg::plot::{Axis, Plot};
 use crate::report::svg::scale::Scale;
 use crate::report::table::Table;
 
-/// A plot with the figures' axes.
+/// A plot with the axes of the paper's figures: weight per length and deflection.
 pub(crate) fn deflection_plot(title: &str, description: &str) -> Plot {
     Plot {
         title: title.to_string(),
@@ -18,16 +18,16 @@ pub(crate) fn deflection_plot(title: &str, description: &str) -> Plot {
     }
 }
 
-/// What a figure's study gives: picture, points, claims, summary.
+/// The contents of a figure's study: picture, points, claims and tables.
 pub(super) struct Figure {
     pub(super) name: &'static str,
     pub(super) title: &'static str,
     pub(super) plot: Plot,
     pub(super) points: Vec<BeamPoint>,
     pub(super) claims: Vec<Claim>,
-    /// Titled tables of the summary, with the names of their CSV files.
+    /// Tables of the summary: title, name of the CSV file, and table.
     pub(super) tables: Vec<(&'static str, &'static str, Table)>,
-    /// Closing words of the summary.
+    /// Text at the end of the summary.
     pub(super) words: String,
 }
 

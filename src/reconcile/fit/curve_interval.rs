@@ -1,13 +1,14 @@
-//! Computes 95 % intervals of the parameters of a gear's curve from their posterior distribution.
+//! Computes 95 % intervals of the parameters of a gear's torsion curve from their posterior distribution.
 //!
-//! A break point has no meaning where the slopes on its two sides are equal. Of the many places where it
-//! could be, one always suits the noise. The objective along a break point is therefore the largest of many
-//! chance gains, not a parabola, and the usual rise of 3.84 contains the true value too seldom.
+//! A break point has no meaning if the slopes on its two sides are equal. Among the many places where it could be,
+//! there is always one that fits the noise well. The lowest objective over the places of a break point is therefore the
+//! best of many chance results, and the usual limit, a rise of 3.84, gives an interval that contains the true value too
+//! rarely.
 //!
-//! So every place counts by its probability. With both break points held, the readings are nearly linear in
-//! all other parameters. A fit then gives the likelihood of the place, and the range of the slopes there
-//! (Laplace's approximation). The places are nodes around the best fit, close together near it. The search
-//! visits the neighbours of every node that the readings do not rule out.
+//! So every place counts by its probability. With both break points held, the readings are nearly linear in all other
+//! parameters. A fit then gives the likelihood of the place, and the distribution of the slopes there (Laplace's
+//! approximation). The places are nodes around the best fit, close together near it. The search visits the neighbours
+//! of every node that the readings do not rule out.
 
 use super::descent::data_curvature;
 use super::descent::{Effort, Fit, Weights, fit_below};
@@ -18,25 +19,27 @@ use nalgebra::{Cholesky, DMatrix};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// Probability beyond each end of an interval.
+/// Probability that the parameter lies beyond the interval, at each of its two ends.
 const TAIL: f64 = 0.025;
-/// The interval is open at an end of the range where the density is more than this part of its maximum. The limit
-/// equals a rise of the objective by 3.84.
+/// An end of the interval is `None` if the probability density at that limit of the parameter's range is more than
+/// this fraction of its maximum. The fraction corresponds to a rise of the objective by 3.84: exp(-3.84 / 2).
 const OPEN: f64 = 0.146;
-/// A node is ruled out where the objective exceeds that of the best fit by more than this.
+/// A pair of nodes is ruled out if the objective there exceeds the smallest objective found by more than this. The
+/// probability density there is then below a thousandth of the maximum: exp(-14 / 2).
 const RULED_OUT: f64 = 14.0;
-/// First step between nodes, in standard deviations of the break point.
+/// First step from the best fit to the next node, as a multiple of the standard deviation of the break point.
 const STEP: f64 = 0.5;
-/// Smallest and largest first step \[ln of the torque\].
+/// Smallest and largest value of the first step from the best fit to the next node \[ln of the torque\].
 const STEPS: (f64, f64) = (0.004, 0.08);
 /// Ratio of each step between nodes to the step before it, going outwards from the best fit.
 const GROWTH: f64 = 1.4;
-/// Every third node is always visited, so that no separate peak is missed.
+/// Each node whose distance from the best fit, counted in nodes, is a multiple of this number is always fitted, so
+/// that no separate peak of the density is missed.
 const COARSE: usize = 3;
-/// Effort of a fit with both break points held.
+/// Largest number of steps, and tolerance, of a fit with both break points held.
 const HELD: Effort = Effort { steps: 4, tolerance: 0.05 };
 
-/// The nodes of one break point, in ascending order.
+/// The nodes of one break point: the torques at which it is held, in ascending order \[ln of the torque\].
 struct Axis {
     parameter: usize,
     nodes: Vec<f64>,
@@ -45,15 +48,16 @@ struct Axis {
 /// The fit with both break points held at the values of a pair of nodes.
 struct Cell {
     u: Vec<f64>,
-    /// Standard deviations of all parameters except the two break points.
+    /// Standard deviations of all parameters, in `u`. Those of the two held break points are infinite and not used.
     deviations: Vec<f64>,
     objective: f64,
-    /// Natural logarithm of the probability density at the nodes.
+    /// Natural logarithm of the probability density of the two break points at the nodes, up to a common constant.
     ln_density: f64,
 }
 
-/// Intervals of the parameters `own` of a gear's curve, in their order. `pair` holds the indices of its break
-/// points.
+/// 95 % intervals of the parameters of one gear's curve. `own` is the range of their indices and gives the order of
+/// the result. `pair` holds the indices of the two break points, and `deviations` the standard deviation of every
+/// parameter of the model.
 pub(crate) fn curve_intervals(
     forward: &Forward,
     best: &Fit,
@@ -91,7 +95,8 @@ impl Axis {
         Self { parameter, nodes }
     }
 
-    /// The part of the axis for which a node stands: it reaches halfway to both neighbouring nodes.
+    /// The part of the axis for which a node stands: it reaches halfway to both neighbouring nodes \[ln of the
+    /// torque\].
     fn span(&self, node: usize) -> (f64, f64) {
         let middle = |a: usize, b: usize| 0.5 * (self.nodes[a] + self.nodes[b]);
         let last = self.nodes.len() - 1;
@@ -99,11 +104,11 @@ impl Axis {
     }
 }
 
-/// Index of the node on each of the two axes.
+/// Index of the node on each of the two axes, one axis per break point.
 type Nodes = [usize; 2];
 
-/// All cells that matter: those of a coarse grid over the nodes, and the neighbours of every cell that is not ruled
-/// out.
+/// Fits the model at a coarse grid of node pairs, and then at the neighbours of every pair that is not ruled out.
+/// Returns one cell for each pair that was fitted.
 fn explore(forward: &Forward, best: &Fit, weights: &Weights, axes: &[Axis; 2]) -> BTreeMap<Nodes, Cell> {
     let centre = [0, 1].map(|k| {
         let (axis, at) = (&axes[k], best.point.u[axes[k].parameter]);
@@ -162,7 +167,7 @@ impl Cell {
         let fitted = fit_below(forward, &model, start, weights, HELD, limit);
         let held = axes.each_ref().map(|a| a.parameter);
         let of_rest = without(&fitted.curvature, held);
-        // the density at the nodes is the evidence divided by the width of the two break points
+        // the density at the nodes is the evidence of the fit without the factor for the two held parameters
         let ln_density =
             fitted.evidence + 0.5 * (ln_determinant(fitted.curvature.clone()) - ln_determinant(of_rest));
         // the two held parameters are not part of the covariance
@@ -176,7 +181,7 @@ impl Cell {
     }
 }
 
-/// Removes two rows and the same two columns from a matrix.
+/// Removes the rows and the columns with the two indices `held` from a matrix.
 fn without(matrix: &DMatrix<f64>, mut held: [usize; 2]) -> DMatrix<f64> {
     held.sort_unstable();
     matrix.clone().remove_rows_at(&held).remove_columns_at(&held)
@@ -187,14 +192,14 @@ fn ln_determinant(matrix: DMatrix<f64>) -> f64 {
         .map_or(f64::INFINITY, |c| 2.0 * c.l().diagonal().iter().map(|d| libm::log(*d)).sum::<f64>())
 }
 
-/// The posterior distribution over the nodes.
+/// The posterior distribution of the two break points, as cells over the pairs of nodes.
 struct Posterior {
     axes: [Axis; 2],
     cells: BTreeMap<Nodes, Cell>,
 }
 
 impl Posterior {
-    /// Probability of each cell, up to a common factor.
+    /// Probability of each cell, up to a common factor: its density times the area for which the node pair stands.
     fn masses(&self) -> impl Iterator<Item = (&Nodes, &Cell, f64)> {
         let top = self.cells.values().map(|c| c.ln_density).fold(f64::NEG_INFINITY, f64::max);
         let width = |axis: usize, node: usize| {
@@ -202,7 +207,7 @@ impl Posterior {
             to - from
         };
         self.cells.iter().map(move |(nodes, cell)| {
-            // a node stands for its area, because nodes are not equally spaced
+            // a node represents its area, because the nodes are not equally spaced
             let area = width(0, nodes[0]) * width(1, nodes[1]);
             (nodes, cell, libm::exp(cell.ln_density - top) * area)
         })
@@ -233,8 +238,8 @@ impl Posterior {
         }
     }
 
-    /// The interval of one slope of the gear's curve. The slope's distribution is a mixture of normal distributions,
-    /// one per cell, each cut off at the ends of the range.
+    /// The 95 % interval of the slope with parameter index `p`, whose range is `low` to `high`. The distribution of
+    /// the slope is a mixture of normal distributions, one per cell, each cut off at the ends of the range.
     fn slope(&self, p: usize, (low, high): (f64, f64)) -> Interval {
         let parts: Vec<(f64, f64, f64)> = self
             .masses()

@@ -1,11 +1,11 @@
 //! Fits a model: finds its most probable parameters within bounds, with Huber's loss.
 //!
-//! Residuals `r` are in standard deviations. The objective is `Σ ρ(r) + Σ u²`, where `ρ` is Huber's loss. The
-//! first sum is over the data. The second is over the calibrated parameters, where each `u` is a standard
-//! normal deviate by its tolerance. The parameters of effects are free within bounds.
+//! Residuals `r` are in standard deviations. The objective is `Σ ρ(r) + Σ u²`, where `ρ` is Huber's loss. The first sum
+//! is over the data. The second is over the calibrated parameters, where each `u` is the deviation from nominal in
+//! standard deviations of its tolerance. The parameters of effects are free within bounds.
 //!
-//! Steps are Levenberg-Marquardt steps with an active set at the bounds. Frequencies enter with their exact
-//! sensitivities, because solving for them costs most. Statics and bench readings are cheap and are
+//! Steps are Levenberg-Marquardt steps with an active set at the bounds. The derivatives of frequencies are exact,
+//! because solving for frequencies takes most of the time. Static and bench readings are cheap to compute and are
 //! differentiated numerically.
 
 use crate::mechanics::product::add_transposed_product;
@@ -18,22 +18,23 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// Residual at which Huber's loss turns from a square into a straight line \[standard deviations\].
+/// Residual beyond which Huber's loss grows linearly \[standard deviations\].
 const HUBER: f64 = 4.0;
-/// Step of numerical derivatives, in the scaled parameters `u`.
+/// Step of a parameter by which numerical derivatives are computed, in the scaled parameters `u`.
 const STEP: f64 = 1e-4;
 
-/// Weights of the data: which data count, and how their standard deviations are scaled.
+/// Weights of the data in a fit: which data count, and how much their declared standard deviations are enlarged.
 #[derive(Debug, Clone)]
 pub struct Weights {
-    /// Reciprocal of the scaled standard deviation of each datum; 0 where the datum is left out.
+    /// Reciprocal of each datum's standard deviation, which is the declared one times the factor of its channel; 0
+    /// where the datum is left out.
     pub inverse: Vec<f64>,
-    /// Whether the natural frequencies need not be computed, because none of them counts.
+    /// Whether only static and bench readings count. Natural frequencies are then not computed.
     pub smooth_only: bool,
 }
 
 impl Weights {
-    /// The same weights with all frequencies left out.
+    /// These weights with all frequencies left out, so that no modes are computed.
     pub fn without_modes(&self, forward: &Forward) -> Self {
         let mut out = self.clone();
         out.inverse[forward.starts[1]..forward.starts[2]].fill(0.0);
@@ -42,45 +43,47 @@ impl Weights {
     }
 }
 
-/// The predictions and the objective of a model at one parameter vector.
+/// The predictions and the objective of a model at one parameter vector `u`.
 pub struct Point {
-    /// Parameters.
+    /// The scaled parameters: the calibrated ones first, then those of the effects.
     pub u: Vec<f64>,
-    /// Compliances, joint laws and masses that the parameters lead to.
+    /// Compliances, joint laws and masses of the arm with these parameters (the coefficients).
     pub coefficients: Coefficients,
-    /// True value of each datum, before the measuring channel distorts it, in the unit of the datum's file.
+    /// Predicted value of each datum before the errors of the measuring channel are added, in the unit of the datum's
+    /// file.
     pub truth: Vec<f64>,
-    /// Predicted reading of each datum, in the unit of the datum's file.
+    /// Predicted reading of each datum, with the errors of the measuring channel, in the unit of the datum's file.
     pub predicted: Vec<f64>,
-    /// The loads on the arm in each static pose, and how it yields to them.
+    /// Loads on the arm in each static pose, and its deflections.
     pub statics: Vec<StaticState>,
-    /// Solved modes of each modal test.
+    /// Modes of each modal test; an empty list if they are not needed.
     pub solved: Vec<Arc<Vec<Solved>>>,
-    /// The objective.
+    /// Value of the objective: Huber's loss of the residuals plus the squares of the calibrated parameters.
     pub objective: f64,
 }
 
-/// A fitted model.
+/// A fitted model, with its predictions, derivatives and evidence.
 pub struct Fit<'a> {
-    /// The model.
+    /// The model, with its effects and the parameters that are held.
     pub model: Model<'a>,
-    /// The point where the objective is smallest.
+    /// The point where the objective is smallest, with its predictions.
     pub point: Point,
-    /// Derivative of every prediction (rows) by every parameter (columns).
+    /// Derivative of every predicted reading (rows) with respect to every parameter (columns).
     pub jacobian: DMatrix<f64>,
-    /// Curvature of half the objective, `JᵀWJ` plus the priors.
+    /// Curvature matrix of half the objective: `JᵀWJ` of the data plus the priors of the parameters.
     pub curvature: DMatrix<f64>,
     /// Natural logarithm of the evidence (Laplace's approximation).
     pub evidence: f64,
 }
 
-/// Evaluates a model at the parameters `u`.
+/// Computes the predictions and the objective of a model at the parameters `u`.
 pub fn evaluate(forward: &Forward, model: &Model, u: &[f64], weights: &Weights) -> Point {
     evaluate_near(forward, model, u, weights, None)
 }
 
-/// Evaluates a model at the parameters `u`. Modes that are the same at a point `near` are taken from there: where a break
-/// point of a gear's curve moves, the slopes of most tests stay.
+/// Evaluates a model at the parameters `u`. A test that has the same stiffnesses and masses at the known point `near`
+/// takes its modes from there, because solving for modes takes most of the time. If only a break point of a gear's
+/// curve moves, this is so for most tests.
 pub fn evaluate_near(
     forward: &Forward,
     model: &Model,
@@ -113,7 +116,8 @@ pub fn evaluate_near(
     Point { u: u.to_vec(), coefficients, truth, predicted, statics, solved, objective }
 }
 
-/// The objective `Σ ρ(r) + Σ u²`: Huber's loss of the residuals, and the priors of the parameters.
+/// The objective `Σ ρ(r) + Σ u²` for the readings `predicted`: Huber's loss of the residuals, and the squares of the
+/// calibrated parameters in `u` (their priors).
 pub fn objective(forward: &Forward, model: &Model, u: &[f64], predicted: &[f64], weights: &Weights) -> f64 {
     let data: f64 = forward
         .data
@@ -130,7 +134,7 @@ fn loss(r: f64) -> f64 {
     if size <= HUBER { r * r } else { 2.0 * HUBER * size - HUBER * HUBER }
 }
 
-/// Derivatives of all predictions at a point, data by parameters.
+/// Derivatives of all predicted readings at the point `at`: one row per datum, one column per parameter.
 pub fn jacobian(forward: &Forward, model: &Model, at: &Point) -> DMatrix<f64> {
     let stepped = |p: usize| {
         let (_, high) = model.bounds(p);
@@ -145,18 +149,20 @@ pub fn jacobian(forward: &Forward, model: &Model, at: &Point) -> DMatrix<f64> {
     out
 }
 
-/// Change of the predictions from a point to other parameters. Frequencies change to first order.
+/// Change of all predicted readings from the point `at` to the parameters `u`, one entry per datum. The change of
+/// frequencies is linearized.
 pub fn change(forward: &Forward, model: &Model, at: &Point, u: &[f64]) -> Vec<f64> {
     change_to(forward, at, model.coefficients(forward, u))
 }
 
-/// Change of the predictions from a point to other coefficients. Frequencies change to first order.
+/// Change of all predicted readings from the point `at` to an arm with the coefficients `moved` (compliances, joint
+/// laws, masses), one entry per datum. The change of frequencies is linearized.
 pub fn change_to(forward: &Forward, at: &Point, moved: Coefficients) -> Vec<f64> {
     changes_to(forward, at, &[moved]).data.into()
 }
 
-/// Changes of the predictions (rows) from a point to each of other coefficients (columns). Frequencies change to first
-/// order.
+/// Changes of the predicted readings (rows) from the point `at` to each of the coefficient sets `moved` (columns).
+/// The change of frequencies is linearized.
 fn changes_to(forward: &Forward, at: &Point, moved: &[Coefficients]) -> DMatrix<f64> {
     let mut out = DMatrix::zeros(at.truth.len(), moved.len());
     out.column_iter_mut().for_each(|mut column| column.copy_from_slice(&at.truth));
@@ -177,15 +183,17 @@ fn changes_to(forward: &Forward, at: &Point, moved: &[Coefficients]) -> DMatrix<
     out
 }
 
-/// Gradient and curvature of half the objective.
+/// Gradient and curvature of half the objective (the normal equations of a step).
 pub struct Normal {
-    /// Gradient.
+    /// Gradient of half the objective, one entry per parameter.
     pub gradient: DVector<f64>,
-    /// Curvature.
+    /// Curvature matrix of half the objective (Gauss-Newton).
     pub curvature: DMatrix<f64>,
 }
 
-/// Builds the normal equations. Residuals are predicted minus measured, in the unit of the datum's file.
+/// Builds the normal equations at the parameters `u`, of which the first `calibrated` have a prior. `slopes` holds
+/// the derivatives of the predicted readings. Residuals are predicted minus measured, times the weight of the datum;
+/// large ones get less weight, as Huber's loss asks.
 pub fn normal(
     forward: &Forward,
     calibrated: usize,
@@ -198,7 +206,7 @@ pub fn normal(
     let (mut factors, mut right) = (Vec::with_capacity(count), Vec::with_capacity(count));
     for ((datum, predicted), weight) in forward.data.iter().zip(predicted).zip(&weights.inverse) {
         let residual = (predicted - datum.value) * weight;
-        // iteratively reweighted least squares: the weight of a residual beyond the turn is HUBER / |r|
+        // iteratively reweighted least squares: the weight of a residual above HUBER is HUBER / |r|
         let robust = if residual.abs() <= HUBER { 1.0 } else { (HUBER / residual.abs()).sqrt() };
         factors.push(robust * weight);
         right.push(residual * robust);
@@ -212,11 +220,11 @@ pub fn normal(
     Normal { gradient, curvature }
 }
 
-/// Number of rows whose products are taken at a time. They stay in a processor's cache meanwhile.
+/// Number of rows (data) whose products are computed together. These rows then stay in the processor's cache.
 const BLOCK: usize = 256;
 
-/// Derivatives of the data (rows) by parameters (columns), as matrices that stand side by side. What many models share is
-/// then not copied for each.
+/// Derivatives of the predicted readings (rows) with respect to parameters (columns), as several matrices whose
+/// columns follow one another. So columns that many models have in common need not be copied for each model.
 pub struct Slopes<'a>(pub &'a [&'a DMatrix<f64>]);
 
 impl Slopes<'_> {
@@ -228,7 +236,7 @@ impl Slopes<'_> {
         self.0.first().map_or(0, |part| part.nrows())
     }
 
-    /// The changes of the data by a change of the parameters.
+    /// Linearized changes of the predicted readings, one per datum, if the parameters change by `step`.
     pub fn times(&self, step: &DVector<f64>) -> Vec<f64> {
         let mut out = DVector::zeros(self.rows());
         for first in (0..self.rows()).step_by(BLOCK) {
@@ -243,7 +251,8 @@ impl Slopes<'_> {
         out.data.into()
     }
 
-    /// The products `Xᵀr` and `XᵀX`, where the rows of `X` are these rows times `row_factors`.
+    /// The products `Xᵀr` and `XᵀX`. The rows of `X` are the rows of these derivatives, each times its entry of
+    /// `row_factors`; `r` is `right`.
     fn products(&self, row_factors: &DVector<f64>, right: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
         let width = self.columns();
         let (mut gradient, mut curvature) = (DMatrix::zeros(width, 1), DMatrix::zeros(width, width));
@@ -264,7 +273,8 @@ impl Slopes<'_> {
     }
 }
 
-/// Takes one damped step and keeps it within the bounds.
+/// Parameters after one damped step from `u`, kept within the bounds of the model. A larger `damping` makes the step
+/// shorter.
 pub fn bounded_step(model: &Model, u: &[f64], normal: &Normal, damping: f64) -> Vec<f64> {
     let n = u.len();
     let mut free: Vec<usize> = (0..n).collect();
@@ -289,7 +299,7 @@ pub fn bounded_step(model: &Model, u: &[f64], normal: &Normal, damping: f64) -> 
             model.put_in_order(&mut out);
             return out;
         }
-        // a parameter that would leave its bounds stays there, and the rest is solved again
+        // a parameter that would leave its bounds stays there, and the step of the others is computed again
         free.retain(|p| !blocked.contains(p));
     }
 }
@@ -309,12 +319,12 @@ fn damped(normal: &Normal, free: &[usize], damping: f64) -> DVector<f64> {
     }
 }
 
-/// The effort that a fit spends.
+/// Largest number of steps of a fit, and when it ends before.
 #[derive(Debug, Clone, Copy)]
 pub struct Effort {
     /// Largest number of steps.
     pub steps: usize,
-    /// The fit ends when a step lowers the objective by less than this.
+    /// The fit ends if a step lowers the objective by less than this.
     pub tolerance: f64,
 }
 
@@ -324,7 +334,7 @@ impl Default for Effort {
     }
 }
 
-/// Fits a model from `start`.
+/// Fits the parameters of a model by a descent from `start`.
 pub fn fit<'a>(
     forward: &Forward,
     model: &Model<'a>,
@@ -335,7 +345,8 @@ pub fn fit<'a>(
     fit_below(forward, model, start, weights, effort, f64::INFINITY)
 }
 
-/// Fits a model from `start`, and gives up where the objective cannot come below `limit`.
+/// Fits the parameters of a model by a descent from `start`. The descent is given up when the objective can no longer
+/// be expected to fall below `limit`.
 pub fn fit_below<'a>(
     forward: &Forward,
     model: &Model<'a>,
@@ -349,7 +360,8 @@ pub fn fit_below<'a>(
     finish(forward, model, point, slopes, weights)
 }
 
-/// The end point of a descent from `start`, without the slopes and the evidence of a full fit.
+/// End point of a descent from `start`, without the derivatives and the evidence of a full fit. The descent is given
+/// up when the objective can no longer be expected to fall below `limit`.
 pub fn descent(
     forward: &Forward,
     model: &Model,
@@ -361,7 +373,8 @@ pub fn descent(
     descended(forward, model, start, weights, effort, limit).0
 }
 
-/// The end point of a descent, and the derivatives at this point if they are known.
+/// End point of a descent from `start`, and the derivatives of the predicted readings there if the descent has
+/// computed them.
 fn descended(
     forward: &Forward,
     model: &Model,
@@ -390,8 +403,8 @@ fn descended(
         };
         let fall = here.objective - next.objective;
         here = next;
-        // each step lowers the objective by less than the one before, so one more step like this is the most
-        // to hope for
+        // each step is expected to lower the objective by less than the step before, so one more fall of this size is
+        // the most that can be expected
         let hopeless = here.objective - fall > limit;
         if fall < effort.tolerance || hopeless {
             break;
@@ -400,7 +413,8 @@ fn descended(
     (here, None)
 }
 
-/// The first damped step that lowers the objective.
+/// The point after the first damped step from `here` that lowers the objective. `None` if seven steps, each damped
+/// more than the one before, do not lower it.
 fn descend(
     forward: &Forward,
     model: &Model,
@@ -416,7 +430,7 @@ fn descend(
         }
         let next = evaluate_near(forward, model, &u, weights, Some(here));
         if next.objective < here.objective {
-            // a good step: trust the parabola more
+            // a good step: rely more on the quadratic approximation
             *damping = (*damping * 0.2).max(1e-9);
             return Some(next);
         }
@@ -426,7 +440,8 @@ fn descend(
     None
 }
 
-/// Completes a fit: computes its curvature and its evidence.
+/// Completes a fit at the end point of a descent: computes the curvature of half the objective and the logarithm of
+/// the evidence.
 pub fn finish<'a>(
     forward: &Forward,
     model: &Model<'a>,
@@ -434,7 +449,7 @@ pub fn finish<'a>(
     mut jacobian: DMatrix<f64>,
     weights: &Weights,
 ) -> Fit<'a> {
-    // a number that rests on another could be anywhere below it
+    // a parameter at the one below which it cannot lie could have any value below it, so it has no derivative
     let resting = (0..model.len()).filter(|p| model.rests(*p, &point.u));
     resting.for_each(|p| jacobian.fill_column(p, 0.0));
     let slopes = Slopes(&[&jacobian]);
@@ -456,8 +471,9 @@ pub fn finish<'a>(
 }
 
 impl Fit<'_> {
-    /// Leverage of each datum: the part of its variance that the parameters take up, `wJᵢC(wJᵢ)ᵀ` with the
-    /// covariance `C`. It is 0 where a datum is left out.
+    /// Leverage of each datum: the fraction of its variance that the fitted parameters absorb, `wJᵢC(wJᵢ)ᵀ`, with its
+    /// weight `w`, its row `Jᵢ` of the derivatives and the covariance `C` of the parameters. It is 0 for a datum that
+    /// is left out.
     pub fn leverages(&self, weights: &Weights) -> Vec<f64> {
         let n = self.curvature.nrows();
         let Some(cholesky) = Cholesky::new(self.curvature.clone()) else {
@@ -470,7 +486,7 @@ impl Fit<'_> {
         rows.map(|(row, w)| (row.norm_squared() * w * w).min(1.0)).collect()
     }
 
-    /// Residuals, measured minus predicted, in scaled standard deviations.
+    /// Residuals, measured minus predicted, in the standard deviations of `weights`; 0 for a datum that is left out.
     pub fn residuals(&self, forward: &Forward, weights: &Weights) -> Vec<f64> {
         forward
             .data
@@ -482,8 +498,9 @@ impl Fit<'_> {
     }
 }
 
-/// The curvature without most of the prior of the effects' parameters. The width of such a prior matters for the
-/// evidence and must not narrow the intervals.
+/// The curvature of half the objective without most of the prior of the effects' parameters. This prior has a finite
+/// width for the sake of the evidence only, and it must not narrow the intervals. A hundredth part remains so that
+/// the matrix is regular.
 pub fn data_curvature(fit: &Fit) -> DMatrix<f64> {
     let mut curvature = fit.curvature.clone();
     for (i, parameter) in fit.model.free_parameters().enumerate() {

@@ -1,8 +1,8 @@
 //! Confirms a model on whole poses that are held out of the fit (cross-validation).
 //!
-//! The poses are dealt into four folds. Each fold in turn is held out, the model is refitted to the rest, and
-//! the fold is predicted. The refit keeps the selected effects. It fits their values and the calibration anew
-//! and holds only the break points. Rows of one pose are never split, because they share a history and a
+//! The poses are divided into four folds. Each fold in turn is held out, the model is refitted to the rest, and the
+//! fold is predicted. The effects stay the same. Their sizes and the calibration are fitted again, and only break
+//! points of gear curves are held. All rows of a pose belong to the same fold, because they share a history and a
 //! reference reading. Bench rows belong to no pose and stay in every fit.
 
 use super::descent::{Effort, Weights, descent};
@@ -10,28 +10,29 @@ use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::Model;
 use rayon::prelude::*;
 
-/// Number of folds into which the poses are dealt. One fold is held out at a time.
+/// Number of folds into which the poses are divided. One fold is held out at a time.
 const HANDS: usize = 4;
 
-/// Root mean squares of held-out residuals, in standard deviations. Unless a field says otherwise, these are the
-/// declared ones times the factor by which the readings scatter more than declared.
+/// Root mean squares of held-out residuals, in standard deviations. These are the declared standard deviations times
+/// the factor by which the readings scatter more than declared, unless a field says otherwise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeldOut {
-    /// Without any effect, with the calibration refitted.
+    /// Root mean square of the held-out residuals without any effect, with the calibration refitted.
     pub rms_before: f64,
-    /// With the effects.
+    /// Root mean square of the held-out residuals with the effects.
     pub rms_after: f64,
-    /// With the effects, in the standard deviations as declared.
+    /// Root mean square of the held-out residuals with the effects, in declared standard deviations.
     pub rms_declared_after: f64,
-    /// How many numbers were predicted.
+    /// Number of measured values that were held out and predicted.
     pub count: usize,
 }
 
-/// Residual of every datum with its pose held out \[declared standard deviations\]; `None` for data that are
+/// Residual of every datum, predicted with its pose held out, measured minus predicted \[declared standard
+/// deviations\]. `u` holds the parameters of the full fit, from which each refit starts. `None` for data that are
 /// never held out.
 pub(crate) fn residuals(forward: &Forward, model: &Model, u: &[f64], weights: &Weights) -> Vec<Option<f64>> {
-    // A frequency steps where a torque passes a break point. With the break points free, a held-out test on
-    // the step would be predicted from either side by chance.
+    // A frequency jumps where a torque passes a break point. If the break points were free, a held-out test close to a
+    // break point would be predicted from either side by chance.
     let mut model = model.clone();
     model.held = model.break_points().into_iter().map(|p| (p, u[p])).collect();
     let model = &model;
@@ -60,7 +61,7 @@ pub(crate) fn residuals(forward: &Forward, model: &Model, u: &[f64], weights: &W
     all
 }
 
-/// Root mean square; 0 for an empty list.
+/// Root mean square of the residuals, in their unit; 0 for an empty list.
 pub(crate) fn rms(residuals: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = residuals.fold((0.0, 0.0), |(s, n), r| (s + r * r, n + 1.0));
     if count == 0.0 { 0.0 } else { f64::sqrt(sum / count) }

@@ -1,10 +1,10 @@
 //! Computes 95 % intervals of fitted parameters.
 //!
-//! Where the objective is a parabola, its curvature gives the interval. A gear's curve has a posterior
-//! distribution of its own ([`curve_interval`](super::curve_interval)). Elsewhere the objective may not be a
-//! parabola: a torque scale, or a value near the end of its range. There the interval follows the profile
-//! likelihood: the parameter is held, everything else is refitted, and the end is where the objective has
-//! risen by 3.84.
+//! Where the objective is quadratic, its curvature gives the interval. The parameters of a gear's torsion curve get
+//! their intervals from a posterior distribution ([`curve_interval`](super::curve_interval)). For other parameters the
+//! objective may not be quadratic, such as for a torque scale or for a value near the end of its range. The interval
+//! then follows the profile likelihood: the parameter is held, all others are refitted, and the end is where the
+//! objective has risen by 3.84.
 
 use super::curve_interval::curve_intervals;
 use super::descent::{Effort, Fit, Weights, data_curvature, descent};
@@ -17,10 +17,11 @@ use rayon::prelude::*;
 
 /// Standard normal deviate of a two-sided probability of 95 %.
 const Z95: f64 = 1.959_964;
-/// Rise of the objective at the ends of a 95 % interval.
+/// Rise of the objective at the ends of a 95 % interval: the 95 % quantile of chi-squared with one degree of freedom.
 const RISE: f64 = 3.841_459;
 
-/// Standard deviation of every parameter from the curvature.
+/// Standard deviation of every parameter of the fit, in `u`, from the curvature of the objective; infinite if the
+/// curvature is singular.
 pub(crate) fn deviations(fit: &Fit) -> Vec<f64> {
     let n = fit.curvature.nrows();
     let covariance =
@@ -28,18 +29,19 @@ pub(crate) fn deviations(fit: &Fit) -> Vec<f64> {
     (0..n).map(|p| covariance[(p, p)].abs().sqrt()).collect()
 }
 
-/// Intervals of the parameters of all effects, in their order.
+/// 95 % intervals of the parameters of all effects of the fit `best`, in the order of the parameters.
 pub(crate) fn intervals(forward: &Forward, best: &Fit, weights: &Weights) -> Vec<Interval> {
     let deviations = deviations(best);
     let breaks = best.model.break_points();
-    let of_effect = |effect: usize| {
+    let of_effect = |effect: usize| -> Vec<Interval> {
         let first = best.model.first_parameter(effect);
         let own = first..first + best.model.effects[effect].free_parameters.len();
         let pair: Vec<usize> = breaks.iter().copied().filter(|p| own.contains(p)).collect();
         match pair.as_slice() {
             [a, b] => {
                 let ends = curve_intervals(forward, best, weights, own.clone(), [*a, *b], &deviations);
-                // the posterior does not know by how much the masses shift the torques
+                // the posterior distribution does not include the uncertainty of the torques that the tolerance of
+                // masses causes
                 let slack = |p| if pair.contains(&p) { Z95 * torque_deviation(best) } else { 0.0 };
                 let widened = |(p, ends): (usize, Interval)| {
                     ends.with(best.point.u[p]).wider(slack(p), best.model.bounds(p))
@@ -49,13 +51,15 @@ pub(crate) fn intervals(forward: &Forward, best: &Fit, weights: &Weights) -> Vec
             _ => own.map(|p| interval(forward, best, weights, effect, p, deviations[p])).collect(),
         }
     };
-    (0..best.model.effects.len())
-        .into_par_iter()
-        .flat_map_iter(|e| -> Vec<Interval> { of_effect(e) })
-        .collect()
+    let closed = |effect: usize| -> Vec<Interval> {
+        let own = best.model.effects[effect].free_parameters.iter().zip(of_effect(effect));
+        own.map(|(parameter, ends)| parameter.closed(ends)).collect()
+    };
+    (0..best.model.effects.len()).into_par_iter().flat_map_iter(closed).collect()
 }
 
-/// The interval of parameter `p`, which belongs to an effect and has the standard deviation `sd`.
+/// The 95 % interval of the parameter with index `p`, which belongs to the effect with index `effect` and has the
+/// standard deviation `sd`.
 fn interval(forward: &Forward, best: &Fit, weights: &Weights, effect: usize, p: usize, sd: f64) -> Interval {
     let crooked = best.model.effects[effect].kind.traits.is_nonlinear;
     let (low, high) = best.model.bounds(p);
@@ -70,23 +74,23 @@ fn interval(forward: &Forward, best: &Fit, weights: &Weights, effect: usize, p: 
     Interval { low: end(-1.0), high: end(1.0) }
 }
 
-/// Standard deviation of the logarithm of a joint's torque, as the tolerance of masses leaves it. At a break point
-/// the frequencies step, and the step cannot be placed more closely than this. A refit does not reveal the
-/// uncertainty, because it cannot move a test across the step.
+/// Relative standard deviation of a joint's torque that the tolerance of masses causes. At a break point of a gear's
+/// curve the frequencies jump, and the torque of the jump is not known better than this. A refit does not show this
+/// uncertainty, because it cannot move a test across the jump.
 fn torque_deviation(best: &Fit) -> f64 {
     let numbers = best.model.nuisance.numbers.iter();
     let masses = numbers.filter(|(calibration, _)| matches!(calibration, Calibration::Mass(_)));
     masses.map(|(_, sd)| *sd).fold(0.0, f64::max)
 }
 
-/// The lowest objective that a descent from `u` finds. Break points of a gear's curve make the frequencies
-/// step, and steps stop a descent. Unless the first result is below `enough`, a second descent starts from a
-/// smoothed curve.
+/// The lowest objective that a descent from the parameters `u` finds. Break points of a gear's curve make the
+/// frequencies jump, and a descent stops at a jump. Unless the first descent ends below `enough`, a second one starts
+/// where a descent with a smoothed curve ends.
 fn refit(forward: &Forward, mut model: Model, u: &[f64], weights: &Weights, enough: f64) -> f64 {
     let effort = Effort { steps: 5, tolerance: 0.02 };
     let end = |model: &Model, u: &[f64], effort| descent(forward, model, u, weights, effort, f64::INFINITY);
     let straight = end(&model, u, effort).objective;
-    // without frequencies there are no steps to stop a descent
+    // without frequencies there are no jumps at which a descent stops
     if straight < enough || model.break_points().is_empty() || forward.modal.is_empty() {
         return straight;
     }
@@ -96,8 +100,10 @@ fn refit(forward: &Forward, mut model: Model, u: &[f64], weights: &Weights, enou
     straight.min(end(&model, &start, effort).objective)
 }
 
-/// One end of a parameter's 95 % interval, where the objective, refitted with the parameter held, has risen by
-/// [`RISE`]. `None` if it does not rise so much within the parameter's range.
+/// One end of the 95 % interval of the parameter with index `p`: the value at which the objective, with all other
+/// parameters refitted, has risen by [`RISE`]. `side` is -1 for the lower end and 1 for the upper end; `sd` is the
+/// standard deviation from which the first guess comes. `None` if the objective does not rise so much within the
+/// range of the parameter.
 fn profile(forward: &Forward, best: &Fit, weights: &Weights, p: usize, side: f64, sd: f64) -> Option<f64> {
     let (low, high) = best.model.bounds(p);
     let u = best.point.u[p];
@@ -120,7 +126,7 @@ fn profile(forward: &Forward, best: &Fit, weights: &Weights, p: usize, side: f64
         if here < RISE && value == limit {
             return None;
         }
-        // the secant method on the square root of the rise, which is nearly straight
+        // secant method on the square root of the rise, which is nearly linear
         let (a, b) = (near.1, here.max(1e-3).sqrt());
         let slope = (value - near.0) / (b - a);
         if here < RISE {

@@ -9,41 +9,47 @@ use crate::reconcile::forward::modal::ModalTest;
 use crate::reconcile::forward::prepared::Forward;
 use std::collections::{HashMap, HashSet};
 
-/// The quality of the readings, as the residuals show it.
+/// Quality of the readings as the residuals of a fit show it: gross errors, and how much more the readings scatter
+/// than declared.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Noise {
-    /// Factor on the declared standard deviations of static, modal and windup readings.
+    /// Factors on the declared standard deviations of static, modal and windup readings, in this order.
     pub scale: [f64; 3],
-    /// Rows that are gross errors: channel, row from 0, size in declared standard deviations.
+    /// Rows that are gross errors: channel, row counted from 0, and size of the residual in declared standard
+    /// deviations.
     pub outliers: Vec<(Channel, usize, f64)>,
 }
 
 /// A reading is a gross error if its residual is at least this many standard deviations.
 const GROSS: f64 = 5.5;
-/// Before any effect is searched for, a reading is a gross error only from this many standard deviations on. Play or
-/// a break point can put a single reading ten standard deviations off.
+/// A row is a gross error, before any effect is sought, only if its residual is larger than this \[standard
+/// deviations\]. The limit is high, because play or a break point can shift a single reading by ten standard
+/// deviations.
 const UNMISTAKABLE: f64 = 16.0;
-/// Largest part of a channel's rows that can be gross errors. More are a structure that the model lacks.
+/// Largest fraction of a channel's rows that can be gross errors. If there are more, the cause is something that the
+/// model lacks.
 const FEW: f64 = 0.10;
-/// Largest part of a channel's rows that can be gross errors before any effect is searched for. It is smaller than
-/// [`FEW`], because an effect may move only a few frequencies, and these must stay.
+/// Largest fraction of a channel's rows that can be gross errors before any effect is sought. It is smaller than
+/// [`FEW`], because an effect may change only a few frequencies, and these must not be left out.
 const FEW_UNSEEN: f64 = 0.05;
-/// Largest part of the frequency lists that can have been numbered wrongly.
+/// Largest fraction of the frequency lists (modes of one pose and payload) that can have been numbered wrongly.
 const FEW_LISTS: f64 = 0.34;
-/// Largest number of gross errors that may replace an effect. More of them have a common cause.
+/// Largest number of gross errors that may be assumed instead of an effect. More of them have a common cause.
 const MOST_SLIPS: usize = 2;
-/// The channels whose readings are judged.
+/// The channels (kinds of readings) whose quality is judged.
 const CHANNELS: [Channel; 3] = [Channel::Static, Channel::Modal, Channel::Windup];
-/// Largest factor on the declared standard deviations. Larger spreads are taken for missing physics, not for a
-/// wrongly declared standard deviation.
+/// Largest factor on the declared standard deviations. A larger scatter is ascribed to missing physics and not to a
+/// wrong declaration.
 const LARGEST_SCALE: f64 = 1.4;
-/// A model fits most readings if the robust spread of its residuals is at most one plus this \[declared standard
-/// deviations\].
+/// A model fits most readings of a channel if the robust standard deviation of its residuals exceeds the declared one
+/// by at most this fraction. For a channel with few readings, [`BY_CHANCE`] allows more.
 const CLOSE: f64 = 0.5;
-/// Room for chance in the test of the spread: three standard deviations of the spread, times the root of the number
-/// of readings. (The standard deviation of the median of absolute values is 1.17 times the spread over that root.)
+/// Allowance for chance when the robust standard deviation of n residuals is tested: it may exceed the declared one
+/// by the fraction `BY_CHANCE / √n`. This is three times its own standard deviation, which is 1.17 / √n of the
+/// declared one, because it comes from the median of absolute values.
 const BY_CHANCE: f64 = 3.5;
-/// Number of readings that the declared standard deviation counts for when the factor on it is estimated.
+/// Weight of the declared standard deviation when its factor is estimated from the residuals, as a number of
+/// readings.
 const TRUST: f64 = 15.0;
 
 impl Default for Noise {
@@ -53,7 +59,8 @@ impl Default for Noise {
 }
 
 impl Noise {
-    /// The weights of the data under this judgement of the readings.
+    /// Weights of the data: gross errors get 0, and all other data the reciprocal of their standard deviation times
+    /// the factor of the channel.
     pub fn weights(&self, forward: &Forward) -> Weights {
         let outliers: HashSet<(usize, usize)> =
             self.outliers.iter().map(|(channel, row, _)| (*channel as usize, *row)).collect();
@@ -64,7 +71,8 @@ impl Noise {
         Weights { inverse: inverse.collect(), smooth_only: false }
     }
 
-    /// Whether a model fits most readings of every channel.
+    /// Whether the model of `fit` fits most readings of every channel, by the robust standard deviation of its
+    /// residuals.
     pub fn is_close(forward: &Forward, fit: &Fit) -> bool {
         let residuals = declared_residuals(forward, &fit.point.predicted);
         CHANNELS.into_iter().all(|channel| {
@@ -73,8 +81,8 @@ impl Noise {
         })
     }
 
-    /// Leaves out at most a few extreme outliers of each channel, by their misfit in a fit with these
-    /// weights. One slip among ten frequencies would spoil a calibration.
+    /// Judges the readings before an effect is sought: leaves out at most a few extreme outliers of each channel, by
+    /// their misfit in a fit with these weights. A single wrong frequency among ten would spoil a calibration.
     pub fn without_worst(forward: &Forward, fit: &Fit, weights: &Weights) -> Self {
         let mut outliers = misses(forward, fit, weights);
         outliers.retain(|(_, _, size)| *size > UNMISTAKABLE);
@@ -88,8 +96,8 @@ impl Noise {
         Self { outliers, ..Self::default() }
     }
 
-    /// Leaves out one or two further rows that a fit shows as possible gross errors. `None` if there are no such
-    /// rows, or more than two.
+    /// This judgement with one or two more rows left out, which are gross errors in `fit`. `None` if there are no
+    /// such rows, or more than two.
     pub fn with_slips(&self, forward: &Forward, fit: &Fit) -> Option<Self> {
         let mut slips = misses(forward, fit, &self.weights(forward));
         slips.retain(|(_, _, size)| *size > GROSS);
@@ -113,15 +121,16 @@ impl Noise {
         Some(Self { outliers, ..self.clone() })
     }
 
-    /// The same judgement with all frequencies included; `None` if none of them is left out.
+    /// This judgement with all frequencies kept as good readings; `None` if it leaves out no frequency.
     pub fn with_frequencies(&self) -> Option<Self> {
         let mut with = self.clone();
         with.outliers.retain(|(channel, _, _)| *channel != Channel::Modal);
         (with.outliers.len() < self.outliers.len()).then_some(with)
     }
 
-    /// Gross errors that show before any effect is searched for. They are sought only where calibration alone
-    /// fits most readings, because the trace of an effect must not be taken for an error.
+    /// Gross errors that are visible before any effect is sought, by the residuals of the baseline (calibration
+    /// alone). They are sought only if the baseline fits most readings, because the signal of an effect must not be
+    /// taken for an error.
     pub fn first_look(forward: &Forward, baseline: &Fit, weights: &Weights) -> Self {
         if !Self::is_close(forward, baseline) {
             return Self::default();
@@ -138,7 +147,8 @@ impl Noise {
         Self { outliers, ..Self::default() }.with_whole_lists(forward, &residuals)
     }
 
-    /// Judges the readings by the residuals of a fit that had these weights.
+    /// Judges the readings by the residuals of `fit`, which was fitted with `weights`: finds gross errors, and a
+    /// factor on the declared standard deviations of each channel.
     pub fn from_fit(forward: &Forward, fit: &Fit, weights: &Weights) -> Self {
         let mut noise = Self::default();
         let residuals = declared_residuals(forward, &fit.point.predicted);
@@ -146,12 +156,12 @@ impl Noise {
         for channel in CHANNELS {
             let range = forward.range(channel);
             let own = &residuals[range.clone()];
-            // where the model fits badly, only rows that stand out from the rest are gross
+            // if the model fits badly, only rows that differ from the other rows are gross errors
             let limit = GROSS * spread(own).clamp(1.0, 3.0);
             let data = &forward.data[range.clone()];
             let mut gross = largest_of_rows(data.iter().zip(own.iter().map(|r| r.abs())));
             gross.retain(|(_, size)| *size > limit);
-            // many large residuals are a structure and not errors
+            // many large residuals have a common cause and are no gross errors
             if gross.len() > at_most(FEW, rows(forward, channel)) {
                 continue;
             }
@@ -164,8 +174,9 @@ impl Noise {
         noise.with_whole_lists(forward, &residuals)
     }
 
-    /// Leaves out the few frequency lists that the model with these coefficients misses by far. `None` if there is no
-    /// such list, or if there are many.
+    /// Leaves out the few frequency lists (modes of one pose and payload) in which the model with these coefficients
+    /// misses several frequencies by more than 16 standard deviations. `None` if there is no such list, or if more
+    /// than a third of the lists are so.
     pub fn uncertain_lists(forward: &Forward, coefficients: &Coefficients) -> Option<Self> {
         let residuals = declared_residuals(forward, &forward.predict(coefficients));
         let far = |datum: usize| residuals[datum].abs() > UNMISTAKABLE;
@@ -180,8 +191,8 @@ impl Noise {
         Some(Self { outliers, ..Self::default() })
     }
 
-    /// Leaves out every row of a frequency list that has several gross errors. Its pose, its payload or its
-    /// numbering is wrong, and the remaining rows would mislead.
+    /// This judgement without any row of a frequency list that has several gross errors. The pose, the payload or the
+    /// numbering of such a list is wrong, and its remaining rows would mislead.
     fn with_whole_lists(mut self, forward: &Forward, residuals: &[f64]) -> Self {
         for list in gross_lists(forward, &self.weights(forward)) {
             for &(datum, _) in &forward.modal[list].modes {
@@ -195,19 +206,20 @@ impl Noise {
         self
     }
 
-    /// Whether two judgements leave out the same rows.
+    /// Whether this judgement and `other` leave out the same rows.
     pub fn same_rows(&self, other: &Self) -> bool {
         let rows = |n: &Self| n.outliers.iter().map(|(c, r, _)| (*c, *r)).collect::<Vec<_>>();
         rows(self) == rows(other)
     }
 
-    /// Whether two judgements lead to nearly the same weights.
+    /// Whether this judgement and `other` leave out the same rows and have factors on the standard deviations that
+    /// differ by less than 3 %.
     pub fn agrees(&self, other: &Self) -> bool {
         self.same_rows(other) && self.scale.iter().zip(&other.scale).all(|(a, b)| (a / b - 1.0).abs() < 0.03)
     }
 }
 
-/// The frequency lists, numbered from 0, of which several rows are left out.
+/// Indices of the frequency lists (modes of one pose and payload) of which `weights` leave out more than one row.
 pub fn gross_lists(forward: &Forward, weights: &Weights) -> Vec<usize> {
     let left_out = |list: usize| {
         let modes = forward.modal[list].modes.iter();
@@ -216,10 +228,10 @@ pub fn gross_lists(forward: &Forward, weights: &Weights) -> Vec<usize> {
     (0..forward.modal.len()).filter(|list| left_out(*list) > 1).collect()
 }
 
-/// The misfit of each row if the fit did not follow that row \[declared standard deviations\], the largest
-/// first.
+/// The misfit of each row of each channel if the fit did not follow this row \[declared standard deviations\]: the
+/// residual divided by the root of one minus the leverage. Returns channel, row and misfit, the largest misfit first.
 fn misses(forward: &Forward, fit: &Fit, weights: &Weights) -> Vec<(Channel, usize, f64)> {
-    // a row that the fit follows completely would otherwise divide by zero
+    // prevents a division by zero for a row that the fit follows completely
     const LARGEST_LEVERAGE: f64 = 0.9;
     let residuals = declared_residuals(forward, &fit.point.predicted);
     let sizes = residuals.iter().zip(fit.leverages(weights));
@@ -235,10 +247,11 @@ fn misses(forward: &Forward, fit: &Fit, weights: &Weights) -> Vec<(Channel, usiz
     out
 }
 
-/// The gross rows of a channel without those that follow each other in one pose, or on the bench, and err in the same
-/// sense. Slips do not come in a row. What does, is a structure: a clamp that gives way at the end of a load.
+/// The gross errors `gross` of a channel (row and size), without those that form a run. A run is consecutive rows of
+/// one pose, or of the bench, with errors of the same sign. Slips are single, whereas a run has a cause, such as a
+/// clamp that slips at the end of a load.
 fn without_runs(data: &[Datum], residuals: &[f64], gross: Vec<(usize, f64)>) -> Vec<(usize, f64)> {
-    // where and in which sense a row errs most
+    // component, value and pose of the largest error of each row
     let mut worst: HashMap<usize, (usize, f64, usize)> = HashMap::new();
     for (datum, residual) in data.iter().zip(residuals) {
         let own = worst.entry(datum.row).or_insert((datum.component, *residual, datum.group));
@@ -250,7 +263,7 @@ fn without_runs(data: &[Datum], residuals: &[f64], gross: Vec<(usize, f64)>) -> 
         (Some(a), Some(b)) => a.0 == b.0 && a.2 == b.2 && a.1.signum() == b.1.signum(),
         _ => false,
     };
-    // the modes of a list follow each other because they are numbered so
+    // the modes of a list are consecutive rows by their numbering, so a run among them means nothing
     let in_order = data.first().is_some_and(|datum| datum.channel != Channel::Modal);
     let rows: HashSet<usize> = gross.iter().map(|(row, _)| *row).collect();
     let follows = |row: usize| {
@@ -260,7 +273,8 @@ fn without_runs(data: &[Datum], residuals: &[f64], gross: Vec<(usize, f64)>) -> 
     gross.into_iter().filter(|(row, _)| !(in_order && follows(*row))).collect()
 }
 
-/// The largest size among the data of each row of a channel. Rows come in the order of their first datum.
+/// The rows of a channel, each with the largest of the `sizes` of its data. The rows come in the order of their first
+/// datum.
 fn largest_of_rows<'a>(sizes: impl Iterator<Item = (&'a Datum, f64)>) -> Vec<(usize, f64)> {
     let mut out: Vec<(usize, f64)> = Vec::new();
     let mut known: HashMap<usize, usize> = HashMap::new();
@@ -274,30 +288,31 @@ fn largest_of_rows<'a>(sizes: impl Iterator<Item = (&'a Datum, f64)>) -> Vec<(us
     out
 }
 
-/// Number of rows of a channel's file.
+/// Number of rows of a channel's file, up to the last one that has a datum.
 fn rows(forward: &Forward, channel: Channel) -> usize {
     forward.data[forward.range(channel)].iter().map(|d| d.row).max().map_or(0, |r| r + 1)
 }
 
-/// Number of rows that make a part of a file, at least one.
+/// Number of rows that make up the fraction `part` of a file with `rows` rows, at least one.
 fn at_most(part: f64, rows: usize) -> usize {
     ((part * rows as f64) as usize).max(1)
 }
 
-/// Residuals, measured minus predicted, in declared standard deviations.
+/// Residuals of the readings `predicted`, measured minus predicted \[declared standard deviations\].
 fn declared_residuals(forward: &Forward, predicted: &[f64]) -> Vec<f64> {
     forward.data.iter().zip(predicted).map(|(d, p)| (d.value - p) / d.sigma).collect()
 }
 
-/// Robust standard deviation of the residuals: the few largest do not change it.
+/// Robust standard deviation of the residuals, in their unit, from the median of their absolute values. A few large
+/// residuals do not change it.
 fn spread(residuals: &[f64]) -> f64 {
     1.4826 * median(residuals.iter().map(|r| r.abs()).collect())
 }
 
-/// The factor on declared standard deviations that residuals and their leverages suggest. The square of a
-/// residual has the expectation `1 - leverage`, because the parameters take up the rest. A factor that could
-/// be chance counts too. To wait for significance would leave intervals too narrow wherever a channel has few
-/// readings.
+/// Factor on the declared standard deviations of a channel, at least 1, from the residuals and leverages of its rows
+/// `kept`. The square of a residual has the expectation `1 - leverage`, because the parameters absorb the rest. A
+/// factor that could be chance is applied too: waiting for significance would leave intervals too narrow in channels
+/// with few readings.
 fn scale(kept: impl Iterator<Item = (f64, f64)>) -> f64 {
     let (sum, count) =
         kept.fold((TRUST, TRUST), |(sum, count), (r, leverage)| (sum + r * r, count + 1.0 - leverage));

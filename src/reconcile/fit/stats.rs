@@ -1,6 +1,6 @@
-//! Tail probabilities and medians.
+//! Tail probabilities of the chi-squared and normal distributions, and medians.
 
-/// Probability that a chi-squared variable of `dof` degrees exceeds `x`, as its natural logarithm.
+/// Natural logarithm of the probability that a chi-squared variable of `dof` degrees of freedom exceeds `x`.
 pub(crate) fn ln_chi_squared_tail(x: f64, dof: f64) -> f64 {
     if x <= 0.0 {
         return 0.0;
@@ -9,12 +9,12 @@ pub(crate) fn ln_chi_squared_tail(x: f64, dof: f64) -> f64 {
     if x < a + 1.0 { ln_tail_by_series(a, x) } else { ln_tail_by_fraction(a, x) }
 }
 
-/// Two-sided probability of a standard normal deviate beyond `z`, as its natural logarithm.
+/// Natural logarithm of the probability that the absolute value of a standard normal deviate exceeds `z`.
 pub(crate) fn ln_normal_tail(z: f64) -> f64 {
     ln_chi_squared_tail(z * z, 1.0)
 }
 
-/// Probability of a standard normal deviate below `z`.
+/// Probability that a standard normal deviate is below `z`.
 pub(crate) fn normal_below(z: f64) -> f64 {
     let beyond = 0.5 * libm::exp(ln_normal_tail(z));
     if z < 0.0 { beyond } else { 1.0 - beyond }
@@ -31,7 +31,7 @@ fn ln_tail_by_series(a: f64, x: f64) -> f64 {
     libm::log((1.0 - lower).max(1e-300))
 }
 
-/// Lentz's continued fraction of the upper incomplete gamma function.
+/// Natural logarithm of the upper tail, by Lentz's continued fraction of the incomplete gamma function.
 fn ln_tail_by_fraction(a: f64, x: f64) -> f64 {
     const TINY: f64 = 1e-300;
     let mut b = x + 1.0 - a;
@@ -56,7 +56,7 @@ fn non_zero(x: f64) -> f64 {
     if x.abs() < 1e-300 { 1e-300 } else { x }
 }
 
-/// Lanczos' approximation (g = 7, 9 terms), x > 0.
+/// Natural logarithm of the gamma function at `x` > 0, by Lanczos' approximation (g = 7, 9 terms).
 fn ln_gamma(x: f64) -> f64 {
     const C: [f64; 8] = [
         676.520_368_121_885_1,
@@ -74,7 +74,7 @@ fn ln_gamma(x: f64) -> f64 {
     0.5 * libm::log(std::f64::consts::TAU) + (x + 0.5) * libm::log(t) - t + libm::log(sum)
 }
 
-/// The median; 0 for an empty list.
+/// The median of the values, in their unit; 0 for an empty list.
 pub(crate) fn median(mut values: Vec<f64>) -> f64 {
     if values.is_empty() {
         return 0.0;

@@ -1,25 +1,27 @@
-//! Fits models whose frequencies step.
+//! Fits models whose frequencies jump.
 //!
-//! A joint swings with the slope of its gear's curve at the torque of the test. Where the torque is close to a break
-//! point, the masses within their tolerance decide on which side it lies, and the frequencies step when it crosses. No
-//! descent sees past a step. So the steps are smoothed at first and then sharpened, and the descent begins from more
-//! than one point.
+//! A joint vibrates with the slope of its gear's torsion curve at the torque of the test. If the torque is close to a
+//! break point, masses within their tolerance decide on which side it lies, and the frequencies jump when it crosses. A
+//! descent cannot pass a jump. So the curve is smoothed at first and then sharpened step by step, and the descent
+//! starts from more than one point.
 
 use super::descent::{Effort, Fit, Weights, descent, fit};
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::Model;
 
-/// Widths of smoothing of a gear's curve \[ln of the torque\], in the order of the descents. The wide one lets a descent
-/// see past the steps of the frequencies. The narrow one leaves the steps nearly sharp.
+/// Widths over which the jumps of slope of a gear's curve are smoothed \[ln of the torque\], in the order of the
+/// descents. The wide one lets a descent pass the jumps of the frequencies. With the narrow one the jumps are nearly
+/// sharp.
 pub(crate) const WIDE: f64 = 0.1;
 pub(crate) const NARROW: f64 = 0.01;
 const WIDTHS: [f64; 3] = [WIDE, 0.03, NARROW];
 
-/// A torque this close to a break point may lie on either side \[ln of the torque\]: five standard deviations of masses
-/// with a tolerance of 4 %.
+/// Largest logarithm of the ratio of a torque to a break point at which the torque may lie on either side. It
+/// corresponds to five standard deviations of masses with a tolerance of 4 %.
 const CLOSE: f64 = 0.1;
 
-/// The point from which a sharp descent starts, after descents with the steps smoothed.
+/// Starting parameters for a fit with the exact torsion curve: the end of three descents from `start`, in which the
+/// curve is smoothed less and less.
 pub(crate) fn smoothed_start(forward: &Forward, model: &Model, start: &[f64], weights: &Weights) -> Vec<f64> {
     let mut model = model.clone();
     let few = Effort { steps: 8, tolerance: 0.05 };
@@ -29,8 +31,8 @@ pub(crate) fn smoothed_start(forward: &Forward, model: &Model, start: &[f64], we
     })
 }
 
-/// Fits a model from each of the starts, and returns the best fit. Where a test is close to a break point of a gear's
-/// curve, the steps are also smoothed at first.
+/// Fits a model from each of the `starts` and returns the fit with the lowest objective. If the torque of a test is
+/// close to a break point of a gear's curve, each start is also tried with the curve smoothed at first.
 pub(crate) fn best_fit<'a>(
     forward: &Forward,
     model: &Model<'a>,

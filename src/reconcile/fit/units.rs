@@ -1,8 +1,9 @@
-//! Finds readings in another unit than the file states, whose standard deviations are in the stated unit.
+//! Finds readings that are in another unit than the file states, while their standard deviations are in the stated
+//! unit.
 //!
-//! A column that was multiplied by 25.4 has 25.4 times the noise. With the declared deviations no model fits
-//! such readings, not even one with the right factor. So the slip shows only after the deviations are
-//! enlarged by the same factor.
+//! A column that was multiplied by 25.4 has 25.4 times the noise. With the declared standard deviations no model fits
+//! such readings, not even one with the right factor. So the confusion of units is found only after the standard
+//! deviations are enlarged by the same factor.
 
 use super::stats::median;
 use crate::arm::effect::channel::Channel;
@@ -12,12 +13,12 @@ use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::Candidate;
 use crate::reconcile::readings::components::{DISPLACEMENT, FEWEST_ALIKE};
 
-/// Largest distance of the readings of a channel from a slip's factor \[ln\]. It leaves room for missing
-/// physics.
+/// Largest difference between the logarithm of the ratio of readings to nominal predictions and the logarithm of the
+/// factor between two units. It is wide, because an effect that is still missing changes the ratio.
 const NEAR: f64 = 0.25;
 
-/// A suspicion that the declared standard deviations of a channel are too small by a factor, because a unit was
-/// confused.
+/// A suspicion that the declared standard deviations of a channel are too small by a factor, because its readings are
+/// in another unit than stated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stretch {
     channel: Channel,
@@ -25,14 +26,14 @@ pub(crate) struct Stretch {
 }
 
 impl Stretch {
-    /// Whether one of the effects is this confusion of units.
+    /// Whether one of the `effects` is the confusion of units that this suspicion is about.
     pub(crate) fn is_among(&self, effects: &[&Candidate]) -> bool {
         effects
             .iter()
             .any(|effect| effect.kind.name == wrong_unit::KIND.name && effect.at == self.channel.word())
     }
 
-    /// The assumed factor, in words.
+    /// Sentence that states the factor by which the standard deviations of the channel are enlarged.
     pub(crate) fn sentence(&self) -> String {
         let Self { channel, factor } = self;
         let (channel, factor) = (channel.word(), crate::report::number::significant(*factor, 4));
@@ -42,9 +43,9 @@ impl Stretch {
     }
 }
 
-/// The channels in which a confusion of units is likely. Their readings are about the confusion's factor times those
-/// of the nominal arm, and the best model misses them by far more than declared: by a ratio nearer to the factor than
-/// to one.
+/// The channels in which a confusion of units is likely. Two conditions are needed. The ratio of the readings to the
+/// predictions of the nominal arm is about the factor between two units. The median residual of the best model, whose
+/// coefficients are `best`, is larger than the declared standard deviation times the root of this factor.
 pub(crate) fn stretches(forward: &Forward, best: &Coefficients) -> Vec<Stretch> {
     let nominal = forward.predict(&forward.coefficients(&forward.nominal));
     let predicted = forward.predict(best);
@@ -69,14 +70,15 @@ pub(crate) fn stretches(forward: &Forward, best: &Coefficients) -> Vec<Stretch> 
     [Channel::Static, Channel::Modal, Channel::Windup].into_iter().filter_map(of_channel).collect()
 }
 
-/// Readings and model of opposite sign agree at least so well that a sign was confused: the cosine of the angle between
-/// them.
+/// Reversed signs are suspected if the cosine of the angle between the vector of all readings of one component and
+/// the vector of their predictions is below this.
 const OPPOSITE: f64 = -0.9;
-/// A confusion of signs is said if the readings of the other sign are nearer to the nominal arm by this factor.
+/// Reversed signs are reported only if reversing them divides the root mean square difference between the readings
+/// and the nominal arm by at least this factor.
 const NEARER: f64 = 3.0;
 
-/// Sentences on components of the displacement that seem to be counted the other way, such as by a gauge whose plunger is
-/// pushed in.
+/// One sentence for each component of the displacement whose readings seem to have the opposite sign. An example is a
+/// dial gauge that reads positive when its plunger is pushed in.
 pub(crate) fn other_signs(forward: &Forward) -> Vec<String> {
     let nominal = forward.predict(&forward.coefficients(&forward.nominal));
     let range = forward.range(Channel::Static);
@@ -98,7 +100,7 @@ pub(crate) fn other_signs(forward: &Forward) -> Vec<String> {
     (0..3).filter_map(of_component).collect()
 }
 
-/// Multiplies the declared standard deviations of these channels by their factors.
+/// Multiplies the declared standard deviations of the channels named in `stretches` by their factors.
 pub(crate) fn stretch(forward: &mut Forward, stretches: &[Stretch]) {
     for Stretch { channel, factor } in stretches {
         let range = forward.range(*channel);

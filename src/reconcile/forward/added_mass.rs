@@ -1,14 +1,16 @@
-//! The mass matrix of an added mass as a product of few columns, so that it need not be assembled where its amount changes.
+//! The mass matrix of an added mass as a product of two matrices with few columns. The matrix then need not be
+//! assembled when the amount of mass changes.
 
 use crate::mechanics::product::Panels;
 use nalgebra::DMatrix;
 
-/// The factor `L` of the matrix `L Lᵀ` that a unit of an added mass contributes, as it is used in products.
+/// The factor `L` of the matrix `L Lᵀ`, which is the mass matrix of one unit of an added mass. It is stored in each
+/// arrangement that matrix products need.
 pub(super) struct Factor {
     pub(super) l: DMatrix<f64>,
-    /// `L` as a left factor.
+    /// The matrix `L`, arranged in memory as a left factor of products.
     pub(super) down: Panels,
-    /// `Lᵀ` as a left factor.
+    /// The matrix `Lᵀ`, arranged in memory as a left factor of products.
     pub(super) across: Panels,
 }
 
@@ -19,14 +21,14 @@ impl Factor {
     }
 }
 
-/// Number of leading coordinates; beyond them the symmetric matrix is zero.
+/// Number of leading coordinates of a symmetric matrix that matter: all rows and columns after them are zero.
 fn leading(matrix: &DMatrix<f64>) -> usize {
     let floor = 1e-14 * matrix.amax();
     (0..matrix.nrows()).rev().find(|&i| matrix.row(i).amax() > floor).map_or(0, |i| i + 1)
 }
 
-/// Pivoted Cholesky factor of a positive semidefinite matrix. It has as many columns as the matrix has rank,
-/// and only the leading rows that are not zero.
+/// Pivoted Cholesky factor of a positive semidefinite matrix. It has as many columns as the rank of the matrix, and
+/// only as many leading rows as are not zero.
 fn factor(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     let mut rest = matrix.clone();
     // the matrix is semidefinite, so smaller pivots are rounding error

@@ -6,19 +6,19 @@ use crate::arm::effect::channel::Channel;
 use crate::arm::joint_law::JointLaw;
 use crate::reconcile::readings::campaign::Campaign;
 
-/// Arc minutes in a radian.
+/// Number of arc minutes in a radian.
 pub(crate) const ARCMIN_PER_RAD: f64 = 10800.0 / std::f64::consts::PI;
 
 /// One joint's rows on the bench, in the order of the file.
 #[derive(Debug, Clone)]
 pub(crate) struct Bench {
-    /// Index of the joint in the layout.
+    /// Index of the joint among the joints of the [`Layout`].
     pub joint: usize,
     torques_nm: Vec<f64>,
     rows: Vec<usize>,
 }
 
-/// Gathers the bench rows of each joint and appends their data.
+/// Gathers the bench rows of each joint, and appends their readings to `data`.
 pub(crate) fn prepare(campaign: &Campaign, layout: &Layout, data: &mut Vec<Datum>) -> Vec<Bench> {
     let mut bench: Vec<Bench> = Vec::new();
     for (row_index, row) in campaign.windup.iter().enumerate() {
@@ -45,12 +45,12 @@ pub(crate) fn prepare(campaign: &Campaign, layout: &Layout, data: &mut Vec<Datum
 }
 
 impl Bench {
-    /// Sizes of the torques \[N m\].
+    /// Magnitudes of the torques on the joint in its bench rows \[N m\].
     pub(crate) fn sizes_nm(&self) -> impl Iterator<Item = f64> + '_ {
         self.torques_nm.iter().map(|t| t.abs())
     }
 
-    /// Writes the twist at every row \[arcmin\].
+    /// Writes the predicted twist (torsion angle) at every row of the joint to its place in `out` \[arcmin\].
     pub(crate) fn predict(&self, law: &JointLaw, out: &mut [f64]) {
         let twists = bench_twists_rad(law, &self.torques_nm);
         for (&index, twist) in self.rows.iter().zip(twists) {
@@ -59,10 +59,11 @@ impl Bench {
     }
 }
 
-/// Twists of a joint on the bench \[rad\]. The cycle runs once unrecorded, so that the friction play has
-/// settled, and then once recorded.
+/// Twists (torsion angles) of a joint on the bench, one per torque \[rad\]. The cycle of torques is computed twice,
+/// and the twists of the second time are returned: only then has the friction play reached the state that a repeated
+/// cycle has.
 pub(crate) fn bench_twists_rad(law: &JointLaw, torques_nm: &[f64]) -> Vec<f64> {
-    // the first round only brings the play to where a closed cycle has it
+    // the first round brings the play to its state in a repeated cycle
     let mut state = 0.0;
     for &torque in torques_nm {
         law.play_angle_rad(torque, &mut state);

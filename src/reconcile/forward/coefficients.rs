@@ -1,11 +1,11 @@
-//! Lists the coordinates that an arm can have, and expresses a subject as numbers on these coordinates.
+//! Lists the strain coordinates that an arm can have, and expresses a subject as numbers on these coordinates.
 
 use crate::arm::LinkModel;
 use crate::arm::base_lift::BaseLift;
 use crate::arm::effect::channel::{Channel, Reading};
-use crate::arm::effect::setup::Setup;
+use crate::arm::effect::setup::{Setup, Turned};
 use crate::arm::effect::subject::Subject;
-use crate::arm::effect::warming::Warming;
+use crate::arm::effect::warming::{Softening, Warming};
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::arm::joint_torque::JointTorque;
 use crate::arm::load::Water;
@@ -15,60 +15,64 @@ use crate::mechanics::chain::Chain;
 use crate::mechanics::{Wrench, force_wrench};
 use nalgebra::{Rotation3, Vector3};
 
-/// A joint's coordinates.
+/// Where the strain coordinates of a joint stand among all strain coordinates.
 #[derive(Debug, Clone)]
 pub struct JointSlot {
-    /// Name.
+    /// Name of the joint.
     pub name: String,
-    /// Coordinate of its twist. Its two tilts are the two coordinates before it.
+    /// Index of the coordinate of the joint's twist (torsion). The two coordinates before it are the joint's tilts.
     pub twist: usize,
 }
 
-/// A link's coordinates.
+/// Where the strain coordinates of a link stand among all strain coordinates.
 #[derive(Debug, Clone)]
 pub struct LinkSlot {
-    /// Name.
+    /// Name of the link.
     pub name: String,
-    /// Index of its first coordinate.
+    /// Index of the link's first coordinate.
     pub first: usize,
-    /// The strain that each of its coordinates produces, and the degree of its polynomial along the link.
+    /// For each coordinate of the link, the kind of strain, and the degree of its polynomial along the link.
     pub strains: Vec<(Strain, usize)>,
 }
 
-/// The coordinates of every elastic thing that an arm can have, base to tip. They are the base's tilts (0 and
-/// 1), each joint's two tilts and its twist, and each link's strains. An arm with yielding frames also has
-/// theirs.
+/// The strain coordinates of every elastic element that an arm can have, base to tip. They are the base's tilts (0 and
+/// 1), each joint's two tilts and its twist, and each link's strains. An arm with compliant frames also has coordinates
+/// for these.
 pub struct Layout {
-    /// Number of coordinates.
+    /// Number of strain coordinates.
     pub n: usize,
-    /// Joints, base to tip.
+    /// Strain coordinates of the joints, base to tip.
     pub joints: Vec<JointSlot>,
-    /// Links, base to tip.
+    /// Strain coordinates of the links, base to tip.
     pub links: Vec<LinkSlot>,
-    /// First of the four coordinates of each prismatic joint, base to tip: three of its guide, then its travel.
+    /// For each prismatic joint, base to tip, the first of its four coordinates: three of its guide, then its travel.
     slides: Vec<usize>,
-    /// Coordinates of yielding frames with their compliance. No fit changes them.
+    /// Index and compliance of each coordinate of compliant frames. No fit changes them.
     frames: Vec<(usize, f64)>,
-    /// Compliance of coordinates that a nominal arm may lack: of links as they are drawn. It is 0 for all
-    /// other coordinates.
+    /// Compliance of each strain coordinate of the links as drawn, for arms whose links are rigid in the nominal
+    /// model. It is 0 for all other coordinates.
     pub lacking: Vec<f64>,
-    /// The arm with every elastic thing present, so that mechanics lists all coordinates.
+    /// The arm with every elastic element present, so that mechanics lists all coordinates.
     pub template: Chain,
-    /// The template with a unit of one mass added, for each of the masses.
+    /// For each of the masses that a fit can change, the template with one unit of this mass added.
     pub with_mass: Vec<Chain>,
     /// Acceleration of gravity \[m/s²\].
     pub gravity_m_s2: f64,
 }
 
-/// What is special about the tests of a channel, as numbers.
+/// The special set-up of the tests of one channel, as numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TestNumbers {
-    /// Mass that hangs at the tip \[kg\].
+    /// Additional mass at the tip in these tests \[kg\].
     pub mass_kg: f64,
-    /// Centre of gravity of this mass from the tip, in the last frame \[m\].
+    /// Vector from the tip to the centre of gravity of the additional mass, in the last frame \[m\].
     pub cg_m: Vector3<f64>,
-    /// Further compliance of each joint \[rad/(N m)\], base to tip; empty if no joint yields further.
+    /// Additional compliance of each joint in these tests, base to tip \[rad/(N m)\]; empty if there is none.
     pub servo_rad_per_nm: Vec<f64>,
+    /// How each joint softens in the course of the tests, base to tip; empty if none does.
+    pub softening: Vec<Option<Softening>>,
+    /// The base turned in the course of the tests.
+    pub turned: Option<Turned>,
 }
 
 impl TestNumbers {
@@ -77,10 +81,20 @@ impl TestNumbers {
             true => Vec::new(),
             false => layout.joints.iter().map(|j| setup.servo_of(&j.name)).collect(),
         };
-        Self { mass_kg: setup.mass_kg, cg_m: setup.cg_m, servo_rad_per_nm }
+        let softening = match setup.is_steady() {
+            true => Vec::new(),
+            false => layout.joints.iter().map(|j| setup.softening_of(&j.name)).collect(),
+        };
+        Self { mass_kg: setup.mass_kg, cg_m: setup.cg_m, servo_rad_per_nm, softening, turned: setup.turned }
     }
 
-    /// Weight of the mass as a wrench about the world's origin; zero if there is none.
+    /// How a joint softens; `None` if it does not.
+    pub(crate) fn softening_of(&self, joint: usize) -> Option<Softening> {
+        self.softening.get(joint).copied().flatten()
+    }
+
+    /// Weight of the additional mass as a wrench about the world's origin; zero if there is no such mass. `tip_m` is
+    /// the position of the tip and `rotation` the rotation of the last frame in the world.
     pub fn weight(&self, tip_m: &Vector3<f64>, rotation: &Rotation3<f64>, gravity_m_s2: f64) -> Wrench {
         match self.mass_kg {
             0.0 => Wrench::zeros(),
@@ -89,72 +103,75 @@ impl TestNumbers {
     }
 }
 
-/// A subject, expressed as numbers on the coordinates.
+/// A subject (an arm under test), expressed as compliances, joint laws and masses on the strain coordinates of a
+/// [`Layout`].
 #[derive(Debug, Clone)]
 pub struct Coefficients {
-    /// Compliance of each coordinate. That of a joint's twist is 0 here, because its law is in `laws`.
+    /// Compliance of each strain coordinate. It is 0 for a joint's torsion, because the joint's law is in `laws`.
     pub linear: Vec<f64>,
-    /// Feet that lift off.
+    /// Base whose feet lift off; `None` if the feet stay on the ground.
     pub lift: Option<BaseLift>,
-    /// Laws of the joints, base to tip.
+    /// Torsion laws of the joints, base to tip.
     pub laws: Vec<JointLaw>,
-    /// Torques that act on the joints beside weight and load, beyond those of the template.
+    /// Torques on the joints by springs and the like, in addition to weight, load and the torques of the template.
     pub torques: Vec<JointTorque>,
-    /// Mass beyond the template: of each joint \[kg\], of each link's harness \[kg/m\], and water density
-    /// times added-mass coefficient \[kg/m³\].
+    /// Masses in addition to the template, one per entry of the layout's `with_mass`: of each joint \[kg\], of each
+    /// link's harness \[kg/m\], of each prismatic joint \[kg\], and water density times added-mass coefficient
+    /// \[kg/m³\].
     pub masses: Vec<f64>,
-    /// Weight beyond the template in the same units, except that water has its density alone.
+    /// The part of `masses` that has weight, in the same order and units. The last entry is the water's density alone
+    /// \[kg/m³\], without the added-mass coefficient.
     pub weights: Vec<f64>,
-    /// True minus stated payload mass \[kg\].
+    /// Actual minus stated payload mass \[kg\].
     pub payload_delta_kg: f64,
-    /// True minus stated centre of gravity of the payload, in the last frame \[m\].
+    /// Actual minus stated centre of gravity of the payload, in the last frame \[m\].
     pub payload_offset_m: Vector3<f64>,
-    /// Part of the payload's weight that buoyancy leaves.
+    /// Fraction of the payload's weight that remains after buoyancy; 1 in air.
     pub payload_weight: f64,
-    /// How the channels read.
+    /// Errors of the measuring channels (gain, sign and the like), one entry per channel.
     pub channels: [Reading; 4],
-    /// What is special about the tests of each channel.
+    /// Special set-up of the tests of each channel, such as a mass at the tip.
     pub tests: [TestNumbers; 4],
-    /// How the moduli of the links change meanwhile.
+    /// Change of the links' moduli during the tests.
     pub warming: Warming,
-    /// Width over which the slope of a gear's curve changes at a break point \[ln of the torque\].
+    /// Width over which the slope of a gear's curve changes at a break point \[ln of the torque\]; 0 for a sharp break.
     pub smoothing: f64,
 }
 
-/// What differs between two subjects for static readings.
+/// Which of the numbers that static readings depend on differ between two subjects.
 #[derive(Debug)]
 pub(crate) struct StaticChanges {
-    /// Linear compliances.
+    /// Whether the linear compliances differ.
     pub linear: bool,
-    /// Weights of the arm's masses.
+    /// Whether the weights of the arm's masses differ.
     pub weights: bool,
-    /// The payload's mass, place or buoyancy.
+    /// Whether the payload's mass, centre of gravity or buoyancy differ.
     pub payload: bool,
-    /// Feet that lift off.
+    /// Whether the lift-off of the feet differs.
     pub lift: bool,
-    /// The law of each joint.
+    /// For each joint, whether its torsion law differs.
     pub laws: Vec<bool>,
 }
 
 impl StaticChanges {
-    /// Everything differs.
+    /// States that all numbers differ, for an arm with this number of joints.
     pub(crate) fn all(joints: usize) -> Self {
         Self { linear: true, weights: true, payload: true, lift: true, laws: vec![true; joints] }
     }
 
-    /// Whether all static readings are the same.
+    /// Whether no number differs, so that all static readings are the same.
     pub(crate) fn is_none(&self) -> bool {
         !(self.linear || self.weights || self.payload || self.lift || self.laws.contains(&true))
     }
 }
 
 impl Layout {
-    /// Whether a coordinate is a strain of a link.
+    /// Whether the strain coordinate with this index belongs to a link.
     pub(crate) fn is_of_link(&self, coordinate: usize) -> bool {
         self.links.iter().any(|link| (link.first..link.first + link.strains.len()).contains(&coordinate))
     }
 
-    /// Lists the coordinates of an arm.
+    /// Lists the strain coordinates that the arm `structure` can have.
     pub fn new(structure: &Structure) -> Self {
         let full = with_everything(structure);
         let mut n = 2;
@@ -205,11 +222,12 @@ impl Layout {
     }
 }
 
-/// The structure with every elastic thing present, whatever its size, and nothing else changed.
+/// The structure with every elastic element present, each with an arbitrary compliance. Lift-off of the feet and
+/// water are left out.
 fn with_everything(structure: &Structure) -> Structure {
     let mut full = structure.clone();
     full.base_tilt_rad_per_nm = 1.0;
-    // feet that lift off move the coordinates of the base's tilts
+    // lift-off of the feet acts on the coordinates of the base's tilts
     full.base_lift = None;
     full.water = None;
     for piece in &mut full.pieces {
@@ -226,7 +244,8 @@ fn with_everything(structure: &Structure) -> Structure {
     full
 }
 
-/// The structure with one unit of each mass added, one at a time: joints, harnesses, what travels, water.
+/// For each mass that a fit can change, the structure with one unit of this mass added: the joints first, then
+/// harnesses, travelling parts and water.
 fn unit_masses(full: &Structure) -> Vec<Structure> {
     let joints = full.joints().map(|joint| {
         let mut with = full.clone();
@@ -256,11 +275,14 @@ fn unit_masses(full: &Structure) -> Vec<Structure> {
 }
 
 impl Coefficients {
-    /// Expresses a subject on the coordinates of `layout`. Masses count from those of `nominal`.
+    /// Expresses `subject` as numbers on the coordinates of `layout`. Its masses are given as differences from those
+    /// of `nominal`.
     pub fn new(layout: &Layout, nominal: &Subject, subject: &Subject) -> Self {
         let structure = &subject.structure;
         let mut linear = vec![0.0; layout.n];
-        linear[..2].fill(structure.base_tilt_rad_per_nm);
+        // a frame of the nominal base has coordinates of its own; what a subject's yields beyond it is a tilt
+        let further = structure.base_frame.0 - nominal.structure.base_frame.0;
+        (0..2).for_each(|i| linear[i] = structure.base_tilt_rad_per_nm + further[(i, i)]);
         layout.frames.iter().for_each(|(at, compliance)| linear[*at] = *compliance);
         let mut masses = Vec::with_capacity(layout.with_mass.len());
         let mut laws = Vec::with_capacity(layout.joints.len());
@@ -310,12 +332,16 @@ impl Coefficients {
         }
     }
 
-    /// The law of a joint at an angle, in a test of a channel.
-    pub(crate) fn law_at(&self, joint: usize, channel: Channel, angle_rad: f64) -> JointLaw {
-        self.law(joint, channel).at_angle(angle_rad)
+    /// The law of a joint at an angle, in a row of a channel's file.
+    pub(crate) fn law_at(&self, joint: usize, channel: Channel, angle_rad: f64, row: usize) -> JointLaw {
+        let law = self.law(joint, channel).at_angle(angle_rad);
+        match self.tests[channel as usize].softening_of(joint) {
+            Some(softening) => law.softer(softening.factor(row)),
+            None => law,
+        }
     }
 
-    /// The law of a joint in a test of a channel, at its mean over all angles.
+    /// Torsion law of a joint in a test of the channel `channel`, averaged over all joint angles.
     pub(crate) fn law(&self, joint: usize, channel: Channel) -> JointLaw {
         let mut law = self.laws[joint];
         if let Some(servo) = self.tests[channel as usize].servo_rad_per_nm.get(joint) {
@@ -324,15 +350,18 @@ impl Coefficients {
         law
     }
 
-    /// What differs between two subjects for static readings.
+    /// Which numbers that static readings depend on differ between this subject and `other`.
     pub(crate) fn static_changes(&self, other: &Self) -> StaticChanges {
-        let in_test = |c: &Self, joint: usize| c.law(joint, Channel::Static);
+        let in_test = |c: &Self, joint: usize| {
+            (c.law(joint, Channel::Static), c.tests[Channel::Static as usize].softening_of(joint))
+        };
         let laws: Vec<bool> = (0..self.laws.len()).map(|j| in_test(self, j) != in_test(other, j)).collect();
         let linear = self.linear != other.linear || self.warming != other.warming;
         let payload = self.payload_delta_kg != other.payload_delta_kg
             || self.payload_offset_m != other.payload_offset_m
             || self.payload_weight != other.payload_weight;
-        // readings count from the unloaded arm, so where twists are proportional to torques, weights do not show
+        // readings are differences from the unloaded arm, so weights have no effect where twists are proportional to
+        // torques
         let is_proportional = |law: &JointLaw| !law.has_play() && !matches!(law.curve, Curve::Windup(_));
         let lift = self.lift != other.lift;
         let is_other = linear || payload || lift || laws.contains(&true);
@@ -340,12 +369,13 @@ impl Coefficients {
         let is_heavier = (own.mass_kg, own.cg_m) != (others.mass_kg, others.cg_m)
             || self.weights != other.weights
             || self.torques != other.torques;
-        let is_linear = self.lift.is_none() && self.laws.iter().all(is_proportional);
+        let is_steady = [own, others].iter().all(|test| test.softening.is_empty());
+        let is_linear = self.lift.is_none() && is_steady && self.laws.iter().all(is_proportional);
         let weights = is_heavier && (is_other || !is_linear);
         StaticChanges { linear, weights, payload, lift, laws }
     }
 
-    /// Whether two subjects have the same frequencies and the same modal channel.
+    /// Whether this subject and `other` have the same natural frequencies and the same errors of the modal channel.
     pub fn same_modes(&self, other: &Self) -> bool {
         self.linear == other.linear
             && self.lift == other.lift

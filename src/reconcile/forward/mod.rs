@@ -1,9 +1,10 @@
-//! The model's values for every reading of a campaign, and how they change with every parameter.
+//! Predictions for every reading of a campaign, and their derivatives with respect to every parameter.
 //!
-//! The poses are fixed, so [`mechanics`](crate::mechanics) prepares once all that depends on them: the twists of
-//! all coordinates an arm can have (an absent effect is a compliance of 0), the parts of the mass matrix, the
-//! torques of dead weight. A [`Subject`](crate::arm::effect::subject::Subject) then enters through its [`Coefficients`]:
-//! compliances, laws of the joints and masses. The prepared model is linear in all of these but the laws.
+//! The poses are fixed. So [`mechanics`](crate::mechanics) computes once everything that depends on them only: the
+//! kinematic twists of all coordinates that an arm can have (an absent effect is a compliance of 0), the parts of the
+//! mass matrix, and the torques of dead weight. A [`Subject`](crate::arm::effect::subject::Subject) then enters through
+//! its [`Coefficients`]: compliances, joint laws and masses. The prepared quantities are linear in all of these except
+//! the joint laws.
 
 mod added_mass;
 pub(crate) mod bench;

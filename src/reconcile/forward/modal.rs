@@ -1,9 +1,9 @@
-//! Predicts natural frequencies by a reduced flexibility form, with exact sensitivities.
+//! Predicts natural frequencies by a reduced flexibility form, with exact derivatives.
 //!
-//! Let `F` hold the inertia forces of the nominal arm's lowest modes, with all coordinates included, even
-//! those without compliance. The trial shapes `C F` are then right to first order in every compliance and
-//! mass. With `B = C F` the reduced problem is `BᵀM B z = μ FᵀB z`, where `μ = 1/ω²`. One solution `x = B z`,
-//! scaled to `xᵀK x = 1`, with `y = M x`, gives the effect of every parameter: `dμ = yᵀ dC y / μ + xᵀ dM x`.
+//! Let `F` hold the inertia forces of the nominal arm's lowest modes, with all coordinates included, even those without
+//! compliance. The trial shapes `C F` are then correct to first order in every compliance and mass. With `B = C F` the
+//! reduced problem is `BᵀM B z = μ FᵀB z`, where `μ = 1/ω²`. One solution `x = B z`, scaled to `xᵀK x = 1`, with `y = M
+//! x`, gives the effect of every parameter: `dμ = yᵀ dC y / μ + xᵀ dM x`.
 
 use super::added_mass::Factor;
 use super::coefficients::{Coefficients, Layout};
@@ -24,47 +24,51 @@ use crate::reconcile::readings::rows::ModalRow;
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix3xX, SymmetricEigen, Vector3};
 use std::f64::consts::TAU;
 
-/// Number of trial shapes beyond the modes that are compared.
+/// Number of trial shapes that are used in addition to the number of measured modes.
 const SPARE_SHAPES: usize = 12;
 
-/// Largest cost of one frequency when two lists are compared \[squared standard deviations\].
+/// Upper limit of the cost of one frequency (its squared residual) when two numberings of a list are compared
+/// \[squared standard deviations\].
 const MISS: f64 = 400.0;
 
-/// Largest distance that one frequency can add when its mode number is in question \[ln\]. It is more than
-/// tolerance does to frequencies.
+/// Upper limit of what one frequency adds to the misfit when the order of a list is questioned: the logarithm of
+/// measured over predicted frequency. The limit is more than a change of stiffnesses and masses within tolerance
+/// causes.
 const OFF: f64 = 0.05;
 
-/// A fall from a mode to a higher one that noise does not produce \[standard deviations of the difference\].
+/// A list is out of order if a mode has a frequency lower than that of a mode with a smaller number, by more than
+/// this \[standard deviations of the difference\]. Noise does not produce such a fall.
 const UNMISTAKABLE: f64 = 5.0;
 
-/// One pose and payload whose modes were listed.
+/// The modal test of one pose and payload: the list of its measured modes, and what their computation needs.
 pub struct ModalTest {
     geometry: PoseGeometry,
     payload: Payload,
-    /// When the first mode of the list was taken.
+    /// Time and temperature of the first mode of the list.
     when: Moment,
-    /// Index of each datum, and index of the mode it is compared with, from 0.
+    /// For each datum of the list: its index, and the number of its mode, from 0.
     pub modes: Vec<(usize, usize)>,
-    /// Mass matrix of the nominal arm without payload.
+    /// Mass matrix of the nominal arm without payload, arranged in memory for matrix products.
     mass: Panels,
-    /// Factors of each added mass. They have few columns, and only the rows of coordinates inboard of the mass.
+    /// For each added mass, the factor `L` of its mass matrix `L Lᵀ`. A factor has few columns, and only the rows of
+    /// coordinates inboard of the mass.
     factors: Vec<Factor>,
     tip: Matrix3xX<f64>,
     spin: Matrix3xX<f64>,
     forces: DMatrix<f64>,
 }
 
-/// A solved mode.
+/// One vibration mode that was solved for.
 pub struct Solved {
-    /// `1/ω²`.
+    /// Eigenvalue `μ = 1/ω²`, the reciprocal of the squared angular frequency \[s²\].
     pub mu: f64,
-    /// Mode shape with a strain energy of ½ J.
+    /// Mode shape, scaled to a strain energy of 0.5 J.
     pub x: DVector<f64>,
-    /// Inertia forces of the shape.
+    /// Inertia forces of the mode shape at unit acceleration amplitude: mass matrix times shape.
     pub y: DVector<f64>,
 }
 
-/// Prepares the modal tests and appends their data.
+/// Prepares the modal tests (one for each pose and payload) of a campaign, and appends their readings to `data`.
 pub(crate) fn prepare(
     campaign: &Campaign,
     layout: &Layout,
@@ -77,7 +81,7 @@ pub(crate) fn prepare(
     for (row_index, row) in campaign.modal.iter().enumerate() {
         let group = groups.of(&row.pose_deg);
         let key = (row.pose_deg.clone(), row.payload);
-        // A mode number that comes again starts a list of its own: the test was repeated.
+        // A mode number that occurs again starts another list: the test was repeated.
         let found = keys
             .iter()
             .rposition(|k| *k == key)
@@ -126,15 +130,17 @@ impl ModalTest {
         }
     }
 
-    /// How many modes must be solved for.
+    /// Number of modes that must be computed: the highest mode number in the list.
     pub fn mode_count(&self) -> usize {
         self.modes.iter().map(|(_, mode)| mode + 1).max().unwrap_or(0)
     }
 
-    /// Takes the trial forces from the full solution for these coefficients.
+    /// Computes the trial forces `F` (inertia forces of the lowest modes) from the full eigenvalue problem with these
+    /// coefficients.
     ///
-    /// Where little yields, as in an arm with rigid links, there may be too few of them. The rest then come
-    /// from an arm whose links yield as they are drawn, and whose rigid joints yield like the softest joint.
+    /// If few coordinates are compliant, as in an arm with rigid links, there may be too few trial forces. They then
+    /// come from an arm whose links have their compliance as drawn, and whose rigid joints have that of the softest
+    /// joint.
     pub fn refresh(&mut self, layout: &Layout, coefficients: &Coefficients) {
         let mut compliances = self.compliances(layout, coefficients);
         let forces = self.trial_forces(layout, coefficients, &compliances);
@@ -142,7 +148,7 @@ impl ModalTest {
             self.forces = forces;
             return;
         }
-        // a rigid joint that an effect may free needs a trial shape too, although it does not move now
+        // a rigid joint to which an effect may give compliance needs a trial shape too
         let softest = layout.joints.iter().map(|joint| compliances[joint.twist]).fold(0.0, f64::max);
         for (own, drawn) in compliances.iter_mut().zip(&layout.lacking) {
             *own = if *own == 0.0 { *drawn } else { *own };
@@ -154,12 +160,14 @@ impl ModalTest {
         self.forces = self.trial_forces(layout, coefficients, &compliances);
     }
 
-    /// Largest number of trial shapes.
+    /// Number of trial shapes to use: the number of modes and some more. There may be fewer if few coordinates are
+    /// compliant.
     fn wanted(&self) -> usize {
         self.mode_count() + SPARE_SHAPES
     }
 
-    /// The inertia forces of the lowest modes.
+    /// The trial forces `F`: the inertia forces of the lowest modes of an arm with these `compliances`, one column
+    /// per mode.
     fn trial_forces(
         &self,
         layout: &Layout,
@@ -186,13 +194,13 @@ impl ModalTest {
             .map(|&i| &mass * eigen.eigenvectors.column(i).component_mul(&roots) / eigen.eigenvalues[i])
             .collect();
         match columns.is_empty() {
-            true => DMatrix::zeros(layout.n, 0), // nothing yields, so nothing swings
+            true => DMatrix::zeros(layout.n, 0), // without compliance there are no modes
             false => DMatrix::from_columns(&columns),
         }
     }
 
-    /// The mass matrix times shapes. The parts that parameters change have a low rank, so the matrix itself
-    /// need not be assembled.
+    /// The mass matrix times the given `shapes`. The parts of the matrix that parameters change have a low rank, so
+    /// the matrix itself need not be assembled.
     fn momenta(&self, coefficients: &Coefficients, shapes: &DMatrix<f64>) -> DMatrix<f64> {
         let mut out = self.mass.times(shapes.as_view());
         for (factor, amount) in self.factors.iter().zip(&coefficients.masses) {
@@ -219,7 +227,7 @@ impl ModalTest {
         out
     }
 
-    /// Payload mass \[kg\], and the motion of its centre of gravity per unit of each coordinate.
+    /// Mass of the payload \[kg\], and the displacement of its centre of gravity per unit of each strain coordinate.
     fn payload_jacobian(&self, coefficients: &Coefficients) -> (f64, Matrix3xX<f64>) {
         if self.payload.mass_kg == 0.0 {
             return (0.0, Matrix3xX::zeros(0));
@@ -228,8 +236,8 @@ impl ModalTest {
         (self.payload.mass_kg + coefficients.payload_delta_kg, &self.tip - arm.cross_matrix() * &self.spin)
     }
 
-    /// The mass that hangs at the tip in modal tests \[kg\], and the motion of its centre of gravity per unit of each
-    /// coordinate.
+    /// The additional mass at the tip in modal tests \[kg\], and the displacement of its centre of gravity per unit
+    /// of each strain coordinate.
     fn hung_jacobian(&self, coefficients: &Coefficients) -> (f64, Matrix3xX<f64>) {
         let test = &coefficients.tests[Channel::Modal as usize];
         match test.mass_kg {
@@ -238,7 +246,8 @@ impl ModalTest {
         }
     }
 
-    /// Compliance of every coordinate. That of a joint is the slope of its law at the torque of this test.
+    /// Compliance of every strain coordinate in this test. For a joint's torsion it is the slope of its torsion law
+    /// at the static torque of this test.
     fn compliances(&self, layout: &Layout, coefficients: &Coefficients) -> Vec<f64> {
         let mut out = coefficients.linear.clone();
         if !coefficients.warming.is_none() {
@@ -255,19 +264,19 @@ impl ModalTest {
         }
         for (j, slot) in layout.joints.iter().enumerate() {
             let torque = dead[j] + self.geometry.joints[j].twist.dot(&wrench);
-            let law = coefficients.law_at(j, Channel::Modal, self.geometry.angles_rad[j]);
+            let law = coefficients.law_at(j, Channel::Modal, self.geometry.angles_rad[j], self.when.row);
             out[slot.twist] = tangent(&law, torque, coefficients.smoothing);
         }
         out
     }
 
-    /// Moments on the base about world x and y at this test, with the wrench of its payload \[N m\].
+    /// Static moments on the base about world x and y in this test \[N m\]. `wrench` is the weight of the payload.
     fn base_moments_nm(&self, layout: &Layout, coefficients: &Coefficients, wrench: &Wrench) -> [f64; 2] {
         let dead = self.geometry.dead_base_nm(coefficients, layout, Channel::Modal);
         [0, 1].map(|i| dead[i] + self.geometry.base[i].twist.dot(wrench))
     }
 
-    /// Torques of the joints at this test \[N m\].
+    /// Static torques on the joints of an arm with these coefficients in this test, base to tip \[N m\].
     pub fn torques_nm(&self, layout: &Layout, coefficients: &Coefficients) -> Vec<f64> {
         let dead = self.geometry.dead_torques_nm(coefficients, layout, Channel::Modal);
         let wrench =
@@ -275,7 +284,8 @@ impl ModalTest {
         self.geometry.joints.iter().zip(dead).map(|(m, t)| t + m.twist.dot(&wrench)).collect()
     }
 
-    /// The lowest modes.
+    /// The `count` lowest modes of an arm with these coefficients in this test, lowest first. There are fewer if the
+    /// arm has fewer.
     pub fn solve(&self, layout: &Layout, coefficients: &Coefficients, count: usize) -> Vec<Solved> {
         if self.forces.ncols() == 0 {
             return Vec::new();
@@ -289,7 +299,7 @@ impl ModalTest {
         let reduced_mass = transposed_product(&shapes, &momenta);
         let strain = transposed_product(&self.forces, &shapes);
         let Some((amounts, a)) = unit_strains(strain, &reduced_mass) else { return Vec::new() };
-        // symmetric but for rounding: the mean with the transpose makes it exactly so
+        // symmetric up to rounding errors: the mean with the transpose makes it exactly symmetric
         let eigen = SymmetricEigen::new((&a + a.transpose()) * 0.5);
         let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
         order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]).then(i.cmp(&j)));
@@ -303,7 +313,7 @@ impl ModalTest {
             .collect()
     }
 
-    /// Whether the modes are the same with two sets of coefficients.
+    /// Whether the modes of this test are the same for two arms, given by their coefficients `from` and `to`.
     pub(crate) fn same_modes(&self, layout: &Layout, from: &Coefficients, to: &Coefficients) -> bool {
         from.masses == to.masses
             && from.payload_delta_kg == to.payload_delta_kg
@@ -312,7 +322,8 @@ impl ModalTest {
             && self.compliances(layout, from) == self.compliances(layout, to)
     }
 
-    /// Whether a frequency is lower than that of a lower mode by more than noise.
+    /// Whether some measured frequency is lower than the frequency of a mode with a smaller number, by more than
+    /// noise explains.
     fn falls(&self, data: &[Datum]) -> bool {
         self.modes.iter().any(|(a, low)| {
             self.modes.iter().any(|(b, high)| {
@@ -322,8 +333,9 @@ impl ModalTest {
         })
     }
 
-    /// Renumbers the modes if the list falls by more than noise, and returns whether it did. It does not
-    /// where one wrong frequency would be the simpler cause by these coefficients.
+    /// Renumbers the modes by rising frequency if the list is out of order by more than noise explains, and returns
+    /// whether it did. The list is not changed if its present numbering fits the frequencies predicted with these
+    /// coefficients better: then a single frequency is wrong.
     pub fn put_in_order(&mut self, layout: &Layout, coefficients: &Coefficients, data: &[Datum]) -> bool {
         if !self.falls(data) {
             return false;
@@ -347,13 +359,14 @@ impl ModalTest {
         is_simpler
     }
 
-    /// The `count` lowest frequencies \[Hz\].
+    /// The `count` lowest natural frequencies of an arm with these coefficients in this test, lowest first \[Hz\].
     fn spectrum(&self, layout: &Layout, coefficients: &Coefficients, count: usize) -> Vec<f64> {
         self.solve(layout, coefficients, count).iter().map(|s| 1.0 / (TAU * s.mu.sqrt())).collect()
     }
 
-    /// Finds a mode that is missing from the measured list. If a list with all later modes numbered one
-    /// higher fits far better, they are renumbered. Returns the number of the missing mode, from 1.
+    /// Finds a mode that is missing from the measured list. If the list fits the predicted frequencies far better
+    /// with all later modes numbered one higher, they are renumbered. Returns the number of the missing mode, counted
+    /// from 1, or `None`.
     pub fn find_missed_mode(
         &mut self,
         layout: &Layout,
@@ -369,11 +382,11 @@ impl ModalTest {
             };
             self.modes.iter().map(miss).sum()
         };
-        // the cost of the list as it is numbered
+        // the cost of the list with its present numbering
         let none = cost(usize::MAX);
         let (best, missed) =
             (0..self.mode_count()).map(|m| (cost(m), m)).min_by(|a, b| a.0.total_cmp(&b.0))?;
-        // renumbering must remove one whole miss and most of the misfit, else noise could cause it
+        // renumbering must remove one full error and most of the misfit; a smaller gain could come from noise
         if none < best + MISS || best > 0.2 * none {
             return None;
         }
@@ -381,26 +394,30 @@ impl ModalTest {
         Some(missed + 1)
     }
 
-    /// Frequencies of the compared modes \[Hz\].
+    /// Solves for the modes of this test, and writes the frequencies of the measured ones to their data in `out`
+    /// \[Hz\].
     pub fn predict(&self, layout: &Layout, coefficients: &Coefficients, out: &mut [f64]) {
         let solved = self.solve(layout, coefficients, self.mode_count());
         self.write(&solved, out);
     }
 
-    /// Writes the frequencies of solved modes. A mode that the arm does not have becomes 0.
+    /// Writes the frequencies of the modes `solved` to the data of this test in `out` \[Hz\]. A measured mode that
+    /// the arm does not have gets 0.
     pub fn write(&self, solved: &[Solved], out: &mut [f64]) {
         for &(datum, mode) in &self.modes {
             out[datum] = solved.get(mode).map_or(0.0, |s| 1.0 / (TAU * s.mu.sqrt()));
         }
     }
 
-    /// The product `xᵀ M x` for a unit of an added mass.
+    /// The product `xᵀ M x` of a mode shape `x` with `M`, the mass matrix of one unit of the added mass with index
+    /// `mass`.
     fn energy(&self, mass: usize, shape: &DVector<f64>) -> f64 {
         let factor = &self.factors[mass].l;
         factor.tr_mul(&shape.rows(0, factor.nrows())).norm_squared()
     }
 
-    /// Change of the frequencies \[Hz\] between two neighbouring sets of coefficients, to first order.
+    /// Writes to `out` the linearized change of the frequencies of this test if the coefficients change a little,
+    /// from `from` to `to` \[Hz\]. `solved` are the modes with `from`.
     pub fn change(
         &self,
         layout: &Layout,
@@ -423,7 +440,7 @@ impl ModalTest {
         let payloads = payload_moves.then(|| (self.payload_jacobian(from), self.payload_jacobian(to)));
         let tests = [from, to].map(|c| &c.tests[Channel::Modal as usize]);
         let hung = (tests[0] != tests[1]).then(|| (self.hung_jacobian(from), self.hung_jacobian(to)));
-        // twice the kinetic energy of a mass at unit frequency
+        // twice the kinetic energy of a mass at an angular frequency of 1 rad/s
         let swing = |(kg, jacobian): &(f64, Matrix3xX<f64>), x: &DVector<f64>| match *kg {
             0.0 => 0.0,
             kg => kg * (jacobian * x).norm_squared(),
@@ -451,22 +468,25 @@ impl ModalTest {
     }
 }
 
-/// A basis of the trial shapes in which the strain energy is the identity.
+/// A basis of the trial shapes in which the matrix of strain energies is the unit matrix. In this basis the reduced
+/// problem is an ordinary symmetric eigenvalue problem.
 enum UnitStrains {
-    /// The Cholesky factor of the strain energy.
+    /// The Cholesky factor of the matrix of strain energies. The basis is the inverse transpose of this factor.
     Factor(DMatrix<f64>),
-    /// The basis itself, with fewer columns than shapes. Where little yields, some shapes are combinations of
-    /// others.
+    /// The basis itself, with fewer columns than trial shapes. It is needed if some shapes are linear combinations of
+    /// others, as where few coordinates are compliant.
     Columns(DMatrix<f64>),
 }
 
-/// A combination with less than this part of the largest strain energy is rounding error.
+/// A combination of trial shapes counts as a rounding error, and is dropped, if its strain energy is less than this
+/// fraction of the largest.
 const RANK: f64 = 1e-10;
 
-/// A Cholesky factor whose pivots differ by more than this ratio is singular but for rounding.
+/// A Cholesky factor is taken as singular if the ratio of its smallest to its largest pivot is below this.
 const SINGULAR: f64 = 1e-6;
 
-/// The basis of unit strain energy, and the reduced mass matrix in it.
+/// The basis in which the strain energy matrix `strain` becomes the unit matrix, and the reduced mass matrix in this
+/// basis. `None` if there is no strain energy.
 fn unit_strains(strain: DMatrix<f64>, reduced_mass: &DMatrix<f64>) -> Option<(UnitStrains, DMatrix<f64>)> {
     if let Some(cholesky) = Cholesky::new(strain.clone()) {
         let l = cholesky.l();
@@ -491,7 +511,7 @@ fn unit_strains(strain: DMatrix<f64>, reduced_mass: &DMatrix<f64>) -> Option<(Un
 }
 
 impl UnitStrains {
-    /// Expresses a vector of that basis in the trial shapes.
+    /// Converts a vector of amounts in this basis into amounts of the trial shapes. `None` if the factor is singular.
     fn of(&self, combined: &DVector<f64>) -> Option<DVector<f64>> {
         match self {
             UnitStrains::Factor(l) => l.tr_solve_lower_triangular(combined),
@@ -500,7 +520,8 @@ impl UnitStrains {
     }
 }
 
-/// Slope of the tilt of feet that lift off \[rad/(N m)\]. Its step is smoothed over `width` \[ln of the moment\].
+/// Slope of the tilt of a base whose feet lift off, at the moment `moment_nm` \[rad/(N m)\]. The slope jumps at
+/// lift-off, and the jump is smoothed over `width` \[ln of the moment\]; 0 leaves it sharp.
 fn lifted_tangent(lift: &BaseLift, moment_nm: f64, width: f64) -> f64 {
     if width == 0.0 {
         return lift.tangent_compliance_rad_per_nm(moment_nm);
@@ -509,8 +530,8 @@ fn lifted_tangent(lift: &BaseLift, moment_nm: f64, width: f64) -> f64 {
     0.5 * (1.0 + libm::tanh(beyond)) / lift.stiffness_nm_per_rad
 }
 
-/// Slope of a joint's law \[rad/(N m)\]. The steps of a gear's curve are smoothed over `width` \[ln of the
-/// torque\].
+/// Slope of a joint's torsion law at the torque `torque_nm` \[rad/(N m)\]. The jumps of slope of a gear's curve are
+/// smoothed over `width` \[ln of the torque\]; 0 leaves them sharp.
 fn tangent(law: &JointLaw, torque_nm: f64, width: f64) -> f64 {
     let Curve::Windup(w) = law.curve else { return law.tangent_compliance_rad_per_nm(torque_nm) };
     if width == 0.0 {
@@ -524,7 +545,7 @@ fn tangent(law: &JointLaw, torque_nm: f64, width: f64) -> f64 {
     law.tangent_compliance_rad_per_nm(torque_nm) - sharp + smooth
 }
 
-/// Displacement of the tip and rotation of the last frame per unit of each coordinate.
+/// Displacement of the tip (first) and rotation of the last frame (second), per unit of each strain coordinate.
 fn tip_jacobians(posed: &Posed) -> (Matrix3xX<f64>, Matrix3xX<f64>) {
     let twists = posed.tip_twists();
     let tip: Vec<Vector3<f64>> = twists.iter().map(|t| displacement_at(t, &posed.tip_m)).collect();

@@ -1,5 +1,5 @@
-//! Prepares a campaign for fitting: its data, and everything about its poses and tests that no parameter
-//! changes.
+//! Prepares a campaign for fitting: its data, and everything about its poses and tests that does not depend on
+//! parameters.
 
 use super::bench::{self, Bench};
 use super::coefficients::{Coefficients, Layout, StaticChanges};
@@ -13,35 +13,35 @@ use crate::arm::joint_law::Curve;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::DMatrix;
 
-/// A campaign prepared for fitting.
+/// A campaign prepared for fitting: its data, and what does not depend on fitted parameters.
 pub struct Forward {
-    /// The coordinates.
+    /// The strain coordinates of the arm.
     pub layout: Layout,
-    /// The nominal arm in a test that goes as described.
+    /// The nominal arm, tested as the campaign describes.
     pub nominal: Subject,
-    /// Every measured number: static, modal, bench.
+    /// All measured numbers, in the order static, modal, bench.
     pub data: Vec<Datum>,
     /// Poses of the static rows, each with its loads.
     pub statics: Vec<StaticPose>,
-    /// Tests of the modal rows.
+    /// The modal tests, one for each pose and payload.
     pub modal: Vec<ModalTest>,
     bench: Vec<Bench>,
-    /// Index where each channel's data begin: static, modal, windup, and the end.
+    /// Index in `data` at which the data of each channel begin: static, modal, bench; then the number of all data.
     pub starts: [usize; 4],
-    /// Names of the poses that can be held out.
+    /// Names of the poses, in the order of `Datum::group`.
     pub groups: Vec<String>,
     /// Density of the payloads \[kg/m³\].
     pub payload_density_kg_m3: f64,
-    /// The largest payload that was stated \[kg\].
+    /// The largest stated payload \[kg\].
     pub largest_payload_kg: f64,
-    /// The lightest payload that was stated and is not zero \[kg\].
+    /// The smallest stated payload above zero \[kg\]; infinite if there is none.
     pub lightest_payload_kg: f64,
-    /// Whether readings of the whole arm have temperatures.
+    /// Whether some static or modal reading has a temperature.
     pub has_temperatures: bool,
 }
 
 impl Forward {
-    /// Prepares a campaign.
+    /// Prepares a campaign for fitting: lists its data, and computes what does not depend on fitted parameters.
     pub fn new(campaign: &Campaign) -> Self {
         let mut nominal = campaign.arm.subject(JointModel::ThreeSegment);
         if campaign.statement.rigid_links {
@@ -55,7 +55,7 @@ impl Forward {
         let modal = modal::prepare(campaign, &layout, &nominal, &mut groups, &mut data);
         let windup_start = data.len();
         let bench = bench::prepare(campaign, &layout, &mut data);
-        // the data lie channel by channel, so one index range selects a channel
+        // the data are sorted by channel, so one index range selects a channel
         let starts = [0, modal_start, windup_start, data.len()];
         let payloads_kg = campaign.statics.iter().map(|r| r.payload.mass_kg);
         let payloads_kg: Vec<f64> =
@@ -81,8 +81,8 @@ impl Forward {
         }
     }
 
-    /// Renumbers frequency lists that do not rise with the mode number, unless one wrong frequency is the
-    /// simpler cause. Frequencies are numbered as they rise. Returns a sentence for each list.
+    /// Renumbers the modes of frequency lists in which frequencies do not rise with the mode number, unless a single
+    /// wrong frequency is the simpler explanation. Returns a sentence for each list that was changed.
     pub fn put_modes_in_order(&mut self) -> Vec<String> {
         let nominal = self.coefficients(&self.nominal);
         let (layout, data) = (&self.layout, &self.data);
@@ -97,7 +97,8 @@ impl Forward {
             .collect()
     }
 
-    /// Renumbers frequency lists from which a mode is missing. Returns a sentence for each list.
+    /// Renumbers the modes of frequency lists from which a mode is missing, by comparison with the frequencies of an
+    /// arm with these coefficients. Returns a sentence for each list that was changed.
     pub fn find_missed_modes(&mut self, coefficients: &Coefficients) -> Vec<String> {
         let mut out = Vec::new();
         for (i, test) in self.modal.iter_mut().enumerate() {
@@ -108,13 +109,13 @@ impl Forward {
         out
     }
 
-    /// Takes the trial shapes of all modal tests from the modes with these coefficients.
+    /// Computes the trial shapes of all modal tests again, from the modes of an arm with these coefficients.
     pub fn refresh(&mut self, coefficients: &Coefficients) {
         let layout = &self.layout;
         self.modal.iter_mut().for_each(|test| test.refresh(layout, coefficients));
     }
 
-    /// Range of the channel's data.
+    /// Indices in `data` of the data of a channel.
     pub fn range(&self, channel: Channel) -> std::ops::Range<usize> {
         match channel {
             Channel::Static => self.starts[0]..self.starts[1],
@@ -124,17 +125,19 @@ impl Forward {
         }
     }
 
-    /// Number of static rows.
+    /// Number of static rows, which is the number of loads over all poses.
     pub fn static_rows(&self) -> usize {
         self.statics.iter().map(StaticPose::count).sum()
     }
 
-    /// Sizes of a joint's torques on the bench \[N m\].
+    /// Magnitudes of the torques that a joint bears on the bench \[N m\]; none if the joint is not on the bench.
+    /// `joint` is the joint's index in the layout.
     pub fn bench_torques_nm(&self, joint: usize) -> impl Iterator<Item = f64> + '_ {
         self.bench.iter().filter(move |b| b.joint == joint).flat_map(Bench::sizes_nm)
     }
 
-    /// Torque on every joint at each static or modal datum \[N m\].
+    /// Torque on every joint of an arm with these coefficients at each static or modal datum \[N m\]: one list per
+    /// datum, joints from base to tip.
     pub fn torques_nm(&self, coefficients: &Coefficients) -> Vec<Vec<f64>> {
         let mut out = vec![Vec::new(); self.starts[2]];
         for pose in &self.statics {
@@ -149,8 +152,9 @@ impl Forward {
         out
     }
 
-    /// Whether the torque of a modal test lies this close to a break point of a gear's curve \[ln of the torque\]. A small
-    /// change of a mass may then change the slope of the curve, and frequencies step.
+    /// Whether the torque on a joint in some modal test is so near a break point of the joint's gear that the
+    /// logarithm of their ratio is less than `close`. A small change of a mass may then change the slope of the
+    /// curve, and frequencies jump.
     pub(crate) fn is_close_to_a_step(&self, coefficients: &Coefficients, close: f64) -> bool {
         let breaks = coefficients.laws.iter().map(|law| match law.curve {
             Curve::Windup(curve) => vec![curve.t1_nm, curve.t2_nm],
@@ -166,12 +170,13 @@ impl Forward {
             })
     }
 
-    /// Expresses a subject as compliances, joint laws and masses.
+    /// Expresses a subject (an arm under test) as compliances, joint laws and masses, the last relative to the
+    /// nominal arm.
     pub fn coefficients(&self, subject: &Subject) -> Coefficients {
         Coefficients::new(&self.layout, &self.nominal, subject)
     }
 
-    /// The model's value for every datum.
+    /// The predicted reading of an arm with these coefficients for every datum, in the unit of the datum's file.
     pub fn predict(&self, coefficients: &Coefficients) -> Vec<f64> {
         let mut out = vec![0.0; self.data.len()];
         self.predict_smooth(coefficients, &mut out);
@@ -182,20 +187,34 @@ impl Forward {
         out
     }
 
-    /// Readings of the displacement in every static row, those of components that were not measured included \[mm\].
+    /// Predicted displacement readings of an arm with these coefficients in every static row \[mm\], including
+    /// components that were not measured.
     pub fn displacements_mm(&self, coefficients: &Coefficients) -> Vec<[f64; 3]> {
         let reading = &coefficients.channels[Channel::Static as usize];
         let mut out = Vec::new();
         for pose in &self.statics {
             let state = pose.state(&self.layout, coefficients);
             for load in 0..pose.count() {
-                let true_mm = pose.displacement_mm(&state, load);
+                let mut true_mm = pose.displacement_mm(&state, load);
                 // every component of a row is read at the same time
                 let row = pose.measured(load).next().map_or(0, |(_, datum)| self.data[datum].row);
+                if let Some(turned) = coefficients.tests[Channel::Static as usize].turned {
+                    true_mm += 1e3 * turned.moved_m(&pose.geometry.tip_m, row);
+                }
                 out.push(std::array::from_fn(|c| reading.of(true_mm[c], c, row)));
             }
         }
         out
+    }
+
+    /// Adds to the displacements \[mm\] what a base that turned in the course of the tests moves the tip by.
+    fn turn(&self, coefficients: &Coefficients, out: &mut [f64]) {
+        let Some(turned) = coefficients.tests[Channel::Static as usize].turned else { return };
+        for pose in &self.statics {
+            for (component, datum) in (0..pose.count()).flat_map(|load| pose.measured(load)) {
+                out[datum] += 1e3 * turned.moved_m(&pose.geometry.tip_m, self.data[datum].row)[component];
+            }
+        }
     }
 
     /// Predicts statics and bench only. The modal entries stay as they are. Returns the state of each static pose.
@@ -211,8 +230,10 @@ impl Forward {
         self.statics.iter().map(state).collect()
     }
 
-    /// Changes the values of statics and bench, which are those of coefficients `from` with these states of the poses, to
-    /// those of other coefficients, one column of `out` for each. What a change leaves alone is not computed again.
+    /// Predicts static and bench readings for each of the coefficient sets `to`, starting from the predictions with
+    /// `from`. `states` holds the loads and deflections in the static poses with `from`. On entry each column of
+    /// `out`, one per entry of `to`, holds the predictions with `from`. Parts that do not differ are not computed
+    /// again.
     pub fn change_smooth(
         &self,
         states: &[StaticState],
@@ -239,15 +260,17 @@ impl Forward {
         }
     }
 
-    /// Turns true values into readings.
+    /// Adds the errors of the measuring channels: turns the value of each datum in `out` into the reading that the
+    /// channel shows.
     pub fn read(&self, coefficients: &Coefficients, out: &mut [f64]) {
+        self.turn(coefficients, out);
         for (value, datum) in out.iter_mut().zip(&self.data) {
             *value = coefficients.channels[datum.channel as usize].of(*value, datum.component, datum.row);
         }
     }
 }
 
-/// Makes all links of a nominal model rigid.
+/// Makes all links of the subject rigid.
 pub(crate) fn make_links_rigid(subject: &mut Subject) {
     let names: Vec<String> = subject.structure.links().map(|l| l.name.clone()).collect();
     for name in names {

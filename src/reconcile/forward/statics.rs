@@ -1,8 +1,9 @@
-//! Predicts static readings: the displacement of the tip from its reference state.
+//! Predicts static readings: the displacement of the tip from the reference state, which is the unloaded arm.
 //!
-//! The chain is statically determinate, so torques depend on masses only. All linear compliances together
-//! move the tip by `A w`, where `A` is a 3x6 matrix per pose and `w` the wrench of the load. A joint moves it
-//! by `θ(T) - θ(T0)` times its lever. Friction play follows the order of the rows.
+//! The chain is statically determinate, so torques depend on masses only. All linear compliances together move the tip
+//! by `A w`, where `A` is a 3x6 matrix per pose and `w` the wrench of the load. A joint moves it by `θ(T) - θ(T0)`
+//! times its lever, where `T` and `T0` are the torques with and without load. Friction play depends on the order of the
+//! rows.
 
 use super::coefficients::{Coefficients, Layout, StaticChanges};
 use super::datum::{Datum, Groups};
@@ -17,47 +18,48 @@ use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::components::Component;
 use nalgebra::{Matrix3x6, Rotation3, Vector3};
 
-/// A coordinate and how it moves the tip.
+/// A strain coordinate, and how everything outboard of it and the tip move with it.
 #[derive(Debug, Clone)]
 pub struct Mover {
-    /// Index of the coordinate.
+    /// Index of the strain coordinate.
     pub index: usize,
-    /// Twist of everything outboard per unit of the coordinate.
+    /// Motion (kinematic twist) of everything outboard of the coordinate, per unit of the coordinate.
     pub twist: Twist,
-    /// Displacement of the tip per unit.
+    /// Displacement of the tip per unit of the coordinate.
     pub tip: Vector3<f64>,
 }
 
-/// Everything about a pose that no parameter changes.
+/// Everything about a pose that does not depend on fitted parameters.
 #[derive(Debug, Clone)]
 pub struct PoseGeometry {
     /// Position of the tip, world frame \[m\].
     pub tip_m: Vector3<f64>,
-    /// Rotation of the last frame.
+    /// Rotation of the last frame relative to the world.
     pub rotation: Rotation3<f64>,
-    /// Linear coordinates that move the tip.
+    /// The strain coordinates that move the tip, except those of the joints' torsion.
     pub linear: Vec<Mover>,
-    /// Twists of the joints, base to tip.
+    /// The coordinates of the joints' torsion, base to tip.
     pub joints: Vec<Mover>,
-    /// Angle of each joint \[rad\].
+    /// Angle of each joint in the pose, base to tip \[rad\].
     pub angles_rad: Vec<f64>,
-    /// Torque of the template's dead weight on each joint \[N m\], with the torque that acts on the joint beside it.
+    /// Torque on each joint by the weight of the template (the nominal arm, no payload) and by springs \[N m\].
     pub dead_nm: Vec<f64>,
-    /// The same torques for a unit of each mass.
+    /// For each mass that a fit can change, the torques on the joints by one unit of it \[N m\].
     pub dead_per_mass_nm: Vec<Vec<f64>>,
-    /// Tilts of the base about world x and y.
+    /// The two coordinates of the base's tilt, about world x and y.
     pub base: [Mover; 2],
-    /// Moments of the template's dead weight about these axes \[N m\], and those of a unit of each mass.
+    /// Moments of the template's weight about world x and y of the base \[N m\]. The next field has those of one unit
+    /// of each mass.
     dead_base_nm: [f64; 2],
     dead_base_per_mass_nm: Vec<[f64; 2]>,
 }
 
-/// One load in a pose.
+/// One load in a pose: payload and tip force.
 #[derive(Debug, Clone)]
 struct Load {
     payload: Payload,
     force_n: Vector3<f64>,
-    /// Index of the datum of each component that was measured.
+    /// For each component x, y, z, the index of its datum; `None` if it was not measured.
     data: [Option<usize>; 3],
     when: Moment,
 }
@@ -65,38 +67,41 @@ struct Load {
 /// A pose with its loads in the order of the file.
 #[derive(Debug, Clone)]
 pub struct StaticPose {
-    /// Geometry.
+    /// Geometry of the pose.
     pub geometry: PoseGeometry,
     loads: Vec<Load>,
 }
 
-/// What the loads in a pose are, and how an arm with some coefficients yields to them. It is kept with a fit, so that a
-/// change of few coefficients, as for a derivative, costs little.
+/// The loads in a pose, and the deflections of an arm with given coefficients under them. A fit keeps this state. A
+/// change of few coefficients, as for a derivative, then needs only a part of the computation.
 #[derive(Debug, Clone, Default)]
 pub struct StaticState {
-    /// Displacement of the tip per wrench by all linear compliances together; without those of the links if their moduli
-    /// change.
+    /// Displacement of the tip per unit of the load's wrench, by all linear compliances together. If the moduli of
+    /// the links change between loads, the links are not included.
     compliance: Matrix3x6<f64>,
-    /// Displacement per wrench by the links alone, if their moduli change.
+    /// Displacement of the tip per unit of the load's wrench, by the links alone; used only if their moduli change.
     bending: Matrix3x6<f64>,
-    /// Factor on the compliance of the links under each load; empty if their moduli stay.
+    /// Factor on the compliance of the links under each load; empty if their moduli do not change.
     softness: Vec<f64>,
-    /// Tilt of a base whose feet lift off under each load \[rad\], from that of the unloaded arm; empty if none lift off.
+    /// Tilt of a base whose feet lift off under each load, relative to the unloaded arm \[rad\]; empty if the feet do
+    /// not lift off.
     lifted_rad: Vec<[f64; 2]>,
-    /// Torque of the dead weight on each joint \[N m\].
+    /// Torque on each joint by weight and springs without load \[N m\].
     dead_nm: Vec<f64>,
-    /// Room for these torques under other weights \[N m\].
+    /// Memory in which the torques `dead_nm` are computed for other masses \[N m\].
     moved_dead_nm: Vec<f64>,
-    /// The wrench of each load.
+    /// Wrench of each load, about the world's origin.
     wrenches: Vec<Wrench>,
-    /// Torque on each joint (first index) by each load \[N m\].
+    /// Torque on each joint by each load, in addition to `dead_nm` \[N m\]: all loads of the first joint, then those
+    /// of the second.
     loaded_nm: Vec<f64>,
-    /// The twist of each joint (first index) under each load \[rad\], from that of the unloaded arm.
+    /// Twist (torsion angle) of each joint under each load, relative to the unloaded arm \[rad\], in the order of
+    /// `loaded_nm`.
     twists_rad: Vec<f64>,
 }
 
 impl StaticState {
-    /// Becomes a copy of another state, in the same memory.
+    /// Copies the state `other` into the memory of this state, so that no memory is allocated.
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.compliance = other.compliance;
         self.bending = other.bending;
@@ -109,7 +114,8 @@ impl StaticState {
     }
 }
 
-/// Prepares the poses of the static rows and appends their data.
+/// Prepares the poses of a campaign's static rows, each with its loads, and appends their readings to `data`. Rows of
+/// one pose that follow one another share their history of friction.
 pub(crate) fn prepare(
     campaign: &Campaign,
     layout: &Layout,
@@ -121,7 +127,7 @@ pub(crate) fn prepare(
     let mut last: Option<&[f64]> = None;
     for (index, row) in campaign.statics.iter().enumerate() {
         let group = groups.of(&row.pose_deg);
-        // loads in one pose share a history, so only a change of pose starts a new one
+        // loads in one pose share a history of friction; it starts again when the pose changes
         if last != Some(&row.pose_deg) {
             let geometry = PoseGeometry::new(layout, nominal, &row.pose_deg);
             poses.push(StaticPose { geometry, loads: Vec::new() });
@@ -149,7 +155,7 @@ pub(crate) fn prepare(
 }
 
 impl PoseGeometry {
-    /// Computes the geometry of a pose by mechanics.
+    /// Computes the geometry of a pose with the mechanics of the full model.
     pub fn new(layout: &Layout, nominal: &Subject, pose_deg: &[f64]) -> Self {
         let pose_rad = layout.template.pose_si(pose_deg);
         let empty = Payload::default();
@@ -189,7 +195,8 @@ impl PoseGeometry {
         }
     }
 
-    /// Moments about world x and y on the base of what hangs on it in every test of a channel \[N m\].
+    /// Moments on the base about world x and y by all weight except the payload, in a test of the channel `channel`
+    /// \[N m\].
     pub fn dead_base_nm(&self, coefficients: &Coefficients, layout: &Layout, channel: Channel) -> [f64; 2] {
         let masses = self.dead_base_per_mass_nm.iter().zip(&coefficients.weights);
         let test =
@@ -200,7 +207,8 @@ impl PoseGeometry {
         })
     }
 
-    /// Displacement of the tip per wrench by the linear compliances whose coordinates are chosen.
+    /// Displacement of the tip per unit of the load's wrench, by those linear compliances for whose coordinate
+    /// `is_chosen` is true.
     fn compliance(&self, coefficients: &Coefficients, is_chosen: impl Fn(usize) -> bool) -> Matrix3x6<f64> {
         let mut out = Matrix3x6::zeros();
         for mover in self.linear.iter().filter(|mover| is_chosen(mover.index)) {
@@ -212,7 +220,8 @@ impl PoseGeometry {
         out
     }
 
-    /// Torque on each joint of what hangs on it in every test of a channel \[N m\].
+    /// Torque on each joint by all weight except the payload, and by springs, in a test of the channel `channel` \[N
+    /// m\].
     pub fn dead_torques_nm(
         &self,
         coefficients: &Coefficients,
@@ -224,7 +233,7 @@ impl PoseGeometry {
         torques_nm
     }
 
-    /// Replaces `torques_nm` by the torques of what hangs on the joints in every test of a channel \[N m\].
+    /// Replaces the content of `torques_nm` by the result of `dead_torques_nm`, so that no memory is allocated.
     fn add_up_dead_torques(
         &self,
         coefficients: &Coefficients,
@@ -252,7 +261,8 @@ impl PoseGeometry {
         }
     }
 
-    /// The load as a wrench about the world origin.
+    /// Weight of the payload, corrected by the coefficients, and tip force, together as a wrench about the world's
+    /// origin.
     pub fn wrench(
         &self,
         payload: &Payload,
@@ -271,13 +281,41 @@ impl PoseGeometry {
     }
 }
 
-/// Twists of a joint under loads that follow each other, each from the twist of the unloaded arm, which comes to rest
-/// before each pose and whose reading is the reference. The loads' torques come on top of that of the dead weight.
+/// Computes the twists (torsion angles) of a joint under successive loads, relative to the twist of the unloaded arm
+/// \[rad\]. `dead_nm` is the torque without load, and `loaded_nm` holds the additional torque of each load. The
+/// unloaded arm is the reference. It is taken to come to rest before each pose, so the friction play starts from
+/// rest.
 fn follow(law: &JointLaw, dead_nm: f64, loaded_nm: &[f64], twists_rad: &mut [f64]) {
-    let mut play_nm = law.play_at_rest_nm(dead_nm);
-    let reference_rad = law.play_angle_rad(dead_nm, &mut play_nm);
+    follow_from(law, law, dead_nm, loaded_nm, twists_rad);
+}
+
+/// The same where the unloaded arm had another law when the reference was read.
+fn follow_from(
+    reference: &JointLaw,
+    law: &JointLaw,
+    dead_nm: f64,
+    loaded_nm: &[f64],
+    twists_rad: &mut [f64],
+) {
+    let mut play_nm = reference.play_at_rest_nm(dead_nm);
+    let reference_rad = reference.play_angle_rad(dead_nm, &mut play_nm);
     for (twist_rad, loaded_nm) in twists_rad.iter_mut().zip(loaded_nm) {
         *twist_rad = law.play_angle_rad(dead_nm + loaded_nm, &mut play_nm) - reference_rad;
+    }
+}
+
+/// The same of a joint whose law is another under each load: each reading follows its own laws, of its reference and of
+/// itself, from rest on.
+fn follow_changing(
+    laws: impl Iterator<Item = (JointLaw, JointLaw)>,
+    dead_nm: f64,
+    loaded_nm: &[f64],
+    twists_rad: &mut [f64],
+) {
+    let mut own_rad = vec![0.0; loaded_nm.len()];
+    for (load, (reference, law)) in laws.enumerate() {
+        follow_from(&reference, &law, dead_nm, &loaded_nm[..=load], &mut own_rad[..=load]);
+        twists_rad[load] = own_rad[load];
     }
 }
 
@@ -308,14 +346,15 @@ fn dead_torques(posed: &Posed) -> (Vec<f64>, [f64; 2]) {
 }
 
 impl StaticPose {
-    /// The state of the arm with these coefficients in this pose.
+    /// The loads and deflections in this pose of an arm with these coefficients.
     pub(crate) fn state(&self, layout: &Layout, coefficients: &Coefficients) -> StaticState {
         let mut out = StaticState::default();
         self.update(layout, coefficients, &StaticChanges::all(coefficients.laws.len()), &mut out);
         out
     }
 
-    /// Changes a state of other coefficients, from which these differ by `changes`, to theirs.
+    /// Brings `state`, which belongs to other coefficients, to `coefficients`. `changes` says which numbers differ,
+    /// and only what depends on these is computed again.
     pub(crate) fn update(
         &self,
         layout: &Layout,
@@ -357,20 +396,31 @@ impl StaticPose {
         }
         state.twists_rad.resize(joints * count, 0.0);
         for j in 0..joints {
-            // a weight loads the joints inboard of it only
+            // a weight changes the torque only on joints inboard of it
             let is_loaded_otherwise = changes.weights && state.moved_dead_nm[j] != state.dead_nm[j];
             if is_loaded_otherwise {
                 state.dead_nm[j] = state.moved_dead_nm[j];
             }
             if is_loaded_otherwise || changes.payload || changes.laws[j] {
                 let own = j * count..(j + 1) * count;
-                let law = coefficients.law_at(j, Channel::Static, geometry.angles_rad[j]);
-                follow(&law, state.dead_nm[j], &state.loaded_nm[own.clone()], &mut state.twists_rad[own]);
+                let law = |row| coefficients.law_at(j, Channel::Static, geometry.angles_rad[j], row);
+                let (dead_nm, loaded_nm) = (state.dead_nm[j], &state.loaded_nm[own.clone()]);
+                let twists_rad = &mut state.twists_rad[own];
+                match coefficients.tests[Channel::Static as usize].softening_of(j) {
+                    None => follow(&law(0), dead_nm, loaded_nm, twists_rad),
+                    Some(softening) => {
+                        let unchanged = coefficients.law(j, Channel::Static).at_angle(geometry.angles_rad[j]);
+                        let rows = self.loads.iter().map(|load| load.when.row);
+                        let laws =
+                            rows.map(|row| (unchanged.softer(softening.reference_factor(row)), law(row)));
+                        follow_changing(laws, dead_nm, loaded_nm, twists_rad);
+                    }
+                }
             }
         }
     }
 
-    /// Displacement of the tip under a load, by its index \[mm\].
+    /// Displacement of the tip from the unloaded arm under the load with index `load` \[mm\].
     pub(crate) fn displacement_mm(&self, state: &StaticState, load: usize) -> Vector3<f64> {
         let wrench = state.wrenches[load];
         let mut tip = state.compliance * wrench;
@@ -386,12 +436,13 @@ impl StaticPose {
         1e3 * tip
     }
 
-    /// Number of loads.
+    /// Number of loads in the pose.
     pub(crate) fn count(&self) -> usize {
         self.loads.len()
     }
 
-    /// The measured components of the displacement under a load, by its index, each with the index of its datum.
+    /// The measured components of the tip displacement under the load with index `load`. Each is a pair: number of
+    /// the component (0 to 2), and index of its datum.
     pub(crate) fn measured(&self, load: usize) -> impl Iterator<Item = (usize, usize)> {
         self.loads[load]
             .data
@@ -400,7 +451,7 @@ impl StaticPose {
             .filter_map(|(component, datum)| Some((component, datum?)))
     }
 
-    /// Brings the tilts of a base whose feet lift off up to date.
+    /// Computes the tilts of a base whose feet lift off, under each load of the pose, and stores them in `state`.
     fn lift(&self, layout: &Layout, coefficients: &Coefficients, state: &mut StaticState) {
         state.lifted_rad.clear();
         let Some(lift) = coefficients.lift else { return };
@@ -413,7 +464,7 @@ impl StaticPose {
         state.lifted_rad.extend(state.wrenches.iter().map(lifted));
     }
 
-    /// Writes the displacements of all loads \[mm\], as far as they were measured.
+    /// Writes the measured components of the tip displacement under each load to their data in `out` \[mm\].
     pub(crate) fn write(&self, state: &StaticState, out: &mut [f64]) {
         for load in 0..self.loads.len() {
             let moved = self.displacement_mm(state, load);
@@ -421,7 +472,8 @@ impl StaticPose {
         }
     }
 
-    /// Adds the displacement of the tip \[mm\] by further compliances, given as coordinate and compliance.
+    /// Adds to `out` the displacement of the tip under each load by compliances in addition to those of the
+    /// coefficients \[mm\]. `further` holds pairs of strain coordinate and additional compliance.
     pub fn add_yielding(
         &self,
         layout: &Layout,
@@ -443,7 +495,8 @@ impl StaticPose {
         }
     }
 
-    /// Largest moment on the base about world x or y, under the dead weight or in a load \[N m\].
+    /// Largest moment on the base of an arm with these coefficients, about world x or y, without load and under all
+    /// loads of the pose \[N m\].
     pub fn largest_base_nm(&self, layout: &Layout, coefficients: &Coefficients) -> f64 {
         let dead = self.geometry.dead_base_nm(coefficients, layout, Channel::Static);
         let loads = self.loads.iter().map(|load| {
@@ -454,7 +507,8 @@ impl StaticPose {
         loaded.flatten().chain(dead.map(f64::abs)).fold(0.0, f64::max)
     }
 
-    /// Torque on each joint \[N m\]: first under the dead weight alone, then in every load.
+    /// Torque on each joint of an arm with these coefficients \[N m\]: the first list without load, then one list for
+    /// each load.
     pub fn torques_nm(&self, layout: &Layout, coefficients: &Coefficients) -> Vec<Vec<f64>> {
         let dead = self.geometry.dead_torques_nm(coefficients, layout, Channel::Static);
         let mut out = vec![dead.clone()];

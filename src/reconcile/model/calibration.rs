@@ -1,4 +1,4 @@
-//! The calibration within tolerance: which properties of an arm it adjusts, and how.
+//! Calibration within tolerance: the properties of an arm that are adjusted, and how the arm changes with them.
 
 use crate::arm::effect::subject::Subject;
 use crate::arm::joint_law::Curve;
@@ -11,11 +11,11 @@ use nalgebra::Vector3;
 /// A property that calibration adjusts within tolerance.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Calibration {
-    /// Factor on the stiffness of a joint.
+    /// Factor on the stiffness of the joint with this name.
     Stiffness(String),
-    /// Factor on E and G of a material, and the links made of it.
+    /// Factor on the moduli E and G of a material: name of the material, and names of the links made of it.
     Modulus(String, Vec<String>),
-    /// Factor on the mass of a joint.
+    /// Factor on the mass of the joint with this name.
     Mass(String),
     /// Factor on the tilting stiffness of a joint's nominal bearing.
     Bearing {
@@ -28,20 +28,20 @@ pub enum Calibration {
     Drive {
         /// Name of the joint.
         joint: String,
-        /// Way per force of the nominal drive \[m/N\].
+        /// Displacement per force of the nominal drive along the travel \[m/N\].
         m_per_n: f64,
     },
     /// Factor on the stiffnesses of a prismatic joint's nominal guide.
     Guide {
         /// Name of the joint.
         joint: String,
-        /// Tilt per moment of the nominal guide \[rad/(N m)\].
+        /// Tilt per moment of the nominal guide about its three axes \[rad/(N m)\].
         rad_per_nm: Vector3<f64>,
     },
 }
 
 impl Calibration {
-    /// The name of the calibrated value in results.
+    /// Name of the calibrated property in result files, such as `j2.stiffness`.
     pub(crate) fn name(&self) -> String {
         match self {
             Calibration::Stiffness(joint) => format!("{joint}.stiffness"),
@@ -54,15 +54,17 @@ impl Calibration {
     }
 }
 
-/// The calibrated parameters, each with the standard deviation of ln of its factor.
+/// The calibrated parameters of an arm (nuisance parameters). They are free in every model.
 #[derive(Debug, Clone)]
 pub struct Nuisance {
-    /// Each parameter and its standard deviation.
+    /// For each parameter, the property that it adjusts, and the standard deviation of the natural logarithm of the
+    /// factor on this property.
     pub numbers: Vec<(Calibration, f64)>,
 }
 
 impl Nuisance {
-    /// The parameters that the tolerance leaves open. Half of a 95 % limit is one standard deviation.
+    /// The calibrated parameters whose tolerance is above zero. A tolerance is a 95 % limit, so half of it is the
+    /// standard deviation.
     pub fn new(arm: &Arm, tolerance: &Tolerance) -> Self {
         let mut numbers = Vec::new();
         let joints = || arm.joints();
@@ -90,7 +92,7 @@ impl Nuisance {
         Self { numbers }
     }
 
-    /// The factor that a calibrated parameter has at `u`.
+    /// Factor on the property with index `index` if its parameter is `u`, in standard deviations of the tolerance.
     pub fn factor(&self, index: usize, u: f64) -> f64 {
         libm::exp(u * self.numbers[index].1)
     }
@@ -115,7 +117,7 @@ impl Nuisance {
                 }
                 Calibration::Bearing { joint, tilt_rad_per_nm } => {
                     if let Some(joint) = structure.joint_mut(joint) {
-                        // effects of the arm file stay as they are
+                        // only the share of the nominal bearing is scaled; tilt by effects of the arm file stays
                         joint.tilt_rad_per_nm += tilt_rad_per_nm * (1.0 / factor - 1.0);
                     }
                 }
@@ -145,7 +147,8 @@ impl Nuisance {
     }
 }
 
-/// The nominal bearings that yield, to be calibrated within a tolerance; none without a tolerance.
+/// The bearings of an arm that are compliant in the nominal model, each with the standard deviation of the logarithm
+/// of its stiffness. Empty if the tolerance is zero.
 fn bearings(arm: &Arm, tolerance: f64) -> impl Iterator<Item = (Calibration, f64)> + '_ {
     let joints = arm.joints().filter(move |_| tolerance > 0.0);
     joints.filter_map(move |joint| {
@@ -155,8 +158,9 @@ fn bearings(arm: &Arm, tolerance: f64) -> impl Iterator<Item = (Calibration, f64
     })
 }
 
-/// What is calibrated of prismatic joints: the stiffness of the drive and the mass that travels within the tolerances of joints,
-/// the guide within that of bearings.
+/// The properties of prismatic joints that are calibrated, each with the standard deviation of the logarithm of its
+/// factor. The stiffness of the drive and the travelling mass have the tolerances of joints, and the guide has the
+/// tolerance of bearings.
 fn prismatics<'a>(arm: &'a Arm, tolerance: &'a Tolerance) -> impl Iterator<Item = (Calibration, f64)> + 'a {
     let of_joint = |joint: &Prismatic| {
         let (name, m_per_n, rad_per_nm) = (&joint.name, joint.piece(0).m_per_n, joint.guide.rad_per_nm());

@@ -1,5 +1,5 @@
-//! Lists what a search looks for: every effect at every place that a campaign could show, how large it may be
-//! and where fits start.
+//! Lists the candidates of a search: every effect at every place that a campaign could show, with the largest size that
+//! is sought and the points where fits start.
 
 use super::expected::Sizes;
 use super::parameters::{Candidate, FreeParameter, Number};
@@ -14,7 +14,7 @@ use crate::arm::joint_law::Curve;
 use crate::arm::structure::Piece;
 use crate::reconcile::forward::prepared::Forward;
 
-/// Every effect at every place of this arm that the campaign's channels could show.
+/// The candidates of a campaign: every effect at every place of the arm that its channels could show.
 pub fn candidates(forward: &Forward) -> Vec<Candidate> {
     let structure = &forward.nominal.structure;
     let sizes = Sizes::of(forward);
@@ -28,15 +28,15 @@ pub fn candidates(forward: &Forward) -> Vec<Candidate> {
             }
         }
     }
-    // two names for the same thing would count as two places and as an alternative
+    // an effect with two names would count twice, and each as an alternative of the other
     merge_twins(forward, &mut out);
     name_servos(forward, &mut out);
     out.extend(unit_slips(forward));
     out
 }
 
-/// Merges two candidates that are the same thing in this arm. Where the first joint is vertical and at the
-/// origin, the tilt of its bearing is the tilt of the base.
+/// Merges candidates that stand for the same compliance in this arm. If the first joint is vertical and at the
+/// origin, the tilt of its bearing is the same as the tilt of the base.
 fn merge_twins(forward: &Forward, candidates: &mut Vec<Candidate>) {
     let Some(Piece::Joint(first)) = forward.nominal.structure.pieces.first() else { return };
     if first.axis.z.abs() < 1.0 - 1e-12 {
@@ -50,7 +50,8 @@ fn merge_twins(forward: &Forward, candidates: &mut Vec<Candidate>) {
     }
 }
 
-/// Where only one channel shows how a joint twists, a joint that is softer there only is one that is softer everywhere.
+/// Lists the compliance of a servo as a twin of a joint's connection compliance if only one channel shows how the
+/// joint twists. The readings then cannot tell whether the joint is softer in this channel only.
 fn name_servos(forward: &Forward, candidates: &mut [Candidate]) {
     for candidate in candidates.iter_mut().filter(|c| c.kind.name == connection_compliance::KIND.name) {
         let shown = channels_of_joint(forward, &candidate.at);
@@ -68,7 +69,8 @@ fn channel_is_sought(forward: &Forward, kind: &Kind, place: Place) -> bool {
     }
 }
 
-/// The candidates of a kind at a place: one for each set of parameters that is freed.
+/// The candidates of a kind of effect at the place named `at`: one for each set of parameters that may be fitted
+/// (variant), or one for each channel if the effect acts in one channel.
 fn variants(forward: &Forward, sizes: &Sizes, kind: &'static Kind, place: Place, at: &str) -> Vec<Candidate> {
     let asked = Asked { kind, place, at, freed: None, channel: None };
     let candidate = |asked: Asked| candidate(forward, sizes, asked);
@@ -85,7 +87,7 @@ fn variants(forward: &Forward, sizes: &Sizes, kind: &'static Kind, place: Place,
     }
 }
 
-/// Whether the readings have what a set of parameters refers to.
+/// Whether the readings contain the quantity to which the fitted parameters `freed` refer, such as temperatures.
 fn is_measured(forward: &Forward, freed: &[Freed]) -> bool {
     forward.has_temperatures || freed.iter().all(|(name, _)| *name != thermal_modulus::PER_K)
 }
@@ -96,20 +98,23 @@ struct Asked<'a> {
     kind: &'static Kind,
     place: Place,
     at: &'a str,
-    /// The parameters of a variant; without it those that have no default.
+    /// The parameters that are fitted in a variant of the effect. `None` means that all parameters without a default
+    /// value are fitted.
     freed: Option<&'static [Freed]>,
-    /// The channel of an effect that has one as a parameter.
+    /// The channel in which the effect acts, if the effect has a channel as a parameter.
     channel: Option<Channel>,
 }
 
-/// The channels in which a joint that is softer there only is no joint that is softer everywhere.
+/// The channels in each of which a compliance of the joint that acts in this channel only is sought. Empty if a
+/// single channel shows how the joint twists, because the compliance could then not be told from one that acts in all
+/// channels.
 fn channels_apart(forward: &Forward, kind: &Kind, joint: &str) -> Vec<Channel> {
     let shown = channels_of_joint(forward, joint);
     let sought = kind.traits.sought_in.iter().filter(|channel| shown.contains(channel));
     sought.copied().filter(|_| shown.len() > 1).collect()
 }
 
-/// The channels of the campaign that show how a joint twists.
+/// The channels of the campaign that show how the joint named `joint` twists.
 fn channels_of_joint(forward: &Forward, joint: &str) -> Vec<Channel> {
     let index = forward.layout.joints.iter().position(|slot| slot.name == joint);
     let on_bench = index.is_some_and(|index| forward.bench_torques_nm(index).next().is_some());
@@ -120,14 +125,16 @@ fn channels_of_joint(forward: &Forward, joint: &str) -> Vec<Channel> {
     Channel::ALL.into_iter().filter(is_shown).collect()
 }
 
-/// Whether a component of a parameter is fitted. `freed` are the parameters of a variant.
+/// Whether the component with index `component` of a parameter is fitted. `freed` holds the fitted parameters of a
+/// variant; with `None`, the parameters without a default value are fitted.
 fn is_free(parameter: &Parameter, component: usize, freed: Option<&[Freed]>) -> bool {
     let Some(freed) = freed else { return parameter.default.is_none() && !parameter.is_channel };
     let is_own = |(name, one): &Freed| *name == parameter.name && one.is_none_or(|one| one == component);
     freed.iter().any(is_own)
 }
 
-/// The value of a parameter that is not fitted.
+/// The value of a parameter that is not fitted, in the parameter's unit. `channel` is the value of a parameter that
+/// names a channel.
 fn stated(forward: &Forward, parameter: &Parameter, channel: Option<Channel>) -> f64 {
     match parameter.name {
         _ if parameter.is_channel => channel.map_or(0.0, |channel| channel as usize as f64),
@@ -167,11 +174,12 @@ fn candidate(forward: &Forward, sizes: &Sizes, asked: Asked) -> Candidate {
         }
     }
     if let Some(stiffness) = bearing {
-        // a bearing may be far stiffer than what yields beside it: as soft as beside a joint is looked for
+        // the upper limit is in terms of the bearing's stiffness here; it is raised to the same compliance as for a
+        // rigid bearing
         free_parameters[0].high *= (stiffness / joint_stiffness).max(1.0);
     }
     if let Some(least_kg) = lightest_kg(forward, kind, &at) {
-        // a small mass remains, because nothing oscillates without mass
+        // a small part of the mass remains, because a massless body has no natural frequency
         free_parameters[0].low =
             free_parameters[0].low.max(-0.999 * least_kg / free_parameters[0].value(1.0));
     }
@@ -183,8 +191,9 @@ fn candidate(forward: &Forward, sizes: &Sizes, asked: Asked) -> Candidate {
     Candidate { kind, at, free_parameters, numbers, starts, twins: Vec::new() }
 }
 
-/// Limits a torque to parts of the largest torque of the campaign. A law that changes where no torque reaches
-/// cannot be told from another.
+/// Limits the range of a torque parameter to fractions of `torque_nm`, the largest torque of the campaign. A torsion
+/// law that changes only beyond the torques of the campaign cannot be told from one that does not change. Other
+/// parameters are returned as they are.
 fn within_torque(free: FreeParameter, parameter: &Parameter, torque_nm: f64) -> FreeParameter {
     match parameter.torque_parts {
         Some((low, high)) => free.within(libm::log(low * torque_nm), libm::log(high * torque_nm)),
@@ -192,12 +201,14 @@ fn within_torque(free: FreeParameter, parameter: &Parameter, torque_nm: f64) -> 
     }
 }
 
-/// Number of rows of the longest file of readings of the whole arm.
+/// Number of rows of the static or the modal file, whichever has more.
 fn rows_of_campaign(forward: &Forward) -> f64 {
     forward.static_rows().max(forward.range(Channel::Modal).len()) as f64
 }
 
-/// Limits a number of rows to parts of the campaign. A change that is over at once or hardly begins is none of the order.
+/// Limits the range of a time constant, counted in rows, to fractions of the campaign's number of rows. A change that
+/// is over within the first rows, or has hardly begun at the last, does not depend on the order of the rows. Other
+/// parameters are returned as they are.
 fn within_rows(free: FreeParameter, rows: f64) -> FreeParameter {
     match free.name == thermal_modulus::ROWS && rows > 0.0 {
         true => free.within(libm::log(0.02 * rows), libm::log(3.0 * rows)),
@@ -205,8 +216,8 @@ fn within_rows(free: FreeParameter, rows: f64) -> FreeParameter {
     }
 }
 
-/// The mass that an effect reduces, if it can reduce one: that of the joint, or of the lightest payload
-/// \[kg\].
+/// The largest mass that an effect can take away \[kg\]: the mass of the joint, or of the lightest payload. `None` if
+/// the effect reduces no mass.
 fn lightest_kg(forward: &Forward, kind: &Kind, at: &str) -> Option<f64> {
     match kind.traits.removes? {
         Removes::JointMass => {
@@ -218,7 +229,8 @@ fn lightest_kg(forward: &Forward, kind: &Kind, at: &str) -> Option<f64> {
     }
 }
 
-/// Widens the range of a parameter where the arm or its readings are large.
+/// The parameter with its range and prior widened, if its expected size grows with the size of the arm or of its
+/// readings.
 fn of_size(parameter: &Parameter, sizes: &Sizes) -> Parameter {
     let parameter = &Parameter { high: parameter.sought_up_to.unwrap_or(parameter.high), ..*parameter };
     let Some((measure, part)) = parameter.grows_with else { return *parameter };
@@ -228,16 +240,16 @@ fn of_size(parameter: &Parameter, sizes: &Sizes) -> Parameter {
     Parameter { prior, low: parameter.low * wider, high: parameter.high * wider, ..*parameter }
 }
 
-/// Tilting stiffness of the nominal bearing of a joint, beyond which an effect tilts \[N m/rad\]; `None` for another effect
-/// and for a rigid bearing.
+/// Tilting stiffness of the nominal bearing of the joint named `at` \[N m/rad\], to which a tilt effect of this kind
+/// adds compliance. `None` if the kind of effect is no tilt or the bearing is rigid.
 fn nominal_bearing_nm_per_rad(forward: &Forward, kind: &Kind, at: &str) -> Option<f64> {
     let joint = forward.nominal.structure.joints().find(|j| j.name == at)?;
     let tilts = kind.traits.yields == Some(Yields::Tilt) && joint.tilt_rad_per_nm > 0.0;
     tilts.then(|| 1.0 / joint.tilt_rad_per_nm)
 }
 
-/// The stiffness in which compliances are expressed: that of the joint itself, or of the first joint that
-/// twists \[N m/rad\].
+/// Stiffness in which compliances at the place `at` are expressed \[N m/rad\]: the stiffness of the joint there or,
+/// if there is no joint or it is rigid, of the first joint that is not rigid.
 fn reference_stiffness(forward: &Forward, at: &str) -> f64 {
     let joints: Vec<_> = forward.nominal.structure.joints().collect();
     let own = joints.iter().find(|j| j.name == at);
@@ -247,8 +259,8 @@ fn reference_stiffness(forward: &Forward, at: &str) -> f64 {
         .map_or(1e5, |j| 1.0 / j.law.tangent_compliance_rad_per_nm(0.0))
 }
 
-/// The stiffness in which compliances at a prismatic joint are expressed: that of its drive \[N/m\], or that of its guide about
-/// the axis about which it yields most \[N m/rad\].
+/// Stiffness in which compliances at the prismatic joint `at` are expressed: of its drive along the travel \[N/m\] if
+/// the effect is a compliance along the travel, otherwise of its guide about the most compliant axis \[N m/rad\].
 fn reference_of_prismatic(forward: &Forward, kind: &Kind, at: &str) -> f64 {
     let joint = forward.nominal.structure.prismatics().find(|joint| joint.name == at);
     let [along, about] = joint.map_or([0.0; 2], |joint| [joint.m_per_n, joint.guide_rad_per_nm.max()]);
@@ -260,10 +272,11 @@ fn reference_of_prismatic(forward: &Forward, kind: &Kind, at: &str) -> f64 {
     }
 }
 
-/// Stiffness of a drive along its travel where the model holds it rigid \[N/m\].
+/// Reference stiffness along the travel of a prismatic joint whose drive is rigid in the arm file \[N/m\].
 const USUAL_DRIVE_N_PER_M: f64 = 2e7;
 
-/// The middle slope of a joint's curve, by which a gear is usually rated \[N m/rad\].
+/// Slope K2 of the torsion curve of the joint named `at` in its middle segment, by which a gear is usually rated \[N
+/// m/rad\]. Without such a curve it is the reference stiffness.
 fn middle_stiffness(forward: &Forward, at: &str) -> f64 {
     let own = forward.nominal.structure.joints().find(|j| j.name == at);
     match own.map(|joint| joint.law.curve) {
@@ -272,7 +285,8 @@ fn middle_stiffness(forward: &Forward, at: &str) -> f64 {
     }
 }
 
-/// Largest torque on a joint in the campaign, including the bench, or largest moment on the base in static tests \[N m\].
+/// Largest torque on the joint `at` over all tests of the campaign, bench included \[N m\]. For the base, it is the
+/// largest moment in static tests.
 pub(crate) fn largest_torque_nm(forward: &Forward, at: &str) -> f64 {
     if at == "base" {
         let nominal = forward.coefficients(&forward.nominal);
@@ -287,7 +301,8 @@ pub(crate) fn largest_torque_nm(forward: &Forward, at: &str) -> f64 {
     statics.chain(modal).map(|t| t[j].abs()).chain(bench).fold(0.0, f64::max)
 }
 
-/// Candidates for unit slips. A slip has an exactly known factor and therefore no free parameter.
+/// Candidates for readings in a wrong unit. The factor between two units is known exactly, so there is no free
+/// parameter.
 fn unit_slips(forward: &Forward) -> Vec<Candidate> {
     let channels = Channel::ALL.into_iter().filter(|c| !forward.range(*c).is_empty());
     let slip = |channel: Channel, factor: f64| Candidate {

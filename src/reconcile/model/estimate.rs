@@ -3,22 +3,24 @@
 use crate::arm::effect::entry::word_of;
 use serde_json::{Map, Value, json};
 
-/// An interval of a fitted parameter, in `u`. An end is `None` where the data do not bound it.
+/// The 95 % interval of a fitted parameter, in the scaled parameter `u` (of the order of 1). An end is `None` where
+/// the data do not bound it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
-    /// Lower end.
+    /// Lower end of the interval, in the scaled parameter `u`.
     pub low: Option<f64>,
-    /// Upper end.
+    /// Upper end of the interval, in the scaled parameter `u`.
     pub high: Option<f64>,
 }
 
 impl Interval {
-    /// The interval, widened to contain the best value `u`.
+    /// This interval, widened to contain the best value `u`.
     pub(crate) fn with(self, u: f64) -> Self {
         Self { low: self.low.map(|v| v.min(u)), high: self.high.map(|v| v.max(u)) }
     }
 
-    /// The interval with both ends moved out by `by`. An end that leaves the bounds becomes open.
+    /// This interval with both ends moved outwards by `by`. An end that then lies beyond the bounds `low` and `high`
+    /// of the parameter becomes `None`.
     pub(crate) fn wider(self, by: f64, (low, high): (f64, f64)) -> Self {
         Self {
             low: self.low.map(|v| v - by).filter(|v| *v > low),
@@ -30,16 +32,16 @@ impl Interval {
 /// A value with its 95 % interval. An end is `None` where the data do not bound it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
-    /// Best value.
+    /// Best value, in the unit of the parameter.
     pub value: f64,
-    /// Lower end.
+    /// Lower end of the interval, in the unit of the parameter.
     pub low: Option<f64>,
-    /// Upper end.
+    /// Upper end of the interval, in the unit of the parameter.
     pub high: Option<f64>,
 }
 
 impl Estimate {
-    /// As JSON.
+    /// The value and the two ends of its interval as a JSON object.
     pub(crate) fn json(&self) -> Value {
         json!({"value": self.value, "low": self.low, "high": self.high})
     }
@@ -50,21 +52,21 @@ impl Estimate {
 pub struct Finding {
     /// Name of the effect.
     pub effect: String,
-    /// The place where it sits.
+    /// Place of the effect: the name of a joint or link, `base`, or a channel.
     pub at: String,
-    /// Parameters; a vector parameter has several estimates.
+    /// Name of each parameter and its estimate; a vector has several estimates, one per component.
     pub parameters: Vec<(String, Vec<Estimate>)>,
-    /// Name and place of effects that these readings cannot tell from it.
+    /// Name and place of effects that these readings cannot tell from this one.
     pub indistinguishable_from: Vec<(String, String)>,
 }
 
 impl Finding {
-    /// `effect@place`.
+    /// Label of the finding: `effect@place`.
     pub fn label(&self) -> String {
         format!("{}@{}", self.effect, self.at)
     }
 
-    /// As JSON of `verdict.json`.
+    /// The entry of the finding in `verdict.json`.
     pub(crate) fn json(&self) -> Value {
         let parameters: Map<String, Value> = self
             .parameters

@@ -17,16 +17,17 @@ use crate::reconcile::readings::rows::{ModalRow, PositionRow, StaticRow, WindupR
 use nalgebra::Vector3;
 use std::borrow::Cow;
 
-/// A subject prepared for prediction.
+/// An arm under test (subject), prepared for the prediction of readings by the full model.
 pub struct Exact<'a> {
     subject: &'a Subject,
     chain: Chain,
-    /// The arm as it is in the tests of each channel, where that is special.
+    /// For each channel, the arm with the special set-up of the channel's tests; `None` if there is no special
+    /// set-up.
     special: [Option<Chain>; 4],
 }
 
 impl<'a> Exact<'a> {
-    /// Prepares a subject.
+    /// Prepares an arm under test (subject) for the prediction of readings.
     pub fn new(subject: &'a Subject) -> Self {
         let chain = |structure: &Structure| Chain::new(structure, LinkModel::Full);
         let special = Channel::ALL.map(|channel| {
@@ -36,16 +37,19 @@ impl<'a> Exact<'a> {
         Self { subject, chain: chain(&subject.structure), special }
     }
 
-    /// Displacement readings \[mm\], with the rows in the order of their file.
+    /// Predicted displacement readings \[mm\], one per row. The rows must be in the order of their file, because
+    /// friction play depends on it.
     pub fn statics_mm(&self, rows: &[StaticRow]) -> Vec<[f64; 3]> {
         let reading = &self.subject.channels[Channel::Static as usize];
+        let turned = self.subject.setups[Channel::Static as usize].turned;
         let mut out = Vec::with_capacity(rows.len());
         let mut pose: &[f64] = &[];
         let (mut play, mut lag) = (Vec::new(), Vector3::zeros());
         for row in rows {
             let chain = self.chain_at(Channel::Static, &row.moment());
-            // the reference is as warm as the reading
-            let unloaded = self.posed(&chain, &row.pose_deg, &Payload::default(), Vector3::zeros());
+            // the links of the reference are as warm as those of the reading
+            let reference = self.reference_at(&row.moment());
+            let unloaded = self.posed(&reference, &row.pose_deg, &Payload::default(), Vector3::zeros());
             let unloaded_m = unloaded.statics().tip_displacement_m;
             if row.pose_deg != pose || out.is_empty() {
                 pose = &row.pose_deg;
@@ -53,13 +57,14 @@ impl<'a> Exact<'a> {
                 lag = tip_m(&unloaded, &mut play) - unloaded_m;
             }
             let loaded = self.posed(&chain, pose, &row.payload, row.force_n);
-            let d = tip_m(&loaded, &mut play) - (unloaded_m + lag);
+            let slipped_m = turned.map_or(Vector3::zeros(), |t| t.moved_m(&unloaded.tip_m, row.row));
+            let d = tip_m(&loaded, &mut play) - (unloaded_m + lag) + slipped_m;
             out.push(std::array::from_fn(|c| reading.of(1e3 * d[c], c, row.row)));
         }
         out
     }
 
-    /// Frequency readings \[Hz\]; `None` where the arm has no such mode.
+    /// Predicted frequency readings \[Hz\], one per row; `None` where the arm has no mode of this number.
     pub fn frequencies_hz(&self, rows: &[ModalRow]) -> Vec<Option<f64>> {
         let reading = &self.subject.channels[Channel::Modal as usize];
         let mut last: Option<(&ModalRow, Vec<f64>)> = None;
@@ -80,7 +85,7 @@ impl<'a> Exact<'a> {
             .collect()
     }
 
-    /// Bench readings \[arcmin\].
+    /// Predicted bench readings (twist of a joint) \[arcmin\], one per row.
     pub fn windups_arcmin(&self, rows: &[WindupRow]) -> Vec<f64> {
         let reading = &self.subject.channels[Channel::Windup as usize];
         let mut out = vec![0.0; rows.len()];
@@ -95,15 +100,15 @@ impl<'a> Exact<'a> {
         out
     }
 
-    /// Positions of the points on the last frame, in the instrument's frame, under gravity and payload
-    /// \[mm\].
+    /// Predicted positions of the measured points under gravity and payload, in the instrument's frame \[mm\], one
+    /// per row. `placement` says where the arm and the points stand.
     pub fn positions_mm(&self, rows: &[PositionRow], placement: &Placement) -> Vec<[f64; 3]> {
         let reading = &self.subject.channels[Channel::Positions as usize];
         let mut chains: Vec<(Vector3<f64>, Chain)> = Vec::new();
         let mut out = Vec::with_capacity(rows.len());
         for (row, stand) in rows.iter().zip(placement.stands(rows)) {
             let tool_m = stand.point_m(&row.point);
-            if !self.subject.warming.is_none() {
+            if !self.subject.is_steady(Channel::Positions) {
                 chains.clear(); // no chain serves another row
             }
             if !chains.iter().any(|(at_m, _)| *at_m == tool_m) {
@@ -124,7 +129,7 @@ impl<'a> Exact<'a> {
         out
     }
 
-    /// Torque on every joint, with the joint's name \[N m\].
+    /// Name of every joint, and the torque on it in the pose and under the loads of `row` \[N m\].
     pub fn torques_nm(&self, row: &StaticRow) -> Vec<(String, f64)> {
         let chain = self.chain_at(Channel::Static, &row.moment());
         let posed = self.posed(&chain, &row.pose_deg, &row.payload, row.force_n);
@@ -132,12 +137,21 @@ impl<'a> Exact<'a> {
         torques.into_iter().map(|(joint, torque_nm)| (joint.to_string(), torque_nm)).collect()
     }
 
-    /// The arm as it is in a test of a channel at a moment.
+    /// The arm with the special set-up of a channel's tests, and with the link moduli at the time or temperature
+    /// `when`.
     fn chain_at(&self, channel: Channel, when: &Moment) -> Cow<'_, Chain> {
-        if self.subject.warming.is_none() {
+        if self.subject.is_steady(channel) {
             return Cow::Borrowed(self.special[channel as usize].as_ref().unwrap_or(&self.chain));
         }
         Cow::Owned(Chain::new(&self.subject.structure_at(channel, when), LinkModel::Full))
+    }
+
+    /// The arm as it was when the reference of a displacement was read.
+    fn reference_at(&self, when: &Moment) -> Cow<'_, Chain> {
+        match self.subject.setups[Channel::Static as usize].is_steady() {
+            true => self.chain_at(Channel::Static, when),
+            false => Cow::Owned(Chain::new(&self.subject.reference_at(when), LinkModel::Full)),
+        }
     }
 
     fn posed<'c>(
@@ -151,7 +165,7 @@ impl<'a> Exact<'a> {
     }
 }
 
-/// The structure with its tip moved to a point in the last frame.
+/// The structure with its tip moved to the point `tool_m`, given in the last frame.
 pub fn with_tool(structure: &Structure, tool_m: Vector3<f64>) -> Structure {
     let mut out = structure.clone();
     out.pieces.push(Piece::Link(LinkPiece {
@@ -166,17 +180,18 @@ pub fn with_tool(structure: &Structure, tool_m: Vector3<f64>) -> Structure {
     out
 }
 
-/// A payload that is stated from the tip, as seen from a point in the last frame.
+/// The payload with its centre of gravity counted from the point `tool_m` in the last frame. In `payload` it is
+/// counted from the tip.
 pub fn seen_from_tool(payload: &Payload, tool_m: &Vector3<f64>) -> Payload {
     Payload { cg_m: payload.cg_m - tool_m, ..*payload }
 }
 
-/// Law, twist and torque of each joint, base to tip.
+/// Torsion law, kinematic twist and torque \[N m\] of each joint, from base to tip.
 fn joints(posed: &Posed) -> Vec<(JointLaw, Twist, f64)> {
     let torques = posed.statics().joint_torques_nm;
     let mut twists = posed.tip_twists().into_iter();
     let laws = posed.elements().filter_map(|element| {
-        // a rigid link has no twist of its own
+        // elements without strain coordinates have no twist
         let own: Vec<Twist> = twists.by_ref().take(element.twists.len()).collect();
         match element.yielding {
             Yielding::Joint(law) => Some((law, own[0])),
@@ -186,12 +201,14 @@ fn joints(posed: &Posed) -> Vec<(JointLaw, Twist, f64)> {
     laws.zip(torques).map(|((law, twist), (_, torque))| (law, twist, torque)).collect()
 }
 
-/// State of each joint's friction play when the arm has come to rest \[N m\].
+/// State of each joint's friction play, as a torque, when the arm has come to rest in this pose \[N m\], from base to
+/// tip.
 fn rest(posed: &Posed) -> Vec<f64> {
     joints(posed).iter().map(|(law, _, torque)| law.play_at_rest_nm(*torque)).collect()
 }
 
-/// Displacement of the tip from that of the weightless arm \[m\]. The friction play moves along.
+/// Displacement of the tip from its place in the weightless arm \[m\]. `play` holds the state of each joint's
+/// friction play and is brought to the torques of this pose.
 fn tip_m(posed: &Posed, play: &mut [f64]) -> Vector3<f64> {
     let joints = joints(posed);
     let statics = posed.statics();

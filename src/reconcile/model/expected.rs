@@ -1,4 +1,4 @@
-//! The size that an effect is expected to have in an arm and a campaign of this size. A few kilograms are a
+//! The size that an effect is expected to have, by the size of the arm and of its readings. A few kilograms are a
 //! surprise on a small arm and nothing special on a large one.
 
 use crate::arm::effect::channel::Channel;
@@ -6,7 +6,7 @@ use crate::arm::effect::kind::Measure;
 use crate::reconcile::forward::bench::ARCMIN_PER_RAD;
 use crate::reconcile::forward::prepared::Forward;
 
-/// Measures of an arm and of its campaign.
+/// Sizes of an arm and of its readings. The expected size of an effect is a fraction of one of them.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Sizes {
     arm_kg: f64,
@@ -18,7 +18,7 @@ pub(crate) struct Sizes {
 }
 
 impl Sizes {
-    /// Measures the nominal arm and the readings.
+    /// Determines the sizes of the nominal arm and of the readings of a campaign.
     pub(crate) fn of(forward: &Forward) -> Self {
         let structure = &forward.nominal.structure;
         let largest = |channel| {
@@ -36,8 +36,8 @@ impl Sizes {
         }
     }
 
-    /// The largest size expected of a parameter that grows with a measure: this part of it, in the
-    /// parameter's unit.
+    /// The largest expected size of a parameter whose size grows with `measure` (such as the mass of the arm), in the
+    /// parameter's unit: `part` times the measure.
     pub(crate) fn expected(&self, measure: Measure, part: f64) -> f64 {
         match measure {
             Measure::ArmMass => part * self.arm_kg,

@@ -3,7 +3,8 @@
 use super::estimate::{Estimate, Interval};
 use super::parameters::{Candidate, Number};
 
-/// A fitted effect's parameters with their intervals. A component that is not fitted stands in its place, its ends open.
+/// The parameters of the effect `effect`, fitted to `u`, with their intervals `ends`, one per fitted number. A
+/// component of a vector that was not fitted has its stated value and no ends of an interval.
 pub(crate) fn fitted_parameters(
     effect: &Candidate,
     u: &[f64],

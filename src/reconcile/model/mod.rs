@@ -1,5 +1,5 @@
-//! What is fitted: calibrated parameters, candidate effects and their expected sizes. Also the prediction of
-//! readings by mechanics directly.
+//! The model that is fitted: calibrated parameters, candidate effects and their expected sizes. Also the prediction of
+//! readings by direct mechanics.
 
 pub mod calibration;
 pub mod candidates;

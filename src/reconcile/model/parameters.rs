@@ -9,46 +9,47 @@ use crate::arm::effect::subject::Subject;
 use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::prepared::Forward;
 
-/// One fitted parameter of an effect. A fit moves `u`, which is of the order of 1.
+/// One fitted parameter of an effect. A fit changes the scaled parameter `u`, which is of the order of 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FreeParameter {
     /// Name of the parameter.
     pub name: &'static str,
-    /// Which component, for a vector parameter.
+    /// Index of the component, if the parameter is a vector; otherwise 0.
     pub component: usize,
     scale: Scale,
-    /// For linear scales the value at `u = 1`. For stiffnesses the stiffness whose compliance is `u = 1`.
+    /// Reference from which `u` is scaled. For linear scales it is the value of the parameter at `u = 1`. For
+    /// stiffnesses it is the stiffness at `u = 1`, and `u` is proportional to the compliance.
     reference: f64,
-    /// Smallest `u`.
+    /// Smallest value of `u` in a fit.
     pub low: f64,
-    /// Largest `u`.
+    /// Largest value of `u` in a fit.
     pub high: f64,
-    /// Another parameter of the effect that this one is not below.
+    /// Name of another parameter of the effect below which this one cannot lie.
     not_below: Option<&'static str>,
-    /// The `u` at which the effect is absent; `None` where the parameter says how the effect acts and not how
-    /// large it is.
+    /// The value of `u` at which the effect is absent; `None` if the parameter does not say how large the effect is,
+    /// but only how it acts.
     absent: Option<f64>,
-    /// The range in which `u` is expected.
+    /// Smallest and largest `u` that are expected before the readings are used (the range of the prior).
     expected: (f64, f64),
 }
 
-/// Sizes below this part of the prior's width are equally likely.
+/// All sizes below this fraction of the width of the expected range have equal prior probability.
 const SMALL: f64 = 0.01;
 
-/// Largest compliance that is searched for in a connection, bearing or base, as a multiple of the joint's.
+/// Largest compliance that is sought in a connection, bearing or base, as a multiple of the joint's compliance.
 const SOFTEST: f64 = 100.0;
 
-/// A stiffness that no reading can tell from rigid \[N m/rad\].
+/// Stiffness that stands for a rigid part \[N m/rad\]. No reading can tell it from an infinite one.
 const RIGID_NM_PER_RAD: f64 = 1e15;
 
 impl FreeParameter {
-    /// A component of a parameter. Compliances are expressed in that of a joint of this stiffness \[N
-    /// m/rad\]; for a torque it is the largest torque on the joint \[N m\].
+    /// The fitted parameter for one component of `parameter`. `joint_stiffness` is the reference of `u`: the
+    /// stiffness of a joint \[N m/rad\] for compliances, the largest torque on the joint \[N m\] for a torque.
     pub(crate) fn new(parameter: &Parameter, component: usize, joint_stiffness: f64) -> Self {
         let expected = parameter.prior;
         let (low, high) = (parameter.low, parameter.high);
         let (reference, (low, high), expected, absent) = match parameter.scale {
-            // the reference of a torque is the largest on its joint; a torque is looked for up to twice what is expected
+            // a torque is sought up to twice its expected size
             Scale::Torque => (joint_stiffness, (2.0 * expected.0, 2.0 * expected.1), expected, Some(0.0)),
             Scale::Linear => {
                 let size = parameter.typical.abs().max(1e-12);
@@ -73,18 +74,18 @@ impl FreeParameter {
         Self { name: parameter.name, component, scale, reference, low, high, not_below, absent, expected }
     }
 
-    /// The same parameter within these limits of `u`, all of which are expected.
+    /// This parameter, limited to values of `u` from `low` to `high`. Every value in the range is equally expected.
     pub(crate) fn within(self, low: f64, high: f64) -> Self {
         Self { low, high, expected: (low, high), ..self }
     }
 
-    /// Distance of `u` from the expected range, as a multiple of the range's width.
+    /// Distance of `u` from its expected range, as a multiple of the range's width; 0 inside the range.
     pub fn beyond_expected(&self, u: f64) -> f64 {
         let (low, high) = self.expected;
         (u - high).max(low - u).max(0.0) / (high - low)
     }
 
-    /// The parameter's value.
+    /// Value of the parameter, in its unit, at `u`.
     pub fn value(&self, u: f64) -> f64 {
         match self.scale {
             Scale::Linear | Scale::Torque => u * self.reference,
@@ -95,7 +96,7 @@ impl FreeParameter {
         }
     }
 
-    /// The `u` of a value.
+    /// The `u` at which the parameter has the value `value`, which is in the parameter's unit.
     pub fn u(&self, value: f64) -> f64 {
         match self.scale {
             Scale::Linear | Scale::Torque => value / self.reference,
@@ -105,7 +106,8 @@ impl FreeParameter {
         }
     }
 
-    /// A fitted value with the interval of its `u`.
+    /// The fitted value `value` with its interval in the unit of the parameter, converted from `interval`, which is
+    /// in `u`.
     pub fn estimate(&self, value: f64, interval: &Interval) -> Estimate {
         let (low, high) = match self.reversed() {
             true => (interval.high, interval.low),
@@ -114,39 +116,63 @@ impl FreeParameter {
         Estimate { value, low: low.map(|u| self.value(u)), high: high.map(|u| self.value(u)) }
     }
 
+    /// The interval with its open ends at the limits of what the number can be, where it says how an effect acts: a torque is
+    /// positive, and a gear's slopes are within the range in which they are looked for. The size of an effect has no such
+    /// limit.
+    pub(crate) fn closed(&self, interval: Interval) -> Interval {
+        match self.scale {
+            Scale::Stiffness if self.absent.is_none() => {
+                Interval { low: interval.low.or(Some(self.low)), high: interval.high.or(Some(self.high)) }
+            }
+            Scale::Log => Interval { low: interval.low.or(Some(f64::NEG_INFINITY)), ..interval },
+            _ => interval,
+        }
+    }
+
+    /// Whether an end of an interval is such a limit.
+    pub(crate) fn is_limit(&self, u: f64) -> bool {
+        match self.scale {
+            Scale::Stiffness if self.absent.is_none() => u <= self.low || u >= self.high,
+            Scale::Log => u == f64::NEG_INFINITY,
+            _ => false,
+        }
+    }
+
     /// Whether the value falls when `u` rises.
     pub fn reversed(&self) -> bool {
         matches!(self.scale, Scale::Stiffness | Scale::Reciprocal)
     }
 
-    /// Whether it says how large the effect is, and not only how it acts.
+    /// Whether the parameter says how large the effect is. If not, it only says how the effect acts.
     pub(crate) fn is_size(&self) -> bool {
         self.absent.is_some()
     }
 
-    /// Whether `u` means an absent effect, so that this end of an interval is no bound.
+    /// Whether the effect is absent at `u`, so that an end of an interval there is no bound of the stiffness.
     pub fn unbounded(&self, u: f64) -> bool {
         self.scale == Scale::Stiffness && u <= 1e-6
     }
 
-    /// Difference of `u` from the value at which the effect is absent; `None` where the parameter is no size.
+    /// Difference of `u` from its value for an absent effect; `None` if the parameter does not say how large the
+    /// effect is.
     pub(crate) fn departure(&self, u: f64) -> Option<f64> {
         self.absent.map(|absent| u - absent)
     }
 
-    /// A value `u` whose difference from that of an absent effect is multiplied by `part`; the same value where the parameter
-    /// is no size.
+    /// The value of `u` for an effect whose size is multiplied by `part`: the difference of `u` from its value for an
+    /// absent effect is multiplied. It is `u` itself if the parameter does not say how large the effect is.
     pub(crate) fn scaled(&self, u: f64, part: f64) -> f64 {
         self.absent.map_or(u, |absent| absent + part * (u - absent))
     }
 
-    /// Whether an interval contains the size at which the effect is absent; `None` where the parameter is no size.
+    /// Whether the interval `ends` of `u` contains the value at which the effect is absent; `None` if the parameter
+    /// does not say how large the effect is.
     pub(crate) fn may_be_absent(&self, ends: &Interval) -> Option<bool> {
         let absent = self.absent?;
         Some(ends.low.is_none_or(|low| low <= absent) && ends.high.is_none_or(|high| high >= absent))
     }
 
-    /// Whether the effect has reached the largest size that is searched for.
+    /// Whether `u` is at an end of its range where the effect has the largest size that is sought.
     fn is_at_its_limit(&self, u: f64) -> bool {
         // the end where the effect is absent is no limit
         let near = 1e-6 * (self.high - self.low);
@@ -156,11 +182,11 @@ impl FreeParameter {
         ends.into_iter().any(|end| (u - end).abs() <= near)
     }
 
-    /// Width of the prior at a value: the reciprocal of its density there.
+    /// Width of the prior at a value of `u`: the reciprocal of the prior density there.
     ///
-    /// The size of an effect may be of any order of magnitude. So each decade of sizes is equally likely, up
-    /// to the largest a part can have. A parameter that only says how an effect acts is equally likely
-    /// anywhere in its expected range.
+    /// The size of an effect may be of any order of magnitude. So each decade of sizes is equally likely, up to the
+    /// largest size that a part can have. A parameter that only says how an effect acts is equally likely anywhere in
+    /// its expected range.
     pub fn width(&self, u: f64) -> f64 {
         let range = self.expected.1 - self.expected.0;
         let Some(absent) = self.absent else { return range };
@@ -171,50 +197,56 @@ impl FreeParameter {
     }
 }
 
-/// A number of a candidate.
+/// A number of a candidate effect: one component of one parameter, fitted or stated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Number {
-    /// It is fitted: the next of the candidate's free parameters.
+    /// The number is fitted: it is the next of the candidate's free parameters.
     Free,
-    /// It is stated.
+    /// The number has this stated value.
     Stated(f64),
 }
 
-/// An effect at a place, as a candidate.
+/// A candidate: an effect at a place, with the parameters that are fitted.
 #[derive(Clone)]
 pub struct Candidate {
     /// The kind of effect.
     pub kind: &'static Kind,
-    /// The place where it sits.
+    /// Place of the effect: the name of a joint or link, `base`, or a channel.
     pub at: String,
-    /// Its fitted parameters.
+    /// Parameters of the effect that are fitted.
     pub free_parameters: Vec<FreeParameter>,
-    /// Every number of the kind, in its order.
+    /// All numbers of the effect, fitted or stated, in the order of its kind's parameters.
     pub(crate) numbers: Vec<Number>,
-    /// Starting points of fits, each a list of `u`.
+    /// Starting points of fits, each a list of `u`, one per free parameter.
     pub starts: Vec<Vec<f64>>,
-    /// Name and place of effects that are the same thing in this arm by construction.
+    /// Name and place of effects that have exactly the same consequences in this arm.
     pub twins: Vec<(String, String)>,
 }
 
 impl Candidate {
-    /// Its label in reports: `effect@place`, and the channel if it is of one.
+    /// Label of the candidate in reports: `effect@place`, and the channel if the effect is limited to one.
     pub fn label(&self) -> String {
         let label = format!("{}@{}", self.kind.name, self.at);
         self.words().into_iter().fold(label, |label, (_, _, word)| format!("{label} ({word})"))
     }
 
-    /// Every number with the name of its parameter, in the order of the kind.
+    /// Every number of the effect with the name of its parameter, in the order of the kind's parameters.
     pub(crate) fn named_numbers(&self) -> Vec<(&'static str, Number)> {
-        // channels may have parameters of their own
-        let is_own = |place: &&Place| matches!(place, Place::Channel(channel) if channel.word() == self.at);
+        // a base and channels may have parameters of their own
+        let count = |place: Place| (self.kind.parameters)(place).iter().map(|p| p.count).sum::<usize>();
+        let is_own = |place: &&Place| match place {
+            Place::Channel(channel) => channel.word() == self.at,
+            Place::Base => self.at == "base" && count(Place::Base) == self.numbers.len(),
+            _ => false,
+        };
         let place = self.kind.places.iter().find(is_own).or(self.kind.places.first());
         let Some(place) = place else { return Vec::new() };
         let names = (self.kind.parameters)(*place).iter().flat_map(|p| std::iter::repeat_n(p.name, p.count));
         names.zip(self.numbers.iter().copied()).collect()
     }
 
-    /// Stated parameters that files have as words: name, number and word.
+    /// The stated parameters that files write as words and not as numbers: for each, name of the parameter, number
+    /// and word.
     pub(crate) fn words(&self) -> Vec<(&'static str, f64, &'static str)> {
         let word = |(name, number): (&'static str, Number)| match number {
             Number::Stated(number) => Some((name, number, word_of(self.kind.name, name, number)?)),
@@ -223,18 +255,20 @@ impl Candidate {
         self.named_numbers().into_iter().filter_map(word).collect()
     }
 
-    /// Whether another candidate is the same effect at the same place, of which other parameters are fitted.
+    /// Whether this candidate and `other` are the same effect at the same place, with different parameters fitted.
     pub(crate) fn is_variant_of(&self, other: &Self) -> bool {
         self.kind.name == other.kind.name && self.at == other.at && self.words() == other.words()
     }
 
-    /// Adds starting points in every corner of a vector's range, for campaigns with few readings.
+    /// This candidate with additional starting points, towards every vertex of the range of a vector parameter. They
+    /// are used for campaigns with few readings, in which a single start may miss the minimum.
     pub fn from_corners(mut self) -> Self {
         self.starts.extend(corners(&self.free_parameters));
         self
     }
 
-    /// Values of all parameters in the order of the kind.
+    /// Values of all parameters of the effect, in their units and in the order of its kind, with the fitted ones at
+    /// `u`.
     pub fn numbers(&self, u: &[f64]) -> Vec<f64> {
         let mut free = self.free_values(u).into_iter();
         let number = |number: &Number| match number {
@@ -244,7 +278,8 @@ impl Candidate {
         self.numbers.iter().map(number).collect()
     }
 
-    /// Values of the fitted parameters. A parameter that must not be below another is raised to it.
+    /// Values of the fitted parameters at `u`, in their units. A parameter that must not be below another is raised
+    /// to it.
     pub fn free_values(&self, u: &[f64]) -> Vec<f64> {
         let mut out: Vec<f64> = self.free_parameters.iter().zip(u).map(|(k, u)| k.value(*u)).collect();
         for (i, parameter) in self.free_parameters.iter().enumerate() {
@@ -256,7 +291,8 @@ impl Candidate {
         out
     }
 
-    /// The effect as an arm file has it.
+    /// The effect with the fitted parameters at `u`, in the form of an arm file. `place` is the kind of place and
+    /// selects the list of parameters.
     pub fn effect(&self, u: &[f64], place: Place) -> Effect {
         let numbers = self.numbers(u);
         let mut rest = numbers.as_slice();
@@ -272,8 +308,9 @@ impl Candidate {
     }
 }
 
-/// Starting points for the components of a vector: a fifth of the way from zero to each corner of their
-/// range. With zero everywhere a descent may see no slope.
+/// Starting points for the components of a vector, each a list of `u`: a fifth of the way from zero to each vertex of
+/// the vector's range. They are needed because at zero a descent may see no slope. Empty if the parameters are not
+/// components of one vector.
 fn corners(free_parameters: &[FreeParameter]) -> Vec<Vec<f64>> {
     if free_parameters.len() < 2 || free_parameters.iter().any(|k| k.name != free_parameters[0].name) {
         return Vec::new();
@@ -284,46 +321,47 @@ fn corners(free_parameters: &[FreeParameter]) -> Vec<Vec<f64>> {
     (0..1 << free_parameters.len()).map(corner).collect()
 }
 
-/// A model: calibration and effects. Its parameter vector holds the calibration first, then the parameters of
-/// each effect.
+/// A model to fit: the calibration and a list of effects. Its parameter vector holds the calibrated parameters first,
+/// then the fitted parameters of each effect.
 #[derive(Clone)]
 pub struct Model<'a> {
-    /// Calibration.
+    /// Calibrated parameters.
     pub nuisance: &'a Nuisance,
-    /// Effects.
+    /// Effects of the model.
     pub effects: Vec<&'a Candidate>,
-    /// Width over which break points are smoothed in the frequencies \[ln of the torque\].
+    /// Width over which the jumps of slope of gear curves are smoothed when frequencies are computed \[ln of the
+    /// torque\]; 0 for no smoothing.
     pub smoothing: f64,
-    /// Indices and values of the parameters that are held.
+    /// Index and value of each parameter that is held fixed.
     pub held: Vec<(usize, f64)>,
 }
 
 impl<'a> Model<'a> {
-    /// The baseline: calibration and no effect.
+    /// The baseline: a model with the calibrated parameters `nuisance` and no effect.
     pub fn baseline(nuisance: &'a Nuisance) -> Self {
         Self { nuisance, effects: Vec::new(), smoothing: 0.0, held: Vec::new() }
     }
 
-    /// A model of the candidates with these indices.
+    /// A model with the effects that have the indices `effects` in `candidates`.
     pub fn of(nuisance: &'a Nuisance, candidates: &'a [Candidate], effects: &[usize]) -> Self {
         Self { effects: effects.iter().map(|&i| &candidates[i]).collect(), ..Self::baseline(nuisance) }
     }
 
-    /// The same model with one more effect.
+    /// This model with the effect `effect` added.
     pub fn with(&self, effect: &'a Candidate) -> Self {
         let mut out = self.clone();
         out.effects.push(effect);
         out
     }
 
-    /// The same model without one effect.
+    /// This model without the effect that has the index `index`.
     pub fn without(&self, index: usize) -> Self {
         let mut out = self.clone();
         out.effects.remove(index);
         out
     }
 
-    /// Indices of the break points of gear curves in the parameter vector.
+    /// Indices, in the parameter vector, of the break points (T1, T2) of gear curves.
     pub fn break_points(&self) -> Vec<usize> {
         let first = self.calibrated();
         let free_parameters = self.free_parameters().enumerate();
@@ -333,7 +371,8 @@ impl<'a> Model<'a> {
             .collect()
     }
 
-    /// Index of the parameter that a parameter must not be below, if there is one.
+    /// Index of the parameter below which the parameter with index `index` cannot lie; `None` if there is no such
+    /// limit.
     fn floor(&self, index: usize) -> Option<usize> {
         let mut first = self.calibrated();
         for effect in &self.effects {
@@ -348,14 +387,15 @@ impl<'a> Model<'a> {
         None
     }
 
-    /// Whether a parameter has reached the one that it must not be below. Further down it would have no
-    /// effect.
+    /// Whether the parameter with index `index` is equal to or below the other parameter below which it cannot lie.
+    /// Lowering it further would have no effect.
     pub fn rests(&self, index: usize, u: &[f64]) -> bool {
         self.floor(index).is_some_and(|least| u[index] <= u[least])
     }
 
-    /// Puts ordered parameters in order. A parameter below its limit acts on nothing, and a descent that left
-    /// it there would never find it again.
+    /// Raises each parameter that lies below the other parameter that is its lower limit to this limit. Below the
+    /// limit a parameter has no effect on the predictions, so a descent would see no slope and leave it there. A held
+    /// parameter is not raised; its limit is then lowered to it.
     pub fn put_in_order(&self, u: &mut [f64]) {
         for index in self.calibrated()..u.len() {
             let Some(least) = self.floor(index).filter(|least| u[index] < u[*least]) else { continue };
@@ -371,12 +411,12 @@ impl<'a> Model<'a> {
         self.held.iter().any(|(held, _)| *held == index)
     }
 
-    /// Number of parameters.
+    /// Number of parameters: calibrated ones and those of effects.
     pub fn len(&self) -> usize {
         self.calibrated() + self.free_parameters().count()
     }
 
-    /// Whether no parameter is free.
+    /// Whether the model has no parameters.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -386,36 +426,38 @@ impl<'a> Model<'a> {
         self.nuisance.numbers.len()
     }
 
-    /// The parameters of all effects, in order.
+    /// The fitted parameters of all effects, in the order of the parameter vector.
     pub fn free_parameters(&self) -> impl Iterator<Item = &'a FreeParameter> + '_ {
         self.effects.iter().flat_map(|e| e.free_parameters.iter())
     }
 
-    /// Index of an effect's first parameter in the parameter vector.
+    /// Index, in the parameter vector, of the first parameter of the effect with index `effect`.
     pub fn first_parameter(&self, effect: usize) -> usize {
         self.calibrated() + self.effects[..effect].iter().map(|e| e.free_parameters.len()).sum::<usize>()
     }
 
-    /// Whether an effect has reached the largest size that is searched for.
+    /// Whether some effect of the model has, at the parameters `u`, the largest size that is sought.
     pub fn is_at_a_limit(&self, u: &[f64]) -> bool {
         self.free_parameters()
             .zip(&u[self.calibrated()..])
             .any(|(parameter, u)| parameter.is_at_its_limit(*u))
     }
 
-    /// Smallest and largest value of a parameter.
+    /// Smallest and largest value of `u` for the parameter with index `index`. Both are equal for a parameter that is
+    /// held.
     pub fn bounds(&self, index: usize) -> (f64, f64) {
         if let Some((_, value)) = self.held.iter().find(|(held, _)| *held == index) {
             return (*value, *value);
         }
         match index.checked_sub(self.calibrated()) {
-            // eight standard deviations of tolerance: beyond what any honest part has
+            // eight standard deviations of the tolerance: beyond any real part
             None => (-8.0, 8.0),
             Some(i) => self.free_parameters().nth(i).map_or((0.0, 0.0), |k| (k.low, k.high)),
         }
     }
 
-    /// The arm under test with these parameters.
+    /// The arm under test (subject) with the parameters `u`: the nominal arm, calibrated and with the model's
+    /// effects.
     pub fn subject(&self, forward: &Forward, u: &[f64]) -> Subject {
         let mut subject = forward.nominal.clone();
         self.nuisance.apply(u, &mut subject);
@@ -428,14 +470,14 @@ impl<'a> Model<'a> {
         subject
     }
 
-    /// The compliances, joint laws and masses of the arm with these parameters.
+    /// The coefficients (compliances, joint laws and masses) of the arm with the parameters `u`.
     pub fn coefficients(&self, forward: &Forward, u: &[f64]) -> Coefficients {
         let mut out = forward.coefficients(&self.subject(forward, u));
         out.smoothing = self.smoothing;
         out
     }
 
-    /// The model's label: those of its effects joined by `+`.
+    /// Label of the model: the labels of its effects joined by `+`.
     pub fn label(&self) -> String {
         self.effects.iter().map(|e| e.label()).collect::<Vec<_>>().join(" + ")
     }

@@ -5,21 +5,23 @@ use super::parameters::{Candidate, Model};
 use crate::reconcile::fit::descent::{Weights, change, evaluate};
 use crate::reconcile::forward::prepared::Forward;
 
-/// An effect of its usual size that moves no reading by more than this is not seen \[standard deviations\]. The largest
-/// sizes that are looked for are a thousand times the usual ones at most.
+/// An effect of its usual size is left out if it changes no reading by more than this \[standard deviations\]. The
+/// largest size that is sought is at most a thousand times the usual one. So even such an effect would not be seen.
 const UNSEEN: f64 = 1e-6;
 
-/// Part of its range by which a parameter is moved to see what it does.
+/// Fraction of its range by which a parameter is changed to find out whether readings change.
 const STEP: f64 = 0.01;
 
-/// The candidates that move at least one reading. On a bench no payload, base or mass does. An effect that moves no
-/// reading fits as well as calibration alone, and would be listed as an alternative to whatever is found.
+/// Those of the `candidates` that change at least one reading. A bench, for example, shows no payload, base or mass.
+/// An effect that changes no reading fits as well as calibration alone, and would be listed as an alternative of
+/// every finding.
 pub(crate) fn seen(forward: &Forward, nuisance: &Nuisance, mut candidates: Vec<Candidate>) -> Vec<Candidate> {
     let inverse = forward.data.iter().map(|d| 1.0 / d.sigma).collect();
     let weights = Weights { inverse, smooth_only: false };
     let bare = Model::baseline(nuisance);
     let here = evaluate(forward, &bare, &vec![0.0; bare.len()], &weights);
-    // to first order nothing moves a frequency that the nominal arm does not have
+    // if the nominal arm lacks a measured mode, its change cannot be computed to first order, so no candidate is left
+    // out
     let lists = forward.modal.iter().zip(&here.solved);
     if lists.clone().any(|(test, solved)| solved.len() < test.mode_count()) {
         return candidates;
@@ -35,8 +37,8 @@ pub(crate) fn seen(forward: &Forward, nuisance: &Nuisance, mut candidates: Vec<C
     candidates
 }
 
-/// Parameters at which an effect would show: where its fits start, and from there each parameter a little further, because
-/// some fits start where the effect is absent.
+/// The values of `u` at which a candidate is tried for a change of readings. They are the starts of its fits, and
+/// each start with one parameter changed, because some fits start where the effect is absent.
 fn sizes(candidate: &Candidate) -> Vec<Vec<f64>> {
     let further = |start: &Vec<f64>, p: usize| {
         let parameter = &candidate.free_parameters[p];

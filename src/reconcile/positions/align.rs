@@ -1,5 +1,5 @@
-//! Finds from nothing where the arm stands in the instrument's frame, and how parts of unknown mounting are
-//! mounted.
+//! Finds a first placement of the arm in the instrument's frame, and the attitude behind each link of unknown mounting.
+//! No starting values are needed.
 
 use super::fit::fit;
 use super::fitted::{Fitted, Sample};
@@ -9,14 +9,16 @@ use crate::reconcile::readings::campaign::PositionsSpec;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use rayon::prelude::*;
 
-/// Size of the errors that a wrong attitude leaves \[m\].
+/// Scale of the position errors with which each fit starts \[m\]: about what a wrong attitude leaves.
 const ROUGH_M: f64 = 0.3;
 
-/// Smallest number of positions with all coordinates that place an arm.
+/// Smallest number of positions with all three coordinates from which the nearest rigid motion is computed. With
+/// fewer, a fit from several attitudes is used.
 const FEWEST_WHOLE: usize = 10;
 
-/// Places the arms, one by one. Behind a link of unknown mounting the 24 attitudes of a cube are tried, and a fit
-/// starts from each. Without unknown mountings the nearest rigid motion is used.
+/// Finds a first placement of the arms, one by one, and stores it in `geometry`. If an arm has a link of unknown
+/// mounting, a fit starts from each of the 24 attitudes of a cube behind the first such link, and the best fit
+/// counts. Otherwise the nearest rigid motion is used.
 pub(crate) fn align(tree: &Tree, spec: &PositionsSpec, samples: &[Sample], geometry: &mut Geometry) {
     let mounts = mount_numbers(tree, spec);
     let mut placed = false;
@@ -42,7 +44,9 @@ pub(crate) fn align(tree: &Tree, spec: &PositionsSpec, samples: &[Sample], geome
     }
 }
 
-/// Finds the best of the cube's attitudes behind a link of unknown mounting. `placed` says whether the base is known.
+/// Finds the best of the cube's attitudes behind a link of unknown mounting (the piece with index `piece`), and
+/// returns the geometry with it. `own` are the arm's samples (measured positions). `placed` says whether the base is
+/// already placed.
 fn settle_mount(
     own: &[&Sample],
     geometry: &Geometry,
@@ -74,7 +78,8 @@ fn settle_mount(
     best.expect("24 attitudes").geometry
 }
 
-/// Places the arm by a fit from each attitude of a cube, where too few positions have all coordinates.
+/// Places the arm by a fit from each of the 24 attitudes of a cube, and stores the best in `geometry`. It is used if
+/// too few positions have all three coordinates.
 fn nearest_attitude(samples: &[&Sample], geometry: &mut Geometry) {
     let numbers: Vec<Number> =
         (0..3).map(Number::BaseRotation).chain((0..3).map(Number::BasePosition)).collect();
@@ -101,8 +106,8 @@ fn cube() -> Vec<Rotation3<f64>> {
     out
 }
 
-/// Finds the rotation and the origin that move nominal points onto measured ones (Kabsch), refined on the
-/// nearest 90 %.
+/// Finds the rotation and the origin of the base that move the nominal points onto the measured ones (Kabsch), and
+/// stores them in `geometry`. The computation is repeated with the 90 % of points that lie nearest.
 pub(super) fn nearest_motion(samples: &[&Sample], geometry: &mut Geometry) {
     let whole: Vec<&Sample> = samples.iter().copied().filter(|s| s.readings() == 3).collect();
     if whole.len() < FEWEST_WHOLE.min(samples.len()) {
@@ -131,7 +136,7 @@ pub(super) fn nearest_motion(samples: &[&Sample], geometry: &mut Geometry) {
         let error = |i: usize| (samples[i].measured_m - origin - rotation * nominal[i]).norm();
         let mut order: Vec<usize> = (0..samples.len()).collect();
         order.sort_by(|&i, &j| error(i).total_cmp(&error(j)));
-        // gross errors must not turn the arm
+        // the 10 % that lie farthest are left out, because gross errors must not turn the arm
         order.truncate((samples.len() * 9).div_ceil(10).max(4));
         kept = order;
     }

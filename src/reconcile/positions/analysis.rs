@@ -1,5 +1,5 @@
-//! Analyses absolute positions: calibrates the geometry stage by stage, and then adds what yields and what
-//! turns unevenly, effect by effect.
+//! Analyses absolute positions: calibrates the geometry stage by stage, and then adds compliances and transmission
+//! errors, effect by effect.
 
 use super::align;
 use super::fit::fit;
@@ -24,59 +24,60 @@ use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Number of folds that the poses are dealt into. One fold is held out at a time.
+/// Number of folds among which the poses are divided. One fold is held out at a time.
 const HANDS: usize = 5;
-/// A position is a gross error if its residual is more than this many times the scale of the errors.
+/// A position is a gross error if its residual is more than this many times the fitted scale of the position errors.
 const GROSS: f64 = 8.0;
-/// Scale of the errors before anything is fitted \[m\].
+/// Scale of the position errors that is assumed before anything is fitted \[m\].
 const ROUGH_M: f64 = 0.01;
-/// Step of the direction of gravity for numerical derivatives \[rad\].
+/// Angle by which gravity is tilted to compute derivatives of the deflection numerically \[rad\].
 const LEAN: f64 = 1e-3;
 
-/// The classes of effects, in the order in which the search takes them.
+/// Classes of compliances (about a joint's axis, tilt, frame), in the order in which the search for effects tries
+/// them.
 const CLASSES: [Yields; 3] = [Yields::AboutAxis, Yields::Tilt, Yields::Frame];
 
-/// Everything that a campaign of positions shows.
+/// Result of the analysis of a campaign of positions.
 #[derive(Clone)]
 pub(crate) struct Positions {
     /// The table of position errors, stage by stage.
     pub stages: Vec<Stage>,
-    /// All candidates.
+    /// All candidates: one for each effect at each place where it may be added to the model.
     pub candidates: Vec<Yielding>,
     /// For each candidate, whether it may be named as an effect.
     pub(super) considered: Vec<bool>,
-    /// The final fit.
+    /// The fit of the final model: geometry, compliances and sessions.
     pub fitted: Fitted,
-    /// A fit of the same geometry in which nothing yields.
+    /// A fit with the same freed numbers of the geometry and no added compliance.
     pub rigid: Fitted,
-    /// Rows that are gross errors, counted from 0, with their error \[mm\].
+    /// Rows that are gross errors, counted from 0, each with the length of its error \[mm\].
     pub gross: Vec<(usize, f64)>,
     pub(super) samples: Vec<Sample>,
     pub(super) numbers: Vec<Number>,
-    /// Driven joints with a transmission error, by their index in a pose.
+    /// Indices of the driven joints for which a transmission error was found, counted as in a pose.
     pub(super) transmissions: Vec<usize>,
     pub(super) tree: Tree,
-    /// The points on the tools. A point that sat elsewhere in another session counts as a separate point.
+    /// The points on the tools. A point that was moved on the tool between two sessions counts as two points.
     pub(super) points: Vec<Point>,
-    /// The boundaries between sessions.
+    /// The boundaries between sessions (runs of rows with one set-up) that are in the model.
     pub(super) sessions: Vec<Boundary>,
-    /// Held-out errors of the last stage, by row \[m\].
+    /// Error of each row's position after the last stage, as predicted by a fit without the row's fold \[m\].
     pub(super) held_out: Vec<Vector3<f64>>,
 }
 
-/// Arms of which only the geometry is calibrated.
+/// Arms whose geometry alone is calibrated, without a search for effects.
 pub(crate) struct Calibrated {
     /// The arms with calibrated geometry. Everything else about them is unchanged.
     pub arms: Vec<Arm>,
-    /// The table of position errors.
+    /// The table of position errors, one row for each stage of the calibration.
     pub stages: Vec<Stage>,
-    /// Predicted positions \[mm\], by row.
+    /// Predicted position of each row with the calibrated geometry, in the instrument's frame \[mm\].
     pub predicted_mm: Vec<[f64; 3]>,
-    /// Where the arms stand, as in `provenance` of a corrected arm.
+    /// Placements of the arms in the instrument's frame, as in `provenance` of a corrected arm.
     pub placements: Value,
 }
 
-/// Calibrates the geometry without a search for effects.
+/// Calibrates the geometry of the campaign's arms, with declared and found sessions, and does not search for effects.
 pub(crate) fn calibrated(campaign: &Campaign) -> Calibrated {
     let found = Positions::on_its_geometry(campaign);
     let mut placements = json!({});
@@ -89,11 +90,14 @@ pub(crate) fn calibrated(campaign: &Campaign) -> Calibrated {
     }
 }
 
-/// Calibrates the geometry, tells sessions apart, and finds what yields and which joints have a transmission error.
+/// Analyses the positions of a campaign: calibrates the geometry, finds sessions, and finds compliances and
+/// transmission errors.
 ///
-/// What yields can look like a session where the rows were taken configuration by configuration. So sessions are asked
-/// again once the effects are in the model. Where one no longer pays, or begins where something else changes in the rows,
-/// everything is done once more with the sessions that are needed beside effects that were found without any.
+/// A compliance can look like a change of session if the rows were taken configuration by configuration. So each
+/// session is examined again once the effects are in the model. It is suspect if it is no longer worth its price, or
+/// if it begins at a row where something else changes. The analysis is then repeated with two other sets of sessions:
+/// those that remain, and those that are needed in addition to effects that were found without sessions. The model
+/// with the best score is kept.
 pub(crate) fn analyze(campaign: &Campaign) -> Positions {
     let calibrated = Positions::in_declared_sessions(campaign);
     let mut found = calibrated.clone();
@@ -152,7 +156,7 @@ impl Positions {
         }
     }
 
-    /// Fits all that is unknown in the geometry, in the sessions that campaign.json declares.
+    /// Calibrates the geometry, first without sessions and then with those that campaign.json declares.
     fn in_declared_sessions(campaign: &Campaign) -> Self {
         let mut found = Self::new(campaign);
         found.calibrate(campaign);
@@ -164,7 +168,7 @@ impl Positions {
         found
     }
 
-    /// Fits all that is unknown in the geometry, and tells sessions apart.
+    /// Calibrates the geometry with the declared sessions and with those that the positions show.
     fn on_its_geometry(campaign: &Campaign) -> Self {
         let mut found = Self::in_declared_sessions(campaign);
         found.tell_sessions(campaign);
@@ -172,7 +176,7 @@ impl Positions {
         found
     }
 
-    /// The sessions that campaign.json declares: what was moved, and the first row after.
+    /// The sessions that campaign.json declares: what was moved, and the first row after that, counted from 0.
     fn declared(&self, campaign: &Campaign) -> Vec<(Kind, usize)> {
         let declared = campaign.statement.positions.sessions.iter();
         let boundaries = declared.flat_map(|session| {
@@ -187,7 +191,7 @@ impl Positions {
         boundaries.collect()
     }
 
-    /// Looks for sessions that nobody declared.
+    /// Finds sessions that campaign.json does not declare, and adds them to the model.
     fn tell_sessions(&mut self, campaign: &Campaign) {
         let spec = &campaign.statement.positions;
         if self.find_sessions(spec.tool_offset, spec.base_placement) > 0 {
@@ -195,7 +199,8 @@ impl Positions {
         }
     }
 
-    /// The calibrated arm in given sessions, with the effects that it then has.
+    /// A copy of this calibrated model with the sessions that begin at `boundaries` (what was moved, and the first
+    /// row of the later session), and with the effects that are then found.
     fn with_sessions(&self, campaign: &Campaign, boundaries: &[(Kind, usize)]) -> Self {
         let mut out = self.clone();
         out.divide(boundaries, false);
@@ -207,9 +212,9 @@ impl Positions {
         out
     }
 
-    /// Finds what yields and which joints have a transmission error.
+    /// Adds compliances and transmission errors to the model, one by one, as long as one is worth its price.
     fn find_effects(&mut self, campaign: &Campaign) {
-        // An uneven joint can hide what yields, so the search begins again after each.
+        // A transmission error can hide a compliance, so the search starts again after each one that is found.
         loop {
             for class in CLASSES {
                 while self.add(campaign, class) {}
@@ -220,7 +225,7 @@ impl Positions {
         }
     }
 
-    /// Places the arm, and frees one group of numbers after the other.
+    /// Places the arm, and then frees one group of the geometry's numbers after the other, with a fit after each.
     fn calibrate(&mut self, campaign: &Campaign) {
         let spec = &campaign.statement.positions;
         align::align(&self.tree, spec, &self.samples, &mut self.fitted.geometry);
@@ -236,13 +241,13 @@ impl Positions {
         }
     }
 
-    /// Fits the current model again.
+    /// Fits the current model again to all samples (measured positions), starting from its present values.
     pub(super) fn refit(&mut self) {
         let all: Vec<&Sample> = self.samples.iter().collect();
         self.fitted = fit(&all, &self.numbers, &self.fitted.effects, &self.fitted);
     }
 
-    /// Computes the effect of gravity again for the fitted geometry.
+    /// Computes the deflection of each sample under gravity again, for the fitted geometry.
     pub(super) fn refresh(&mut self, campaign: &Campaign) {
         self.fitted.geometry.relevel();
         let upright = &self.fitted.geometry;
@@ -268,7 +273,8 @@ impl Positions {
         });
     }
 
-    /// Adds a row for the current model to the table of position errors.
+    /// Adds a row for the current model to the table of position errors. `added` and `dropped` name the effects or
+    /// numbers that changed since the last row.
     pub(super) fn stage(&mut self, added: String, dropped: Vec<String>) {
         self.held_out = self.held_out_errors_m(&self.fitted);
         let mm: Vec<f64> = self.held_out.iter().map(|e| 1e3 * e.norm()).collect();
@@ -283,7 +289,8 @@ impl Positions {
         });
     }
 
-    /// Error of every position, predicted by a fit without the fold of the position's pose \[m\].
+    /// Error of every position \[m\], as predicted by a fit of the model `fitted` to all positions but those of its
+    /// fold of poses.
     fn held_out_errors_m(&self, fitted: &Fitted) -> Vec<Vector3<f64>> {
         let mut out = vec![Vector3::zeros(); self.samples.len()];
         let hands: Vec<Vec<(usize, Vector3<f64>)>> = (0..HANDS)
@@ -301,15 +308,17 @@ impl Positions {
     }
 }
 
-/// How much an error of each coordinate counts in a fit. A coordinate with a larger standard deviation than the best one
-/// of its row counts less, but not below a tenth: what a model misses is often larger than what an instrument does.
+/// Weight of each coordinate's error in a fit, from 0.1 to 1; 0 if the coordinate was not measured. The weight is the
+/// smallest standard deviation of the row over that of the coordinate. It is at least a tenth, because the error of
+/// the model is often larger than that of the instrument.
 fn precision(measured: &Components) -> Vector3<f64> {
     const LEAST: f64 = 0.1;
     let best_mm = measured.iter().flatten().map(|read| read.sigma_mm).fold(f64::INFINITY, f64::min);
     Vector3::from(measured.map(|read| read.map_or(0.0, |read| (best_mm / read.sigma_mm).max(LEAST))))
 }
 
-/// The measured positions, each with the deflection of its point under gravity.
+/// The measured positions as samples: each with the deflection of its point under gravity and with what each of the
+/// `candidates` would add. `points` lists the measured points on the tools.
 pub(super) fn samples(
     campaign: &Campaign,
     tree: &Tree,

@@ -1,5 +1,5 @@
-//! The boundaries between sessions: how far something jumps there, what else changes at the same row, and whether the
-//! session still pays once the effects are in the model.
+//! The boundaries between sessions: how far the measured points jump there, what else changes at the same row, and
+//! whether the session is still worth its price once the effects are in the model.
 
 use super::analysis::Positions;
 use super::fit::fit;
@@ -9,27 +9,32 @@ use super::moved::{Boundary, Kind, Moved};
 use crate::reconcile::fit::stats::median;
 use crate::reconcile::readings::campaign::Campaign;
 
-/// A jump of the measured points from this size on is no small change of a reflector \[mm\].
+/// A jump of the measured points of at least this size is too large to come from a reflector that was put back
+/// \[mm\].
 const LARGE_MM: f64 = 1.0;
-/// Number of rows on each side of a boundary that are compared.
+/// Number of rows on each side of a session boundary that are compared to find what else changes there.
 const BESIDE: usize = 15;
-/// Smallest number of rows on each side of a boundary that say whether something changes there.
+/// Smallest number of rows on each side of a session boundary for this comparison. With fewer, nothing is said to
+/// change.
 const FEWEST_BESIDE: usize = 4;
 
 impl Positions {
-    /// The boundaries, each as what was moved and the first row of the later session.
+    /// Boundaries between sessions: the declared ones if `declared` is true, otherwise those that were found. Each is
+    /// a pair: what was moved, and the first row of the later session, counted from 0.
     pub(crate) fn boundaries(&self, declared: bool) -> Vec<(Kind, usize)> {
         self.sessions.iter().filter(|b| b.declared == declared).map(|b| (b.kind, b.first)).collect()
     }
 
-    /// Price of all sessions that nobody declared, in ln of the likelihood.
+    /// Sum of the prices of all undeclared sessions \[ln of the likelihood\]. The price is the rise of the logarithm
+    /// of the likelihood that a session must bring to be kept.
     pub(super) fn sessions_price(&self) -> f64 {
         let kinds = self.kinds(true, true).len();
         let undeclared = self.sessions.iter().filter(|b| !b.declared);
         undeclared.map(|b| self.session_price(b.earlier.numbers().len(), kinds)).sum()
     }
 
-    /// One sentence for each boundary, by the final model.
+    /// One sentence for each session boundary, in the order of the rows. It states how far the measured points jump
+    /// there by the final model.
     pub(crate) fn session_sentences(&self, campaign: &Campaign) -> Vec<String> {
         let mut in_order: Vec<&Boundary> = self.sessions.iter().collect();
         in_order.sort_by_key(|b| b.first);
@@ -64,7 +69,7 @@ impl Positions {
         }
     }
 
-    /// The labels of the sessions on the two sides of a boundary.
+    /// Labels of the sessions before and after a boundary, by the rows nearest to it; `None` if one side has no row.
     fn labels(&self, boundary: &Boundary) -> Option<(Moved, Moved)> {
         let (before, after) = self.samples.split_at(boundary.first);
         let is_own = |s: &&Sample| self.is_of(s, boundary.kind);
@@ -73,7 +78,7 @@ impl Positions {
         Some((boundary.kind.label(before), boundary.kind.label(after)))
     }
 
-    /// Median distance by which the measured points jump at a boundary \[mm\].
+    /// Median distance by which the measured points jump at a session boundary by the fitted geometry \[mm\].
     fn jump_mm(&self, boundary: &Boundary) -> f64 {
         let Some((before, after)) = self.labels(boundary) else { return 0.0 };
         let mut placer = self.fitted.geometry.placer();
@@ -88,14 +93,16 @@ impl Positions {
         median(own.map(|s| 1e3 * (at_m(s, before) - at_m(s, after)).norm()).collect())
     }
 
-    /// Sessions that nobody declared and at which the measured points jump by millimetres, in words.
+    /// A phrase (distance and row) for each undeclared session at which the measured points jump by [`LARGE_MM`] or
+    /// more.
     pub(crate) fn large_jumps(&self) -> Vec<String> {
         let large = self.sessions.iter().filter(|b| !b.declared).map(|b| (b.first + 1, self.jump_mm(b)));
         large.filter(|(_, mm)| *mm >= LARGE_MM).map(|(row, mm)| format!("{mm:.2} mm at row {row}")).collect()
     }
 
-    /// What else changes where a session begins: a joint's angle or a payload that is on one side of a limit in all rows
-    /// before and on the other side in all rows after.
+    /// Names what else changes where a session begins: a joint's angle, the payload or the measured arm. A quantity
+    /// counts as changed if all its values in the rows before the boundary are below all values in the rows after it,
+    /// or all above. `None` if nothing else changes.
     fn changes_at(&self, campaign: &Campaign, boundary: &Boundary) -> Option<String> {
         let own =
             |range: std::ops::Range<usize>| range.filter(|&i| self.is_of(&self.samples[i], boundary.kind));
@@ -125,12 +132,13 @@ impl Positions {
         (!apart.is_empty()).then(|| apart.join(", "))
     }
 
-    /// Whether a session that nobody declared begins where something else changes in the rows.
+    /// Whether some undeclared session begins at a row where something else changes, as `changes_at` finds it.
     pub(crate) fn has_doubtful_session(&self, campaign: &Campaign) -> bool {
         self.sessions.iter().any(|b| !b.declared && self.changes_at(campaign, b).is_some())
     }
 
-    /// Drops the sessions that no longer pay next to the effects, the least useful first. Returns whether any was.
+    /// Drops undeclared sessions that are no longer worth their price (in ln of the likelihood) once effects are in
+    /// the model, the least useful first. Returns whether any was dropped.
     pub(crate) fn drop_needless_sessions(&mut self) -> bool {
         let before = self.sessions.len();
         loop {
@@ -148,7 +156,8 @@ impl Positions {
         self.sessions.len() < before
     }
 
-    /// The model in which the rows on both sides of a boundary are one session.
+    /// The model without the session boundary with index `index`, fitted again: the rows on both sides of it are one
+    /// session.
     fn without_session(&self, index: usize) -> Self {
         let mut out = self.clone();
         let boundary = out.sessions.remove(index);
@@ -165,7 +174,9 @@ impl Positions {
         out
     }
 
-    /// The session that would fit as well in place of an effect, if one would: the row before which it is.
+    /// Whether an undeclared session would fit as well as the effect `effect` does. If so, returns the row, counted
+    /// from 1, at which this session would begin; otherwise `None`. `tie` is the difference in ln of the likelihood
+    /// that does not count.
     pub(crate) fn session_instead(&self, campaign: &Campaign, effect: usize, tie: f64) -> Option<usize> {
         let spec = &campaign.statement.positions;
         let kinds = self.kinds(spec.tool_offset, spec.base_placement);
@@ -185,7 +196,7 @@ impl Positions {
     }
 }
 
-/// Whether a limit separates two lists of numbers.
+/// Whether all numbers of `a` are below all numbers of `b`, or all above.
 fn are_apart(a: &[f64], b: &[f64]) -> bool {
     let ends = |list: &[f64]| {
         list.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)))

@@ -1,7 +1,7 @@
-//! Asks whether positions that no calibration comes near were written down by another convention: in another unit, in a
-//! frame whose axes are swapped or left-handed, or with joint angles of another sign or zero.
+//! Tests whether positions that no calibration fits were written by another convention: in another unit, in a frame
+//! whose axes are swapped or left-handed, or with joint angles of another sign or zero.
 //!
-//! The search is greedy. From the file as it is, every single change, or every pair, is tried by a quick fit of the
+//! The search is greedy. From the file as it is, in the unit in which its positions spread as the arm's do, every single change, or every pair, is tried by a quick fit of the
 //! placement alone; the best is kept while it helps. What it finds is then calibrated in full like the file itself, and said if the errors
 //! that are left are several times smaller. Nothing is applied: which convention holds is for the user to say.
 
@@ -18,47 +18,52 @@ use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
-/// Conventions are asked about where the errors that calibration leaves exceed the declared ones by this factor.
+/// Other conventions are tested if the scale of the position errors after calibration exceeds the declared standard
+/// deviation by this factor.
 const FAR: f64 = 5.0;
-/// A convention is said if its calibration leaves errors that are smaller by this factor.
+/// A convention is reported if the errors after calibration with it are smaller than with the file as it is by at
+/// least this factor.
 const TELLING: f64 = 5.0;
-/// A change is kept in the search if it lowers the errors of the quick fit to this part.
+/// A change of convention is kept in the search if it lowers the errors of the quick fit to less than this fraction
+/// of those without it.
 const HELPS: f64 = 0.9;
-/// Conventions whose errors differ by less than this factor cannot be told apart.
+/// Two conventions cannot be told apart if the errors after calibration with them differ by less than this factor.
 const TIE: f64 = 1.2;
-/// Largest number of conventions that are said beside the best one.
+/// Largest number of conventions that are reported in addition to the best one.
 const MOST_EQUALS: usize = 3;
-/// A fit is far off if its errors are larger than this part of the spread of the positions.
+/// A fit is far off if the scale of its errors is larger than this fraction of the positions' root mean square
+/// distance from their centre.
 const FAR_OFF: f64 = 0.01;
-/// Largest number of changes that are made together.
+/// Largest number of changes of convention that are made together.
 const MOST_CHANGES: usize = 8;
-/// Number of positions of a quick fit.
+/// Largest number of positions that a quick fit uses.
 const QUICK: usize = 60;
-/// Size of the errors that another convention leaves \[m\].
+/// Scale of the position errors with which each fit starts \[m\]: about what another convention leaves.
 const ROUGH_M: f64 = 0.3;
 /// Units other than the millimetre, each with its length \[mm\].
 const UNITS: [(&str, f64); 4] =
     [("metres", 1e3), ("micrometres", 1e-3), ("centimetres", 10.0), ("inches", 25.4)];
 
-/// One way in which a file can be written otherwise.
+/// One way in which the convention of a file can differ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Change {
-    /// Positions in a unit, by its index in [`UNITS`].
+    /// Positions are in another unit, given by its index in [`UNITS`].
     Unit(usize),
-    /// Coordinate of the file, and whether its sign is other, for each axis of the frame.
+    /// For each axis of the frame, the index of the coordinate of the file that lies along it, and whether its sign
+    /// is reversed.
     Axes([(usize, bool); 3]),
-    /// An axis points the other way: the frame is left-handed.
+    /// One axis of the instrument's frame points the other way, so that the frame is left-handed.
     LeftHanded,
-    /// A joint's angles have the other sign.
+    /// The angles of the joint with this index have the other sign.
     Sign(usize),
-    /// A joint's zero is elsewhere \[rad\].
+    /// The zero of the joint with this index is elsewhere: this angle \[rad\] is added to the joint's angles.
     Zero(usize, f64),
 }
 
 const COORDINATES: [&str; 3] = ["x_mm", "y_mm", "z_mm"];
 
 impl Change {
-    /// Whether both say something of the same thing, so that one replaces the other.
+    /// Whether this change and `other` concern the same unit, axes or joint, so that one replaces the other.
     fn replaces(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Unit(_), Self::Unit(_)) | (Self::Axes(_), Self::Axes(_)) => true,
@@ -67,7 +72,7 @@ impl Change {
         }
     }
 
-    /// The sample as it is if the file was written so.
+    /// The sample (a measured position) as it would be if the file had been written by this convention.
     fn applied(&self, mut sample: Sample) -> Sample {
         let turned = |sample: &mut Sample, j: usize, of: &dyn Fn(f64) -> f64| {
             let mut angles_rad = sample.pose.angles_rad.clone();
@@ -110,7 +115,8 @@ impl Change {
     }
 }
 
-/// The changes that can be made: with a free base a turned frame is no change.
+/// The changes of convention that are tried, for an arm with `joints` driven joints. If the base placement is free, a
+/// turned frame is no change, and only the frame's handedness counts.
 fn changes(spec: &PositionsSpec, joints: usize) -> Vec<Change> {
     let mut out: Vec<Change> = (0..UNITS.len()).map(Change::Unit).collect();
     match spec.base_placement {
@@ -122,7 +128,7 @@ fn changes(spec: &PositionsSpec, joints: usize) -> Vec<Change> {
     out
 }
 
-/// Every two changes of the angles of two joints.
+/// All pairs of the changes `all` that concern the angles of two different joints.
 fn pairs(all: &[Change]) -> Vec<Vec<Change>> {
     let joint = |change: &Change| match change {
         Change::Sign(j) | Change::Zero(j, _) => Some(*j),
@@ -133,7 +139,7 @@ fn pairs(all: &[Change]) -> Vec<Vec<Change>> {
     all.iter().flat_map(with).collect()
 }
 
-/// The 47 ways in which axes can be swapped and turned round.
+/// The 47 ways to permute and reverse the axes of a frame, other than leaving it as it is.
 fn other_axes() -> Vec<Change> {
     const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
     let signed = ORDERS.iter().flat_map(|order| {
@@ -142,7 +148,7 @@ fn other_axes() -> Vec<Change> {
     signed.skip(1).collect()
 }
 
-/// Fits positions as if they were written by other conventions.
+/// Fits the positions of a file as if they had been written by another convention.
 struct Asked<'a> {
     spec: &'a PositionsSpec,
     samples: Vec<Sample>,
@@ -151,7 +157,8 @@ struct Asked<'a> {
 }
 
 impl Asked<'_> {
-    /// Scale of the errors that are left with the first groups of numbers free \[m\].
+    /// Scale of the position errors after a fit with the `changes` of convention made \[m\]. The first `groups`
+    /// groups of the geometry's numbers are free, and about `most` samples (measured positions) are used.
     fn scale_m(&self, changes: &[Change], groups: usize, most: usize) -> f64 {
         let step = self.samples.len().div_ceil(most).max(1);
         let written = self.samples.iter().step_by(step).cloned();
@@ -180,8 +187,9 @@ impl Asked<'_> {
         self.scale_m(changes, self.groups.len(), usize::MAX)
     }
 
-    /// The changes that the quick fit needs, from these on. Where no single one helps and the fit is still far off, pairs
-    /// are tried: of two parallel joints that turn the other way, one alone is no better.
+    /// Greedy search: adds to the changes `made` those of `all` that lower the errors of the quick fit, and returns
+    /// the set. If no single change helps and the fit is still far off, pairs are tried. Pairs are needed where two
+    /// parallel joints both turn the other way, because either change alone is no better.
     fn search(&self, all: &[Change], mut made: Vec<Change>) -> Vec<Change> {
         let singles: Vec<Vec<Change>> = all.iter().map(|change| vec![*change]).collect();
         let pairs = pairs(all);
@@ -197,7 +205,8 @@ impl Asked<'_> {
         self.pruned(made)
     }
 
-    /// The changes that the quick fit likes best, of these with each of some added, and the scale of its errors \[m\].
+    /// Joins `made` with each entry of `added` in turn, and returns the best set of changes with the scale of the
+    /// errors of its quick fit \[m\]. `None` if there is nothing to add.
     fn best_with(&self, made: &[Change], added: &[Vec<Change>]) -> Option<(f64, Vec<Change>)> {
         let with = |new: &Vec<Change>| {
             let is_kept = |old: &&Change| !new.iter().any(|change| change.replaces(old));
@@ -210,18 +219,31 @@ impl Asked<'_> {
         tried.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// Root mean square distance of the positions from their centre \[m\].
-    fn spread_m(&self, changes: &[Change]) -> f64 {
-        let at_m = |sample: &Sample| {
-            changes.iter().fold(sample.clone(), |sample, change| change.applied(sample)).measured_m
+    /// The unit in which the positions spread about as much as those of the nominal arm; `None` for millimetres. Whatever
+    /// else is written otherwise, this can be told, and no other change can be judged before.
+    fn unit_by_size(&self) -> Option<Change> {
+        let nominal = Fitted::rigid(self.nominal.clone(), ROUGH_M);
+        // a coordinate that was not measured is zero in both
+        let measured = |at_m: Vector3<f64>, sample: &Sample| {
+            at_m.zip_map(&sample.precision, |x, p| if p > 0.0 { x } else { 0.0 })
         };
-        let all: Vec<Vector3<f64>> = self.samples.iter().map(at_m).collect();
-        let count = all.len().max(1) as f64;
-        let centre = all.iter().sum::<Vector3<f64>>() / count;
-        (all.iter().map(|at| (at - centre).norm_squared()).sum::<f64>() / count).sqrt()
+        let expected_m =
+            spread_m(self.samples.iter().map(|sample| measured(nominal.predicted_m(sample), sample)));
+        let ratio = expected_m / self.spread_m(&[]);
+        let off = |unit_mm: f64| libm::log(ratio / unit_mm).abs();
+        let nearest = (0..UNITS.len()).min_by(|a, b| off(UNITS[*a].1).total_cmp(&off(UNITS[*b].1)))?;
+        (off(UNITS[nearest].1) < off(1.0)).then_some(Change::Unit(nearest))
     }
 
-    /// Without the changes that a later one made needless.
+    /// Root mean square distance of the positions from their centre \[m\].
+    fn spread_m(&self, changes: &[Change]) -> f64 {
+        spread_m(self.samples.iter().map(|sample| {
+            changes.iter().fold(sample.clone(), |sample, change| change.applied(sample)).measured_m
+        }))
+    }
+
+    /// The changes `made` without those that another change has made unnecessary: the quick fit is about as good
+    /// without them.
     fn pruned(&self, mut made: Vec<Change>) -> Vec<Change> {
         let mut at = 0;
         while at < made.len() {
@@ -235,7 +257,8 @@ impl Asked<'_> {
         made
     }
 
-    /// Sets of changes with one of them replaced by another that leave errors as small as theirs, `scale_m` \[m\].
+    /// Sets of changes that differ from `made` in one change, for one of `all`, and leave errors about as small.
+    /// `scale_m` is the scale of the errors with `made` \[m\].
     fn equals(&self, all: &[Change], made: &[Change], scale_m: f64) -> Vec<Vec<Change>> {
         let quick_m = self.quick_m(made);
         let others = || all.iter().filter(|change| !made.iter().any(|m| m.replaces(change)));
@@ -253,9 +276,17 @@ impl Asked<'_> {
     }
 }
 
+/// Root mean square distance of points from their centre \[m\].
+fn spread_m(points_m: impl Iterator<Item = Vector3<f64>>) -> f64 {
+    let all: Vec<Vector3<f64>> = points_m.collect();
+    let count = all.len().max(1) as f64;
+    let centre = all.iter().sum::<Vector3<f64>>() / count;
+    (all.iter().map(|at| (at - centre).norm_squared()).sum::<f64>() / count).sqrt()
+}
+
 impl Positions {
-    /// A sentence on the convention by which the positions would fit far better, if calibration does not come near them
-    /// and there is one.
+    /// Sentence on a convention by which the positions of the file would fit far better. `None` if calibration fits
+    /// the positions well enough, if a mounting is unknown (too many combinations), or if no convention is found.
     pub(super) fn other_convention(&self, campaign: &Campaign) -> Option<String> {
         let spec = &campaign.statement.positions;
         let declared_mm: f64 = campaign.positions.iter().map(|row| row.sigma_mm()).sum();
@@ -271,13 +302,14 @@ impl Positions {
         let asked = Asked { spec, samples, nominal, groups: groups.collect() };
         let all = changes(spec, self.tree.driven.len());
         let is_far_off = self.rigid.scale_m > FAR_OFF * asked.spread_m(&[]);
-        let mut starts = vec![vec![]];
+        let by_size: Vec<Change> = asked.unit_by_size().into_iter().collect();
+        let mut starts = vec![by_size.clone()];
         if spec.base_placement && is_far_off {
-            starts.push(vec![Change::LeftHanded]);
+            starts.push([by_size, vec![Change::LeftHanded]].concat());
         }
         let found = starts.into_iter().map(|start| asked.search(&all, start)).filter(|made| !made.is_empty());
         let judged = found.map(|made| (asked.full_m(&made), made));
-        // of two that cannot be told apart, the one with fewer changes
+        // if two cannot be told apart, the one with fewer changes is better
         let is_better = |a: &(f64, Vec<Change>), b: &(f64, Vec<Change>)| {
             a.0 < b.0 / TIE || (a.0 < TIE * b.0 && a.1.len() < b.1.len())
         };

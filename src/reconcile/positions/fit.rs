@@ -1,10 +1,10 @@
 //! Fits geometry and compliances to absolute positions, robustly.
 //!
-//! The standard deviation of a laser tracker is far below the errors that any model of an arm leaves. So the
-//! scale of the errors is fitted too. The error of each position is a Student variable with ν = 4 degrees of freedom, of
-//! as many dimensions `d` as coordinates were measured. Its weight `(ν+d)/(ν + |r|²/s²)` lets gross errors fade. A compliance `c` moves
-//! the point by `c P ĝ`, where `P` is its displacement at unit compliance per direction of gravity
-//! ([`loads`](super::loads)).
+//! The standard deviation of a laser tracker is far below the errors of any model of an arm, so the scale `s` of the
+//! errors is fitted too. The error `r` of each position follows a Student distribution with ν = 4 degrees of freedom,
+//! in as many dimensions `d` as coordinates were measured. Its weight `(ν+d)/(ν + |r|²/s²)` reduces the influence of
+//! gross errors. A compliance `c` moves the point by `c P ĝ`, where `P` is the displacement of the point at unit
+//! compliance per direction of gravity `ĝ` ([`loads`](super::loads)).
 
 use super::fitted::{Fitted, Miss, NU, Sample, misses, weight};
 use super::kinematics::Number;
@@ -14,12 +14,12 @@ use super::springs::{Best, best_springs};
 const MOST_STEPS: usize = 40;
 /// Largest number of times that a step is halved because the fit is worse after it.
 const MOST_HALVINGS: i32 = 10;
-/// Largest turn of a frame in one step \[rad\].
+/// Largest rotation of a frame (base or mounting) in one step of a fit \[rad\].
 const MOST_TURN_RAD: f64 = 0.3;
 
 impl Fitted {
-    /// The model after a part of a step: the geometry changes by this part of `step`, the compliances go this part of
-    /// the way to those of `goal`.
+    /// The model after the fraction `part` of a step from this model to `goal`: the geometry's `numbers` change by
+    /// this fraction of `step`, and the compliances go this fraction of the way to those of `goal`.
     fn towards(&self, goal: &Self, part: f64, numbers: &[Number], step: &[f64], samples: &[&Sample]) -> Self {
         let mut out = goal.clone();
         let step: Vec<f64> = step.iter().map(|s| part * s).collect();
@@ -30,7 +30,7 @@ impl Fitted {
         out.judged(samples)
     }
 
-    /// The same model with the scale of its errors and its likelihood computed.
+    /// This model with the scale of its position errors and its likelihood computed for the samples.
     fn judged(mut self, samples: &[&Sample]) -> Self {
         let misses = misses(samples, &self);
         self.scale_m = scale(&misses, self.scale_m);
@@ -38,21 +38,23 @@ impl Fitted {
         self
     }
 
-    /// Sets the standard deviations of the geometry's `numbers` and, after them, of the compliances.
+    /// Stores standard deviations. In `deviations` come first those of the geometry's numbers, of which there are
+    /// `numbers`, and then those of the compliances.
     fn set_deviations(&mut self, numbers: usize, deviations: &[f64]) {
         self.number_deviations = deviations[..numbers].to_vec();
         let own = self.deviations.iter_mut().flatten();
         own.zip(&deviations[numbers..]).for_each(|(own, deviation)| *own = *deviation);
     }
 
-    /// ln of the likelihood and of the prior of the numbers together.
+    /// Natural logarithm of the likelihood of the model times the prior probability of the geometry's `numbers`.
     fn merit(&self, numbers: &[Number]) -> f64 {
         let prior = numbers.iter().zip(&self.moved).map(|(n, moved)| 0.5 * (moved / n.prior()).powi(2));
         self.ln_likelihood - prior.sum::<f64>()
     }
 }
 
-/// Fits geometry and the named compliances to the samples, starting from a model.
+/// Fits the geometry's `numbers` and the compliances of the candidates with the indices `effects` to the samples
+/// (measured positions). The fit starts from the model `start`.
 pub(crate) fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], start: &Fitted) -> Fitted {
     let mut here = start.clone();
     here.compliances = effects
@@ -68,7 +70,8 @@ pub(crate) fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], st
     here.moved.resize(numbers.len(), 0.0);
     // kept for comparison: the start can be better than where a first bad step leads
     let begin = here.clone().judged(samples);
-    // The first step may make the fit worse, because the parabola is a poor model far from the best fit.
+    // The first step is taken even if it makes the fit worse, because the quadratic approximation is poor far from the
+    // best fit.
     let mut merit = f64::NEG_INFINITY;
     let mut last: Option<Best> = None;
     for _ in 0..MOST_STEPS {
@@ -105,10 +108,10 @@ pub(crate) fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], st
     here
 }
 
-/// Variance factor of the M-estimator (sandwich; Huber, Robust Statistics, ch. 7). Standard deviations from
-/// the weighted curvature take the weights as known and are too small by its root, which is returned. It is
-/// the root mean square of the weighted errors over their mean slope, corrected for the number of free
-/// parameters.
+/// Sandwich factor: square root of the variance factor of the M-estimator (Huber, Robust Statistics, ch. 7). Standard
+/// deviations from the weighted curvature take the weights as known and are too small by this factor. It is the root
+/// mean square of the weighted errors `misses`, divided by their mean slope and corrected for `free`, the number of
+/// free parameters.
 fn sandwich_factor(misses: &[Miss], scale_m: f64, free: usize) -> f64 {
     let count: f64 = misses.iter().map(|miss| miss.readings).sum();
     let (mut weights, mut squares, mut slopes) = (0.0, 0.0, 0.0);
@@ -123,14 +126,16 @@ fn sandwich_factor(misses: &[Miss], scale_m: f64, free: usize) -> f64 {
     (weights * squares * count / left).sqrt() / slopes
 }
 
-/// Shortens a step that would turn a frame too far for a linearization.
+/// Shortens the step of the geometry's `numbers` if it would turn a frame by more than [`MOST_TURN_RAD`], too far for
+/// a linearization.
 fn shortened(numbers: &[Number], step: Vec<f64>) -> Vec<f64> {
     let turns = numbers.iter().zip(&step).filter(|(n, _)| n.turns()).map(|(_, s)| s.abs());
     let part = (MOST_TURN_RAD / turns.fold(0.0, f64::max)).min(1.0);
     step.into_iter().map(|s| s * part).collect()
 }
 
-/// The scale of errors, by fixed-point iteration from a value nearby \[m\].
+/// Scale `s` of the Student distribution of the errors `misses` \[m\], by fixed-point iteration that starts at
+/// `near_m`.
 pub(crate) fn scale(misses: &[Miss], near_m: f64) -> f64 {
     let count: f64 = misses.iter().map(|miss| miss.readings).sum();
     let mut scale_m = near_m;
@@ -141,7 +146,8 @@ pub(crate) fn scale(misses: &[Miss], near_m: f64) -> f64 {
     scale_m
 }
 
-/// ln of the likelihood of errors with this scale.
+/// Natural logarithm of the likelihood of the errors `misses` if they follow a Student distribution with the scale
+/// `scale_m`.
 pub(crate) fn ln_likelihood(misses: &[Miss], scale_m: f64) -> f64 {
     let s2 = scale_m * scale_m;
     let one = |m: &Miss| {
@@ -151,8 +157,8 @@ pub(crate) fn ln_likelihood(misses: &[Miss], scale_m: f64) -> f64 {
     misses.iter().map(one).sum()
 }
 
-/// Takes one weighted Gauss-Newton step: sets the compliances to the best values that springs can have, and returns the
-/// step of all numbers; `None` if the equations are singular.
+/// Takes one weighted Gauss-Newton step from the model `here`. Sets its compliances to the best values that are
+/// physically possible, and returns the step of all numbers and compliances; `None` if the equations are singular.
 fn step(samples: &[&Sample], numbers: &[Number], here: &mut Fitted) -> Option<Best> {
     let normal = normal(samples, numbers, here, &mut |_, _, _| {});
     let best = best_springs(&normal, numbers.len(), &here.compliances)?;

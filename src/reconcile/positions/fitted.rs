@@ -1,98 +1,99 @@
-//! A measured position with what gravity does to it, and a fitted model of geometry and compliances.
+//! A measured position with the effect of gravity on it, and a fitted model of geometry and compliances.
 
 use super::kinematics::{Geometry, Placer, Placing, Pose};
 use super::loads::Deflection;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
-/// Degrees of freedom of the Student distribution.
+/// Degrees of freedom ν of the Student distribution of the errors.
 pub(crate) const NU: f64 = 4.0;
 
-/// One measured position.
+/// One measured position (sample), with its pose and its deflection.
 #[derive(Debug, Clone)]
 pub(crate) struct Sample {
-    /// Angles of the driven joints.
+    /// Angles of the driven joints, with their sines and cosines.
     pub pose: Arc<Pose>,
-    /// Index of the arm that carries the point.
+    /// Index of the arm to which the point belongs.
     pub arm: usize,
-    /// Index of its point on the tool.
+    /// Index of the measured point among all points on tools.
     pub point: usize,
-    /// Index of the instrument's session.
+    /// Index of the session that sets the arm's place in the instrument's frame (station).
     pub station: usize,
-    /// Index of this sample among the samples.
+    /// Index of this sample, which is the index of its row in the campaign.
     pub index: usize,
-    /// Index of its pose. Samples of one pose are held out together.
+    /// Number of the pose, counted over different poses. Samples of one pose are held out together.
     pub group: usize,
     /// Measured position in the instrument's frame \[m\]; zero where a coordinate was not measured.
     pub measured_m: Vector3<f64>,
-    /// How much an error of each coordinate counts: 0 if it was not measured, 1 if none of the row is known better.
+    /// Weight of each coordinate's error, from 0.1 to 1: 0 if the coordinate was not measured, 1 if it has the
+    /// smallest standard deviation of its row.
     pub precision: Vector3<f64>,
-    /// The effect of gravity on this position.
+    /// How this position deflects under gravity: the known deflection, and what each candidate would add.
     pub deflection: Arc<Deflection>,
 }
 
 impl Sample {
-    /// The arguments that the geometry needs.
+    /// Arm, pose, point and session of the sample, from which its position without deflection is computed.
     pub(crate) fn placing(&self) -> Placing<'_> {
         Placing { arm: self.arm, pose: &self.pose, point: self.point, station: self.station }
     }
 
-    /// Number of coordinates that were measured.
+    /// Number of coordinates of this position that were measured, 0 to 3.
     pub(crate) fn readings(&self) -> usize {
         self.precision.iter().filter(|p| **p > 0.0).count()
     }
 
-    /// Error of this sample at a predicted position, measured minus predicted \[m\]; zero where a coordinate was not
-    /// measured.
+    /// Error of this sample for the predicted position `predicted_m`, measured minus predicted \[m\]. It is zero
+    /// where a coordinate was not measured.
     pub(crate) fn error(&self, predicted_m: Vector3<f64>) -> Vector3<f64> {
         (self.measured_m - predicted_m).zip_map(&self.precision, |e, p| if p > 0.0 { e } else { 0.0 })
     }
 
-    /// An error of this sample as a fit sees it.
+    /// The error `error_m` of this sample, with each coordinate multiplied by its weight for the fit.
     pub(crate) fn miss(&self, error_m: &Vector3<f64>) -> Miss {
         Miss { scaled_m: error_m.component_mul(&self.precision), readings: self.readings() as f64 }
     }
 }
 
-/// An error as a fit sees it.
+/// The error of a sample (a measured position), with each coordinate multiplied by its weight for the fit.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Miss {
-    /// Measured minus predicted, times the precision of each coordinate \[m\].
+    /// Measured minus predicted position, times the weight of each coordinate \[m\].
     pub scaled_m: Vector3<f64>,
     /// Number of coordinates that were measured.
     pub readings: f64,
 }
 
-/// Number of coordinates that were measured.
+/// Number of measured coordinates, summed over all samples.
 pub(crate) fn readings(samples: &[Sample]) -> usize {
     samples.iter().map(Sample::readings).sum()
 }
 
-/// A fitted model.
+/// A fitted model of geometry and compliances.
 #[derive(Debug, Clone)]
 pub(crate) struct Fitted {
-    /// Geometry.
+    /// The calibrated geometry.
     pub geometry: Geometry,
-    /// Change of each number of the geometry from its nominal value.
+    /// Change of each freed number of the geometry from its nominal value, in the number's unit.
     pub moved: Vec<f64>,
-    /// Standard deviations of the numbers of the geometry.
+    /// Standard deviations of the freed numbers of the geometry, in the numbers' units.
     pub number_deviations: Vec<f64>,
     /// Indices of the candidates that the model contains as effects.
     pub effects: Vec<usize>,
-    /// The compliances of each effect \[rad/(N m)\].
+    /// The compliances of each effect, in the order of `effects` \[rad/(N m)\]; the half width for play \[rad\].
     pub compliances: Vec<Vec<f64>>,
-    /// Standard deviations of the compliances \[rad/(N m)\].
+    /// Standard deviations of the compliances, in the order and units of `compliances`.
     pub deviations: Vec<Vec<f64>>,
-    /// What the standard deviations are by robust weights over what the curvature alone gives.
+    /// Sandwich factor: ratio of the standard deviations of the robust fit to those of the weighted curvature alone.
     pub robust_factor: f64,
-    /// Scale of the errors \[m\].
+    /// Scale of the Student distribution of the position errors \[m\].
     pub scale_m: f64,
-    /// ln of the likelihood.
+    /// Natural logarithm of the likelihood of all measured positions.
     pub ln_likelihood: f64,
 }
 
 impl Fitted {
-    /// A model of a geometry without effects.
+    /// A model of `geometry` without effects, whose position errors have the scale `scale_m`.
     pub(crate) fn rigid(geometry: Geometry, scale_m: f64) -> Self {
         Self {
             geometry,
@@ -107,32 +108,34 @@ impl Fitted {
         }
     }
 
-    /// Predicted position \[m\].
+    /// Predicted position of a sample, in the instrument's frame \[m\].
     pub(crate) fn predicted_m(&self, sample: &Sample) -> Vector3<f64> {
         self.predicted_by(&mut self.geometry.placer(), sample)
     }
 
-    /// Predicted position by a placer of the model's geometry \[m\].
+    /// Predicted position of a sample, in the instrument's frame \[m\]. `placer` must belong to this model's
+    /// geometry; it is passed in because that is faster for many samples.
     pub(crate) fn predicted_by(&self, placer: &mut Placer, sample: &Sample) -> Vector3<f64> {
         let rigid = placer.place_m(sample.placing());
         rigid + self.geometry.level_to_instrument() * self.displacement(sample)
     }
 
-    /// Error of a sample, measured minus predicted \[m\]; zero where a coordinate was not measured.
+    /// Error of a sample with this model, measured minus predicted position \[m\]; zero where a coordinate was not
+    /// measured.
     pub(crate) fn error(&self, sample: &Sample) -> Vector3<f64> {
         sample.error(self.predicted_m(sample))
     }
 
-    /// Displacement of a sample's point by gravity: known deflection, and the effects of the model, in the level
-    /// frame \[m\].
+    /// Displacement of the measured point of a sample by gravity, in the level frame \[m\]: the known deflection,
+    /// plus the deflection by the effects of the model.
     pub(crate) fn displacement(&self, sample: &Sample) -> Vector3<f64> {
         let gravity = &self.geometry.gravity;
         let [by_x, by_y] = &sample.deflection.known_slopes_m;
         sample.deflection.known_m + by_x * gravity.x + by_y * gravity.y + self.yielded(sample, gravity)
     }
 
-    /// Displacement of a sample's point by the effects of the model under gravity along a direction, in the level
-    /// frame \[m\].
+    /// How far the effects of the model let the measured point of a sample move under gravity along the direction
+    /// `gravity`, in the level frame \[m\]. The effects deflect elastically or close their play.
     pub(crate) fn yielded(&self, sample: &Sample, gravity: &Vector3<f64>) -> Vector3<f64> {
         let effects = self.effects.iter().zip(&self.compliances);
         effects.fold(Vector3::zeros(), |sum, (&effect, compliances)| {
@@ -140,8 +143,9 @@ impl Fitted {
         })
     }
 
-    /// Change of the displacement by the springs of the model as gravity leans along an axis \[m/rad\]. Play is left out: it
-    /// is closed in most poses, and does not follow.
+    /// Derivative of the elastic displacement by the effects of the model with respect to a tilt of gravity along the
+    /// axis with index `axis` \[m/rad\]. Play is left out: it is closed in most poses, and its displacement then does
+    /// not change with the tilt.
     pub(crate) fn leaning(&self, sample: &Sample, axis: usize) -> Vector3<f64> {
         let effects = self.effects.iter().zip(&self.compliances);
         let springs = effects.filter(|(effect, _)| !sample.deflection.is_play(**effect));
@@ -150,19 +154,20 @@ impl Fitted {
         })
     }
 
-    /// Weight of a sample with this error \[1/m²\].
+    /// Weight of a sample with the error `miss` in the normal equations \[1/m²\].
     pub(crate) fn weight(&self, miss: &Miss) -> f64 {
         weight(miss, self.scale_m) / (self.scale_m * self.scale_m)
     }
 }
 
-/// Errors of samples as a fit sees them.
+/// Errors of the samples with the model `fitted`, each coordinate multiplied by its weight for the fit.
 pub(crate) fn misses(samples: &[&Sample], fitted: &Fitted) -> Vec<Miss> {
     let mut placer = fitted.geometry.placer();
     samples.iter().map(|s| s.miss(&s.error(fitted.predicted_by(&mut placer, s)))).collect()
 }
 
-/// Weight of a sample with this error, in units of the scale.
+/// Weight of a sample with the error `miss` in the fit, without unit. It is more than 1 for errors well below the
+/// scale `scale_m`, and falls as the error grows.
 pub(crate) fn weight(miss: &Miss, scale_m: f64) -> f64 {
     (NU + miss.readings) / (NU + miss.scaled_m.norm_squared() / (scale_m * scale_m))
 }

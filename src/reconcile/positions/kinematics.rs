@@ -1,5 +1,5 @@
-//! Computes where a point on the tool is for any calibrated geometry, and how it moves with each number of
-//! the geometry.
+//! Computes the position of a point on the tool for any calibrated geometry, and its derivatives with respect to the
+//! numbers of the geometry.
 
 use super::tree::Tree;
 use crate::arm::effect::waves::{transmission_rad, transmission_waves};
@@ -8,24 +8,24 @@ use crate::arm::{Arm, Element};
 use crate::reconcile::readings::campaign::PositionsSpec;
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
-/// The waves of a joint that turns evenly.
+/// The amplitudes of a joint's transmission error if the joint has none.
 const EVEN: [f64; 4] = [0.0; 4];
 
-/// One calibrated number of the geometry.
+/// One number of the geometry that a fit can change. Rotations and shifts are changes; indices say of what.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Number {
-    /// Rotation of the arm's base about an instrument axis \[rad\].
+    /// Rotation of the arm's base about the instrument axis with this index \[rad\].
     BaseRotation(usize),
-    /// Position of the arm's base \[m\].
+    /// Coordinate with this index of the base's origin in the instrument's frame \[m\].
     BasePosition(usize),
     /// Offset of a point on the last frame \[m\]: index of the point, component.
     Tool(usize, usize),
-    /// Rotation of everything behind a link of unknown mounting \[rad\]: index of the piece, and axis of the frame
-    /// inboard of the link.
+    /// Rotation of everything behind a link of unknown mounting \[rad\]: index of the piece (joint or link), and axis
+    /// of the frame inboard of the link.
     Mount(usize, usize),
     /// Vector of a link of unknown mounting \[m\]: index of the piece, component.
     MountVector(usize, usize),
-    /// Zero of a driven joint \[rad\]: index of the joint in a pose.
+    /// Shift of the zero of a driven joint \[rad\]: index of the joint in a pose.
     Zero(usize),
     /// Tilt of a joint's axis \[rad\]: index of the piece, and which of the two axes across the joint's axis.
     Axis(usize, usize),
@@ -37,17 +37,19 @@ pub(crate) enum Number {
     /// Factor by which the angle of a passive joint follows that of a driven joint: index of the piece, index of the
     /// term.
     Ratio(usize, usize),
-    /// Component of the direction of gravity across the arm's vertical.
+    /// Horizontal component of the unit vector of gravity \[-\]: index of the axis, x or y, of the level frame.
     Gravity(usize),
-    /// Rotation of all points of a later session against the first one, about the base's origin \[rad\]: session,
-    /// instrument axis.
+    /// Rotation of all points of a later session relative to the first session, about the base's origin \[rad\]:
+    /// index of the session, instrument axis.
     SessionRotation(usize, usize),
-    /// Shift of all points of a later session against the first one \[m\]: session, instrument axis.
+    /// Shift of all points of a later session relative to the first session \[m\]: index of the session, instrument
+    /// axis.
     SessionPosition(usize, usize),
 }
 
 impl Number {
-    /// Prior standard deviation of the number, in its unit.
+    /// Prior standard deviation of the number's change from nominal, in the number's unit. For placements it is far
+    /// larger than any change that occurs, so that the readings alone decide.
     pub(crate) fn prior(&self) -> f64 {
         match self {
             Number::BaseRotation(_) | Number::Mount(..) => 10.0,
@@ -61,14 +63,15 @@ impl Number {
         }
     }
 
-    /// Whether the number is a rotation whose angle may have any size.
+    /// Whether the number is a rotation that may be large, as for a placement. The fit shortens its steps.
     pub(crate) fn turns(&self) -> bool {
         matches!(self, Number::BaseRotation(_) | Number::Mount(..))
     }
 }
 
-/// The numbers that a campaign leaves free, in groups. The groups are freed one after the other: placement of arm and
-/// points, joint zeros, geometry, direction of gravity.
+/// The numbers of the geometry that a campaign leaves free, in named groups. The groups are freed one after the
+/// other: placement of arm and points, joint zeros, geometry, direction of gravity. `points` is the number of
+/// measured points.
 pub(crate) fn number_groups(
     tree: &Tree,
     spec: &PositionsSpec,
@@ -96,7 +99,7 @@ pub(crate) fn number_groups(
     out
 }
 
-/// Attitude and place behind the links whose mounting is unknown.
+/// The numbers of attitude and position behind each link of unknown mounting, three of each.
 pub(crate) fn mount_numbers(tree: &Tree, spec: &PositionsSpec) -> Vec<Number> {
     let mounts = (0..tree.pieces.len()).filter(|&i| is_mount(&tree.pieces[i], spec));
     mounts
@@ -110,8 +113,9 @@ fn is_mount(piece: &Piece, spec: &PositionsSpec) -> bool {
     matches!(piece, Piece::Link(link) if spec.mounts.contains(&link.name))
 }
 
-/// Of consecutive links only the last vector is free, because only their sum shows. Links before the first
-/// joint and after the last are covered by base placement and tool offsets.
+/// The numbers of axes and link vectors between the first and the last joint. Of consecutive links only the last
+/// vector is free, because the readings depend on their sum only. Links before the first joint and after the last are
+/// covered by base placement and tool offsets.
 fn geometry_numbers(tree: &Tree, spec: &PositionsSpec) -> Vec<Number> {
     let is_joint = |i: usize| matches!(tree.pieces[i], Piece::Joint(_));
     let between = |i: usize| {
@@ -138,7 +142,7 @@ fn geometry_numbers(tree: &Tree, spec: &PositionsSpec) -> Vec<Number> {
     out
 }
 
-/// A calibrated geometry: the nominal one with the values of the numbers.
+/// A calibrated geometry: the nominal geometry changed by the calibrated numbers.
 #[derive(Debug, Clone)]
 pub(crate) struct Geometry {
     /// Rotation from the base frame to the instrument's frame.
@@ -147,10 +151,10 @@ pub(crate) struct Geometry {
     pub origin_m: Vector3<f64>,
     /// Points on the tools, each in the last frame of the point's arm \[m\].
     pub tools_m: Vec<Vector3<f64>>,
-    /// For each session, rotation of all points about the base's origin, and shift of all points \[m\], against the
-    /// first session.
+    /// For each session, relative to the first one: how all points turn about the base's origin, and how they shift
+    /// \[m\].
     pub stations: Vec<(Rotation3<f64>, Vector3<f64>)>,
-    /// Rotation from the base frame to the level frame, whose z points up.
+    /// Rotation from the base frame to the level frame, whose z axis is opposite to gravity.
     pub level: Rotation3<f64>,
     /// Direction of gravity in the level frame. It is -z, unless it was fitted after the frame was last levelled.
     pub gravity: Vector3<f64>,
@@ -164,7 +168,8 @@ pub(crate) struct Geometry {
     arms: Vec<Vec<usize>>,
 }
 
-/// The angles of the driven joints in a pose, with their sines and cosines: the geometry changes, poses do not.
+/// Angles of the driven joints in a pose, with their sines and cosines. These are computed once, because the geometry
+/// changes during a fit and the poses do not.
 #[derive(Debug)]
 pub(crate) struct Pose {
     /// Angles \[rad\].
@@ -180,7 +185,7 @@ impl Pose {
     }
 }
 
-/// Which point to place: its arm, pose and session.
+/// States which point's position is asked for, and in which arm, pose and session.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Placing<'a> {
     /// Index of the arm.
@@ -193,7 +198,7 @@ pub(crate) struct Placing<'a> {
     pub station: usize,
 }
 
-/// A frame: its rotation and its origin \[m\], in the instrument's frame.
+/// Rotation and origin \[m\] of a frame, relative to the instrument's frame.
 #[derive(Clone, Copy)]
 struct Frame {
     rotation: Rotation3<f64>,
@@ -201,7 +206,8 @@ struct Frame {
 }
 
 impl Geometry {
-    /// The nominal geometry, the arm standing at the instrument's origin.
+    /// The nominal geometry, with the arm at the instrument's origin and `points` points at the origin of the last
+    /// frame.
     pub(crate) fn nominal(tree: &Tree, points: usize) -> Self {
         let axis = |p: &Piece| match p {
             Piece::Joint(j) => j.axis,
@@ -232,12 +238,12 @@ impl Geometry {
         }
     }
 
-    /// Sets the attitude behind a link of unknown mounting.
+    /// Sets the attitude of everything behind the link of unknown mounting with the index `piece` to `rotation`.
     pub(crate) fn set_mount(&mut self, piece: usize, rotation: Rotation3<f64>) {
         self.mounts[piece] = rotation;
     }
 
-    /// Changes the numbers by the amounts in `step`.
+    /// Changes each of the geometry's `numbers` by its amount in `step`, in the number's unit.
     pub(crate) fn step(&mut self, numbers: &[Number], step: &[f64]) {
         let about =
             |c: usize, by: f64| Rotation3::from_axis_angle(&Unit::new_unchecked(Vector3::ith(c, 1.0)), by);
@@ -269,7 +275,7 @@ impl Geometry {
         }
     }
 
-    /// Turns the level frame so that gravity points along its -z again.
+    /// Turns the level frame so that gravity again points along its -z axis.
     pub(crate) fn relevel(&mut self) {
         if let Some(turn) = Rotation3::rotation_between(&self.gravity, &-Vector3::z()) {
             self.level = turn * self.level;
@@ -277,15 +283,16 @@ impl Geometry {
         }
     }
 
-    /// Rotation from the level frame to the instrument's.
+    /// Rotation from the level frame to the instrument's frame.
     pub(crate) fn level_to_instrument(&self) -> Rotation3<f64> {
         self.base * self.level.inverse()
     }
 
-    /// Writes the calibrated axes and vectors into one of the arms, in the level frame.
+    /// Writes the calibrated axes and vectors into `arm`, which has the index `index` in the tree, in the level
+    /// frame.
     ///
     /// A joint's zero and a mounting turn everything outboard, so later axes and vectors turn with them. Returns the
-    /// rotation of the arm's last frame.
+    /// rotation of the arm's last frame that results from this.
     pub(crate) fn write_into(&self, index: usize, arm: &mut Arm) -> Rotation3<f64> {
         let mut turned = self.level;
         for (&i, element) in self.arms[index].iter().zip(&mut arm.chain) {
@@ -312,7 +319,8 @@ impl Geometry {
         turned
     }
 
-    /// Prepares for the placing of many points.
+    /// Prepares the computation of many positions with this geometry. Numbers that do not depend on the pose are
+    /// computed here once.
     pub(crate) fn placer(&self) -> Placer<'_> {
         let along = |chain: &Vec<usize>| {
             let mut out = vec![None; self.axes.len()];
@@ -337,34 +345,36 @@ impl Geometry {
         }
     }
 
-    /// Position of a point \[m\]. For many points, a [`placer`](Self::placer) is faster.
+    /// Position of the point `asked`, in the instrument's frame \[m\]. For many points, a [`placer`](Self::placer) is
+    /// faster.
     pub(crate) fn place_m(&self, asked: Placing) -> Vector3<f64> {
         self.placer().place_m(asked)
     }
 }
 
-/// Places points by one geometry. The room for a pose's frames is used again for the next pose, so that nothing is
-/// allocated for a point.
+/// Computes positions of points for one geometry. The memory for the frames of a pose is used again for each pose, so
+/// that nothing is allocated for each point.
 pub(crate) struct Placer<'a> {
     geometry: &'a Geometry,
-    /// For each piece, the two axes across its axis.
+    /// For each piece, the two unit axes perpendicular to the joint's axis.
     across: Vec<[Vector3<f64>; 2]>,
-    /// For each driven joint, the pieces that turn with it.
+    /// For each driven joint, the joints whose angle depends on it: the joint itself and its passive joints.
     turned_by: Vec<Vec<usize>>,
-    /// For each arm and piece, the place of the piece in the arm's chain; `None` for pieces of other arms.
+    /// For each arm and piece, the index of the piece in the arm's chain; `None` for pieces of other arms.
     along: Vec<Vec<Option<usize>>>,
     /// Sine and cosine of each driven joint's zero.
     zero_sin_cos: Vec<(f64, f64)>,
-    /// The angles to which the driven joints turn in the pose \[rad\].
+    /// Angles of the driven joints in the pose, with zeros and transmission errors added \[rad\].
     turned_rad: Vec<f64>,
     /// The frames along the chain: frame `k` is inboard of the chain's piece `k`, frame `k + 1` outboard of it.
     frames: Vec<Frame>,
-    /// The point, as the first session sees it \[m\].
+    /// Position of the point that was placed last, without the motion of its session \[m\].
     at_m: Vector3<f64>,
 }
 
 impl Placer<'_> {
-    /// Position of a point \[m\]. The [slopes](Self::slopes) are those of the point placed last.
+    /// Position of the point `asked`, in the instrument's frame \[m\]. The [slopes](Self::slopes) refer to the point
+    /// that was placed last.
     pub(crate) fn place_m(&mut self, asked: Placing) -> Vector3<f64> {
         let own = self.geometry;
         self.turned_rad.clear();
@@ -381,7 +391,7 @@ impl Placer<'_> {
                 Some(angle) => last.rotation *= turn(&own.axes[i], self.sin_cos(angle, asked.pose)),
                 None => {
                     last.at_m += last.rotation * own.vectors_m[i];
-                    // hardly any link is a mounting
+                    // skips the product for the usual link, which is no mounting
                     if own.mounts[i] != Rotation3::identity() {
                         last.rotation *= own.mounts[i];
                     }
@@ -394,8 +404,9 @@ impl Placer<'_> {
         own.origin_m + turn * (self.at_m - own.origin_m) + shift_m
     }
 
-    /// Sine and cosine of a joint's angle. For a joint that turns evenly they follow from those of its commanded angle and
-    /// of its zero, because sines are what placing would spend most on.
+    /// Sine and cosine of the joint angle `angle` in a pose. For a joint without transmission error they follow, by
+    /// the addition theorems, from the sines and cosines of its commanded angle and of its zero. Computing sines
+    /// would otherwise take most of the time.
     fn sin_cos(&self, angle: &JointAngle, pose: &Pose) -> (f64, f64) {
         match angle {
             JointAngle::Driven(j) if self.geometry.transmissions_rad[*j] == EVEN => {
@@ -406,7 +417,8 @@ impl Placer<'_> {
         }
     }
 
-    /// Adds the derivatives of the position of the point placed last by each number to `out` \[m per unit\].
+    /// Appends to `out` the derivatives of the position of the point that was placed last with respect to the
+    /// `numbers` of the geometry, one vector per number \[m per unit of the number\]. `asked` must be this point.
     pub(crate) fn slopes(&self, asked: Placing, numbers: &[Number], out: &mut Vec<Vector3<f64>>) {
         // the rotation of a session is small, so its derivatives are those of the first session
         out.extend(numbers.iter().map(|number| self.slope(number, asked)));
@@ -450,7 +462,8 @@ impl Placer<'_> {
         }
     }
 
-    /// Derivative of the point's position by the angle of a driven joint.
+    /// Derivative of the placed point's position with respect to the angle of the driven joint with index `driven`
+    /// \[m/rad\]. `along` holds, for each piece, its index in the arm's chain, or `None`.
     fn turning(&self, driven: usize, along: &[Option<usize>]) -> Vector3<f64> {
         let pieces = self.turned_by[driven].iter();
         pieces
@@ -459,15 +472,16 @@ impl Placer<'_> {
             .sum()
     }
 
-    /// Derivative of the point's position by the angle of the joint at a piece, whose place in the chain is `k`.
+    /// Derivative of the placed point's position with respect to the angle of the joint with the piece index `piece`
+    /// \[m/rad\]. The index of this joint in the arm's chain is `k`.
     fn lever(&self, piece: usize, k: usize) -> Vector3<f64> {
         let before = &self.frames[k];
         (before.rotation * self.geometry.axes[piece].into_inner()).cross(&(self.at_m - before.at_m))
     }
 }
 
-/// Derivative of a joint's angle by an entry of the pose: 1 for the driven joint itself, the factor for a passive
-/// joint.
+/// Derivative of a joint's angle with respect to the angle of the driven joint with index `driven`: 1 for the driven
+/// joint itself, the coupling factor for a passive joint, otherwise 0.
 fn rate(angle: &JointAngle, driven: usize) -> f64 {
     match angle {
         JointAngle::Driven(index) => f64::from(u8::from(*index == driven)),
@@ -475,7 +489,7 @@ fn rate(angle: &JointAngle, driven: usize) -> f64 {
     }
 }
 
-/// The rotation about an axis by an angle of which sine and cosine are given (Rodrigues).
+/// Rotation about the axis `axis` by an angle that is given by its sine and cosine (Rodrigues' formula).
 fn turn(axis: &Unit<Vector3<f64>>, (sin, cos): (f64, f64)) -> Rotation3<f64> {
     let (x, y, z) = (axis.x, axis.y, axis.z);
     let rest = 1.0 - cos;
@@ -492,7 +506,7 @@ fn turn(axis: &Unit<Vector3<f64>>, (sin, cos): (f64, f64)) -> Rotation3<f64> {
     ))
 }
 
-/// Two unit axes, perpendicular to a given axis and to each other.
+/// Two unit vectors that are perpendicular to the axis `axis` and to each other.
 fn across(axis: &Unit<Vector3<f64>>) -> [Unit<Vector3<f64>>; 2] {
     let least = Vector3::ith(axis.iamin(), 1.0);
     let first = Unit::new_normalize(axis.cross(&least));

@@ -1,9 +1,9 @@
-//! Computes what gravity does to the arm in each measured pose, by mechanics: the displacement that the model
-//! already has, and that of each candidate per unit of its compliance.
+//! Computes the deflection of the arm under gravity in each measured pose: the displacement by compliances that the arm
+//! file already has, and the displacement by each candidate per unit of its compliance.
 //!
-//! A joint that yields by `c` about an axis `u` through `p` moves a point `x` by `c g (u x (x - p)) (u x (S -
-//! m p))ᵀ ĝ`. Here `m` and `S` are mass and first moment of everything outboard, `g` the strength and `ĝ` the
-//! direction of gravity. Other arms on the same trunk count too.
+//! A joint of compliance `c` about an axis `u` through `p` moves a point `x` by `c g (u x (x - p)) (u x (S - m p))ᵀ ĝ`.
+//! Here `m` and `S` are mass and first moment of everything outboard, `g` the strength and `ĝ` the direction of
+//! gravity. Other arms on the same trunk count too.
 
 use super::kinematics::Geometry;
 use super::tree::Tree;
@@ -25,56 +25,60 @@ use crate::reconcile::readings::rows::PositionRow;
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
-/// Row and column of each entry of a frame's compliance matrix, in the order in which the entries are fitted.
+/// Row and column of each entry of the compliance matrix of a frame (a rotational spring about all three axes), in
+/// the order in which the entries are fitted.
 pub(crate) const FRAME_ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (0, 1), (0, 2), (1, 2), (2, 2)];
 
-/// A candidate: an effect at a place, by which something yields there.
+/// A candidate: an effect at a place, which makes the arm compliant or gives it play there.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Yielding {
     /// Name of the effect.
     pub effect: &'static str,
-    /// How the place yields: about a joint's axis, by tilting, or as a frame about every axis.
+    /// Direction of the compliance: about a joint's axis, tilt about the two axes perpendicular to it, or rotation of
+    /// a frame about every axis.
     pub yields: Yields,
-    /// Name of the place.
+    /// Place of the effect: the name of a joint or link, or `base`.
     pub at: String,
-    /// The torque scale of play, if the joint has play and is no spring: its one number is then the half width \[rad\] and
-    /// not a compliance \[N m\].
+    /// Torque scale `T_c` of play \[N m\], if the candidate is play and no spring. Its parameter is then the half width
+    /// \[rad\] and not a compliance. `None` for a spring.
     pub play_nm: Option<f64>,
 }
 
-/// The effect of gravity on one measured position, in the level frame.
+/// How one measured point deflects under gravity in its pose, in the level frame.
 #[derive(Debug, Clone)]
 pub(crate) struct Deflection {
-    /// Displacement that the model already has \[m\].
+    /// Displacement of the point by the compliances that the arm file already has \[m\].
     pub known_m: Vector3<f64>,
-    /// Derivatives of the known displacement by the two components of gravity across the vertical \[m\].
+    /// Derivatives of the known displacement with respect to the two horizontal components of the unit vector of
+    /// gravity \[m\].
     pub known_slopes_m: [Vector3<f64>; 2],
-    /// The swings of all candidates, one after the other.
+    /// The rotations of all candidates, those of the first candidate first.
     swings: Vec<Swing>,
     slots: Arc<[Slot]>,
 }
 
-/// What a rotation by which a candidate may yield does.
+/// One rotation by which a candidate can deflect: how it moves the point, and the torque about it.
 #[derive(Debug, Clone, Copy, Default)]
 struct Swing {
-    /// Displacement of the point per rotation \[m\].
+    /// Displacement of the point per angle of the rotation \[m/rad\].
     motion_m: Vector3<f64>,
-    /// Torque about the axis of rotation under gravity along each axis \[N m\].
+    /// Torque about the axis of rotation, one entry for gravity along each axis of the level frame \[N m\].
     pull_nm: Vector3<f64>,
 }
 
-/// Where the swings of a candidate are among those of all candidates, and the number of its compliances.
+/// Where a candidate is among the rotations of all candidates: index of its first rotation, the number of its
+/// rotations, and the number of its compliances.
 #[derive(Debug, Clone, Copy)]
 struct Slot {
     first: usize,
     swings: usize,
     compliances: usize,
-    /// The torque scale of play \[N m\].
+    /// Torque scale of play \[N m\]; `None` for a spring.
     play_nm: Option<f64>,
 }
 
 impl Deflection {
-    /// A known displacement, without candidates \[m\].
+    /// A deflection with the known displacement `known_m` and without candidates.
     pub(crate) fn known(known_m: Vector3<f64>) -> Self {
         Self { known_m, known_slopes_m: [Vector3::zeros(); 2], swings: Vec::new(), slots: Arc::new([]) }
     }
@@ -84,7 +88,7 @@ impl Deflection {
         self.slots[candidate].compliances
     }
 
-    /// Whether a candidate is play, whose motion is not in proportion to the weight.
+    /// Whether a candidate is play. The displacement by play is not proportional to the weight.
     pub(crate) fn is_play(&self, candidate: usize) -> bool {
         self.slots[candidate].play_nm.is_some()
     }
@@ -94,8 +98,8 @@ impl Deflection {
         &self.swings[slot.first..slot.first + slot.swings]
     }
 
-    /// Gives `each` the displacement of the point per compliance of a candidate, compliance by compliance, under gravity
-    /// along `gravity` \[m per rad/(N m)\].
+    /// Calls `each` once for each compliance of a candidate, with the displacement of the point per unit of this
+    /// compliance, under gravity along `gravity` \[m per rad/(N m)\]. For play the unit is the half width \[m/rad\].
     pub(crate) fn per_compliance(
         &self,
         candidate: usize,
@@ -117,8 +121,8 @@ impl Deflection {
         }
     }
 
-    /// Displacement of the point if a candidate has these compliances \[rad/(N m)\], under gravity along `gravity`
-    /// \[m\].
+    /// Displacement of the point under gravity along `gravity` if the candidate has the compliances `compliances`
+    /// \[rad/(N m)\], in the level frame \[m\]. For play the entry is the half width \[rad\].
     pub(crate) fn yielded(
         &self,
         candidate: usize,
@@ -133,14 +137,16 @@ impl Deflection {
         out
     }
 
-    /// The motion of the point per rotation about the first axis of a candidate \[m\], and the torque about this axis
-    /// under gravity along -z \[N m\]. Errors of a joint's angle show along this motion.
+    /// Displacement of the point per angle of rotation about the first axis of a candidate \[m/rad\], and the torque
+    /// about this axis under gravity along -z \[N m\]. For a joint's axis, an error of the joint angle moves the
+    /// point in the same direction.
     pub(crate) fn lever(&self, candidate: usize) -> (Vector3<f64>, f64) {
         self.swings(candidate).first().map_or_else(Default::default, |s| (s.motion_m, -s.pull_nm.z))
     }
 }
 
-/// All candidates: every joint about its axis and across its axis, the base, and the structures behind the joints.
+/// All candidates of compliance: about the axis and across the axis of every joint, of the base, and of the link
+/// behind every joint.
 pub(crate) fn candidates(tree: &Tree) -> Vec<Yielding> {
     let mut out = Vec::new();
     for piece in &tree.pieces {
@@ -165,8 +171,9 @@ pub(crate) fn candidates(tree: &Tree) -> Vec<Yielding> {
 }
 
 impl Tree {
-    /// Whether the compliance of a frame can have the same effect as another candidate. The frame of the base
-    /// includes the tilt of the base, and the structure behind a joint includes the compliance of the joint.
+    /// Whether the compliance of the candidate `frame` can have the same effect as the candidate `other`. The frame
+    /// of the base includes the tilt of the base, and the frame of a link includes the compliance of the joint before
+    /// it.
     pub(crate) fn contains(&self, frame: &Yielding, other: &Yielding) -> bool {
         let is_behind = |pair: &[usize]| match (&self.pieces[pair[0]], &self.pieces[pair[1]]) {
             (Piece::Joint(joint), Piece::Link(link)) => joint.name == other.at && link.name == frame.at,
@@ -180,13 +187,14 @@ impl Tree {
 }
 
 impl Yielding {
-    /// The candidate of an effect at a place; `None` if positions do not show that the effect yields.
+    /// The candidate of the effect `kind` at the place `at`; `None` if the effect adds no compliance that positions
+    /// can show.
     fn new(kind: &'static Kind, at: &str) -> Option<Self> {
         kind.traits.yields.map(|yields| Self { effect: kind.name, yields, at: at.into(), play_nm: None })
     }
 
-    /// Number of compliances of the candidate. A frame has xx, yy, xy, xz, yz, and zz where weights can turn it about
-    /// z.
+    /// Number of compliances of the candidate. A frame has xx, yy, xy, xz and yz. The frame of a link also has zz,
+    /// because weights can turn it about z; they cannot turn the base about z.
     pub(crate) fn count(&self) -> usize {
         match (self.yields, self.at.as_str()) {
             (Yields::Frame, "base") => 5,
@@ -195,7 +203,7 @@ impl Yielding {
         }
     }
 
-    /// Number of axes about which the candidate yields.
+    /// Number of axes about which the candidate rotates under load.
     fn axes(&self) -> usize {
         match self.yields {
             Yields::AboutAxis => 1,
@@ -204,7 +212,7 @@ impl Yielding {
         }
     }
 
-    /// The name of the candidate's element in the chain.
+    /// The name of the elastic element in the chain that stands for the candidate.
     fn element(&self) -> String {
         let is_base_tilt = self.effect == base_compliance::KIND.name;
         match self.yields {
@@ -216,7 +224,8 @@ impl Yielding {
     }
 }
 
-/// One arm in the level frame with calibrated geometry and a point on its tool, ready to be posed.
+/// One arm in the level frame (z opposite to gravity), with calibrated geometry and its tip at one point on the tool,
+/// ready to be posed.
 struct Ready {
     gravity_m_s2: f64,
     known: Chain,
@@ -224,29 +233,32 @@ struct Ready {
     structure: Structure,
     unit_structure: Structure,
     point_m: Vector3<f64>,
-    /// For each candidate, where its elements are among the elastic elements, tip to base.
+    /// For each candidate, the places of its elements in this arm.
     places: Vec<Place>,
 }
 
-/// Where a candidate's element is among the elastic elements of an arm, tip to base; `None` on other arms. A passive joint
-/// turns with its driver, so its compliance acts through the driver: the passive joints' places, and their factors.
+/// Places of a candidate's elements in an arm: indices among the elastic elements, counted from the tip to the base.
+/// `own` is the candidate's own element; it is `None` if the candidate is on another arm. A passive joint turns with
+/// its driving joint. So the candidate at the driving joint also includes the elements of the passive joints: their
+/// indices, and the factors of their angles.
 struct Place {
     own: Option<usize>,
     passive: Vec<(usize, f64)>,
 }
 
-/// The effect of gravity on the positions of a campaign, with one geometry.
+/// Computes how gravity deflects the measured points of a campaign, for one geometry.
 pub(crate) struct Loads<'a> {
     tree: &'a Tree,
-    /// For each arm, the arm with each of the points.
+    /// For each arm and each point on a tool, the arm that ends at this point.
     ready: Vec<Vec<Ready>>,
-    /// How many items of a posed arm belong to the trunk: in the arm with unit compliances, and in the arm as it is.
+    /// Number of items (bodies and elastic elements) of a posed arm that belong to the trunk: first in the arm with
+    /// unit compliances, then in the arm as it is.
     trunk: [usize; 2],
     slots: Arc<[Slot]>,
 }
 
 impl<'a> Loads<'a> {
-    /// Prepares the arms with the calibrated geometry.
+    /// Prepares the arms with the calibrated geometry, once for each point on a tool.
     pub(crate) fn new(
         campaign: &Campaign,
         tree: &'a Tree,
@@ -275,7 +287,8 @@ impl<'a> Loads<'a> {
         Self { tree, trunk: trunk_items(campaign, tree, &ready), ready, slots }
     }
 
-    /// The effect of gravity on a position: all but the derivatives by the direction of gravity.
+    /// How the point with index `point` deflects in the pose and with the payload of `row`. The derivatives with
+    /// respect to the direction of gravity are not computed and stay zero.
     pub(crate) fn deflection(&self, row: &PositionRow, point: usize) -> Deflection {
         let pose_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
         let own = &self.ready[row.arm][point];
@@ -289,7 +302,8 @@ impl<'a> Loads<'a> {
         }
     }
 
-    /// Displacement that the model already has \[m\].
+    /// Displacement of a point under gravity by the compliances that the arm file already has, in the level frame
+    /// \[m\].
     pub(crate) fn known_m(&self, row: &PositionRow, point: usize) -> Vector3<f64> {
         let pose_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
         let own = &self.ready[row.arm][point];
@@ -298,7 +312,8 @@ impl<'a> Loads<'a> {
         known.statics().tip_displacement_m
     }
 
-    /// Hangs the other arms on the trunk, which ends after `items` items: their weight moves the point too.
+    /// Adds the bodies of the other arms to the trunk of a posed arm. Their weight deflects the trunk and so moves
+    /// the point too. The trunk ends after `items` items of the posed arm.
     fn load_trunk(&self, posed: &mut Posed, items: usize, row: &PositionRow, pose_rad: &[f64]) {
         for other in (0..self.ready.len()).filter(|&other| other != row.arm) {
             let neighbour = &self.ready[other][0];
@@ -341,8 +356,8 @@ impl Ready {
     }
 }
 
-/// The structure in which every joint, about and across its axis, the base and every frame have unit compliance, and links
-/// are rigid with their masses at their middles.
+/// The structure in which every joint (about and across its axis), the base and every frame have unit compliance. The
+/// links are rigid, each with its mass at its middle. `known` is the arm as it is, from which the masses come.
 fn yielding_everywhere(structure: &Structure, known: &Chain, joints: usize) -> Structure {
     let mut unit = structure.clone();
     unit.base_tilt_rad_per_nm = 1.0;
@@ -361,20 +376,21 @@ fn yielding_everywhere(structure: &Structure, known: &Chain, joints: usize) -> S
             }
         }
     }
-    // what of its weight buoyancy leaves is the same in every pose
+    // weight less buoyancy is the same in every pose, so the zero pose is enough to find it
     let rest = known.pose_rad(&vec![0.0; joints], &Payload::default(), Vector3::zeros());
     for own in rest.elements().filter_map(|element| element.own.as_ref()) {
         if let Piece::Link(link) = &mut unit.pieces[own.piece]
             && structure.gravity_m_s2 > 0.0
         {
-            // the bodies are still there
+            // the bodies on the link stay in the model, so that their mass is subtracted
             link.point_mass_kg -= linear(&own.weight).z / structure.gravity_m_s2 + total_kg(&link.bodies);
         }
     }
     unit
 }
 
-/// How many items of a posed arm belong to the trunk: in the arm with unit compliances, and in the arm as it is.
+/// Number of items (bodies and elastic elements) of a posed arm that belong to the trunk: first in the arm with unit
+/// compliances, then in the arm as it is.
 fn trunk_items(campaign: &Campaign, tree: &Tree, ready: &[Vec<Ready>]) -> [usize; 2] {
     let rest = vec![0.0; tree.driven.len()];
     let first = &ready[0][0];
@@ -389,7 +405,8 @@ fn trunk_items(campaign: &Campaign, tree: &Tree, ready: &[Vec<Ready>]) -> [usize
     [of(&first.unit_structure), of(&first.structure)]
 }
 
-/// Where the elements of each candidate are. The elements of an arm are the same in every pose.
+/// Places of each candidate's elements in an arm. The elements of an arm are the same in every pose, so they are
+/// sought in one.
 fn places(unit: &Chain, arm: &Arm, candidates: &[Yielding]) -> Vec<Place> {
     let rest = vec![0.0; arm.driven_joint_names().len()];
     let posed = unit.pose_rad(&rest, &Payload::default(), Vector3::zeros());
@@ -405,7 +422,8 @@ fn places(unit: &Chain, arm: &Arm, candidates: &[Yielding]) -> Vec<Place> {
 }
 
 impl Ready {
-    /// The swings of all candidates, in a pose.
+    /// The rotations of all candidates in a pose, in the order of `slots`. `unit` is the posed arm with unit
+    /// compliances.
     fn swings(&self, unit: &Posed, slots: &[Slot]) -> Vec<Swing> {
         let (elements, swings) = self.swings_of_elements(unit);
         let mut out = Vec::with_capacity(slots.last().map_or(0, |s| s.first + s.swings));
@@ -422,7 +440,8 @@ impl Ready {
         out
     }
 
-    /// The swings of every elastic element, tip to base, and for each element the index of its first.
+    /// The rotations of every elastic element in a pose, from the tip to the base. The first result is, for each
+    /// element, the index of its first rotation.
     fn swings_of_elements(&self, unit: &Posed) -> (Vec<usize>, Vec<Swing>) {
         let (mut elements, mut swings) = (Vec::new(), Vec::new());
         // weight and its first moment of everything outboard so far
@@ -449,7 +468,9 @@ impl Ready {
     }
 }
 
-/// Generalized force on a twist, for gravity along each axis.
+/// Generalized force of gravity on the motion `twist` (a kinematic vector) of everything outboard \[N m\], one entry
+/// for gravity along each axis. `weight_n` is the weight of everything outboard, and `moment_nm` this weight times
+/// its centre of gravity.
 fn pull(twist: &Twist, weight_n: f64, moment_nm: &Vector3<f64>) -> Vector3<f64> {
     linear(twist) * weight_n + angular(twist).cross(moment_nm)
 }

@@ -1,16 +1,16 @@
 //! Absolute positions: placement, tool offsets, joint zeros, geometry and the direction of gravity are calibrated.
-//! What yields is found effect by effect, and each stage is judged on poses held out of the fit.
+//! Compliances are then found effect by effect. Each stage is judged on poses held out of the fit.
 //!
 //! - `tree` joins the arms that stand on one trunk; `points` lists the points on their tools.
-//! - [`kinematics`] says where a point is, and [`loads`] how gravity moves it.
-//! - `align` places the arm from nothing. [`fit`](mod@fit) fits a model (`fitted`), by the equations in `normal` that
-//!   `rows` sums up, with compliances that are `springs`.
-//! - [`analysis`] is the whole analysis. `sessions` tells sessions apart, `boundary` judges each boundary
-//!   between two of them (`moved`), and `standing` finds where the arm stands in each;
-//!   `search` finds what yields and `transmission` what turns unevenly.
-//! - `conventions` asks whether the file was written by another convention, `structure` what is left; `next_test` says
-//!   what to measure, and [`outcome`] concludes.
-//! - [`predict`] gives positions of several arms whose weights load each other's trunk.
+//! - [`kinematics`] computes where a point is, and [`loads`] how gravity moves it.
+//! - `align` finds a first placement of the arm. [`fit`](mod@fit) fits a model (`fitted`). `rows` sums up its normal
+//!   equations (`normal`), and `springs` keeps the compliances physically possible.
+//! - [`analysis`] is the whole analysis. `sessions` finds sessions, `boundary` judges each boundary between two of them
+//!   (`moved`), and `standing` finds where the arm stands in each. `search` finds compliances, and `transmission` finds
+//!   joints with a transmission error.
+//! - `conventions` asks whether the file was written by another convention, `structure` tests the errors that are left,
+//!   `next_test` proposes what to measure, and [`outcome`] reaches the verdict.
+//! - [`predict`] predicts positions of several arms whose weights load each other's trunk.
 
 pub(crate) mod align;
 pub(crate) mod analysis;

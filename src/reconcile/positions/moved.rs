@@ -1,14 +1,15 @@
-//! What is placed differently in another session, and the boundary at which a session begins.
+//! What changes its placement from one session to another, and the boundary at which a session begins.
 
 use super::fitted::Sample;
 use super::kinematics::Number;
 
-/// What is placed differently in another session.
+/// Label of the rows of a session: which point on the tool, or which set-up of instrument and base, has a placement
+/// of its own in these rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Moved {
-    /// A point on the tool, by its index.
+    /// A point on the tool, by its index among the points.
     Point(usize),
-    /// The instrument or the base: the session with this index is divided.
+    /// The instrument or the base, by the index of the session that sets its place.
     Station(usize),
 }
 
@@ -20,7 +21,7 @@ impl Moved {
         }
     }
 
-    /// Gives the rows before `first` to `new`.
+    /// Gives the label `new` to those samples before the row `first` that have this label.
     pub(super) fn relabel(self, samples: &mut [Sample], first: usize, new: Moved) {
         for sample in samples[..first].iter_mut().filter(|s| self.has(s)) {
             match new {
@@ -44,14 +45,15 @@ impl Moved {
 /// What was moved between two sessions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Kind {
-    /// A point on the tool, by the index of one of its sessions.
+    /// A point on the tool, by its index among the points. A point has one index for each of its sessions; any of
+    /// them stands for it.
     Point(usize),
     /// The instrument or the base.
     Station,
 }
 
 impl Kind {
-    /// The label of a sample's session.
+    /// Label of the session to which a sample belongs, as far as this kind of move is concerned.
     pub(super) fn label(self, sample: &Sample) -> Moved {
         match self {
             Kind::Point(_) => Moved::Point(sample.point),
@@ -63,12 +65,12 @@ impl Kind {
 /// The boundary between two sessions.
 #[derive(Debug, Clone)]
 pub(crate) struct Boundary {
-    /// What was moved.
+    /// What was moved at the boundary.
     pub kind: Kind,
-    /// The label of the rows before.
+    /// Label of the rows before the boundary.
     pub earlier: Moved,
     /// First row of the later session, counted from 0.
     pub first: usize,
-    /// Whether campaign.json declares it.
+    /// Whether campaign.json declares the session; otherwise it was found in the readings.
     pub declared: bool,
 }

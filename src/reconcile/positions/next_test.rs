@@ -6,19 +6,17 @@ use super::fitted::Fitted;
 use super::points::Point;
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::select::lack_of_fit::LackOfFit;
-use crate::reconcile::verdict::next_test::{ENOUGH, spread_pose};
+use crate::reconcile::verdict::next_test::{WORTHLESS_SIGMAS, readings_needed, spread_pose};
 use crate::reconcile::verdict::outcome::{NextTest, Verdict};
 use std::collections::HashSet;
-
-/// Separation that one reading must reach \[standard deviations\]. With less, a hundred readings would not be
-/// enough.
-const WORTHLESS_SIGMAS: f64 = 0.1 * ENOUGH;
 
 /// Number of poses among which the next test is chosen.
 const PROPOSED_POSES: usize = 60;
 
 impl Positions {
-    /// The best test against each competing model, the most telling first.
+    /// For each competing model, the test that separates it best from the model, the most telling test first.
+    /// `competitors` holds, for each effect of the model, the candidates that fit as well in its place. If nothing is
+    /// explained, the test asks for the unknown cause instead.
     pub(crate) fn next_tests(
         &self,
         campaign: &Campaign,
@@ -46,8 +44,9 @@ impl Positions {
         out
     }
 
-    /// The proposed pose in which the predictions of the model and of a competing model differ most, as a test. If no
-    /// pose is enough, a sentence says so.
+    /// The pose among `proposed` in which this model and the model `competitor` predict the most different positions,
+    /// as a test. `names` are the labels of the two models. If no pose is enough, the test is a sentence that says
+    /// so. `None` if that is so and the names are equal.
     fn telling_pose(&self, proposed: &Campaign, competitor: &Fitted, names: [String; 2]) -> Option<NextTest> {
         let own = samples(proposed, &self.tree, &self.fitted.geometry, &self.candidates, &self.points);
         let sigma_mm =
@@ -76,12 +75,12 @@ impl Positions {
             joint: None,
             separates: names.to_vec(),
             expected_sigmas: sigmas,
-            readings_needed: (ENOUGH / sigmas).powi(2).ceil().min(9999.0) as usize,
+            readings_needed: readings_needed(sigmas),
         })
     }
 
-    /// The campaign with proposed poses in place of the measured ones. Proposed poses lie within the range of the
-    /// measured ones and have the largest payload among them.
+    /// The campaign with proposed poses in place of the measured ones. The proposed joint angles lie within the range
+    /// of the measured ones, and the payload is the largest that was measured.
     fn proposals(&self, campaign: &Campaign) -> Campaign {
         let mut out = campaign.clone();
         let range = |j: usize| {
@@ -104,8 +103,9 @@ impl Positions {
         out
     }
 
-    /// Proposes a test if no effect of the library fits, so that no pose can separate models. What the errors follow
-    /// says which kind of test is worth making; it is made in the pose that the best model misses most.
+    /// Proposes a test if no effect of the library fits, so that no pose can separate models. The kind of test
+    /// depends on the quantity that the errors follow (`left` lists these). The test is made in the pose in which the
+    /// best model has its largest error, gross errors not counted.
     fn after_unexplained(&self, campaign: &Campaign, left: &LackOfFit) -> Option<NextTest> {
         let gross: HashSet<usize> = self.gross.iter().map(|(row, _)| *row).collect();
         let errors = self.samples.iter().map(|s| self.fitted.error(s).norm()).enumerate();

@@ -1,4 +1,4 @@
-//! Draws the conclusion from a campaign of absolute positions.
+//! Reaches the verdict on a campaign of absolute positions.
 
 use super::analysis::{Positions, analyze};
 use super::fitted::Fitted;
@@ -29,20 +29,21 @@ use std::collections::{HashMap, HashSet};
 
 /// Smallest number of positions from which anything can be concluded.
 pub(crate) const FEWEST: usize = 20;
-/// If the variance of the errors exceeds the declared one by this factor, the verdict is that nothing is explained,
-/// whatever else holds. The errors are then five times those of the instrument.
+/// If the variance of the errors exceeds the declared variance by this factor, the verdict is that nothing is
+/// explained, whatever else is found. The errors are then five times as large as those of the instrument.
 const HOPELESS_VARIANCE: f64 = 25.0;
-/// Largest ratio of the errors of held-out poses to those in the fit.
+/// Largest ratio of the median error at held-out poses to the median error in the fit. Above it, the poses are too
+/// similar for what is calibrated.
 const UNSTABLE: f64 = 8.0;
-/// Effects are written into the corrected arm, even if they do not explain everything, if they lower the error of
-/// held-out poses to this part or less.
+/// Effects that do not explain everything are still written into the corrected arm if they lower the median error at
+/// held-out poses to less than this fraction of the error with calibration alone.
 const HELPFUL: f64 = 0.8;
-/// What a session is called among the alternatives of an effect.
+/// Word for a session in the list of alternatives of an effect.
 const SESSION: &str = "session";
-/// Number of poses that are listed.
+/// Number of poses that are listed, those with the largest errors first.
 const WORST_POSES: usize = 3;
 
-/// Reconciles a campaign of absolute positions.
+/// Reconciles a campaign of absolute positions with its arms, and reaches the verdict.
 pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let found = analyze(campaign);
     let lack_of_fit = found.lack_of_fit(campaign);
@@ -56,7 +57,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     reasons.extend(found.session_sentences(campaign));
     reasons.extend(found.other_convention(campaign));
     let next_tests = found.next_tests(campaign, verdict, &lack_of_fit, &competitors);
-    // a model that predicts held-out poses far better serves a user even if something else is missing
+    // a model that predicts held-out poses far better is useful even if something else is missing
     let [before, after] = found.before_and_after();
     let helps = verdict == Verdict::Unexplained && after.median_mm < HELPFUL * before.median_mm;
     if helps {
@@ -159,14 +160,15 @@ impl Positions {
         (Verdict::Explained, reasons)
     }
 
-    /// A finding with the session that would explain as much, if there is one, among its alternatives.
+    /// Adds to the alternatives of the finding `finding` (effect number `i` of the model) the session that would
+    /// explain the readings as well, if there is one.
     fn with_session_instead(&self, campaign: &Campaign, i: usize, mut finding: Finding) -> Finding {
         let row = self.session_instead(campaign, self.fitted.effects[i], TIE);
         finding.indistinguishable_from.extend(row.map(|row| (SESSION.into(), format!("before row {row}"))));
         finding
     }
 
-    /// Says in words which structure is left in the errors, without naming an effect.
+    /// Sentences on the structure that is left in the errors of the best model. They name no effect.
     fn left_over(&self, left: &LackOfFit) -> Vec<String> {
         let mut out = vec![format!(
             "the best model leaves {:.2} times the declared standard deviation",
@@ -182,7 +184,7 @@ impl Positions {
         out
     }
 
-    /// The row of the position-error table without effects, and the row with all effects.
+    /// Two rows of the table of position errors: the last one without effects, and the last one with all effects.
     fn before_and_after(&self) -> [&Stage; 2] {
         let calibration = self.stages.iter().rposition(|s| !s.added.contains('@')).unwrap_or_default();
         [&self.stages[calibration], &self.stages[self.stages.len() - 1]]
@@ -242,7 +244,8 @@ impl Positions {
         }
     }
 
-    /// One arm with calibrated geometry and with its effects. Its placement is written into `provenance`.
+    /// The arm with the index `arm`, with the geometry of the fit `shown` and with those of the `effects` that are on
+    /// it. Its placement is written into `provenance`.
     pub(crate) fn corrected(
         &self,
         campaign: &Campaign,
@@ -266,7 +269,8 @@ impl Positions {
         out
     }
 
-    /// Change of every calibrated number from its nominal value, as JSON.
+    /// Change of every calibrated number of the geometry in the fit `shown` from its nominal value, as JSON.
+    /// Placements are not among them.
     fn calibrated(&self, shown: &Fitted) -> Vec<Value> {
         let numbers = self.numbers.iter().zip(&shown.moved);
         let inside = numbers.filter(|(n, _)| {
@@ -336,9 +340,9 @@ impl Positions {
     }
 }
 
-/// Root mean squares of the residuals of all positions, of each point, of each payload and of the worst poses
-/// \[declared standard deviations\], without gross errors. `residuals` holds the residuals of the positions, row by
-/// row.
+/// Root mean squares of the residuals before and after \[declared standard deviations\]: of all positions, of each
+/// point, of each payload and of the worst poses. Gross errors are left out. `residuals` holds the residuals of the
+/// positions, row by row.
 pub(crate) fn located(campaign: &Campaign, residuals: &[ReadingResidual]) -> Vec<Located> {
     let mut parts: Vec<(String, Vec<&ReadingResidual>)> = Vec::new();
     let mut known: HashMap<String, usize> = HashMap::new();
@@ -371,13 +375,15 @@ pub(crate) fn located(campaign: &Campaign, residuals: &[ReadingResidual]) -> Vec
     rest
 }
 
-/// A value with its 95 % interval.
+/// The value with its 95 % interval, from its standard deviation `deviation`. An end is `None` if the standard
+/// deviation is infinite.
 fn within(value: f64, deviation: f64) -> Estimate {
     let end = |by: f64| Some(value + by * deviation).filter(|e| e.is_finite());
     Estimate { value, low: end(-1.96), high: end(1.96) }
 }
 
-/// The reciprocal of a compliance, as a stiffness with its 95 % interval.
+/// Stiffness with its 95 % interval \[N m/rad\], as the reciprocal of a compliance with the standard deviation
+/// `deviation` \[rad/(N m)\]. An end is `None` where the compliance may be zero.
 fn stiffness(compliance: f64, deviation: f64) -> Estimate {
     let end = |c: f64| (c > 0.0).then(|| 1.0 / c);
     Estimate {
@@ -387,7 +393,8 @@ fn stiffness(compliance: f64, deviation: f64) -> Estimate {
     }
 }
 
-/// The compliances of a frame as parameters of the effect. A compliance that no weight loads has no bounds.
+/// The compliances of a frame as parameters of its effect, with 95 % intervals \[rad/(N m)\]. A compliance that is
+/// not fitted, because no weight loads it, has no ends.
 fn frame_parameters(compliances: &[f64], deviations: &[f64]) -> Vec<(String, Vec<Estimate>)> {
     let matrix = frame_matrix(compliances);
     let entry = |at: (usize, usize)| {

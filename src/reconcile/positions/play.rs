@@ -1,23 +1,24 @@
-//! Play in joints, as absolute positions show it: a joint lags by its half width in the sense of its torque, and by less
-//! where the torque is small, `h tanh(T/T_c)`.
+//! Play in joints, as absolute positions show it. A joint turns by its half width `h` in the direction of its torque,
+//! and by less where the torque is small: `h tanh(T/T_c)`.
 //!
-//! For a given torque scale `T_c` the half width enters like a compliance. So the scale is chosen out of a few, and the
-//! half width is fitted.
+//! For a given torque scale `T_c` the half width enters the model like a compliance. So the scale is chosen out of a
+//! few, and the half width is fitted.
 
 use super::fitted::Sample;
 use super::loads::Yielding;
 use crate::arm::effect::kind::Yields;
 use crate::arm::effect::lost_motion;
 
-/// Torque scales that are tried, as parts of the largest torque on the joint.
+/// Torque scales `T_c` that are tried, as fractions of the largest torque on the joint.
 const PARTS: [f64; 5] = [0.01, 0.03, 0.08, 0.2, 0.5];
-/// The candidates, and play in each joint that yields about its axis.
+/// Adds candidates for play to the given `candidates`: five, one for each torque scale that is tried, in each joint
+/// that has a candidate about its axis.
 pub(crate) fn with_play(mut candidates: Vec<Yielding>, samples: &[Sample]) -> Vec<Yielding> {
     let is_joint = |c: &usize| candidates[*c].yields == Yields::AboutAxis;
     let largest_nm = |c: usize| samples.iter().map(|s| s.deflection.lever(c).1.abs()).fold(0.0, f64::max);
     let joints: Vec<(String, f64)> =
         (0..candidates.len()).filter(is_joint).map(|c| (candidates[c].at.clone(), largest_nm(c))).collect();
-    // a torque of rounding errors has no scale
+    // a joint whose torque is zero up to rounding has no torque scale
     for (at, largest_nm) in joints.into_iter().filter(|(_, largest_nm)| *largest_nm > 1e-6) {
         candidates.extend(PARTS.map(|part| Yielding {
             effect: lost_motion::KIND.name,

@@ -6,12 +6,14 @@ use super::fitted::{Fitted, Sample};
 use crate::reconcile::model::estimate::Estimate;
 use rayon::prelude::*;
 
-/// Fall of ln of the likelihood at the ends of a 95 % interval.
+/// Fall of the logarithm of the likelihood at the ends of a 95 % interval: half of the 95 % quantile of chi-squared
+/// with one degree of freedom.
 const FALL: f64 = 1.92;
 
 impl Positions {
-    /// The torque scale of the play that is one of the effects: its ends are the nearest scales with which the readings are
-    /// much less likely.
+    /// Torque scale `scale_nm` of the play that is effect number `position`, with its 95 % interval \[N m\]. An end
+    /// is the nearest of the tried scales with which the logarithm of the likelihood is lower by [`FALL`] or more;
+    /// `None` if no tried scale on this side is that unlikely.
     pub(crate) fn play_scale(&self, position: usize, scale_nm: f64) -> Estimate {
         let own = &self.candidates[self.fitted.effects[position]];
         let is_variant = |c: &usize| {

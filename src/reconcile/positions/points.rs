@@ -1,26 +1,28 @@
-//! The points on the tools of the arms. A point of a separate session is a separate point.
+//! The points on the tools of the arms. A point that was moved between two sessions counts as two points.
 
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::rows::PositionRow;
 
-/// A point on the tool of an arm, as the fit sees it. In another session it may be a separate point.
+/// A measured point on the tool of an arm, as the fit sees it. If the point was moved on the tool, each of its
+/// sessions has a `Point` of its own.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Point {
     /// Index of the arm in the campaign.
     pub arm: usize,
     /// Name of the point in the readings.
     pub name: String,
-    /// If the point belongs to an earlier session: the row, counted from 1, that begins the next session.
+    /// If the point belongs to an earlier session: the row, counted from 1, that begins the next session. `None` in the
+    /// last session.
     pub before_row: Option<usize>,
 }
 
 impl Point {
-    /// The point of a row.
+    /// The point that a row of readings names, in its last session.
     pub(crate) fn of(row: &PositionRow) -> Self {
         Self { arm: row.arm, name: row.point.clone(), before_row: None }
     }
 
-    /// Name of the point, with its session.
+    /// Name of the point for reports. For an earlier session it includes the row that ends the session.
     pub(crate) fn label(&self) -> String {
         match self.before_row {
             Some(row) => format!("{} before row {row}", self.name),
@@ -29,7 +31,7 @@ impl Point {
     }
 }
 
-/// Every point that the readings name, in the order of its first row.
+/// All points that the readings name, in the order in which they first appear.
 pub(crate) fn points(campaign: &Campaign) -> Vec<Point> {
     let mut out: Vec<Point> = Vec::new();
     for point in campaign.positions.iter().map(Point::of) {

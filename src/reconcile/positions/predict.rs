@@ -1,4 +1,4 @@
-//! Predicts positions of points on several arms of one trunk, which carries the weight of all.
+//! Predicts positions of points on several arms of one trunk. The trunk is loaded by the weight of all arms.
 
 use super::kinematics::{Geometry, Placing, Pose};
 use super::loads::Loads;
@@ -11,8 +11,8 @@ use crate::reconcile::readings::placement::Stand;
 use nalgebra::Rotation3;
 use rayon::prelude::*;
 
-/// The positions that the campaign's arms would show \[mm\]. `subjects` holds each arm with all of its
-/// effects.
+/// Predicted position of each row of the campaign, in the instrument's frame \[mm\]. `arms` holds the placements, and
+/// `subjects` each arm with all of its effects.
 pub(crate) fn predicted_mm(mut campaign: Campaign, arms: &[Placed], subjects: &[Subject]) -> Vec<[f64; 3]> {
     for row in &mut campaign.positions {
         row.payload = subjects[row.arm].payload(&row.payload);

@@ -1,33 +1,36 @@
-//! The model of positions, linearized: for each sample its weighted error and how its position moves with every number,
-//! and the normal equations of all samples.
+//! The model of positions, linearized: for each sample its weighted error and the derivatives of its position with
+//! respect to every number, and the normal equations of all samples.
 //!
-//! Both cost as many operations as there are samples, and room for a fixed number of them: the rows of the equations are
-//! made in blocks, and only their products are kept.
+//! The computing time grows in proportion to the number of samples. The memory is fixed: the rows of the equations are
+//! computed in blocks, and only their products are kept.
 
 use super::fitted::{Fitted, Sample};
 use super::kinematics::{Number, Placer};
 use super::normal::Normal;
 use nalgebra::{DMatrix, DVector, Rotation3, Vector3};
 
-/// Prior standard deviation of a compliance \[rad/(N m)\]. It is far above that of any part. Without it, a
-/// compliance that no weight loads could take any value.
+/// Prior standard deviation of a compliance \[rad/(N m)\]. It is far larger than the compliance of any real part.
+/// Without a prior, a compliance that no weight loads could take any value.
 const PRIOR_RAD_PER_NM: f64 = 0.1;
-/// Number of samples whose rows are made at a time. They stay in a processor's cache until their products are taken.
+/// Number of samples (measured positions) whose rows of the equations are computed together. The rows then stay in
+/// the processor's cache until their products are taken.
 const BLOCK: usize = 64;
 
-/// Number of columns of the product that are made at a time.
+/// Number of columns of the product matrix that are computed together.
 const STRIPE: usize = 32;
 
-/// Adds columns that belong to no number of the model: derivatives of a sample's position \[m per unit\].
+/// A function that appends columns to the equations that belong to no number of the model: derivatives of a sample's
+/// position with respect to whatever the caller tests \[m per unit\].
 pub(crate) type Further<'a> = &'a mut dyn FnMut(&Sample, &Placer, &mut Vec<Vector3<f64>>);
 
-/// A model, linearized about its numbers.
+/// A model of positions, linearized about the values of its numbers.
 pub(crate) struct Linearized<'a> {
     here: &'a Fitted,
     numbers: &'a [Number],
     placer: Placer<'a>,
     from_level: Rotation3<f64>,
-    /// The columns of the sample that was asked for last: numbers of the geometry, compliances, further columns.
+    /// Derivatives of the position of the sample that was computed last, scaled by the root of its weight: first with
+    /// respect to the numbers of the geometry, then to the compliances, then the columns that the caller adds.
     pub columns: Vec<Vector3<f64>>,
 }
 
@@ -38,7 +41,8 @@ impl<'a> Linearized<'a> {
         Self { here, numbers, placer, from_level, columns: Vec::new() }
     }
 
-    /// Computes the columns of a sample, and returns its error. Both are scaled by the root of the sample's weight.
+    /// Computes the columns of a sample (the derivatives of its position), and returns its error. Both are multiplied
+    /// by the root of the sample's weight, so that their products contain the weight. `further` adds columns.
     pub(crate) fn at(&mut self, sample: &Sample, further: Further) -> Vector3<f64> {
         let here = self.here;
         let at_m = self.placer.place_m(sample.placing());
@@ -57,7 +61,7 @@ impl<'a> Linearized<'a> {
             });
         }
         further(sample, &self.placer, &mut self.columns);
-        // products of scaled rows have the weight
+        // products of rows that are scaled by the root of the weight contain the weight
         let root = here.weight(&miss).sqrt();
         let scales = sample.precision * root;
         self.columns.iter_mut().for_each(|column| column.component_mul_assign(&scales));
@@ -65,7 +69,8 @@ impl<'a> Linearized<'a> {
     }
 }
 
-/// Builds the normal equations at a model.
+/// Builds the normal equations of all samples, linearized about the model `here`. `further` adds columns that belong
+/// to no number of the model.
 pub(crate) fn normal(samples: &[&Sample], numbers: &[Number], here: &Fitted, further: Further) -> Normal {
     let own = numbers.len() + here.compliances.iter().map(Vec::len).sum::<usize>();
     let mut linearized = Linearized::new(here, numbers);
@@ -93,9 +98,9 @@ pub(crate) fn normal(samples: &[&Sample], numbers: &[Number], here: &Fitted, fur
     Normal { curvature, gradient, own }
 }
 
-/// Sums of products of rows, taken block by block.
+/// Sums of the products of the equations' rows, to which one block of rows is added after another.
 struct Products {
-    /// Rows of a block, as columns.
+    /// Rows of the equations of one block of samples. Each row of the equations is a column of this matrix.
     rows: DMatrix<f64>,
     right: DVector<f64>,
     curvature: DMatrix<f64>,
@@ -112,7 +117,7 @@ impl Products {
         }
     }
 
-    /// Puts the three rows of a sample into the block, as sample `k`.
+    /// Stores the three rows of a sample (x, y, z) in the present block, as the block's sample number `k`.
     fn put(&mut self, k: usize, columns: &[Vector3<f64>], error: &Vector3<f64>) {
         for c in 0..3 {
             let mut row = self.rows.column_mut(3 * k + c);
@@ -121,7 +126,8 @@ impl Products {
         self.right.fixed_rows_mut::<3>(3 * k).copy_from(error);
     }
 
-    /// Adds the products of the block, which holds `samples` samples. Numbers that move none of these are left out.
+    /// Adds the products of the present block, which holds `samples` samples, to the sums. Columns that are zero in
+    /// the whole block are left out.
     fn add(&mut self, samples: usize) {
         let rows = self.rows.columns(0, 3 * samples);
         let own: Vec<usize> = (0..rows.nrows()).filter(|i| rows.row(*i).iter().any(|x| *x != 0.0)).collect();
@@ -129,11 +135,11 @@ impl Products {
         for (mut to, from) in transposed.column_iter_mut().zip(rows.column_iter()) {
             to.iter_mut().zip(&own).for_each(|(to, i)| *to = from[*i]);
         }
-        // products with the transpose written out are the fast ones
+        // products with an explicit transpose are faster
         let columns = transposed.transpose();
         let gradient = &transposed * self.right.rows(0, 3 * samples);
         own.iter().zip(gradient.iter()).for_each(|(i, x)| self.gradient[*i] += x);
-        // the product is symmetric: a stripe of it suffices from its diagonal on
+        // the product is symmetric: in each stripe only the entries from the diagonal on are needed
         for first in (0..own.len()).step_by(STRIPE) {
             let count = STRIPE.min(own.len() - first);
             let product = transposed.rows_range(first..) * columns.columns(first, count);
@@ -145,7 +151,7 @@ impl Products {
         }
     }
 
-    /// The products of all blocks: curvature and gradient.
+    /// The sums over all blocks: curvature and negative gradient.
     fn into_whole(mut self) -> (DMatrix<f64>, DVector<f64>) {
         self.curvature.fill_upper_triangle_with_lower_triangle();
         (self.curvature, self.gradient)

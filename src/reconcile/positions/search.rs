@@ -1,5 +1,6 @@
-//! Finds which candidates yield. Each is screened with the linearized model, and the most promising are
-//! fitted in full. A candidate that is worth its price stays if held-out poses confirm it.
+//! Finds which candidates are compliant. Each candidate is screened with the linearized model, and the most promising
+//! are fitted in full. The price of a candidate is a charge, in ln of the likelihood, for its parameters and for the
+//! number of places examined. A candidate whose gain exceeds its price stays if held-out poses confirm it.
 
 use super::analysis::Positions;
 use super::fit::{fit, ln_likelihood, scale};
@@ -12,14 +13,15 @@ use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-/// Number of candidates fitted in full at each stage.
+/// Largest number of candidates that are fitted in full when one effect is to be added.
 pub(crate) const FULL_FITS: usize = 4;
-/// Models whose ln of the likelihood differs by less than this cannot be told apart.
+/// Models whose logarithms of the likelihood differ by less than this cannot be told apart.
 pub(crate) const TIE: f64 = 3.0;
 
 impl Positions {
-    /// Adds the effect of a class that raises the likelihood most, if the rise is worth the effect's price and
-    /// held-out poses confirm it. Drops the effects that it makes unnecessary.
+    /// Adds the effect of the class `class` (kind of compliance) that raises the likelihood most, if the rise is
+    /// worth the effect's price and held-out poses confirm it. Effects that become unnecessary are dropped. Returns
+    /// whether an effect was added.
     pub(crate) fn add(&mut self, campaign: &Campaign, class: Yields) -> bool {
         let base = &self.fitted;
         let tried = self.best_additions(base, |c| self.candidates[c].yields == class);
@@ -32,8 +34,10 @@ impl Positions {
         self.take_if_confirmed(campaign, next, self.label(added))
     }
 
-    /// Replaces this model by `next`, if the gain is worth the price and `next` predicts held-out poses better.
-    /// Effects that are no longer needed are dropped first.
+    /// Replaces the current model of the positions by `next` if `next` has the higher score (ln of the likelihood, less
+    /// the prices of effects, transmission errors and undeclared sessions) and predicts held-out poses better. Effects
+    /// of `next` that are not worth their price are dropped first. `added` names what `next` adds. Returns whether the
+    /// model was replaced.
     pub(crate) fn take_if_confirmed(&mut self, campaign: &Campaign, mut next: Self, added: String) -> bool {
         next.settle(campaign);
         if next.score() <= self.score() {
@@ -56,7 +60,8 @@ impl Positions {
         ln_likelihood(&misses, scale(&misses, self.fitted.scale_m))
     }
 
-    /// Repeats fits, each with gravity's effect on the geometry fitted before, until no effect is unnecessary.
+    /// Fits the model, with the deflection under gravity computed again for the geometry of the fit before, and drops
+    /// effects that are not worth their price. This is repeated until no effect is dropped.
     fn settle(&mut self, campaign: &Campaign) {
         loop {
             self.refresh(campaign);
@@ -69,7 +74,8 @@ impl Positions {
         }
     }
 
-    /// Drops effects that are no longer worth their price, the least useful first.
+    /// Drops effects that are no longer worth their price (a charge in ln of the likelihood), the least useful first.
+    /// The model is fitted again after each.
     fn drop_needless(&mut self) {
         let all: Vec<&Sample> = self.samples.iter().collect();
         loop {
@@ -88,15 +94,15 @@ impl Positions {
         }
     }
 
-    /// Whether an effect may not be worth its price. The test is generous: it takes the effect's compliances over
-    /// their standard deviations.
+    /// Whether effect number `position` of the model may not be worth its price, judged by its compliances over their
+    /// standard deviations. The test selects too many effects rather than too few, because each selected one is then
+    /// examined by a full fit.
     fn is_doubtful(&self, position: usize) -> bool {
         let price = self.price_of(self.fitted.effects[position]);
         let numbers = self.fitted.compliances[position].iter().zip(&self.fitted.deviations[position]);
         // an effect that others can replace has large standard deviations
         let is_small = |(c, deviation): (&f64, &f64)| 0.5 * (c / deviation).powi(2) < 2.0 * price;
-        // the standard deviations are too small next to a compliance that is held at the limit of being a
-        // spring
+        // if some compliance is held at its constraint, the standard deviations of the others are too small
         let is_held = self.fitted.deviations.iter().flatten().any(|d| !d.is_finite());
         is_held || numbers.into_iter().all(is_small)
     }
@@ -105,18 +111,20 @@ impl Positions {
         format!("{}@{}", self.candidates[candidate].effect, self.candidates[candidate].at)
     }
 
-    /// ln of the likelihood minus the price of all effects and of the sessions that nobody declared.
+    /// Score of the model: the logarithm of the likelihood, less the prices of all effects, transmission errors and
+    /// undeclared sessions.
     pub(super) fn score(&self) -> f64 {
         let uneven = self.transmissions.len() as f64 * self.transmission_price();
         self.fitted.ln_likelihood - self.prices(&self.fitted.effects) - uneven - self.sessions_price()
     }
 
-    /// Price of several effects together, in ln of the likelihood.
+    /// Sum of the prices of several candidates \[ln of the likelihood\].
     fn prices(&self, effects: &[usize]) -> f64 {
         effects.iter().map(|effect| self.price_of(*effect)).sum()
     }
 
-    /// Price of one candidate, in ln of the likelihood.
+    /// Price of one candidate \[ln of the likelihood\]: the rise of the logarithm of the likelihood that it must
+    /// bring to stay in the model.
     fn price_of(&self, candidate: usize) -> f64 {
         let springs = self.candidates.iter().zip(&self.considered);
         let places = springs.filter(|(c, considered)| **considered && c.play_nm.is_none()).count();
@@ -126,21 +134,23 @@ impl Positions {
         self.price(numbers, places.max(1))
     }
 
-    /// Whether two candidates are the same effect at the same place.
+    /// Whether the candidates with the indices `a` and `b` are the same effect at the same place. They then differ in
+    /// the torque scale of play only.
     fn is_same(&self, a: usize, b: usize) -> bool {
         let [a, b] = [a, b].map(|c| &self.candidates[c]);
         (a.effect, &a.at) == (b.effect, &b.at)
     }
 
-    /// Price of `numbers` parameters in ln of the likelihood. It charges for the parameters, and for having looked at
-    /// `places` places.
+    /// Price of something with `numbers` parameters \[ln of the likelihood\]. It charges for the parameters, and for
+    /// having looked at `places` places before one was chosen.
     pub(crate) fn price(&self, numbers: usize, places: usize) -> f64 {
         let readings = readings(&self.samples) as f64;
         0.5 * numbers as f64 * libm::log(readings) + libm::log(places as f64) + 3.0
     }
 
-    /// Models with one more effect. All allowed candidates are screened with the linearized model, and the
-    /// most promising are fitted in full.
+    /// Fits of the model `base` with one more effect each, for candidates for which `allowed` is true. All of these
+    /// are screened with the linearized model, and the [`FULL_FITS`] most promising are fitted in full. Each fit
+    /// comes with the index of the candidate that was added.
     fn best_additions(&self, base: &Fitted, allowed: impl Fn(usize) -> bool) -> Vec<(usize, Fitted)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let mut gains = self.gains(base);
@@ -148,7 +158,7 @@ impl Positions {
         let is_open = |c: usize| self.considered[c] && allowed(c) && !is_in(c);
         gains.retain(|(c, gain)| is_open(*c) && *gain > 0.0);
         gains.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-        // of all torque scales of a joint's play the best
+        // of all torque scales of play in one joint only the best is kept
         let mut seen: Vec<usize> = Vec::new();
         gains.retain(|(c, _)| {
             let is_first = !seen.iter().any(|s| self.is_same(*s, *c));
@@ -161,8 +171,9 @@ impl Positions {
         models.into_par_iter().map(|(c, effects)| (c, fit(&all, &self.numbers, &effects, base))).collect()
     }
 
-    /// Two sets of effects to fit. One holds the model's effects and the added one; the other leaves out those that
-    /// the added one can imitate, because next to these the added effect would have hardly any size.
+    /// The sets of effects to fit if the candidate `added` joins the model `base`. The first set holds the model's
+    /// effects and the added one. The second leaves out those effects that the added one contains, because in their
+    /// presence the added effect would be close to zero.
     fn with(&self, base: &Fitted, added: usize) -> Vec<Vec<usize>> {
         let contains =
             |effect: &usize| self.tree.contains(&self.candidates[added], &self.candidates[*effect]);
@@ -171,7 +182,8 @@ impl Positions {
         if instead.len() < both.len() { vec![both, instead] } else { vec![both] }
     }
 
-    /// For each candidate, the rise of ln of the likelihood that the linearized model expects.
+    /// For each candidate, its index and the rise of the logarithm of the likelihood that the linearized model `base`
+    /// expects from it.
     fn gains(&self, base: &Fitted) -> Vec<(usize, f64)> {
         let from_level = base.geometry.level_to_instrument();
         let counts: Vec<usize> = self.candidates.iter().map(|c| c.count()).collect();
@@ -185,8 +197,9 @@ impl Positions {
         gains.into_iter().enumerate().collect()
     }
 
-    /// Gain in ln of the likelihood of each block of additional columns; `counts` holds the number of columns of each
-    /// block. A single column is a compliance and gains nothing where it would be negative.
+    /// Rise of the logarithm of the likelihood for each block of columns that is added to the linearized model
+    /// `base`. `columns` computes them, and `counts` holds the number of columns of each block. A block of a single
+    /// column is a compliance and gains nothing where it would be negative.
     pub(crate) fn linear_gains(&self, base: &Fitted, counts: &[usize], columns: Further) -> Vec<f64> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let normal = normal(&all, &self.numbers, base, columns);
@@ -212,7 +225,8 @@ impl Positions {
         counts.iter().map(gain).collect()
     }
 
-    /// Candidates that compete with one of the effects: they have as many parameters and fit as well in its place.
+    /// Candidates that compete with effect number `position` of the model: they have no more parameters and fit as
+    /// well in its place. Each comes with its fit.
     pub(crate) fn competitors(&self, position: usize) -> Vec<(usize, Fitted)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let own = self.fitted.effects[position];

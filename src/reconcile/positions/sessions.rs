@@ -1,14 +1,18 @@
-//! Tells sessions apart: until some row of the file a point sat elsewhere on the tool, or the instrument
-//! stood elsewhere.
+//! Finds sessions: before some row of the file, a point was elsewhere on the tool, or the instrument stood elsewhere.
 //!
-//! Between two sessions a reflector is put back slightly differently, or the instrument or the base is moved.
-//! Every row is tried as the first of a new session, by the gain of the linearized model. The earlier rows
-//! then have an offset or a placement of their own.
+//! Between two sessions a reflector is put back slightly differently, or the instrument or the base is moved. Every row
+//! is tried as the first of a new session, by the gain of the linearized model. The earlier rows then have an offset or
+//! a placement of their own.
 //!
-//! With the curvature `A` of the model (its factor whitens: `A⁻¹ = WᵀW`), and sums over the earlier rows of products of
-//! the slopes `s` of the offset, of the model's slopes `m` and of the errors `e`, the gain is `½ bᵀ S⁻¹ b` with
-//! `S = Σ s sᵀ - Cᵀ C`, `b = Σ s e - Cᵀ W g`, `C = Σ W m sᵀ` and the gradient `g` of the model. All sums grow row by row,
-//! so one pass tries every row: its cost grows as the rows, its memory not at all.
+//! The gain is `½ bᵀ S⁻¹ b` with
+//! - `S = Σ s sᵀ - Cᵀ C`,
+//! - `b = Σ s e - Cᵀ W g`,
+//! - `C = Σ W m sᵀ`.
+//!
+//! Here `A` is the curvature of the model, whose factor whitens (`A⁻¹ = WᵀW`), and `g` its gradient. The sums are over
+//! the earlier rows: of the slopes `s` of the offset, the slopes `m` of the model's numbers, and the errors `e`. All
+//! sums grow row by row, so one pass tries every row. The computing time is proportional to the number of rows, and the
+//! memory does not depend on it.
 
 use super::analysis::Positions;
 use super::fit::fit;
@@ -21,12 +25,12 @@ use super::rows::{Linearized, normal};
 use super::structure::squares;
 use nalgebra::{DMatrix, DVector, Vector3};
 
-/// Smallest number of positions in a session.
+/// Smallest number of positions that a session must have on either side of its boundary.
 const FEWEST: usize = 5;
-/// Largest number of sessions beyond the first.
+/// Largest number of sessions that are found, beyond the first.
 const MOST: usize = 6;
 
-/// A model with one more session.
+/// The model after the rows before some row have got a placement of their own, as a session.
 pub(super) struct Split {
     samples: Vec<Sample>,
     numbers: Vec<Number>,
@@ -37,14 +41,15 @@ pub(super) struct Split {
     gain: f64,
 }
 
-/// The model that is divided, factorized.
+/// Factorized normal equations and gradient of a model before its rows are divided into sessions.
 pub(super) struct Whole {
     factor: Factor,
     gradient: DVector<f64>,
 }
 
 impl Positions {
-    /// Finds sessions, as long as another session is worth its price. Returns how many were found.
+    /// Adds sessions to the model, as long as another session is worth its price, and returns how many were added.
+    /// `tools_free` and `base_free` say whether points on the tool, and instrument or base, can have been moved.
     pub(crate) fn find_sessions(&mut self, tools_free: bool, base_free: bool) -> usize {
         let mut found = 0;
         while found < MOST {
@@ -63,7 +68,8 @@ impl Positions {
         found
     }
 
-    /// Divides the rows at given boundaries, whatever that gains. `declared` says whether campaign.json states them.
+    /// Starts a new session at each of the places `at` (what was moved, and the first row), whether or not the fit
+    /// gets better by it. `declared` says whether campaign.json states these boundaries.
     pub(crate) fn divide(&mut self, at: &[(Kind, usize)], declared: bool) {
         for &(kind, first) in at {
             let of_kind = |s: &&Sample| s.index >= first && self.is_of(s, kind);
@@ -75,7 +81,8 @@ impl Positions {
         }
     }
 
-    /// Whether a sample can show that something of this kind was moved.
+    /// Whether a sample is affected by a move of `kind`. A sample is affected by a move of its point on the tool, and
+    /// every sample by a move of the instrument or base.
     pub(super) fn is_of(&self, sample: &Sample, kind: Kind) -> bool {
         let same = |a: &Point, b: &Point| (a.arm, &a.name) == (b.arm, &b.name);
         match kind {
@@ -84,15 +91,16 @@ impl Positions {
         }
     }
 
-    /// What may have been moved.
+    /// Everything that may have been moved: all points if tool offsets are free (`tools_free`), all set-ups of
+    /// instrument and base if the base placement is free (`base_free`).
     pub(super) fn kinds(&self, tools_free: bool, base_free: bool) -> Vec<Moved> {
         let points = (0..self.points.len()).filter(|_| tools_free).map(Moved::Point);
         let stations = (0..self.fitted.geometry.stations.len()).filter(|_| base_free).map(Moved::Station);
         points.chain(stations).collect()
     }
 
-    /// Price of a session in ln of the likelihood, where so many kinds of sessions could be found: for the numbers of its
-    /// placement and for having looked at every row.
+    /// Price of a session whose placement has `numbers` parameters \[ln of the likelihood\]. It charges for these
+    /// parameters, and for having examined every row for `kinds` things that may have been moved.
     pub(super) fn session_price(&self, numbers: usize, kinds: usize) -> f64 {
         let readings = readings(&self.samples) as f64;
         0.5 * numbers as f64 * libm::log(readings) + libm::log(readings * kinds as f64) + 3.0
@@ -105,8 +113,9 @@ impl Positions {
         Some(Whole { factor: Factor::new(&normal.curvature, &own)?, gradient: normal.gradient })
     }
 
-    /// The row that is best as the first of a new session, with the linearized gain in ln of the likelihood, if there are
-    /// enough rows before and after it.
+    /// The best first row for a new session in which `moved` was moved, counted from 0, with the rise of the
+    /// logarithm of the likelihood that the linearized model expects. `None` if no row has enough rows before and
+    /// after it.
     pub(super) fn best_first(&self, moved: Moved, whole: &Whole) -> Option<(usize, f64)> {
         let rows = self.samples.iter().filter(|s| moved.has(s)).count();
         let inside = FEWEST..rows.saturating_sub(FEWEST);
@@ -129,7 +138,9 @@ impl Positions {
         best
     }
 
-    /// The model in which the rows before `first` have their own placement. Its gain is charged with its price.
+    /// Divides a session: fits the model in which those rows before `first` that have the label `moved` get a
+    /// placement of their own. The gain of the result is the rise of the logarithm of the likelihood, less the price
+    /// of the session.
     pub(super) fn split(&self, moved: Moved, first: usize, kinds: usize) -> Split {
         let mut start = self.fitted.clone();
         let geometry = &mut start.geometry;
@@ -167,12 +178,13 @@ impl Positions {
     }
 }
 
-/// Sums over the rows before a row: what an offset of their own would gain.
+/// Sums over the rows before some row. They give the gain if these rows had an offset (a placement) of their own.
 struct Earlier<'a> {
     factor: &'a Factor,
-    /// The model's gradient, whitened.
+    /// The model's gradient, multiplied by the whitening factor `W`.
     gradient: DVector<f64>,
-    /// The model's slopes of a row, whitened, and the offset's.
+    /// Derivatives of a row's position with respect to the model's numbers, multiplied by `W`. The next field,
+    /// `offset`, holds the derivatives with respect to the offset.
     model: DMatrix<f64>,
     offset: DMatrix<f64>,
     cross: DMatrix<f64>,
@@ -181,7 +193,7 @@ struct Earlier<'a> {
 }
 
 impl<'a> Earlier<'a> {
-    /// No rows yet. The offset has `width` numbers.
+    /// Sums over no rows, for an offset that has `width` numbers.
     fn new(whole: &'a Whole, width: usize) -> Self {
         let numbers = whole.gradient.len();
         let mut gradient = DMatrix::from_columns(std::slice::from_ref(&whole.gradient));
@@ -197,7 +209,8 @@ impl<'a> Earlier<'a> {
         }
     }
 
-    /// Adds a row: the columns of the model's numbers, then those of the offset, and the error.
+    /// Adds the equations of one row to the sums. `columns` are the derivatives of its position: first with respect
+    /// to the model's numbers, then to the offset.
     fn add(&mut self, columns: &[Vector3<f64>], error: &Vector3<f64>) {
         let (model, offset) = columns.split_at(self.model.nrows());
         for c in 0..3 {
@@ -210,7 +223,8 @@ impl<'a> Earlier<'a> {
         self.slope.gemv_tr(1.0, &self.offset, error, 1.0);
     }
 
-    /// Gain in ln of the likelihood if the rows so far had an offset of their own.
+    /// Rise of the logarithm of the likelihood, by the linearized model, if the rows added so far had an offset of
+    /// their own.
     fn gain(&self) -> f64 {
         let left = &self.curvature - self.cross.tr_mul(&self.cross);
         let gradient = &self.slope - self.cross.tr_mul(&self.gradient);

@@ -1,38 +1,42 @@
-//! Finds the best compliances that are springs: none is negative, and no moment turns a frame against itself.
+//! Finds the best compliances that are physically possible: none is negative, and the compliance matrix of a frame is
+//! positive semidefinite.
 //!
-//! The normal equations of a fit describe a parabola, which is minimized over springs. A compliance that
-//! would be negative is held at zero. The matrix of a frame is written as `L Lᵀ`, which is a spring for every
-//! `L`, and the parabola is minimized over the entries of `L` and all other numbers.
+//! The normal equations of a fit describe a quadratic function, which is minimized under these constraints. A
+//! compliance that would be negative is held at zero. The matrix of a frame is written as `L Lᵀ`, which is positive
+//! semidefinite for every `L`, and the quadratic function is minimized over the entries of `L` and all other numbers.
 
 use super::loads::FRAME_ENTRIES;
 use super::normal::{Factor, Normal};
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix2, Matrix3, Vector2};
 use std::ops::Range;
 
-/// Largest number of Newton steps over the entries of `L`, the factor of a frame's compliance matrix `L Lᵀ`.
+/// Largest number of Newton steps over the entries of `L`, the Cholesky factor of a frame's compliance matrix `L Lᵀ`.
 const MOST_STEPS: usize = 30;
-/// Largest number of times that one step is halved.
+/// Largest number of times that one Newton step is halved because half of chi-squared is larger after it.
 const MOST_HALVINGS: i32 = 8;
 /// The Newton steps end when the next one would lower half of chi-squared by less than this.
 const SETTLED: f64 = 1e-6;
-/// `L Lᵀ` starts with this part of the frame's largest compliance added in every direction. With a zero in `L`, half
-/// of chi-squared would have no slope there.
+/// Fraction of the frame's largest compliance that is added to its diagonal before `L` is computed. If an entry of `L`
+/// were zero, half of chi-squared could have zero slope there and the iteration would not leave it.
 const ROOM: f64 = 1e-3;
-/// Row and column of each entry of `L`. The base lacks the last entry: its zz follows from the couplings.
+/// Row and column of each entry of `L` (the factor of a frame's compliance matrix). The base lacks the last entry:
+/// its zz follows from the couplings.
 const LOWER: [(usize, usize); FRAME_ENTRIES.len()] = [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2)];
 
-/// The step to the least value of half of chi-squared, which is quadratic in the numbers (a parabola).
+/// The step to the minimum of half of chi-squared, which is a quadratic function of the numbers.
 pub(crate) struct Best {
-    /// Change of each number. The numbers of the geometry come first, then the compliances.
+    /// Change of each number of the model. The numbers of the geometry come first, then the compliances.
     pub step: Vec<f64>,
-    /// Derivatives of every number (rows) by every free variable (columns).
+    /// Derivatives of every number of the model (rows) with respect to every free variable of the minimization
+    /// (columns).
     slopes: DMatrix<f64>,
-    /// The factorized curvature over the free variables.
+    /// The factorized curvature of half of chi-squared over the free variables.
     factor: Factor,
 }
 
 impl Best {
-    /// Standard deviations of the numbers; infinite for a number that is held.
+    /// Standard deviations of the model's numbers, in their units; infinite for a number that is held at its
+    /// constraint.
     pub(crate) fn deviations(&self) -> Vec<f64> {
         let variance = |row: usize| {
             let row = self.slopes.row(row).transpose();
@@ -44,18 +48,19 @@ impl Best {
     }
 }
 
-/// How the compliances of an effect may change.
+/// How the compliances of one effect may change in the minimization.
 #[derive(Clone)]
 enum Block {
     Free,
-    /// The compliances change by these amounts.
+    /// The compliances have been set to their constraint: each changes by this amount \[rad/(N m)\].
     Held(Vec<f64>),
-    /// The compliances are the entries of `L Lᵀ`.
+    /// The compliances are those of a frame: the entries of the matrix `L Lᵀ`, with this `L`.
     Frame(Matrix3<f64>),
 }
 
-/// The best step that leaves every compliance possible for a spring. The compliances, which are `now` before the
-/// step, come after `numbers` other numbers. `None` if the equations are singular.
+/// The step to the minimum of half of chi-squared at which every compliance is physically possible. `now` holds the
+/// compliances of each effect before the step. In the equations they follow the numbers of the geometry, of which
+/// there are `numbers`. `None` if the equations are singular.
 pub(crate) fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) -> Option<Best> {
     let mut first = numbers;
     let ranges: Vec<Range<usize>> = (now.iter())
@@ -72,8 +77,8 @@ pub(crate) fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) ->
     let mut parabola = Parabola { curvature, gradient, numbers, now, ranges, blocks };
     loop {
         let mut best = parabola.best()?;
-        // from the nearest springs the descent may end above its start
-        // zero is the value at the start, so a positive one is worse than no step
+        // the value at the start is zero: if the descent from the projected compliances ends above it, it starts
+        // again from the present compliances
         if parabola.value(&best.step) > 0.0 {
             parabola.frames_from_now();
             best = parabola.best()?;
@@ -86,7 +91,7 @@ pub(crate) fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) ->
             let step = &best.step[parabola.ranges[k].clone()];
             let wanted: Vec<f64> = own.iter().zip(step).map(|(c, by)| c + by).collect();
             let spring = nearest_spring(&wanted);
-            // this block leaves the springs: hold it there and solve the rest again
+            // the step would leave the constraint: hold this block there and solve for the others again
             if spring != wanted {
                 is_settled = false;
                 parabola.blocks[k] = match own.len() {
@@ -101,7 +106,8 @@ pub(crate) fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) ->
     }
 }
 
-/// The Cholesky factor `L` of a frame's compliance matrix, enlarged in every direction by [`ROOM`].
+/// The Cholesky factor `L` of a frame's compliance matrix. [`ROOM`] times the largest compliance is added to the
+/// diagonal first.
 fn factor_of(compliances: &[f64]) -> Matrix3<f64> {
     let matrix = frame_matrix(compliances);
     let room = (ROOM * matrix.diagonal().max()).max(f64::MIN_POSITIVE);
@@ -114,13 +120,14 @@ struct Parabola<'a> {
     gradient: DVector<f64>,
     numbers: usize,
     now: &'a [Vec<f64>],
-    /// For each effect, the range of its compliances among the numbers.
+    /// For each effect, the range of indices of its compliances among the numbers of the model.
     ranges: Vec<Range<usize>>,
     blocks: Vec<Block>,
 }
 
 impl Parabola<'_> {
-    /// The best step. Without frames it is found in one step; the entries of `L` need several Newton steps.
+    /// The step to the minimum. Without frames one Newton step leads there; the entries of `L` need several, because
+    /// the compliances are quadratic in them.
     fn best(&mut self) -> Option<Best> {
         let mut linear = vec![0.0; self.gradient.len()];
         let mut step = self.step(&linear);
@@ -154,7 +161,8 @@ impl Parabola<'_> {
         Some(Best { step, slopes, factor })
     }
 
-    /// Starts every frame again from its present compliance.
+    /// Sets the entries of `L` of every frame so that `L Lᵀ` is the frame's present compliance matrix, slightly
+    /// enlarged. The descent then starts there again.
     fn frames_from_now(&mut self) {
         for (block, now) in self.blocks.iter_mut().zip(self.now) {
             if let Block::Frame(l) = block {
@@ -165,7 +173,7 @@ impl Parabola<'_> {
         }
     }
 
-    /// The gradient after a step of the numbers.
+    /// The negative gradient of half of chi-squared after the step `step` of the model's numbers.
     fn gradient_at(&self, step: &[f64]) -> DVector<f64> {
         &self.gradient - &self.curvature * DVector::from_column_slice(step)
     }
@@ -175,7 +183,8 @@ impl Parabola<'_> {
         0.5 * step.dot(&(&self.curvature * &step)) - step.dot(&self.gradient)
     }
 
-    /// Factorizes the curvature over the free numbers and the entries of `L`.
+    /// Factorizes the curvature of half of chi-squared over the free variables: free numbers and entries of `L`.
+    /// `slopes` holds the derivatives of the numbers with respect to these variables. `None` if it is singular.
     fn factor(&self, slopes: &DMatrix<f64>) -> Option<Factor> {
         let all_free = self.blocks.iter().all(|block| matches!(block, Block::Free));
         let curvature = match all_free {
@@ -185,7 +194,8 @@ impl Parabola<'_> {
         Factor::new(&curvature, &(0..curvature.nrows()).collect::<Vec<_>>())
     }
 
-    /// The step of every number. `linear` holds the steps of the free numbers, the entries of `L` give the rest.
+    /// The step of every number of the model. `linear` holds the steps of the free numbers. The steps of the others
+    /// follow from their constraint or from the entries of `L`.
     fn step(&self, linear: &[f64]) -> Vec<f64> {
         let mut step = linear.to_vec();
         for ((block, range), now) in self.blocks.iter().zip(&self.ranges).zip(self.now) {
@@ -205,8 +215,8 @@ impl Parabola<'_> {
         step
     }
 
-    /// Derivatives of every number (rows) by every free variable (columns). A variable is a free number, or an entry
-    /// of `L`.
+    /// Derivatives of every number of the model (rows) with respect to every free variable (columns). A free variable
+    /// is a number without constraint, or an entry of `L`.
     fn slopes(&self) -> DMatrix<f64> {
         let mut columns: Vec<DVector<f64>> = Vec::new();
         let unit = |at: usize| {
@@ -232,7 +242,7 @@ impl Parabola<'_> {
         DMatrix::from_columns(&columns)
     }
 
-    /// Changes the free numbers and the entries of `L` by a step.
+    /// Moves the free numbers in `linear` and the entries of `L` by their steps in `by`.
     fn advance(&mut self, linear: &mut [f64], by: &DVector<f64>) {
         let mut by = by.iter();
         let mut next = || by.next().copied().unwrap_or_default();
@@ -247,8 +257,8 @@ impl Parabola<'_> {
     }
 }
 
-/// Projects compliances onto values that springs can have: none is negative, and no moment turns a frame the opposite
-/// way.
+/// Projects the compliances of an effect onto physically possible values: none is negative, and a frame's matrix is
+/// positive semidefinite.
 fn nearest_spring(compliances: &[f64]) -> Vec<f64> {
     match compliances.len() {
         1 => vec![compliances[0].max(0.0)],
@@ -257,8 +267,9 @@ fn nearest_spring(compliances: &[f64]) -> Vec<f64> {
     }
 }
 
-/// Projects the compliance of a base onto the positive semidefinite cone. Rotation about z cannot be
-/// observed: zz is as large as the couplings need, and without tilts there are no couplings.
+/// Projects the compliance of a base onto the positive semidefinite cone. Rotation about z cannot be observed, so zz
+/// is not among the numbers and takes the smallest value that the couplings xz and yz need. If the part of x and y is
+/// not positive definite, it is projected and the couplings are set to zero.
 fn nearest_base(compliances: &[f64]) -> Vec<f64> {
     let level: Matrix2<f64> = frame_matrix(compliances).fixed_view::<2, 2>(0, 0).into_owned();
     let mut eigen = level.symmetric_eigen();
@@ -282,7 +293,8 @@ fn nearest_frame(compliances: &[f64]) -> Vec<f64> {
     FRAME_ENTRIES.iter().map(|&at| c[at]).collect()
 }
 
-/// The compliance matrix of a frame. If zz is not among the numbers, it is as large as the couplings need.
+/// The symmetric compliance matrix of a frame from its entries `compliances`. If zz is not among them, as for the
+/// base, it is the smallest value with which the matrix is positive semidefinite.
 pub(crate) fn frame_matrix(compliances: &[f64]) -> Matrix3<f64> {
     let mut out = Matrix3::zeros();
     for (&(i, j), c) in FRAME_ENTRIES.iter().zip(compliances) {

@@ -1,4 +1,4 @@
-//! Finds where the calibrated arms stand: in each session, and the place that suits all sessions best.
+//! Finds the placement of the calibrated arms: in each session, and one common placement that fits all sessions best.
 
 use super::analysis::Positions;
 use super::fit::fit;
@@ -13,7 +13,8 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 impl Positions {
-    /// The placement of one of the arms. `turned` is the rotation of its last frame.
+    /// The placement of the arm with the index `arm` in the instrument's frame, by the fit `shown`: in each session,
+    /// and one for all. `turned` is the rotation of the arm's last frame by the calibrated zeros and mountings.
     pub(crate) fn placement(
         &self,
         campaign: &Campaign,
@@ -45,7 +46,7 @@ impl Positions {
         let number_of = |i: usize| own.iter().position(|&o| o == i).map_or(f64::INFINITY, |k| numbers[k]);
         let ends = runs.iter().skip(1).map(|next| Some(next[0])).chain([None]);
         let sessions = runs.iter().zip(ends).map(|(run, next)| Session {
-            // a test between two sessions may belong to either
+            // the limit between two sessions lies halfway between the test numbers on its two sides
             before_test: next.map_or(f64::INFINITY, |next| {
                 0.5 * (number_of(next) + number_of(*run.last().unwrap_or(&next)))
             }),
@@ -58,10 +59,11 @@ impl Positions {
         }
     }
 
-    /// The samples of an arm, divided into runs within which neither the instrument nor a point was moved.
+    /// Divides the samples with the indices `own` (those of one arm) into runs, within each of which neither the
+    /// instrument nor a point was moved.
     fn runs(&self, campaign: &Campaign, own: &[usize]) -> Vec<Vec<usize>> {
         let mut out: Vec<Vec<usize>> = Vec::new();
-        // the point of each name that was seen in the last run
+        // for each name of a point, the index of the point in the present run
         let mut seen: HashMap<&str, usize> = HashMap::new();
         for &i in own {
             let (sample, name) = (&self.samples[i], campaign.positions[i].point.as_str());
@@ -81,7 +83,8 @@ impl Positions {
         out
     }
 
-    /// Placement of the arm, and of the points on its tool, during a run.
+    /// Placement of the arm, and of the points on its tool, during the samples `run`. `own_points` lists the arm's
+    /// points by name, with the index that each has if it does not occur in the run.
     fn stand(
         &self,
         geometry: &Geometry,
@@ -103,7 +106,8 @@ impl Positions {
         }
     }
 
-    /// The geometry with base and points placed to suit all sessions together. All other numbers are held.
+    /// The geometry of the fit `shown`, with one placement of base and points that fits all sessions together. All
+    /// other numbers stay as they are.
     fn merged(&self, campaign: &Campaign, shown: &Fitted) -> Geometry {
         let named = points(campaign);
         let together: Vec<Sample> = self

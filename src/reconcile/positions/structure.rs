@@ -1,9 +1,9 @@
-//! Tests whether the errors of the best model follow anything.
+//! Tests whether the errors of the best model depend on any known quantity.
 //!
-//! Each question is a few columns `X` that the errors could consist of. The part that the model could still
-//! fit is removed. The sum of squares that the columns explain, in units of the fitted scale, is then
-//! chi-squared if there is no structure. A structure is material if it explains at least a tenth of the sum
-//! of squares.
+//! For each quantity there are a few columns `X`, functions of it that the errors could follow. The part of the columns
+//! that the model could still fit is removed. The sum of squares that the columns explain, in units of the fitted
+//! scale, then follows a chi-squared distribution if the errors do not depend on the quantity. A structure is material
+//! if it explains at least a tenth of the sum of squares.
 
 use super::analysis::Positions;
 use super::fitted::{Sample, readings};
@@ -19,20 +19,24 @@ use crate::reconcile::select::structure::Structure;
 use crate::reconcile::select::waves::{order_functions, waves};
 use nalgebra::{DMatrix, SymmetricEigen, Vector3};
 
-/// A structure in the errors counts if it accounts for at least this part of their sum of squares.
+/// A structure in the errors is material if it explains at least this fraction of their sum of squares.
 pub(crate) const MATERIAL_PART: f64 = 0.1;
-/// A variance below this multiple of the declared one is ascribed to the declaration.
+/// If the variance of the errors is below this multiple of the declared variance, the declared standard deviations
+/// are taken to be too small, and the model is not blamed.
 pub(crate) const MATERIAL_VARIANCE: f64 = 1.75;
-/// A structure is not chance if it is less probable than this.
+/// A structure of the errors is taken as real if chance gives it with a probability below this, after correction for
+/// the number of tests.
 const IMPROBABLE: f64 = 1e-6;
-/// Median length of a vector of one, two and three standard normal deviates.
+/// Median length of a vector whose one, two or three components are standard normal deviates.
 const MEDIAN_LENGTHS: [f64; 3] = [0.6745, 1.1774, 1.538];
 
-/// One question about the errors: what they would follow, in words, and the number of regressors.
+/// One test of the errors: the quantity that they would follow, in words, and the number of columns with which this
+/// is tested.
 type Question = (String, usize);
 
 impl Positions {
-    /// Tests the errors for every structure that a question asks for.
+    /// Tests whether the errors of the fitted model depend on the order of the readings, the joint angles, the joint
+    /// torques or the payload.
     pub(crate) fn lack_of_fit(&self, campaign: &Campaign) -> LackOfFit {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let asker = Asker::new(self, campaign);
@@ -66,7 +70,7 @@ impl Positions {
                 });
             }
         }
-        // Bonferroni, as in the test of the other readings
+        // Bonferroni correction for the number of tests, as for the other readings
         let asked = libm::log((structures.len() as f64).max(1.0));
         structures.iter_mut().for_each(|s| s.ln_p = (s.ln_p + asked).min(0.0));
         structures.sort_by(|a, b| b.statistic.total_cmp(&a.statistic));
@@ -74,17 +78,19 @@ impl Positions {
         LackOfFit { structures, chi2_per_dof: self.variance_ratio(campaign), fails }
     }
 
-    /// Part of the errors' sum of squares that a structure accounts for.
+    /// Fraction of the errors' sum of squares that the structure `structure` explains.
     pub(crate) fn part(&self, structure: &Structure) -> f64 {
         structure.statistic / readings(&self.samples) as f64
     }
 
-    /// Whether a structure is real and accounts for enough.
+    /// Whether the structure `structure` is no chance result and explains at least [`MATERIAL_PART`] of the errors'
+    /// sum of squares.
     pub(crate) fn is_material(&self, structure: &Structure) -> bool {
         structure.ln_p < libm::log(IMPROBABLE) && self.part(structure) > MATERIAL_PART
     }
 
-    /// Variance of the errors over the declared one, estimated by the median.
+    /// Ratio of the variance of the errors to the declared variance. It is estimated from the median length of an
+    /// error, so that gross errors do not count.
     fn variance_ratio(&self, campaign: &Campaign) -> f64 {
         let rows = campaign.positions.iter().zip(&self.samples);
         let lengths = rows.map(|(row, s)| declared_length(row, &self.fitted.error(s)) / median_length(s));
@@ -94,30 +100,32 @@ impl Positions {
     }
 }
 
-/// Length of an error \[declared standard deviations of its coordinates\].
+/// Length of the error of one position, with each measured coordinate divided by its declared standard deviation.
 fn declared_length(row: &PositionRow, error_m: &Vector3<f64>) -> f64 {
     let parts = row.measured.iter().zip(error_m.iter());
     let squares = parts.filter_map(|(read, e)| Some((1e3 * e / (*read)?.sigma_mm).powi(2)));
     squares.sum::<f64>().sqrt()
 }
 
-/// Median length of the error of a sample whose measured coordinates each have the standard deviation 1.
+/// Median length of a sample's error if each of its measured coordinates has the standard deviation 1 and no
+/// systematic error.
 fn median_length(sample: &Sample) -> f64 {
     MEDIAN_LENGTHS[sample.readings().clamp(1, 3) - 1]
 }
 
-/// The same for samples of different kinds, on average.
+/// Mean over the samples of the median length that `median_length` gives for each. It depends on how many coordinates
+/// were measured.
 pub(crate) fn mean_median_length(samples: &[Sample]) -> f64 {
     samples.iter().map(median_length).sum::<f64>() / samples.len().max(1) as f64
 }
 
-/// The statistic `zᵀ S⁻¹ z` over the directions in which `S` is not singular, and the number of these
-/// directions.
+/// The statistic `zᵀ S⁻¹ z`, restricted to the directions in which the matrix `S` is not singular, and the number of
+/// these directions.
 pub(crate) fn squares(s: &DMatrix<f64>, z: &nalgebra::DVector<f64>) -> (f64, f64) {
     let eigen = SymmetricEigen::new((s + s.transpose()) * 0.5);
     let largest = eigen.eigenvalues.max();
     let (mut statistic, mut dof) = (0.0, 0.0);
-    // directions that the model has absorbed carry no information
+    // directions that the model can already fit carry no information
     for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
         if *value > 1e-6 * largest && *value > 1e-9 {
             statistic += vector.dot(z).powi(2) / value;
@@ -127,13 +135,15 @@ pub(crate) fn squares(s: &DMatrix<f64>, z: &nalgebra::DVector<f64>) -> (f64, f64
     (statistic, dof)
 }
 
-/// Computes the regressors of every question for a sample \[m per unit\].
+/// Computes, for one sample at a time, the columns of every test \[m per unit\]: functions of the quantities that the
+/// errors could follow.
 struct Asker<'a> {
     found: &'a Positions,
     questions: Vec<Question>,
-    /// For each joint the index of its candidate, and its largest torque \[N m\].
+    /// For each joint, the index of the candidate that is a compliance about its axis, and the largest torque on the
+    /// joint \[N m\].
     joints: Vec<(usize, f64)>,
-    /// For each driven joint, the index of the candidate at this joint.
+    /// For each driven joint, the index of the candidate that is its compliance about the axis.
     driven: Vec<usize>,
     largest_payload_kg: f64,
     payloads_kg: Vec<f64>,

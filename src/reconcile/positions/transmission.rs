@@ -1,4 +1,4 @@
-//! Finds joints that turn unevenly: the error of a gear or of its sensor, once and twice a turn.
+//! Finds joints with a transmission error: an error of the angle by the gear or its sensor, once and twice a turn.
 
 use super::analysis::Positions;
 use super::fit::fit;
@@ -10,17 +10,18 @@ use crate::arm::effect::waves::transmission_waves;
 use crate::reconcile::readings::campaign::Campaign;
 use rayon::prelude::*;
 
-/// Name of the effect.
+/// Name of the effect of a transmission error.
 pub(crate) const EFFECT: &str = transmission_error::KIND.name;
 
-/// The numbers of a driven joint's transmission error.
+/// The calibrated numbers of the transmission error of the driven joint with index `joint`: amplitudes of sine and
+/// cosine, once and twice a turn.
 pub(crate) fn numbers(joint: usize) -> impl Iterator<Item = Number> {
     (0..transmission_waves(0.0).len()).map(move |k| Number::Transmission(joint, k))
 }
 
 impl Positions {
-    /// Adds the transmission error that raises the likelihood most, if the rise is worth its price and held-out poses
-    /// confirm it.
+    /// Adds the transmission error of the joint that raises the likelihood most, if the rise is worth its price and
+    /// held-out poses confirm it. Returns whether one was added.
     pub(crate) fn add_transmission(&mut self, campaign: &Campaign) -> bool {
         if !campaign.statement.considers(EFFECT) {
             return false;
@@ -36,12 +37,14 @@ impl Positions {
         self.take_if_confirmed(campaign, next, format!("{EFFECT}@{}", self.tree.driven[joint]))
     }
 
-    /// Price of one uneven joint, in ln of the likelihood.
+    /// Price of the transmission error of one joint \[ln of the likelihood\]: the rise of the logarithm of the
+    /// likelihood that it must bring to stay in the model.
     pub(crate) fn transmission_price(&self) -> f64 {
         self.price(numbers(0).count(), self.tree.driven.len())
     }
 
-    /// Models in which one more joint has a transmission error. The most promising are fitted in full.
+    /// Fits in which one more joint has a transmission error, each with the index of this joint. All joints are
+    /// screened with the linearized model, and the most promising are fitted in full.
     fn best_transmissions(&self) -> Vec<(usize, Fitted)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let open: Vec<usize> =
@@ -61,7 +64,8 @@ impl Positions {
         order.into_par_iter().map(with).collect()
     }
 
-    /// Other joints whose transmission error would fit as well as that of `joint`.
+    /// Indices of the other driven joints whose transmission error, in place of that of `joint`, would fit the
+    /// positions as well.
     pub(crate) fn transmission_competitors(&self, joint: usize) -> Vec<usize> {
         let mut without = self.clone();
         let kept = |n: &Number| !matches!(n, Number::Transmission(j, _) if *j == joint);

@@ -4,23 +4,23 @@ use crate::arm::structure::{JointAngle, Piece};
 use crate::arm::{Arm, JointModel};
 use crate::reconcile::readings::campaign::Campaign;
 
-/// The pieces of all arms of a campaign. Those of the trunk are in it once.
+/// Joints and links of all arms of a campaign. Those of the trunk are listed once.
 #[derive(Debug, Clone)]
 pub(crate) struct Tree {
-    /// Joints and links. A joint's angle comes from the pose of the campaign.
+    /// Joints and links of all arms. The angle of a joint refers to the pose of the whole campaign.
     pub pieces: Vec<Piece>,
-    /// Indices of the pieces of each arm, base to tip.
+    /// For each arm, the indices in `pieces` of its joints and links, base to tip.
     pub arms: Vec<Vec<usize>>,
-    /// Number of pieces that all arms have in common from the base.
+    /// Number of joints and links, counted from the base, that all arms have in common.
     pub trunk: usize,
-    /// Joints that have an entry in a pose.
+    /// Names of the driven joints, in the order of their angles in a pose.
     pub driven: Vec<String>,
-    /// For each arm, the indices of its driven joints in a pose.
+    /// For each arm, the indices of its driven joints in the pose of the whole campaign.
     poses: Vec<Vec<usize>>,
 }
 
 impl Tree {
-    /// The arms of a campaign.
+    /// Collects the joints and links of all arms of a campaign.
     pub(crate) fn new(campaign: &Campaign) -> Self {
         let driven = campaign.driven_joint_names();
         let arms = campaign.arms();
@@ -56,14 +56,15 @@ impl Tree {
         self.poses.push(own);
     }
 
-    /// The pose of all arms, with the angles of one arm replaced.
+    /// The pose `pose` of all arms, in which the angles of the arm with index `arm` are replaced by `own`.
     pub(crate) fn with_pose_of(&self, arm: usize, own: &[f64], pose: &[f64]) -> Vec<f64> {
         let mut out = pose.to_vec();
         self.poses[arm].iter().zip(own).for_each(|(&i, angle)| out[i] = *angle);
         out
     }
 
-    /// The pose of one arm, taken from that of all.
+    /// The angles of the driven joints of the arm with index `arm`, taken from `pose`, the pose of the whole
+    /// campaign.
     pub(crate) fn pose_of(&self, arm: usize, pose: &[f64]) -> Vec<f64> {
         self.poses[arm].iter().map(|&i| pose[i]).collect()
     }

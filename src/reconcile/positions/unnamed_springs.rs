@@ -1,10 +1,10 @@
-//! What springs without a name leave open in those that are named.
+//! Uncertainty that small compliances outside the model add to the parameters in it.
 //!
-//! Every joint and bearing yields a little. Those that yield too little to be worth their price are not in the model, and the
-//! named ones take over a part of what they do. How much follows from the linearized model with all of them in it: a spring
-//! without a name is taken to yield about as much as the stiffest that is named, before the readings are asked. The readings
-//! then say what it may be, `m ± P`, and a number `p` of the model, which moves by `-L` per unit of it, has the variance
-//! `σ² + L P Lᵀ + (L m)²`.
+//! Every joint and bearing is slightly compliant. Compliances that are too small to be worth their price are not in the
+//! model, and those in the model take over a part of their effect. The linearized model with all of them gives the size
+//! of this part. Before the readings are used, the prior standard deviation of a compliance outside the model is that
+//! of the smallest compliance in it. With the readings it becomes `m ± P`. A number of the model moves by `-L` per unit
+//! of it and then has the variance `σ² + L P Lᵀ + (L m)²`.
 
 use super::analysis::Positions;
 use super::fitted::Sample;
@@ -17,7 +17,8 @@ use crate::reconcile::readings::declared::BASE;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 impl Positions {
-    /// Widens the standard deviations of the model by what springs without a name leave open.
+    /// Widens the standard deviations of the model's numbers by the uncertainty that comes from compliances outside
+    /// the model.
     pub(super) fn widen(&mut self) {
         let unnamed = self.unnamed_springs();
         let Some(usual) = self.stiffest_named().filter(|_| !unnamed.is_empty()) else { return };
@@ -27,9 +28,10 @@ impl Positions {
         own.zip(&further).for_each(|(own, more)| *own = (own.powi(2) + more).sqrt());
     }
 
-    /// The candidates that are single springs, and neither in the model nor part of a frame that is.
+    /// Indices of the candidates with a single compliance that are neither in the model nor contained in a frame of
+    /// the model.
     fn unnamed_springs(&self) -> Vec<usize> {
-        // the base and a first joint that tilt are one thing
+        // tilt of the base and tilt of a first joint have the same effect
         let place = |c: &Yielding| match (c.yields, self.tree.pieces.first()) {
             (Yields::Tilt, Some(Piece::Joint(first))) if c.at == first.name => BASE.to_string(),
             _ => c.at.clone(),
@@ -49,15 +51,17 @@ impl Positions {
         (0..self.candidates.len()).filter(is_spring).filter(|c| !is_named(*c)).collect()
     }
 
-    /// The least compliance of a single spring that is named \[rad/(N m)\].
+    /// The smallest compliance \[rad/(N m)\] among those effects of the model that are springs with a single
+    /// compliance; `None` if there are none.
     fn stiffest_named(&self) -> Option<f64> {
         let named = self.fitted.effects.iter().zip(&self.fitted.compliances);
         let springs = named.filter(|(e, own)| self.candidates[**e].play_nm.is_none() && own.len() == 1);
         springs.map(|(_, own)| own[0]).filter(|c| *c > 0.0).reduce(f64::min)
     }
 
-    /// What the springs without a name add to the variance of every number, those of the geometry first. `usual` is the
-    /// prior standard deviation of their compliances. `None` if the equations are singular.
+    /// Variance that the compliances outside the model add to every number of the model, those of the geometry first.
+    /// `unnamed` are the indices of the candidates outside the model, and `usual` is the prior standard deviation of
+    /// their compliances \[rad/(N m)\]. `None` if the equations are singular.
     fn further_variances(&self, unnamed: &[usize], usual: f64) -> Option<Vec<f64>> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let from_level = self.fitted.geometry.level_to_instrument();
@@ -74,12 +78,12 @@ impl Positions {
             (0..count).map(|k| factor.solve(&cross.column(k).into_owned())).collect();
         let moves = DMatrix::from_columns(&columns);
         let whole = equations.curvature.view((own, own), (count, count));
-        // in units of the usual compliance; errors of the readings count as the estimator sees them
+        // in units of `usual`; the errors of the readings are scaled as in the robust fit
         let per = (usual / self.fitted.robust_factor).powi(2);
         let seen = (whole - cross.transpose() * &moves) * per + DMatrix::identity(count, count);
         let pull = equations.gradient.rows(own, count) - moves.transpose() * equations.gradient.rows(0, own);
         let seen = Cholesky::new(seen)?;
-        // no spring yields the wrong way
+        // no compliance is negative
         let likely = seen.solve(&(pull * (per / usual))).map(|c| c.max(0.0) * usual);
         let variance = |row: usize| {
             let row = moves.row(row).transpose();

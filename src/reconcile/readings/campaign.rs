@@ -1,4 +1,4 @@
-//! Reads a campaign: an arm file, what is stated about it, and the readings.
+//! Reads a campaign: an arm file, the statements about it, and the readings.
 
 use super::cells::Purpose;
 use super::components::{Components, DISPLACEMENT, POSITION, leave_out_idle};
@@ -20,94 +20,97 @@ use crate::reconcile::records::reading::{Record, read_all};
 use crate::reconcile::records::spec::{RecordSpec, read_records};
 use std::path::{Path, PathBuf};
 
-/// The tolerance of parts: 95 % limits as fractions of the nominal value.
+/// Tolerance of parts: limits within which 95 % of faultless parts lie, as fractions of the nominal value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance {
-    /// Limit of the stiffness of each joint, independently.
+    /// Limit of the deviation of each joint's stiffness. The joints deviate independently.
     pub joint_stiffness: f64,
-    /// Limit of the common factor on E and G of a material.
+    /// Limit of the deviation of the common factor on the moduli E and G of each material.
     pub modulus: f64,
-    /// Limit of the mass of each joint, independently.
+    /// Limit of the deviation of each joint's mass. The joints deviate independently.
     pub joint_mass: f64,
-    /// Limit of the tilting stiffness of each joint's bearing, independently.
+    /// Limit of the deviation of the tilting stiffness of each joint's bearing. The bearings deviate independently.
     pub bearing_stiffness: f64,
 }
 
 /// What `campaign.json` says about absolute positions.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PositionsSpec {
-    /// Whether the arm's place in the instrument's frame is unknown.
+    /// Whether the position and attitude of the base in the instrument's frame are unknown.
     pub base_placement: bool,
-    /// Whether the place of each point on the last frame is unknown.
+    /// Whether the position of each measured point on the last frame is unknown.
     pub tool_offset: bool,
-    /// Whether each joint's zero may be off.
+    /// Whether the zero of each joint may deviate from its nominal value.
     pub joint_offsets: bool,
-    /// Whether each link's vector and each joint's axis may be off.
+    /// Whether each link's vector and each joint's axis may deviate from their nominal values.
     pub geometry: bool,
-    /// Whether gravity may deviate from the arm's -z.
+    /// Whether the direction of gravity may deviate from the -z axis of the arm's base.
     pub gravity_direction: bool,
-    /// Links behind which place and attitude are unknown, as of an arm that is mounted anyhow on a trunk.
+    /// Links behind which position and attitude are unknown, such as where an arm is bolted to a trunk at an unknown
+    /// attitude.
     pub mounts: Vec<String>,
-    /// Sessions that are known.
+    /// Sessions that are declared, because something was moved on purpose.
     pub sessions: Vec<DeclaredSession>,
 }
 
 impl PositionsSpec {
-    /// Whether the direction of gravity must be found. It must where this is stated. It also must where base
-    /// and first axis are both free, because positions alone cannot tell which of them is off the vertical.
+    /// Whether the direction of gravity must be fitted. It must if this is stated. It also must if the base placement
+    /// and the axis of the first joint are both free, because positions alone cannot tell which of them is not
+    /// vertical.
     pub fn frees_gravity(&self) -> bool {
         self.gravity_direction || (self.geometry && self.base_placement)
     }
 }
 
-/// What `campaign.json` states.
+/// Content of `campaign.json`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Statement {
-    /// Name.
+    /// Name of the campaign.
     pub name: String,
-    /// Tolerance of the parts.
+    /// Tolerance of the parts, within which they are calibrated.
     pub tolerance: Tolerance,
     /// Density of the payloads, for their buoyancy \[kg/m³\].
     pub payload_density_kg_m3: f64,
-    /// Whether the nominal model holds the links rigid.
+    /// Whether the links are rigid in the nominal model.
     pub rigid_links: bool,
     /// The effects that may be named; `None` for all of them.
     pub effects: Option<Vec<String>>,
-    /// What is unknown in absolute positions.
+    /// What is unknown in absolute positions, and the declared sessions.
     pub positions: PositionsSpec,
-    /// Records against time.
+    /// What is stated about each record against time.
     pub records: Vec<RecordSpec>,
     arm_file: String,
-    /// Files of further arms on the same trunk, next to `campaign.json`.
+    /// Files of other arms on the same trunk, in the folder of `campaign.json`.
     pub other_arm_files: Vec<String>,
-    /// Where the readings of each channel are, as far as this is stated.
+    /// File and columns of each channel, in the order of [`Channel::ALL`]; `None` if nothing is stated.
     sources: [Option<Source>; 4],
 }
 
 /// A campaign, read and checked.
 #[derive(Debug, Clone)]
 pub struct Campaign {
-    /// Its folder.
+    /// Folder of the campaign.
     pub folder: PathBuf,
-    /// What it states.
+    /// Content of its `campaign.json`.
     pub statement: Statement,
     /// The nominal arm.
     pub arm: Arm,
-    /// Further arms on the same trunk, for absolute positions.
+    /// Other arms on the same trunk, for absolute positions.
     pub other_arms: Vec<Arm>,
     /// Tip displacements, in the order of the file.
     pub statics: Vec<StaticRow>,
-    /// Natural frequencies.
+    /// Natural frequencies, in the order of the file.
     pub modal: Vec<ModalRow>,
-    /// Bench twists.
+    /// Twists of single joints on the bench, in the order of the file.
     pub windup: Vec<WindupRow>,
-    /// Absolute positions.
+    /// Absolute positions, in the order of the file.
     pub positions: Vec<PositionRow>,
-    /// What was read otherwise than it is written, in sentences.
+    /// Sentences on readings that were not taken as they are written, such as a constant column that counts as not
+    /// measured.
     pub remarks: Vec<String>,
     /// Records against time.
     pub records: Vec<Record>,
-    /// blake3 of all files of the campaign.
+    /// blake3 hash of all files of the campaign.
     pub hash: String,
 }
 
@@ -152,11 +155,11 @@ fn statement(node: &Node) -> Option<Statement> {
     })
 }
 
-/// Tolerance as a fraction of the nominal value where a campaign states none.
+/// Tolerance that applies if the campaign states none, as fractions of the nominal value.
 const DEFAULT_TOLERANCE: Tolerance =
     Tolerance { joint_stiffness: 0.10, modulus: 0.03, joint_mass: 0.02, bearing_stiffness: 0.0 };
 
-/// Reads `conventions`, of which only the density of the payloads is no text for people.
+/// Reads the density of the payloads from `conventions`; everything else there is text for people.
 fn read_payload_density(node: &Node) -> Option<f64> {
     let (_, density) = node.entries()?.into_iter().find(|(key, _)| *key == "payload_density_kg_m3").unzip();
     density.map_or(Some(DEFAULT_PAYLOAD_DENSITY_KG_M3), |density| density.positive())
@@ -210,18 +213,20 @@ fn read_names(node: &Node) -> Option<Vec<String>> {
 }
 
 impl Statement {
-    /// Where the readings of a channel are.
+    /// File and columns of a channel, as `campaign.json` states them; empty if it states nothing, and the usual names
+    /// then apply.
     pub(crate) fn source(&self, channel: Channel) -> Source {
         self.sources[channel as usize].clone().unwrap_or_default()
     }
 
-    /// Whether an effect may be named.
+    /// Whether the campaign allows the effect with this name to be named as a cause.
     pub fn considers(&self, effect: &str) -> bool {
         self.effects.as_ref().is_none_or(|list| list.iter().any(|name| name == effect))
     }
 }
 
-/// Most readings of a channel. A fit goes through all of them for each candidate effect.
+/// Largest number of readings of a channel. The number is limited because a fit goes through all of them for each
+/// candidate.
 const MOST_READINGS: usize = 20_000;
 
 impl Campaign {
@@ -309,12 +314,12 @@ impl Campaign {
         std::iter::once(&self.arm).chain(&self.other_arms).collect()
     }
 
-    /// Joints that have an entry in a pose: those of the first arm, then those that only other arms have.
+    /// Names of the joints that have an entry in a pose: those of the first arm, then those that only other arms have.
     pub fn driven_joint_names(&self) -> Vec<String> {
         driven_joints(&self.arms()).into_iter().map(|joint| joint.name).collect()
     }
 
-    /// Arms with absolute positions of points on them, as if they were a campaign.
+    /// A campaign that consists of arms and absolute positions of points on them, without files.
     ///
     /// # Errors
     /// The arms do not stand on one trunk.
@@ -340,14 +345,14 @@ impl Campaign {
         if faults.is_empty() { Ok(campaign) } else { Err(Faults(faults)) }
     }
 
-    /// How many elements all arms have in common from the base: the trunk.
+    /// Number of elements that all arms have in common, counted from the base: the trunk.
     pub fn trunk(&self) -> usize {
         let shared =
             |other: &Arm| self.arm.chain.iter().zip(&other.chain).take_while(|(a, b)| a == b).count();
         self.other_arms.iter().map(shared).min().unwrap_or(self.arm.chain.len())
     }
 
-    /// Checks the arms together, and the names in `campaign.json`.
+    /// Faults that show when the arms are compared with one another, and names in `campaign.json` that no arm has.
     fn faults(&self) -> Vec<Fault> {
         let mut out = Vec::new();
         let trunk: Vec<&str> = self.arm.chain[..self.trunk()].iter().map(Element::name).collect();
@@ -383,7 +388,8 @@ impl Campaign {
         out
     }
 
-    /// Splits the campaign in two: the readings other than absolute positions, and the positions. Records are in neither.
+    /// Splits the campaign in two. The first has the readings other than absolute positions, and the second has the
+    /// positions. Records are in neither.
     pub fn parted(&self) -> (Self, Self) {
         let loaded =
             Self { positions: Vec::new(), records: Vec::new(), other_arms: Vec::new(), ..self.clone() };
@@ -397,7 +403,7 @@ impl Campaign {
         (loaded, placed)
     }
 
-    /// Whether there are readings other than absolute positions.
+    /// Whether the campaign has displacements, frequencies or bench readings.
     pub fn has_displacements(&self) -> bool {
         !self.statics.is_empty() || !self.modal.is_empty() || !self.windup.is_empty()
     }
@@ -416,7 +422,7 @@ impl Campaign {
         }
     }
 
-    /// The files that were read.
+    /// Paths of all files that were read.
     pub fn input_files(&self) -> Vec<PathBuf> {
         let others = self.statement.other_arm_files.iter();
         let named = ["campaign.json", &self.statement.arm_file].into_iter().chain(others.map(String::as_str));
@@ -434,7 +440,7 @@ impl Campaign {
         hasher.finalize().to_hex().to_string()
     }
 
-    /// Joins further campaigns of the same arm to this one.
+    /// Appends the readings of further campaigns of the same arm to this one.
     ///
     /// # Errors
     /// The arms or what is stated of them differ.
@@ -464,8 +470,7 @@ impl Campaign {
     }
 }
 
-/// Joints of several arms that have an entry in a pose: those of the first arm, then those that only others
-/// have.
+/// Driven joints of several arms, in the order of a pose: those of the first arm, then those that only others have.
 pub(crate) fn driven_joints(arms: &[&Arm]) -> Vec<DrivenJoint> {
     let mut out: Vec<DrivenJoint> = Vec::new();
     for joint in arms.iter().flat_map(|arm| arm.driven_joints()) {

@@ -2,24 +2,24 @@
 
 use super::table::Table;
 
-/// No reading and no load is as large in its unit.
+/// Upper limit of the magnitude of readings and loads, in their units. A larger number is a fault in the file.
 pub(crate) const ABSURD: f64 = 1e9;
 
-/// What the rows of a file are read for.
+/// Purpose for which the rows of a file are read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Purpose {
-    /// A model is fitted to the readings: every row has one, with its standard deviation.
+    /// A model is fitted to the readings: every row must have a reading with its standard deviation.
     Fit,
-    /// A model predicts the readings: they may be blank, or their columns absent.
+    /// A model predicts the readings: cells of readings may be blank, and their columns may be absent.
     Predict,
 }
 
-/// Reads a cell as a number of a size that can be measured or applied.
+/// Reads a cell as a number whose magnitude is below [`ABSURD`]. `None` if it is not; this is recorded as a fault.
 pub(crate) fn measured(table: &Table, row: usize, column: usize) -> Option<f64> {
     table.number_that(row, column, |x| x.abs() < ABSURD, "too large for any unit: is it a slip?")
 }
 
-/// Reads a cell as a standard deviation.
+/// Reads a cell as a standard deviation, which must be above zero. `None` if it is not; this is recorded as a fault.
 pub(crate) fn sigma(table: &Table, row: usize, column: usize) -> Option<f64> {
     const SIGMA: &str = "a standard deviation is greater than 0";
     let value = table.number_that(row, column, |s| s > 0.0, SIGMA)?;
@@ -31,7 +31,8 @@ pub(crate) fn sigma(table: &Table, row: usize, column: usize) -> Option<f64> {
     None
 }
 
-/// Reads a cell, or takes zero where it is blank or its column absent. `None` is a fault.
+/// Reads a cell with `read`, or takes zero if the cell is blank or its column is absent. `None` if the cell has a
+/// fault, which is recorded.
 pub(crate) fn or_zero(
     table: &Table,
     row: usize,
@@ -44,7 +45,8 @@ pub(crate) fn or_zero(
     }
 }
 
-/// Reads a cell where a prediction may do without it: zero where it is blank or its column absent.
+/// Reads a cell that a fit needs and a prediction does not. If `purpose` is a prediction, a blank cell or an absent
+/// column gives zero. `None` if there is a fault, which is recorded.
 pub(crate) fn needed(
     table: &Table,
     row: usize,
@@ -58,7 +60,8 @@ pub(crate) fn needed(
     }
 }
 
-/// Index of a column of readings, which a prediction may do without. The outer `None` is a fault.
+/// Index of a column of readings. For a prediction the column may be absent, and the inner value is then `None`. The
+/// outer value is `None` if a fit needs the column and it is missing, which is recorded as a fault.
 pub(crate) fn reading_column(table: &Table, name: &str, purpose: Purpose) -> Option<Option<usize>> {
     match purpose {
         Purpose::Predict => Some(table.optional(name)),

@@ -1,8 +1,10 @@
 //! Reads the three components of a displacement or a position, each with its standard deviation.
 //!
-//! An instrument may read fewer than three: a dial gauge one, a level one, a theodolite two. A component that is blank,
-//! or whose column is absent, was not measured. Some programs write zeros there. A column that has one value in all
-//! rows is no reading of an instrument with noise, and neither are zeros in rows that each have a single other value.
+//! An instrument may read fewer than three components: a dial gauge reads one, a level one, a theodolite two. A
+//! component is not measured if its cell is blank or its column is absent. Some programs write zeros instead. Two cases
+//! are recognized. A column with the same value in all rows is no reading of an instrument with noise. Zeros are no
+//! readings if each row has a single component that is not zero, as from a gauge that is moved from one direction to
+//! the next.
 
 use super::cells::{Purpose, measured, sigma};
 use super::table::Table;
@@ -10,38 +12,38 @@ use super::table::Table;
 /// One component of a vector, as an instrument read it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Component {
-    /// Value \[mm\].
+    /// Measured value \[mm\].
     pub value_mm: f64,
-    /// Standard deviation \[mm\].
+    /// Standard deviation of the value \[mm\].
     pub sigma_mm: f64,
 }
 
-/// The components of a vector that were measured: x, y and z, or along them.
+/// The components x, y and z of a vector; `None` for a component that was not measured.
 pub type Components = [Option<Component>; 3];
 
-/// Equal readings are suspicious from this many rows on.
+/// Smallest number of rows from which equal readings of a component are suspicious.
 pub(crate) const FEWEST_ALIKE: usize = 4;
 
-/// Names of the columns of the components.
+/// Names of the columns that hold the components of a vector and their standard deviations.
 pub(crate) struct Names {
-    /// The values.
+    /// Names of the columns with the measured values, for x, y and z.
     pub values: [&'static str; 3],
-    /// Their standard deviations.
+    /// Names of the columns with the standard deviations, for x, y and z.
     pub sigmas: [&'static str; 3],
 }
 
-/// Displacements.
+/// Names of the columns of tip displacements.
 pub(crate) const DISPLACEMENT: Names =
     Names { values: ["dx_mm", "dy_mm", "dz_mm"], sigmas: ["sigma_dx_mm", "sigma_dy_mm", "sigma_dz_mm"] };
 
-/// Positions.
+/// Names of the columns of absolute positions.
 pub(crate) const POSITION: Names =
     Names { values: ["x_mm", "y_mm", "z_mm"], sigmas: ["sigma_x_mm", "sigma_y_mm", "sigma_z_mm"] };
 
-/// The standard deviation of all components of a row.
+/// Name of the column with one standard deviation for all components of a row.
 const COMMON_SIGMA: &str = "sigma_mm";
 
-/// The columns of a vector.
+/// Indices of the columns of a vector's components in a table of readings.
 pub(crate) struct VectorColumns<'a> {
     table: &'a Table,
     names: &'a Names,
@@ -52,13 +54,14 @@ pub(crate) struct VectorColumns<'a> {
 }
 
 impl<'a> VectorColumns<'a> {
-    /// Finds the columns. `None` if one that is needed is missing, which is a fault.
+    /// Finds the columns with these names in the table. `None` if a necessary one is missing, which is recorded as a
+    /// fault.
     pub(crate) fn find(table: &'a Table, names: &'a Names, purpose: Purpose) -> Option<Self> {
         table.check_family("sigma", &[names.sigmas.as_slice(), &[COMMON_SIGMA]].concat());
         let values = names.values.map(|name| table.optional(name));
         let sigmas = names.sigmas.map(|name| table.optional(name));
         let missing = names.values.iter().zip(&values).filter(|(_, found)| found.is_none());
-        // a misspelt column must not pass for a component that was not measured
+        // a column with a misspelt name must not be taken for a component that was not measured
         let misspelt: Vec<bool> =
             missing.map(|(name, _)| table.check_spelling(name, &names.values)).collect();
         let mut common = table.optional(COMMON_SIGMA);
@@ -77,7 +80,7 @@ impl<'a> VectorColumns<'a> {
         Some(Self { table, names, values, sigmas, common, purpose })
     }
 
-    /// Reads the components of a row. `None` is a fault.
+    /// Reads the components of the row with index `row`. `None` if there is a fault, which is recorded.
     pub(crate) fn read(&self, row: usize) -> Option<Components> {
         let read = [0, 1, 2].map(|component| self.component(row, component));
         let [Some(x), Some(y), Some(z)] = read else { return None };
@@ -90,7 +93,8 @@ impl<'a> VectorColumns<'a> {
         Some(out)
     }
 
-    /// Reads the value of a component. `None` is a fault.
+    /// Reads the value of a component from the cell at `row` and `column`. `None` if there is a fault, which is
+    /// recorded.
     fn value(&self, row: usize, column: usize) -> Option<f64> {
         let text = self.table.text(row, column);
         if NOTHING.contains(&text.to_lowercase().as_str()) {
@@ -102,7 +106,8 @@ impl<'a> VectorColumns<'a> {
         measured(self.table, row, column)
     }
 
-    /// Reads a component. The outer `None` is a fault, the inner one a component that was not measured.
+    /// Reads the component with index `component` and its standard deviation. The outer value is `None` if there is a
+    /// fault, the inner one if the component was not measured.
     fn component(&self, row: usize, component: usize) -> Option<Option<Component>> {
         let is_given = |c: &usize| !self.table.is_blank(row, *c);
         let Some(value) = self.values[component].filter(is_given) else { return Some(None) };
@@ -111,17 +116,18 @@ impl<'a> VectorColumns<'a> {
         let sigma_mm = match (own, self.purpose) {
             (Some(column), Purpose::Fit) => sigma(self.table, row, column),
             (None, Purpose::Fit) => None,
-            // a prediction needs neither
+            // a prediction needs no standard deviation
             (_, Purpose::Predict) => Some(1.0),
         };
         Some(Some(Component { value_mm: value_mm?, sigma_mm: sigma_mm? }))
     }
 }
 
-/// Signs that people write where nothing was read.
+/// Texts that people write into a cell if nothing was read.
 const NOTHING: [&str; 9] = ["-", "--", "\u{2013}", "\u{2014}", "/", "?", "n/a", "na", "none"];
 
-/// Takes away what is written as a reading and is none, and returns a sentence for each.
+/// Removes readings that stand in the file but were not measured (constant columns, zeros of other directions), and
+/// returns a sentence for each kind. `file` is the file's name, for the sentence.
 pub(crate) fn leave_out_idle(file: &str, names: &Names, rows: &mut [&mut Components]) -> Vec<String> {
     if rows.len() < FEWEST_ALIKE {
         return Vec::new();
@@ -131,7 +137,7 @@ pub(crate) fn leave_out_idle(file: &str, names: &Names, rows: &mut [&mut Compone
     }
     let constants = [0, 1, 2].map(|component| constant(component, rows));
     let is_read = |component: usize| rows.iter().any(|row| row[component].is_some());
-    // where no component varies, the instrument is dead, and the verdict says so
+    // if no component varies, the instrument did not work, and the verdict says so
     if (0..3).all(|component| constants[component].is_some() || !is_read(component)) {
         return Vec::new();
     }
@@ -147,7 +153,8 @@ pub(crate) fn leave_out_idle(file: &str, names: &Names, rows: &mut [&mut Compone
     .collect()
 }
 
-/// The value that a component has in all rows that have it, and their number, if there are enough of them.
+/// The value that a component has in all rows with a reading of it, and the number of these rows. `None` if the
+/// readings differ or are fewer than [`FEWEST_ALIKE`].
 fn constant(component: usize, rows: &[&mut Components]) -> Option<(f64, usize)> {
     let mut values = rows.iter().filter_map(|row| row[component]).map(|read| read.value_mm);
     let first = values.next()?;
@@ -156,8 +163,9 @@ fn constant(component: usize, rows: &[&mut Components]) -> Option<(f64, usize)> 
     (count >= FEWEST_ALIKE && others.iter().all(|value| *value == first)).then_some((first, count))
 }
 
-/// Takes away the zeros of a gauge that was turned from one direction to the next: every row has three components, at
-/// least two of which are exactly zero.
+/// Removes the zeros of a gauge that was moved from one direction to the next, and returns a sentence on it. They are
+/// recognized by this: every row has three components, at least two of which are exactly zero, and more than one
+/// direction occurs. `None` if that is not so.
 fn leave_out_other_directions(file: &str, names: &Names, rows: &mut [&mut Components]) -> Option<String> {
     let is_zero = |read: &Option<Component>| read.is_some_and(|read| read.value_mm == 0.0);
     let has_one =

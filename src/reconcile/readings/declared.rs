@@ -1,11 +1,11 @@
-//! Sessions that `campaign.json` declares: rows from which a point sits elsewhere on the tool, or the arm or the
+//! Sessions that `campaign.json` declares: rows from which on a point is elsewhere on the tool, or the arm or the
 //! instrument stands elsewhere.
 
 use super::keys::SESSION;
 use super::rows::PositionRow;
 use crate::input::json::Node;
 
-/// The word for the arm's base and the instrument, of which one was moved.
+/// Word in `campaign.json` for a session in which the arm's base or the instrument was moved.
 pub(crate) const BASE: &str = "base";
 
 /// A session that `campaign.json` declares.
@@ -18,7 +18,7 @@ pub struct DeclaredSession {
 }
 
 impl DeclaredSession {
-    /// The same session of a campaign whose rows follow others.
+    /// This session with its row number changed for a file in which its rows follow `rows` other rows.
     pub(super) fn after(self, rows: usize) -> Self {
         Self { from_row: self.from_row + rows, ..self }
     }
@@ -40,7 +40,8 @@ pub(super) fn read(node: &Node) -> Option<Vec<DeclaredSession>> {
     sessions.into_iter().collect()
 }
 
-/// What is wrong with declared sessions beside the rows, each problem with what to try.
+/// Faults of declared sessions that show when they are compared with the rows of positions: a row that does not
+/// exist, or a point that is not measured. Each problem comes with a hint.
 pub(super) fn problems(sessions: &[DeclaredSession], rows: &[PositionRow]) -> Vec<(String, String)> {
     let mut points: Vec<&str> = rows.iter().map(|row| row.point.as_str()).collect();
     points.sort_unstable();

@@ -1,10 +1,10 @@
-//! The keys of `campaign.json`: what the readers know, and what `armwright schema campaign` prints.
+//! The keys of `campaign.json`, as the readers know them and as `armwright schema campaign` prints them.
 
 use crate::arm::effect::catalogue::NAMES as EFFECTS;
 use crate::input::key::{Key, Kind, SCHEMA_ADDRESS, Shape, optional, required};
 use crate::input::schema::FileKind;
 
-/// The statement of a campaign.
+/// The kind of file `campaign.json`.
 pub const CAMPAIGN_FILE: FileKind = FileKind {
     name: "campaign",
     about: "What is stated about a set of measurements of one arm: `campaign.json`.",
@@ -47,7 +47,7 @@ const TORQUE_AT: Key = optional(
     "Where the torques of the record act.",
 );
 
-/// The whole statement.
+/// Keys of `campaign.json` itself.
 pub(crate) static CAMPAIGN: Shape = Shape::new(
     "campaign",
     "What is stated about a campaign.",
@@ -144,7 +144,7 @@ static BLOCK: Shape = Shape {
     others: Some(&Kind::Anything),
 };
 
-/// The tolerance of parts.
+/// Keys of `tolerance`: how far parts may deviate.
 pub(super) static TOLERANCE: Shape = Shape::new(
     "tolerance",
     "95 % of good parts lie within these fractions of their nominal values; 0.1 is 10 %.",
@@ -164,7 +164,7 @@ pub(super) static TOLERANCE: Shape = Shape::new(
     &[],
 );
 
-/// What is unknown in absolute positions.
+/// Keys of `positions`: what is unknown in absolute positions.
 pub(super) static POSITIONS: Shape = Shape::new(
     "positions",
     "Absolute positions: true is what nobody measured.",
@@ -214,7 +214,7 @@ pub(super) static POSITIONS: Shape = Shape::new(
     &[],
 );
 
-/// A declared session.
+/// Keys of an entry of `positions.sessions`: a declared session.
 pub(super) static SESSION: Shape = Shape::new(
     "session",
     "A row from which something stands elsewhere.",
@@ -232,7 +232,7 @@ pub(super) static SESSION: Shape = Shape::new(
 
 const FILE: Kind = Kind::Either(&[Kind::Text, Kind::Object(&SHEET)]);
 
-/// Files of the channels.
+/// Keys of `files`: for each channel, the file in which its readings are.
 pub(super) static FILES: Shape = Shape::new(
     "files",
     "Where the readings of the channels are.",
@@ -246,7 +246,7 @@ pub(super) static FILES: Shape = Shape::new(
     &[],
 );
 
-/// A file, or a sheet of a spreadsheet.
+/// Keys of an entry of `files`: name of a file and, for a spreadsheet, the sheet and the row with the column names.
 pub(super) static SHEET: Shape = Shape::new(
     "sheet",
     "A file, or a sheet of a spreadsheet.",
@@ -275,7 +275,7 @@ static COLUMN_NAMES: Shape = Shape {
     others: Some(&Kind::Text),
 };
 
-/// Names of the columns of the channels.
+/// Keys of `columns`: for each channel, the names that its columns have in the file.
 pub(super) static COLUMNS: Shape = Shape::new(
     "columns",
     "What columns are called in the files.",
@@ -289,7 +289,7 @@ pub(super) static COLUMNS: Shape = Shape::new(
     &[],
 );
 
-/// A record.
+/// Keys of an entry of `records`: a record against time.
 pub(crate) static RECORD: Shape = Shape::new(
     "record",
     "A record against time; constants that are not written are the campaign's.",

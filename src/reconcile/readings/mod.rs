@@ -1,4 +1,4 @@
-//! Reads the files of a campaign: its statement, its rows, and where the arm and the points stand.
+//! Reads the files of a campaign: its statement, its rows, and the placement of the arm and the points.
 
 pub(crate) mod campaign;
 pub(crate) mod cells;

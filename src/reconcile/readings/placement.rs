@@ -1,8 +1,8 @@
-//! Where an arm stands in the frame of an instrument, session by session.
+//! Placement of an arm in the frame of an instrument, session by session.
 //!
-//! Between two sessions a reflector is put back slightly differently, or the instrument or the base is moved.
-//! The number of its test tells which session a row belongs to. This holds as long as the rows are numbered
-//! as those of the campaign were. Any other row gets the place that suits all sessions best.
+//! Between two sessions a reflector is put back slightly differently, or the instrument or the base is moved. The
+//! number of a row's test tells to which session the row belongs, as long as the tests are numbered as in the campaign.
+//! All other rows get the placement that fits all sessions best.
 
 use super::rows::PositionRow;
 use crate::arm::Arm;
@@ -10,34 +10,35 @@ use nalgebra::{Matrix3, Vector3};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
-/// One place of the arm, and of the points on it.
+/// Where the arm stands in the instrument's frame, and where the points sit on it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stand {
     /// Rotation of the arm's base frame in the instrument's frame.
     pub rotation: Matrix3<f64>,
     /// Origin of the base frame in the instrument's frame \[m\].
     pub origin_m: Vector3<f64>,
-    /// Points by name, in the last frame \[m\].
+    /// Name and position of each point, in the last frame \[m\].
     pub points_m: Vec<(String, Vector3<f64>)>,
 }
 
-/// A session.
+/// A session: the tests with numbers in one range, during which the placement stayed the same.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Session {
-    /// The first test number after the session; infinite for the last session.
+    /// Test number that ends the session: its tests have smaller numbers. Infinite for the last session.
     pub before_test: f64,
-    /// The place during the session.
+    /// The placement during the session.
     pub stand: Stand,
 }
 
-/// All places of an arm.
+/// The placement of an arm in the instrument's frame: for all sessions together, and for each session.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Placement {
-    /// The place that suits all sessions best.
+    /// The one placement that fits all sessions best.
     pub usual: Stand,
     /// The sessions in the order of their tests; empty if there is only one.
     pub sessions: Vec<Session>,
-    /// Marks of the poses of the tests that define the sessions, as [`pose_mark`] gives them.
+    /// For each test of the campaign, the mark of its pose as [`pose_mark`] gives it. The marks show whether rows are
+    /// numbered as in the campaign.
     pub tests: BTreeMap<String, String>,
 }
 
@@ -48,7 +49,7 @@ impl Default for Stand {
 }
 
 impl Stand {
-    /// The point in the last frame \[m\]; the tip if the point is not known.
+    /// Position of the point `name` in the last frame \[m\]; the tip (zero) if the point is not known.
     pub fn point_m(&self, name: &str) -> Vector3<f64> {
         self.points_m.iter().find(|(n, _)| n == name).map_or(Vector3::zeros(), |(_, at)| *at)
     }
@@ -72,7 +73,8 @@ impl Stand {
 }
 
 impl Placement {
-    /// Reads the `placement` in the provenance of a corrected arm; the identity if there is none.
+    /// Reads the `placement` in the provenance of a corrected arm, from the JSON of its arm file. If there is none,
+    /// the arm stands at the instrument's origin.
     pub fn from_json(arm_file: &Value) -> Self {
         let placement = &arm_file["provenance"]["placement"];
         let session = |s: &Value| {
@@ -87,7 +89,7 @@ impl Placement {
         }
     }
 
-    /// As JSON for the provenance of a corrected arm.
+    /// The entry `placement` in the provenance of a corrected arm.
     pub fn to_json(&self) -> Value {
         let mut out = self.usual.to_json();
         if !self.sessions.is_empty() {
@@ -102,7 +104,8 @@ impl Placement {
         out
     }
 
-    /// The place at each row.
+    /// The placement for each row of positions: that of the row's session if the rows are numbered as in the
+    /// campaign, otherwise the usual one.
     pub fn stands<'a>(&'a self, rows: &[PositionRow]) -> Vec<&'a Stand> {
         let numbered = test_numbers(rows).filter(|_| rows.iter().all(|row| self.agrees(row)));
         let Some(numbers) = numbered else { return vec![&self.usual; rows.len()] };
@@ -110,26 +113,27 @@ impl Placement {
         numbers.into_iter().map(|number| of(number).unwrap_or(&self.usual)).collect()
     }
 
-    /// The rows, by index, that belong to no known session though there are sessions: they have no number, or are numbered
-    /// anew.
+    /// Indices of the rows that belong to no known session although there are sessions, because their tests have no
+    /// number or are numbered differently from the campaign.
     pub(crate) fn strangers(&self, rows: &[PositionRow]) -> Vec<usize> {
         let is_usual = |stand: &Stand| !self.sessions.is_empty() && std::ptr::eq(stand, &self.usual);
         let stands = self.stands(rows).into_iter().enumerate();
         stands.filter(|(_, stand)| is_usual(stand)).map(|(i, _)| i).collect()
     }
 
-    /// Whether a row can be the test of the same name that defined the sessions: the poses must agree.
+    /// Whether a row has the same pose as the test of the same name in the campaign. True if there is no such test.
     fn agrees(&self, row: &PositionRow) -> bool {
         self.tests.get(&row.test).is_none_or(|mark| *mark == pose_mark(&row.pose_deg))
     }
 }
 
-/// The numbers of the tests, where their names are numbers.
+/// The number of each row's test, which is the name of the test read as a number; `None` if one of the names is not a
+/// number.
 pub fn test_numbers(rows: &[PositionRow]) -> Option<Vec<f64>> {
     rows.iter().map(|row| row.test.trim().parse().ok().filter(|n: &f64| n.is_finite())).collect()
 }
 
-/// A short text for a pose. Equal angles give equal texts.
+/// A short text that identifies a pose. Equal angles give equal texts.
 pub fn pose_mark(pose_deg: &[f64]) -> String {
     // rounded, because a file may change the last digits of an angle
     let angles: String = pose_deg.iter().map(|angle| format!("{angle:.6},")).collect();
@@ -141,7 +145,7 @@ pub fn pose_mark(pose_deg: &[f64]) -> String {
 pub struct Placed {
     /// The arm.
     pub arm: Arm,
-    /// Its placement, for absolute positions.
+    /// Placement of the arm, for absolute positions.
     pub placement: Placement,
 }
 

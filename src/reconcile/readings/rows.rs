@@ -10,89 +10,89 @@ use crate::arm::pose::{DrivenJoint, Motion, any_slides};
 use nalgebra::Vector3;
 use std::collections::{HashMap, HashSet};
 
-/// A key under which equal poses are found. Zero and minus zero are one angle.
+/// Key by which equal poses are found in a map: the bits of each angle. Zero and minus zero are the same angle.
 pub(crate) fn pose_key(pose_deg: &[f64]) -> Vec<u64> {
     pose_deg.iter().map(|angle| (angle + 0.0).to_bits()).collect()
 }
 
-/// A tip displacement under load.
+/// Displacement of the tip under load: one row of `static.csv`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StaticRow {
-    /// Row of the file, from 0.
+    /// Number of the row in the file, from 0, without the header.
     pub row: usize,
-    /// Joint angles \[deg\].
+    /// Angles of the driven joints \[deg\]; travels of prismatic joints \[mm\].
     pub pose_deg: Vec<f64>,
-    /// Stated payload.
+    /// Payload as stated in the file.
     pub payload: Payload,
     /// Temperature of the arm \[°C\], if the file has the column `temperature_c`.
     pub temperature_c: Option<f64>,
-    /// Tip force, world \[N\].
+    /// Force at the tip, in the directions of the world \[N\].
     pub force_n: Vector3<f64>,
-    /// Branch of the loading cycle, as the operator labelled it.
+    /// Branch of the loading cycle (loading or unloading), as the operator labelled it; may be empty.
     pub branch: String,
-    /// Components of the displacement from the reference state, as far as they were measured.
+    /// Components of the displacement from the reference state; `None` for those that were not measured.
     pub measured: Components,
 }
 
-/// A natural frequency.
+/// A natural frequency: one row of `modal.csv`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModalRow {
-    /// Row of the file, from 0.
+    /// Number of the row in the file, from 0, without the header.
     pub row: usize,
-    /// Joint angles \[deg\].
+    /// Angles of the driven joints \[deg\]; travels of prismatic joints \[mm\].
     pub pose_deg: Vec<f64>,
-    /// Stated payload.
+    /// Payload as stated in the file.
     pub payload: Payload,
     /// Temperature of the arm \[°C\], if the file has the column `temperature_c`.
     pub temperature_c: Option<f64>,
-    /// Number of the mode in its list, from 1.
+    /// Number of the mode in its list (the modes of one pose and payload), from 1 by rising frequency.
     pub mode: usize,
-    /// Frequency \[Hz\].
+    /// Measured natural frequency \[Hz\].
     pub frequency_hz: f64,
-    /// Standard deviation \[Hz\].
+    /// Standard deviation of the frequency \[Hz\].
     pub sigma_hz: f64,
 }
 
-/// The twist of one joint on a bench.
+/// The twist (torsion) of one joint on a bench: one row of `windup.csv`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WindupRow {
-    /// Row of the file, from 0.
+    /// Number of the row in the file, from 0, without the header.
     pub row: usize,
     /// Name of the joint.
     pub joint: String,
-    /// Torque \[N m\].
+    /// Torque on the joint \[N m\].
     pub torque_nm: f64,
-    /// Branch of the cycle, as the operator labelled it.
+    /// Branch of the torque cycle (loading or unloading), as the operator labelled it; may be empty.
     pub branch: String,
-    /// Twist \[arcmin\].
+    /// Twist of the joint \[arcmin\].
     pub windup_arcmin: f64,
-    /// Standard deviation \[arcmin\].
+    /// Standard deviation of the twist \[arcmin\].
     pub sigma_arcmin: f64,
 }
 
-/// An absolute position of a point on the tool.
+/// An absolute position of a point on the tool: one row of `positions.csv`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PositionRow {
-    /// Row of the file, from 0.
+    /// Number of the row in the file, from 0, without the header.
     pub row: usize,
     /// Name or number of the test; empty if it has none.
     pub test: String,
-    /// Joint angles \[deg\].
+    /// Angles of the driven joints of all arms \[deg\].
     pub pose_deg: Vec<f64>,
-    /// Stated payload.
+    /// Payload as stated in the file.
     pub payload: Payload,
     /// Temperature of the arm \[°C\], if the file has the column `temperature_c`.
     pub temperature_c: Option<f64>,
-    /// Index of the arm that the point is on, in the order of the campaign.
+    /// Index of the arm to which the point belongs, in the order of the campaign.
     pub arm: usize,
-    /// Name of the point.
+    /// Name of the point; `tip` if the file has no such column.
     pub point: String,
-    /// Coordinates in the frame of the instrument, as far as they were measured.
+    /// Coordinates in the frame of the instrument; `None` for those that were not measured.
     pub measured: Components,
 }
 
 impl PositionRow {
-    /// Standard deviation of a measured coordinate, on average \[mm\].
+    /// Mean standard deviation of the measured coordinates \[mm\].
     pub(crate) fn sigma_mm(&self) -> f64 {
         let own = || self.measured.iter().flatten().map(|read| read.sigma_mm);
         own().sum::<f64>() / own().count().max(1) as f64
@@ -100,27 +100,27 @@ impl PositionRow {
 }
 
 impl StaticRow {
-    /// When it was taken.
+    /// Row and temperature of the reading, for effects of warming.
     pub fn moment(&self) -> Moment {
         Moment { row: self.row, temperature_c: self.temperature_c }
     }
 }
 
 impl ModalRow {
-    /// When it was taken.
+    /// Row and temperature of the reading, for effects of warming.
     pub fn moment(&self) -> Moment {
         Moment { row: self.row, temperature_c: self.temperature_c }
     }
 }
 
 impl PositionRow {
-    /// When it was taken.
+    /// Row and temperature of the reading, on which effects of warming depend.
     pub fn moment(&self) -> Moment {
         Moment { row: self.row, temperature_c: self.temperature_c }
     }
 }
 
-/// The columns that state pose and payload.
+/// Indices of the columns of pose, payload and temperature in a table of readings.
 struct StateColumns {
     pose: Vec<usize>,
     motions: Vec<Motion>,
@@ -171,7 +171,8 @@ impl StateColumns {
         angles.into_iter().collect()
     }
 
-    /// The temperature; `None` where it is faulty.
+    /// Temperature of the arm in the row with index `row` \[°C\]. The outer value is `None` if there is a fault, the
+    /// inner one if there is no such column.
     fn temperature_c(&self, table: &Table, row: usize) -> Option<Option<f64>> {
         let Some(column) = self.temperature else { return Some(None) };
         let is_sound = |c: f64| (-100.0..=200.0).contains(&c);
@@ -198,12 +199,12 @@ impl StateColumns {
     }
 }
 
-/// Reads static rows.
+/// Reads the rows of `static.csv`. `purpose` says whether readings may be blank. Faults are recorded in `table`.
 pub(crate) fn static_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<StaticRow> {
     const FORCE: [&str; 3] = ["force_x_n", "force_y_n", "force_z_n"];
     table.check_family("force", &FORCE);
     let force = FORCE.map(|name| table.optional(name));
-    // an arm that is only pulled at has no payload
+    // if there is a force, a payload is not necessary
     let loads_needed = force.iter().all(Option::is_none);
     let state = StateColumns::find(table, &arm.driven_joints(), loads_needed);
     let components = VectorColumns::find(table, &DISPLACEMENT, purpose);
@@ -230,7 +231,7 @@ pub(crate) fn static_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Sta
     rows
 }
 
-/// Reads modal rows.
+/// Reads the rows of `modal.csv`. `purpose` says whether readings may be blank. Faults are recorded in `table`.
 pub(crate) fn modal_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<ModalRow> {
     let state = StateColumns::find(table, &arm.driven_joints(), false);
     let mode = table.required("mode");
@@ -267,7 +268,7 @@ pub(crate) fn modal_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Moda
     rows
 }
 
-/// Reads bench rows.
+/// Reads the rows of `windup.csv`. `purpose` says whether readings may be blank. Faults are recorded in `table`.
 pub(crate) fn windup_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<WindupRow> {
     let columns = ["joint", "torque_nm"].map(|n| table.required(n));
     let readings = ["windup_arcmin", "sigma_arcmin"].map(|name| reading_column(table, name, purpose));
@@ -298,7 +299,8 @@ pub(crate) fn windup_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Win
     rows
 }
 
-/// Reads absolute positions. `arms` holds the names of the arms, `driven` the joints that have a column.
+/// Reads the rows of `positions.csv`. `arms` holds the names of the arms, and `driven` the driven joints, each of
+/// which has a column.
 pub(crate) fn position_rows(
     table: &Table,
     arms: &[&str],
@@ -364,9 +366,10 @@ fn each_row<T>(table: &Table, read: impl Fn(usize) -> Option<T>) -> Vec<T> {
     rows.into_iter().flatten().collect()
 }
 
-/// Reports rows that repeat an earlier one in everything but the test's label. Such a row is a copying error,
-/// and its noise is not independent. In `coarse` rows not all components were measured: a gauge may well show the same
-/// digits again, so that the label tells a repeated test from a copy.
+/// Reports each row that repeats an earlier row in everything but the label of the test. Such a row is a copying
+/// error, because a repeated test would have noise of its own. The rows `coarse`, in which not all components were
+/// measured, are an exception: a gauge may show the same digits twice, so rows with different labels count as
+/// repeated tests there.
 fn check_duplicates(table: &Table, coarse: &HashSet<usize>) {
     let label = table.optional("test");
     let mut seen: HashMap<Vec<&str>, usize> = HashMap::new();
@@ -387,7 +390,8 @@ fn check_duplicates(table: &Table, coarse: &HashSet<usize>) {
     }
 }
 
-/// Reports angles that are probably radians: those that lie within half a turn in radians in several poses.
+/// Reports angles that are probably in radians: in five or more different poses, no angle exceeds 3.2 (half a turn in
+/// radians).
 fn check_angles<'a>(table: &Table, motions: &[Motion], poses: impl Iterator<Item = &'a [f64]>) {
     let mut distinct: Vec<&[f64]> = Vec::new();
     for pose in poses {

@@ -1,14 +1,14 @@
-//! Where the readings of a channel are: the file, the sheet of a spreadsheet, and what its columns are called there.
+//! Sources of the readings of a channel: the file, the sheet of a spreadsheet, and the names of its columns there.
 
 use super::keys::{COLUMNS as COLUMN_NAMES, FILES, SHEET};
 use crate::arm::effect::channel::Channel;
 use crate::arm::pose::DrivenJoint;
 use crate::input::json::{Node, Object, closest};
 
-/// The usual files of the channels, in the order of [`Channel::ALL`].
+/// Usual names of the channels' files, in the order of [`Channel::ALL`].
 pub(crate) const DEFAULT_FILES: [&str; 4] = ["static.csv", "modal.csv", "windup.csv", "positions.csv"];
 
-/// The columns of each channel, in the order of [`Channel::ALL`]; angles `q_<joint>_deg` are apart.
+/// The columns of each channel, in the order of [`Channel::ALL`], without the angles `q_<joint>_deg`.
 const COLUMNS: [&[&str]; 4] = [
     &[
         "test",
@@ -57,7 +57,8 @@ const COLUMNS: [&[&str]; 4] = [
     ],
 ];
 
-/// The columns of a channel's table for an arm with these joints, in the order in which people write them.
+/// Names of the columns of a channel's table for an arm with the driven joints `joints`, in the usual order. Columns
+/// that few files need are left out.
 pub(crate) fn columns_for(channel: Channel, joints: &[DrivenJoint]) -> Vec<String> {
     let (label, others) = COLUMNS[channel as usize].split_at(1);
     let angles = joints.iter().map(|joint| format!("q_{}", joint.key()));
@@ -67,24 +68,25 @@ pub(crate) fn columns_for(channel: Channel, joints: &[DrivenJoint]) -> Vec<Strin
     label.iter().map(|name| name.to_string()).chain(angles).chain(others).collect()
 }
 
-/// Standard deviations of single components, which few files have.
+/// Columns with the standard deviation of a single component. Few files have them.
 const OWN_SIGMAS: [&str; 6] =
     ["sigma_dx_mm", "sigma_dy_mm", "sigma_dz_mm", "sigma_x_mm", "sigma_y_mm", "sigma_z_mm"];
 
-/// Where the readings of a channel are.
+/// Where the readings of a channel are: file, sheet and names of columns.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Source {
-    /// File next to `campaign.json`; `None` for the usual one.
+    /// Name of the file, in the folder of `campaign.json`; `None` for the usual one.
     pub file: Option<String>,
-    /// Sheet, if the file is a spreadsheet with several.
+    /// Name of the sheet, if the file is a spreadsheet with several.
     pub sheet: Option<String>,
     /// Row of a spreadsheet that names the columns, from 1; `None` for the first that is not blank.
     pub header_row: Option<usize>,
-    /// What columns are called in the file: the name in this program, and that in the file.
+    /// Pairs of column names: the name in this program, and the name in the file.
     pub columns: Vec<(String, String)>,
 }
 
-/// Reads what `campaign.json` says of the files of the channels. `None` where it does not name a channel.
+/// Reads from `campaign.json` where the readings of each channel are. `None` for a channel about which it says
+/// nothing.
 pub(crate) fn read_sources(root: &Object) -> [Option<Source>; 4] {
     let files = root.optional("files").and_then(|n| n.shaped(&FILES));
     let columns = root.optional("columns").and_then(|n| n.shaped(&COLUMN_NAMES));
@@ -106,13 +108,13 @@ pub(crate) fn read_sources(root: &Object) -> [Option<Source>; 4] {
     })
 }
 
-/// The file that the block of a channel names; the rest of a block is for people.
+/// Reads the name of the file from the block of a channel. Everything else in a block is text for people.
 fn read_block(node: &Node) -> Option<String> {
     let (_, file) = node.entries()?.into_iter().find(|(key, _)| *key == "file")?;
     file.string().map(String::from)
 }
 
-/// `"m.xlsx"`, or `{"file": "m.xlsx", "sheet": "S1", "header_row": 3}`.
+/// Reads where the readings of a channel are: `"m.xlsx"`, or `{"file": "m.xlsx", "sheet": "S1", "header_row": 3}`.
 fn read_file(node: &Node) -> Option<Source> {
     if node.value().is_string() {
         return Some(Source { file: Some(node.string()?.into()), ..Source::default() });
@@ -127,7 +129,7 @@ fn read_file(node: &Node) -> Option<Source> {
     Some(Source { file: Some(file?), sheet: sheet?, header_row: header_row?, columns: Vec::new() })
 }
 
-/// `{"dz_mm": "Gauge 1"}`.
+/// Reads pairs of column names, such as `{"dz_mm": "Gauge 1"}`: the name in this program, and the name in the file.
 fn read_columns(node: &Node, channel: Channel) -> Option<Vec<(String, String)>> {
     let known = COLUMNS[channel as usize];
     let mut out = Vec::new();

@@ -6,14 +6,14 @@ use std::path::Path;
 /// Extensions of spreadsheets.
 const EXTENSIONS: [&str; 5] = ["xlsx", "xlsm", "xlsb", "xls", "ods"];
 
-/// A sheet as text.
+/// A sheet of a spreadsheet as text.
 #[derive(Debug)]
 pub(crate) struct Sheet {
-    /// Its name.
+    /// Name of the sheet.
     pub name: String,
-    /// Rows that are not blank, each with its number as a spreadsheet shows it.
+    /// Rows that are not blank, each with its row number as the spreadsheet shows it.
     pub rows: Vec<(usize, Vec<String>)>,
-    /// The letters of its columns.
+    /// Letters of the columns, such as A, B, AA.
     pub letters: Vec<String>,
 }
 
@@ -23,10 +23,10 @@ pub(crate) fn is_spreadsheet(path: &Path) -> bool {
     EXTENSIONS.contains(&extension.as_str())
 }
 
-/// Reads a sheet; without a name, the only one of the file.
+/// Reads the sheet with the name `sheet`; without a name, the only sheet of the file.
 ///
 /// # Errors
-/// What is wrong, and what to try.
+/// The problem, and a hint what to try.
 pub(crate) fn read_sheet(path: &Path, sheet: Option<&str>) -> Result<Sheet, (String, String)> {
     let unreadable = |e: String| {
         (
@@ -60,13 +60,13 @@ pub(crate) fn read_sheet(path: &Path, sheet: Option<&str>) -> Result<Sheet, (Str
 
 fn text(cell: &Data) -> String {
     match cell {
-        // a spreadsheet turns 3.5 or 1-2 into a date without asking
+        // a spreadsheet program may turn 3.5 or 1-2 into a date without being asked
         Data::DateTime(_) | Data::DateTimeIso(_) | Data::DurationIso(_) => format!("{cell} (a date)"),
         other => other.to_string().trim().to_string(),
     }
 }
 
-/// The letters of a column, counted from 0: A, B, ..., Z, AA, AB ...
+/// The letters by which a spreadsheet shows a column, counted from 0: A, B, ..., Z, AA, AB ...
 fn letters(mut column: usize) -> String {
     let mut out = Vec::new();
     loop {

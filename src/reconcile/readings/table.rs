@@ -1,4 +1,5 @@
-//! A CSV file or a sheet of a spreadsheet as named columns. Every fault is recorded with file, line, column, value and hint.
+//! A CSV file or a sheet of a spreadsheet as named columns. Every fault is recorded with file, line, column, value and
+//! hint.
 
 use super::source::Source;
 use super::spreadsheet::{is_spreadsheet, read_sheet};
@@ -11,31 +12,31 @@ use std::path::Path;
 /// First character of a comment line.
 const COMMENT: u8 = b'#';
 
-/// Columns whose cells are names.
+/// Columns whose cells are names and not numbers.
 const NAMES: [&str; 3] = ["test", "joint", "point"];
 
 /// A CSV file or a sheet of a spreadsheet, whose first row names the columns.
 #[derive(Debug)]
 pub struct Table {
-    /// File name as given, with the sheet of a spreadsheet.
+    /// Path of the file as given; for a spreadsheet with the name of the sheet.
     pub file: String,
-    /// Column names of this program.
+    /// Names of the columns, by which this program knows them.
     pub columns: Vec<String>,
-    /// Rows of text.
+    /// Cells of each row as text.
     pub rows: Vec<Vec<String>>,
-    /// Line of each row in the file.
+    /// Line number of each row in the file.
     pub lines: Vec<usize>,
-    /// Line of the column names.
+    /// Line of the column names in the file.
     header_line: usize,
-    /// Column names as the file has them.
+    /// Names of the columns as they are in the file.
     shown: Vec<String>,
-    /// Letters of the columns of a spreadsheet.
+    /// Letters of the columns of a spreadsheet; empty for a CSV file.
     letters: Vec<String>,
     faults: RefCell<Vec<Fault>>,
 }
 
 impl Table {
-    /// Reads a CSV file; rows of the wrong length are faults.
+    /// Reads a CSV file as a table. Rows of the wrong length are recorded as faults.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -46,7 +47,8 @@ impl Table {
         Ok(Self::parse(&file, &text))
     }
 
-    /// Reads a CSV file or a sheet of a spreadsheet, and gives its columns the names of this program.
+    /// Reads a CSV file or a sheet of a spreadsheet, and gives its columns the names of this program. `source` names
+    /// the sheet and the columns.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -59,7 +61,8 @@ impl Table {
         Ok(table)
     }
 
-    /// Reads a sheet of a spreadsheet. What is wrong with the file as a whole is a fault.
+    /// Reads the sheet of a spreadsheet that `source` names. A problem with the file as a whole is recorded as a
+    /// fault.
     fn of_spreadsheet(path: &Path, source: &Source) -> Result<Self, InputError> {
         let file = path.display().to_string();
         std::fs::metadata(path).map_err(|source| InputError::Unreadable { file: file.clone(), source })?;
@@ -94,7 +97,8 @@ impl Table {
         }
     }
 
-    /// Parses CSV text. Rows of the wrong length are faults.
+    /// Reads CSV text as a table; `file` is the name of the file for messages. Rows of the wrong length are recorded
+    /// as faults.
     pub fn parse(file: &str, text: &str) -> Self {
         let mut table = Self::empty(file);
         let csv = Csv::parse(text.as_bytes(), Some(COMMENT));
@@ -106,7 +110,7 @@ impl Table {
         table
     }
 
-    /// Checks what must be true of a whole table.
+    /// Checks the column names, removes a row of units, and reports an empty table.
     fn finish(&mut self) {
         self.shown = self.columns.clone();
         self.check_header();
@@ -116,7 +120,8 @@ impl Table {
         }
     }
 
-    /// Gives columns the names of this program: pairs of that name and the one in the file.
+    /// Renames columns. Each pair in `names` holds the name in this program and the name in the file. A name that the
+    /// file lacks is a fault.
     fn rename(&mut self, names: &[(String, String)]) {
         for (name, shown) in names {
             match self.shown.iter().position(|column| column == shown) {
@@ -138,7 +143,7 @@ impl Table {
         }
     }
 
-    /// Reports a row of units below the names of the columns.
+    /// Reports a row of units below the column names and removes it.
     fn check_units(&mut self) {
         let is_number = |cell: &String| cell.replace(',', ".").parse::<f64>().is_ok();
         let [first, second, ..] = self.rows.as_slice() else { return };
@@ -175,12 +180,13 @@ impl Table {
         }
     }
 
-    /// Whether the first row names columns. If it does not, further faults would only confuse.
+    /// Whether there is a header with more than one column. If not, the table was not read as one, and further faults
+    /// would only confuse.
     fn has_header(&self) -> bool {
         self.columns.len() > 1
     }
 
-    /// A fault if there are more rows than this; the others are left out.
+    /// Records a fault if there are more than `most` rows, and removes the rows beyond.
     pub fn refuse_more_than(&mut self, most: usize) {
         if self.rows.len() > most {
             let problem = format!("has {} rows, and the limit is {most}", self.rows.len());
@@ -208,7 +214,8 @@ impl Table {
         }
     }
 
-    /// Records a fault.
+    /// Records a fault of the file. `line` is the line number in the file, and `column` the name of a column, or
+    /// empty.
     pub fn fault(&self, line: Option<usize>, column: &str, problem: String, hint: &str) {
         self.faults.borrow_mut().push(Fault {
             file: self.file.clone(),
@@ -219,7 +226,8 @@ impl Table {
         });
     }
 
-    /// A column as the file shows it: with the name it has there, and with the cell of a spreadsheet.
+    /// Name of the column `column` for a message: its names in this program and in the file and, for a spreadsheet,
+    /// the cell or the column's letters.
     fn place(&self, line: Option<usize>, column: &str) -> String {
         let known = self.columns.iter().position(|c| c == column).or_else(|| {
             let shown = self.shown.iter().position(|c| c == column);
@@ -235,17 +243,17 @@ impl Table {
         }
     }
 
-    /// Records a fault of a row.
+    /// Records a fault of the row with index `row`, in the column named `column`.
     pub fn row_fault(&self, row: usize, column: &str, problem: String, hint: &str) {
         self.fault(self.lines.get(row).copied(), column, problem, hint);
     }
 
-    /// All faults found.
+    /// All faults that were recorded.
     pub fn into_faults(self) -> Vec<Fault> {
         self.faults.into_inner()
     }
 
-    /// Index of a column that must exist; its absence is a fault.
+    /// Index of the column `name`, which must exist. If it does not, a fault is recorded and the result is `None`.
     pub fn required(&self, name: &str) -> Option<usize> {
         self.optional(name).or_else(|| {
             if !self.has_header() && !self.faults.borrow().is_empty() {
@@ -261,12 +269,13 @@ impl Table {
         })
     }
 
-    /// Index of a column, if it exists.
+    /// Index of the column `name`; `None` if there is no such column.
     pub fn optional(&self, name: &str) -> Option<usize> {
         self.columns.iter().position(|c| c == name)
     }
 
-    /// Reports columns that begin like those of a family and are none of them.
+    /// Reports columns whose name begins with `beginning` and is not among the names in `family`, such as a misspelt
+    /// `sigma_...`.
     pub(crate) fn check_family(&self, beginning: &str, family: &[&str]) {
         let begins = |column: &&String| column.starts_with(beginning) && column.contains('_');
         for column in self.columns.iter().filter(begins).filter(|column| !family.contains(&column.as_str())) {
@@ -275,8 +284,8 @@ impl Table {
         }
     }
 
-    /// Reports a column whose name is nearly that of one that may be absent. `known` are names that are right.
-    /// Returns whether there is one.
+    /// Reports a column that is probably a misspelt `name`. `name` is an optional column that the table lacks.
+    /// Columns whose names are in `known` are not suspected. Returns whether such a column was found.
     pub(crate) fn check_spelling(&self, name: &str, known: &[&str]) -> bool {
         let others: Vec<&str> =
             self.columns.iter().map(String::as_str).filter(|column| !known.contains(column)).collect();
@@ -303,12 +312,12 @@ impl Table {
         self.text(row, column).is_empty()
     }
 
-    /// A cell's text.
+    /// Text of a cell.
     pub fn text(&self, row: usize, column: usize) -> &str {
         &self.rows[row][column]
     }
 
-    /// Reads a cell as a finite number; anything else is a fault.
+    /// Reads a cell as a finite number. If it is not one, a fault is recorded and the result is `None`.
     pub fn number(&self, row: usize, column: usize) -> Option<f64> {
         let text = self.text(row, column);
         match text.parse::<f64>() {
@@ -324,7 +333,8 @@ impl Table {
         }
     }
 
-    /// Reads a cell as a number that satisfies a condition; anything else is a fault.
+    /// Reads a cell as a number for which `condition` is true. If it is not one, a fault with the text `hint` is
+    /// recorded and the result is `None`.
     pub fn number_that(
         &self,
         row: usize,

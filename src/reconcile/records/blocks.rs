@@ -1,45 +1,49 @@
-//! Least squares whose doubt comes from blocks of time and not from single rows.
+//! Least squares with standard errors from blocks of time and not from single rows.
 //!
 //! The rows of a record are cut into stretches of time. Each block keeps the sums of products of all columns, so that a
-//! model of any of the columns, fitted with any block left out, costs no further pass through the rows. Two things come
-//! from it: the error on held-out blocks, and the delete-a-block jackknife (Tukey 1958; for errors that follow each other
-//! in time Künsch 1989), whose intervals need no model of how the errors follow each other.
+//! model of any of the columns can be fitted with any block left out without a further pass through the rows. Two
+//! results come from it. One is the error on held-out blocks. The other is the delete-a-block jackknife (Tukey 1958;
+//! for autocorrelated errors Künsch 1989), whose intervals need no model of the autocorrelation.
 
 use crate::reconcile::model::estimate::Estimate;
 use nalgebra::{DMatrix, DVector};
 
-/// Added to the diagonal of the scaled equations: columns that repeat others get no coefficient instead of a large one.
+/// This number is added to the diagonal of the scaled normal equations. A column that is a combination of others then
+/// gets a coefficient near zero instead of a large one.
 const LEAST: f64 = 1e-10;
 
-/// Sums of products of columns, block by block. The last column is what the others explain.
+/// Sums, over the rows of a record, of the products of every two columns: one matrix per block of time. The last
+/// column is the target, which a fit explains by the others.
 pub(crate) struct Blocks {
     sums: Vec<DMatrix<f64>>,
     total: DMatrix<f64>,
     rows: Vec<usize>,
-    /// Size of each column, by which its sums are divided.
+    /// Root of the sum of squares of each column over all rows. The sums of products are divided by it.
     scale: Vec<f64>,
 }
 
-/// A model fitted to all blocks, and to all but each one.
+/// A linear model (coefficients of columns) fitted to all blocks of time, and fitted again with each block left out.
 #[derive(Debug, Clone)]
 pub(crate) struct Fitted {
-    /// Columns of the model.
+    /// Indices of the columns that the model contains, in the order of `values`.
     pub columns: Vec<usize>,
-    /// Coefficient of each column.
+    /// Coefficient of each column, fitted to all blocks, in the unit of the target per unit of the column.
     pub values: Vec<f64>,
-    /// The same with each block left out.
+    /// Coefficients fitted with one block of time left out: one list for each block.
     without: Vec<Vec<f64>>,
-    /// Sum of squares of each block, predicted by the others.
+    /// Sum of squared errors of each block, in squared units of the target. The block is predicted by the model that
+    /// was fitted without it.
     pub held_out: Vec<f64>,
-    /// Sum of squares of all rows.
+    /// Sum of squared errors of all rows, in squared units of the target, with the model that was fitted to all of
+    /// them.
     pub squares: f64,
-    /// Number of rows.
+    /// Number of rows in all blocks.
     pub rows: usize,
 }
 
 impl Blocks {
-    /// Sums the products of `width` columns, which `fill` writes for a row; `block_of` says to which block a row belongs,
-    /// `None` for rows that do not count.
+    /// Sums the products of every two of `width` columns, block by block. `fill` writes the columns of the row with
+    /// the given index. `block_of` gives the block of a row, or `None` for a row that is left out.
     pub(crate) fn new(
         rows: usize,
         width: usize,
@@ -73,8 +77,9 @@ impl Blocks {
         Self { sums, total, rows: numbers, scale }
     }
 
-    /// Fits the last column by others. `prior` gives for a column the standard deviation of its coefficient known before,
-    /// in units of `sigma`, the standard deviation of an independent row.
+    /// Fits the column `target` by the columns `columns`, with all blocks and with each block left out. `prior` gives
+    /// the prior standard deviation of a column's coefficient as a multiple of sigma, the standard deviation of an
+    /// independent row; `None` if nothing is known before. The result is `None` if the normal equations are singular.
     pub(crate) fn fit(
         &self,
         columns: &[usize],
@@ -118,7 +123,8 @@ impl Blocks {
         columns.iter().zip(b.iter()).map(|(c, b)| b * self.scale[target] / self.scale[*c]).collect()
     }
 
-    /// The part of a column's sum of squares that other columns do not explain, over the sum about the first of them.
+    /// Fraction of the variance of `column` that the columns `others` do not explain. The variance is the sum of
+    /// squares that a fit by the columns `constants` (offsets) leaves.
     pub(crate) fn own_share(&self, column: usize, constants: &[usize], others: &[usize]) -> f64 {
         let left = |of: &[usize]| self.fit(of, column, |_| None).map_or(0.0, |f| f.squares);
         let about_mean = left(constants);
@@ -136,17 +142,19 @@ fn add(sum: &mut DMatrix<f64>, row: &[f64]) {
 }
 
 impl Fitted {
-    /// Place of a column among the coefficients.
+    /// Index of the column `column` among the coefficients of the model; `None` if the model lacks it.
     fn place(&self, column: usize) -> Option<usize> {
         self.columns.iter().position(|c| *c == column)
     }
 
-    /// Coefficient of a column; 0 if the model lacks it.
+    /// Coefficient of the column `column`, in the unit of the target per unit of the column; 0 if the model lacks the
+    /// column.
     pub(crate) fn value(&self, column: usize) -> f64 {
         self.place(column).map_or(0.0, |i| self.values[i])
     }
 
-    /// A function of the coefficients with its interval of 95 % by the jackknife.
+    /// Value of `of`, a function of the model's coefficients, with its 95 % interval by the jackknife (the scatter of
+    /// the value when each block is left out in turn).
     pub(crate) fn estimate(&self, of: impl Fn(&dyn Fn(usize) -> f64) -> f64) -> Estimate {
         let with = |list: &[f64]| of(&|column| self.place(column).map_or(0.0, |i| list[i]));
         let value = with(&self.values);
@@ -158,18 +166,18 @@ impl Fitted {
         Estimate { value, low: Some(value - half), high: Some(value + half) }
     }
 
-    /// Coefficient of a column with its interval.
+    /// Coefficient of the column `column` with its 95 % interval, in the unit of the target per unit of the column.
     pub(crate) fn coefficient(&self, column: usize) -> Estimate {
         self.estimate(|c| c(column))
     }
 
-    /// Root mean square of held-out rows.
+    /// Root mean square error over all rows, each predicted without its block, in the unit of the target.
     pub(crate) fn held_out_rms(&self) -> f64 {
         (self.held_out.iter().sum::<f64>() / self.rows as f64).sqrt()
     }
 
-    /// By how many standard errors this model predicts held-out blocks better than another one: the mean over the blocks
-    /// of the squares saved, over its standard error.
+    /// How clearly this model predicts held-out blocks better than the model `other`, in standard errors: the mean
+    /// over the blocks of the reduction of the sum of squared errors, divided by the standard error of this mean.
     pub(crate) fn better_than(&self, other: &Fitted) -> f64 {
         let saved: Vec<f64> = other.held_out.iter().zip(&self.held_out).map(|(a, b)| a - b).collect();
         let count = saved.len() as f64;
@@ -179,7 +187,8 @@ impl Fitted {
     }
 }
 
-/// The 97.5 % quantile of Student's t (Abramowitz and Stegun 26.7.5; within 0.3 % from 4 degrees of freedom on).
+/// The 97.5 % quantile of Student's t distribution with `dof` degrees of freedom (Abramowitz and Stegun 26.7.5;
+/// within 0.3 % from 4 degrees of freedom on).
 pub(crate) fn student_quantile(dof: f64) -> f64 {
     const Z: f64 = 1.959_964;
     let terms = [
@@ -190,8 +199,9 @@ pub(crate) fn student_quantile(dof: f64) -> f64 {
     Z + terms.iter().enumerate().map(|(i, term)| term / dof.powi(i as i32 + 1)).sum::<f64>()
 }
 
-/// How many rows count as one, because errors follow each other: 1 + 2 times the sum of the autocorrelations, which is
-/// taken up to the first pair whose sum is not positive (Geyer 1992).
+/// Number of rows that carry as much information as one independent reading, because errors are autocorrelated: 1 + 2
+/// times the sum of the autocorrelations of `errors`. The sum ends at the first pair of lags that is not positive
+/// (Geyer 1992).
 pub(crate) fn rows_per_reading(errors: &[f64]) -> f64 {
     const MOST_LAGS: usize = 4000;
     let n = errors.len();

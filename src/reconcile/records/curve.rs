@@ -1,10 +1,11 @@
-//! What the twist does under torque beyond a single compliance: three segments, lost motion, hysteresis.
+//! Nonlinear torsion laws of a joint, beyond a single compliance: three segments, lost motion and hysteresis.
 //!
-//! The torque of the spring is what the fit of the twist leaves of the motor's torque without friction and rotor. Each law
-//! is a few columns of it over a grid of its torques; the best of the grid is improved by the derivative with respect to
-//! these torques, whose columns also carry their doubt into the intervals.
+//! The torque of the spring is the motor's torque without friction and rotor inertia, as the linear fit of the twist
+//! gives it. Each law is written as a few columns of the spring torque, on a grid of the law's own torques. The best
+//! grid point is improved with the derivatives of the twist with respect to these torques. The columns of the
+//! derivatives also bring the uncertainty of the torques into the intervals.
 //!
-//! - three segments: `clip(T, T1)` and `clip(T, T2)` beside `T`, slopes falling;
+//! - three segments: `clip(T, T1)` and `clip(T, T2)` in addition to `T`, with slopes that fall;
 //! - lost motion: `tanh(T / T_c)`;
 //! - hysteresis: `s - T`, where `s` is dragged so that it stays within `r` of `T`.
 
@@ -13,54 +14,56 @@ use super::twist::{Group, Places, TwistModel, columns, fill};
 use crate::arm::effect::{hysteresis, lost_motion};
 use crate::reconcile::model::estimate::Estimate;
 
-/// Break points that are tried, as parts of the largest torque.
+/// Break points T1 and T2 that are tried, as fractions of the largest spring torque.
 const BREAKS: [f64; 11] = [0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
-/// Torques of lost motion, as parts of the largest torque.
+/// Closing torques T_c of lost motion that are tried, as fractions of the largest spring torque.
 const CLOSING: [f64; 6] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.4];
-/// Half widths of the play in torque, as parts of the largest torque.
+/// Half widths of the hysteresis, as torques, that are tried, as fractions of the largest spring torque.
 const PLAYS: [f64; 8] = [0.005, 0.01, 0.02, 0.04, 0.07, 0.12, 0.2, 0.3];
-/// Standard errors by which held-out blocks must be better: the best of a grid is chosen.
+/// A law is accepted only if it predicts held-out blocks better by this many standard errors. More is asked than for
+/// a single given column, because the law is the best of a whole grid.
 const CLEARLY_OF_GRID: f64 = 3.0;
-/// A law must change the twist by this part of its root mean square.
+/// A law is accepted only if it changes the twist by more than this fraction of the twist's root mean square. A
+/// smaller change may come from the simplicity of the model of friction.
 const MATERIAL: f64 = 0.02;
-/// Rounds of improvement of the torques of a law.
+/// Number of Gauss-Newton steps by which the torques at which the laws change are improved.
 const ROUNDS: usize = 5;
-/// Largest change of a torque in one round, as a part of it.
+/// Largest change of a torque of a law in one Gauss-Newton step, as a fraction of this torque.
 const LARGEST_STEP: f64 = 0.3;
 
-/// A law with its torques \[N m\].
+/// A torsion law, with the torques at which it changes \[N m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Law {
-    /// Three segments with two break points.
+    /// Three segments with the break points T1 and T2, `T1 < T2`.
     Segments(f64, f64),
-    /// Lost motion that closes at a torque.
+    /// Lost motion (clearance) with the torque at which it closes.
     LostMotion(f64),
-    /// A play of a half width in torque.
+    /// Hysteresis with its half width, as a torque.
     Play(f64),
 }
 
-/// The laws that a twist needs, and the fit with them.
+/// The torsion laws that the twist of a joint needs, and the fit of the twist that contains them.
 pub(crate) struct Curve {
     /// The laws in the order in which they were found.
     pub laws: Vec<Law>,
-    /// Laws whose best coefficients are impossible, with the reason.
+    /// Names of laws that were refused because their best coefficients are physically impossible, each with the reason.
     pub refused: Vec<(&'static str, &'static str)>,
-    /// A law that held-out blocks cannot tell from the one that was chosen.
+    /// Name of a law that held-out blocks cannot tell from one that was chosen; `None` if there is none.
     pub competing: Option<&'static str>,
-    /// The fit with the laws and the derivatives with respect to their torques.
+    /// Fit of the twist with the columns of all laws, including the derivatives with respect to their torques.
     pub fitted: Fitted,
-    /// Errors on held-out blocks as each law was added \[rad\].
+    /// Root mean square error of the twist on held-out blocks after each law was added \[rad\], with the law's name.
     pub steps: Vec<(String, f64)>,
     first: usize,
-    /// Torque of the spring, row by row \[N m\].
+    /// Torque of the spring, one per row \[N m\].
     pub spring_nm: Vec<f64>,
 }
 
-/// What `verdict.json` calls the three segments of a gear.
+/// Name of the three segments of a gear in `verdict.json`.
 pub(crate) const TORSION_CURVE: &str = "torsion_curve";
 
 impl Law {
-    /// As `verdict.json` names it.
+    /// Name of the law in `verdict.json`.
     pub(crate) fn what(self) -> &'static str {
         match self {
             Law::Segments(..) => TORSION_CURVE,
@@ -69,13 +72,15 @@ impl Law {
         }
     }
 
-    /// How many torques it has.
+    /// Number of the law's torques that are fitted: two for three segments, otherwise one.
     fn torques(self) -> usize {
         if matches!(self, Law::Segments(..)) { 2 } else { 1 }
     }
 
-    /// Its columns at a torque, shapes first and then the derivatives with respect to the torques of the law. `drag` is the
-    /// state of a play of this width and of one a hundredth wider.
+    /// The four columns of the law at the spring torque `t` \[N m\]. The first two are shapes, and the others are
+    /// their derivatives with respect to the torques of the law; 0 where the law has fewer than two. `drag` is the
+    /// state `s` of the hysteresis, for the law's half width and for one that is larger by [`WIDER`]; other laws do
+    /// not use it.
     fn columns(self, t: f64, drag: [f64; 2]) -> [f64; 4] {
         let beyond = |edge: f64| if t.abs() > edge { t.signum() } else { 0.0 };
         match self {
@@ -101,10 +106,12 @@ impl Law {
     }
 }
 
-/// A play is compared with one that is wider by this part, for its derivative.
+/// Relative change of the half width of a hysteresis by which its derivative is computed.
 const WIDER: f64 = 0.01;
 
-/// States of a play along the rows: it begins anew with every record.
+/// State `s` of a hysteresis with the half width `width` at each row \[N m\]: the value nearest to the state of the
+/// row before that lies within `width` of the spring torque. `record` gives the record of a row. In every record the
+/// state starts at the spring torque of the first row.
 fn dragged(spring_nm: &[f64], record: impl Fn(usize) -> usize, width: f64) -> Vec<f64> {
     let mut state = f64::NAN;
     let mut of = usize::MAX;
@@ -118,7 +125,9 @@ fn dragged(spring_nm: &[f64], record: impl Fn(usize) -> usize, width: f64) -> Ve
     spring_nm.iter().enumerate().map(drag).collect()
 }
 
-/// Torque of the spring at each row: the motor's, less friction and rotor as the fit of the twist says.
+/// Torque of the spring at each row \[N m\]: the motor's torque without friction and rotor inertia, computed with the
+/// coefficients of the fitted twist. `viscous_nms_per_rad` is the viscous friction, which these coefficients do not
+/// contain.
 pub(crate) fn spring_torque(model: &TwistModel, viscous_nms_per_rad: f64) -> Vec<f64> {
     let p = model.places;
     let compliance = model.fitted.value(p.torque());
@@ -134,7 +143,8 @@ pub(crate) fn spring_torque(model: &TwistModel, viscous_nms_per_rad: f64) -> Vec
         .collect()
 }
 
-/// Looks for laws beyond a single compliance.
+/// Finds up to two torsion laws beyond a single compliance, one after the other, that predict held-out blocks clearly
+/// better. `None` if a fit is impossible.
 pub(crate) fn curve(model: &TwistModel, viscous_nms_per_rad: f64) -> Option<Curve> {
     let spring_nm = spring_torque(model, viscous_nms_per_rad);
     let first = model.places.further();
@@ -171,7 +181,8 @@ pub(crate) fn curve(model: &TwistModel, viscous_nms_per_rad: f64) -> Option<Curv
     Some(out)
 }
 
-/// Whether a law changes the twist by so much that it is no matter of how friction is written.
+/// Whether a law changes the twist by more than [`MATERIAL`] of the twist's root mean square. `at` is the first
+/// column of the law, and `torque` the column whose coefficient is the compliance.
 fn is_material(fit: &Fitted, law: Law, at: usize, spring_nm: &[f64], torque: usize) -> bool {
     let squares: f64 = spring_nm.iter().map(|t| t * t).sum();
     let twist_rad = fit.value(torque).abs() * (squares / spring_nm.len() as f64).sqrt();
@@ -183,7 +194,9 @@ fn is_material(fit: &Fitted, law: Law, at: usize, spring_nm: &[f64], torque: usi
     size_rad > MATERIAL * twist_rad
 }
 
-/// Why a law cannot be what its coefficients say.
+/// Reason why the fitted coefficients of a law are physically impossible; `None` if they are possible. `first` is the
+/// column at which the laws begin, and `before` the number of laws that stand before this one. `torque` is the column
+/// whose coefficient is the compliance.
 fn impossible(fit: &Fitted, law: Law, first: usize, before: usize, torque: usize) -> Option<&'static str> {
     let size = fit.value(first + 4 * before);
     let second = fit.value(first + 4 * before + 1);
@@ -203,7 +216,9 @@ fn impossible(fit: &Fitted, law: Law, first: usize, before: usize, torque: usize
 }
 
 impl Curve {
-    /// The best of each law's grid beside the laws found before, best first.
+    /// For each kind of law that was not found yet, the law of its grid that predicts held-out blocks best, fitted
+    /// together with the laws found before. `own` are the columns of the linear model, and `largest_nm` is the
+    /// largest spring torque. The results are sorted by the error on held-out blocks, the smallest first.
     fn best_of_grids(
         &self,
         model: &TwistModel,
@@ -235,7 +250,8 @@ impl Curve {
                 let new = self.shapes_of(*law, known, &single);
                 Some((*law, fitted(&[own, &old, &new].concat(), &sums, target)?))
             });
-            // refitted in the order of a single law, so that its shapes stand right behind those found before
+            // refitted with this law alone on the grid, so that its columns follow directly behind those of the laws
+            // found before
             let best = tried.min_by(|a, b| a.1.held_out_rms().total_cmp(&b.1.held_out_rms()));
             let Some((law, _)) = best else { continue };
             let laws = [self.laws.as_slice(), &[law]].concat();
@@ -247,7 +263,8 @@ impl Curve {
         Some(out)
     }
 
-    /// The grid's laws with each torque once: pairs of break points share their columns.
+    /// The laws of a grid, with every torque once. A pair of break points is replaced by a law for each of them, so
+    /// that pairs share the columns of their single torques.
     fn singles(&self, grid: &[Law]) -> Vec<Law> {
         let mut out: Vec<Law> = Vec::new();
         for law in grid {
@@ -264,7 +281,8 @@ impl Curve {
         out
     }
 
-    /// Columns of the shapes of a law among those of single torques.
+    /// Columns of the shapes of `law` in a table in which the columns of the laws `singles` follow those of `known`
+    /// earlier laws.
     fn shapes_of(&self, law: Law, known: usize, singles: &[Law]) -> Vec<usize> {
         let place = |law: Law| singles.iter().position(|s| *s == law).map(|i| self.first + 4 * (known + i));
         match law {
@@ -275,14 +293,15 @@ impl Curve {
         }
     }
 
-    /// Columns of a law at its place: shapes, then derivatives.
+    /// Columns of `law` if it has the index `place` among the laws: its shapes first, then the derivatives.
     fn law_columns(&self, place: usize, law: Law) -> Vec<usize> {
         let at = self.first + 4 * place;
         let n = law.torques();
         (at..at + n).chain(at + 2..at + 2 + n).collect()
     }
 
-    /// Sums with four columns for each law.
+    /// Sums of the products of all columns, block by block, with four columns for each of the `laws`. The second
+    /// value is the index of the target column, the twist.
     fn sums(&self, model: &TwistModel, laws: &[Law]) -> (Blocks, usize) {
         let record = |i: usize| model.rows.samples[i].record;
         let plays: Vec<Option<[Vec<f64>; 2]>> = laws
@@ -307,7 +326,9 @@ impl Curve {
         (sums, target)
     }
 
-    /// Improves the torques of all laws, and fits with the derivatives.
+    /// Improves the torques of all `laws` together by [`ROUNDS`] Gauss-Newton steps. Returns the laws with the
+    /// smallest sum of squared errors, and their fit, which contains the columns of the derivatives. `own` are the
+    /// columns of the linear model.
     fn improved(&self, model: &TwistModel, own: &[usize], mut laws: Vec<Law>) -> Option<(Vec<Law>, Fitted)> {
         let mut best: Option<(Vec<Law>, Fitted)> = None;
         for _ in 0..ROUNDS {
@@ -331,7 +352,8 @@ impl Curve {
         best
     }
 
-    /// Numbers of a law with intervals.
+    /// Parameters of the law `law` with their 95 % intervals, named as in `verdict.json`; empty if the law was not
+    /// found.
     pub(crate) fn parameters(&self, law: Law, places: Places) -> Vec<(String, Vec<Estimate>)> {
         let Some(place) = self.laws.iter().position(|l| *l == law) else { return Vec::new() };
         let at = self.first + 4 * place;
@@ -355,7 +377,8 @@ impl Curve {
         }
     }
 
-    /// Twist of the spring at a row by the compliance and the laws, without derivatives \[rad\].
+    /// Twist of the spring according to the model, one per row \[rad\]: the compliance times the spring torque, plus
+    /// the shapes of all laws without the derivatives. `records` gives the record of a row.
     pub(crate) fn spring_twist_rad(&self, places: Places, records: impl Fn(usize) -> usize) -> Vec<f64> {
         let compliance = self.fitted.value(places.torque());
         let mut out: Vec<f64> = self.spring_nm.iter().map(|t| compliance * t).collect();
@@ -373,7 +396,7 @@ impl Curve {
         out
     }
 
-    /// Whether the model of the twist has compliance at all.
+    /// Whether the model of the twist contains a compliance. Torsion laws are sought only in such a model.
     pub(crate) fn applies(model: &TwistModel) -> bool {
         model.groups.contains(&Group::Compliance)
     }

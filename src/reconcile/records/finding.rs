@@ -1,23 +1,23 @@
-//! What a record says about one joint, each thing found, absent, not identified, or refused.
+//! What the records say about one joint. Each effect is found, absent, not identified, or refused.
 
 use crate::reconcile::model::estimate::Estimate;
 use serde_json::{Map, Value, json};
 
-/// Whether something was found.
+/// Whether an effect was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum State {
-    /// Held-out blocks are predicted better with it, and its interval excludes zero.
+    /// Held-out blocks are predicted better with the effect, and the interval of its size excludes zero.
     Found,
-    /// It was looked for, and held-out blocks are not predicted better with it.
+    /// The effect was looked for, and held-out blocks are not predicted better with it.
     Absent,
-    /// The record cannot tell: too little excitation, or another cause does the same.
+    /// The record cannot tell: the excitation is too small, or another cause gives the same signal.
     NotIdentified,
-    /// The best value is physically impossible, such as a hysteresis that leads.
+    /// The best value is physically impossible, such as a hysteresis that leads the torque.
     Refused,
 }
 
 impl State {
-    /// The word in `verdict.json`.
+    /// Word for the state in `verdict.json`.
     pub fn word(self) -> &'static str {
         match self {
             State::Found => "found",
@@ -28,32 +28,32 @@ impl State {
     }
 }
 
-/// One thing that was looked for at one joint.
+/// One effect that was looked for at one joint, with the result.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stated {
-    /// What: `time_shift`, `compliance`, `hysteresis` ...
+    /// Name of the effect: `time_shift`, `compliance`, `hysteresis` ...
     pub what: &'static str,
-    /// Whether it was found.
+    /// Whether the effect was found.
     pub state: State,
-    /// Its numbers with intervals; present where they are worth printing.
+    /// Parameters of the effect by name, each with its interval; empty if none is worth printing.
     pub parameters: Vec<(String, Vec<Estimate>)>,
-    /// Why, where it is not found, or what limits the finding.
+    /// Reason if the effect was not found; otherwise a limitation of the finding. May be empty.
     pub words: String,
 }
 
 impl Stated {
-    /// Something with one number.
+    /// The result for an effect with a single parameter, which has the name `name`.
     pub(crate) fn one(what: &'static str, state: State, name: &str, value: Estimate, words: &str) -> Self {
         let parameters = vec![(name.to_string(), vec![value])];
         Self { what, state, parameters, words: words.into() }
     }
 
-    /// Something without numbers.
+    /// The result for an effect without parameters.
     pub(crate) fn none(what: &'static str, state: State, words: impl Into<String>) -> Self {
         Self { what, state, parameters: Vec::new(), words: words.into() }
     }
 
-    /// As JSON of `verdict.json`.
+    /// The entry of the effect in `verdict.json`.
     fn json(&self) -> Value {
         let parameters: Map<String, Value> = self
             .parameters
@@ -71,69 +71,72 @@ impl Stated {
     }
 }
 
-/// The error of the twist on held-out blocks, with each thing added.
+/// One step of the fit of the twist (the angle of the motor less that of the link): what was added to the model, and
+/// the error on held-out blocks with it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
-    /// What was added.
+    /// What was added to the model.
     pub added: String,
-    /// Root mean square on held-out blocks \[rad\].
+    /// Root mean square error of the twist on held-out blocks after the addition \[rad\].
     pub held_out_rad: f64,
 }
 
-/// A twist and the torque at which it was read, thinned for a picture.
+/// Twist and torque of one row, for the picture. Only every n-th row is kept.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Traced {
-    /// Torque \[N m\].
+    /// Torque of the spring if a torsion law was found, otherwise of the motor, at the output \[N m\].
     pub torque_nm: f64,
-    /// As recorded: motor less link, about its mean \[rad\].
+    /// Recorded twist (the motor's angle less the link's), without the constant offset of the record \[rad\].
     pub before_rad: f64,
-    /// With time shift, friction and transmission error taken out: what the spring does \[rad\].
+    /// Recorded twist without time shift, offset and transmission error: the deflection of the spring with its friction
+    /// loop \[rad\].
     pub after_rad: f64,
-    /// What the model says of the spring \[rad\].
+    /// Deflection of the spring according to the model \[rad\].
     pub model_rad: f64,
 }
 
-/// What the records say about one joint.
+/// What all records together say about one joint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointRecord {
-    /// The joint.
+    /// Name of the joint.
     pub joint: String,
-    /// Rows that count.
+    /// Number of rows that enter the fit.
     pub rows: usize,
-    /// Independent readings that they are worth, because errors follow each other.
+    /// Number of independent readings that carry as much information as these rows. It is smaller than `rows` because
+    /// errors are autocorrelated.
     pub effective_rows: f64,
-    /// Blocks of time that were held out in turn.
+    /// Number of blocks of time that were held out in turn.
     pub blocks: usize,
-    /// Range of the joint's angle \[rad\].
+    /// Largest less smallest angle of the joint \[rad\].
     pub range_rad: f64,
-    /// Noise of the twist from row to row \[rad\].
+    /// Standard deviation of the noise of the twist from row to row \[rad\].
     pub noise_rad: f64,
-    /// Error with the nominal arm, and the best held-out one \[rad\].
+    /// Root mean square error of the twist on held-out blocks with an offset alone as model \[rad\].
     pub before_rad: f64,
-    /// Error on held-out blocks with everything found \[rad\].
+    /// Root mean square error of the twist on held-out blocks with everything that was found \[rad\].
     pub after_rad: f64,
-    /// Everything that was looked for.
+    /// All effects that were looked for, found or not.
     pub stated: Vec<Stated>,
-    /// How the error on held-out blocks falls.
+    /// Error of the twist on held-out blocks after each step of the fit, in the order of the steps.
     pub steps: Vec<Step>,
-    /// Twist against torque.
+    /// Twist against torque, thinned for the picture.
     pub trace: Vec<Traced>,
-    /// Further sentences.
+    /// Further sentences for the reader, such as a law that explains the record as well.
     pub remarks: Vec<String>,
 }
 
 impl JointRecord {
-    /// What was stated about one thing.
+    /// Result for the effect with the name `what`; `None` if it was not looked for.
     pub fn of(&self, what: &str) -> Option<&Stated> {
         self.stated.iter().find(|s| s.what == what)
     }
 
-    /// The first estimate of something that was found.
+    /// Result for the effect with the name `what`; `None` if it was not found.
     pub fn found(&self, what: &str) -> Option<&Stated> {
         self.of(what).filter(|s| s.state == State::Found)
     }
 
-    /// As JSON of `verdict.json`.
+    /// The entry of the joint in `verdict.json`.
     pub(crate) fn json(&self) -> Value {
         json!({
             "joint": self.joint, "rows": self.rows, "effective_rows": self.effective_rows,

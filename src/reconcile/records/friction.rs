@@ -1,10 +1,10 @@
-//! Friction from the balance of torques: what the motor gives is what the load takes and what friction takes.
+//! Friction from the balance of torques: the motor's torque is the torque of the load plus friction.
 //!
 //! `T_m = T_0 + J a_m + I a_l + A sin q_l + B cos q_l + (coupling with other joints) + (F_c + f |T_l|) sgn w + F_v w`
 //!
-//! The load of a joint also depends on how the other joints stand and move. Their angles, speeds and accelerations enter as
-//! free columns, joint by joint, where held-out blocks become better with them. `T_l`, the torque of the load, is what the
-//! fit before says without friction.
+//! The load of a joint also depends on the position and motion of the other joints. Their angles, speeds and
+//! accelerations enter as free columns, joint by joint, where held-out blocks are predicted better with them. `T_l` is
+//! the torque of the load. It comes from a first fit, without the terms of friction.
 
 use super::blocks::Fitted;
 use super::reading::Record;
@@ -13,42 +13,49 @@ use super::smooth::{half_width, smooth};
 use super::twist::CLEARLY;
 use crate::reconcile::model::estimate::Estimate;
 
-/// Columns of the joint itself after the offsets of the records: acceleration of motor and link, sine and cosine of the
-/// link's angle once and twice a turn.
+/// Number of columns of the joint's own load, which stand behind the offsets of the records: accelerations of motor
+/// and link, sine and cosine of the link's angle, and of twice this angle.
 const OWN_LOAD: usize = 6;
-/// Columns of friction: sign of the speed, speed, and sign of the speed times the size of the load.
+/// Number of columns of friction: sign of the speed, speed, and sign of the speed times the magnitude of the load.
 const FRICTION: usize = 3;
-/// Standard errors by which held-out blocks must be better for the link's acceleration, one column that is surely there.
+/// The link's acceleration is added to the balance of torques if it makes held-out blocks better by this many
+/// standard errors. Less is asked than for other columns, because the inertia of the link surely exists and is one
+/// column only.
 const SLIGHTLY: f64 = 1.0;
-/// Rows count in the balance where the smoothed sign of the speed is one within this.
+/// A row enters the balance of torques only if the magnitude of the smoothed sign of the speed differs from one by at
+/// most this. Near a reversal the friction is not known.
 const TURNING: f64 = 0.5;
-/// Columns of another joint.
+/// Number of columns that the motion of one other joint adds to the balance of torques.
 const OTHER: usize = 8;
 
-/// Friction of a joint; each with its interval.
+/// Friction of a joint on the output of its gear, with 95 % intervals.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Friction {
     /// Coulomb friction \[N m\].
     pub coulomb_nm: Estimate,
     /// Viscous friction \[N m s/rad\].
     pub viscous_nms_per_rad: Estimate,
-    /// Friction for each newton metre of load, if held-out blocks are better with it.
+    /// Friction torque for each newton metre of load torque \[-\]; `None` if held-out blocks are not predicted better
+    /// with it.
     pub load_part: Option<Estimate>,
-    /// Whether held-out blocks are better with Coulomb and with viscous friction.
+    /// Whether the model predicts held-out blocks clearly better with Coulomb friction (first) and with viscous
+    /// friction (second).
     pub clearly: [bool; 2],
-    /// Whether the viscous friction stays below the largest torque of the motor.
+    /// Whether the viscous friction at the largest speed is below the largest torque of the motor. If it is not, a
+    /// part of the load was taken for friction.
     pub is_possible: bool,
-    /// The part of the torque's variance that neither load nor friction explains.
+    /// Fraction of the variance of the motor's torque that neither load nor friction explains.
     pub left_share: f64,
 }
 
-/// Sine and cosine of an angle, both zero at zero so that they do not compete with an offset.
+/// Sine of the angle, and cosine minus 1. Both are zero at zero angle so that they do not compete with the offset.
 fn wave(angle_rad: f64) -> [f64; 2] {
     let (sin, cos) = libm::sincos(angle_rad);
     [sin, cos - 1.0]
 }
 
-/// Motion of another joint at the rows of this one: angle, speed, acceleration.
+/// Angle \[rad\], speed \[rad/s\] and acceleration \[rad/s²\] of another joint at the rows of this one; `None` where
+/// the smoothing has no value.
 type Motion = Vec<Option<[f64; 3]>>;
 
 struct Balance<'a> {
@@ -68,7 +75,7 @@ impl Balance<'_> {
         (first..first + OTHER).collect()
     }
 
-    /// Acceleration of the link.
+    /// Index of the column of the link's acceleration.
     fn link(&self) -> usize {
         self.rows.record_count() + 1
     }
@@ -77,8 +84,8 @@ impl Balance<'_> {
         (0..self.rows.record_count() + OWN_LOAD).filter(|c| *c != self.link()).collect()
     }
 
-    /// What may be added to the load where held-out blocks become better: the link's own acceleration, and the motion of each
-    /// other joint.
+    /// Groups of columns that may be added to the load if the model predicts held-out blocks better with them: first
+    /// the link's own acceleration alone, then one group for the motion of each other joint.
     fn candidates(&self) -> Vec<Vec<usize>> {
         let others = (0..self.others.len()).map(|k| self.other(k));
         std::iter::once(vec![self.link()]).chain(others).collect()
@@ -89,7 +96,7 @@ impl Balance<'_> {
     }
 
     fn fill(&self, i: usize, sample: &Sample, row: &mut [f64]) -> bool {
-        // where the joint turns back, friction has no formula
+        // at a reversal the friction changes its sign somewhere between the rows, and no formula gives it
         if (sample.sense.abs() - 1.0).abs() > TURNING {
             return false;
         }
@@ -117,7 +124,7 @@ impl Balance<'_> {
         true
     }
 
-    /// The load that a fit says, row by row: everything but friction.
+    /// Torque of the load at each row according to the fit `fitted` \[N m\]: the sum of all terms except friction.
     fn load_of(&self, fitted: &Fitted) -> Vec<f64> {
         let friction = self.friction();
         let mut row = vec![0.0; self.target() + 1];
@@ -132,7 +139,8 @@ impl Balance<'_> {
     }
 }
 
-/// Angle, speed and acceleration of the other joints at the rows of this one.
+/// Motion (angle, speed, acceleration) of each other joint at the rows of this joint. Only joints that are in all
+/// records of this joint count.
 fn motions(rows: &JointRows, records: &[Record]) -> Vec<Motion> {
     let own: Vec<&Record> = records
         .iter()
@@ -156,7 +164,8 @@ fn motions(rows: &JointRows, records: &[Record]) -> Vec<Motion> {
         .collect()
 }
 
-/// Finds the friction of a joint. `None` where the joint has no torque or nothing moves.
+/// Finds the friction of a joint from the balance of its torques. `shift_s` is the delay of the link's readings
+/// \[s\]. `None` if the torque is not recorded or a fit is impossible.
 pub(crate) fn friction(rows: &JointRows, records: &[Record], shift_s: f64) -> Option<Friction> {
     if !rows.has_torque {
         return None;
@@ -191,7 +200,7 @@ pub(crate) fn friction(rows: &JointRows, records: &[Record], shift_s: f64) -> Op
         let others: Vec<usize> = chosen.columns.iter().copied().filter(|c| *c != column).collect();
         fit(&others).is_some_and(|other| chosen.better_than(&other) > CLEARLY)
     };
-    // more friction than the motor ever gave is a load that was taken for friction
+    // viscous friction above the largest torque of the motor is a load that was taken for friction
     let largest_nm = rows.samples.iter().fold(0.0f64, |m, s| m.max(s.torque_nm.abs()));
     let fastest = rows.samples.iter().fold(0.0f64, |m, s| m.max(s.speed_rad_s.abs()));
     let is_possible = chosen.value(speed) * fastest < largest_nm;
@@ -205,7 +214,7 @@ pub(crate) fn friction(rows: &JointRows, records: &[Record], shift_s: f64) -> Op
     })
 }
 
-/// Whether a whole interval lies above zero.
+/// Whether the whole interval of the estimate lies above zero.
 pub(crate) fn is_positive(estimate: &Estimate) -> bool {
     estimate.low.is_some_and(|low| low > 0.0)
 }

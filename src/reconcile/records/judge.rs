@@ -1,4 +1,4 @@
-//! Judges one joint's record: what is found, what is absent, what the record cannot tell.
+//! Judges the records of one joint: which effects are found, which are absent, and which the records cannot tell.
 
 use super::blocks::Fitted;
 use super::curve::{Curve, Law, TORSION_CURVE, curve};
@@ -12,33 +12,39 @@ use super::wave::Wave;
 use crate::arm::effect::{hysteresis, lost_motion};
 use crate::reconcile::model::estimate::Estimate;
 
-/// Blocks of time that are looked for.
+/// Number of blocks of time into which the records of a joint are divided, if they are long enough.
 const BLOCKS: usize = 30;
-/// Fewest blocks.
+/// Smallest number of blocks of time into which the records are divided.
 const FEWEST_BLOCKS: usize = 10;
-/// A block is at least this many times as long as errors follow each other.
+/// A block of time lasts at least this many times the correlation time of the errors.
 const LONG_BLOCK: f64 = 3.0;
-/// The part of the torque's variance that the joint's own motion must leave for its compliance to be told from the inertia
-/// of the rotor and from friction, unless friction follows its formula closely.
+/// The compliance is identified if at least this fraction of the torque's variance is not explained by the joint's
+/// own acceleration and friction. This remainder is what tells the compliance from rotor inertia and friction. See
+/// also [`WELL_BALANCED`].
 const OWN_SHARE: f64 = 0.1;
-/// A smaller part will do if it is so many times what the balance of torques leaves unexplained.
+/// A fraction below [`OWN_SHARE`] is also enough if it is at least this many times the fraction of the torque's
+/// variance that the balance of torques leaves unexplained. Friction then follows its formula closely.
 const WELL_BALANCED: f64 = 20.0;
-/// A compliance whose interval spans more than this factor is not identified.
+/// A compliance is not identified if the upper end of its interval is more than this many times the lower end.
 const WIDE: f64 = 5.0;
-/// No interval is narrower than this part of its value on either side: scales of sensors are not known better.
+/// Smallest half width of the interval of a compliance, as a fraction of the value, because the scale factors of
+/// sensors are not known better.
 const LEAST_PART: f64 = 5e-3;
-/// The same for friction, which no joint has constant.
+/// Smallest half width of an interval of friction, as a fraction of the value, because the friction of a joint is
+/// never constant.
 const LEAST_FRICTION_PART: f64 = 0.01;
-/// The same for the numbers of a law, which no gear follows exactly.
+/// Smallest half width of an interval of a parameter of a torsion law, as a fraction of the value, because no gear
+/// follows a law exactly.
 const LEAST_LAW_PART: f64 = 0.05;
-/// A time shift is not known better than this part of the time between rows.
+/// Smallest half width of the interval of a time shift, as a fraction of the time between rows.
 const LEAST_STEP_PART: f64 = 0.01;
-/// Points of a picture.
+/// Approximate number of points of a picture.
 const POINTS: usize = 600;
-/// A joint must turn through so much for once and twice a turn to be told apart \[rad\].
+/// Smallest range of the joint's angle at which transmission errors once and twice a turn can be told apart \[rad\].
 const TELLING_RANGE_RAD: f64 = 2.0;
 
-/// Judges a joint; `None` where it has no rows to judge.
+/// Judges one joint from all records. `None` if no record has the angles on both sides of its gear, or a fit is
+/// impossible.
 pub(crate) fn judge(records: &[Record], joint: &str) -> Option<JointRecord> {
     let wave = Wave::find(records, joint);
     let rows = JointRows::gather(records, joint, BLOCKS, &wave)?;
@@ -73,13 +79,16 @@ impl<'a> Judged<'a> {
         Self { rows, model, records, friction, compliance, curve }
     }
 
-    /// The last fit: with the laws beyond a single compliance, if any was found.
+    /// The last fit of the twist: the one with torsion laws if any was found, otherwise the linear one.
     fn fitted(&self) -> &Fitted {
         self.curve.as_ref().map_or(&self.model.fitted, |c| &c.fitted)
     }
 
-    /// The compliance beside play or lost motion, which a fit without them takes for a part of it. A torsion curve has its own
-    /// numbers, and the single one is then the mean over the record.
+    /// Stated compliance of the joint, given as a stiffness with its interval. If hysteresis or lost motion was found,
+    /// the compliance comes from the fit that includes it; the linear fit would count part of that effect as
+    /// compliance. If a torsion curve was found, its segments have their own stiffnesses, and the compliance stated
+    /// here is that of the linear fit, a mean over the record. The linear fit is also taken where the interval of the
+    /// other fit does not exclude zero compliance.
     fn compliance_beside_laws(&self) -> Stated {
         let laws = self.curve.iter().flat_map(|c| &c.laws);
         let is_changed = !laws.clone().any(|l| matches!(l, Law::Segments(..))) && laws.count() > 0;
@@ -120,8 +129,9 @@ impl<'a> Judged<'a> {
         }
     }
 
-    /// The part of friction that sits on the motor's side, as the loop of twist against torque shows it: 1 if its width is
-    /// that of all of the friction.
+    /// Lower and upper limit of the fraction of Coulomb friction that acts on the motor's side of the spring, from 0
+    /// to 1. The width of the loop of twist against torque shows it: the fraction is 1 if the loop is as wide as all
+    /// of the friction makes it.
     fn motor_part(&self) -> (f64, f64) {
         let p = self.model.places;
         let Some(f) = self.friction.filter(|f| f.clearly[0] && is_positive(&f.coulomb_nm)) else {
@@ -134,8 +144,8 @@ impl<'a> Judged<'a> {
         (ends.0.clamp(0.0, 1.0), ends.1.clamp(0.0, 1.0))
     }
 
-    /// The time shift. Viscous friction between motor and spring looks like one; the balance of torques says how much of the
-    /// speed's coefficient it is.
+    /// Result for the time shift. Viscous friction between motor and spring has the same signal as a time shift: both
+    /// are proportional to the speed. The balance of torques tells how much of the coefficient is friction.
     fn time_shift(&self) -> Stated {
         let p = self.model.places;
         let fitted = self.fitted();
@@ -157,13 +167,15 @@ impl<'a> Judged<'a> {
         Stated::one(Group::Shift.what(), state, "seconds", shift, if is_clear { &words } else { absent })
     }
 
-    /// The shift with the part of viscous friction put back. Where the compliance is not identified, the interval has what
-    /// any compliance that it allows could hide.
+    /// The time shift \[s\] corrected for viscous friction, and a sentence on the correction. `plain` is the time
+    /// shift of the fit, which is too small by the effect of friction. If the compliance is not identified, the
+    /// interval covers the correction for every compliance that is possible.
     fn with_friction(&self, plain: Estimate) -> (Estimate, String) {
         let Some(f) = self.friction.filter(|f| f.is_possible && is_positive(&f.viscous_nms_per_rad)) else {
             return (plain, String::new());
         };
-        // the columns of a law have the torque without viscous friction, so that the linear part alone meets it
+        // the columns of a torsion law use the torque without viscous friction, so only the linear compliance counts
+        // here
         let c = self.fitted().coefficient(self.model.places.torque());
         let is_known = is_positive(&c);
         let compliance = if is_known { c.value } else { 0.0 };
@@ -243,7 +255,8 @@ impl<'a> Judged<'a> {
         ]
     }
 
-    /// The effect's numbers are those of the link's angle beyond the motor's; the twist has them with the other sign.
+    /// Result for the transmission error of the output. The parameters of this effect are defined by the link's angle
+    /// less the motor's. The twist is the opposite, so the sign of the coefficients is changed.
     fn output_error(&self) -> Stated {
         let what = Group::Output.what();
         if !self.model.groups.contains(&Group::Output) {
@@ -283,7 +296,9 @@ impl<'a> Judged<'a> {
         Stated { what, state: State::Found, parameters, words: String::new() }
     }
 
-    /// Transmission error from peak to peak over a range of angles.
+    /// Transmission error from peak to peak \[rad\], over the angles of the output from `low` to `high` \[rad\].
+    /// `columns` are the indices of sine and cosine, once and twice per turn, of the angle times `ratio` (1 for the
+    /// output, the gear ratio for the input).
     fn error_size(&self, columns: [usize; 4], low: f64, high: f64, ratio: f64) -> Estimate {
         const STEPS: usize = 60;
         self.model.fitted.estimate(|c| {
@@ -332,7 +347,8 @@ impl<'a> Judged<'a> {
         out
     }
 
-    /// Twist against torque, thinned: as recorded, and what is left of it for the spring.
+    /// Twist against torque of about [`POINTS`] rows, for the picture: as recorded, and corrected so that only the
+    /// spring is left.
     fn trace(&self) -> Vec<Traced> {
         let model = self.model;
         let p = model.places;
@@ -363,7 +379,8 @@ impl<'a> Judged<'a> {
     }
 }
 
-/// Friction, with the link read at its own time: the shift that the twist shows lacks what viscous friction hides of it.
+/// Friction of a joint from the balance of torques, with the delay of the link's readings removed. The delay that the
+/// fit of the twist gives is too small by the effect of viscous friction, so friction and delay are improved in turn.
 fn balanced(rows: &JointRows, model: &TwistModel, records: &[Record]) -> Option<Friction> {
     const ROUNDS: usize = 5;
     let compliance = model.fitted.value(model.places.torque()).max(0.0);
@@ -380,7 +397,7 @@ fn half(estimate: &Estimate) -> f64 {
     estimate.high.zip(estimate.low).map_or(0.0, |(high, low)| 0.5 * (high - low))
 }
 
-/// The interval, at least so wide on either side of the value.
+/// The estimate with its interval widened so that each end is at least `least` away from the value.
 fn widened(estimate: Estimate, least: f64) -> Estimate {
     Estimate {
         low: estimate.low.map(|low| low.min(estimate.value - least)),
@@ -393,7 +410,8 @@ fn excludes_zero(estimate: &Estimate) -> bool {
     is_positive(estimate) || estimate.high.is_some_and(|h| h < 0.0)
 }
 
-/// Whether the compliance is identified, and how large it is.
+/// Result for the compliance of a joint: whether it is identified, and the stiffness with its interval. `left_share`
+/// is the fraction of the torque's variance that the balance of torques leaves unexplained.
 fn compliance(model: &TwistModel, left_share: f64) -> Stated {
     const WHAT: &str = "compliance";
     const NAME: &str = "stiffness_nm_per_rad";
@@ -439,8 +457,9 @@ fn compliance(model: &TwistModel, left_share: f64) -> Stated {
     Stated::one(WHAT, State::Found, NAME, stiffness, &words.join("; "))
 }
 
-/// Limits of the compliance, wide enough for it to be right with and without an error of the gear: gravity turns with the
-/// joint, and so does such an error.
+/// The limits `low` and `high` of the compliance \[rad/(N m)\], widened so that they include the value without a
+/// transmission error in the model, and a sentence on it. Gravity and a transmission error both vary with the joint's
+/// angle and are hard to tell apart.
 fn with_gear_error(model: &TwistModel, low: f64, high: f64) -> (f64, f64, Vec<String>) {
     if !model.groups.contains(&Group::Output) {
         return (low, high, Vec::new());
@@ -455,7 +474,8 @@ fn with_gear_error(model: &TwistModel, low: f64, high: f64) -> (f64, f64, Vec<St
     (low.min(c.low.unwrap_or(low)), high.max(c.high.unwrap_or(high)), vec![words])
 }
 
-/// The stiffness that belongs to a compliance which is not identified: an end where the compliance may be zero is open.
+/// Stiffness with its interval \[N m/rad\], as a parameter, for a compliance `c` that is not identified. The upper
+/// end is `None` where the compliance may be zero. Empty if the best compliance or its upper end is not positive.
 fn open(c: &Estimate) -> Vec<(String, Vec<Estimate>)> {
     let stiffness = |c: Option<f64>| c.filter(|c| *c > 0.0).map(|c| 1.0 / c);
     let Some(low) = stiffness(c.high) else { return Vec::new() };
@@ -473,7 +493,7 @@ fn law_stated(curve: &Curve, law: Law, model: &TwistModel) -> Stated {
         .into_iter()
         .map(|(name, list)| (name, list.iter().map(wide).collect()))
         .collect();
-    // a size whose interval contains zero is no finding
+    // an effect whose interval of size contains zero is not found
     let is_bounded = match law {
         Law::Segments(..) => true,
         _ => parameters.first().and_then(|(_, list)| list.first()).is_some_and(is_positive),

@@ -1,14 +1,14 @@
-//! Records against time: angles on both sides of each gear and the motor's torque, as every robot with a second encoder
-//! writes them.
+//! Records against time: angles on both sides of each gear and the motor's torque. Robots with a second encoder at the
+//! output of each gear write them.
 //!
-//! - [`spec`] reads what `campaign.json` says of records, and [`reading`] reads them.
-//! - `smooth` gives slopes and curvatures; `signals` gathers the rows of one joint and cuts them into blocks of time.
-//!   `wave` takes an error within a turn of the motor from what is differentiated.
+//! - [`spec`] reads what `campaign.json` says of records, and [`reading`] reads the records.
+//! - `smooth` computes slopes and curvatures. `signals` gathers the rows of one joint and divides them into blocks of
+//!   time. `wave` removes a transmission error within a turn of the motor before signals are differentiated.
 //! - `blocks` fits columns to rows, with intervals and held-out errors by blocks.
-//! - `twist` says which columns the twist needs, `friction` balances the torques, `curve` looks for laws beyond a single
-//!   compliance, and `ringing` for free swings.
-//! - `judge` says of each thing whether it is found; [`finding`] holds that.
-//! - `outcome` draws the conclusion, and `report` writes it in words and pictures.
+//! - `twist` chooses the terms of the twist, `friction` balances the torques, `curve` looks for torsion laws beyond a
+//!   single compliance, and `ringing` for free vibration.
+//! - `judge` says of each effect whether it is found; [`finding`] holds the results.
+//! - `outcome` reaches the verdict, and `report` writes it in words and pictures.
 
 pub(crate) mod blocks;
 pub(crate) mod curve;

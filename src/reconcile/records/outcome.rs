@@ -1,4 +1,4 @@
-//! Draws the conclusion from records: effects of the library, what is calibrated, the corrected arm.
+//! Verdict from records: named effects, calibrated stiffnesses and the corrected arm.
 
 use super::curve::TORSION_CURVE;
 use super::finding::{JointRecord, Stated};
@@ -21,11 +21,14 @@ use crate::reconcile::verdict::files::CORRECTED_FILE;
 use crate::reconcile::verdict::outcome::{Calibrated, Located, NextTest, Outcome, Verdict};
 use serde_json::json;
 
-/// What may be left of the twist on held-out blocks, as a part of its root mean square: 2.5 % of the squares.
+/// A joint is explained if the root mean square error of its twist on held-out blocks is at most this fraction of the
+/// error with an offset alone. The sum of squares is then 2.5 % of that with an offset alone.
 const LEFT: f64 = 0.158;
-/// Or else this many times the noise from row to row.
+/// A joint is also explained if the root mean square error of its twist on held-out blocks is at most this many times
+/// the noise of the twist from row to row.
 const NOISY: f64 = 1.5;
-/// Effects that say how a joint twists. Where other readings name one at a joint, records add none.
+/// Effects that change how far a joint twists under torque. If other readings name one of them at a joint, the
+/// records add none of them there.
 const OF_TWIST: [&str; 5] = [
     joint_compliance::KIND.name,
     connection_compliance::KIND.name,
@@ -34,16 +37,18 @@ const OF_TWIST: [&str; 5] = [
     hysteresis::KIND.name,
 ];
 
-/// What the nominal arm says of a joint's twist, and what the record makes of it.
+/// How the recorded stiffness of a joint compares with the nominal stiffness. At most one of `finding` and
+/// `calibrated` is present.
 struct Stiffness {
     finding: Option<Finding>,
     calibrated: Option<Calibrated>,
-    /// Factor on the nominal stiffness for the corrected arm.
+    /// Factor by which the nominal stiffness is multiplied in the corrected arm; `None` if the nominal stiffness
+    /// stays.
     factor: Option<f64>,
     remark: Option<String>,
 }
 
-/// Reconciles the records of a campaign with its arm, by themselves.
+/// Reconciles the records of a campaign with its arm, and reaches the verdict. Other readings are not used.
 pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let joints: Vec<JointRecord> =
         campaign.driven_joint_names().iter().filter_map(|joint| judge(&campaign.records, joint)).collect();
@@ -87,12 +92,13 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     }
 }
 
-/// Whether what is left of a joint's twist is noise, or little.
+/// Whether the error of a joint's twist on held-out blocks is noise, or a small part of the twist.
 fn is_explained(joint: &JointRecord) -> bool {
     joint.after_rad <= (LEFT * joint.before_rad).max(NOISY * joint.noise_rad)
 }
 
-/// Says where more than noise is left of a joint's twist, although it is little of what there was.
+/// Ending of a sentence on a joint whose error of the twist, although small, is more than noise; empty if it is
+/// noise.
 fn left_beyond_noise(joint: &JointRecord) -> String {
     match joint.after_rad > NOISY * joint.noise_rad {
         true => format!(
@@ -144,10 +150,10 @@ fn verdict(
     (Verdict::NoGap, vec!["noise and the tolerance of the joints explain the records".into()])
 }
 
-/// Effects of the library that a joint shows, its compliance apart.
+/// Effects of the library that the records show at a joint, as findings. Its single compliance is not among them.
 fn named(joint: &JointRecord) -> Vec<Finding> {
     let like = |what: &str| -> Vec<(String, String)> {
-        // once a turn and gravity look the same where no other joint changes the torque
+        // a transmission error once a turn and gravity give the same twist if no other joint changes the torque
         match what == transmission_error::KIND.name && joint.found("compliance").is_some() {
             true => vec![(connection_compliance::KIND.name.into(), joint.joint.clone())],
             false => Vec::new(),
@@ -176,10 +182,12 @@ fn named(joint: &JointRecord) -> Vec<Finding> {
     .collect()
 }
 
-/// Compares the stiffness that a record shows with the nominal one.
+/// Compares the recorded stiffness of a joint with the nominal stiffness. A joint that is more compliant than the
+/// tolerance allows gets an effect. Otherwise its stiffness is calibrated, with a remark if the joint is stiffer than
+/// the tolerance allows.
 fn stiffness(campaign: &Campaign, joint: &JointRecord) -> Stiffness {
     let nothing = Stiffness { finding: None, calibrated: None, factor: None, remark: None };
-    // a curve replaces the number
+    // a torsion curve that was found replaces the single stiffness
     if joint.found(TORSION_CURVE).is_some() {
         return nothing;
     }
@@ -233,14 +241,16 @@ fn stiffness(campaign: &Campaign, joint: &JointRecord) -> Stiffness {
     Stiffness { calibrated: Some(calibrated), factor: Some(own.value), remark, finding: None }
 }
 
-/// Secant compliance of the nominal joint, known effects included \[rad/(N m)\].
+/// Compliance of the nominal joint, with the effects of its arm file, as twist over torque (secant) at `torque_nm`
+/// \[rad/(N m)\].
 fn nominal_compliance(campaign: &Campaign, joint: &str, torque_nm: f64) -> f64 {
     let mut subject = subject(&campaign.arm, &campaign.statement);
     let law = subject.structure.joint_mut(joint).map(|j| j.law);
     law.map_or(0.0, |law| law.angle_rad(torque_nm) / torque_nm.max(1e-9))
 }
 
-/// The corrected arm: what belongs to the joints is written into it even where another joint stays unexplained.
+/// The corrected arm. The effects and the stiffness of a joint that is explained are written into it even if another
+/// joint is not explained.
 fn corrected(
     campaign: &Campaign,
     findings: &[Finding],
@@ -263,8 +273,8 @@ fn corrected(
     arm
 }
 
-/// A finding as an entry of the arm file. An effect that cannot sit at a joint, such as the shift of
-/// a sensor's clock, belongs to the record and not to the arm.
+/// The finding as an entry of the arm file. `None` for an effect that cannot be at a joint, such as the shift of a
+/// sensor's clock, because it belongs to the record and not to the arm.
 fn as_effect(campaign: &Campaign, finding: &Finding) -> Option<Effect> {
     let kind = crate::arm::effect::catalogue::kind(&finding.effect)?;
     if !kind.places.contains(&Place::Joint) {
@@ -276,7 +286,9 @@ fn as_effect(campaign: &Campaign, finding: &Finding) -> Option<Effect> {
     Some(Effect { effect: finding.effect.clone(), at: finding.at.clone(), parameters, source: Some(source) })
 }
 
-/// Errors in noise of a row, all joints together.
+/// Root mean square error of the twist on held-out blocks, with an offset alone (before) and with everything that was
+/// found (after). The errors of each joint are divided by the noise of its twist, and joints count by their number of
+/// rows.
 fn held_out(joints: &[JointRecord]) -> Option<HeldOut> {
     let count: usize = joints.iter().map(|j| j.rows).sum();
     let mean = |of: fn(&JointRecord) -> f64| {
@@ -308,7 +320,8 @@ fn located(joints: &[JointRecord]) -> Vec<Located> {
     all.into_iter().chain(each).collect()
 }
 
-/// A joint whose compliance the record does not show needs other motion.
+/// Recommends one test for all joints whose compliance the records do not show, because their torque is nearly all
+/// acceleration and friction of the joint itself.
 fn next_tests(joints: &[JointRecord]) -> Vec<NextTest> {
     let blind = joints.iter().filter(|j| {
         j.of("compliance").is_some_and(|s: &Stated| s.words.starts_with("insufficient excitation"))
@@ -323,7 +336,8 @@ fn next_tests(joints: &[JointRecord]) -> Vec<NextTest> {
     ))]
 }
 
-/// Joins what the records say to the outcome of the other readings. Each is judged by itself.
+/// Joins the outcome of the records, `records`, with the outcome of the other readings, `other`. Each is judged by
+/// itself, and the verdict is the less favourable of the two.
 pub(crate) fn joined(mut other: Outcome, records: Outcome) -> Outcome {
     let verdict = Verdict::on_all(&[other.verdict, records.verdict]);
     let words = |what: &str, outcome: &Outcome| -> Vec<String> {

@@ -1,47 +1,49 @@
 //! Reads a record: angles on both sides of each gear and the motor's torque, against time.
 //!
-//! Everything leaves in SI units at the output: a shaft's angle divided by the ratio, a shaft's torque multiplied by it. A
-//! record may have a hundred thousand rows, so that only the columns that are used are turned into numbers.
+//! All values are converted to SI units at the output: an angle of the motor shaft is divided by the ratio, a torque at
+//! the shaft is multiplied by it. A record may have a hundred thousand rows, so only the columns that are used are
+//! converted to numbers.
 
 use super::spec::RecordSpec;
 use crate::input::json::{Fault, InputError, closest};
 use csv::{ReaderBuilder, Trim};
 use std::path::Path;
 
-/// Faults of one file that are listed; further ones are counted.
+/// Number of faults of one file that are listed. Further faults are only counted.
 const MOST_FAULTS: usize = 10;
-/// Fewest rows from which anything is found.
+/// Smallest number of rows of a record. A shorter record is a fault.
 pub(crate) const FEWEST_ROWS: usize = 200;
 
-/// The signals of one joint.
+/// Signals of one joint, all referred to the output of the gear.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointSignals {
     /// Name of the joint.
     pub joint: String,
-    /// Turns of the motor for one of the output, if stated.
+    /// Gear ratio: turns of the motor for one turn of the output; `None` if it is not stated.
     pub ratio: Option<f64>,
-    /// Rotor's inertia at the output, if stated \[kg m²\].
+    /// Inertia of the rotor, referred to the output \[kg m²\]; `None` if it is not stated.
     pub rotor_inertia_kgm2: Option<f64>,
-    /// Angle of the motor, at the output \[rad\].
+    /// Angle of the motor divided by the ratio, one per row \[rad\].
     pub motor_rad: Vec<f64>,
-    /// Angle of the link; empty if it is not recorded \[rad\].
+    /// Angle of the link, one per row \[rad\]; empty if it is not recorded.
     pub link_rad: Vec<f64>,
-    /// Torque of the motor, at the output; empty if it is not recorded \[N m\].
+    /// Torque of the motor times the ratio, one per row \[N m\]; empty if it is not recorded.
     pub torque_nm: Vec<f64>,
 }
 
-/// A record of one or several joints.
+/// A record against time of one or several joints.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
-    /// File name.
+    /// Path of the file.
     pub file: String,
-    /// Time of each row, rising \[s\].
+    /// Time of each row, strictly rising \[s\].
     pub t_s: Vec<f64>,
     /// Joints that have a motor angle.
     pub joints: Vec<JointSignals>,
 }
 
-/// Where the signals of a joint stand in a file, with the factors that make them SI at the output.
+/// Indices of the columns of a file that hold the signals of a joint. Motor angle and torque come with the factor
+/// that refers them to the output of the gear.
 struct Columns {
     joint: String,
     motor: (usize, f64),
@@ -56,10 +58,11 @@ struct Reader<'a> {
     faults: Vec<Fault>,
 }
 
-/// Reads all records of a campaign. A record that `campaign.json` does not name is read if its usual file exists.
+/// Reads all records of a campaign. The default record, which `campaign.json` does not name, is read only if its file
+/// exists.
 ///
 /// # Errors
-/// A file cannot be read. Faults are added to `faults`.
+/// A file cannot be opened. Faults in the content of a file are added to `faults`.
 pub(crate) fn read_all(
     folder: &Path,
     specs: &[RecordSpec],
@@ -76,10 +79,10 @@ pub(crate) fn read_all(
     Ok(out)
 }
 
-/// Reads a record.
+/// Reads one record. `None` if the file has faults, which are added to `faults`.
 ///
 /// # Errors
-/// The file cannot be read, or its faults.
+/// The file cannot be opened.
 fn read_record(
     path: &Path,
     spec: &RecordSpec,
@@ -153,7 +156,7 @@ impl Reader<'_> {
         });
     }
 
-    /// The file's name of a column.
+    /// Name that the file gives to the column `column` of this program.
     fn name_of(&self, column: &str) -> String {
         let mapped = self.spec.columns.iter().find(|(ours, _)| ours == column);
         mapped.map_or(column, |(_, theirs)| theirs).to_string()
@@ -175,7 +178,8 @@ impl Reader<'_> {
         })
     }
 
-    /// Columns that `campaign.json` names must be there, and the joints that it names must be in the arm.
+    /// Adds a fault for each column that `campaign.json` names and the file lacks. Adds another for each joint that
+    /// `campaign.json` names and the arm lacks.
     fn check_names(&mut self, joints: &[String]) {
         for (ours, theirs) in self.spec.columns.clone() {
             if !self.header.contains(&theirs) {
@@ -313,7 +317,7 @@ impl Reader<'_> {
     }
 }
 
-/// Removes jumps of a whole turn, where an encoder begins again.
+/// Removes jumps of a whole turn, which occur where a single-turn encoder passes zero.
 fn unwrap(angles_rad: &mut [f64]) {
     let mut turns = 0.0;
     for i in 1..angles_rad.len() {

@@ -1,4 +1,4 @@
-//! What the records say, as text and as pictures.
+//! The results of the records as text, tables and pictures.
 
 use super::finding::{JointRecord, State, Stated, Traced};
 use crate::reconcile::model::estimate::Estimate;
@@ -11,7 +11,7 @@ use crate::report::svg::sheet::Sheet;
 use crate::report::table::{Column, Table};
 use std::fmt::Write as _;
 
-/// The unit of a number for people, and the factor to it.
+/// Unit in which the parameter `name` of an effect is printed, and the factor from the SI unit to this unit.
 fn shown_as(name: &str) -> (&'static str, f64) {
     match name {
         "seconds" => ("ms", 1e3),
@@ -38,7 +38,7 @@ fn interval(estimate: &Estimate, factor: f64) -> String {
     )
 }
 
-/// Numbers of one thing with their intervals and units.
+/// Parameters of an effect with their intervals and units, as text.
 fn numbers(stated: &Stated) -> String {
     let one = |(name, list): &(String, Vec<Estimate>)| {
         let (unit, factor) = shown_as(name);
@@ -65,14 +65,14 @@ fn state_words(state: State) -> &'static str {
     }
 }
 
-/// One thing in words: what it is, its numbers, and why.
+/// The result for one effect as text: its state, its parameters with intervals, and the reason or limitation.
 fn sentence(stated: &Stated) -> String {
     let values = numbers(stated);
     let parts = [state_words(stated.state), &values, &stated.words];
     parts.iter().filter(|p| !p.is_empty()).map(|p| p.to_string()).collect::<Vec<_>>().join(": ")
 }
 
-/// The findings of all joints as lines of text.
+/// The results of all joints as lines of text.
 pub(crate) fn text(joints: &[JointRecord]) -> String {
     let mut out = String::new();
     for joint in joints {
@@ -95,7 +95,7 @@ pub(crate) fn text(joints: &[JointRecord]) -> String {
     out
 }
 
-/// The part of the page on records: a table and a picture for each joint.
+/// The sections of the page on records: tables and a picture for each joint.
 pub(crate) fn sections(joints: &[JointRecord]) -> Vec<PageSection> {
     joints.iter().map(section).collect()
 }
@@ -127,7 +127,8 @@ fn section(joint: &JointRecord) -> PageSection {
     }
 }
 
-/// Twist against torque: as recorded above, and what the spring does below.
+/// The picture of a joint: two diagrams of twist against torque. The upper one shows them as recorded, the lower one
+/// corrected so that only the spring is left.
 fn figure(joint: &JointRecord) -> Figure {
     let points = |of: fn(&Traced) -> f64| -> Vec<(f64, f64)> {
         joint.trace.iter().map(|t| (t.torque_nm, 1e3 * of(t))).collect()

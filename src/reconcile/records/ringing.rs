@@ -1,8 +1,9 @@
-//! Free ringing: after the motor has stopped, the link swings at the first mode of the arm on its locked motors.
+//! Free vibration after a stop: the motor stands still, and the link vibrates in the lowest mode of the arm with locked
+//! motors.
 //!
-//! A stretch in which the motor rests is fitted by a line and one damped swing,
-//! `a + b t + exp(-d t) (C cos 2 pi f t + S sin 2 pi f t)`: the frequency starts at the peak of the spectrum and is improved
-//! by Gauss-Newton together with the decay.
+//! A stretch in which the motor stands still is fitted by a straight line and one damped oscillation, `a + b t + exp(-d
+//! t) (C cos 2 pi f t + S sin 2 pi f t)`. The frequency starts at the peak of the spectrum and is improved by
+//! Gauss-Newton together with the decay rate.
 
 use super::blocks::{rows_per_reading, student_quantile};
 use super::smooth::{half_width, noise, slope_noise, smooth, usual_step_s};
@@ -10,31 +11,31 @@ use crate::reconcile::model::estimate::Estimate;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
-/// The motor rests below this part of its largest speed.
+/// The motor counts as standing still if its speed is below this fraction of its largest speed in the record.
 const AT_REST: f64 = 0.02;
-/// Fewest rows of a stretch.
+/// Smallest number of rows of a stretch (rows in which the motor stands still) that is fitted.
 const FEWEST_ROWS: usize = 60;
-/// Rows after a stop that are looked at; the swing has decayed by then.
+/// Largest number of rows after a stop that are used. The vibration has decayed by then.
 const MOST_ROWS: usize = 4000;
-/// Fewest periods in a stretch.
+/// Smallest number of periods of the vibration in a stretch.
 const FEWEST_PERIODS: f64 = 4.0;
-/// Highest frequency that is looked for, for each row per second.
+/// Highest frequency that is sought, as a fraction of the sampling rate.
 const HIGHEST_PART: f64 = 0.2;
-/// The part of the squares of a stretch that the swing must explain.
+/// The oscillation must explain at least this fraction of the sum of squares that the straight line leaves.
 const TELLING: f64 = 0.6;
-/// The swing's amplitude at least, over the noise of a row.
+/// Smallest amplitude of the oscillation of the twist, as a multiple of the noise of the twist from row to row.
 const LOUD: f64 = 4.0;
-/// Rounds of Gauss-Newton.
+/// Largest number of Gauss-Newton steps over frequency and decay rate.
 const ROUNDS: usize = 30;
 
-/// Frequency and damping of a free swing.
+/// Frequency and damping of the free vibration of a joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Ringing {
-    /// Frequency of the damped swing \[Hz\].
+    /// Frequency of the damped vibration \[Hz\].
     pub frequency_hz: Estimate,
-    /// Part of critical damping.
+    /// Damping ratio: the damping as a fraction of critical damping.
     pub damping: f64,
-    /// Stretches that show it.
+    /// Number of stretches (times in which the motor stands still) in which the vibration was found.
     pub stretches: usize,
 }
 
@@ -45,7 +46,9 @@ struct Swing {
     deviation_hz: f64,
 }
 
-/// Looks for a free swing in the signals of one joint in one record: times, angle of the motor, angle of the link.
+/// Finds free vibrations in one record of one joint, from the angles of motor and link. Each result belongs to one
+/// stretch in which the motor stands still. It holds the frequency \[Hz\], the decay rate \[1/s\] and the standard
+/// deviation of the frequency \[Hz\].
 pub(crate) fn swings(t_s: &[f64], motor_rad: &[f64], link_rad: &[f64]) -> Vec<(f64, f64, f64)> {
     let half = half_width(t_s, motor_rad);
     let speed = smooth(t_s, motor_rad, half).slope;
@@ -54,7 +57,7 @@ pub(crate) fn swings(t_s: &[f64], motor_rad: &[f64], link_rad: &[f64]) -> Vec<(f
     let level = libm::hypot(noise(motor_rad), noise(link_rad));
     let mut out = Vec::new();
     let mut begin = 0usize;
-    // the end of the record ends a stretch as motion does
+    // the end of the record also ends a stretch
     let moves = speed.iter().map(|w| w.is_nan() || w.abs() > slow).chain([true]);
     for (i, _) in moves.enumerate().filter(|(_, moves)| *moves) {
         if i.saturating_sub(begin) >= FEWEST_ROWS {
@@ -62,13 +65,15 @@ pub(crate) fn swings(t_s: &[f64], motor_rad: &[f64], link_rad: &[f64]) -> Vec<(f
             let twist: Vec<f64> = (begin..end).map(|k| motor_rad[k] - link_rad[k]).collect();
             out.extend(swing(&t_s[begin..end], &twist, level));
         }
-        // rows this near to motion are still part of the stop
+        // the smoothing window of these rows still contains motion
         begin = i + 1 + half;
     }
     out.into_iter().map(|s| (s.frequency_hz, s.decay_per_s, s.deviation_hz)).collect()
 }
 
-/// Joins the swings of all stretches. Their scatter, if there are several, decides how sure the frequency is.
+/// Joins the vibrations of all stretches (frequency, decay rate, standard deviation of the frequency) into one
+/// frequency and damping. `None` if fewer than half of the stretches agree on a frequency. If there are several
+/// stretches, the interval is at least as wide as their scatter asks for.
 pub(crate) fn joined(swings: &[(f64, f64, f64)]) -> Option<Ringing> {
     let median = crate::reconcile::fit::stats::median(swings.iter().map(|s| s.0).collect());
     let alike: Vec<_> = swings.iter().filter(|s| (s.0 / median - 1.0).abs() < 0.2).collect();
@@ -92,7 +97,8 @@ pub(crate) fn joined(swings: &[(f64, f64, f64)]) -> Option<Ringing> {
     })
 }
 
-/// The swing of one stretch, if it has a telling one.
+/// Fits the vibration of one stretch; `None` if the oscillation is too short, too small, or explains too little.
+/// `noise_rad` is the noise of the twist from row to row \[rad\].
 fn swing(t_s: &[f64], twist_rad: &[f64], noise_rad: f64) -> Option<Swing> {
     let step = usual_step_s(t_s);
     let t: Vec<f64> = t_s.iter().map(|t| t - t_s[0]).collect();
@@ -114,7 +120,7 @@ fn swing(t_s: &[f64], twist_rad: &[f64], noise_rad: f64) -> Option<Swing> {
     if !in_range || squares > (1.0 - TELLING) * straight || amplitude < LOUD * noise_rad {
         return None;
     }
-    // periods before the swing has fallen to a third
+    // number of periods until the amplitude has fallen to a third
     let periods = guess * duration.min(1.1 / decay.max(1e-9));
     (periods > 2.0).then(|| Swing {
         frequency_hz: guess,
@@ -123,13 +129,14 @@ fn swing(t_s: &[f64], twist_rad: &[f64], noise_rad: f64) -> Option<Swing> {
     })
 }
 
-/// The frequency at the peak of the spectrum of the signal about its line.
+/// Frequency between `low_hz` and `high_hz` at which the spectrum of the signal `x` is highest \[Hz\], after a
+/// straight line was removed from it; `None` if the spectrum is zero.
 fn peak(t: &[f64], x: &[f64], low_hz: f64, high_hz: f64) -> Option<f64> {
     let (_, errors) = squares_of(t, x, &[]);
     let duration = t[t.len() - 1];
     let count = ((high_hz - low_hz) * duration * 2.0).max(0.0) as usize;
     let turn = |f: f64| t.iter().map(move |t| libm::sincos(TAU * f * t));
-    // each row's sine and cosine are turned on from one frequency to the next
+    // rotates the sine and cosine of each row from one frequency to the next, instead of computing them anew
     let mut now: Vec<(f64, f64)> = turn(low_hz).collect();
     let on: Vec<(f64, f64)> = turn(0.5 / duration).collect();
     let mut best = (0.0, None);
@@ -147,13 +154,15 @@ fn peak(t: &[f64], x: &[f64], low_hz: f64, high_hz: f64) -> Option<f64> {
     best.1
 }
 
-/// Squares left by a line and further columns, and the errors.
+/// Sum of squared errors of a least-squares fit of `x` by a straight line and the given columns, and the errors
+/// themselves.
 fn squares_of(t: &[f64], x: &[f64], columns: &[Vec<f64>]) -> (f64, Vec<f64>) {
     let (errors, _) = solved(t, x, columns);
     (errors.iter().map(|e| e * e).sum(), errors)
 }
 
-/// Errors of the fit of a line and further columns, and the coefficients of these.
+/// Errors of a least-squares fit of `x` by a straight line and the given columns, and the coefficients of these
+/// columns.
 fn solved(t: &[f64], x: &[f64], columns: &[Vec<f64>]) -> (Vec<f64>, Vec<f64>) {
     let n = t.len();
     let p = 2 + columns.len();
@@ -180,7 +189,9 @@ fn swing_columns(t: &[f64], [f, d]: [f64; 2]) -> [Vec<f64>; 2] {
     [column(libm::cos), column(libm::sin)]
 }
 
-/// Gauss-Newton from a guess: at each step amplitudes, frequency and decay are solved for together.
+/// Gauss-Newton iteration that starts at the frequency \[Hz\] and decay rate \[1/s\] in `at`. The amplitudes are
+/// solved for at each step. Returns the smallest sum of squared errors, and the frequency and decay rate that give
+/// it.
 fn descend(t: &[f64], x: &[f64], mut at: [f64; 2]) -> (f64, [f64; 2]) {
     let squares = |at: [f64; 2]| squares_of(t, x, &swing_columns(t, at)).0;
     let mut now = squares(at);
@@ -205,7 +216,8 @@ fn descend(t: &[f64], x: &[f64], mut at: [f64; 2]) -> (f64, [f64; 2]) {
     (now, at)
 }
 
-/// Columns of the swing and of its change with frequency and decay.
+/// The columns of the damped cosine and sine with the frequency and decay rate `at`, then the derivatives of the
+/// oscillation with respect to frequency and decay rate at the best amplitudes.
 fn tangents(t: &[f64], x: &[f64], at: [f64; 2]) -> [Vec<f64>; 4] {
     let [cos, sin] = swing_columns(t, at);
     let (_, c) = solved(t, x, &[cos.clone(), sin.clone()]);
@@ -215,7 +227,8 @@ fn tangents(t: &[f64], x: &[f64], at: [f64; 2]) -> [Vec<f64>; 4] {
     [cos, sin, by_frequency, by_decay]
 }
 
-/// Standard deviation of the frequency, with the errors counted by how they follow each other.
+/// Standard deviation of the fitted frequency \[Hz\]. It is larger than that for independent errors, because the
+/// errors are autocorrelated.
 fn deviation_hz(t: &[f64], x: &[f64], at: [f64; 2]) -> f64 {
     let columns = tangents(t, x, at);
     let (errors, _) = solved(t, x, &columns);
@@ -246,7 +259,7 @@ mod tests {
             t.iter().zip(&motor).map(|(t, m)| m - if *t > 1.0 { swing(*t) } else { 0.0 }).collect();
         let found = joined(&swings(&t, &motor, &link)).expect("a swing");
         assert!((found.frequency_hz.value - 11.3).abs() < 0.01, "{found:?}");
-        // the swing begins between two readings, so the first of it is uncertain by a reading
+        // the vibration starts between two rows, so that its start is uncertain by one row
         assert!((found.damping / (1.5 / (TAU * 11.3)) - 1.0).abs() < 0.1, "{found:?}");
     }
 

@@ -1,39 +1,42 @@
-//! One joint's signals from all records: smoothed, differentiated, cut into blocks of time.
+//! Signals of one joint from all records: smoothed, differentiated, and divided into blocks of time.
 
 use super::blocks::Blocks;
 use super::reading::{JointSignals, Record};
 use super::smooth::{Smooth, half_width, noise, slope_noise, smooth, usual_step_s};
 use super::wave::Wave;
 
-/// The sign of a speed is taken as smooth below this part of the largest speed, because friction is.
+/// Fraction of the largest speed below which the sign of the speed is smoothed, because friction does not jump
+/// either.
 const SLOW_PART: f64 = 0.002;
-/// An acceleration that is so much larger than that of the gear's other side is no real one.
+/// Largest ratio of the root mean square accelerations on the two sides of a gear. Above it, the larger one is not a
+/// motion of the joint but an error of the gear or its sensor.
 const RESTLESS: f64 = 1.2;
-/// Fewest blocks of a record, so that no record stands or falls with one.
+/// Smallest number of blocks of a record, so that the result for a record does not depend on one block.
 const FEWEST_BLOCKS: usize = 4;
 
-/// One row of one record.
+/// One row of one record for one joint, with smoothed values (sample).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sample {
-    /// Which record.
+    /// Index of the record among those that have the joint.
     pub record: usize,
-    /// Which row of it.
+    /// Index of the row in the record.
     pub row: usize,
-    /// Which block of time.
+    /// Index of the block of time to which the row belongs, counted over all records.
     pub block: usize,
     /// Angle of the motor at the output \[rad\].
     pub angle_rad: f64,
-    /// Its speed \[rad/s\].
+    /// Speed of the motor at the output \[rad/s\].
     pub speed_rad_s: f64,
-    /// Its acceleration \[rad/s²\].
+    /// Acceleration of the motor at the output \[rad/s²\].
     pub acceleration_rad_s2: f64,
-    /// Sign of the speed, smoothed as the torque is.
+    /// Sign of the motor's speed, from -1 to 1, smoothed with the same window as the torque.
     pub sense: f64,
-    /// Sign of the speed times the size of the torque, smoothed in the same way \[N m\].
+    /// Sign of the motor's speed times the magnitude of the torque, smoothed with the same window as the torque \[N
+    /// m\].
     pub load_sense_nm: f64,
-    /// Torque of the motor at the output; 0 if it is not recorded \[N m\].
+    /// Torque of the motor at the output \[N m\]; 0 if it is not recorded.
     pub torque_nm: f64,
-    /// Its rate \[N m/s\].
+    /// Rate of change of the motor's torque at the output \[N m/s\].
     pub torque_rate_nm_s: f64,
 }
 
@@ -45,38 +48,41 @@ struct Signals {
     step_s: f64,
 }
 
-/// The rows of one joint.
+/// Rows of one joint from all records.
 pub(crate) struct JointRows {
-    /// Joint.
+    /// Name of the joint.
     pub joint: String,
-    /// Turns of the motor for one of the output.
+    /// Turns of the motor for one turn of the output; `None` if not stated.
     pub ratio: Option<f64>,
-    /// Rotor's inertia at the output \[kg m²\].
+    /// Inertia of the rotor, referred to the output \[kg m²\]; `None` if not stated.
     pub rotor_inertia_kgm2: Option<f64>,
-    /// Whether torques are recorded.
+    /// Whether all records contain the torque of the motor.
     pub has_torque: bool,
-    /// Rows at which all derivatives are known.
+    /// Rows at which speed, torque and the smoothed angle of the link are known.
     pub samples: Vec<Sample>,
-    /// Number of blocks.
+    /// Number of blocks of time, over all records.
     pub blocks: usize,
-    /// Rows between samples \[s\].
+    /// Usual time between rows of the first record \[s\].
     pub step_s: f64,
-    /// Root mean squares of the accelerations of motor and link \[rad/s²\].
+    /// Root mean squares, over all rows, of the accelerations of motor (first) and link (second) \[rad/s²\].
     accelerations_rad_s2: [f64; 2],
     records: Vec<Signals>,
 }
 
-/// Twist at a row when the link's signal is read later, and what a further second would change.
+/// Twist at a row if the link's signal is late by some time, and the derivative of the twist with respect to this
+/// delay.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Twist {
-    /// Motor less link \[rad\].
+    /// Angle of the motor less angle of the link \[rad\].
     pub twist_rad: f64,
-    /// Speed of the link \[rad/s\].
+    /// Speed of the link \[rad/s\]; it is minus the derivative of the twist with respect to the delay.
     pub link_speed_rad_s: f64,
 }
 
 impl JointRows {
-    /// Gathers a joint from the records in which both its sides stand.
+    /// Gathers the rows of a joint from all records that have the angles on both sides of its gear. The rows are
+    /// divided into about `blocks` blocks of time. The error `wave` of the gear within a turn of the motor is removed
+    /// before smoothing. `None` if there is no such record.
     pub(crate) fn gather(records: &[Record], joint: &str, blocks: usize, wave: &Wave) -> Option<Self> {
         let whole = |j: &&JointSignals| j.joint == joint && !j.link_rad.is_empty();
         let own: Vec<(&Record, &JointSignals)> =
@@ -112,8 +118,10 @@ impl JointRows {
         [mean(&|s| s.acceleration_rad_s2), mean(&of_link)]
     }
 
-    /// Acceleration of motor and link. An error of the gear within a turn of the motor shows in the acceleration of one of
-    /// them, as large as any real one; the calmer side then stands for both \[rad/s²\].
+    /// Accelerations of motor and link at the row `sample` \[rad/s²\], if the link's signal is late by `shift_s`
+    /// \[s\]. A transmission error within a turn of the motor adds a large false acceleration on one side of the
+    /// gear. The side with the smaller acceleration then stands for both. `None` beyond the ends of the record and at
+    /// gaps.
     pub(crate) fn accelerations(&self, sample: &Sample, shift_s: f64) -> Option<[f64; 2]> {
         let both = [sample.acceleration_rad_s2, self.link(sample, shift_s)?[1]];
         let [motor, link] = self.accelerations_rad_s2;
@@ -125,7 +133,8 @@ impl JointRows {
     }
 
     fn push(&mut self, t_s: &[f64], signals: &JointSignals, blocks: usize, wave: &Wave) {
-        // an error of the gear within a turn of the motor shows on one side and narrows that side's window only
+        // an error of the gear within a turn of the motor is on one side only; unremoved it would narrow the window of
+        // that side
         let [calm_motor_rad, calm_link_rad] = wave.taken_from(signals);
         let half = half_width(t_s, &calm_motor_rad).max(half_width(t_s, &calm_link_rad));
         let motor = smooth(t_s, &calm_motor_rad, half);
@@ -142,7 +151,7 @@ impl JointRows {
             true => (&signals.torque_nm, half_width(t_s, &signals.torque_nm)),
             false => (&none, half),
         };
-        // friction jumps where the joint turns back, and so does the torque: both are smoothed alike
+        // at a reversal friction jumps and so does the torque: both are smoothed with the same window
         let torque = smooth(t_s, torque_nm, torque_half);
         let sense = smooth(t_s, &sign, torque_half).value;
         let loaded: Vec<f64> = sign.iter().zip(torque_nm).map(|(s, t)| s * t.abs()).collect();
@@ -175,15 +184,16 @@ impl JointRows {
         self.records.len()
     }
 
-    /// The twist at a row if the link's signal is late by `shift_s`: the link is read so much later, by the nearest row and
-    /// the second-order series about it. `None` beyond the ends.
+    /// Twist at the row `sample` if the link's signal is late by `shift_s` \[s\]. The link's angle belongs to a later
+    /// time. It is taken from the row nearest to this time, with a second-order Taylor series about that row. `None`
+    /// beyond the ends of the record and across gaps.
     pub(crate) fn twist(&self, sample: &Sample, shift_s: f64) -> Option<Twist> {
         let signals = &self.records[sample.record];
         let steps = (shift_s / signals.step_s).round() as isize;
         let row = sample.row.checked_add_signed(steps).filter(|r| *r < signals.t_s.len())?;
         let rest_s = signals.t_s[sample.row] + shift_s - signals.t_s[row];
         let (slope, curvature) = (signals.link.slope[row], signals.link.curvature[row]);
-        // across a gap the nearest row is none
+        // across a gap in time there is no near row
         if slope.is_nan() || rest_s.abs() > 1.5 * signals.step_s {
             return None;
         }
@@ -192,8 +202,9 @@ impl JointRows {
         Some(Twist { twist_rad, link_speed_rad_s: slope + rest_s * curvature })
     }
 
-    /// Angle and acceleration of the link at a row if its signal is late by `shift_s`, between the rows on either side. An
-    /// error of half a row here would be taken for viscous friction \[rad, rad/s²\].
+    /// Angle \[rad\] and acceleration \[rad/s²\] of the link at the row `sample` if the link's signal is late by
+    /// `shift_s` \[s\]. Both are interpolated between rows, because an error of half a row would be taken for viscous
+    /// friction. `None` beyond the ends of the record and at gaps.
     pub(crate) fn link(&self, sample: &Sample, shift_s: f64) -> Option<[f64; 2]> {
         let signals = &self.records[sample.record];
         let place = sample.row as f64 + shift_s / signals.step_s;
@@ -206,22 +217,23 @@ impl JointRows {
         (!out[0].is_nan()).then_some(out)
     }
 
-    /// Noise of the twist from row to row \[rad\].
+    /// Standard deviation of the noise of the twist from row to row \[rad\].
     pub(crate) fn noise_rad(&self) -> f64 {
         let squares: f64 =
             self.records.iter().map(|r| noise(&r.motor_rad).powi(2) + noise(&r.link_rad).powi(2)).sum();
         (squares / self.records.len() as f64).sqrt()
     }
 
-    /// Smallest and largest angle \[rad\].
+    /// Smallest and largest angle of the motor at the output \[rad\].
     pub(crate) fn range_rad(&self) -> (f64, f64) {
         let ends = (f64::INFINITY, f64::NEG_INFINITY);
         self.samples.iter().fold(ends, |(low, high), s| (low.min(s.angle_rad), high.max(s.angle_rad)))
     }
 
-    /// Sums products of columns over all rows, block by block.
+    /// Sums of the products of every two of `width` columns over all rows, one matrix per block. `fill` writes the
+    /// columns of a row and returns whether the row counts.
     pub(crate) fn sums(&self, width: usize, fill: impl Fn(usize, &Sample, &mut [f64]) -> bool) -> Blocks {
-        // a row that cannot be filled counts with nothing but zeros
+        // a row that cannot be filled counts as zeros
         Blocks::new(
             self.samples.len(),
             width,

@@ -1,56 +1,59 @@
-//! Value, slope and curvature of a sampled signal, by a cubic fitted to the rows around each row.
+//! Value, slope and curvature of a sampled signal, from a cubic fitted to the rows around each row.
 //!
-//! The window is as wide as the noise asks for and no wider than the signal allows: the widest one whose misfit is the
-//! signal's own noise. The noise is what fourth differences show, to which a smooth signal adds nothing.
+//! The window is the widest one whose misfit is still the signal's own noise: a wider one would distort the signal, a
+//! narrower one would remove less noise. The noise is estimated from fourth differences, to which a smooth signal
+//! contributes nothing.
 
 use nalgebra::{Matrix4, Vector4};
 
-/// Half widths that are tried \[rows\].
+/// Half widths of the smoothing window that are tried \[rows\].
 const HALF_WIDTHS: [usize; 9] = [3, 4, 6, 8, 12, 16, 24, 32, 48];
-/// Misfit of a window that is still noise, over the noise: what a window adds then is a third of the noise.
+/// Largest misfit of a window (root mean square), as a multiple of the signal's noise. At this value the distortion
+/// by the window is a third of the noise.
 const STILL_NOISE: f64 = 1.05;
-/// Times further apart than this many usual steps are a gap.
+/// Two neighbouring rows are separated by a gap if their times differ by more than this many usual steps.
 const GAP_STEPS: f64 = 2.5;
 /// Sum of the squares of the weights of a fourth difference (1, -4, 6, -4, 1).
 const FOURTH_DIFFERENCE_VARIANCE: f64 = 70.0;
 
-/// A signal's smoothed value and its derivatives. Rows too near to an end or a gap have none and hold NaN.
+/// Smoothed value and derivatives of a signal, one per row. Rows too near to an end or a gap hold NaN.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Smooth {
-    /// Value.
+    /// Smoothed value, in the unit of the signal.
     pub value: Vec<f64>,
-    /// First derivative \[1/s\].
+    /// First derivative with respect to time \[unit of the signal per s\].
     pub slope: Vec<f64>,
-    /// Second derivative \[1/s²\].
+    /// Second derivative with respect to time \[unit of the signal per s²\].
     pub curvature: Vec<f64>,
 }
 
-/// Usual time between rows \[s\].
+/// Usual (median) time between rows \[s\].
 pub(crate) fn usual_step_s(t_s: &[f64]) -> f64 {
     crate::reconcile::fit::stats::median(t_s.windows(2).map(|w| w[1] - w[0]).collect())
 }
 
-/// Standard deviation of the part of a signal that differs from row to row.
+/// Standard deviation of the noise of a signal from row to row, from its fourth differences, in the unit of the
+/// signal.
 pub(crate) fn noise(x: &[f64]) -> f64 {
     let squares: f64 =
         x.windows(5).map(|w| (w[0] - 4.0 * w[1] + 6.0 * w[2] - 4.0 * w[3] + w[4]).powi(2)).sum();
     (squares / FOURTH_DIFFERENCE_VARIANCE / x.len().saturating_sub(4).max(1) as f64).sqrt()
 }
 
-/// Standard deviation of the slope that [`smooth`] finds of a signal, by the noise of its rows \[1/s\]. The slope of a
-/// cubic in the middle of its window scatters 2.5 times as much as that of a line.
+/// Standard deviation of the slope that [`smooth`] finds, caused by the noise of the rows \[unit of the signal per s\].
+/// The slope of a cubic at the middle of its window scatters 2.5 times as much as that of a straight line.
 pub(crate) fn slope_noise(x: &[f64], half: usize, step_s: f64) -> f64 {
     2.5 * noise(x) * (12.0 / ((2 * half + 1) as f64).powi(3)).sqrt() / step_s
 }
 
-/// The half width that suits a signal \[rows\].
+/// Half width of the widest window whose misfit is still the signal's own noise \[rows\].
 pub(crate) fn half_width(t_s: &[f64], x: &[f64]) -> usize {
     let noise = noise(x);
     let fits = |half: &&usize| {
         let smooth = smooth(t_s, x, **half);
         let left = x.iter().zip(&smooth.value).filter(|(_, v)| !v.is_nan());
         let (sum, count) = left.fold((0.0, 0usize), |(s, n), (x, v)| (s + (x - v).powi(2), n + 1));
-        // a cubic takes this part of the noise in the middle of its window
+        // a cubic removes this fraction of the noise's variance from the residuals in the middle of its window
         let taken = 9.0 / (4.0 * (2 * **half + 1) as f64);
         count > x.len() / 2 && (sum / count as f64).sqrt() <= STILL_NOISE * noise * (1.0 - taken).sqrt()
     };
@@ -62,7 +65,8 @@ pub(crate) fn half_width(t_s: &[f64], x: &[f64]) -> usize {
         .unwrap_or(HALF_WIDTHS[0])
 }
 
-/// Fits a cubic around each row.
+/// Fits, at each row, a cubic to the rows from `half` before to `half` after it, and returns its value and
+/// derivatives there.
 pub(crate) fn smooth(t_s: &[f64], x: &[f64], half: usize) -> Smooth {
     let n = x.len();
     let step = usual_step_s(t_s);
@@ -95,7 +99,8 @@ pub(crate) fn smooth(t_s: &[f64], x: &[f64], half: usize) -> Smooth {
 mod tests {
     use super::*;
 
-    /// Noise that repeats: a linear congruential generator summed to a nearly normal deviate.
+    /// Noise that is the same in every run: twelve uniform numbers of a linear congruential generator added to a nearly
+    /// normal deviate.
     fn deviates(n: usize) -> Vec<f64> {
         let mut state = 1u64;
         let mut uniform = move || {

@@ -1,48 +1,49 @@
-//! What `campaign.json` says about records: which file, which column is what, and the constants of each drive.
+//! What `campaign.json` says about records: the files, the meaning of their columns, and the constants of each drive.
 
 use crate::input::json::{Node, Object};
 use crate::reconcile::readings::keys::RECORD;
 
-/// The file that is read where `campaign.json` names none.
+/// Name of the file that is read if `campaign.json` names none.
 pub(crate) const DEFAULT_FILE: &str = "record.csv";
 
-/// A constant of the drives: one number for all joints, or one for each.
+/// A constant of the drives: one number for all joints, or one number for each joint.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PerJoint(Vec<(Option<String>, f64)>);
 
 impl PerJoint {
-    /// The constant of a joint; `None` where nothing is stated.
+    /// The constant of the joint with the name `joint`; `None` where nothing is stated.
     pub fn of(&self, joint: &str) -> Option<f64> {
         let own = self.0.iter().find(|(name, _)| name.as_deref() == Some(joint));
         own.or_else(|| self.0.iter().find(|(name, _)| name.is_none())).map(|(_, value)| *value)
     }
 
-    /// Names of the joints that have a number of their own.
+    /// Names of the joints for which a number of their own is stated.
     pub fn joints(&self) -> impl Iterator<Item = &str> {
         self.0.iter().filter_map(|(name, _)| name.as_deref())
     }
 }
 
-/// One record: a file and what its columns mean.
+/// One record: the name of its file, and what its columns mean.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RecordSpec {
-    /// File name, next to `campaign.json`.
+    /// Name of the file, in the folder of `campaign.json`.
     pub file: String,
-    /// Whether `campaign.json` names the file; else it need not exist.
+    /// Whether `campaign.json` names the file. If not, the file need not exist.
     pub is_named: bool,
-    /// Names of the columns of this format with the names that the file gives them.
+    /// Pairs of names: the column of this program, and the column of the file that holds it.
     pub columns: Vec<(String, String)>,
-    /// Turns of the motor for one of the output.
+    /// Gear ratio: turns of the motor for one turn of the output.
     pub ratio: PerJoint,
     /// Torque at the motor shaft for each ampere \[N m/A\].
     pub torque_constant_nm_per_a: PerJoint,
-    /// Inertia of rotor and wave generator at the motor shaft; at the output where no ratio is stated \[kg m²\].
+    /// Inertia of rotor and wave generator \[kg m²\], at the motor shaft if a ratio is stated, otherwise at the output.
     pub rotor_inertia_kgm2: PerJoint,
-    /// Whether torques are at the output although a ratio is stated.
+    /// Whether torques in the file are at the output even if a ratio is stated.
     pub torque_at_output: bool,
 }
 
-/// Reads `records` of `campaign.json`. An absent list means one record in [`DEFAULT_FILE`], if that file exists.
+/// Reads `records` of `campaign.json`. If the list is absent, there is one record in [`DEFAULT_FILE`], which need not
+/// exist.
 pub(crate) fn read_records(root: &Object) -> Option<Vec<RecordSpec>> {
     let common = read_constants(root, &RecordSpec { file: DEFAULT_FILE.into(), ..RecordSpec::default() })?;
     let Some(node) = root.optional("records") else { return Some(vec![common]) };
@@ -84,7 +85,8 @@ fn read_columns(node: &Node) -> Option<Vec<(String, String)>> {
     read.collect()
 }
 
-/// Reads one number for all joints, or `{"j1": 100, ...}`.
+/// Reads a constant of the drives: one number for all joints, or an object `{"j1": 100, ...}`. A number for which
+/// `allowed` is false is a fault.
 fn read_per_joint(node: &Node, allowed: fn(f64) -> bool) -> Option<PerJoint> {
     let number = |n: &Node| match n.number()? {
         x if allowed(x) => Some(x),

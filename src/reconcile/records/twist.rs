@@ -1,4 +1,5 @@
-//! The twist of a joint as a sum of columns, and which of them the record needs.
+//! Linear model of the twist of a joint, and the choice of its terms. The twist here is the torsion of the joint, an
+//! angle.
 //!
 //! The recorded twist is the motor's angle less the link's, `y = theta_m(t) - theta_l(t - s)`. Written as a sum,
 //!
@@ -13,91 +14,98 @@
 //! | `F_c`, `f`, `F_v` | Coulomb, load-dependent and viscous friction on the motor's side | N m, 1, N m s/rad |
 //! | `e`, `g` | transmission error once and twice a turn of the output and of the input | rad |
 //!
-//! The coefficients of `a` and `sgn w` are free, because neither the rotor's inertia nor the side on which friction sits is
-//! known, and so is that of the rate of `T_m`, which stands for a filter in the torque's sensor and for damping in the
-//! spring. The coefficient of `w` is `s - c F_v`: a lag and viscous friction look alike in the twist, and only the balance of
-//! torques (`friction`) separates them.
+//! The coefficients of `a` and `sgn w` are free, because neither the rotor's inertia nor the side of the spring on
+//! which friction acts is known. The coefficient of the rate of `T_m` is also free: it represents a filter in the
+//! torque sensor and damping in the spring. The coefficient of `w` is `s - c F_v`. A time lag and viscous friction have
+//! the same signal in the twist, and only the balance of torques (`friction`) separates them.
 
 use super::blocks::{Blocks, Fitted, rows_per_reading};
 use super::signals::JointRows;
 use crate::arm::effect::{time_shift, transmission_error};
 
-/// Standard deviation of a transmission error before it is measured \[rad\].
+/// Prior standard deviation of each amplitude of a transmission error \[rad\].
 const USUAL_ERROR_RAD: f64 = 1.5e-3;
-/// Standard errors by which held-out blocks must be better for one column to be named.
+/// A term with one column is named only if the model predicts held-out blocks better with it by more than this many
+/// standard errors.
 pub(crate) const CLEARLY: f64 = 2.0;
-/// The same for four columns.
+/// A term with four columns is named only if the model predicts held-out blocks better with it by more than this many
+/// standard errors.
 const CLEARLY_MANY: f64 = 2.5;
-/// A transmission error of the output must lower the error on held-out blocks to this part.
+/// A transmission error of the output is named only if it lowers the root mean square error on held-out blocks to
+/// less than this fraction.
 const MATERIAL: f64 = 0.8;
-/// Most rounds in which the time shift is improved.
+/// Largest number of iterations by which the time shift is found.
 const ROUNDS: usize = 12;
 
-/// Places of the columns. Offsets of the records come first.
+/// Indices of the columns of the model of the twist. The offsets of the records, one per record, come first.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Places {
-    /// Number of records.
+    /// Number of records of the joint. Each has an offset of its own.
     pub records: usize,
 }
 
 impl Places {
-    /// Speed of the link.
+    /// Index of the column of the link's speed. The coefficient of this column is the time shift \[s\].
     pub(crate) fn shift(self) -> usize {
         self.records
     }
-    /// Torque of the motor, less the rotor's where its inertia is stated.
+    /// Index of the column of the motor's torque. The torque that accelerates the rotor is subtracted if the rotor's
+    /// inertia is stated. The coefficient of this column is the compliance \[rad/(N m)\].
     pub(crate) fn torque(self) -> usize {
         self.records + 1
     }
-    /// Acceleration of the motor.
+    /// Index of the column of the motor's acceleration.
     pub(crate) fn acceleration(self) -> usize {
         self.records + 2
     }
-    /// Sign of the speed.
+    /// Index of the column of the sign of the speed.
     pub(crate) fn sense(self) -> usize {
         self.records + 3
     }
-    /// Sign of the speed times the size of the torque.
+    /// Index of the column of the sign of the speed times the magnitude of the torque.
     pub(crate) fn load_sense(self) -> usize {
         self.records + 4
     }
-    /// Rate of the torque: a filter of the torque's sensor, and damping in the spring.
+    /// Index of the column of the rate of change of the torque. It represents a filter of the torque sensor and
+    /// damping in the spring.
     pub(crate) fn rate(self) -> usize {
         self.records + 5
     }
-    /// Sine and cosine, once and twice a turn of the output.
+    /// Indices of the columns of the transmission error of the output: sine and cosine once a turn, then twice a
+    /// turn.
     pub(crate) fn output(self) -> [usize; 4] {
         std::array::from_fn(|i| self.records + 6 + i)
     }
-    /// The same for the input.
+    /// Indices of the columns of the transmission error of the input (motor): sine and cosine once a turn, then twice
+    /// a turn.
     pub(crate) fn input(self) -> [usize; 4] {
         std::array::from_fn(|i| self.records + 10 + i)
     }
-    /// The first column after these.
+    /// Index of the first column after those of the linear model. The target stands there, or the torsion laws.
     pub(crate) fn further(self) -> usize {
         self.records + 14
     }
-    /// Offsets of the records.
+    /// Indices of the columns of the offsets of the records.
     pub(crate) fn offsets(self) -> Vec<usize> {
         (0..self.records).collect()
     }
 }
 
-/// What can be added to the model of a twist.
+/// A group of columns that can be added to the model of the twist.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Group {
-    /// The time shift.
+    /// The time shift of the link's signal.
     Shift,
-    /// Compliance, with the friction and the inertia that act beside it.
+    /// Compliance, together with friction and rotor inertia.
     Compliance,
-    /// Transmission error of the output.
+    /// Transmission error once and twice a turn of the output.
     Output,
-    /// Transmission error of the input.
+    /// Transmission error once and twice a turn of the input (motor).
     Input,
 }
 
 impl Group {
-    /// As `verdict.json` names it.
+    /// Name of the group in `verdict.json`.
     pub(crate) fn what(self) -> &'static str {
         match self {
             Group::Shift => time_shift::KIND.name,
@@ -107,7 +115,7 @@ impl Group {
         }
     }
 
-    /// As the table of steps names it.
+    /// Name of the group in the table of steps.
     fn step(self) -> &'static str {
         match self {
             Group::Shift => "time shift",
@@ -117,17 +125,18 @@ impl Group {
         }
     }
 
-    /// Whether it is a transmission error.
+    /// Whether the group is a transmission error.
     fn is_of_gear(self) -> bool {
         matches!(self, Group::Output | Group::Input)
     }
 
-    /// Whether a fit with the group is so much better on held-out blocks than one without that it is named.
+    /// Whether the group is to be named. `with` and `without` are the fits with and without its columns; the first
+    /// must predict held-out blocks clearly better than the second.
     fn pays(self, with: &Fitted, without: &Fitted) -> bool {
         let clearly = with.better_than(without);
         match self {
             Group::Shift | Group::Compliance => clearly > CLEARLY,
-            // the waves of a gear's error can follow whatever else is slightly wrong under gravity
+            // the four waves can also fit other small errors of the model under gravity, so more is asked of them
             Group::Output => {
                 clearly > CLEARLY_MANY && with.held_out_rms() < MATERIAL * without.held_out_rms()
             }
@@ -136,29 +145,32 @@ impl Group {
     }
 }
 
-/// The model of a joint's twist.
+/// The fitted linear model of a joint's twist.
 pub(crate) struct TwistModel<'a> {
-    /// The rows.
+    /// Rows of the joint.
     pub rows: &'a JointRows,
-    /// Places of the columns.
+    /// Indices of the model's columns.
     pub places: Places,
-    /// The shift about which the series is taken \[s\].
+    /// Time by which the link's signal is late, at which the signal is read and its Taylor series is taken \[s\].
     pub shift_s: f64,
-    /// Sums of all columns; the twist is the last.
+    /// Sums of the products of every two columns of the model, one matrix per block of time. The last column is the
+    /// twist.
     pub sums: Blocks,
-    /// Standard deviation of an independent reading \[rad\].
+    /// Standard deviation that an independent reading would have \[rad\]. It is larger than that of a row, because rows
+    /// are autocorrelated.
     pub sigma_rad: f64,
-    /// What is in the model.
+    /// Groups of columns that the model contains.
     pub groups: Vec<Group>,
-    /// The fit with it.
+    /// Fit of the twist with the columns of these groups.
     pub fitted: Fitted,
-    /// Rows that count as one.
+    /// Number of rows that carry as much information as one independent reading, because errors are autocorrelated.
     pub rows_per_reading: f64,
-    /// Errors on held-out blocks as each thing was added \[rad\].
+    /// Root mean square error of the twist on held-out blocks after each step \[rad\], with the name of the step.
     pub steps: Vec<(String, f64)>,
 }
 
-/// Fills the columns of a row; `false` where the shifted link has no reading.
+/// Writes the columns of the row with index `i` into `row`, with the link's signal read as late by `shift_s` \[s\].
+/// Returns `false` if the link has no reading at the later time.
 pub(crate) fn fill(rows: &JointRows, i: usize, shift_s: f64, row: &mut [f64]) -> bool {
     let sample = &rows.samples[i];
     let (Some(twist), Some([acceleration, _])) =
@@ -177,19 +189,20 @@ pub(crate) fn fill(rows: &JointRows, i: usize, shift_s: f64, row: &mut [f64]) ->
     row[places.rate()] = sample.torque_rate_nm_s;
     for (columns, ratio) in [(places.output(), 1.0), (places.input(), rows.ratio.unwrap_or_default())] {
         let (sin, cos) = libm::sincos(ratio * sample.angle_rad);
-        // once and twice a turn; without a ratio the columns of the input are constant and get nothing
+        // once and twice a turn; without a ratio the columns of the input are zero and get no coefficient
         row[columns[0]] = sin;
         row[columns[1]] = cos - 1.0;
         row[columns[2]] = 2.0 * sin * cos;
         row[columns[3]] = cos * cos - sin * sin - 1.0;
     }
-    // the shift about which the series is taken is put back, so that the coefficient of the speed is the whole shift
+    // adds the shift of the Taylor series back, so that the coefficient of the speed is the whole time shift
     let last = row.len() - 1;
     row[last] = twist.twist_rad + shift_s * twist.link_speed_rad_s;
     true
 }
 
-/// Columns of a set of groups, offsets first.
+/// Indices of the columns of the twist model that a fit uses: the constant offset of each record, then the columns of
+/// the terms in `groups` (time shift, compliance with friction, transmission errors).
 pub(crate) fn columns(rows: &JointRows, groups: &[Group]) -> Vec<usize> {
     let places = Places { records: rows.record_count() };
     let mut out = places.offsets();
@@ -198,7 +211,7 @@ pub(crate) fn columns(rows: &JointRows, groups: &[Group]) -> Vec<usize> {
             Group::Shift => out.push(places.shift()),
             Group::Compliance => {
                 out.extend([places.torque(), places.sense(), places.load_sense(), places.rate()]);
-                // a stated inertia is already taken from the torque
+                // the torque of a rotor of known inertia is already subtracted from the torque
                 out.extend(rows.rotor_inertia_kgm2.is_none().then_some(places.acceleration()));
             }
             Group::Output => out.extend(places.output()),
@@ -209,7 +222,8 @@ pub(crate) fn columns(rows: &JointRows, groups: &[Group]) -> Vec<usize> {
 }
 
 impl<'a> TwistModel<'a> {
-    /// Finds the time shift and what else the twist needs. `None` where a fit is impossible.
+    /// Finds the time shift and the groups of columns that the twist of a joint needs, and fits them. `None` if a fit
+    /// is impossible.
     pub(crate) fn find(rows: &'a JointRows) -> Option<Self> {
         let places = Places { records: rows.record_count() };
         let shift_s = time_shift_s(rows)?;
@@ -235,7 +249,7 @@ impl<'a> TwistModel<'a> {
         Some(out)
     }
 
-    /// The errors of the present fit, row by row \[rad\].
+    /// Errors of the present fit (recorded minus modelled twist), one per row that has a reading \[rad\].
     pub(crate) fn errors(&self) -> Vec<f64> {
         let mut row = vec![0.0; self.places.further() + 1];
         let error = |i: usize| {
@@ -254,17 +268,20 @@ impl<'a> TwistModel<'a> {
         self.sigma_rad = (variance * self.rows_per_reading).sqrt();
     }
 
-    /// Fits a set of groups, transmission errors with what is known of them before.
+    /// Fits the twist by the offsets and the groups `groups`, with the prior for transmission errors. `None` if the
+    /// fit is impossible.
     pub(crate) fn fit(&self, groups: &[Group]) -> Option<Fitted> {
         self.fit_with(&columns(self.rows, groups))
     }
 
-    /// Fits a set of columns.
+    /// Fits the twist by the columns `columns`, with the prior for transmission errors. `None` if the fit is
+    /// impossible.
     pub(crate) fn fit_with(&self, columns: &[usize]) -> Option<Fitted> {
         self.sums.fit(columns, self.places.further(), |c| self.prior(c))
     }
 
-    /// What is known of a column's coefficient before, over the standard deviation of an independent reading.
+    /// Prior standard deviation of the coefficient of the column `column`, as a multiple of the standard deviation of
+    /// an independent reading; `None` if nothing is known before. Only transmission errors have a prior.
     pub(crate) fn prior(&self, column: usize) -> Option<f64> {
         let errors = [self.places.output(), self.places.input()].concat();
         errors.contains(&column).then_some(USUAL_ERROR_RAD / self.sigma_rad.max(1e-12))
@@ -280,8 +297,9 @@ impl<'a> TwistModel<'a> {
         all.into_iter().filter(|(_, possible)| *possible).map(|(group, _)| group).collect()
     }
 
-    /// Adds what makes held-out blocks better, best first. Compliance is in the model in any case, so that it takes its
-    /// share of the doubt. Then takes out what the others made unnecessary.
+    /// Adds the groups with which the model predicts held-out blocks better, the best first. Then it removes groups
+    /// that the others have made unnecessary. The compliance is always in the model if the torque is recorded, so
+    /// that its uncertainty is part of the intervals. `None` if a fit is impossible.
     fn select(&mut self) -> Option<()> {
         let mut groups: Vec<Group> = Vec::new();
         let mut best = self.fit(&groups)?;
@@ -290,7 +308,8 @@ impl<'a> TwistModel<'a> {
             let left = self.candidates().into_iter().filter(|g| !groups.contains(g));
             let tried = left.filter_map(|g| Some((g, self.fit(&[groups.as_slice(), &[g]].concat())?)));
             let better = tried.filter(|(g, fit)| g.pays(fit, &best));
-            // gravity turns with the joint as an error of its gear would: compliance goes first where it is enough
+            // a transmission error and gravity both vary with the joint's angle; compliance goes first where it is
+            // enough
             let order = |(group, fit): &(Group, Fitted)| (group.is_of_gear(), fit.held_out_rms());
             let next =
                 better.min_by(|a, b| order(a).0.cmp(&order(b).0).then(order(a).1.total_cmp(&order(b).1)));
@@ -312,7 +331,8 @@ impl<'a> TwistModel<'a> {
         Some(())
     }
 
-    /// Takes out groups without which held-out blocks are as good.
+    /// Removes those of the `groups` without which the model predicts held-out blocks about as well, and returns the
+    /// rest. `best` becomes the fit with the rest.
     fn thinned(&mut self, mut groups: Vec<Group>, best: &mut Fitted) -> Vec<Group> {
         for group in [Group::Input, Group::Output, Group::Shift] {
             let without: Vec<Group> = groups.iter().copied().filter(|g| *g != group).collect();
@@ -327,7 +347,7 @@ impl<'a> TwistModel<'a> {
         groups
     }
 
-    /// By how many standard errors held-out blocks are better with a group than without it.
+    /// How clearly the model predicts held-out blocks better with the group than without it, in standard errors.
     pub(crate) fn gain(&self, group: Group) -> f64 {
         let others: Vec<Group> = self.groups.iter().copied().filter(|g| *g != group).collect();
         let all: Vec<Group> = others.iter().copied().chain([group]).collect();
@@ -337,7 +357,8 @@ impl<'a> TwistModel<'a> {
         }
     }
 
-    /// The part of the torque that the joint's own motion does not explain, over its variance.
+    /// Fraction of the variance of the motor's torque that the joint's own motion (speed, its sign, and acceleration)
+    /// does not explain.
     pub(crate) fn own_share_of_torque(&self) -> f64 {
         let p = self.places;
         let mut own = vec![p.shift(), p.sense()];
@@ -346,7 +367,8 @@ impl<'a> TwistModel<'a> {
     }
 }
 
-/// The time shift at which a further one would change nothing: each round reads the link at the shift found so far.
+/// Time by which the link's signal is late \[s\], by iteration: each fit reads the link's signal at the delay found
+/// so far and gives a correction of the delay. `None` if a fit is impossible.
 fn time_shift_s(rows: &JointRows) -> Option<f64> {
     let places = Places { records: rows.record_count() };
     let groups = if rows.has_torque { vec![Group::Shift, Group::Compliance] } else { vec![Group::Shift] };

@@ -1,23 +1,26 @@
-//! An error of the gear within a turn of the motor, taken from the signals before they are differentiated.
+//! Transmission error within a turn of the motor, which is removed from the signals before they are differentiated.
 //!
-//! Such an error is fast: its acceleration is as large as any real one and would pass for inertia. It is found in what is fast of
-//! the twist, `y - smooth(y)`, by columns that are made fast in the same way, so that neither torque nor inertia takes part.
+//! Such an error varies fast: its acceleration is as large as that of the motion and would be taken for inertia. It is
+//! found in the fast part of the twist, `y - smooth(y)`. The sines and cosines are filtered in the same way, so that
+//! slow torque and inertia have no influence.
 
 use super::reading::{JointSignals, Record};
 use super::smooth::smooth;
 use nalgebra::{Matrix4, Vector4};
 
-/// Half width of the window that divides fast from slow \[rows\].
+/// Half width of the window that separates the fast from the slow part of a signal \[rows\].
 const HALF: usize = 16;
-/// The part of the squares of the fast twist that the error must explain.
+/// A transmission error is removed only if it explains at least this fraction of the sum of squares of the fast part
+/// of the twist.
 const TELLING: f64 = 0.1;
 
-/// Twist once and twice a turn of the input.
+/// Transmission error of a joint's gear once and twice a turn of the motor.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Wave {
-    /// Amplitudes of sine and cosine, once and twice a turn \[rad\].
+    /// Amplitudes of sine and cosine once a turn, then twice a turn, at the output \[rad\]. All zero if there is no
+    /// error.
     waves_rad: [f64; 4],
-    /// Whether the motor's reading has it; else the link's.
+    /// Whether the error is in the motor's signal. If not, it is in the link's signal.
     is_of_motor: bool,
 }
 
@@ -26,14 +29,15 @@ fn shapes(phase: f64) -> [f64; 4] {
     [sin, cos, 2.0 * sin * cos, cos * cos - sin * sin]
 }
 
-/// What a smoothing leaves of a signal; zero near ends and gaps.
+/// Fast part of the signal `x`: the signal less its smoothed value, in its unit; zero near ends and gaps.
 fn fast(t_s: &[f64], x: &[f64]) -> Vec<f64> {
     let slow = smooth(t_s, x, HALF).value;
     x.iter().zip(slow).map(|(x, slow)| if slow.is_nan() { 0.0 } else { x - slow }).collect()
 }
 
 impl Wave {
-    /// The wave of a joint; zero where the ratio is not stated or the twist has none.
+    /// Finds the transmission error of the joint with the name `joint` from all records. It is zero if the ratio is
+    /// not stated or if the error explains too little.
     pub(crate) fn find(records: &[Record], joint: &str) -> Self {
         let own: Vec<(&[f64], &JointSignals)> = records
             .iter()
@@ -64,7 +68,8 @@ impl Wave {
         Self { waves_rad, is_of_motor: calmed[0] < calmed[1] }
     }
 
-    /// Acceleration of the side that has the wave without it, over that with it.
+    /// How much the signal on the side that has the error is calmed by removing the error: the sum of squares of its
+    /// acceleration after the removal, divided by the same sum before.
     fn calms(&self, own: &[(&[f64], &JointSignals)]) -> f64 {
         let size = |t_s: &[f64], x: &[f64]| -> f64 {
             smooth(t_s, x, HALF).curvature.iter().filter(|a| !a.is_nan()).map(|a| a * a).sum()
@@ -83,7 +88,7 @@ impl Wave {
         if with > 0.0 { without / with } else { 1.0 }
     }
 
-    /// Motor and link with the wave taken from the one that has it \[rad\].
+    /// Angles of motor and link \[rad\], one per row, with the error removed from the side that has it.
     pub(crate) fn taken_from(&self, signals: &JointSignals) -> [Vec<f64>; 2] {
         let [mut motor_rad, mut link_rad] = [signals.motor_rad.clone(), signals.link_rad.clone()];
         let Some(ratio) = signals.ratio.filter(|_| self.waves_rad != [0.0; 4]) else {

@@ -1,31 +1,51 @@
-//! Laws without a name as pieces of a model: found one after the other, each fitted in full together with all others.
+//! Laws without a name as effects of a model. They are found one after the other, each fitted in full together with all
+//! others.
 //!
 //! [`unnamed`](super::unnamed) asks whether a law competes with named effects, with the model made linear. Here a law
 //! becomes an effect of the arm, so that a corrected arm can have it: a further twist of a joint as a polynomial of its
-//! torque, or readings that bend or have a gain in each direction.
+//! torque, a stiffness of a joint that changes with the order of the tests, readings that bend or have a gain in each
+//! direction, or a base that turned once.
 
 use super::search::{Scored, Search};
 use crate::arm::effect::channel::Channel;
-use crate::arm::effect::empirical::{BEND, EVEN_TWIST, GAIN, KIND, ODD_TWIST};
+use crate::arm::effect::empirical::{
+    BASE_TURN, BEND, EVEN_TWIST, GAIN, KIND, LEAN, ODD_TWIST, SOFTENING, SOFTENING_REFERENCE, SOFTENING_ROWS,
+};
 use crate::arm::effect::kind::{Absent, Parameter, Scale};
-use crate::reconcile::fit::descent::{Effort, Fit};
+use crate::reconcile::fit::descent::{Effort, Fit, Weights};
 use crate::reconcile::forward::prepared::Forward;
+use crate::reconcile::forward::statics::StaticPose;
 use crate::reconcile::model::candidates::largest_torque_nm;
 use crate::reconcile::model::parameters::Number::{Free, Stated};
-use crate::reconcile::model::parameters::{Candidate, FreeParameter};
+use crate::reconcile::model::parameters::{Candidate, FreeParameter, Number};
+use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
-/// Largest number of laws in one model.
+/// Largest number of laws without a name in one model.
 const MOST_LAWS: usize = 3;
-/// A law is taken if ln of the evidence, less the price of its place, rises by more than this.
+/// A law is accepted if the logarithm of the evidence, less the logarithm of the number of places where a law is
+/// tried, rises by more than this.
 const BETTER: f64 = 2.0;
-/// A joint with less of the largest torque on any joint is not tried.
+/// A joint is not tried if its largest torque is less than this fraction of the largest torque on any joint.
 const UNLOADED: f64 = 1e-3;
-/// Largest further twist that is looked for, as a multiple of the twist of the joint at the largest torque.
+/// Largest size of a law of a joint (a further twist) that is sought, as a multiple of the joint's nominal twist at
+/// its largest torque.
 const LARGEST: f64 = 3.0;
 
-/// Every law at every place where the readings could show it.
-pub(crate) fn laws(forward: &Forward) -> Vec<Candidate> {
+/// Channels in whose tests a joint may soften, in the order of their parameters.
+const SOFTENING_IN: [Channel; 2] = [Channel::Static, Channel::Modal];
+/// Parts of the rows of a file in which most of a change comes, where a fit starts.
+const SOFTENED_AFTER: [f64; 2] = [0.08, 0.5];
+/// The place of the base.
+const BASE: &str = "base";
+/// Largest tilt of a base that is looked for, as a multiple of what the first joint yields.
+const SOFTEST: f64 = 100.0;
+/// Fewest poses before and after a base turned.
+const FEWEST_POSES: usize = 2;
+
+/// Every law at every place where the readings could show it. `baseline` is the best fit of calibration alone: its residuals
+/// say when a base could have turned.
+pub(crate) fn laws(forward: &Forward, baseline: &Fit, weights: &Weights) -> Vec<Candidate> {
     let nominal = forward.coefficients(&forward.nominal);
     let torques_nm: Vec<f64> =
         forward.layout.joints.iter().map(|slot| largest_torque_nm(forward, &slot.name)).collect();
@@ -34,6 +54,7 @@ pub(crate) fn laws(forward: &Forward) -> Vec<Candidate> {
     for ((slot, law), torque_nm) in forward.layout.joints.iter().zip(&nominal.laws).zip(torques_nm) {
         if !law.is_rigid() && torque_nm > UNLOADED * largest {
             out.extend(twists(&slot.name, torque_nm, law.angle_rad(torque_nm).abs()));
+            out.extend((0..SOFTENING_IN.len()).filter_map(|c| softening(forward, &slot.name, torque_nm, c)));
         }
     }
     for channel in [Channel::Static, Channel::Modal, Channel::Windup] {
@@ -43,7 +64,90 @@ pub(crate) fn laws(forward: &Forward) -> Vec<Candidate> {
             out.extend(readings(channel, largest));
         }
     }
+    out.extend(lean(forward));
+    out.extend(most_telling_row(forward, baseline, weights).map(base_turn));
     out
+}
+
+/// A stiffness of a joint that changes with the order of the tests of a channel, by its number in [`SOFTENING_IN`].
+fn softening(forward: &Forward, joint: &str, torque_nm: f64, channel: usize) -> Option<Candidate> {
+    let range = forward.range(SOFTENING_IN[channel]);
+    let rows = forward.data[range].iter().map(|datum| datum.row + 1).max()? as f64;
+    let size = Parameter::number(SOFTENING[channel], -0.8, 3.0, 0.3, Scale::Linear);
+    let pace = Parameter::number(SOFTENING_ROWS[channel], 0.1, 1e6, rows, Scale::Log);
+    let mut free_parameters = vec![
+        FreeParameter::new(&size, 0, 1.0),
+        FreeParameter::new(&pace, 0, 1.0).within(libm::log(0.1), libm::log(3.0 * rows)),
+    ];
+    let mut numbers = [vec![Stated(0.0); 4], vec![Stated(torque_nm)], steady()].concat();
+    let first = 5 + 2 * channel;
+    numbers[first..first + 2].fill(Free);
+    let paces = SOFTENED_AFTER.map(|part| libm::log((part * rows).max(1.0)));
+    let mut starts = paces.map(|pace| vec![1.0, pace]).to_vec();
+    if SOFTENING_IN[channel] == Channel::Static {
+        let reference =
+            Parameter::number(SOFTENING_REFERENCE, 0.0, 1.0, 1.0, Scale::Linear).absent(Absent::Never);
+        free_parameters.push(FreeParameter::new(&reference, 0, 1.0));
+        numbers[9] = Free;
+        starts = starts
+            .iter()
+            .flat_map(|start| [0.1, 0.9].map(|part| [start.as_slice(), &[part]].concat()))
+            .collect();
+    }
+    Some(Candidate { kind: &KIND, at: joint.into(), free_parameters, numbers, starts, twins: Vec::new() })
+}
+
+/// The numbers of a joint that does not soften.
+fn steady() -> Vec<Number> {
+    [0.0, 1.0, 0.0, 1.0, 1.0].map(Stated).to_vec()
+}
+
+/// A base that tilts about world x and about y, each by its own compliance; sizes are those of the first joint that yields.
+/// `None` if a piece of the arm is called as the base is.
+fn lean(forward: &Forward) -> Option<Candidate> {
+    let laws = forward.coefficients(&forward.nominal).laws;
+    let size = laws.iter().map(|law| law.tangent_compliance_rad_per_nm(0.0)).find(|c| *c > 0.0)?;
+    let is_free = forward.nominal.structure.pieces.iter().all(|piece| piece.name() != BASE);
+    let tilt = Parameter { count: 2, ..Parameter::number(LEAN, 0.0, SOFTEST * size, size, Scale::Linear) };
+    let starts = vec![vec![0.1, 0.5], vec![0.5, 0.1]];
+    let lean = Candidate { numbers: vec![Free; 2], starts, ..law(BASE, tilt, 0.0) };
+    is_free.then_some(lean)
+}
+
+/// A base that turned before a row of the displacements.
+fn base_turn(from_row: usize) -> Candidate {
+    let turn = Parameter { count: 3, ..Parameter::number(BASE_TURN, -0.1, 0.1, 1e-4, Scale::Linear) };
+    let straight = vec![Stated(0.0), Stated(0.0), Stated(1.0), Stated(1.0), Stated(1.0), Stated(1.0)];
+    let numbers = [straight, vec![Free; 3], vec![Stated((from_row + 1) as f64)]];
+    Candidate { numbers: numbers.concat(), ..law(Channel::Static.word(), turn, 0.0) }
+}
+
+/// The first row of a pose, from 0, before which a turn of the base would explain most of the residuals of a fit.
+fn most_telling_row(forward: &Forward, fit: &Fit, weights: &Weights) -> Option<usize> {
+    let residuals = fit.residuals(forward, weights);
+    // normal equations of the turn for each pose, in units of the rows' standard deviations
+    let of_pose = |pose: &StaticPose| {
+        let (mut a, mut b) = (Matrix3::zeros(), Vector3::zeros());
+        let mut first = usize::MAX;
+        for (component, datum) in (0..pose.count()).flat_map(|load| pose.measured(load)) {
+            let moved = Vector3::ith(component, 1e3 * weights.inverse[datum]).cross(&pose.geometry.tip_m);
+            let slope = -moved;
+            a += slope * slope.transpose();
+            b += slope * residuals[datum];
+            first = first.min(forward.data[datum].row);
+        }
+        (first, a, b)
+    };
+    let mut poses: Vec<(usize, Matrix3<f64>, Vector3<f64>)> = forward.statics.iter().map(of_pose).collect();
+    poses.sort_by_key(|(first, ..)| *first);
+    let gain = |from: usize| {
+        let (a, b) =
+            poses[from..].iter().fold((Matrix3::zeros(), Vector3::zeros()), |(a, b), p| (a + p.1, b + p.2));
+        a.cholesky().map(|a| (b.dot(&a.solve(&b)), poses[from].0))
+    };
+    let last = poses.len().saturating_sub(FEWEST_POSES);
+    let gains = (FEWEST_POSES..=last).filter_map(gain);
+    gains.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, row)| row).filter(|row| *row != usize::MAX)
 }
 
 /// What a law may be, in a sentence.
@@ -53,6 +157,12 @@ pub(crate) fn may_be(candidate: &Candidate) -> &'static str {
         Some(EVEN_TWIST) => {
             "it may be play, a preload, a cable or a spring: the twist differs between the senses of the torque"
         }
+        Some(name) if SOFTENING.contains(&name) => {
+            "it may be a gear that warms up or a connection that works loose; from the first rows on, a servo that holds the \
+             joint otherwise in these tests"
+        }
+        Some(LEAN) => "it may be a foot, a plate or a wall that is more compliant one way than the other",
+        Some(BASE_TURN) => "it may be a base that slipped on its bolts, or an instrument that was touched",
         Some(BEND) => {
             "it may be an instrument that is not straight, or a displacement too large for a straight law"
         }
@@ -60,19 +170,30 @@ pub(crate) fn may_be(candidate: &Candidate) -> &'static str {
     }
 }
 
-/// The law in words.
+/// Description in words of the law that the candidate stands for.
 pub(crate) fn in_words(candidate: &Candidate) -> String {
     let at = &candidate.at;
     match candidate.free_parameters.first().map(|free| free.name) {
         Some(ODD_TWIST) => format!("a further twist of {at} that is odd in its torque"),
         Some(EVEN_TWIST) => format!("a further twist of {at} that is even in its torque"),
+        Some(name) if name == SOFTENING[0] => {
+            format!("a stiffness of {at} that changes with the order of the static tests")
+        }
+        Some(name) if name == SOFTENING[1] => {
+            format!("a stiffness of {at} that changes with the order of the modal tests")
+        }
+        Some(LEAN) => format!("a {at} that tilts about x and y unequally"),
+        Some(BASE_TURN) => match candidate.numbers.last() {
+            Some(Stated(row)) => format!("a base that turned before row {row} of the {at} readings"),
+            _ => format!("a base that turned in the course of the {at} readings"),
+        },
         Some(BEND) => format!("{at} readings that bend"),
         _ => format!("{at} readings with a gain of their own in each direction"),
     }
 }
 
-/// A fit, and the laws that earn their place in it, added one after the other. `search` has the laws among its candidates,
-/// from `first` on. `None` if no law does.
+/// Adds laws without a name to the model `from`, one after the other, as long as each raises the score by more than
+/// [`BETTER`]. The laws are the candidates of `search` from the index `first` on. `None` if no law does.
 pub(crate) fn with_laws<'a>(search: &Search<'a>, first: usize, from: &Scored) -> Option<(Scored, Fit<'a>)> {
     let mut best: Option<(Scored, Fit)> = None;
     for _ in 0..MOST_LAWS {
@@ -83,15 +204,17 @@ pub(crate) fn with_laws<'a>(search: &Search<'a>, first: usize, from: &Scored) ->
     best
 }
 
-/// The law that raises the evidence most, in the model fitted to the end.
+/// The fit of the model `from` with that law added which raises its score most; `None` if the rise is not more than
+/// [`BETTER`].
 fn next_law<'a>(search: &Search<'a>, first: usize, from: &Scored) -> Option<(Scored, Fit<'a>)> {
-    let laws: Vec<usize> =
-        (first..search.candidates.len()).filter(|law| !from.effects.contains(law)).collect();
-    let tried: Vec<Scored> = laws
+    let laws = (first..search.candidates.len()).filter(|law| !from.effects.contains(law));
+    let starts: Vec<(usize, &Vec<f64>)> =
+        laws.flat_map(|law| search.candidates[law].starts.iter().map(move |start| (law, start))).collect();
+    let tried: Vec<Scored> = starts
         .into_par_iter()
-        .map(|law| {
+        .map(|(law, start)| {
             let effects = [from.effects.as_slice(), &[law]].concat();
-            let u = [from.u.as_slice(), &search.candidates[law].starts[0]].concat();
+            let u = [from.u.as_slice(), start].concat();
             search.scored(&effects, &search.rough(&effects, &u))
         })
         .collect();
@@ -101,39 +224,50 @@ fn next_law<'a>(search: &Search<'a>, first: usize, from: &Scored) -> Option<(Sco
     (scored.score > from.score + BETTER).then_some((scored, fit))
 }
 
-/// The further twists of a joint, odd and even in its torque.
+/// Two laws of a joint as candidates: a further twist that is an odd function of the joint's torque, and one that is
+/// an even function. `torque_nm` is the largest torque on the joint, and `twist_rad` its twist there.
 fn twists(joint: &str, torque_nm: f64, twist_rad: f64) -> [Candidate; 2] {
     let most = LARGEST * twist_rad;
     let sized =
         |name| Parameter { count: 2, ..Parameter::number(name, -most, most, twist_rad, Scale::Linear) };
+    // the stiffness does not change meanwhile
+    let with = |twist: [Number; 4]| [twist.as_slice(), &[Stated(torque_nm)], &steady()].concat();
     let odd = law(joint, sized(ODD_TWIST), 0.0);
     let even = law(joint, sized(EVEN_TWIST), 0.0);
     [
-        Candidate { numbers: vec![Free, Free, Stated(0.0), Stated(0.0), Stated(torque_nm)], ..odd },
-        Candidate { numbers: vec![Stated(0.0), Stated(0.0), Free, Free, Stated(torque_nm)], ..even },
+        Candidate { numbers: with([Free, Free, Stated(0.0), Stated(0.0)]), ..odd },
+        Candidate { numbers: with([Stated(0.0), Stated(0.0), Free, Free]), ..even },
     ]
 }
 
-/// The laws of a channel's readings: they bend, or have a gain in each direction.
+/// The laws of a channel's readings as candidates: a nonlinear characteristic, and a gain for each direction if the
+/// channel has three components. `largest` is the largest reading, in its unit.
 fn readings(channel: Channel, largest: f64) -> Vec<Candidate> {
+    // a base that turned shows in displacements only
+    let still = if channel == Channel::Static {
+        [vec![Stated(0.0); 3], vec![Stated(1.0)]].concat()
+    } else {
+        Vec::new()
+    };
     let bend = Parameter { count: 2, ..Parameter::number(BEND, -1.0, 1.0, 0.1, Scale::Linear) };
     let bent = law(channel.word(), bend, 0.0);
     let mut out = vec![Candidate {
-        numbers: [vec![Free, Free, Stated(largest)], vec![Stated(1.0); 3]].concat(),
+        numbers: [vec![Free, Free, Stated(largest)], vec![Stated(1.0); 3], still.clone()].concat(),
         ..bent
     }];
     if channel.components() == 3 {
         let gain = Parameter::vector(GAIN, 0.5, 2.0, 1.0).absent(Absent::AtOne);
         let gains = law(channel.word(), gain, 1.0);
         out.push(Candidate {
-            numbers: [vec![Stated(0.0), Stated(0.0), Stated(1.0)], vec![Free; 3]].concat(),
+            numbers: [vec![Stated(0.0), Stated(0.0), Stated(1.0)], vec![Free; 3], still].concat(),
             ..gains
         });
     }
     out
 }
 
-/// A law with one free parameter, whose fits start where it changes nothing. Its numbers are still to be given.
+/// A candidate at the place `at` with one free parameter, which may be a vector. Its fits start at the value
+/// `absent`, at which the law changes nothing. The caller sets `numbers`.
 fn law(at: &str, parameter: Parameter, absent: f64) -> Candidate {
     let free = (0..parameter.count).map(|component| FreeParameter::new(&parameter, component, 1.0));
     let free_parameters: Vec<FreeParameter> = free.collect();

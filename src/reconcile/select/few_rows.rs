@@ -1,12 +1,12 @@
-//! Lists what a handful of readings can say: every small set of effects that explains them. With few rows
-//! there are always several.
+//! Lists the small sets of effects that explain a handful of readings. With few rows there are always several such
+//! sets.
 //!
-//! Sets of one, two and three effects are fitted, up to one effect more than the smallest explaining set has.
-//! A set is kept if it explains every reading within its standard deviation, and would not without any one of
-//! its effects. A set whose evidence is far behind the best is dropped.
+//! Sets of one, two and three effects are fitted, up to one effect more than the smallest explaining set has. A set is
+//! kept if it explains the readings within their standard deviations, and no longer does so without any one of its
+//! effects. A set whose evidence is far below the best is dropped.
 //!
-//! What all kept sets share, masses and stiffnesses included, is what the readings say. A number on which
-//! they differ is one that the readings cannot give.
+//! The readings determine the properties in which all kept sets agree, masses and stiffnesses included. They do not
+//! determine a property in which the sets differ.
 
 use super::screening::{MOST_EFFECTS, Selection};
 use super::search::{Scored, Search};
@@ -21,31 +21,35 @@ use crate::reconcile::model::parameters::{FreeParameter, Model};
 use crate::reconcile::readings::campaign::Campaign;
 use rayon::prelude::*;
 
-/// Smallest number of rows from which one model can be chosen.
+/// Smallest number of rows of displacements, frequencies and bench readings from which one model can be chosen.
 pub(crate) const FEWEST_ROWS: usize = 11;
-/// Largest number of fits for sets of one size. Beyond it only the most promising smaller sets are extended.
+/// Largest number of fits for sets of the same number of effects. If more would be needed, only the most promising
+/// smaller sets are extended.
 const MOST_FITS: usize = 6000;
-/// A set of effects whose misfit is less probable than this does not explain the readings.
+/// A set of effects explains the readings if chance gives a misfit at least as large as its own with a probability
+/// above this.
 const IMPROBABLE: f64 = 0.01;
-/// Sets that explain the readings are left out if ln of their evidence is this far below the best. The limit is wide,
-/// because with few readings the evidence mostly repeats the prior.
+/// Sets that explain the readings are left out if the logarithm of their evidence is this far below the best. The
+/// limit is wide, because with few readings the evidence mostly repeats the prior.
 const IMPLAUSIBLE: f64 = 15.0;
-/// A missing mass is reported if every set differs from the arm file by more than this part.
+/// A missing mass is reported if in every set the mass outboard of a joint differs from that of the arm file by more
+/// than this fraction.
 const MATERIAL: f64 = 0.02;
-/// A stiffness whose largest and smallest value have a ratio above this is not identified.
+/// A stiffness is not identified if the ratio of its largest to its smallest possible value is larger than this.
 const WIDE: f64 = 1.2;
-/// Factors by which a stiffness is multiplied, and divided, in turn.
+/// Factors by which a stiffness is multiplied, and then divided, to find its possible range.
 const FACTORS: [f64; 9] = [1.1, 1.2, 1.4, 1.7, 2.0, 3.0, 4.0, 6.0, 10.0];
-/// Number of sets whose stiffnesses are varied.
+/// Largest number of explaining sets, the best first, for which the stiffnesses are varied.
 const MOST_PROFILES: usize = 6;
 
-/// Fits every small set of effects. In the result, `others` holds the sets that explain the readings, best first.
+/// Fits every small set of effects of the campaign. In the result, `others` holds the sets that explain the readings,
+/// the best first.
 pub(crate) fn weigh(search: &Search) -> Selection {
     let baseline = scored(search, &[], &[]);
     let mut tried = vec![baseline.clone()];
     let mut level = tried.clone();
-    // one effect more than the smallest explaining set, because the same number of parameters can belong to
-    // other effects
+    // continues with one effect more than the smallest explaining set, because other effects may explain the readings
+    // with as few parameters
     let mut beyond = false;
     for _ in 0..MOST_EFFECTS.min(search.forward.data.len()) {
         if beyond {
@@ -60,7 +64,8 @@ pub(crate) fn weigh(search: &Search) -> Selection {
     Selection { best, baseline, others, given_up: false }
 }
 
-/// The sets that explain the readings and of which no smaller part does, best first.
+/// Those of the sets `tried` that explain the readings and do not contain a smaller set that explains them, the best
+/// first.
 fn explaining(search: &Search, tried: Vec<Scored>) -> Vec<Scored> {
     let all: Vec<Scored> = tried.into_iter().filter(|s| explains(search, s)).collect();
     let within = |a: &Scored, b: &Scored| {
@@ -73,12 +78,13 @@ fn explaining(search: &Search, tried: Vec<Scored>) -> Vec<Scored> {
     out
 }
 
-/// Whether the readings are as close to the set's predictions as their standard deviations say.
+/// Whether the misfit of the set `scored` is no larger than the standard deviations of the readings allow.
 fn explains(search: &Search, scored: &Scored) -> bool {
     is_probable(search, scored, scored.objective)
 }
 
-/// Whether chance can leave a misfit as large as this.
+/// Whether chance leaves a misfit (chi-squared) as large as `misfit`, for the parameters of the set `set`, with a
+/// probability of at least [`IMPROBABLE`].
 fn is_probable(search: &Search, set: &Scored, misfit: f64) -> bool {
     let readings = search.forward.data.len();
     let free = free_parameters(search, &set.effects);
@@ -90,7 +96,7 @@ fn free_parameters(search: &Search, effects: &[usize]) -> usize {
     effects.iter().map(|&e| search.candidates[e].free_parameters.len()).sum()
 }
 
-/// Fits every set that is a set of `level` with one more effect, each set once.
+/// Fits every set that consists of a set of `level` (the sets of one size) and one more effect.
 fn extend(search: &Search, level: &[Scored]) -> Vec<Scored> {
     let candidates = 0..search.candidates.len();
     let mut from: Vec<&Scored> = level.iter().collect();
@@ -121,14 +127,15 @@ fn extend(search: &Search, level: &[Scored]) -> Vec<Scored> {
         .collect()
 }
 
-/// The best fit of a set from several starts.
+/// The best fit of the set of effects `effects` from several starts, with its score. Each start is a parameter
+/// vector; without any, the fit starts at the nominal arm.
 fn scored(search: &Search, effects: &[usize], starts: &[Vec<f64>]) -> Scored {
     let nothing = [vec![0.0; search.nuisance.numbers.len()]];
     let starts = if starts.is_empty() { &nothing } else { starts };
     let fits = starts.iter().map(|u| search.fit(effects, u, Effort::default()));
     let best =
         fits.min_by(|a, b| a.point.objective.total_cmp(&b.point.objective)).expect("at least one start");
-    // with few readings a size beyond the expected would otherwise cost nothing
+    // without this charge a size beyond the expected range would cost nothing where readings are few
     let strange: f64 = best
         .model
         .free_parameters()
@@ -139,13 +146,13 @@ fn scored(search: &Search, effects: &[usize], starts: &[Vec<f64>]) -> Scored {
     Scored { score: scored.score - strange, ..scored }
 }
 
-/// Cost of a parameter beyond its expected range, in ln of the evidence. It is that of a normal deviate whose
-/// standard deviation is a quarter of the range's width.
+/// Charge for a parameter whose `u` is beyond its expected range \[ln of the evidence\]. The distance beyond the
+/// range counts as a normal deviate with a standard deviation of a quarter of the range's width.
 fn surprise(parameter: &FreeParameter, u: f64) -> f64 {
     0.5 * (parameter.beyond_expected(u) / 0.25).powi(2)
 }
 
-/// Says what the sets that explain the readings have in common, and in what they differ.
+/// Sentences on what the sets `explaining`, which explain the readings, have in common, and in what they differ.
 pub(crate) fn sentences(
     search: &Search,
     campaign: &Campaign,
@@ -176,7 +183,8 @@ pub(crate) fn sentences(
     out
 }
 
-/// Describes the reading that the arm as given, calibrated within its tolerances, misses most.
+/// Sentence on the reading at which the arm as given, calibrated within its tolerances (`baseline`), has its largest
+/// error.
 fn gap(search: &Search, baseline: &Fit) -> String {
     let sigmas = |i: usize| {
         let datum = &search.forward.data[i];
@@ -194,8 +202,8 @@ fn gap(search: &Search, baseline: &Fit) -> String {
     )
 }
 
-/// Finds the outermost joint outboard of which mass is missing, or is too much. It considers every set that leaves
-/// the stiffnesses as they are.
+/// Sentence on the outermost joint beyond which mass is missing, or is too much, in every set that leaves the
+/// stiffnesses as they are. `None` if there is no such joint. `subjects` are the arms with the sets `explaining`.
 fn missing_mass(
     search: &Search,
     campaign: &Campaign,
@@ -230,7 +238,8 @@ fn missing_mass(
     })
 }
 
-/// Whether the joints, bearings, links and base yield exactly as in the arm file.
+/// Whether the joints, bearings, links and base of `subject` have exactly the compliances of the arm file
+/// (`nominal`).
 fn is_as_stiff(subject: &Subject, nominal: &Subject) -> bool {
     let pieces = subject.structure.pieces.iter().zip(&nominal.structure.pieces);
     let same = |(a, b): (&Piece, &Piece)| match (a, b) {
@@ -245,7 +254,7 @@ fn is_as_stiff(subject: &Subject, nominal: &Subject) -> bool {
         && pieces.into_iter().all(same)
 }
 
-/// Mass of everything from a joint outward, without the payload \[kg\].
+/// Mass of the joint with the name `joint` and of everything from it to the tip, without the payload \[kg\].
 fn outboard_kg(subject: &Subject, joint: &str) -> f64 {
     let pieces = subject.structure.pieces.iter();
     let outboard = pieces.skip_while(|piece| piece.name() != joint);
@@ -258,8 +267,8 @@ fn outboard_kg(subject: &Subject, joint: &str) -> f64 {
         .sum()
 }
 
-/// Names joints whose stiffness may have very different values while every reading is explained, the widest
-/// range first.
+/// Sentences on joints whose stiffness cannot be identified: it can have very different values with which the
+/// readings are still explained. The joint with the widest range comes first.
 fn unidentified_stiffnesses(search: &Search, explaining: &[Scored], subjects: &[Subject]) -> Vec<String> {
     let joints = search.forward.nominal.structure.joints().filter(|j| !j.law.is_rigid());
     let mut ranges: Vec<(String, f64, f64)> = joints
@@ -292,8 +301,8 @@ fn stiffness_nm_per_rad(subject: &Subject, joint: &str) -> f64 {
     joint.map_or(f64::INFINITY, |j| 1.0 / j.law.tangent_compliance_rad_per_nm(0.0))
 }
 
-/// The smallest and the largest factor on a joint's stiffness with which a set, refitted, still explains the
-/// readings.
+/// Smallest and largest factor on the stiffness of the joint `joint` with which the set `set`, fitted again, still
+/// explains the readings.
 fn free_factors(search: &Search, set: &Scored, joint: &str) -> (f64, f64) {
     let mut nuisance = search.nuisance.clone();
     let index = nuisance.numbers.len();
@@ -301,13 +310,13 @@ fn free_factors(search: &Search, set: &Scored, joint: &str) -> (f64, f64) {
     let mut model = Model { nuisance: &nuisance, ..search.model(&set.effects) };
     let mut reach = |factors: &[f64]| {
         let mut u = set.u.clone();
-        // the factor is a further calibrated parameter with a prior of its own
+        // the factor is an additional calibrated parameter with a prior of its own
         u.insert(index, 0.0);
         let mut reached = 1.0;
         for factor in factors {
             model.held = vec![(index, libm::log(*factor))];
             let fitted = fit(search.forward, &model, &u, search.weights, Effort::default());
-            // the prior of the held factor is no misfit
+            // the prior of the held factor is not part of the misfit
             let misfit = fitted.point.objective - libm::log(*factor).powi(2);
             if !is_probable(search, set, misfit) {
                 break;
@@ -323,8 +332,9 @@ fn span(values: impl Iterator<Item = f64>) -> (f64, f64) {
     values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
 }
 
-/// Every effect of the sets: the range of its parameters over the sets that have it, and what replaces it in the
-/// others. If an effect is a stiffness and some set does without it, the range of this stiffness has no upper end.
+/// All effects of the sets `explaining`, which explain the readings, as findings. The interval of a parameter covers
+/// its intervals in all sets that contain the effect. The alternatives are the effects of the sets without it. If the
+/// effect is a stiffness and some set does without it, its interval has no upper end.
 pub(crate) fn suspects(search: &Search, explaining: &[Scored], weights: &Weights) -> Vec<Finding> {
     let mut effects: Vec<usize> = Vec::new();
     for &e in explaining.iter().flat_map(|s| &s.effects) {
@@ -337,7 +347,7 @@ pub(crate) fn suspects(search: &Search, explaining: &[Scored], weights: &Weights
     effects.iter().map(|&e| suspect(search, explaining, &fits, e)).collect()
 }
 
-/// The parameters of every effect of a set, with their intervals.
+/// For each effect of the set `set`, its index and its parameters with their intervals.
 fn estimates(search: &Search, set: &Scored, weights: &Weights) -> Vec<(usize, Vec<Estimate>)> {
     let fit = search.fit(&set.effects, &set.u, Effort { steps: 0, tolerance: 0.0 });
     let mut ends = intervals(search.forward, &fit, weights).into_iter();

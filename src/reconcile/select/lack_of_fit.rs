@@ -1,10 +1,10 @@
-//! Tests whether the best model leaves a structure in the residuals (lack of fit).
+//! Tests whether the residuals of the best model have a structure (lack of fit).
 //!
-//! The residuals of a right model are noise. They do not follow the order of the tests, a joint's angle, the
-//! load, the branch or the torque. Each such question is a few regressors `X`. With the part removed that the
-//! model could still fit, the statistic is `zᵀ S⁻¹ z` with `z = Xᵀr` and `S = XᵀX - XᵀJ (JᵀWJ)⁻¹ JᵀX`. It is
-//! chi-squared if there is no structure. The smooth laws of [`unnamed`](super::unnamed) are further
-//! questions.
+//! The residuals of a correct model are noise. They do not depend on the order of the tests, a joint's angle, the load,
+//! the branch or the torque. For each such quantity a few columns `X`, functions of it, are tested. After the part that
+//! the model could still fit is removed, the statistic is `zᵀ S⁻¹ z` with `z = Xᵀr` and `S = XᵀX - XᵀJ (JᵀWJ)⁻¹ JᵀX`.
+//! It follows a chi-squared distribution if there is no structure. The smooth laws of [`unnamed`](super::unnamed) are
+//! tested too.
 
 use super::structure::Structure;
 use super::unnamed;
@@ -19,31 +19,35 @@ use crate::reconcile::model::calibration::Calibration;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-/// The answers to all questions about the residuals.
+/// The results of all tests of the residuals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LackOfFit {
-    /// The structure of every question, the most improbable first.
+    /// One structure for each test, the most improbable first.
     pub structures: Vec<Structure>,
-    /// Chi-squared over degrees of freedom of all data, by declared standard deviations.
+    /// Chi-squared per degree of freedom of all data, with the declared standard deviations.
     pub chi2_per_dof: f64,
     /// Whether the model fails the lack-of-fit test.
     pub fails: bool,
 }
 
-/// The model fails if chi-squared per degree of freedom exceeds this. Wrongly declared standard deviations hardly
-/// explain more.
+/// The model fails the test for lack of fit if chi-squared per degree of freedom exceeds this. Wrongly declared
+/// standard deviations seldom explain a larger value.
 const MATERIAL: f64 = 2.5;
-/// If a structure is suspected, the model fails already above this chi-squared per degree of freedom.
+/// If a structure of the residuals is suspected, the model fails the test already above this chi-squared per degree
+/// of freedom.
 const SUSPICIOUS: f64 = 1.8;
-/// A structure less probable than this, with all questions counted, is not chance.
+/// A structure of the residuals whose probability by chance is below this, after correction for the number of tests,
+/// is no chance result.
 const CHANCE: f64 = 1e-3;
-/// A structure less probable than this is suspected.
+/// A structure of the residuals whose probability by chance is below this, after correction for the number of tests,
+/// is suspected.
 const SUSPECTED: f64 = 0.02;
 /// Largest number of structures that are described in words.
 const TOLD: usize = 3;
 
 impl LackOfFit {
-    /// Sentences on the most improbable structures, without repetition.
+    /// Sentences on up to three structures that are no chance result, the most improbable first. No quantity of a
+    /// channel is mentioned twice.
     pub fn sentences(&self) -> Vec<String> {
         let mut told: Vec<&Structure> = Vec::new();
         for structure in self.structures.iter().filter(|s| s.ln_p < libm::log(CHANCE)) {
@@ -55,7 +59,7 @@ impl LackOfFit {
     }
 }
 
-/// Tests the residuals of a fitted model for structure.
+/// Tests the residuals of the model `fit` for structure, and decides whether the model fails.
 pub(crate) fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, weights: &Weights) -> LackOfFit {
     let tester = Tester::new(forward, fit, weights);
     let mut structures = Vec::new();
@@ -67,25 +71,25 @@ pub(crate) fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, wei
             });
         }
     }
-    // Bonferroni: with many questions one of them looks improbable by chance
+    // Bonferroni correction: with many tests one of them looks improbable by chance
     let asked = libm::log((structures.len() as f64).max(1.0));
     structures.iter_mut().for_each(|s| s.ln_p = (s.ln_p + asked).min(0.0));
     structures.extend(unnamed::law_questions(campaign, forward, fit, weights));
     structures.sort_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
     let chi2_per_dof = tester.chi2_per_dof(forward, fit);
     let ln_p = structures.first().map_or(0.0, |s| s.ln_p);
-    // a structure alone fails only if chance is excluded; a large chi-squared fails by itself
+    // without a large chi-squared, a structure must be no chance result; a very large chi-squared fails by itself
     let fails = ln_p < libm::log(CHANCE)
         || chi2_per_dof > MATERIAL
         || (ln_p < libm::log(SUSPECTED) && chi2_per_dof > SUSPICIOUS);
     LackOfFit { structures, chi2_per_dof, fails }
 }
 
-/// A regressor is dropped if the model already explains all but this part of its sum of squares. The rest would only
-/// show how well the fit converged.
+/// A direction of the columns is dropped if the model already explains all but this fraction of its sum of squares. The
+/// remainder would only show how well the fit converged.
 const ABSORBED: f64 = 1e-3;
 
-/// Scales columns to length 1.
+/// Scales every column of the matrix to length 1. A column of zeros stays.
 fn unit_columns(mut x: DMatrix<f64>) -> DMatrix<f64> {
     for mut column in x.column_iter_mut() {
         let length = column.norm();
@@ -105,7 +109,7 @@ struct Tester {
 
 impl Tester {
     fn new(forward: &Forward, fit: &Fit, weights: &Weights) -> Self {
-        // clamped, so that a gross error does not make up a structure
+        // limited, so that a gross error does not look like a structure
         let residual = DVector::from_vec(fit.residuals(forward, weights)).map(|r| r.clamp(-5.0, 5.0));
         let mut jacobian = fit.jacobian.clone();
         for (mut row, w) in jacobian.row_iter_mut().zip(&weights.inverse) {
@@ -126,7 +130,7 @@ impl Tester {
                     if self.weight[i] > 0.0 { regressors[k][i] } else { 0.0 }
                 },
             );
-        // one scale for all regressors, so that small eigenvalues mean dependence and not units
+        // all columns have length 1, so that a small eigenvalue shows linear dependence and not a difference of units
         let x = unit_columns(x);
         let z = x.tr_mul(&self.residual);
         let xj = transposed_product(&x, &self.jacobian);
@@ -161,11 +165,11 @@ impl Tester {
     }
 }
 
-/// Takes what the residuals would follow, and its regressors. Questions are asked one by one, because the regressors of
-/// all would need much memory.
+/// A function that carries out one test. It receives the quantity that the residuals may follow, in words, and its
+/// columns. Tests are made one by one, because the columns of all tests together would need much memory.
 type Ask<'a> = &'a mut dyn FnMut(String, Vec<Vec<f64>>);
 
-/// Asks the questions about a channel. Regressors are zero outside the channel.
+/// Makes all tests of the residuals of the channel `channel`. The columns of a test are zero outside the channel.
 fn questions(
     campaign: &Campaign,
     forward: &Forward,
@@ -183,8 +187,9 @@ fn questions(
     change_questions(forward, fit, weights, channel, ask);
 }
 
-/// Asks whether the size of an effect, or a material's modulus, changes in the course of the tests. The
-/// regressors are the sensitivities of the readings times functions of the order.
+/// Tests whether the size of an effect, or the modulus of a material, changes in the course of the tests of a
+/// channel. The columns are the derivatives of the readings with respect to this number, times functions of the order
+/// of the rows.
 fn change_questions(forward: &Forward, fit: &Fit, weights: &Weights, channel: Channel, ask: Ask) {
     let range = forward.range(channel);
     let part = |i: usize| (i - range.start) as f64 / range.len() as f64;
@@ -204,7 +209,7 @@ fn change_questions(forward: &Forward, fit: &Fit, weights: &Weights, channel: Ch
             question(format!("a modulus of {material}"), p..p + 1);
         }
     }
-    // a wrong unit has no parameter
+    // an effect without parameters, a wrong unit, has no size
     let sized = fit.model.effects.iter().enumerate().filter(|(_, of)| !of.free_parameters.is_empty());
     for (effect, of) in sized {
         let first = fit.model.first_parameter(effect);
@@ -212,8 +217,8 @@ fn change_questions(forward: &Forward, fit: &Fit, weights: &Weights, channel: Ch
     }
 }
 
-/// Asks whether a joint's stiffness changes with its angle, its torque or the order of the tests. The
-/// regressors are the sensitivities of the readings times functions of these.
+/// Tests whether a joint's stiffness changes with its angle, its torque or the order of the tests of a channel. The
+/// columns are the derivatives of the readings with respect to the stiffness, times functions of these quantities.
 fn stiffness_questions(
     campaign: &Campaign,
     forward: &Forward,
@@ -255,7 +260,8 @@ fn stiffness_questions(
     }
 }
 
-/// Values at the data of a channel, and zero elsewhere.
+/// A column of a test that has `value` at the data of the channel, and zero elsewhere. `value` receives the index of
+/// the datum and its component.
 fn spread(forward: &Forward, channel: Channel, value: impl Fn(usize, usize) -> f64) -> Vec<f64> {
     let mut out = vec![0.0; forward.data.len()];
     for i in forward.range(channel) {
@@ -269,7 +275,7 @@ fn static_questions(campaign: &Campaign, forward: &Forward, fit: &Fit, ask: Ask)
     let row = |i: usize| forward.data[i].index;
     let count = rows.len() as f64;
     let channel = Channel::Static;
-    // each component on its own, and along the predicted displacement as a changing stiffness would show
+    // columns for each component, and one along the predicted displacement, as a change of stiffness would give
     let vary = |f: &dyn Fn(usize) -> f64| -> Vec<Vec<f64>> {
         let mut out: Vec<Vec<f64>> = (0..3)
             .map(|c| spread(forward, channel, |i, component| if component == c { f(row(i)) } else { 0.0 }))
@@ -297,7 +303,8 @@ fn static_questions(campaign: &Campaign, forward: &Forward, fit: &Fit, ask: Ask)
     ask("loading or unloading".to_string(), branch);
 }
 
-/// Functions of where a joint stands in each row: waves of its angle, or smooth functions of its travel.
+/// Four functions of the position of a joint at each row: waves of its angle, or smooth functions of its travel.
+/// `entries` holds the joint's entry of the pose, row by row.
 fn positions_of(joint: &DrivenJoint, entries: impl Iterator<Item = f64>) -> Vec<[f64; 4]> {
     let entries: Vec<f64> = entries.collect();
     let (low, high) =
@@ -313,7 +320,7 @@ fn positions_of(joint: &DrivenJoint, entries: impl Iterator<Item = f64>) -> Vec<
     entries.iter().map(of).collect()
 }
 
-/// What the entry of a joint in a pose is called.
+/// Word for what a joint's entry in a pose is: angle or travel.
 fn entry_word(joint: &DrivenJoint) -> &'static str {
     match joint.motion {
         Motion::Turns => "angle",

@@ -1,10 +1,11 @@
-//! Laws that no effect of the library has. They are smooth and general, so that physics without a name shows.
+//! Laws without a name: smooth, general functions that are not effects of the library. They reveal physics that the
+//! library lacks.
 //!
-//! A law may concern the twist of a joint as a function of its torque, odd or even, of its angle, or of the
-//! order of the tests. It may concern a base, a bearing or a link that yields in one direction only, or a
-//! link with another mass or wall than drawn. It may also concern a reading as a function of the true value,
-//! the direction, the kind of load, or the time in a pose. A law is a few columns of changes of the readings,
-//! linearized about a fit.
+//! A law may be a twist of a joint as a function of its torque (odd or even), of its angle, or of the order of the
+//! tests. It may be a compliance of a base, a bearing or a link in one direction only, or a mass or wall of a link that
+//! differs from the drawing. It may also be an error of a reading as a function of the actual value, the direction, the
+//! kind of load, or the time in a pose. A law consists of a few columns: changes of the readings, linearized about a
+//! fit.
 
 use super::waves::waves;
 use crate::arm::effect::channel::Channel;
@@ -19,18 +20,19 @@ use nalgebra::DVector;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// A law without a name: a way in which readings can differ that is not an effect of the library.
+/// A law without a name: a way in which readings can differ from the model.
 pub(crate) struct Law {
-    /// The law in words.
+    /// Description of the law in words.
     pub what: String,
-    /// The effect of the library that has this law, if there is one.
+    /// Name of the effect of the library that is the same as this law; `None` if there is none.
     pub effect: Option<&'static str>,
-    /// Change of each prediction per unit of each of the law's parameters, in the unit of the file.
+    /// The law's columns: for each of its parameters, the change of each predicted reading per unit of the parameter,
+    /// in the unit of the file.
     pub columns: Vec<Vec<f64>>,
 }
 
-/// What `each` says of every law at every place, linearized about a fit. Laws are made and asked in groups, because the
-/// columns of all would need much memory.
+/// Calls `each` for every law at every place, and returns the results. The columns of a law are linearized about
+/// `fit`. Laws are built in groups, because the columns of all laws together would need much memory.
 pub(crate) fn of_every_law<T: Send>(
     campaign: &Campaign,
     forward: &Forward,
@@ -51,19 +53,22 @@ pub(crate) fn of_every_law<T: Send>(
     out
 }
 
-/// The state of a joint at the time of a reading.
+/// Torque, angle and test of a joint at the time of a reading.
 struct State {
     torque_nm: f64,
     angle_deg: f64,
-    /// Part of the channel's tests that were done before this reading.
+    /// Fraction of the channel's rows that were taken before this reading.
     part: f64,
     channel: Channel,
 }
 
-/// A further twist in a state of the joint, and the slope of this twist, both as multiples of torque over stiffness.
+/// A function that gives, for a state of the joint, an additional torque-like term and its derivative with respect to
+/// the torque. The additional twist is the compliance times the first \[N m\], and the additional tangent compliance
+/// is the compliance times the second.
 type Shape<'a> = &'a dyn Fn(&State) -> (f64, f64);
 
-/// Makes a column of a channel. The column is a function of the datum's index and its predicted reading.
+/// A function that builds a column of a channel's readings. It receives the entry as a function of the datum's index
+/// and predicted reading.
 type ColumnOf<'a> = &'a dyn Fn(&dyn Fn(usize, f64) -> f64) -> Vec<f64>;
 
 struct Builder<'a> {
@@ -93,7 +98,7 @@ impl Builder<'_> {
             column(&|s| (s.torque_nm.abs(), s.torque_nm.signum())),
             column(&|s| (s.torque_nm * part(s), 2.0 * part(s))),
         ];
-        // the angle of the joint on the bench is not known
+        // on the bench the angle of the joint is not known
         let wave = |k: usize| {
             column(&|s| {
                 let factor = if s.channel == Channel::Windup { 0.0 } else { waves(s.angle_deg)[k] };
@@ -122,7 +127,8 @@ impl Builder<'_> {
             let what =
                 format!("a stiffness of {name} that changes with the order of the {} tests", channel.word());
             out.extend(one_or_both(&what, [order(channel, 1), order(channel, 2)]));
-            // a servo holds a joint less firmly than a brake; with one kind of readings this is the joint's stiffness
+            // a servo may hold a joint less stiffly than a brake; if there is one kind of readings only, this cannot
+            // be told from the joint's stiffness
             if self.kinds_of_readings() > 1 {
                 let what = format!("a stiffness of {name} that is another in the {} tests", channel.word());
                 out.push(Law { what, effect: None, columns: vec![order(channel, 0)] });
@@ -131,13 +137,14 @@ impl Builder<'_> {
         out
     }
 
-    /// Number of channels that have readings.
+    /// Number of channels for which the campaign has readings.
     fn kinds_of_readings(&self) -> usize {
         let channels = [Channel::Static, Channel::Modal, Channel::Windup];
         channels.into_iter().filter(|channel| !self.forward.range(*channel).is_empty()).count()
     }
 
-    /// The change of every reading by an additional twist of a joint.
+    /// The change of every reading, in its unit, by an additional twist of the joint with index `joint`. This twist
+    /// is `compliance` \[rad/(N m)\] times `shape`, which depends on the torque, angle and row.
     fn joint_column(&self, joint: usize, compliance: f64, shape: Shape) -> Vec<f64> {
         let forward = self.forward;
         let driven = self.campaign.arm.driven_joint_names();
@@ -183,7 +190,8 @@ impl Builder<'_> {
         self.read(&truth)
     }
 
-    /// Laws of a base, bearings and links that yield more than modelled, each in one direction or in part.
+    /// Laws of a base, bearings and links that are more compliant than modelled, each in one direction only or in a
+    /// part of the link only.
     fn yielding_laws(&self) -> Vec<Law> {
         let layout = &self.forward.layout;
         let own = &self.fit.point.coefficients;
@@ -222,8 +230,8 @@ impl Builder<'_> {
         out
     }
 
-    /// Links that are lighter or heavier than drawn, and tubes with another wall, whose mass and stiffness
-    /// change in proportion.
+    /// Laws of links that are lighter or heavier than drawn, and of tubes whose wall is thinner or thicker. A thinner
+    /// wall lowers mass and stiffness in proportion.
     fn link_laws(&self) -> Vec<Law> {
         let links = self.forward.nominal.structure.links().enumerate();
         let laws = links.filter(|(_, link)| link.tube_kg_per_m() > 0.0).flat_map(|(l, link)| {
@@ -245,14 +253,15 @@ impl Builder<'_> {
         laws.collect()
     }
 
-    /// Removes mass from a link along its axis \[kg/m\].
+    /// Removes `kg_per_m` from the mass per length of the link with index `link` \[kg/m\], in mass and weight.
     fn lighten(&self, coefficients: &mut Coefficients, link: usize, kg_per_m: f64) {
         let index = self.forward.layout.joints.len() + link;
         coefficients.masses[index] -= kg_per_m;
         coefficients.weights[index] -= kg_per_m;
     }
 
-    /// The change of every reading by a change of the coefficients, as a function of the change's size.
+    /// The derivative of every reading with respect to the size of a change of the coefficients, at size zero.
+    /// `changed` makes the change of a given size in the coefficients.
     fn changed_column(&self, changed: &dyn Fn(&mut Coefficients, f64)) -> Vec<f64> {
         const PART: f64 = 1e-4;
         let mut moved = self.fit.point.coefficients.clone();
@@ -260,7 +269,8 @@ impl Builder<'_> {
         change_to(self.forward, &self.fit.point, moved).into_iter().map(|d| d / PART).collect()
     }
 
-    /// The change of every reading by additional compliances of strain coordinates.
+    /// The change of every reading, in its unit, by additional compliances. `further` holds pairs: index of the
+    /// strain coordinate, and its additional compliance.
     fn yielding_column(&self, further: &[(usize, f64)]) -> Vec<f64> {
         let forward = self.forward;
         let mut truth = vec![0.0; forward.data.len()];
@@ -271,8 +281,8 @@ impl Builder<'_> {
         self.read(&truth)
     }
 
-    /// Adds the change of the frequencies by a change `dC` of the compliances. `energy` gives `yᵀ dC y` for a datum
-    /// and the datum's mode `y`.
+    /// Writes into `truth` the change of the frequencies by a change `dC` of the matrix of compliances \[Hz\].
+    /// `energy` receives the index of a datum and the inertia forces `y` of its mode, and gives `yᵀ dC y`.
     fn add_modal(&self, truth: &mut [f64], energy: impl Fn(usize, &DVector<f64>) -> f64) {
         for (test, solved) in self.forward.modal.iter().zip(&self.fit.point.solved) {
             for &(datum, mode) in &test.modes {
@@ -283,7 +293,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Turns changes of true values into changes of readings.
+    /// Converts changes of actual values into changes of the readings that the measuring channels show. `truth` has
+    /// one entry per datum, in its unit.
     fn read(&self, truth: &[f64]) -> Vec<f64> {
         let channels = &self.fit.point.coefficients.channels;
         truth.iter().zip(&self.forward.data).map(|(t, d)| t * channels[d.channel as usize].factor).collect()
@@ -315,8 +326,9 @@ impl Builder<'_> {
         out
     }
 
-    /// Laws of loads that differ from those stated, of a support that gives way along the load, and of readings that
-    /// grow while a pose is kept.
+    /// Laws of static readings that follow the load in a way that the model lacks: loads other than stated, a support
+    /// that deflects in the direction of the load, and readings that grow while a pose is held. `column` builds a
+    /// column.
     fn load_laws(&self, column: ColumnOf) -> Vec<Law> {
         let rows = &self.campaign.statics;
         let gravity = self.forward.layout.gravity_m_s2;
@@ -360,8 +372,8 @@ impl Builder<'_> {
         out
     }
 
-    /// Joins a column of the static readings with the change of the frequencies under payloads that are heavier in
-    /// the same proportion.
+    /// Adds to `column`, a column of the static readings under payloads, the change of the frequencies if all
+    /// payloads are heavier in the same proportion.
     fn heavier_payloads(&self, mut column: Vec<f64>) -> Vec<f64> {
         const PART: f64 = 1e-4;
         let forward = self.forward;
@@ -379,11 +391,12 @@ impl Builder<'_> {
         column
     }
 
-    /// Laws of the measuring frame: a separate gain for each direction, and a rotation of the frame.
+    /// Laws of an instrument of displacements: a gain of its own for each direction (x, y, z), and a frame that is
+    /// rotated. `column` builds a column.
     fn direction_laws(&self, column: ColumnOf) -> Vec<Law> {
         let data = &self.forward.data;
         let gain = |c: usize| column(&|i, d| if data[i].component == c { d } else { 0.0 });
-        // a turn brings in components that were not measured
+        // a rotation mixes in components that were not measured, so the predicted displacements are needed in full
         let readings = self.forward.displacements_mm(&self.fit.point.coefficients);
         let turned = |axis: usize| {
             column(&|i, _| {
@@ -398,7 +411,7 @@ impl Builder<'_> {
         };
         let mut turns: Vec<Vec<f64>> = (0..3).map(turned).collect();
         let range = self.forward.range(Channel::Static);
-        // a single gauge that stands askew sees two of the three turns at most
+        // a gauge in one direction reacts to at most two of the three rotations
         if !(0..3).all(|c| data[range.clone()].iter().any(|d| d.component == c)) {
             turns.retain(|column| column.iter().any(|x| *x != 0.0));
         }
@@ -414,7 +427,7 @@ impl Builder<'_> {
     }
 }
 
-/// For each row, how many rows directly before it have the same pose.
+/// For each row, how many rows with the same pose stand directly before it.
 fn rows_in_pose<'a>(poses: impl Iterator<Item = &'a [f64]>) -> Vec<usize> {
     let mut last: Option<(&[f64], usize)> = None;
     poses
@@ -426,7 +439,7 @@ fn rows_in_pose<'a>(poses: impl Iterator<Item = &'a [f64]>) -> Vec<usize> {
         .collect()
 }
 
-/// Three laws: with the first column, with the second, and with both.
+/// Three laws with the description `what`: one with the first column, one with the second, and one with both.
 fn one_or_both(what: &str, columns: [Vec<f64>; 2]) -> Vec<Law> {
     let [a, b] = columns;
     let law = |columns| Law { what: what.to_string(), effect: None, columns };
@@ -487,7 +500,7 @@ mod tests {
                 let p = nuisance.numbers.iter().position(|(c, _)| is_own(c)).expect("calibrated");
                 let largest = fit.jacobian.column(p).amax();
                 if largest < 1e-9 {
-                    continue; // its axis goes through the tip and the payload
+                    continue; // the axis goes through the tip and the payload, so nothing changes
                 }
                 moving += 1;
                 for (i, own) in column.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! Finds which effects are missing: screening of candidates, laws without a name, lack of fit, few readings,
-//! and the quality of the readings.
+//! Finds which effects are missing: screening of candidates, laws without a name, tests for lack of fit, analysis of
+//! few readings, and judgement of the readings' quality.
 
 pub(crate) mod empirical;
 pub(crate) mod few_rows;

@@ -1,9 +1,9 @@
-//! Finds which effects are missing. Every candidate at every place is judged by evidence, which charges for
-//! each parameter and for having looked in many places.
+//! Finds which effects are missing. Every candidate at every place is judged by its evidence, with a charge for each
+//! parameter and for having examined many places.
 //!
-//! One stage adds one effect. All candidates are screened with the model linearized about the fit so far, and
-//! the best are fitted in full. From two effects on, each effect is dropped and exchanged for all others
-//! until nothing improves. This repairs mistakes of the greedy search.
+//! Each stage adds one effect. All candidates are screened with the model linearized about the fit so far, and the best
+//! are fitted in full. From two effects on, each effect is dropped and exchanged for all others until nothing improves.
+//! This repairs mistakes of the greedy search.
 
 use super::search::{Scored, Search};
 use super::unnamed::{self, Better};
@@ -18,57 +18,63 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::cell::OnceCell;
 
-/// Least rise of the score by which a second or third effect is accepted. Two missing things at once are rarer than
-/// one.
+/// Smallest rise of the score \[ln of the evidence\] for which a second or third effect is accepted. It is above
+/// zero, because two missing effects are less probable than one.
 const WORTH: f64 = 3.0;
-/// Least rise of the score by which the first effect is accepted. It is 0, because something missing is as likely as
-/// nothing missing.
+/// Smallest rise of the score \[ln of the evidence\] for which the first effect is accepted. It is zero, because a
+/// missing effect is as probable as none.
 const FIRST_WORTH: f64 = 0.0;
-/// Alternatives to an effect are listed until the effect and its alternatives together have this probability.
+/// The listed alternatives to an effect are as many as are needed so that the effect and they together contain the
+/// right one with this probability.
 const CREDIBLE: f64 = 0.95;
-/// Models whose score is this far behind the best after a few steps are not fitted further.
+/// A model whose score after a few steps of a fit is below the best by more than this is not fitted further.
 const HOPELESS: f64 = 40.0;
-/// Models whose score is within this of the best of a stage are examined further.
+/// A model whose score is below the best of its stage by less than this is examined further.
 const PROMISING: f64 = 12.0;
 /// Largest number of effects in a model.
 pub(crate) const MOST_EFFECTS: usize = 3;
-/// If ln of the evidence of a law without a name is higher by this much, the effects found are not the cause.
+/// If a law without a name raises the logarithm of the evidence by this much more than the best effects do, these
+/// effects are not the cause, and the search ends.
 const SETTLES: f64 = 12.0;
-/// Number of sets of parameters of one effect among these.
+/// Largest number of variants of one effect (the same effect with different parameters free) among the candidates
+/// that are fitted in full.
 const MOST_VARIANTS: usize = 2;
-/// Two fits of one model whose objectives differ by more than this did not both converge.
+/// If the objectives of two fits of the same model differ by more than this, the fit with the larger one had not
+/// converged.
 const CONVERGED: f64 = 0.5;
-/// Models whose objective after a few steps is above the best by less than this part of it are fitted further. Far from
-/// an explanation a few steps do not show what a model is worth.
+/// Models whose objective after a few steps exceeds the lowest by less than this fraction are fitted further. Where
+/// no model is near an explanation, a few steps do not show how good a model is.
 const UNDECIDED: f64 = 0.1;
-/// Sizes at which candidates are tried where much is missing, as parts of where their fits start.
+/// Sizes of effects at which candidates are tried if much is missing, as fractions of the sizes at which their fits
+/// start.
 const SIZES: [f64; 3] = [0.1, 0.3, 1.0];
-/// A chi-squared below this part of its expectation is far below the declared noise.
+/// If chi-squared of a model is below this fraction of its expectation, the residuals are far below the declared
+/// noise.
 const BELOW: f64 = 0.5;
-/// Number of candidates fitted in full at each stage.
+/// Number of candidates that are fitted in full when one effect is to be added.
 const FULL_FITS: usize = 7;
 
 /// The result of a search for effects.
 pub(crate) struct Selection {
-    /// The best model.
+    /// The model with the best score that the search accepted.
     pub best: Scored,
     /// The baseline: calibration and no effect.
     pub baseline: Scored,
-    /// Every other model that was fitted, best first.
+    /// All models that were fitted, the best first.
     pub others: Vec<Scored>,
     /// Whether the search was given up, because a law without a name is far better.
     pub given_up: bool,
 }
 
-/// A model, linearized at a point.
+/// A model with its predictions at one point, and the derivatives of the predictions there.
 struct Linearized {
     here: Point,
     slopes: DMatrix<f64>,
 }
 
 impl<'a> Search<'a> {
-    /// Searches for the effects. `before` is a model from an earlier search; if it has two effects or more, it is a
-    /// better start than none.
+    /// Searches for the missing effects. `before` is the best model of an earlier search. If it has two effects or
+    /// more, the search starts from it.
     pub(crate) fn run(&self, before: Option<&Scored>) -> Selection {
         let baseline_model = self.model(&[]);
         let mut baseline_fit = self.fit(&[], &vec![0.0; baseline_model.len()], Effort::default());
@@ -83,7 +89,7 @@ impl<'a> Search<'a> {
                 best = baseline.clone();
             }
         }
-        // the law is computed only if a first effect is found
+        // the law without a name is computed only if a first effect is found
         let mut law = OnceCell::new();
         let mut given_up = false;
         while best.effects.len() < MOST_EFFECTS {
@@ -99,7 +105,7 @@ impl<'a> Search<'a> {
             if let Some(lower) = self.lower_baseline(&best, &baseline) {
                 baseline = self.scored(&[], &lower);
                 (baseline_fit, law) = (lower, OnceCell::new());
-                seen.clear(); // their descents began where that of the baseline had stopped
+                seen.clear(); // these fits started from a calibration that had not converged
                 if best.score < baseline.score + FIRST_WORTH {
                     best = baseline.clone();
                     continue;
@@ -118,8 +124,10 @@ impl<'a> Search<'a> {
         Selection { best, baseline, others: seen, given_up }
     }
 
-    /// A fit of the calibration alone that begins at the calibration of the model with its first effect, if it is lower
-    /// than the fit so far. Then that fit had not converged, and the effect may only make good what it had left.
+    /// Fits the calibration alone once more, from the calibrated parameters of `best`, the model with its first
+    /// effect. Returns this fit if its objective is lower than that of `baseline` by more than [`CONVERGED`],
+    /// otherwise `None`. A lower objective shows that `baseline` had not converged, and that the effect may only
+    /// compensate for this.
     fn lower_baseline(&self, best: &Scored, baseline: &Scored) -> Option<Fit<'a>> {
         if best.effects.len() != 1 {
             return None;
@@ -129,8 +137,9 @@ impl<'a> Search<'a> {
         (again.point.objective < baseline.objective - CONVERGED).then_some(again)
     }
 
-    /// Whether the search is over because a law without a name is far better than the best model. With one effect so
-    /// far the law must also leave no more than noise, because two effects could still be better.
+    /// Whether the search ends because the law without a name `law` raises the logarithm of the evidence above `best`
+    /// by more than [`SETTLES`]. If `best` has one effect so far, the law must also leave no more than noise, because
+    /// two effects could still be better.
     fn is_settled_by(&self, law: &Option<Better>, baseline: &Scored, best: &Scored) -> bool {
         let readings = self.forward.data.len() as f64;
         let noise = readings + 2.0 * (2.0 * readings).sqrt();
@@ -140,9 +149,9 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// Fits the promising models of a selection again with other weights, and chooses among them. Models with only
-    /// some of the best model's effects are included, because the others may have been named only because of the
-    /// earlier weights.
+    /// Fits the promising models of the selection `before` again, with the weights of this search, and chooses among
+    /// them. Models with only some of the best model's effects are included, because the other effects may have been
+    /// named only because of the earlier weights.
     pub(crate) fn weigh_again(&self, before: &Selection) -> Selection {
         let mut promising: Vec<Scored> = vec![before.baseline.clone()];
         let near = before.others.iter().filter(|s| s.score > before.best.score - PROMISING).cloned();
@@ -154,7 +163,7 @@ impl<'a> Search<'a> {
         }
         let effort = Effort { steps: 12, tolerance: 0.02 };
         let again = |s: &Scored| {
-            // at the middle of the flat part of the objective, so that all models are judged equally
+            // fits end in the middle of the flat part of the objective, so that all models are compared equally
             let model = self.model(&s.effects);
             let end = self.descent(&model, &s.u, effort);
             self.scored(&s.effects, &self.centre_breaks(model, end))
@@ -179,8 +188,9 @@ impl<'a> Search<'a> {
         Selection { best, baseline, others: seen, given_up: before.given_up }
     }
 
-    /// Whether a model with effects leaves far less than the declared noise: half of it or less, and by more than chance.
-    /// A further effect would then only describe errors that are smaller than the readings are said to have.
+    /// Whether the residuals of a model with effects are far below the declared noise: chi-squared is less than half
+    /// of its expectation, and lower than chance explains. A further effect would then describe errors that are
+    /// smaller than the declared ones.
     fn is_below_noise(&self, scored: &Scored) -> bool {
         let counted = self.weights.inverse.iter().filter(|w| **w > 0.0).count() as f64;
         let fitted = self.model(&scored.effects).free_parameters().count() as f64;
@@ -190,7 +200,8 @@ impl<'a> Search<'a> {
             && scored.objective < expected - 3.0 * (2.0 * expected).sqrt()
     }
 
-    /// Drops and exchanges effects until nothing improves.
+    /// Drops each effect of `best` in turn, or exchanges it for another candidate, until the score does not improve.
+    /// All models that are fitted are added to `seen`.
     fn repair(&self, mut best: Scored, seen: &mut Vec<Scored>) -> Scored {
         for _ in 0..4 {
             let mut improved = false;
@@ -215,7 +226,8 @@ impl<'a> Search<'a> {
         best
     }
 
-    /// The models with some, but not all, of a model's effects, each with start values from that model.
+    /// The models with some, but not all, effects of the model `scored`. Their parameters are those of `scored`, and
+    /// they are not fitted.
     fn parts(&self, scored: &Scored) -> Vec<Scored> {
         let mut parts: Vec<Scored> = Vec::new();
         let mut open = vec![scored.clone()];
@@ -231,11 +243,12 @@ impl<'a> Search<'a> {
         parts
     }
 
-    /// The best models with one more effect. A model that was fitted before is taken from `seen`.
+    /// Fits of the model `base` with one more effect, for the candidates that the screening finds most promising.
+    /// Models that are in `seen` were fitted before and are copied from there.
     fn extend(&self, base: &Scored, seen: &[Scored]) -> Vec<Scored> {
         let mut screened = self.screen(base);
         if !self.may_explain(base) {
-            // a calibration that makes up for missing physics is far from where the right effect would leave it
+            // a calibration that compensates for missing physics is far from its value with the right effect
             let nominal = self.uncalibrated(base);
             screened.extend(self.screen(&nominal));
             screened.extend(self.by_size(&nominal));
@@ -252,7 +265,7 @@ impl<'a> Search<'a> {
         let rough = |(effects, u): (Vec<usize>, Vec<f64>)| self.scored(&effects, &self.rough(&effects, &u));
         let first: Vec<Scored> = fresh.into_par_iter().map(rough).collect();
         let top = first.iter().chain(&known).map(|f| f.score).fold(f64::NEG_INFINITY, f64::max);
-        // a few steps show which models are hopeless; only the others are worth a full fit
+        // a few steps show which models are poor; the others are fitted in full
         let lowest = first.iter().map(|f| f.objective).fold(f64::INFINITY, f64::min);
         let (near, far): (Vec<Scored>, Vec<Scored>) =
             first.into_iter().partition(|s| s.score > top - HOPELESS.max(UNDECIDED * lowest / 2.0));
@@ -266,17 +279,17 @@ impl<'a> Search<'a> {
         fits
     }
 
-    /// The same model with the nominal calibration.
+    /// The model `scored` with all calibrated parameters at their nominal values.
     fn uncalibrated(&self, scored: &Scored) -> Scored {
         let mut out = scored.clone();
         out.u[..self.model(&[]).len()].fill(0.0);
         out
     }
 
-    /// Searches the break points of promising gear curves over a grid, at first without the frequencies. This
-    /// is done only where the model may be the explanation, because a model that still lacks something does
-    /// not need break points that exact. With three effects only a new curve is searched, because the others
-    /// were found in pairs.
+    /// Searches the break points of the gear curves in the models `fits` over a grid, at first without the
+    /// frequencies. This is done only for models whose score is above `least` and that may be the explanation,
+    /// because a model that still lacks an effect does not need such exact break points. If there are three effects,
+    /// only a curve that was added last is searched, because the others were searched in models with two effects.
     fn regrid(&self, fits: &mut [Scored], least: f64) {
         for scored in fits.iter_mut().filter(|s| s.score > least && self.may_explain(s)) {
             let curve = scored.effects.iter().rposition(|&e| self.candidates[e].kind.traits.is_gear_curve);
@@ -292,7 +305,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The best fit over the grid of break points of one effect.
+    /// The best fit of the model `from` over the grid of break points of its effect number `position`, a gear's
+    /// curve.
     fn over_breaks(&self, from: &Scored, position: usize) -> Fit<'a> {
         let model = self.model(&from.effects);
         let first = model.first_parameter(position);
@@ -318,18 +332,20 @@ impl<'a> Search<'a> {
             .expect("at least one start")
     }
 
-    /// The most promising candidates, each with a start: index, parameters, and score of the linearized
-    /// model.
+    /// The candidates that raise the score of the model `base` most by the linearized model, the best first: index,
+    /// parameters from which a full fit starts, and the score.
     fn screen(&self, base: &Scored) -> Vec<(usize, Vec<f64>, f64)> {
         let model = self.model(&base.effects);
         let sharp = self.linearized(&model, &base.u);
-        // both ends of a change must be smoothed alike: the nominal curves of other joints step too
+        // the smoothing must be the same before and after a change, because the nominal curves of other joints have
+        // jumps too
         let is_curved = |law: &JointLaw| matches!(law.curve, Curve::Windup(_));
         let smooth = sharp.here.coefficients.laws.iter().any(is_curved).then(|| {
             let model = Model { smoothing: WIDE, ..model.clone() };
             self.linearized(&model, &base.u)
         });
-        // a further effect moves torques across the break points that were found, and the linear model sees no steps
+        // a further effect moves torques across the break points that were found, and the linearized model does not
+        // contain the jumps
         let about = |candidate: usize| match self.is_smoothed(&model, candidate) {
             true => smooth.as_ref().unwrap_or(&sharp),
             false => &sharp,
@@ -341,7 +357,7 @@ impl<'a> Search<'a> {
             .map(|(i, u, score)| (i, u, score - self.price(&[i])))
             .collect();
         tried.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
-        // sets of parameters of one effect must not crowd out other effects
+        // variants of one effect must not displace other effects from the list
         let mut variants: Vec<usize> = Vec::new();
         tried.retain(|(i, ..)| {
             let own = variants.iter().filter(|v| self.candidates[**v].is_variant_of(&self.candidates[*i]));
@@ -353,12 +369,14 @@ impl<'a> Search<'a> {
         tried
     }
 
-    /// The candidates that bring a model closest to the readings at one of a few sizes, each with that start. Where much is
-    /// missing, a model that is linear about the fit so far does not show what a candidate does to the frequencies.
+    /// The candidates that come closest to the readings when they are added to the model `base` at one of a few
+    /// sizes, the closest first: index, parameters from which a full fit starts, and minus half of the objective.
+    /// They are needed if much is missing: a model that is linearized about `base` then does not predict the effect
+    /// of a candidate on the frequencies well enough.
     fn by_size(&self, base: &Scored) -> Vec<(usize, Vec<f64>, f64)> {
         let model = self.model(&base.effects);
         let here = evaluate(self.forward, &model, &base.u, self.weights);
-        // frequencies are slow to solve for: displacements choose the start, frequencies the size
+        // frequencies take long to solve for: displacements choose the start, frequencies choose the size
         let smooth = self.weights.without_modes(self.forward);
         let best_size = |index: usize| {
             let candidate = &self.candidates[index];
@@ -395,8 +413,8 @@ impl<'a> Search<'a> {
         Linearized { here, slopes }
     }
 
-    /// Whether a candidate is screened with smoothed steps of the frequencies: it makes them step, or the model before it has
-    /// break points that were found.
+    /// Whether a candidate is screened with the jumps of the frequencies smoothed. This is so if the candidate causes
+    /// jumps itself, or if the model `base` already has fitted break points.
     fn is_smoothed(&self, base: &Model, candidate: usize) -> bool {
         self.candidates[candidate].kind.traits.steps_frequencies() || !base.break_points().is_empty()
     }
@@ -411,8 +429,7 @@ impl<'a> Search<'a> {
         let candidate = &self.candidates[index];
         let mut model = base.with(candidate);
         model.smoothing = if self.is_smoothed(base, index) { WIDE } else { 0.0 };
-        // the linearized model does not contain the steps of the frequencies at break points, so they are
-        // held
+        // break points are held, because the linearized model does not contain the jumps of the frequencies there
         model.held =
             model.break_points().into_iter().filter(|p| *p < base.len()).map(|p| (p, here.u[p])).collect();
         let held = model.held.clone();
@@ -433,7 +450,9 @@ impl<'a> Search<'a> {
             .map(|(u, score)| (index, u, score))
     }
 
-    /// Best parameters and score of a model, linearized about `here` plus the candidate's start.
+    /// Best parameters and score of the model `model` (the model at `here` and one candidate). The model is
+    /// linearized about the parameters of `here` and the candidate's start `start`; `slopes` holds the derivatives at
+    /// `here`.
     fn linear(&self, model: &Model, here: &Point, slopes: &DMatrix<f64>, start: &[f64]) -> (Vec<f64>, f64) {
         let mut u = here.u.clone();
         u.extend_from_slice(start);
@@ -441,7 +460,7 @@ impl<'a> Search<'a> {
         let mut own = DMatrix::zeros(base.len(), start.len());
         for (p, mut column) in (here.u.len()..u.len()).zip(own.column_iter_mut()) {
             let (_, high) = model.bounds(p);
-            // a difference must stay within the bounds
+            // the changed value must stay within the bounds
             let step = if u[p] + 1e-3 > high { -1e-3 } else { 1e-3 };
             let mut moved = u.clone();
             moved[p] += step;
@@ -477,11 +496,11 @@ impl<'a> Search<'a> {
         (u, score)
     }
 
-    /// For each effect of the best model, the models with another effect in its place that the data cannot
-    /// tell from it.
+    /// For each effect of the model `best`, the models of `seen` that have another effect in its place and that the
+    /// data cannot tell from `best`.
     ///
-    /// The likeliest come first. There are as many as needed for the right one to be among them with a
-    /// probability of 95 %.
+    /// The most probable model comes first. There are as many as are needed so that they and `best` together contain
+    /// the right model with a probability of 95 %.
     pub(crate) fn alternatives(&self, best: &Scored, seen: &[Scored]) -> Vec<Vec<Scored>> {
         (0..best.effects.len())
             .map(|i| {
@@ -513,7 +532,8 @@ impl<'a> Search<'a> {
     }
 }
 
-/// The parameters with the least misfit.
+/// The entry of `tried` with the smallest misfit (objective): this misfit, and the parameters; `None` if there are no
+/// entries.
 fn least(tried: impl Iterator<Item = (f64, Vec<f64>)>) -> Option<(f64, Vec<f64>)> {
     tried.min_by(|a, b| a.0.total_cmp(&b.0))
 }

@@ -1,7 +1,7 @@
-//! Fitting and scoring one model of the candidates: the tools that every search for effects uses.
+//! Fits and scores single models of the candidates. Every search for effects uses these functions.
 //!
-//! A gear's curve has break points at which frequencies step, and steps stop a descent. Fits of such a model
-//! therefore begin with the steps smoothed, and end with the break points moved by hand.
+//! At the break points of a gear's torsion curve the frequencies jump, and a descent stops at a jump. Fits of such a
+//! model therefore start with a smoothed curve, and end with a direct search over the break points.
 
 use crate::reconcile::fit::descent::{Effort, Fit, Point, Weights, descent, evaluate_near, fit};
 use crate::reconcile::fit::steps::{self, NARROW, WIDE};
@@ -11,15 +11,16 @@ use crate::reconcile::model::parameters::{Candidate, Model};
 use crate::reconcile::readings::campaign::Campaign;
 use rayon::prelude::*;
 
-/// A break point is not moved further where the objective has risen by more than this.
+/// A trial value of a break point is rejected if the objective rises by more than this (its probability is then below
+/// a thousandth).
 const RULED_OUT: f64 = 14.0;
-/// A model with a larger objective per datum cannot become the explanation, whatever the declared standard
-/// deviations.
+/// A model whose objective per datum is larger than this cannot be the explanation, even if the declared standard
+/// deviations are too small.
 const BEYOND_HOPE: f64 = 3.0;
 
-/// Everything that a search needs.
+/// What a search for effects needs: campaign, candidates and weights.
 pub(crate) struct Search<'a> {
-    /// The campaign.
+    /// The campaign with its readings.
     pub campaign: &'a Campaign,
     /// The campaign, prepared for fitting.
     pub forward: &'a Forward,
@@ -27,36 +28,38 @@ pub(crate) struct Search<'a> {
     pub nuisance: &'a Nuisance,
     /// All candidates.
     pub candidates: &'a [Candidate],
-    /// Weights of the data.
+    /// Weights of the data in the fits.
     pub weights: &'a Weights,
 }
 
-/// A model with its score.
+/// A model that was fitted, with its score.
 #[derive(Clone)]
 pub(crate) struct Scored {
-    /// Indices of the candidates in it.
+    /// Indices of the candidates that are effects of the model.
     pub effects: Vec<usize>,
     /// Fitted parameters of the model.
     pub u: Vec<f64>,
-    /// ln of the evidence minus ln of the number of places for each effect.
+    /// Score: the logarithm of the evidence less the price of the effects. The price of an effect is the logarithm of
+    /// the number of places where an effect could be named, each weighted by its prior odds.
     pub score: f64,
-    /// The objective `Σ ρ(r) + Σ u²`.
+    /// Value of the objective `Σ ρ(r) + Σ u²` (Huber's loss and priors) at the fit.
     pub objective: f64,
 }
 
 impl<'a> Search<'a> {
-    /// A model of the candidates with these indices.
+    /// The model whose effects are the candidates with the indices `effects`.
     pub(crate) fn model(&self, effects: &[usize]) -> Model<'a> {
         Model::of(self.nuisance, self.candidates, effects)
     }
 
-    /// Fits the model of these effects from the start `u`.
+    /// Fits the model whose effects are the candidates with the indices `effects`, from the parameters `u`.
     pub(crate) fn fit(&self, effects: &[usize], u: &[f64], effort: Effort) -> Fit<'a> {
         self.fit_model(self.model(effects), u, effort)
     }
 
-    /// Fits a model from `u`. Where a gear's curve makes the frequencies step, the steps are smoothed at first and then
-    /// sharpened. A new curve is fitted so in any case, because its break points are not yet known.
+    /// Fits a model from the parameters `u`. If the frequencies jump at a break point of a gear's curve, the curve is
+    /// smoothed at first and then sharpened. A curve that was just added is always fitted in this way, because its
+    /// break points are not yet known.
     fn fit_model(&self, model: Model<'a>, u: &[f64], effort: Effort) -> Fit<'a> {
         let is_new_curve = model.effects.last().is_some_and(|e| e.kind.traits.steps_frequencies());
         if is_new_curve && !self.forward.modal.is_empty() {
@@ -70,8 +73,9 @@ impl<'a> Search<'a> {
         descent(self.forward, model, u, self.weights, effort, f64::INFINITY)
     }
 
-    /// Fits a model in a few steps, enough to see whether it is close. If the last effect is a gear's curve, the
-    /// steps of the frequencies are smoothed widely at first.
+    /// Fits the model with the effects `effects` from the parameters `u` in a few steps, enough to see whether it
+    /// comes close to the readings. If the effect that was added last is a gear's curve, the curve is strongly
+    /// smoothed at first.
     pub(super) fn rough(&self, effects: &[usize], u: &[f64]) -> Fit<'a> {
         let mut model = self.model(effects);
         let mut start = u.to_vec();
@@ -85,8 +89,9 @@ impl<'a> Search<'a> {
         fit(self.forward, &model, &start, self.weights, few)
     }
 
-    /// Fits a model to the end. Break points of a gear's curve are moved by hand, because the frequencies'
-    /// steps hide lower ground from a descent.
+    /// Fits the model with the effects `effects` from the parameters `u` until it has converged. Break points of a
+    /// gear's curve are varied by a direct search, because a descent does not find lower values of the objective
+    /// beyond a jump of the frequencies.
     pub(crate) fn polish(&self, effects: &[usize], u: &[f64]) -> Fit<'a> {
         let model = self.model(effects);
         let breaks = model.break_points();
@@ -94,7 +99,7 @@ impl<'a> Search<'a> {
             return fit(self.forward, &model, u, self.weights, Effort::default());
         }
         let mut best = self.descent(&model, u, Effort::default());
-        // large moves first, then finer ones about the best
+        // large changes first, then smaller ones about the best value
         for reach in [0.3, 0.12, 0.04] {
             for &p in &breaks {
                 let moves = [-1.0, -0.5, 0.5, 1.0].map(|m| best.u[p] + m * reach);
@@ -110,8 +115,8 @@ impl<'a> Search<'a> {
         self.centre_breaks(model, best)
     }
 
-    /// Fits a model with break points to the end if it may be the explanation. A descent that stops early would
-    /// otherwise make a further effect seem necessary.
+    /// The model `scored`, fitted until it has converged if it has break points and may be the explanation; otherwise
+    /// as it is. If the descent had stopped early, a further effect would seem necessary.
     pub(super) fn settled(&self, scored: Scored) -> Scored {
         if self.model(&scored.effects).break_points().is_empty() || !self.may_explain(&scored) {
             return scored;
@@ -120,8 +125,9 @@ impl<'a> Search<'a> {
         if polished.score > scored.score { polished } else { scored }
     }
 
-    /// Moves break points from the edge of a frequency's step to the middle of the flat part of the
-    /// objective. A small change of the torques then does not move a test across the step.
+    /// Moves the break points of `best` from the edge of a jump of a frequency to the middle of the interval in which
+    /// the objective is nearly constant, and fits the other parameters again. A small change of the torques then does
+    /// not move a test across the jump.
     pub(super) fn centre_breaks(&self, model: Model<'a>, best: Point) -> Fit<'a> {
         const STEP: f64 = 0.002;
         let mut u = best.u.clone();
@@ -145,8 +151,8 @@ impl<'a> Search<'a> {
         fit(self.forward, &model, &end.u, self.weights, Effort { steps: 0, tolerance: 0.0 })
     }
 
-    /// Descends with a parameter held at a value, then frees it. Returns `None` if the readings rule the
-    /// value out.
+    /// Fits the model with the parameter number `parameter` held at `value`, and then with this parameter free.
+    /// `from` is the point from which the fit starts. `None` if the readings rule the value out.
     fn held_then_free(&self, model: &Model, from: &Point, parameter: usize, value: f64) -> Option<Point> {
         let effort = Effort { steps: 5, tolerance: 0.02 };
         let mut held = model.clone();
@@ -156,7 +162,7 @@ impl<'a> Search<'a> {
         (end.objective <= limit).then(|| self.descent(model, &end.u, effort))
     }
 
-    /// Scores a fit.
+    /// The fitted model `fit`, whose effects have the indices `effects`, with its score.
     pub(crate) fn scored(&self, effects: &[usize], fit: &Fit) -> Scored {
         Scored {
             effects: effects.to_vec(),
@@ -166,20 +172,20 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Whether a model fits the readings well enough to be worth refining.
+    /// Whether the model `scored` fits the readings well enough to be worth refining, by its objective per datum.
     pub(crate) fn may_explain(&self, scored: &Scored) -> bool {
         scored.objective < BEYOND_HOPE * self.forward.data.len() as f64
     }
 
-    /// Price of effects, in ln of the evidence: each could have been another one at another place. It is minus the
-    /// logarithm of their probability before any reading.
+    /// Price of the effects with the indices `effects` \[ln of the evidence\]: minus the logarithm of their prior
+    /// probability. It accounts for the other effects and places that could have been named instead.
     pub(crate) fn price(&self, effects: &[usize]) -> f64 {
         let odds = |effect: &usize| self.candidates[*effect].kind.traits.odds;
         effects.iter().map(|effect| libm::log(self.places() / odds(effect))).sum()
     }
 
-    /// Number of places where an effect could be named, each weighed by how likely its effect is. All unit slips of a
-    /// channel count once, and so do all sets of parameters of an effect.
+    /// Number of places where an effect could be named, each weighted by the prior odds of its effect. All wrong units
+    /// of a channel count once, and so do all variants of an effect.
     pub(crate) fn places(&self) -> f64 {
         let mut labels: Vec<(String, f64)> =
             self.candidates.iter().map(|c| (c.label(), c.kind.traits.odds)).collect();
@@ -187,7 +193,8 @@ impl<'a> Search<'a> {
         labels.iter().map(|(_, odds)| odds).sum()
     }
 
-    /// A model without one of its effects, and its start.
+    /// The model `scored` without its effect number `effect`: the indices of the other effects, and the parameters
+    /// from which its fit starts.
     pub(crate) fn without(&self, scored: &Scored, effect: usize) -> (Vec<usize>, Vec<f64>) {
         let model = self.model(&scored.effects);
         let first = model.first_parameter(effect);

@@ -1,7 +1,7 @@
-//! Finds the effects and the quality of the readings together, because they depend on each other.
+//! Finds the effects and the quality of the readings together, because each depends on the other.
 //!
-//! Gross errors, the size of the noise and modes missing from a list show only with the right effects in the
-//! model. The right effects show only without the wrong rows.
+//! Gross errors, the size of the noise and modes missing from a list can be seen only if the model has the right
+//! effects. The right effects can be found only if the wrong rows are left out.
 
 use super::few_rows;
 use super::screening::Selection;
@@ -15,33 +15,34 @@ use crate::reconcile::model::calibration::Nuisance;
 use crate::reconcile::model::parameters::{Candidate, Model};
 use crate::reconcile::readings::campaign::Campaign;
 
-/// Cost of a gross error, in ln of the evidence, where it replaces an effect. About one row in a thousand is a gross
-/// error.
+/// Charge for a gross error that is assumed instead of an effect \[ln of the evidence\]. About one row in a thousand
+/// is a gross error, and ln 1000 is about 7.
 const SLIP: f64 = 7.0;
 
-/// Largest tolerable error of a frequency that comes from computing it with fixed trial shapes \[standard
-/// deviations\].
+/// Largest tolerable error of a frequency that comes from computing it with fixed trial shapes \[standard deviations
+/// of the reading\].
 const INEXACT: f64 = 0.5;
 
-/// Largest number of times that the trial shapes are replaced by those of the best model.
+/// Largest number of times that the trial shapes of the modes are replaced by those of the best model.
 const SHAPES: usize = 2;
 
-/// Largest number of times that the worst readings are left out to see whether calibration alone fits the
-/// others.
+/// Largest number of times that the worst readings are left out to see whether calibration alone fits the other
+/// readings.
 const LOOKS: usize = 4;
 
-/// The result of the search for effects, and of the judgement of the readings.
+/// The result of the search for effects and of the judgement of the readings' quality.
 pub(crate) struct Settled {
-    /// The models that were weighed.
+    /// The models that were fitted, and the best one.
     pub selection: Selection,
-    /// Quality of the readings.
+    /// Quality of the readings: gross errors, and factors on the declared standard deviations.
     pub noise: Noise,
     /// Sentences on modes that are missing from lists or numbered out of order.
     pub remarks: Vec<String>,
 }
 
 impl Settled {
-    /// Handles few readings: they are taken as declared, and every small set of effects is weighed.
+    /// Analyses a campaign with few readings: the readings are taken as declared, and every small set of effects is
+    /// fitted.
     pub(crate) fn of_few(
         campaign: &Campaign,
         forward: &Forward,
@@ -54,12 +55,12 @@ impl Settled {
         Self { selection: few_rows::weigh(&search), noise, remarks: Vec::new() }
     }
 
-    /// Handles many readings, in this order.
+    /// Analyses a campaign with many readings, in these steps.
     ///
-    /// Missing modes are found first. A search follows with the declared standard deviations and without obvious
-    /// gross errors. Then further gross errors are removed and the search is repeated. At last the best model shows
-    /// whether the declared standard deviations were right. If not, the models are weighed again with the standard
-    /// deviations that it suggests.
+    /// Missing modes are found first. A search follows with the declared standard deviations and without obvious gross
+    /// errors. Then further gross errors are removed and the search is repeated. Finally the best model shows whether
+    /// the declared standard deviations were right. If not, the models are compared again with the standard deviations
+    /// that it suggests.
     pub(crate) fn of_many(
         campaign: &Campaign,
         forward: &mut Forward,
@@ -86,7 +87,7 @@ impl Settled {
     }
 }
 
-/// A campaign while its effects and its noise are being settled.
+/// A campaign during the search for its effects and its noise.
 struct Settling<'a> {
     campaign: &'a Campaign,
     forward: &'a mut Forward,
@@ -94,20 +95,21 @@ struct Settling<'a> {
     candidates: &'a [Candidate],
 }
 
-/// One search, with the noise that it assumed and found.
+/// One search for effects, with the gross errors and standard deviations that it assumed and found.
 struct Round {
-    /// The noise that the search assumed.
+    /// The gross errors and standard deviations that the search assumed.
     noise: Noise,
     selection: Selection,
     coefficients: Coefficients,
-    /// The noise that the best model of the search shows.
+    /// The gross errors and standard deviations that the residuals of the best model show.
     judged: Noise,
-    /// Whether the best model of the search may become the explanation.
+    /// Whether the best model fits well enough to be the explanation.
     hopeful: bool,
 }
 
 impl Round {
-    /// The score of the best model, which is charged for each row that it leaves out.
+    /// The score of the best model, less [`SLIP`] for each reading that was left out of the fit as a gross error
+    /// \[ln of the evidence\].
     fn score(&self) -> f64 {
         self.selection.best.score - SLIP * self.noise.outliers.len() as f64
     }
@@ -134,7 +136,8 @@ impl Settling<'_> {
     }
 
     /// Fits the calibration alone with the declared standard deviations, and returns the fit with its weights. If it
-    /// fits most readings, the few worst readings are left out.
+    /// does not fit most readings, a few worst readings are left out, up to four times. This fit is returned instead
+    /// if it fits most of the other readings.
     fn baseline(&self) -> (Fit<'_>, Weights) {
         let calibrated = |noise: Noise| {
             let baseline = Model::baseline(self.nuisance);
@@ -157,8 +160,9 @@ impl Settling<'_> {
         (with_all, declared)
     }
 
-    /// Searches without the gross errors that show before any effect is known. An effect may show in a single
-    /// frequency, so a search that includes those frequencies replaces the first if it is more probable.
+    /// Makes the first search, without the gross errors that are visible before any effect is known. An effect may
+    /// show in a single frequency. So the search is repeated with the frequencies that were left out, and this result
+    /// is taken if it is more probable.
     fn first(&self) -> Round {
         let (baseline, weights) = self.baseline();
         let noise = Noise::first_look(self.forward, &baseline, &weights);
@@ -168,8 +172,10 @@ impl Settling<'_> {
         with.filter(|with| with.hopeful && with.score() > without.score()).unwrap_or(without)
     }
 
-    /// Renumbers lists from which a mode is missing. Lists are judged by calibration alone where it fits most
-    /// readings, then by the first effects, and last by effects that were found without the suspect lists.
+    /// Renumbers the modes of frequency lists from which a mode is missing, and returns the search that follows.
+    /// Missing modes are first sought with calibration alone, if it fits most readings. Then they are sought with the
+    /// first effects found, and last with effects that were found without the suspect lists. `remarks` gets a
+    /// sentence for each list.
     fn count_missed_modes(&mut self, remarks: &mut Vec<String>) -> Round {
         let (baseline, _) = self.baseline();
         if Noise::is_close(self.forward, &baseline) {
@@ -181,7 +187,7 @@ impl Settling<'_> {
         if let Some(without) = Noise::uncertain_lists(self.forward, &round.coefficients)
             && missed.is_empty()
         {
-            // a model that the suspect lists have shaped says nothing about them
+            // the model must not be fitted to the suspect lists, because they would then seem right
             let coefficients = self.run(without, Before::Nothing).coefficients;
             missed = self.forward.find_missed_modes(&coefficients);
         }
@@ -190,9 +196,10 @@ impl Settling<'_> {
         round
     }
 
-    /// Weighs again with trial shapes of the model that was found. The shapes of the nominal arm are inexact far from
-    /// this arm, and a further effect or a law without a name would make up for the error. If the difference shows in
-    /// the readings, the whole search is repeated.
+    /// Repeats the comparison of models after the trial shapes of the modes were computed again for the best model.
+    /// The shapes of the nominal arm are inexact for a very different arm, and a further effect or a law without a
+    /// name would compensate for the error. If the new shapes change the predicted readings noticeably, the whole
+    /// search is repeated.
     fn with_exact_modes(&mut self, mut round: Round) -> Round {
         for _ in 0..SHAPES {
             if round.selection.best.effects.is_empty() {
@@ -204,7 +211,7 @@ impl Settling<'_> {
             let pairs = self.forward.data.iter().zip(before.iter().zip(&after));
             let moved =
                 pairs.map(|(d, (before, after))| ((after - before) / d.sigma).abs()).fold(0.0, f64::max);
-            // the trial shapes were good enough: only the weighing is repeated
+            // the trial shapes were good enough: only the comparison is repeated
             if moved < INEXACT {
                 if round.hopeful {
                     round = self.run(round.noise, Before::Weights(&round.selection));
@@ -216,9 +223,9 @@ impl Settling<'_> {
         round
     }
 
-    /// Searches without one or two rows that may be gross errors according to the best model, or to the best model
-    /// with one effect fewer. The new search counts if such errors are more probable than the effects that they
-    /// replace.
+    /// Searches again without one or two rows that are gross errors according to the best model, or to the best model
+    /// with one effect fewer. The new result replaces `round` if such errors are more probable than the effects that
+    /// they replace.
     fn with_slips(&self, round: Round) -> Round {
         let best = &round.selection.best;
         if !round.hopeful {
@@ -226,7 +233,7 @@ impl Settling<'_> {
         }
         let weights = round.noise.weights(self.forward);
         let search = self.search(&weights);
-        // an effect may stand for a slip, so the model without it judges the rows too
+        // an effect may describe a gross error, so the model without it judges the rows too
         let fewer = (0..best.effects.len()).map(|effect| {
             let (effects, u) = search.without(best, effect);
             search.fit(&effects, &u, Effort::default())
@@ -241,7 +248,8 @@ impl Settling<'_> {
         again.into_iter().max_by(|a, b| a.score().total_cmp(&b.score())).expect("the search before at least")
     }
 
-    /// Searches again without the rows that the best model shows to be gross errors.
+    /// Searches again without the rows that the best model of `round` shows to be gross errors, if they differ from
+    /// those left out so far.
     fn without_gross_errors(&self, mut round: Round) -> Round {
         for again in 0..2 {
             if round.judged.same_rows(&round.noise) || (again > 0 && !round.hopeful) {
@@ -249,17 +257,18 @@ impl Settling<'_> {
             }
             let noise = Noise { scale: [1.0; 3], outliers: round.judged.outliers.clone() };
             if round.selection.given_up {
-                return Round { noise, ..round }; // what a law without a name has settled no slips decide
+                return Round { noise, ..round }; // a law without a name has settled the result
             }
             round = self.run(noise, Before::Best(&round.selection.best));
         }
         round
     }
 
-    /// Searches again with the standard deviations that the best model suggests.
+    /// Searches again with the standard deviations that the residuals of the best model of `round` suggest, if they
+    /// differ from those assumed.
     fn with_scaled_deviations(&self, mut round: Round) -> Round {
         for _ in 0..2 {
-            // no scale of the noise makes a model right that is far off
+            // larger standard deviations do not make a model right that is far off
             if round.judged.agrees(&round.noise) || !round.hopeful {
                 break;
             }
@@ -275,8 +284,8 @@ impl Settling<'_> {
 /// An earlier result from which a search can start.
 enum Before<'a> {
     Nothing,
-    /// The best model so far, if other rows count now.
+    /// The best model so far; used if the set of rows has changed.
     Best(&'a Scored),
-    /// A whole selection, if only the scale of the standard deviations has changed.
+    /// All models so far; used if only the standard deviations have changed.
     Weights(&'a Selection),
 }

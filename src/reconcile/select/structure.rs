@@ -1,24 +1,25 @@
-//! A structure that residuals follow: the answer to one question about them.
+//! A structure in residuals: the result of one test of them.
 
 use crate::arm::effect::channel::Channel;
 
-/// One question about the residuals, and its answer.
+/// One test of the residuals for a structure, and its result.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Structure {
-    /// The channel; `None` if the question is about all channels together.
+    /// The channel whose residuals are tested; `None` if the test is about all channels together.
     pub channel: Option<Channel>,
-    /// What the residuals would follow, in words.
+    /// The quantity that the residuals would follow, in words.
     pub follows: String,
-    /// Test statistic.
+    /// Test statistic, which follows a chi-squared distribution if there is no structure.
     pub statistic: f64,
     /// Degrees of freedom of the statistic.
     pub dof: f64,
-    /// ln of the probability that chance gives so large a statistic, times the number of questions.
+    /// Natural logarithm of the probability that chance gives so large a statistic, corrected for the number of tests
+    /// (Bonferroni).
     pub ln_p: f64,
 }
 
 impl Structure {
-    /// The structure in one line.
+    /// The structure as a sentence.
     pub fn sentence(&self) -> String {
         let of = self.channel.map_or(String::new(), |c| format!(" of {}", c.word()));
         format!(

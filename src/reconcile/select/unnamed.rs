@@ -1,9 +1,9 @@
-//! Competing models: smooth laws that no effect of the library has.
+//! Competing models: smooth laws that are not effects of the library.
 //!
-//! An effect of the library can imitate physics that the library lacks. A joint that stiffens under load
-//! looks like lost motion, and a non-linear sensor looks like a gain. So every named effect must compete with
-//! general [`laws`](super::laws), which are fitted together with the calibration. A law is added to the named
-//! effects, or replaces them.
+//! An effect of the library can imitate physics that the library lacks. A joint that stiffens under load looks like
+//! lost motion, and a nonlinear sensor looks like a gain. So every named effect must compete with general
+//! [`laws`](super::laws), which are fitted together with the calibration. A law is added to the named effects, or
+//! replaces them.
 
 use super::laws::{Law, of_every_law};
 use super::search::{Scored, Search};
@@ -15,39 +15,42 @@ use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::f64::consts::TAU;
 
-/// Sizes of a law below this part of its full size are equally likely. At full size a stiffness or a reading changes
-/// by 100 %.
+/// All sizes of a law below this fraction of its full size have equal prior probability. At full size a stiffness or
+/// a reading changes by 100 %.
 const SMALL: f64 = 0.02;
-/// Largest number of reweighted steps of the linear fit.
+/// Largest number of steps of the linearized fit. The weights of the readings are computed again at each step.
 const STEPS: usize = 6;
-/// The linear fit ends when a step lowers the objective by less than this.
+/// The linearized fit ends when a step changes the objective by less than this.
 const SETTLED: f64 = 0.01;
-/// A law without a name is preferred to named effects if ln of the evidence is higher by this much. If no effect is
-/// named, a law that is better by this much is mentioned.
+/// A law without a name is preferred to named effects if the logarithm of its evidence, less the charge for its
+/// place, is higher by more than this. If no effect is named, a law is mentioned if it is better than calibration by
+/// as much.
 const BETTER: f64 = 2.0;
 
-/// A competing model: the fitted model with a law in it.
+/// A competing model: a fitted model to which a law without a name was added.
 struct Competitor {
     what: String,
     numbers: usize,
     objective: f64,
-    /// ln of the evidence.
+    /// Natural logarithm of the evidence of the model with the law.
     evidence: f64,
 }
 
-/// A law that explains the readings better than the model it competes with.
+/// A law without a name that explains the readings better than the model with which it competes.
 pub(crate) struct Better {
-    /// The law in words.
+    /// Description of the law in words.
     pub what: String,
-    /// Number of its parameters.
+    /// Number of parameters of the law.
     pub numbers: usize,
     /// The objective `Σ ρ(r) + Σ u²` of the model with the law.
     pub objective: f64,
-    /// Rise of ln of the evidence.
+    /// Rise of the logarithm of the evidence, less the charge for the place, over the model with which the law
+    /// competes.
     pub gain: f64,
 }
 
-/// The misfit that each law would remove from a model's residuals, as questions for the lack-of-fit test.
+/// For each law without a name, a test for lack of fit: the statistic is the fall of the objective of `fit` when the
+/// law is added.
 pub(crate) fn law_questions(
     campaign: &Campaign,
     forward: &Forward,
@@ -55,7 +58,7 @@ pub(crate) fn law_questions(
     weights: &Weights,
 ) -> Vec<Structure> {
     let competitors = of_every_law(campaign, forward, fit, |law| competitor(forward, fit, law, weights));
-    // Bonferroni: one of many laws fits better by chance
+    // Bonferroni correction: one of many laws fits better by chance
     let asked = libm::log((competitors.len() as f64).max(1.0));
     competitors
         .into_iter()
@@ -67,13 +70,15 @@ pub(crate) fn law_questions(
         .collect()
 }
 
-/// The law that, added to calibration alone, explains the readings better than calibration does.
+/// The law without a name that, added to calibration alone (`baseline`), explains the readings clearly better than
+/// calibration does; `None` if there is none.
 pub(crate) fn better_than_calibration(search: &Search, baseline: &Fit) -> Option<Better> {
     let places = search.places();
     best_of(competitors(search, baseline), baseline.evidence, places)
 }
 
-/// The law that explains the readings better in place of one named effect, or of all of them.
+/// The law without a name that explains the readings better than the model `best` when it takes the place of one
+/// named effect, or of all of them; `None` if there is none.
 pub(crate) fn instead(search: &Search, best: &Scored, baseline: &Fit) -> Option<Better> {
     let (named, places) = (best.effects.len(), search.places());
     // with one effect, the model without it is the baseline, which is tried anyway
@@ -87,8 +92,9 @@ pub(crate) fn instead(search: &Search, best: &Scored, baseline: &Fit) -> Option<
     fits.chain([(0.0, baseline)]).filter_map(better).max_by(|a, b| a.gain.total_cmp(&b.gain))
 }
 
-/// The best competing model, if its evidence is higher than `evidence`. That evidence is not charged for the places
-/// of effects that stay.
+/// The best of the `competitors` by evidence, if its evidence, less a charge for having tried `places` places, is
+/// higher than `evidence` by more than [`BETTER`]; otherwise `None`. `evidence` belongs to the model with which they
+/// compete. Effects that stay in both are not charged for their places.
 fn best_of(competitors: Vec<Competitor>, evidence: f64, places: f64) -> Option<Better> {
     let gain = |r: &Competitor| r.evidence - libm::log(places) - evidence;
     let best = competitors.into_iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
@@ -97,18 +103,19 @@ fn best_of(competitors: Vec<Competitor>, evidence: f64, places: f64) -> Option<B
     (better.gain > BETTER).then_some(better)
 }
 
-/// Fits each law that no effect of the search has together with the parameters of a fit.
+/// Fits each law without a name together with the parameters of the model `fit`. Laws that are the same as an effect
+/// among the candidates of the search are left out.
 fn competitors(search: &Search, fit: &Fit) -> Vec<Competitor> {
     let is_sought = |effect: &str| search.candidates.iter().any(|c| c.kind.name == effect);
     let fitted = of_every_law(search.campaign, search.forward, fit, |law| {
-        // the effect competes by itself, under its name
+        // the effect of the library competes itself, under its name
         let has_no_name = !law.effect.is_some_and(is_sought);
         has_no_name.then(|| competitor(search.forward, fit, law, search.weights))
     });
     fitted.into_iter().flatten().collect()
 }
 
-/// Fits a model and a law, linearized.
+/// Fits the model of `fit` together with the law `law`. The predictions are linearized about `fit`.
 fn competitor(forward: &Forward, fit: &Fit, law: &Law, weights: &Weights) -> Competitor {
     let own = fit.point.u.len();
     let n = own + law.columns.len();
@@ -156,8 +163,9 @@ fn competitor(forward: &Forward, fit: &Fit, law: &Law, weights: &Weights) -> Com
     Competitor { what: law.what.clone(), numbers: law.columns.len(), objective, evidence }
 }
 
-/// Width of the prior of a parameter: the parameter of an effect, or else that of a law, whose size may be of any
-/// order of magnitude.
+/// Width of the prior of the parameter with index `p` at the value `u`. The first `own` parameters belong to the
+/// model. For the parameters of a law, which follow, the width grows with the size of `u`, because the size of a law
+/// may be of any order of magnitude.
 fn width(fit: &Fit, own: usize, p: usize, u: f64) -> f64 {
     match p < own {
         true => fit.model.free_parameters().nth(p - fit.model.calibrated()).map_or(1.0, |k| k.width(u)),

@@ -1,5 +1,5 @@
-//! What must be said before an effect is believed: effects that cancel each other, sizes that may be nothing, and parts
-//! that calibration takes out of their tolerance.
+//! Cautions before an effect is believed: effects that cancel each other, effects whose size may be zero, and parts
+//! whose calibrated values are outside their tolerance.
 
 use super::outcome::Calibrated;
 use crate::arm::effect::kind::Place;
@@ -9,16 +9,17 @@ use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::estimate::Interval;
 use crate::reconcile::model::parameters::{Candidate, FreeParameter};
 
-/// Places are neighbours if they are at most this many elements of the chain apart: two joints with a link between them.
+/// Two places are neighbours if they are at most this many elements of the chain apart, such as two joints with a link
+/// between them.
 const NEAR: usize = 2;
-/// The tolerance of a calibrated factor in standard deviations of its logarithm.
+/// Tolerance of a calibrated factor, as a multiple of the standard deviation of the factor's logarithm.
 const TOLERANCE: f64 = 2.0;
-/// A factor that only one honest part in more than this many has is doubted.
+/// A calibrated factor is called improbable if fewer than one in this many faultless parts deviate so far.
 const RARE: f64 = 200.0;
 
-/// Says that two effects of one kind, or two masses, have opposite signs at neighbouring places, if two do. Each takes back
-/// what the other adds, so that together they describe one thing that is elsewhere, or that is there in one kind of test
-/// only.
+/// Sentence that two effects of the model have opposite signs at neighbouring places; `None` if no two have. Both are
+/// of one kind, or both are masses. Each then cancels a part of the other. Together they describe one thing that is
+/// at another place, or that is present in one kind of test only.
 pub(crate) fn opposed(forward: &Forward, fit: &Fit) -> Option<String> {
     let effects = &fit.model.effects;
     let size = |i: usize| -> Option<(&FreeParameter, f64)> {
@@ -42,7 +43,8 @@ pub(crate) fn opposed(forward: &Forward, fit: &Fit) -> Option<String> {
     ))
 }
 
-/// Number of elements of the chain from one effect's place to another's. The payload is the end of the chain.
+/// Number of elements of the chain between the places of the effects `a` and `b`; `None` if a place is not in the
+/// chain. The payload counts as the end of the chain.
 fn distance(forward: &Forward, a: &Candidate, b: &Candidate) -> Option<usize> {
     let structure = &forward.nominal.structure;
     let at = |candidate: &Candidate| {
@@ -55,8 +57,8 @@ fn distance(forward: &Forward, a: &Candidate, b: &Candidate) -> Option<usize> {
     Some(at(a)?.abs_diff(at(b)?))
 }
 
-/// The effects, by index, whose 95 % interval contains the size at which they are absent. `ends` holds the intervals of
-/// all parameters of all effects, in order.
+/// Indices of the effects of the model `fit` whose 95 % interval contains the size at which the effect is absent.
+/// `ends` holds the intervals of the parameters of all effects, in the order of the model.
 pub(crate) fn may_be_absent(fit: &Fit, ends: &[Interval]) -> Vec<usize> {
     let mut at = 0;
     let mut out = Vec::new();
@@ -64,12 +66,30 @@ pub(crate) fn may_be_absent(fit: &Fit, ends: &[Interval]) -> Vec<usize> {
         let own = effect.free_parameters.iter().zip(&ends[at..]);
         let sizes: Vec<bool> = own.filter_map(|(parameter, ends)| parameter.may_be_absent(ends)).collect();
         at += effect.free_parameters.len();
-        // a vector may differ from zero although each of its components alone may be zero
+        // this holds only for a single size: a vector may differ from zero although each of its components may be zero
         if sizes == [true] {
             out.push(i);
         }
     }
     out
+}
+
+/// Says which numbers of the effects have an end of their interval that the readings do not bound, if some do.
+pub(crate) fn unbounded(fit: &Fit, ends: &[Interval]) -> Option<String> {
+    let labels =
+        fit.model.effects.iter().flat_map(|effect| vec![effect.label(); effect.free_parameters.len()]);
+    let numbers = fit.model.free_parameters().zip(ends).zip(labels);
+    let is_limit = |parameter: &FreeParameter, end: Option<f64>| end.is_some_and(|u| parameter.is_limit(u));
+    let unbounded = numbers
+        .filter(|((parameter, ends), _)| is_limit(parameter, ends.low) || is_limit(parameter, ends.high))
+        .map(|((parameter, _), label)| format!("{} of {label}", parameter.name));
+    let unbounded: Vec<String> = unbounded.collect();
+    (!unbounded.is_empty()).then(|| {
+        format!(
+            "the readings do not bound one side of {}: the end is that of what a part can be",
+            unbounded.join(", ")
+        )
+    })
 }
 
 /// Says which calibrated factors leave the tolerance, if any do.
@@ -98,7 +118,8 @@ pub(crate) fn beyond_tolerance(fit: &Fit, calibrated: &[Calibrated]) -> Option<S
     (!beyond.is_empty()).then(|| format!("calibration leaves the tolerance: {}{doubt}", beyond.join(", ")))
 }
 
-/// The number of honest parts of which one is at least so many standard deviations off.
+/// The number n such that one in n faultless parts deviates from nominal by at least `deviations` standard
+/// deviations.
 fn honest_parts_for_one(deviations: f64) -> f64 {
     1.0 / libm::erfc(deviations.abs() / std::f64::consts::SQRT_2)
 }

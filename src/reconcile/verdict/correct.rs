@@ -1,5 +1,4 @@
-//! Writes the corrected arm: calibrated values replace nominal ones and effects are added, each with its
-//! source.
+//! Builds the corrected arm: calibrated values replace nominal ones and effects are added, each with its source.
 
 use super::outcome::{Calibrated, Verdict};
 use crate::arm::effect::kind::Place;
@@ -11,7 +10,8 @@ use crate::reconcile::model::estimate::Finding;
 use crate::reconcile::readings::campaign::Campaign;
 use serde_json::{Value, json};
 
-/// The corrected arm, and the provenance of its values. Without a fit the arm stays as it was.
+/// The corrected arm, and the provenance of its values as JSON. The arm is calibrated as in `fit` and gets its
+/// effects, each with its interval from `findings`. Without a fit the arm stays as it was given.
 pub(crate) fn corrected(
     campaign: &Campaign,
     forward: &Forward,
@@ -36,7 +36,7 @@ pub(crate) fn corrected(
     (arm, provenance)
 }
 
-/// The provenance of a corrected arm's values, as JSON.
+/// The provenance of a corrected arm as JSON: the campaign, the program, the verdict and the calibrated values.
 pub(crate) fn provenance(campaign: &Campaign, verdict: Verdict, calibrated: Vec<Value>) -> Value {
     json!({
         "campaign": campaign.statement.name, "campaign_blake3": campaign.hash,

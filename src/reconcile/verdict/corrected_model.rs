@@ -1,5 +1,6 @@
-//! Which model the corrected arm has where no known effect explains the readings: of the arm as it was given, the calibrated
-//! one, the one with the best known effects, and those with laws without a name, the one that predicts held-out poses best.
+//! Chooses the model of the corrected arm if no known effect explains the readings. The models are the arm as it was
+//! given, the calibrated arm, the arm with the best known effects, and arms with laws without a name. The one that
+//! predicts held-out poses best is taken.
 //!
 //! The verdict stays `unexplained`: a model that predicts better is no explanation.
 
@@ -12,22 +13,23 @@ use crate::reconcile::select::empirical;
 use crate::reconcile::select::search::Search;
 use serde_json::{Value, json};
 
-/// A model with more numbers must lower the held-out error by this part, or the simpler one is taken.
+/// A model with more parameters is taken only if it lowers the error on held-out poses by at least this fraction
+/// compared with the simpler one.
 const WORTHWHILE: f64 = 0.02;
 
-/// A model that the corrected arm could have.
+/// A model that the corrected arm could have, with its error on held-out poses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
-    /// The model in words.
+    /// Description of the model in words.
     pub model: String,
-    /// Root mean square of its residuals on held-out poses \[standard deviations\].
+    /// Root mean square of the residuals that the model leaves on held-out poses \[standard deviations\].
     pub kept_out_rms_sigma: f64,
-    /// Whether `arm.corrected.json` is this model.
+    /// Whether this model was chosen for `arm.corrected.json`.
     pub is_written: bool,
 }
 
 impl Row {
-    /// As JSON of `verdict.json`.
+    /// The entry of the model in `verdict.json`.
     pub(crate) fn json(&self) -> Value {
         json!({
             "model": self.model, "kept_out_rms_sigma": self.kept_out_rms_sigma, "is_written": self.is_written,
@@ -35,16 +37,17 @@ impl Row {
     }
 }
 
-/// The table of the models, and the fit of the one that was chosen; `None` if that is the arm as it was given.
+/// The models that the corrected arm could have, as a table, and the one that was chosen.
 pub(crate) struct Choice<'a> {
-    /// Every model that was weighed, simplest first.
+    /// All models that were compared, the simplest first.
     pub rows: Vec<Row>,
-    /// The fit of the chosen model.
+    /// The fit of the chosen model; `None` if the arm as it was given was chosen.
     pub fit: Option<Fit<'a>>,
 }
 
-/// Chooses the model of the corrected arm. `search` has laws among its candidates from `first_law` on; `named` is the model
-/// with the best known effects.
+/// Chooses the model of the corrected arm. `baseline` is the calibrated model, and `named` the model with the best
+/// known effects, `named_effects`. The laws without a name are the candidates of `search` from the index `first_law`
+/// on. `noise` scales the declared standard deviations of the held-out errors.
 pub(crate) fn choose<'a>(
     search: &Search<'a>,
     first_law: usize,
@@ -79,7 +82,8 @@ fn row(model: String, kept_out_rms_sigma: f64) -> Row {
     Row { model, kept_out_rms_sigma, is_written: false }
 }
 
-/// Index of the first row that no later one betters by a worthwhile part.
+/// Index of the chosen row: starting with the simplest model, a later row is taken whenever its error is lower than
+/// that of the row taken so far by [`WORTHWHILE`] or more.
 fn simplest_of_the_best(rows: &[Row]) -> usize {
     let mut chosen = 0;
     for (i, row) in rows.iter().enumerate() {
@@ -90,7 +94,7 @@ fn simplest_of_the_best(rows: &[Row]) -> usize {
     chosen
 }
 
-/// Calibration, and the effects and laws of a model.
+/// The model of `fit` in words: calibration, and the effects and laws in it.
 fn in_words(fit: &Fit) -> String {
     let effect = |candidate: &&Candidate| match candidate.kind.name {
         name if name == KIND.name => empirical::in_words(candidate),
@@ -103,8 +107,8 @@ fn in_words(fit: &Fit) -> String {
     }
 }
 
-/// Root mean square of the residuals of the arm as it was given \[standard deviations\], over the same readings as those of
-/// the fits.
+/// Root mean square of the residuals of the arm as it was given \[standard deviations, scaled by `noise`\]. It is
+/// taken over the same readings as the held-out errors of the fits.
 fn nominal_rms(search: &Search, noise: &Noise) -> f64 {
     let forward = search.forward;
     let predicted = forward.predict(&forward.coefficients(&forward.nominal));
@@ -116,7 +120,8 @@ fn nominal_rms(search: &Search, noise: &Noise) -> f64 {
     }))
 }
 
-/// Root mean square of the residuals of a model on held-out poses \[standard deviations\].
+/// Root mean square of the residuals of the model `fit`, predicted with their poses held out \[standard deviations,
+/// scaled by `noise`\].
 fn fit_rms(search: &Search, noise: &Noise, fit: &Fit) -> f64 {
     let residuals = held_out::residuals(search.forward, &fit.model, &fit.point.u, search.weights);
     let each = residuals.iter().zip(&search.forward.data);

@@ -1,5 +1,5 @@
-//! What every reader of a campaign judges alike, be it of displacements, positions or records: which verdict prevails, what
-//! becomes of the effects under it, and what keeps an effect from being named.
+//! Rules that are the same for displacements, positions and records: which verdict applies to several kinds of
+//! readings, which effects are named with a verdict, and what prevents an effect from being named.
 
 use super::outcome::Verdict;
 use crate::reconcile::model::estimate::Finding;
@@ -8,19 +8,21 @@ use crate::reconcile::model::estimate::Finding;
 const MOST_ALTERNATIVES: usize = 3;
 
 impl Verdict {
-    /// The verdict on readings of several kinds that were judged each by itself: the least favourable one.
+    /// The common verdict on several kinds of readings, each of which was judged by itself: the least favourable of
+    /// the verdicts `said`.
     pub(crate) fn on_all(said: &[Verdict]) -> Verdict {
         let order = [Verdict::Unexplained, Verdict::InsufficientData, Verdict::Explained];
         order.into_iter().find(|verdict| said.contains(verdict)).unwrap_or(Verdict::NoGap)
     }
 
-    /// Whether the readings are understood.
+    /// Whether the readings are explained, with or without an effect.
     pub(crate) fn is_settled(self) -> bool {
         matches!(self, Verdict::Explained | Verdict::NoGap)
     }
 
-    /// The effects that are named and those that are only suspected. Nothing is said of effects where nothing explains the
-    /// readings.
+    /// Divides the effects `found` into those that are named (first) and those that are only suspected (second), as
+    /// the verdict demands. `suspects` were only suspected from the beginning. No effects are stated if the verdict
+    /// is `unexplained`.
     pub(crate) fn named_and_suspected(
         self,
         found: Vec<Finding>,
@@ -34,12 +36,13 @@ impl Verdict {
     }
 }
 
-/// Says that too many alternatives fit as well as an effect, if they do.
+/// Sentence that `count` alternatives fit as well as the effect `label`; `None` if there are few enough to name it.
 pub(crate) fn too_many_alternatives(label: &str, count: usize) -> Option<String> {
     (count > MOST_ALTERNATIVES).then(|| format!("{count} other effects fit as well as {label}"))
 }
 
-/// Says that a model is worse than calibration at poses that it was not fitted to.
+/// Sentence that the model `label` predicts held-out poses worse than calibration alone. `after` and `before` are the
+/// errors with and without the effects, in words.
 pub(crate) fn does_not_predict(label: &str, after: &str, before: &str) -> String {
     format!("{label} does not predict poses it was not fitted to ({after} after, {before} before)")
 }

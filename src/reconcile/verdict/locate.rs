@@ -1,4 +1,5 @@
-//! Locates the gap: splits the readings by channel, branch, load, mode, joint and pose.
+//! Locates the discrepancy between model and measurement: divides the readings by channel, branch, load, mode, joint
+//! and pose.
 
 use super::outcome::Located;
 use crate::arm::effect::channel::Channel;
@@ -8,10 +9,11 @@ use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::readings::campaign::Campaign;
 use std::collections::HashMap;
 
-/// Number of poses that are listed.
+/// Number of poses that are listed, those with the largest errors first.
 const WORST_POSES: usize = 3;
 
-/// Root mean squares of every part of the readings \[declared standard deviations\], without gross errors.
+/// Root mean square of the residuals of every part of the readings (such as a channel, a load, a mode) with
+/// `baseline` and with `best` \[declared standard deviations\]. Gross errors are left out.
 pub(crate) fn located(
     campaign: &Campaign,
     forward: &Forward,

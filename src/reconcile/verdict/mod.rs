@@ -1,4 +1,4 @@
-//! The conclusion of a reconciliation, and the files that state it.
+//! The verdict of a reconciliation, and the files that state it.
 
 pub(crate) mod caution;
 pub(crate) mod correct;

@@ -1,9 +1,9 @@
 //! Proposes the test that best separates models that the readings cannot yet tell apart.
 //!
-//! Poses come from a low-discrepancy sequence over the range of the campaign. Each has the largest payload
-//! and tip force that the campaign used, and its frequencies; each joint can also go on the bench. For every
-//! test, the predictions of the competing models are compared, all fitted to the readings so far. The
-//! difference is in expected standard deviations.
+//! Poses come from a low-discrepancy sequence over the range of the campaign. In each pose, displacements are proposed
+//! with the largest payload and with the largest tip force of the campaign, and frequencies with and without payload.
+//! Each joint can also be tested on the bench. For every test, the predictions of the competing models are compared,
+//! all fitted to the readings so far. The difference is given in expected standard deviations.
 
 use super::outcome::{NextTest, Verdict};
 use crate::arm::effect::subject::Subject;
@@ -16,41 +16,44 @@ use crate::reconcile::readings::rows::{ModalRow, StaticRow, WindupRow};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-/// The models to separate, and what is known so far.
+/// The models that the next test is to separate, and the result so far.
 pub(crate) struct Question<'a> {
-    /// The campaign so far.
+    /// The campaign with the readings so far.
     pub campaign: &'a Campaign,
-    /// The best model.
+    /// The best model: its name, and the arm under test with its effects.
     pub best: (String, Subject),
-    /// The competing models, with their names.
+    /// The competing models: for each its name, and the arm under test with its effects.
     pub competitors: Vec<(String, Subject)>,
-    /// The pose that the best model explains worst \[deg\].
+    /// The pose in which the best model has its largest residuals \[deg, mm\]; `None` if there is none.
     pub residuals: Option<Vec<f64>>,
-    /// The verdict so far.
+    /// The verdict on the readings so far.
     pub verdict: Verdict,
 }
 
 const STATIC_POSES: usize = 24;
 const MODAL_POSES: usize = 4;
 const PROPOSALS: usize = 4;
-/// Separation that settles a question \[standard deviations\].
+/// Difference of the predictions of two models that suffices to decide between them \[standard deviations\].
 pub(crate) const ENOUGH: f64 = 4.0;
-/// A test that separates by less than this is not worth any number of readings \[standard deviations\].
-pub(crate) const WORTHLESS_SIGMAS: f64 = 0.1;
+/// Separation that one reading must reach \[standard deviations\]. With less, a hundred readings would not be
+/// enough.
+pub(crate) const WORTHLESS_SIGMAS: f64 = 0.1 * ENOUGH;
+/// Largest number of readings that is printed.
+const MOST_READINGS: f64 = 9999.0;
 /// Standard deviations that are assumed where a channel was not measured.
 const DEFAULT_SIGMA_MM: f64 = 0.01;
 const DEFAULT_SIGMA_PART: f64 = 0.003;
 const DEFAULT_SIGMA_ARCMIN: f64 = 0.05;
 const MODES: usize = 4;
 
-/// A test as rows of the three files.
+/// A test, as rows of the file in which its readings would be.
 enum Test {
     Static(Vec<StaticRow>),
     Modal(Vec<ModalRow>),
     Bench(Vec<WindupRow>),
 }
 
-/// The tests worth making, best first.
+/// Up to four tests that separate the models of `question` best, the best first.
 pub(crate) fn propose(question: &Question) -> Vec<NextTest> {
     if question.verdict == Verdict::Unexplained {
         return question.residuals.iter().map(|pose| repeat(question.campaign, pose)).collect();
@@ -70,7 +73,7 @@ pub(crate) fn propose(question: &Question) -> Vec<NextTest> {
                 .collect()
         })
         .collect();
-    // a competing model that no test separates cannot be decided by measuring more
+    // a competing model that no test separates cannot be ruled out by more readings
     let most = |competitor: usize| gaps.iter().map(|list| list[competitor]).fold(0.0, f64::max);
     let (open, twins): (Vec<usize>, Vec<usize>) =
         (0..question.competitors.len()).partition(|&competitor| most(competitor) >= WORTHLESS_SIGMAS);
@@ -102,6 +105,11 @@ pub(crate) fn propose(question: &Question) -> Vec<NextTest> {
     });
     out.truncate(PROPOSALS);
     out
+}
+
+/// How many readings settle a question, if the models differ by so many standard deviations in one.
+pub(crate) fn readings_needed(sigmas: f64) -> usize {
+    (ENOUGH / sigmas).powi(2).ceil().min(MOST_READINGS) as usize
 }
 
 /// Says that no reading of the arm tells the models apart.
@@ -138,7 +146,7 @@ fn largest_payload(campaign: &Campaign) -> Payload {
         .unwrap_or(Payload { mass_kg: 5.0, cg_m: Vector3::new(0.05, 0.0, 0.0), ..Payload::default() })
 }
 
-/// Smallest and largest entry of each joint in the poses of the campaign \[deg, mm\].
+/// Smallest and largest angle or travel of each joint in the poses of the campaign \[deg, mm\].
 fn ranges(campaign: &Campaign) -> Vec<(f64, f64)> {
     let joints = campaign.arm.driven_joints();
     let poses =
@@ -152,7 +160,7 @@ fn ranges(campaign: &Campaign) -> Vec<(f64, f64)> {
             match joint.motion {
                 _ if low < high => (low, high),
                 Motion::Turns => (-90.0, 90.0),
-                // how far a travel goes is not known
+                // the limits of a travel are not known
                 Motion::Slides if low.is_finite() => (low, low),
                 Motion::Slides => (0.0, 0.0),
             }
@@ -160,7 +168,8 @@ fn ranges(campaign: &Campaign) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// A pose of Halton's sequence within ranges of angles and travels, in whole degrees and millimetres.
+/// Pose number `index` of Halton's sequence within the `ranges` of the joints' angles and travels, in whole degrees
+/// and millimetres. The poses of the sequence fill the ranges evenly.
 pub(crate) fn spread_pose(ranges: &[(f64, f64)], index: usize) -> Vec<f64> {
     ranges
         .iter()
@@ -169,7 +178,7 @@ pub(crate) fn spread_pose(ranges: &[(f64, f64)], index: usize) -> Vec<f64> {
         .collect()
 }
 
-/// A number of Halton's low-discrepancy sequence, from 0 to 1.
+/// Member number `index` of Halton's low-discrepancy sequence to the prime base `base`, from 0 to 1.
 fn halton(mut index: usize, base: usize) -> f64 {
     let (mut f, mut r) = (1.0, 0.0);
     while index > 0 {
@@ -225,7 +234,8 @@ fn tests(campaign: &Campaign, best: &Exact) -> Vec<Test> {
     out
 }
 
-/// The components that the campaign's instrument reads, each with the standard deviation that it has first.
+/// For each component x, y, z of a displacement, the standard deviation of its first reading in the campaign; `None`
+/// if the instrument does not read the component.
 fn instrument(campaign: &Campaign) -> Components {
     let first = |c: usize| campaign.statics.iter().find_map(|row| row.measured[c]);
     let read = |sigma_mm: f64| Some(Component { value_mm: 0.0, sigma_mm });
@@ -235,8 +245,8 @@ fn instrument(campaign: &Campaign) -> Components {
     }
 }
 
-/// A bench cycle for each joint that has not been on the bench, up to its largest torque in the static tests.
-/// A joint that has been there is known as well as its readings say.
+/// A bench cycle for each joint that has not been on the bench, up to the joint's largest torque in the proposed static
+/// tests. A joint that was on the bench is not proposed again, because the models were already fitted to its readings.
 fn benches(campaign: &Campaign, best: &Exact, statics: &[Test]) -> Vec<Test> {
     let mut largest: Vec<(String, f64)> = Vec::new();
     for row in statics.iter().filter_map(|t| if let Test::Static(rows) = t { rows.first() } else { None }) {
@@ -275,8 +285,8 @@ fn predict(exact: &Exact, test: &Test) -> Vec<f64> {
     }
 }
 
-/// Difference of two predictions of a test \[standard deviations\]: the root of the sum of squares, over the
-/// modes that both have.
+/// Difference of the predictions `a` and `b` of two models for the same test \[standard deviations\]: the root of the
+/// sum of squares over the readings. Modes that only one of the models has are left out.
 fn separation(test: &Test, a: &[f64], b: &[f64]) -> f64 {
     let sigma = |i: usize| match test {
         // a component that the instrument does not read separates nothing
@@ -339,10 +349,17 @@ fn describe(question: &Question, test: &Test, sigmas: f64, open: &[usize]) -> Ne
             .filter(|name| !name.is_empty())
             .collect(),
         expected_sigmas: sigmas,
-        readings_needed: if sigmas > 1e-3 {
-            (ENOUGH / sigmas).powi(2).ceil().min(9999.0) as usize
-        } else {
-            9999
-        },
+        readings_needed: readings_needed(sigmas),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_test_is_worth_a_hundred_readings_at_most() {
+        assert_eq!([ENOUGH, 0.5 * ENOUGH, WORTHLESS_SIGMAS].map(readings_needed), [1, 4, 100]);
+        assert_eq!(readings_needed(0.0), MOST_READINGS as usize, "models that do not differ");
     }
 }

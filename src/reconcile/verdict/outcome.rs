@@ -1,4 +1,4 @@
-//! The outcome of a reconciliation.
+//! The result of a reconciliation, and its JSON and CSV files.
 
 use super::corrected_model::Row;
 use super::files::{CORRECTED_FILE, corrected_files};
@@ -13,21 +13,21 @@ use crate::reconcile::records::finding::JointRecord;
 use crate::reconcile::select::lack_of_fit::LackOfFit;
 use serde_json::{Value, json};
 
-/// The verdict.
+/// Verdict on the readings of a campaign.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// Noise and calibration within tolerance explain all readings.
+    /// No gap: noise and calibration within tolerance explain all readings.
     NoGap,
     /// The effects that were found explain the readings.
     Explained,
     /// No effect of the library explains the readings.
     Unexplained,
-    /// The readings are insufficient to tell.
+    /// The readings are too few, or too ambiguous, to decide.
     InsufficientData,
 }
 
 impl Verdict {
-    /// The word in `verdict.json`.
+    /// Word for the verdict in `verdict.json`.
     pub fn word(self) -> &'static str {
         match self {
             Verdict::NoGap => "no_gap",
@@ -38,155 +38,157 @@ impl Verdict {
     }
 }
 
-/// A calibrated value.
+/// A calibrated property of the arm.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Calibrated {
-    /// What was calibrated: `j2.stiffness`, `steel.modulus`, `j2.mass`.
+    /// Name of the property: `j2.stiffness`, `steel.modulus`, `j2.mass`.
     pub name: String,
-    /// Factor on the nominal value.
+    /// Factor on the nominal value, with its interval.
     pub factor: Estimate,
-    /// Standard deviation of ln of the factor, over the one that the tolerance allows; 1 means that nothing
-    /// was learnt.
+    /// Standard deviation of the logarithm of the factor after the readings, divided by its standard deviation before
+    /// them (from the tolerance). The value 1 means that the readings say nothing about the property.
     pub learnt: f64,
 }
 
-/// Root mean squares of one part of the readings, before and after.
+/// Size of the residuals of one part of the readings, before and after the effects.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Located {
-    /// Which part: `static`, `static, unloading`, `modal, mode 2`, `windup, j3`.
+    /// Name of the part: `static`, `static, unloading`, `modal, mode 2`, `windup, j3`.
     pub part: String,
-    /// How many numbers it has.
+    /// Number of measured values in the part.
     pub count: usize,
-    /// Root mean square with the calibrated nominal model \[standard deviations\].
+    /// Root mean square of the residuals with the calibrated nominal model \[standard deviations\].
     pub rms_before: f64,
-    /// Value with the effects.
+    /// Root mean square of the residuals with the effects \[standard deviations\].
     pub rms_after: f64,
 }
 
-/// A test worth making.
+/// A proposed test.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NextTest {
-    /// `static`, `modal` or `windup`.
+    /// Kind of the test: `static`, `modal`, `windup`, `positions` or `another kind`.
     pub kind: String,
-    /// What to do, in words.
+    /// Description of the test in words.
     pub description: String,
     /// Pose, if the test has one: angles \[deg\] and travels \[mm\].
     pub pose_deg: Option<Vec<f64>>,
-    /// The driven joints, whose entries the pose has.
+    /// The driven joints, in the order of the entries of the pose.
     pub joints: Vec<DrivenJoint>,
-    /// Payload \[kg\].
+    /// Payload of the test \[kg\].
     pub payload_kg: f64,
-    /// Tip force \[N\].
+    /// Force at the tip in the test, in the directions of the world \[N\].
     pub force_n: [f64; 3],
-    /// The joint, for a test on the bench.
+    /// Name of the joint, for a test on the bench; `None` otherwise.
     pub joint: Option<String>,
-    /// The models that it tells apart.
+    /// Names of the models that the test tells apart.
     pub separates: Vec<String>,
-    /// Expected difference \[standard deviations\].
+    /// Expected difference between the predictions of the models \[standard deviations\].
     pub expected_sigmas: f64,
-    /// Number of such readings that reach four standard deviations.
+    /// Number of readings like this after which the difference reaches four standard deviations.
     pub readings_needed: usize,
 }
 
-/// One reading, and the values of the models before and after.
+/// One measured value, and what the models without and with effects predict for it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReadingResidual {
-    /// Channel.
+    /// Channel of the reading.
     pub channel: Channel,
-    /// Row of its file, from 1.
+    /// Row in the file of the channel, counted from 1 without the header.
     pub row: usize,
-    /// Index of its row among the rows of its channel in the campaign.
+    /// Index of the row among the rows of its channel in the campaign, from 0.
     pub index: usize,
-    /// Component 0-2 of a vector.
+    /// Component, 0 to 2, of a vector; 0 for a single value.
     pub component: usize,
-    /// `dx_mm`, `frequency_hz` ...
+    /// Name of the quantity: `dx_mm`, `frequency_hz` ...
     pub quantity: &'static str,
-    /// Measured.
+    /// Measured value, in the unit of the quantity.
     pub measured: f64,
-    /// Declared standard deviation.
+    /// Declared standard deviation, in the unit of the quantity.
     pub sigma: f64,
-    /// Value of the model as given, calibrated within tolerance.
+    /// Prediction of the arm as given, calibrated within tolerance, in the unit of the quantity.
     pub before: f64,
-    /// Value with the effects.
+    /// Prediction of the model with the effects, in the unit of the quantity.
     pub after: f64,
-    /// Residual with the pose held out of the fit \[declared standard deviations\].
+    /// Residual, measured minus predicted with the pose held out of the fit \[declared standard deviations\]; `None`
+    /// if the reading is never held out.
     pub held_out: Option<f64>,
-    /// Whether the row was taken for a gross error.
+    /// Whether the row was taken as a gross error and left out of the fit.
     pub gross: bool,
 }
 
-/// A candidate's evidence.
+/// A model that was compared, with its score.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evidence {
-    /// The model: effects joined by `+`.
+    /// The model: its effects joined by `+`.
     pub model: String,
-    /// Its score minus that of the best model.
+    /// Score of the model (logarithm of the evidence less the price of its effects) minus the score of the best
+    /// model.
     pub score: f64,
-    /// Its objective, which behaves like chi-squared.
+    /// Value of the objective of the fit, which behaves like chi-squared.
     pub objective: f64,
 }
 
-/// A law without a name in the corrected arm.
+/// A law without a name that is in the corrected arm.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Law {
-    /// Its place and numbers with their intervals.
+    /// Place and parameters of the law, with their intervals.
     pub finding: Finding,
-    /// The law in words.
+    /// Description of the law in words.
     pub law: String,
-    /// What it may be, in a sentence.
+    /// Possible physical causes, as a sentence.
     pub may_be: &'static str,
 }
 
-/// Everything `reconcile` found.
+/// Everything that `reconcile` found.
 #[derive(Debug, Clone)]
 pub struct Outcome {
-    /// Campaign.
+    /// Name of the campaign.
     pub campaign: String,
-    /// blake3 of its files.
+    /// blake3 hash of the campaign's files.
     pub hash: String,
-    /// The verdict.
+    /// Verdict on the readings.
     pub verdict: Verdict,
-    /// The reasons, one sentence each.
+    /// Reasons for the verdict, one sentence each.
     pub reasons: Vec<String>,
-    /// The effects, if they explain the readings.
+    /// Named effects, if they explain the readings; otherwise empty.
     pub effects: Vec<Finding>,
-    /// Suspected effects, if the readings cannot tell.
+    /// Suspected effects, which the readings do not suffice to name; empty if there are none.
     pub suspects: Vec<Finding>,
     /// The laws without a name in the corrected arm.
     pub empirical: Vec<Law>,
-    /// Where nothing explains the gap: the models that the corrected arm could have, and how well each predicts held-out
+    /// For the verdict `unexplained`: the models that the corrected arm could have, each with its error on held-out
     /// poses. Empty for other verdicts.
     pub models: Vec<Row>,
-    /// The confirmation on held-out poses.
+    /// Root mean square residuals on held-out poses without and with the effects; `None` if nothing was held out.
     pub held_out: Option<HeldOut>,
-    /// The location of the gap.
+    /// Root mean square residuals of each part of the readings, which show where the discrepancy is.
     pub located: Vec<Located>,
-    /// What to measure next, best first.
+    /// Proposed tests, the best first.
     pub next_tests: Vec<NextTest>,
-    /// Quality of the readings.
+    /// Quality of the readings: gross errors, and factors on the declared standard deviations.
     pub noise: Noise,
-    /// Lack of fit of the best model.
+    /// Test of the best model's residuals for structure; `None` if it was not made.
     pub lack_of_fit: Option<LackOfFit>,
-    /// Calibrated values.
+    /// Calibrated properties of the arm.
     pub calibrated: Vec<Calibrated>,
-    /// The models that were weighed.
+    /// The models that were compared, each with its score.
     pub evidence: Vec<Evidence>,
-    /// Absolute positions: how the error falls as each effect is added.
+    /// Absolute positions: the errors after each stage of the fit. Empty for other readings.
     pub stages: Vec<Stage>,
-    /// Records against time: what they say about each joint.
+    /// Records against time: the results for each joint. Empty for other readings.
     pub records: Vec<JointRecord>,
-    /// Readings and residuals.
+    /// All readings with their predictions and residuals.
     pub residuals: Vec<ReadingResidual>,
     /// The corrected arm.
     pub corrected: Arm,
-    /// Further corrected arms on the same trunk.
+    /// The other corrected arms on the same trunk.
     pub other_corrected: Vec<Arm>,
     /// Provenance of the corrected arm's values.
     pub provenance: Value,
 }
 
 impl NextTest {
-    /// A test of another kind. These readings do not tell what it is worth.
+    /// A test of another kind, described in words. How well it would separate models is not predicted.
     pub fn of_another_kind(description: String) -> Self {
         Self {
             kind: "another kind".into(),
@@ -217,7 +219,7 @@ impl NextTest {
 }
 
 impl Outcome {
-    /// `verdict.json`.
+    /// Content of `verdict.json`.
     pub fn to_json(&self) -> Value {
         let held_out = self.held_out.map(|k| {
             json!({"rms_sigma_before": k.rms_before, "rms_sigma_after": k.rms_after, "rms_declared_sigma_after": k.rms_declared_after, "readings": k.count})
@@ -258,7 +260,8 @@ impl Outcome {
         })
     }
 
-    /// The laws without a name, each with the held-out error of the model that has it.
+    /// The entry `empirical` of `verdict.json`: the laws without a name in the corrected arm, each with the held-out
+    /// error of the model that contains it.
     fn empirical_json(&self) -> Vec<Value> {
         let written = self.models.iter().find(|row| row.is_written);
         let laws = self.empirical.iter().map(|law| {
@@ -296,7 +299,7 @@ impl Outcome {
         json!({"chi_squared_per_degree_of_freedom": l.chi2_per_dof, "fails": l.fails, "structures": structures})
     }
 
-    /// `residuals.csv`.
+    /// Content of `residuals.csv`.
     pub fn residuals_csv(&self) -> String {
         let mut out = String::from(
             "channel,row,quantity,measured,sigma,model_before,model_after,kept_out_residual_sigma,gross_error\n",
@@ -319,7 +322,7 @@ impl Outcome {
         out
     }
 
-    /// A further corrected arm as its file, with its own placement.
+    /// Content of the file of the corrected arm `arm`, one of the other arms on the trunk, with its placement.
     pub fn other_json(&self, arm: &Arm) -> Value {
         let mut out = arm.to_json();
         out["provenance"] = self.provenance.clone();
@@ -332,7 +335,7 @@ impl Outcome {
         out
     }
 
-    /// The corrected arm as its file.
+    /// Content of `arm.corrected.json`.
     pub fn corrected_json(&self) -> Value {
         let mut arm = self.corrected.to_json();
         arm["provenance"] = self.provenance.clone();

@@ -1,4 +1,4 @@
-//! The values of a campaign's page.
+//! The values that the page of a campaign shows.
 
 use super::outcome::{NextTest, Outcome, ReadingResidual, Verdict};
 use super::stage::Stage;
@@ -14,7 +14,7 @@ use crate::report::pose::pose_signs;
 use crate::report::section::PageSection;
 use crate::report::table::{Column, Table};
 
-/// The page of a campaign and its outcome.
+/// The values that the page of a campaign shows, from the campaign and the result of its reconciliation.
 pub fn campaign_page(campaign: &Campaign, outcome: &Outcome) -> CampaignPage {
     let text = outcome.to_text();
     CampaignPage {
@@ -55,7 +55,7 @@ pub fn campaign_page(campaign: &Campaign, outcome: &Outcome) -> CampaignPage {
     }
 }
 
-/// The verdict as a spoken sentence.
+/// The verdict as a full sentence.
 fn sentence(outcome: &Outcome) -> String {
     let place = |f: &Finding| match f.at.as_str() {
         "" => f.effect.replace('_', " "),
@@ -74,7 +74,8 @@ fn sentence(outcome: &Outcome) -> String {
     }
 }
 
-/// The models that the corrected arm could have, where nothing explains the gap, and the laws without a name in them.
+/// Section on the corrected arm for the verdict `unexplained`: the models that the arm could have, and the laws
+/// without a name in the chosen one. `None` for other verdicts.
 fn corrected_models(outcome: &Outcome) -> Option<PageSection> {
     if outcome.models.is_empty() {
         return None;
@@ -100,12 +101,13 @@ fn corrected_models(outcome: &Outcome) -> Option<PageSection> {
     })
 }
 
-/// Lines of the verdict about the readings themselves.
+/// Whether a line of the verdict's text is about the quality of the readings (gross errors, scatter).
 fn is_quality(line: &str) -> bool {
     line.trim_start().starts_with("gross error") || line.ends_with("times as much as declared")
 }
 
-/// The residuals, each with its pose. Rows come channel by channel, in the order of the files.
+/// The residuals of all readings except positions, each with its pose \[standard deviations\]. They are sorted by
+/// channel, then by the order in the file.
 fn readings(campaign: &Campaign, outcome: &Outcome) -> Vec<Reading> {
     let own = outcome.residuals.iter().filter(|r| r.channel != Channel::Positions);
     own.map(|r| {
@@ -128,7 +130,7 @@ fn readings(campaign: &Campaign, outcome: &Outcome) -> Vec<Reading> {
     .collect()
 }
 
-/// The errors of absolute positions, with their coordinates combined. One that was not measured counts as zero.
+/// The errors of absolute positions as vectors, one per position \[mm\]. A coordinate that was not measured is zero.
 fn positions(campaign: &Campaign, outcome: &Outcome) -> Vec<Position> {
     let own: Vec<&ReadingResidual> =
         outcome.residuals.iter().filter(|r| r.channel == Channel::Positions).collect();
@@ -164,7 +166,7 @@ fn step(stage: &Stage) -> Step {
 fn found(finding: &Finding) -> Found {
     let word = |name: &str, e: &Estimate| word_of(&finding.effect, name, e.value);
     let named = |(name, estimates): &(String, Vec<Estimate>)| -> Vec<Ranged> {
-        // a word is part of the label
+        // a parameter that is a word is part of the label
         if estimates.iter().any(|e| word(name, e).is_some()) {
             return Vec::new();
         }

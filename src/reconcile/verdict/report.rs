@@ -1,4 +1,4 @@
-//! Writes the verdict in words, and the files of the outcome.
+//! The verdict in words, and the files of the result.
 
 use super::files::{CORRECTED_FILE, corrected_files};
 use super::outcome::{Outcome, Verdict};
@@ -11,11 +11,12 @@ use crate::report::whole_file::{create_folder, write_whole};
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// A factor on declared standard deviations below this is not mentioned, because chance produces as much.
+/// A factor on the declared standard deviations of a channel below this is not mentioned, because chance produces as
+/// much.
 const WORTH_SAYING: f64 = 1.05;
 
 impl Outcome {
-    /// A short verdict for the terminal.
+    /// A short text of the verdict for the terminal.
     pub fn to_text(&self) -> String {
         let mut out = String::new();
         let _ = writeln!(out, "{}: {}", self.campaign, self.headline());
@@ -77,7 +78,8 @@ impl Outcome {
         }
     }
 
-    /// How well each model that the corrected arm could have predicts held-out poses, and the laws in it.
+    /// Appends to `out` the table of the models that the corrected arm could have, with their errors on held-out
+    /// poses, and the laws in the chosen one.
     fn models_table(&self, out: &mut String) {
         if self.models.is_empty() {
             return;
@@ -128,7 +130,7 @@ impl Outcome {
         }
     }
 
-    /// The files of the outcome with their names.
+    /// Names and contents of the files of the result.
     pub fn files(&self) -> Vec<(String, String)> {
         let json = |value: &serde_json::Value| format!("{value:#}\n");
         let mut out = vec![
@@ -177,7 +179,7 @@ fn value(e: &Estimate) -> String {
     format!("{} ({} to {})", number(e.value), end(e.low), end(e.high))
 }
 
-/// A number with four significant figures.
+/// The number `x` as text with four significant figures.
 fn number(x: f64) -> String {
     match x.abs() {
         0.0 => "0".into(),

@@ -2,25 +2,25 @@
 
 use serde_json::{Value, json};
 
-/// How well a model predicts positions.
+/// Errors of positions (distances of measured from predicted point) at one stage of the fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stage {
-    /// The effect or the group of numbers that was added to the stage before.
+    /// The effect, or the group of calibrated numbers, that this stage added.
     pub added: String,
-    /// The effects that it made unnecessary.
+    /// Effects that the addition made unnecessary and that were dropped.
     pub dropped: Vec<String>,
-    /// Median error of the poses in the fit \[mm\].
+    /// Median position error of the poses in the fit \[mm\].
     pub fitted_median_mm: f64,
-    /// Median error of held-out poses \[mm\].
+    /// Median position error of held-out poses \[mm\].
     pub median_mm: f64,
-    /// Their mean error \[mm\].
+    /// Mean position error of held-out poses \[mm\].
     pub mean_mm: f64,
-    /// Their largest error \[mm\].
+    /// Largest position error of held-out poses \[mm\].
     pub max_mm: f64,
 }
 
 impl Stage {
-    /// As JSON for `verdict.json`.
+    /// The entry of the stage in `verdict.json`.
     pub fn json(&self) -> Value {
         json!({
             "added": self.added, "dropped": self.dropped, "fitted_median_mm": self.fitted_median_mm, "kept_out_median_mm": self.median_mm,

@@ -1,4 +1,4 @@
-//! Says where the readings are too few, or too much alike, to settle anything.
+//! Tests whether the readings are too few, or too similar to each other, to settle anything.
 
 use crate::arm::effect::channel::Channel;
 use crate::reconcile::forward::datum::Datum;
@@ -8,15 +8,15 @@ use crate::reconcile::readings::components::FEWEST_ALIKE;
 use crate::reconcile::readings::rows::StaticRow;
 use crate::reconcile::select::few_rows;
 
-/// Smallest number of poses that can tell effects at different places apart.
+/// Smallest number of poses with which effects at different places can be told apart.
 pub(crate) const FEWEST_POSES: usize = 3;
 
-/// Number of rows that are not absolute positions.
+/// Number of rows of the campaign in the files of displacements, frequencies and bench readings together.
 pub(crate) fn rows(campaign: &Campaign) -> usize {
     campaign.statics.len() + campaign.modal.len() + campaign.windup.len()
 }
 
-/// Reasons why the readings cannot settle anything.
+/// Reasons why the readings cannot settle anything, one sentence each; empty if there are none.
 pub(crate) fn too_little(campaign: &Campaign, forward: &Forward) -> Vec<String> {
     let mut reasons = Vec::new();
     let rows = rows(campaign);
@@ -51,7 +51,7 @@ pub(crate) fn too_little(campaign: &Campaign, forward: &Forward) -> Vec<String> 
     reasons
 }
 
-/// Names channels whose readings are all equal, and says if no reading exceeds the noise.
+/// Sentences on channels whose readings are all equal, and a sentence if no reading exceeds the noise.
 fn dead_instruments(forward: &Forward) -> Vec<String> {
     let mut out = Vec::new();
     for channel in [Channel::Static, Channel::Modal, Channel::Windup] {

@@ -1,5 +1,5 @@
-//! How a study's result changes under another model of the same arm: the designs of both fronts, each judged
-//! by both models, and the picks that change.
+//! How a study's result changes under another model of the same arm. Each design of both fronts is evaluated by
+//! both models, and the picks that differ are listed.
 //!
 //! A design is identified by its `design_id`, that is, by what the search chose. Drives that the study sizes
 //! are sized again under the other model.
@@ -10,7 +10,7 @@ use crate::report::picks::{choices, designs, picks};
 use crate::report::table::{Column, Table};
 use serde::Serialize;
 
-/// The objectives of a design under one model.
+/// The objectives of a design under one of the two models of the arm.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub(crate) struct Values {
     /// Tip deflection \[mm\].
@@ -21,61 +21,64 @@ pub(crate) struct Values {
     pub lowest_mode_hz: f64,
 }
 
-/// One of two models.
+/// One of the two models of the arm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Model {
-    /// Without the corrections.
+    /// The model without corrections.
     Nominal,
-    /// With them.
+    /// The model with corrections.
     Corrected,
 }
 
-/// A design of either front.
+/// A design of either front, evaluated by both models.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Changed {
     /// Name of the design.
     pub design_id: String,
-    /// Whether it is on the front of either model, nominal first.
+    /// Whether the design is on the front of the nominal and of the corrected model.
     pub on_front: [bool; 2],
-    /// Its objectives under each model, nominal first. `None` if no catalog drive is strong enough or a limit
-    /// is broken.
+    /// Objectives of the design under the nominal and the corrected model. `None` if no catalog drive is strong
+    /// enough or the design breaks a limit.
     pub values: [Option<Values>; 2],
-    /// The picks it is under each model, nominal first.
+    /// What the design is picked for (lightest, stiffest, highest mode, knee) under the nominal and the corrected
+    /// model.
     pub picks: [Vec<&'static str>; 2],
-    /// Its parts in words.
+    /// Parts of the design in words.
     pub choices: String,
 }
 
 /// A pick, such as the lightest design, under both models.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(crate) struct PickChange {
-    /// `lightest`, `stiffest`, `highest mode` or `knee`.
+    /// Name of the pick: `lightest`, `stiffest`, `highest mode` or `knee`.
     pub pick: &'static str,
-    /// Whether another design takes its place.
+    /// Whether the corrected model picks another design.
     pub changes: bool,
-    /// The pick of the nominal model.
+    /// Name of the design that the nominal model picks.
     pub nominal_design_id: String,
-    /// Its objectives under the nominal model.
+    /// Objectives of this design under the nominal model.
     pub nominal: Option<Values>,
-    /// Its objectives under the corrected model; `None` if it is no longer feasible.
+    /// Objectives of the design that the nominal model picks, under the corrected model; `None` if it is no longer
+    /// feasible.
     pub nominal_under_corrected: Option<Values>,
-    /// The pick of the corrected model.
+    /// Name of the design that the corrected model picks.
     pub corrected_design_id: String,
-    /// The objectives of that design under the corrected model.
+    /// Objectives of the design that the corrected model picks, under the corrected model.
     pub corrected: Option<Values>,
 }
 
 /// All designs of the nominal and of the corrected front of a study, each with its objectives under both models.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Changes {
-    /// Every design of either front: those of the nominal front first.
+    /// Every design of either front. The designs of the nominal front come first.
     pub designs: Vec<Changed>,
 }
 
 const PICKS: [&str; 4] = ["lightest", "stiffest", "highest mode", "knee"];
 
 impl Changes {
-    /// Compares two fronts of one study; `judge` computes the objectives of a design under a model.
+    /// Compares the nominal and the corrected front of one study (`fronts`, in this order). `judge` computes the
+    /// objectives of a design, given by its `design_id`, under a model.
     pub(crate) fn new(fronts: [&FrontTable; 2], judge: impl Fn(Model, &str) -> Option<Values>) -> Self {
         let mut out = Self { designs: Vec::new() };
         for (side, front) in fronts.into_iter().enumerate() {
@@ -111,13 +114,13 @@ impl Changes {
         &mut self.designs[index]
     }
 
-    /// Numbers of designs: on both fronts, only on the nominal one, only on the corrected one.
+    /// Numbers of designs: on both fronts, only on the nominal front, only on the corrected front.
     pub(crate) fn counts(&self) -> [usize; 3] {
         [[true, true], [true, false], [false, true]]
             .map(|on| self.designs.iter().filter(|d| d.on_front == on).count())
     }
 
-    /// The picks under both models; none if a front is empty.
+    /// For each pick (lightest, and so on), the designs that the two models pick. Empty if a front is empty.
     pub(crate) fn picks(&self) -> Vec<PickChange> {
         let of = |side: usize, pick: &str| self.designs.iter().find(|d| d.picks[side].contains(&pick));
         PICKS
@@ -137,7 +140,7 @@ impl Changes {
             .collect()
     }
 
-    /// Counts and picks for a terminal.
+    /// The numbers of designs and the picks under both models, as text for a terminal.
     pub(crate) fn to_text(&self) -> String {
         let [stay, leave, enter] = self.counts();
         let mut table = Table::new(vec![
@@ -165,7 +168,7 @@ impl Changes {
         format!("front: {stay} designs stay, {leave} leave, {enter} enter\n\n{}", table.to_text())
     }
 
-    /// One line a design.
+    /// All designs as CSV, one line per design.
     pub(crate) fn to_csv(&self) -> String {
         let names = ["design_id", "front", "nominal_pick", "corrected_pick"];
         let figures = ["tip_deflection_mm", "mass_kg", "lowest_mode_hz"];

@@ -1,4 +1,4 @@
-//! The answers of all fronts to all questions, and who wins by how much.
+//! The answers of all fronts to all questions, with the winner and its lead.
 
 use super::contender::Contender;
 use super::moved::Moved;
@@ -9,30 +9,30 @@ use crate::report::picks::{Design, Objective, best, designs};
 use crate::report::words::capital;
 use serde::Serialize;
 
-/// What one front answers.
+/// The answer of one front to a question.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Answer {
     /// Label of the front.
     pub label: String,
-    /// Whether a design of the front keeps the limit.
+    /// Whether at least one design of the front meets the limit.
     pub reached: bool,
     /// Whether no other competing front has a better answer.
     pub winner: bool,
     /// Whether the front is only a reference and cannot win.
     pub reference: bool,
-    /// The best design within the limit. If no design keeps the limit, the one nearest to it; `None` if the
-    /// front is empty.
+    /// The best design within the limit. If no design meets the limit, the design that comes nearest to it; `None`
+    /// if the front is empty.
     pub design: Option<Design>,
 }
 
 /// All answers to one question at one limit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Row {
-    /// The question.
+    /// The question that the fronts answer.
     pub question: Question,
-    /// Its limit \[mm, kg or Hz\].
+    /// The limit of the question \[mm, kg or Hz\].
     pub limit: f64,
-    /// One answer a front, in the order of the contenders.
+    /// One answer per front, in the order of the contenders.
     pub answers: Vec<Answer>,
     /// Which front wins and by how much, in a sentence.
     pub sentence: String,
@@ -45,22 +45,22 @@ pub struct Reach {
     pub label: String,
     /// Whether the front is only a reference and cannot win.
     pub reference: bool,
-    /// Number of its designs.
+    /// Number of designs on the front.
     pub designs: usize,
-    /// The lightest design.
+    /// The lightest design of the front; `None` if the front is empty.
     pub lightest: Option<Design>,
-    /// The stiffest design.
+    /// The stiffest design of the front; `None` if the front is empty.
     pub stiffest: Option<Design>,
-    /// The design with the highest lowest mode.
+    /// The design of the front with the highest lowest mode; `None` if the front is empty.
     pub highest_mode: Option<Design>,
 }
 
-/// Fronts side by side.
+/// The comparison of several fronts.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
-    /// The best of each front, in the order of the contenders.
+    /// The best values of each front, in the order of the contenders.
     pub reach: Vec<Reach>,
-    /// One row a question and limit.
+    /// One row per question and limit.
     pub rows: Vec<Row>,
     /// Where the questions of the results differ, and what the results say beside their numbers, in sentences.
     pub remarks: Vec<String>,
@@ -68,7 +68,7 @@ pub struct Comparison {
     pub moved: Vec<Moved>,
 }
 
-/// Puts fronts side by side; limits that are not given are chosen.
+/// Compares fronts by the best design of each under the limits in `thresholds`. If none is given, limits are chosen.
 pub fn compare(contenders: &[Contender], thresholds: &Thresholds) -> Comparison {
     let fronts: Vec<Vec<Design>> = contenders.iter().map(|c| designs(&c.front)).collect();
     let competing: Vec<&[Design]> = contenders
@@ -165,7 +165,8 @@ fn sentence(question: Question, limit: f64, answers: &[Answer]) -> String {
     capital(&(out + "."))
 }
 
-/// What the reference front reaches, if that is better than the winner.
+/// Words on the answer of the reference front, which cannot win, to the question: the value that it reaches. Empty if
+/// this is no better than the value of `winner`.
 fn mixed(question: Question, winner: &Design, answers: &[Answer]) -> String {
     let sought = question.sought();
     let better = |a: &&Answer| {
@@ -198,7 +199,7 @@ fn out_of_reach(question: Question, answers: &[Answer]) -> String {
     }
 }
 
-/// How much better a design is than another, as a share of the other: `12.3 %`.
+/// By how much `better` is better than `other` in the objective `sought`, in percent of the value of `other`: `12.3 %`.
 fn advantage(sought: Objective, better: &Design, other: &Design) -> String {
     let (a, b) = (sought.of(better), sought.of(other));
     let percent = 100.0 * ((a - b) / b).abs();

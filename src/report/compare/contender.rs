@@ -1,4 +1,4 @@
-//! A front that takes part in a comparison.
+//! Contenders: the fronts of a comparison.
 
 use crate::report::front_table::FrontTable;
 
@@ -7,14 +7,14 @@ use crate::report::front_table::FrontTable;
 pub struct Contender {
     /// Name of the material or of the result.
     pub label: String,
-    /// Its designs.
+    /// Designs of the front.
     pub front: FrontTable,
-    /// Whether it is only a reference and cannot win: the front of all materials mixed.
+    /// Whether the front is only a reference and cannot win. This is the front of all materials mixed.
     pub reference: bool,
 }
 
 impl Contender {
-    /// A front that competes.
+    /// A front that can win.
     pub fn new(label: &str, front: FrontTable) -> Self {
         Self { label: label.to_string(), front, reference: false }
     }

@@ -16,19 +16,19 @@ pub struct Moved {
     pub from: String,
     /// Label of the front after.
     pub to: String,
-    /// Designs (equal in every choice) on both fronts with the same objectives.
+    /// Number of designs (equal in every choice) that are on both fronts with the same objectives.
     pub unchanged: usize,
-    /// Designs on both fronts whose objectives differ.
+    /// Number of designs on both fronts whose objectives differ, because they were evaluated again with other numbers.
     pub judged_anew: usize,
-    /// Designs only on the front after.
+    /// Number of designs that are only on the later front.
     pub came: usize,
-    /// Designs only on the front before.
+    /// Number of designs that are only on the earlier front.
     pub went: usize,
-    /// What changed, in sentences.
+    /// The changes in sentences.
     pub words: String,
 }
 
-/// What moved between two fronts.
+/// Compares the front `before` with the front `after` of the same study.
 pub fn moved(before: &Contender, after: &Contender) -> Moved {
     let (old, new) = (by_choice(&before.front), by_choice(&after.front));
     let shared = || new.iter().filter_map(|(key, row)| Some((row, old.get(key)?)));
@@ -47,7 +47,8 @@ pub fn moved(before: &Contender, after: &Contender) -> Moved {
     moved
 }
 
-/// The objectives of every design, keyed by its choices, or by its name if the table has no choices.
+/// For each design of a front, its objectives (as texts of the table), under its choices as the key. If the table has
+/// no choices, the name of the design is the key.
 fn by_choice(front: &FrontTable) -> HashMap<Vec<&str>, Vec<&str>> {
     let objectives: Vec<usize> = OBJECTIVE_COLUMNS.iter().filter_map(|c| front.column(c)).collect();
     let first = objectives.iter().copied().min().unwrap_or(0);

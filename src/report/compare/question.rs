@@ -1,10 +1,10 @@
-//! What is asked of every front: the best of one objective under a limit on another.
+//! The questions that every front answers: the best value of one objective under a limit on another.
 
 use crate::report::number::shortest;
 use crate::report::picks::{Design, Objective};
 use serde::Serialize;
 
-/// What is asked of every front.
+/// A question to every front: the best value of one objective under a limit on another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Question {
@@ -23,7 +23,7 @@ impl Question {
     pub const ALL: [Self; 4] =
         [Self::LightestAtDeflection, Self::StiffestAtMass, Self::HighestModeAtMass, Self::LightestAtMode];
 
-    /// What is made best.
+    /// The objective whose best value the question asks for.
     pub fn sought(self) -> Objective {
         match self {
             Self::LightestAtDeflection | Self::LightestAtMode => Objective::Mass,
@@ -32,7 +32,7 @@ impl Question {
         }
     }
 
-    /// What is limited.
+    /// The objective that has a limit in the question.
     pub fn limited(self) -> Objective {
         match self {
             Self::LightestAtDeflection => Objective::Deflection,
@@ -41,7 +41,7 @@ impl Question {
         }
     }
 
-    /// The word in files.
+    /// The name of the question in files.
     pub fn word(self) -> &'static str {
         match self {
             Self::LightestAtDeflection => "lightest_at_deflection",
@@ -67,7 +67,7 @@ impl Question {
     }
 }
 
-/// What the winner is: `is lightest`.
+/// The words that say in what the winner is best: `is lightest`.
 pub(super) fn superlative(question: Question, several: bool) -> &'static str {
     match (question.sought(), several) {
         (Objective::Mass, false) => "is lightest",
@@ -79,7 +79,7 @@ pub(super) fn superlative(question: Question, several: bool) -> &'static str {
     }
 }
 
-/// What the winner is more than the others.
+/// The comparative that says in what the winner is better than the others: `lighter`.
 pub(super) fn comparative(question: Question) -> &'static str {
     match question.sought() {
         Objective::Mass => "lighter",

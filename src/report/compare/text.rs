@@ -1,4 +1,4 @@
-//! A comparison for people and for programs: text tables, Markdown, CSV.
+//! A comparison of fronts as text tables, Markdown and CSV.
 
 use super::comparison::{Answer, Comparison, Reach, Row};
 use super::question::Question;
@@ -7,24 +7,24 @@ use crate::report::picks::{Design, Objective};
 use crate::report::table::{Column, Table, csv_line};
 use crate::report::words::wrap;
 
-/// Width that text tables keep to, if the labels allow it \[characters\].
+/// Width of text tables, unless the labels need more \[characters\].
 const WIDTH: usize = 80;
 /// Labels longer than this are shortened in text tables \[characters\].
 const LABEL: usize = 24;
 
 impl Comparison {
-    /// The best of each front.
+    /// A table of the best value of each objective that each front reaches, without any limit.
     pub fn reach_table(&self) -> Table {
         reach_table(&self.reach, &self.labels())
     }
 
-    /// The answers to a question, one column a limit.
+    /// A table of the answers to a question, with one column per limit.
     pub fn table(&self, question: Question) -> Table {
         let rows: Vec<&Row> = self.rows.iter().filter(|r| r.question == question).collect();
         table(&rows, &self.labels())
     }
 
-    /// Tables and sentences of at most 80 columns; long labels are shortened.
+    /// Tables and sentences, at most 80 columns wide. Long labels are shortened.
     pub fn to_text(&self) -> String {
         let labels = short_labels(&self.labels());
         let mut out =
@@ -55,7 +55,7 @@ impl Comparison {
         out
     }
 
-    /// A Markdown document with full labels.
+    /// The comparison as a Markdown document with full labels.
     pub fn to_markdown(&self) -> String {
         let labels = self.labels();
         let mut out = format!("# Fronts compared\n\n{REACH_TITLE}.\n\n");
@@ -83,8 +83,8 @@ impl Comparison {
         out
     }
 
-    /// One line an answer, numbers in shortest round-trip form; a front that cannot keep the limit has
-    /// `reached` = `no` and the design that comes nearest.
+    /// The comparison as CSV, one line per answer. Numbers are in the shortest form that reads back exactly. A
+    /// front that cannot meet the limit has `reached` = `no` and the design that comes nearest.
     pub fn to_csv(&self) -> String {
         let columns = [
             "question",
@@ -189,7 +189,7 @@ fn reach_table(reach: &[Reach], labels: &[String]) -> Table {
     table
 }
 
-/// The same table without counts and cost, for a terminal.
+/// The table of the best values of each front, without counts and cost, so that it fits a terminal.
 fn short_reach_table(reach: &[Reach], labels: &[String]) -> Table {
     let mut columns = vec![Column::left("front")];
     for unit in ["kg", "mm", "Hz"] {
@@ -202,7 +202,7 @@ fn short_reach_table(reach: &[Reach], labels: &[String]) -> Table {
     short
 }
 
-/// Whether no competing front reaches further.
+/// Whether `own`, the best design of one front in the objective, has the best value among all competing fronts.
 fn is_best(objective: Objective, own: &Option<Design>, reach: &[Reach]) -> bool {
     let of = |r: &Reach| match objective {
         Objective::Mass => r.lightest.clone(),
@@ -214,7 +214,7 @@ fn is_best(objective: Objective, own: &Option<Design>, reach: &[Reach]) -> bool 
     reach.len() > 1 && own.as_ref().is_some_and(|d| objective.minimized(d) == best)
 }
 
-/// Value, name and cost of a design; a star marks the best.
+/// Value of the objective, name and cost of a design, as three cells. A star before the value marks the best one.
 fn triple(objective: Objective, design: Option<&Design>, starred: bool) -> [String; 3] {
     let Some(d) = design else { return ["none".into(), String::new(), String::new()] };
     let star = if starred { "* " } else { "" };
@@ -225,7 +225,7 @@ fn triple(objective: Objective, design: Option<&Design>, starred: bool) -> [Stri
     ]
 }
 
-/// One table for several limits of one question.
+/// One table of the answers to one question at several limits.
 fn table(rows: &[&Row], labels: &[String]) -> Table {
     let mut columns = vec![Column::left("front")];
     for row in rows {
@@ -250,7 +250,7 @@ fn answer_cells(question: Question, answer: &Answer) -> [String; 3] {
     triple(question.sought(), design, answer.winner)
 }
 
-/// Splits the limits of a question into tables that fit the width.
+/// Splits the limits of a question into groups, each of which gives a table that fits the width.
 fn groups<'a>(rows: &[&'a Row], labels: &[String]) -> Vec<Vec<&'a Row>> {
     let mut out: Vec<Vec<&Row>> = Vec::new();
     for row in rows {
@@ -267,7 +267,7 @@ fn groups<'a>(rows: &[&'a Row], labels: &[String]) -> Vec<Vec<&'a Row>> {
     out
 }
 
-/// The fronts that cannot keep a limit, and how near each comes.
+/// A sentence about the fronts that cannot meet the limit of `row`, and how near each comes to it.
 fn out_of_reach(row: &Row, labels: &[String]) -> String {
     let limited = row.question.limited();
     let missed: Vec<String> = row
@@ -293,14 +293,14 @@ fn out_of_reach(row: &Row, labels: &[String]) -> String {
     format!("Cannot reach {}; nearest: {}.", header(row), missed.join(", "))
 }
 
-/// Labels short enough for a narrow table, still different from each other.
+/// Labels that are short enough for a narrow table and still differ from each other.
 pub(crate) fn short_labels(labels: &[String]) -> Vec<String> {
     let short: Vec<String> = labels.iter().map(|l| shorten(l)).collect();
     let unique = |i: usize| short.iter().filter(|s| **s == short[i]).count() == 1;
     (0..labels.len()).map(|i| if unique(i) { short[i].clone() } else { labels[i].clone() }).collect()
 }
 
-/// Drops what stands in brackets, abbreviates the words of laminates, then cuts.
+/// Removes text in brackets and abbreviates common words. If the label is still too long, cuts it.
 fn shorten(label: &str) -> String {
     if label.chars().count() <= LABEL {
         return label.to_string();

@@ -4,22 +4,22 @@ use super::question::Question;
 use crate::report::picks::{Design, Objective, best};
 use serde::Serialize;
 
-/// How many limits are chosen for a question.
+/// Number of limits that are chosen for each question.
 const CHOSEN: usize = 3;
 
 /// Limits at which fronts are compared. A question whose list is empty is not asked.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Thresholds {
-    /// Tip deflections \[mm\].
+    /// Limits on tip deflection \[mm\].
     pub deflection_mm: Vec<f64>,
-    /// Masses \[kg\].
+    /// Limits on mass \[kg\].
     pub mass_kg: Vec<f64>,
-    /// Lowest modes \[Hz\].
+    /// Limits on the lowest mode \[Hz\].
     pub mode_hz: Vec<f64>,
 }
 
 impl Thresholds {
-    /// The limits of a question.
+    /// The limits at which a question is asked.
     pub fn of(&self, question: Question) -> &[f64] {
         match question.limited() {
             Objective::Deflection => &self.deflection_mm,
@@ -28,13 +28,13 @@ impl Thresholds {
         }
     }
 
-    /// Whether no limit is given.
+    /// Whether there is no limit at all.
     pub fn is_empty(&self) -> bool {
         self.deflection_mm.is_empty() && self.mass_kg.is_empty() && self.mode_hz.is_empty()
     }
 
-    /// These limits. If none is given at all, chooses round limits for these fronts (none may be empty) that
-    /// most fronts can keep and that still force a trade-off for most of them.
+    /// These limits, if at least one is given. Otherwise round limits are chosen for the given fronts, none of which
+    /// may be empty. Most fronts can meet them, and for most fronts they still force a trade-off.
     pub fn or_chosen(&self, fronts: &[&[Design]]) -> Self {
         if !self.is_empty() || fronts.is_empty() {
             return self.clone();
@@ -51,8 +51,9 @@ impl Thresholds {
     }
 }
 
-/// The range of useful limits: the strictest limit that three of four fronts can keep, and the loosest limit
-/// that still constrains half of them. Beyond the latter the answer is simply the best design of the front.
+/// The range of useful limits on the objective `limited`. It starts at the strictest limit that three of four fronts
+/// can meet, and ends at the loosest limit that still constrains half of them. Beyond this end the answer is simply the
+/// best design of the front.
 fn overlap(limited: Objective, fronts: &[&[Design]]) -> (f64, f64) {
     let at_best_of = |o, front: &[Design]| best(o, front).map(|d| limited.minimized(d));
     let strictest = fronts.iter().filter_map(|f| at_best_of(limited, f)).collect();
@@ -70,15 +71,16 @@ fn asked(limited: Objective, sought: Objective) -> bool {
     Question::ALL.into_iter().any(|q| q.limited() == limited && q.sought() == sought)
 }
 
-/// The smallest value that at least this share of the values does not exceed.
+/// The smallest value v of `values` such that at least the fraction `share` of the values is at most v; NaN without
+/// values.
 fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     let index = (share * values.len() as f64).ceil() as usize;
     values.get(index.saturating_sub(1)).copied().unwrap_or(f64::NAN)
 }
 
-/// At most `count` round numbers from `low` to `high`, spread over the range, as coarse as possible. If the
-/// range holds no round number, the nearest number of two digits that most fronts can keep.
+/// At most `count` round numbers from `low` to `high`, spread over the range and as coarse as possible. If the
+/// range has no round number, the nearest number of two digits that most fronts can meet.
 fn round_between(low: f64, high: f64, count: usize, limited: Objective) -> Vec<f64> {
     const STOPS: [&[u32]; 4] = [
         &[10, 20, 50],
@@ -103,7 +105,7 @@ fn round_between(low: f64, high: f64, count: usize, limited: Objective) -> Vec<f
     spread(&found, low, high, count)
 }
 
-/// All numbers `stop * 10^n` in a range, rising.
+/// All numbers `stop * 10^n` in a range, in ascending order.
 fn stops_between(low: f64, high: f64, stops: &[u32]) -> Vec<f64> {
     let (from, to) = (libm::log10(low).floor() as i32 - 1, libm::log10(high).ceil() as i32);
     (from..=to)
@@ -112,13 +114,14 @@ fn stops_between(low: f64, high: f64, stops: &[u32]) -> Vec<f64> {
         .collect()
 }
 
-/// `digits * 10^power`, exact where the decimal number is.
+/// `digits * 10^power`. The division keeps negative powers exact to the last digit.
 fn decimal(digits: u32, power: i32) -> f64 {
     let digits = f64::from(digits);
     if power < 0 { digits / 10f64.powi(-power) } else { digits * 10f64.powi(power) }
 }
 
-/// Picks, from rising numbers, those nearest to places that are evenly spread (in ratio) over the range.
+/// From `found`, numbers in ascending order, those nearest to `count` points that are evenly spread from `low` to
+/// `high` on a logarithmic scale.
 fn spread(found: &[f64], low: f64, high: f64, count: usize) -> Vec<f64> {
     let place = |i: usize| low * libm::pow(high / low, (i as f64 + 0.5) / count as f64);
     let mut out: Vec<f64> = (0..count)
@@ -131,7 +134,8 @@ fn spread(found: &[f64], low: f64, high: f64, count: usize) -> Vec<f64> {
     out
 }
 
-/// The next number of two digits on the side of the looser limit.
+/// The nearest number with two significant digits that most fronts can meet as a limit. For a lower limit (lowest mode)
+/// it is `low` rounded down, for an upper limit `high` rounded up.
 fn nearest_round(low: f64, high: f64, limited: Objective) -> f64 {
     let (value, up) = if limited == Objective::Mode { (low, false) } else { (high, true) };
     let power = libm::log10(value).floor() as i32 - 1;

@@ -1,6 +1,6 @@
-//! A campaign's page: the verdict in a sentence, the gap before and after, where it is largest, the evidence
-//! for each candidate, its parameters with intervals, whether it predicts held-out readings, and what to
-//! measure next.
+//! The page of a campaign: the verdict in a sentence, the difference between model and readings before and after,
+//! where it is largest, the evidence for each candidate, its parameters with intervals, the prediction of held-out
+//! readings, and the next measurements.
 
 use super::gallery::{Gallery, Page};
 use super::positions::{Position, Step, angles_figure, axes_figure, sizes_figure, steps_figure};
@@ -16,141 +16,145 @@ use crate::report::svg::scale::Scale;
 use crate::report::svg::sheet::Sheet;
 use serde_json::{Value, json};
 
-/// Poses and joint ranges listed at most.
+/// Largest number of rows (poses, or parts of joint ranges) in a picture.
 const MOST_ROWS: usize = 26;
-/// Evidence below this is drawn at the edge.
+/// Scores below this are drawn at the edge of the picture.
 const LEAST_SCORE: f64 = -30.0;
-/// Each joint's range is divided into this many parts.
+/// Number of equal parts into which each joint's range is divided.
 const THIRDS: usize = 3;
 const BEFORE_AFTER: [&str; 2] = ["before: the model as given, calibrated", "after: with what was found"];
 
-/// Root mean squares of some readings before and after \[standard deviations\].
+/// Root mean square of the residuals (measured less predicted) of a group of readings, before and after \[standard
+/// deviations\]. "Before" means the calibrated model as given, "after" this model with the effects that were found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Compared {
-    /// Which readings.
+    /// Words that name the group of readings, such as a channel or a pose.
     pub part: String,
-    /// How many numbers.
+    /// Number of measured values.
     pub count: usize,
-    /// With the model as given.
+    /// Root mean square of the residuals with the model as given, after calibration \[standard deviations\].
     pub before: f64,
-    /// With what was found.
+    /// Root mean square of the residuals with the effects that were found \[standard deviations\].
     pub after: f64,
 }
 
-/// One number that was measured.
+/// One measured value with its residuals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
-    /// `static`, `modal`, `windup`.
+    /// Channel of the reading: `static`, `modal`, `windup`.
     pub channel: &'static str,
-    /// Row of its file, from 1.
+    /// Row in the file of the channel, counted from 1.
     pub row: usize,
-    /// `dx_mm`, `frequency_hz` ...
+    /// Measured quantity: `dx_mm`, `frequency_hz` ...
     pub quantity: &'static str,
-    /// Joint angles \[deg\]; none on a bench.
+    /// Joint angles \[deg\]; `None` for a reading on a bench.
     pub pose_deg: Option<Vec<f64>>,
-    /// Measured less predicted by the model as given \[standard deviations\].
+    /// Measured less predicted value, by the model as given \[standard deviations\].
     pub before_sigma: f64,
-    /// With what was found.
+    /// Measured less predicted value, with the effects found \[standard deviations\].
     pub after_sigma: f64,
-    /// With the effects found, fitted without this pose (held out).
+    /// Measured less predicted value, with the effects found and parameters fitted without this pose (held out)
+    /// \[standard deviations\]; `None` if it was not predicted.
     pub kept_out_sigma: Option<f64>,
-    /// Whether it was taken for a gross error.
+    /// Whether the reading was excluded as a gross error.
     pub gross: bool,
 }
 
-/// A value with its 95 % interval; an end the readings do not bound is `None`.
+/// A value with its 95 % interval. An end that the readings do not bound is `None`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ranged {
-    /// What it is, with its unit in the name.
+    /// Name of the quantity, with the unit in it.
     pub name: String,
-    /// Best value.
+    /// Best value of the quantity.
     pub value: f64,
-    /// Lower end.
+    /// Lower end of the 95 % interval.
     pub low: Option<f64>,
-    /// Upper end.
+    /// Upper end of the 95 % interval.
     pub high: Option<f64>,
 }
 
-/// An effect that was found or is suspected.
+/// An effect that was found, or is suspected.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
-    /// `effect@place`.
+    /// Name of the effect and its place: `effect@place`.
     pub label: String,
-    /// Its parameters.
+    /// Parameters of the effect, with intervals.
     pub parameters: Vec<Ranged>,
-    /// Effects that these readings cannot distinguish from it.
+    /// Effects that these readings cannot distinguish from this effect.
     pub like: Vec<String>,
 }
 
-/// A model that was weighed.
+/// A model for which the evidence was computed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Weighed {
-    /// Its effects, or `calibration only`.
+    /// Names of the model's effects, or `calibration only`.
     pub model: String,
-    /// Logarithm of its evidence less that of the best.
+    /// Logarithm of the model's evidence, less the logarithm of the evidence of the best model.
     pub score: f64,
-    /// Sum of squares.
+    /// Sum of the squared residuals \[standard deviations squared\].
     pub chi_squared: f64,
 }
 
-/// A test worth making.
+/// A recommended test.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Test {
-    /// What to do, in words.
+    /// Description of the test.
     pub words: String,
-    /// What it tells apart.
+    /// The models that the test distinguishes.
     pub separates: Vec<String>,
-    /// Expected difference \[standard deviations\].
+    /// Expected difference between these models \[standard deviations\].
     pub expected_sigmas: f64,
-    /// Readings that settle it.
+    /// Number of readings after which one model can be ruled out.
     pub readings_needed: usize,
 }
 
-/// Everything on a campaign's page.
+/// All contents of a campaign's page.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CampaignPage {
-    /// Name.
+    /// Name of the campaign.
     pub name: String,
     /// The verdict in a sentence.
     pub sentence: String,
-    /// Why, one sentence each.
+    /// Reasons for the verdict, one sentence each.
     pub reasons: Vec<String>,
-    /// Whether the effects explain the gap; else they are suspects.
+    /// Whether the effects explain the difference between model and readings. Otherwise they are only suspected.
     pub explained: bool,
-    /// The driven joints.
+    /// The driven joints, base to tip.
     pub joints: Vec<DrivenJoint>,
-    /// The gap by part of the readings: channel, branch, load, mode, joint.
+    /// Root mean squares of the residuals before and after, for each part of the readings: channel, branch, load, mode,
+    /// joint.
     pub parts: Vec<Compared>,
-    /// Every number that was measured.
+    /// All measured values.
     pub readings: Vec<Reading>,
-    /// Absolute positions: how the error falls as each thing is added.
+    /// Absolute positions: position error at each stage of the model.
     pub steps: Vec<Step>,
-    /// The error of every absolute position.
+    /// Position error of every absolute position.
     pub positions: Vec<Position>,
-    /// What was found or is suspected.
+    /// Effects that were found or are suspected.
     pub found: Vec<Found>,
-    /// Models weighed, best first.
+    /// Models that were compared, best first.
     pub weighed: Vec<Weighed>,
-    /// Calibrated factors.
+    /// Calibrated factors on nominal values.
     pub calibrated: Vec<Ranged>,
-    /// Held-out readings: how many, and the root mean square before and after.
+    /// Held-out readings: their number, and the root mean square of their residuals before and after the effects were
+    /// added \[standard deviations\].
     pub kept_out: Option<(usize, f64, f64)>,
-    /// Gross errors and wrongly declared deviations, in words.
+    /// Gross errors and wrongly declared standard deviations, in words.
     pub quality: Vec<String>,
-    /// Tests worth making, best first.
+    /// Recommended tests, best first.
     pub tests: Vec<Test>,
-    /// What records against time say, joint by joint.
+    /// Results of the records against time, one section per joint.
     pub records: Vec<PageSection>,
-    /// The models that the corrected arm could have, where nothing explains the gap.
+    /// The models that the corrected arm could have, if no effect explains the difference.
     pub corrected_models: Option<PageSection>,
-    /// What the corrected arm changes in the study's optimum.
+    /// How the optimum of the study changes with the corrected arm.
     pub optimum: Option<PageSection>,
-    /// Facts: names and values.
+    /// Further facts: pairs of name and value.
     pub facts: Vec<(String, String)>,
 }
 
 impl CampaignPage {
-    /// The page and its pictures.
+    /// The page as HTML, with its pictures.
     pub fn page(&self) -> Page {
         let mut gallery = Gallery::default();
         let show = |gallery: &mut Gallery, figure: Option<Figure>| figure.map(|f| gallery.show(&f));
@@ -192,12 +196,12 @@ impl CampaignPage {
         gallery.page("campaign.html", &self.name, content, &json!({}))
     }
 
-    /// Whether a part of the readings is a whole channel.
+    /// Whether a group of readings is a whole channel, so that its name is one word.
     fn is_channel(part: &Compared) -> bool {
         !part.part.contains([',', ' '])
     }
 
-    /// The gap of each channel.
+    /// A picture of the root mean square of the residuals in each channel, before and after the effects were added.
     fn channels_figure(&self) -> Option<Figure> {
         let channels: Vec<Compared> = self.parts.iter().filter(|p| Self::is_channel(p)).cloned().collect();
         (!channels.is_empty()).then(|| {
@@ -207,11 +211,12 @@ impl CampaignPage {
         })
     }
 
-    /// Where the gap is largest: by what was done, by joint, by pose.
+    /// Pictures that show where the model and the readings differ: by load, branch, mode and bench joint; by joint
+    /// angle; by pose.
     fn located_figures(&self) -> Vec<Figure> {
         let of_part = |p: &&Compared| !Self::is_channel(p) && !p.part.starts_with("pose");
         let mut parts: Vec<Compared> = self.parts.iter().filter(of_part).cloned().collect();
-        // channel by channel, and within a channel by kind
+        // sorted by channel, and within a channel by kind of part
         parts.sort_by_key(|p| p.part.split(' ').take(2).map(String::from).collect::<Vec<_>>());
         let all = [
             (
@@ -232,8 +237,8 @@ impl CampaignPage {
         filled.map(|(name, title, caption, rows)| gap_figure(name, title, caption, rows)).collect()
     }
 
-    /// The gap by channel before and after, as bars for a terminal of 80 columns; the lengths of the bars are
-    /// logarithmic.
+    /// The root mean square of the residuals by channel, before and after the effects were added, as bars for a
+    /// terminal of 80 columns. The lengths of the bars are logarithmic.
     pub fn terminal(&self) -> String {
         let rows = || self.parts.iter().filter(|p| Self::is_channel(p));
         let values = || rows().flat_map(|c| [c.before, c.after]).filter(|v| *v > 0.0);
@@ -251,7 +256,7 @@ impl CampaignPage {
         }
     }
 
-    /// The gap at each pose, the worst first.
+    /// Root mean squares of the residuals in each pose, the largest first.
     fn by_pose(&self) -> Vec<Compared> {
         let name = |r: &Reading| r.pose_deg.as_ref().map(|p| pose_signs(&self.joints, p));
         let mut rows = self.split(|r| name(r).into_iter().collect());
@@ -260,7 +265,7 @@ impl CampaignPage {
         rows
     }
 
-    /// The gap in each third of each joint's range.
+    /// Root mean squares of the residuals in each third of the range of each joint.
     fn by_joint(&self) -> Vec<Compared> {
         let range = |j: usize| {
             let angles = self.readings.iter().filter_map(|r| r.pose_deg.as_ref()?.get(j).copied());
@@ -296,7 +301,8 @@ impl CampaignPage {
         rows
     }
 
-    /// Root mean squares of the readings by the names they go under, gross errors left out.
+    /// Root mean squares of the residuals of groups of readings. `names` gives the names of the groups to which a
+    /// reading belongs; these may be several. Gross errors are left out.
     fn split(&self, names: impl Fn(&Reading) -> Vec<String>) -> Vec<Compared> {
         let mut out: Vec<Compared> = Vec::new();
         for reading in self.readings.iter().filter(|r| !r.gross) {
@@ -318,7 +324,8 @@ impl CampaignPage {
         out
     }
 
-    /// Residuals before and after over the rows, one picture a channel.
+    /// Pictures of the residuals before and after the effects were added, over the rows of the file; one picture per
+    /// channel.
     fn residual_figures(&self) -> Vec<Figure> {
         let mut channels: Vec<&'static str> = Vec::new();
         for reading in &self.readings {
@@ -332,7 +339,7 @@ impl CampaignPage {
     fn residual_figure(&self, channel: &str) -> Figure {
         let readings = || self.readings.iter().filter(|r| r.channel == channel);
         let panel = |title: &str, label: &str, style: usize, open: bool, of: fn(&Reading) -> f64| {
-            // gross errors do not set the range: beyond it they stand at the edge
+            // the range does not depend on gross errors: those beyond it are drawn at the edge
             let most = readings().filter(|r| !r.gross).map(|r| of(r).abs()).fold(3.0, f64::max).ceil();
             let points = |gross: bool| -> Vec<(f64, f64)> {
                 let own = readings().filter(|r| r.gross == gross);
@@ -442,7 +449,7 @@ impl CampaignPage {
         })
     }
 
-    /// Residuals of held-out readings, one after another.
+    /// A picture of the residuals of held-out readings, in the order of the readings; `None` without such readings.
     fn kept_out_figure(&self) -> Option<Figure> {
         let predicted: Vec<(usize, &Reading, f64)> = self
             .readings
@@ -494,7 +501,8 @@ impl CampaignPage {
     }
 }
 
-/// Rows of the gap before and after.
+/// A picture with one row per group of readings: root mean square of the residuals before and after the effects were
+/// added.
 fn gap_figure(name: &str, title: &str, caption: &str, rows: Vec<Compared>) -> Figure {
     let row = |c: &Compared| Row {
         label: c.part.clone(),
@@ -537,7 +545,7 @@ fn test(test: &Test) -> Value {
     })
 }
 
-/// An end of an interval in words; says so if the readings do not bound it.
+/// One end of an interval as text with `digits` significant digits; "open" if the readings do not bound it.
 fn end(value: Option<f64>, digits: usize) -> String {
     value.map_or("open".into(), |v| significant(v, digits))
 }

@@ -1,4 +1,4 @@
-//! A comparison's page: results side by side, their fronts overlaid, what moved between them.
+//! The page of a comparison: results side by side, their fronts in one picture, and the changes between them.
 
 use super::front_data::{FrontData, Group, MOST_BYTES, Row};
 use super::front_views::FrontViews;
@@ -11,7 +11,7 @@ use crate::report::section::Figure;
 use crate::report::svg::draw::MUTED;
 use serde_json::{Value, json};
 
-/// The page of a comparison; `picture` is its `compare.svg`.
+/// The page of a comparison. `picture` is the content of `compare.svg`.
 pub(crate) fn page(comparison: &Comparison, contenders: &[Contender], picture: String) -> Page {
     let mut gallery = Gallery::default();
     let views = views(contenders, picture);
@@ -51,7 +51,7 @@ fn views(contenders: &[Contender], picture: String) -> FrontViews<'_> {
         false => Group { name: c.label.clone(), style: style(i) },
     });
     let rows = contenders.iter().enumerate().flat_map(|(group, c)| {
-        // the front of all materials repeats what the competing fronts have: here its mixed designs alone
+        // the front of all materials repeats designs of the competing fronts, so only its mixed designs are drawn
         let shown = |row: &usize| !c.reference || picks::materials(&c.front, *row).len() > 1;
         (0..c.front.rows.len())
             .filter(shown)

@@ -1,29 +1,29 @@
-//! The page of a study that is a handful of pictures and tables, such as the paper's own.
+//! The page of a study that consists of pictures and tables, such as the paper's own.
 
 use super::gallery::{Gallery, Page, table};
 use crate::report::section::Figure;
 use crate::report::table::Table;
 use serde_json::{Value, json};
 
-/// Pictures and tables with words before them.
+/// The contents of such a page.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct DocumentPage {
-    /// Title.
+    /// Title of the page.
     pub title: String,
-    /// What was asked.
+    /// The question that the study answers.
     pub question: String,
-    /// Paragraphs.
+    /// Paragraphs of text.
     pub words: Vec<String>,
     /// Pictures.
     pub figures: Vec<Figure>,
     /// Tables with their captions.
     pub tables: Vec<(String, Table)>,
-    /// Facts of the run: names and values.
+    /// Facts of the run: pairs of name and value.
     pub facts: Vec<(String, String)>,
 }
 
 impl DocumentPage {
-    /// The page and its pictures.
+    /// The page of the study as HTML, with its pictures.
     pub(crate) fn page(&self) -> Page {
         let mut gallery = Gallery::default();
         let figures: Vec<Value> = self.figures.iter().map(|f| gallery.show(f)).collect();

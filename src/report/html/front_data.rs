@@ -1,9 +1,9 @@
-//! The designs of fronts as columns: what the linked views draw, filter and name.
+//! The designs of fronts as columns of data, which the linked views draw, filter and label.
 //!
-//! Numbers are rounded to the digits that are shown ([`SHOWN_DIGITS`]), so that a number on the page is the
-//! number of `front.csv` rounded once. If there are too many designs, some are left out: first those that are
-//! only on the front of their own group, then those on the front of all designs. The picks and the designs at
-//! the edge of each view always stay; the others are thinned evenly along the mass.
+//! Numbers are rounded to the digits that are shown ([`SHOWN_DIGITS`]), so that a number on the page is the number
+//! of `front.csv` rounded once. If there are too many designs, some are left out: first those that are only on the
+//! front of their own group, then those on the front of all designs. The picks and the designs at the edge of each
+//! view always stay; the others are thinned evenly along the mass.
 
 use super::packed::{self, packed};
 use crate::report::front_svg::WIDE;
@@ -20,73 +20,77 @@ use std::collections::HashSet;
 
 /// Significant digits of the numbers on the page.
 pub(crate) const SHOWN_DIGITS: usize = 5;
-/// Designs drawn at most.
+/// Largest number of designs that are drawn.
 pub(crate) const MOST_ROWS: usize = 20_000;
-/// Size of the data on the page at most \[bytes\].
+/// Largest size of the data on the page \[bytes\].
 pub(crate) const MOST_BYTES: usize = 1_200_000;
-/// Axes with fewer values than this are labelled value by value.
+/// Axes with at most this many distinct values have one label per value.
 const FEW: usize = 18;
-/// Nearest values that get labels of their own, as a part of the whole range: those of nearer ones would overlap.
+/// Distinct values get one label each only if neighbours differ by at least this fraction of the range. Otherwise
+/// labels would overlap.
 const APART: f64 = 0.04;
 
-/// Designs that are drawn in one style.
+/// A group of designs that are drawn in the same style.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Group {
     /// Name in the legend.
     pub name: String,
-    /// Colour and marker; [`crate::report::svg::MUTED`] stands back.
+    /// Index of colour and marker; [`crate::report::svg::MUTED`] is grey in the background.
     pub style: usize,
 }
 
 /// One design of a table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Row<'a> {
-    /// Its table.
+    /// Table that contains the design.
     pub table: &'a FrontTable,
-    /// Its row there.
+    /// Index of the design's row in the table.
     pub row: usize,
-    /// Its group.
+    /// Index of the design's group.
     pub group: usize,
-    /// Whether it is on the front of all designs.
+    /// Whether the design is on the front of all designs.
     pub on_front: bool,
 }
 
 /// One axis of the views: a choice or a result.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Axis {
-    /// Column in `front.csv`.
+    /// Name of the column in `front.csv`.
     pub column: String,
-    /// Words for people.
+    /// Name of the axis, for people.
     pub label: String,
-    /// Unit; empty if it has none.
+    /// Unit; empty if the axis has none.
     pub unit: &'static str,
-    /// Ends and scale of an axis of numbers.
+    /// Ends and scale of an axis of numbers; `None` for an axis of words.
     pub range: Option<(f64, f64, Scale)>,
-    /// Labelled values: place from 0 to 1, and words.
+    /// Labels: position on the axis from 0 to 1, and text.
     pub ticks: Vec<(f64, String)>,
-    /// Words of an axis of words, bottom to top.
+    /// Words of an axis of words, bottom to top; empty for an axis of numbers.
     pub words: Vec<String>,
-    /// Value of each row: a number, or the index of its word; `None` is blank.
+    /// Value of each design: a number, or the index of its word; `None` is blank.
     pub values: Vec<Option<f64>>,
 }
 
-/// What the linked views show.
+/// The data that the linked views show.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct FrontData<'a> {
     /// The groups, in the order of the legend.
     pub groups: Vec<Group>,
-    /// The rows that are drawn, lightest first.
+    /// The designs that are drawn, lightest first.
     pub rows: Vec<Row<'a>>,
-    /// Rows before sampling: of the front of all designs, and of the fronts of their groups alone.
+    /// Numbers of designs before some were left out to save space: on the front of all designs, and only on the front
+    /// of their group.
     pub rows_total: [usize; 2],
-    /// Choices that differ among the rows, base to tip, then mass, tip deflection and lowest mode.
+    /// Axes of the choices that differ among the designs, base to tip, then of mass, tip deflection and lowest
+    /// mode.
     pub axes: Vec<Axis>,
-    /// Choices that are equal in all rows, in words.
+    /// Choices that are equal in all designs, in words.
     pub constants: Vec<String>,
 }
 
 impl<'a> FrontData<'a> {
-    /// The data of these designs in at most so many bytes; `kept` are drawn even if the front has to be sampled.
+    /// The data of the designs `rows`, in at most `most_bytes` bytes: designs are left out until they fit. The designs
+    /// named in `kept` are drawn in any case.
     pub(crate) fn new(groups: Vec<Group>, rows: Vec<Row<'a>>, kept: &[String], most_bytes: usize) -> Self {
         let rows_total = counts(&rows);
         let mut room = MOST_ROWS;
@@ -100,7 +104,7 @@ impl<'a> FrontData<'a> {
         }
     }
 
-    /// Rows that are drawn, counted as [`Self::rows_total`].
+    /// Numbers of designs that are drawn, in the order of [`Self::rows_total`].
     pub(crate) fn rows_drawn(&self) -> [usize; 2] {
         counts(&self.rows)
     }
@@ -129,7 +133,7 @@ impl<'a> FrontData<'a> {
         Self { groups, rows, rows_total, axes, constants }
     }
 
-    /// The data as columns for the page's program; `picks` are names with their `design_id`.
+    /// The data as JSON for the page's program. `picks` are pairs of a name and a `design_id`.
     pub(crate) fn to_json(&self, picks: &[(String, String)]) -> Value {
         let ids: Vec<&str> = self.rows.iter().map(|r| cell(r, "design_id")).collect();
         let picks: Vec<Value> = picks
@@ -156,14 +160,14 @@ impl<'a> FrontData<'a> {
         })
     }
 
-    /// Place of a row on each axis, 0 to 1.
+    /// Position of a design on each axis, from 0 to 1; `None` where its cell is blank.
     pub(crate) fn places(&self, row: usize) -> Vec<Option<f64>> {
         self.axes.iter().map(|a| a.values[row].map(|v| a.place(v))).collect()
     }
 }
 
 impl Axis {
-    /// Where a value lies, 0 to 1.
+    /// Position of a value on the axis, from 0 to 1.
     pub(crate) fn place(&self, value: f64) -> f64 {
         match self.range {
             Some((low, high, Scale::Log)) => libm::log(value / low) / libm::log(high / low),
@@ -182,18 +186,18 @@ impl Axis {
     }
 }
 
-/// Rows on the front of all designs, and the others.
+/// Numbers of designs among `rows`: on the front of all designs, and only on the front of their group.
 fn counts(rows: &[Row]) -> [usize; 2] {
     let front = rows.iter().filter(|r| r.on_front).count();
     [front, rows.len() - front]
 }
 
-/// A cell of a row; blank if its table lacks the column.
+/// The cell of a design in a column; blank if its table lacks the column.
 fn cell<'a>(row: &Row<'a>, column: &str) -> &'a str {
     row.table.column(column).map_or("", |c| row.table.rows[row.row][c].as_str())
 }
 
-/// The column of an objective.
+/// Name of the column of an objective.
 pub(crate) fn objective_column(objective: Objective) -> &'static str {
     match objective {
         Objective::Mass => "mass_kg",
@@ -202,7 +206,7 @@ pub(crate) fn objective_column(objective: Objective) -> &'static str {
     }
 }
 
-/// Columns of choices that every table has, in the order of the first.
+/// Names of the columns with choices that the tables of all designs have, in the order of the first table.
 fn choice_columns<'a>(rows: &[Row<'a>]) -> Vec<&'a str> {
     let Some(first) = rows.first() else { return Vec::new() };
     let end = first.table.column("tip_deflection_mm").unwrap_or(0);
@@ -217,7 +221,7 @@ fn choice_columns<'a>(rows: &[Row<'a>]) -> Vec<&'a str> {
         .collect()
 }
 
-/// Words and unit of a column: `upper_arm_wall_mm` is `upper_arm wall` in mm.
+/// Label and unit of a column: `upper_arm_wall_mm` gives `upper_arm wall` and mm.
 fn label(column: &str) -> (String, &'static str) {
     let objective = match column {
         "mass_kg" => Some(("mass", "kg")),
@@ -233,7 +237,8 @@ fn label(column: &str) -> (String, &'static str) {
     (format!("{piece} {what}").trim().to_string(), unit)
 }
 
-/// A height that equals the width in every row is not a choice: it is said in words.
+/// A sentence that says that a height equals the width in every design; `None` if it does not. The height is then no
+/// choice of its own, and the sentence replaces its axis.
 fn same_as_width(column: &str, rows: &[Row], cells: &[&str]) -> Option<String> {
     let width = format!("{}_width_mm", column.strip_suffix("_height_mm")?);
     let same = rows.iter().zip(cells).all(|(row, c)| cell(row, &width) == *c);
@@ -291,9 +296,9 @@ fn number_axis(empty: Axis, numbers: &[Option<f64>]) -> Axis {
     axis
 }
 
-/// Words in the order people expect: `CSG-14-100` before `CSG-100-50`.
+/// Order of words in which numbers count by value: `CSG-14-100` comes before `CSG-100-50`.
 fn natural(a: &str, b: &str) -> Ordering {
-    // texts, each with the number behind it
+    // pieces of text, each with the number that follows it
     let pieces = |word: &str| -> Vec<(String, u64)> {
         let (mut out, mut rest) = (Vec::new(), word);
         while !rest.is_empty() {
@@ -308,7 +313,8 @@ fn natural(a: &str, b: &str) -> Ordering {
     pieces(a).cmp(&pieces(b)).then_with(|| a.cmp(b))
 }
 
-/// At most `room` rows, lightest first: the front of all designs whole if it fits into four fifths of the room.
+/// At most `room` designs, lightest first. The front of all designs gets at least four fifths of the places, if it has
+/// that many designs. Designs named in `kept` stay.
 fn sampled<'a>(rows: &[Row<'a>], room: usize, kept: &[String]) -> Vec<Row<'a>> {
     let (front, own): (Vec<Row>, Vec<Row>) = rows.iter().partition(|r| r.on_front);
     let room_of_front = room.saturating_sub(own.len().min(room / 5));
@@ -317,8 +323,8 @@ fn sampled<'a>(rows: &[Row<'a>], room: usize, kept: &[String]) -> Vec<Row<'a>> {
     by_mass(front.into_iter().chain(own).collect())
 }
 
-/// Thins rows to `room`: keeps the named ones and those at the edge of a view, and takes the others at even
-/// steps of mass.
+/// At most `room` of the designs `rows`. Designs named in `kept` and those at the edge of a view stay; the others are
+/// taken at even steps in the order of mass.
 fn thinned<'a>(rows: Vec<Row<'a>>, room: usize, kept: &[String]) -> Vec<Row<'a>> {
     if rows.len() <= room {
         return rows;
@@ -343,7 +349,7 @@ fn by_mass(rows: Vec<Row>) -> Vec<Row> {
     weighed.into_iter().map(|(_, row)| row).collect()
 }
 
-/// Keeps `room` of a list, evenly.
+/// Shortens a list to `room` entries, which are taken at even steps.
 fn thin(list: &mut Vec<usize>, room: usize) {
     let count = list.len();
     if count > room {
@@ -351,7 +357,8 @@ fn thin(list: &mut Vec<usize>, room: usize) {
     }
 }
 
-/// Rows that are best at their mass in one of the views, by group.
+/// Indices of the designs that form the edge of a front in a view: in each group, those with the best deflection or the
+/// best mode among all designs of no more mass.
 fn edges(rows: &[Row]) -> Vec<usize> {
     let groups = rows.iter().map(|r| r.group).max().map_or(0, |g| g + 1);
     let mut out = Vec::new();

@@ -1,4 +1,4 @@
-//! The front in linked views, for the page of a study and that of a comparison.
+//! The front in linked views, for the pages of studies and comparisons.
 
 use super::front_data::{Axis, FrontData, Row};
 use super::gallery::Gallery;
@@ -8,27 +8,27 @@ use crate::report::section::Figure;
 use crate::report::svg::parallel::{Parallel, ParallelAxis, ParallelLine};
 use serde_json::{Value, json};
 
-/// Lines of the still picture of parallel coordinates.
+/// Approximate largest number of lines in the static picture of parallel coordinates.
 const STILL_LINES: usize = 400;
 
-/// What a page says about its views.
+/// The linked views of a page, with the words about them.
 pub(crate) struct FrontViews<'a> {
-    /// Designs, groups and axes.
+    /// Designs, groups and axes of the views.
     pub data: FrontData<'a>,
-    /// Picks, by name.
+    /// The picks.
     pub picks: &'a [Pick],
-    /// Still picture of both scatter views.
+    /// Static picture of both scatter views.
     pub scatter: Figure,
-    /// What a colour stands for: `material`, `result`.
+    /// The property that colours show: `material`, `result`.
     pub coloured_by: &'a str,
-    /// Whether some designs are only on the front of their group.
+    /// Whether some designs are only on the front of their own group.
     pub has_both: bool,
-    /// Where all designs are.
+    /// Name of the file with all designs.
     pub all_in: &'a str,
 }
 
 impl FrontViews<'_> {
-    /// The section's values for its template.
+    /// The values for the part of the page's template that shows the linked views. Pictures are added to `gallery`.
     pub(super) fn context(&self, gallery: &mut Gallery) -> Value {
         let data = &self.data;
         json!({
@@ -43,7 +43,8 @@ impl FrontViews<'_> {
         })
     }
 
-    /// Says how many designs are not drawn because the page would be too large; `None` if all are drawn.
+    /// A sentence that says how many designs are not drawn because the page would be too large; `None` if all are
+    /// drawn.
     fn left_out(&self) -> Option<String> {
         let ([front, own], [all_front, all_own]) = (self.data.rows_drawn(), self.data.rows_total);
         let part = |drawn: usize, all: usize, of: &str| {
@@ -68,14 +69,14 @@ impl FrontViews<'_> {
         })
     }
 
-    /// The data for the page's program.
+    /// The data of the views as JSON for the page's program.
     pub(crate) fn json(&self) -> Value {
         let mut out = self.data.to_json(&named(self.picks));
         out["colouredBy"] = self.coloured_by.into();
         out
     }
 
-    /// Still parallel coordinates: some hundred designs, the picks drawn on top.
+    /// A static picture of parallel coordinates: some hundred designs, with the picks drawn on top.
     fn parallel(&self) -> Figure {
         let data = &self.data;
         let step = data.rows.len().div_ceil(STILL_LINES).max(1);
@@ -116,12 +117,13 @@ fn named_axis(axis: &Axis) -> String {
     if axis.unit.is_empty() { axis.label.clone() } else { format!("{} [{}]", axis.label, axis.unit) }
 }
 
-/// Names of picks with their designs.
+/// Pairs of a pick's names and its `design_id`.
 fn named(picks: &[Pick]) -> Vec<(String, String)> {
     picks.iter().map(|p| (p.names.join(", "), p.design.design_id.clone())).collect()
 }
 
-/// A design's objectives as the page and the terminal write them.
+/// The objectives of a design in the form in which the page and the terminal print them: name, value with four
+/// significant digits, unit.
 pub(crate) fn headline(design: &Design) -> [(&'static str, String, &'static str); 3] {
     [
         ("tip deflection", significant(design.tip_deflection_mm, 4), "mm"),

@@ -1,4 +1,4 @@
-//! The pictures of a page, numbered and kept as files, and tables as templates show them.
+//! The pictures of a page, with their files, and tables in the form that templates need.
 
 use super::render::{PLOTS, render};
 use crate::report::file_names::unique_file_name;
@@ -7,17 +7,17 @@ use crate::report::table::{Align, Table};
 use serde_json::{Value, json};
 use std::collections::HashSet;
 
-/// A page and the files that go with it.
+/// A page, with the files that belong to it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Page {
-    /// `report.html`.
+    /// Content of `report.html`.
     pub html: String,
-    /// Pictures and tables with their names below [`PLOTS`].
+    /// Pictures and tables: file name below [`PLOTS`], and content.
     pub files: Vec<(String, Vec<u8>)>,
 }
 
 impl Page {
-    /// All files with their paths beside the results.
+    /// All files, with their paths relative to the result folder.
     pub fn into_files(self) -> Vec<(String, Vec<u8>)> {
         let mut out = vec![("report.html".to_string(), self.html.into_bytes())];
         out.extend(self.files.into_iter().map(|(name, bytes)| (format!("{PLOTS}/{name}"), bytes)));
@@ -25,7 +25,7 @@ impl Page {
     }
 }
 
-/// Collects the figures of a page: hands out their places on it and keeps their files.
+/// Collects the figures of a page and their files.
 #[derive(Debug, Default)]
 pub(super) struct Gallery {
     names: HashSet<String>,
@@ -33,7 +33,7 @@ pub(super) struct Gallery {
 }
 
 impl Gallery {
-    /// A figure as its template shows it; its files are kept.
+    /// A figure in the form that templates need. Its picture and its numbers are added to the files of the page.
     pub(super) fn show(&mut self, figure: &Figure) -> Value {
         let name = unique_file_name(&figure.name, &mut self.names);
         self.files.push((format!("{name}.svg"), figure.svg.clone().into_bytes()));
@@ -48,7 +48,7 @@ impl Gallery {
         })
     }
 
-    /// A part that another room filled, as its template shows it.
+    /// A section that comes from another folder of the source, in the form that templates need.
     pub(super) fn extra(&mut self, extra: &PageSection) -> Value {
         let figures: Vec<Value> = extra.figures.iter().map(|f| self.show(f)).collect();
         let tables: Vec<Value> = extra
@@ -59,16 +59,16 @@ impl Gallery {
         json!({ "title": extra.title, "words": extra.words, "tables": tables, "figures": figures })
     }
 
-    /// Fills a template and closes the collection.
+    /// Fills a template, and returns the page with the collected files.
     pub(super) fn page(self, template: &str, title: &str, content: Value, data: &Value) -> Page {
         Page { html: render(template, title, content, data), files: self.files }
     }
 }
 
-/// A cell with more letters than this gets a wide column.
+/// A column gets the wide style if a cell has more letters than this.
 const WORDY: usize = 40;
 
-/// A table as its template shows it: headers and rows of cells, with the side each column stands on.
+/// A table in the form that templates need: headers and rows of cells, with a style class for each column.
 pub(super) fn table(table: &Table) -> Value {
     let is_wordy = |i: usize| table.rows().iter().any(|row| row[i].chars().count() > WORDY);
     let columns: Vec<Value> = table
@@ -87,8 +87,8 @@ pub(super) fn table(table: &Table) -> Value {
     json!({ "columns": columns, "rows": table.rows() })
 }
 
-/// An SVG picture as part of a page. Its ids are made unique, so that hiding one picture does not remove the
-/// markers of another.
+/// An SVG picture to be put into a page. Its ids are made unique on the page, so that hiding one picture does not
+/// remove the markers of another.
 fn inline(svg: &str, number: usize) -> String {
     svg.replace(" id=\"", &format!(" id=\"p{number}-"))
         .replace("url(#", &format!("url(#p{number}-"))

@@ -1,17 +1,18 @@
-//! Columns of few distinct values as text: the values once, then one or two letters a row.
+//! Columns with few distinct values in a short form: the list of values once, then one or two letters per row.
 //!
-//! A front of ten thousand designs names the same few gears, materials and walls in every row. Packed, a
-//! choice costs a letter a row; the page's program reads it back with [`ALPHABET`].
+//! A front of ten thousand designs names the same few gears, materials and walls in every row. In this form a
+//! choice takes one letter per row. The page's program decodes it with [`ALPHABET`].
 
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-/// The letters, in the order of what they stand for: printable ASCII that neither JSON nor a script element escapes.
+/// The letters that encode indices, in order: printable ASCII characters that need no escape in JSON or in a script
+/// element.
 pub(crate) static ALPHABET: LazyLock<String> =
     LazyLock::new(|| (' '..='~').filter(|c| !['"', '\\', '<'].contains(c)).collect());
 
-/// Indexes below `count` as text, as many letters each as the largest may need.
+/// Indices below `count` as text. Each takes as many letters as the largest index needs.
 pub(crate) fn packed(indexes: impl Iterator<Item = usize>, count: usize) -> Value {
     let letters = ALPHABET.as_bytes();
     let base = letters.len();
@@ -23,7 +24,7 @@ pub(crate) fn packed(indexes: impl Iterator<Item = usize>, count: usize) -> Valu
     json!({ "width": width, "text": text })
 }
 
-/// A column of numbers, blanks among them: packed with the list of its values where that is shorter.
+/// A column of numbers, some of them blank. It is encoded with a list of its distinct values, if that is shorter.
 pub(crate) fn column(values: &[Option<f64>]) -> Value {
     let key = |v: &Option<f64>| v.map(f64::to_bits);
     let mut places: HashMap<Option<u64>, usize> = HashMap::new();
@@ -43,7 +44,7 @@ pub(crate) fn column(values: &[Option<f64>]) -> Value {
     if packed.to_string().len() < plain.to_string().len() { packed } else { plain }
 }
 
-/// A number without a fraction as an integer: `80` is shorter than `80.0`.
+/// A number in the shortest JSON form: without a fraction it is an integer, because `80` is shorter than `80.0`.
 fn number(value: Option<f64>) -> Value {
     match value {
         Some(v) if v.fract() == 0.0 && v.abs() < 1e15 => json!(v as i64),

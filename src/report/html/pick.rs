@@ -1,4 +1,5 @@
-//! One picked design: its arm drawn to scale, where its deflection comes from, its modes and its drives.
+//! One picked design: a drawing of its arm to scale, the elements that cause its deflection, its modes and its
+//! drives.
 
 use super::gallery::{Gallery, table};
 use crate::arm::load::LoadCase;
@@ -23,27 +24,28 @@ use crate::sizing::sheet::JointSizingRow;
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 
-/// Modes drawn.
+/// Number of modes that are drawn.
 const MODES: usize = 3;
-/// A sideways motion below this share of the largest motion is ignored when the view is chosen.
+/// The arm is drawn from above if its motion out of the vertical plane is at least this fraction of the largest
+/// motion.
 const SIDEWAYS: f64 = 0.5;
 
-/// A picked design with everything its card needs.
+/// A picked design with everything that its card on the page shows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PickedArm {
-    /// What it is picked for, and its objectives.
+    /// What the design is picked for, and its objectives.
     pub pick: Pick,
-    /// Its arm, every part resolved to numbers.
+    /// The arm of the design, with all parts as numbers.
     pub arm: Arm,
-    /// The cases it was judged in.
+    /// The cases in which the design was judged.
     pub cases: Vec<LoadCase>,
-    /// Its drives, tip first.
+    /// The drives of the joints, tip first.
     pub drives: Vec<JointSizingRow>,
-    /// Its row of `front.csv`: columns and cells.
+    /// Row of the design in `front.csv`: column names and cells.
     pub row: Vec<(String, String)>,
 }
 
-/// An arm in one case, solved.
+/// The results of an arm in one case, with the lines to draw.
 struct Solved<'a> {
     case: &'a LoadCase,
     tip_mm: f64,
@@ -53,55 +55,55 @@ struct Solved<'a> {
     payload_m: Vector3<f64>,
 }
 
-/// One element's part of the tip's deflection.
+/// The part of the tip deflection that one element causes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DeflectionPart {
-    /// Joint or link.
+    /// Name of the joint, bearing or link.
     pub element: String,
-    /// Torque on a joint \[N m\].
+    /// Torque on the joint \[N m\]; `None` for other elements.
     pub torque_nm: Option<f64>,
-    /// By how much it moves the tip, world axes \[mm\].
+    /// Displacement of the tip by this element's deformation, world axes \[mm\].
     pub moved_mm: [f64; 3],
-    /// Component of that along the whole deflection \[mm\].
+    /// Component of this displacement along the whole tip deflection \[mm\].
     pub along_mm: f64,
 }
 
 impl DeflectionPart {
-    /// Whether it is a joint or its output bearing.
+    /// Whether the element is a joint or its output bearing.
     fn is_of_joint(&self) -> bool {
         self.torque_nm.is_some() || self.element.ends_with(".bearing")
     }
 }
 
 impl PickedArm {
-    /// Words that name the pick.
+    /// The names of the pick, joined: `lightest, knee`.
     pub fn title(&self) -> String {
         self.pick.names.join(", ")
     }
 
-    /// The pick's name in the names of its files.
+    /// The first name of the pick, in the form in which it is a part of file names.
     fn slug(&self) -> String {
         file_name(self.pick.names[0])
     }
 
-    /// The case with the largest tip deflection, solved.
+    /// Results of the arm in the case with the largest tip deflection; `None` without cases.
     fn worst(&self) -> Option<Solved<'_>> {
         let solved = self.cases.iter().map(|case| solve(&self.arm, case));
         solved.max_by(|a, b| a.tip_mm.total_cmp(&b.tip_mm))
     }
 
-    /// The case with the slowest first mode, solved.
+    /// Results of the arm in the case with the smallest lowest mode; `None` without cases.
     fn slowest(&self) -> Option<Solved<'_>> {
         let first = |s: &Solved| s.modes.first().map_or(f64::INFINITY, |m| m.0.frequency_hz);
         self.cases.iter().map(|case| solve(&self.arm, case)).min_by(|a, b| first(a).total_cmp(&first(b)))
     }
 
-    /// What each element adds to the tip deflection in the worst case.
+    /// The part of the tip deflection that each element causes, in the case with the largest tip deflection.
     pub fn deflection_parts(&self) -> Vec<DeflectionPart> {
         self.worst().map_or(Vec::new(), |s| s.parts)
     }
 
-    /// The card's values for its template.
+    /// The values for the template of the card that shows this pick. Pictures are added to `gallery`.
     pub(super) fn context(&self, gallery: &mut Gallery) -> Value {
         let (worst, slowest) = (self.worst(), self.slowest());
         let drawing = worst.as_ref().map(|s| gallery.show(&self.drawing(s)));
@@ -173,7 +175,7 @@ impl PickedArm {
         solved.modes.iter().enumerate().map(figure).collect()
     }
 
-    /// The arm in the plane of a view.
+    /// A drawing of the arm in the plane of a view. `line` has the points of its centre line with their displacements.
     fn sketch(&self, solved: &Solved, line: &[Station], view: &View) -> ArmSketch {
         let links: Vec<&Link> = self.arm.links().collect();
         let own = |name: &str| -> Vec<(Place, Place)> {
@@ -215,7 +217,7 @@ impl PickedArm {
         }
     }
 
-    /// The ends of the springs between two points, in the plane of a view.
+    /// End points of the balance springs between two points, in the plane of a view.
     fn springs(&self, case: &LoadCase, view: &View) -> Vec<(Place, Place)> {
         let chain = Chain::new(&self.arm.structure_in(case), case.links);
         let ends = |(_, drawn): (String, Drawn)| match drawn {
@@ -225,7 +227,7 @@ impl PickedArm {
         springs_in(&chain, case).into_iter().filter_map(ends).collect()
     }
 
-    /// Links with their sections and what follows from them (Eqs 5, 6).
+    /// Links with their sections, areas and second moments (Eqs 5, 6), as JSON.
     fn links(&self) -> Vec<Value> {
         let element = |e: &Element| match e {
             Element::Link(link) => match &link.body {
@@ -252,7 +254,7 @@ impl PickedArm {
     }
 }
 
-/// Where the deflection of several picks comes from, side by side.
+/// A picture of the elements that cause the tip deflection, for several picks side by side.
 pub(crate) fn deflection_bars(picks: &[PickedArm]) -> Figure {
     let parts: Vec<(String, Vec<DeflectionPart>)> = picks
         .iter()
@@ -340,7 +342,7 @@ fn parts_table(parts: &[DeflectionPart]) -> Table {
     table
 }
 
-/// Where most of a mode's strain energy sits.
+/// The elements that have most of the strain energy of a mode, in words. At most `most` elements are named.
 fn energy_words(mode: &Mode, most: usize) -> String {
     let mut parts: Vec<&(String, f64)> = mode.strain_energy.iter().filter(|(_, e)| *e >= 0.01).collect();
     parts.sort_by(|a, b| b.1.total_cmp(&a.1));
@@ -358,7 +360,7 @@ fn stations_csv(line: &[Station]) -> String {
     out
 }
 
-/// The plane a drawing lies in.
+/// The plane of a drawing. `right` and `up` are its axes; `upright` is false for a view from above.
 struct View {
     right: Vector3<f64>,
     up: Vector3<f64>,
@@ -367,8 +369,9 @@ struct View {
 }
 
 impl View {
-    /// The vertical plane through base and tip; the view from above, if `moving` moves mostly out of that
-    /// plane.
+    /// The plane in which an arm is drawn: the vertical plane through base and tip. It is the view from above instead,
+    /// if the points `moving` move mostly out of the vertical plane and `keep_upright` is false. `arm` has the points
+    /// of the centre line.
     fn of(moving: &[Station], arm: &[Station], keep_upright: bool) -> Self {
         let tip = arm.last().map_or(Vector3::zeros(), |s| s.at_m);
         let level = Vector3::new(tip.x, tip.y, 0.0);
@@ -392,7 +395,7 @@ impl View {
     }
 }
 
-/// Checks in the order of the table's columns.
+/// The checks that the page shows, in the order of its table.
 const CHECKS: [CheckKind; 22] = [
     CheckKind::GearPeak,
     CheckKind::GearMean,
@@ -418,7 +421,7 @@ const CHECKS: [CheckKind; 22] = [
     CheckKind::DriveLength,
 ];
 
-/// A drive for its row: torques, parts and the margin of every check.
+/// The sizing of one joint for the template: torques, parts and the margin of every check.
 fn drive(row: &JointSizingRow) -> Value {
     let number = |v: f64| significant(v, 4);
     let open = |v: Option<f64>| v.map_or("unknown".to_string(), number);

@@ -1,5 +1,5 @@
-//! Pictures of absolute positions: how the error falls as each thing is added, how large the errors are,
-//! which way they point, and which angle of which joint goes with them.
+//! Pictures of absolute positions: the error at each stage of the model, its distribution, its direction, and how
+//! it depends on the angle of each joint.
 
 use crate::report::number::fixed;
 use crate::report::section::Figure;
@@ -10,41 +10,41 @@ use crate::report::svg::scale::Scale;
 use crate::report::svg::sheet::Sheet;
 use crate::report::table::csv_line;
 
-/// Parts of each joint's range.
+/// Number of bins into which each joint's range is divided.
 const BINS: usize = 9;
-/// A part of a joint's range with fewer positions than this has no median.
+/// A bin with fewer positions than this gets no median.
 const FEWEST: usize = 4;
-/// Most joints that are drawn, in order of how strongly the error follows their angle.
+/// Largest number of joints that are drawn: those whose angle has the most effect on the error.
 const MOST_JOINTS: usize = 8;
 const NAMES: [&str; 3] = ["before", "after", "after, pose held out"];
 
-/// How large the error is at a stage of the model, \[mm\].
+/// Size of the position error at one stage of the model \[mm\].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Step {
-    /// What was added.
+    /// Words that name what the stage adds to the model.
     pub added: String,
-    /// Median over the poses of the fit.
+    /// Median error over the poses to which the model was fitted.
     pub fitted_median: f64,
-    /// Median over held-out poses.
+    /// Median error over held-out poses.
     pub median: f64,
-    /// Their mean.
+    /// Mean error over held-out poses.
     pub mean: f64,
-    /// Their largest.
+    /// Largest error over held-out poses.
     pub max: f64,
 }
 
-/// The error of one position, measured less predicted \[mm\].
+/// The error of one position: measured less predicted, by component \[mm\].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Position {
-    /// Row of its file, from 1.
+    /// Row in the file, counted from 1.
     pub row: usize,
     /// Joint angles \[deg\].
     pub pose_deg: Vec<f64>,
-    /// With calibration only.
+    /// Error with calibration only.
     pub before_mm: [f64; 3],
-    /// With what was found.
+    /// Error with the effects found.
     pub after_mm: [f64; 3],
-    /// The same with the pose held out of the fit.
+    /// Error of this position with the effects found and parameters fitted without its pose, by component \[mm\].
     pub kept_out_mm: [f64; 3],
 }
 
@@ -52,7 +52,7 @@ fn length(v: &[f64; 3]) -> f64 {
     v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// How the error falls as each effect is added.
+/// A picture of the position error (median, mean and largest) at each stage of the model.
 pub(crate) fn steps_figure(steps: &[Step]) -> Option<Figure> {
     let row = |s: &Step| Row {
         label: s.added.clone(),
@@ -87,7 +87,8 @@ pub(crate) fn steps_figure(steps: &[Step]) -> Option<Figure> {
     })
 }
 
-/// The share of positions whose error is at most so large.
+/// A picture of the distribution of position errors: the percentage of positions whose error is at most a given size
+/// \[mm\], with calibration only, with the effects found, and held out.
 pub(crate) fn sizes_figure(positions: &[Position]) -> Option<Figure> {
     let sorted = |of: fn(&Position) -> &[f64; 3]| {
         let mut out: Vec<f64> = positions.iter().map(|p| length(of(p))).collect();
@@ -134,13 +135,13 @@ pub(crate) fn sizes_figure(positions: &[Position]) -> Option<Figure> {
     })
 }
 
-/// The errors along each axis of the instrument, row by row.
+/// A picture of the position errors along each axis of the instrument, over the rows of the file.
 pub(crate) fn axes_figure(positions: &[Position]) -> Option<Figure> {
     let panel = |axis: usize| {
         let points =
             |of: fn(&Position) -> &[f64; 3]| -> Vec<f64> { positions.iter().map(|p| of(p)[axis]).collect() };
         let (before, after) = (points(|p| &p.before_mm), points(|p| &p.after_mm));
-        // a few gross errors do not set the range: they stand at the edge
+        // the range does not depend on a few gross errors: those beyond it are drawn at the edge
         let mut sizes: Vec<f64> = before.iter().map(|x| x.abs()).collect();
         sizes.sort_by(f64::total_cmp);
         let most = 1.2 * sizes.get(sizes.len() * 98 / 100).copied().unwrap_or(1.0).max(1e-6);
@@ -187,7 +188,7 @@ fn row_points(positions: &[Position], values: &[f64], most: f64) -> Vec<(f64, f6
     positions.iter().zip(values).map(|(p, v)| (p.row as f64, v.clamp(-most, most))).collect()
 }
 
-/// One part of a joint's range.
+/// One bin of a joint's range, with the median errors in it.
 #[derive(Debug, Clone, PartialEq)]
 struct Bin {
     centre_deg: f64,
@@ -196,7 +197,8 @@ struct Bin {
     after_mm: f64,
 }
 
-/// Median errors over the range of a joint.
+/// Median position errors in each bin of the range of the joint with the index `joint`. Bins with fewer than [`FEWEST`]
+/// positions are left out.
 fn bins(positions: &[Position], joint: usize) -> Vec<Bin> {
     let angles = || positions.iter().filter_map(|p| p.pose_deg.get(joint).copied());
     let (low, high) = angles().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(a), h.max(a)));
@@ -224,7 +226,8 @@ fn bins(positions: &[Position], joint: usize) -> Vec<Bin> {
         .collect()
 }
 
-/// The median error over the range of each joint, joints first whose angle the error follows most.
+/// Pictures of the median position error over the angle of each joint. The joints whose angle has the most effect come
+/// first.
 pub(crate) fn angles_figure(joints: &[String], positions: &[Position]) -> Option<Figure> {
     let swing = |bins: &[Bin]| {
         let (low, high) =

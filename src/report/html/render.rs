@@ -1,9 +1,9 @@
-//! A page from its template: style, program and data go into the one file.
+//! Makes a page from its template. Style, program and data are put into the one file.
 
 use minijinja::Environment;
 use serde_json::{Value, json};
 
-/// Folder beside a page that holds its pictures and the numbers behind them.
+/// Name of the folder next to a page that has its pictures and the numbers behind them.
 pub(crate) const PLOTS: &str = "plots";
 
 const STYLE: &str = include_str!("page.css");
@@ -44,18 +44,18 @@ pub(super) fn render(template: &str, title: &str, content: Value, data: &Value) 
         .expect("the templates use only what the pages give them")
 }
 
-/// Words with a no-break space between a number and its unit.
+/// The text with a no-break space between each number and its unit.
 fn bound(words: &str) -> String {
     let units = ["%", "mm", "kg", "Hz", "EUR"].map(|unit| (format!(" {unit}"), format!("\u{a0}{unit}")));
     units.iter().fold(words.to_string(), |text, (apart, joined)| text.replace(apart, joined))
 }
 
-/// JSON that may stand in a script element: no `<`, which could end it.
+/// JSON that can be put into a script element: it has no `<`, which could end the element.
 fn script_json(data: &Value) -> String {
     data.to_string().replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
 }
 
-/// The name a link on the page finds a part by.
+/// Name of the anchor of the part `name`, to which links on the page refer.
 pub(super) fn anchor(name: &str) -> String {
     let letters = name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' });
     format!("part-{}", letters.collect::<String>())

@@ -1,5 +1,5 @@
-//! A study's page: the question and its answer, the front in linked views, the picks with all that is
-//! behind them, the materials, the run, and where every number comes from.
+//! The page of a study: the question and its answer, the front in linked views, the picks in detail, the materials,
+//! the run, and the sources of all numbers.
 
 use super::front_data::{FrontData, Group, MOST_BYTES, Row};
 use super::front_views::FrontViews;
@@ -15,50 +15,51 @@ use crate::report::svg::draw::MUTED;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashSet};
 
-/// Size of a page at most \[bytes\].
+/// Largest size of a page \[bytes\].
 const MOST_PAGE_BYTES: usize = 2_000_000;
 
-/// A catalog row that a number on the page comes from.
+/// A catalog row from which numbers on the page come.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CatalogRow {
-    /// `gear`, `motor`, `material` or `profile`.
+    /// Kind of the part: `gear`, `motor`, `material` or `profile`.
     pub kind: &'static str,
     /// Name of the part.
     pub name: String,
-    /// File and line it was read from.
+    /// File and line of the row.
     pub place: String,
-    /// Document the figures come from.
+    /// Document from which the ratings come.
     pub source: String,
-    /// How reliable it is, in a word.
+    /// Confidence of the row, in a word.
     pub confidence: String,
-    /// Columns of the row that no document was seen for.
+    /// Columns of the row whose values were not read from a document.
     pub unverified: Vec<String>,
-    /// The row as it stands in the file: columns and cells.
+    /// The row as it is in the file: column names and cells.
     pub cells: Vec<(String, String)>,
 }
 
-/// Everything on a study's page.
+/// All contents of a study's page.
 pub struct StudyPage<'a> {
-    /// Question, answer, fronts, counts.
+    /// Question, answer, fronts and counts.
     pub summary: &'a SummaryInput,
     /// The picks, each with its arm.
     pub picks: Vec<PickedArm>,
-    /// The fronts as a still picture (`front.svg`).
+    /// The fronts as a static picture (`front.svg`).
     pub scatter_svg: String,
-    /// Deflection against weight of the study's materials, as in the paper's Figs 2 to 4.
+    /// Deflection over weight for the study's materials, as in the paper's Figs 2 to 4; `None` if there is no such
+    /// picture.
     pub beams: Option<Figure>,
     /// Catalog rows of the parts in the picks.
     pub parts: Vec<CatalogRow>,
-    /// Facts of the run: names and values.
+    /// Facts of the run: pairs of name and value.
     pub run: Vec<(String, String)>,
-    /// Facts that differ from run to run: time, threads, machine.
+    /// Facts that differ between runs of the same study: time, threads, machine.
     pub timing: Vec<(String, String)>,
-    /// Further sections: the stiffness budget, the front under scatter, how sure the front is, ...
+    /// Further sections, such as the stiffness budget, the front under scatter, or the certificate.
     pub extras: Vec<PageSection>,
 }
 
 impl StudyPage<'_> {
-    /// The page and its pictures. If the page would be too large, fewer designs of the front are drawn.
+    /// The page as HTML, with its pictures. If the page would be too large, fewer designs of the front are drawn.
     pub fn page(&self) -> Page {
         let page = self.page_with(MOST_BYTES);
         match page.html.len().saturating_sub(MOST_PAGE_BYTES) {
@@ -102,7 +103,7 @@ impl StudyPage<'_> {
         gallery.page("study.html", &facts.study, content, &json!({"front": data}))
     }
 
-    /// What was asked, in short: names and values.
+    /// Facts about the study in short: names and values.
     fn facts(&self, front: usize) -> Vec<(&'static str, String)> {
         let facts = &self.summary.facts;
         let listed = |words: &[String]| if words.is_empty() { "none".into() } else { words.join("; ") };
@@ -115,8 +116,8 @@ impl StudyPage<'_> {
         ]
     }
 
-    /// The fronts as linked views: the front of all designs, and the designs that are only on their
-    /// material's front.
+    /// The fronts as linked views: the front of all designs, and the designs that are only on the front of their
+    /// material.
     fn views<'v>(&'v self, chosen: &'v [picks::Pick], front_bytes: usize) -> FrontViews<'v> {
         let summary = self.summary;
         let names = single_materials(summary);

@@ -1,59 +1,59 @@
-//! An arm drawn to scale, with the way it bends exaggerated by a stated factor.
+//! A drawing of an arm to scale, with its deformation exaggerated by a stated factor.
 //!
-//! Links have their true length and outer size; joints are symbols: a circle where the axis points out of
-//! the drawing, a bar along the axis where it lies in it.
+//! Links have their length and outer size to scale. Joints are symbols: a circle if the axis is perpendicular to
+//! the drawing, a bar along the axis if it lies in the plane.
 
 use super::draw::{FONT_PX, INK, NOTE_PX, escape, head, line, px, text, text_px};
 use crate::report::number::shortest;
 use std::fmt::Write;
 
-/// A place in the plane of the drawing \[m\], x to the right, y up.
+/// A point in the plane of the drawing \[m\], x to the right, y up.
 pub(crate) type Place = (f64, f64);
 
-/// A link.
+/// A link of the drawing.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Tube {
-    /// Name.
+    /// Name of the link.
     pub name: String,
-    /// Points of its centre line with their motion \[m\].
+    /// Points of the link's centre line, each with its displacement \[m\].
     pub line: Vec<(Place, Place)>,
-    /// Outer size across the line in the plane \[m\]; 0 draws a line.
+    /// Outer size of the link, across its centre line in the plane \[m\]; 0 draws a line.
     pub size_m: f64,
 }
 
-/// A joint.
+/// A joint of the drawing.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Pivot {
-    /// Name.
+    /// Name of the joint.
     pub name: String,
-    /// Where it is, and its motion \[m\].
+    /// Position of the joint, and its displacement \[m\].
     pub at: (Place, Place),
-    /// Direction of the axis in the plane; `None` if it points out of it.
+    /// Direction of the joint's axis in the plane; `None` if the axis is perpendicular to it.
     pub axis: Option<Place>,
 }
 
-/// An arm in a pose.
+/// A drawing of an arm in a pose.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct ArmSketch {
-    /// Title.
+    /// Title of the drawing.
     pub title: String,
-    /// What is shown, in a sentence or two, for those who cannot see it.
+    /// Description of the drawing in a sentence or two, for readers who cannot see it.
     pub description: String,
     /// Links from base to tip.
     pub tubes: Vec<Tube>,
     /// Joints from base to tip.
     pub pivots: Vec<Pivot>,
-    /// The payload's centre and its motion.
+    /// Position of the payload's centre, and its displacement \[m\].
     pub payload: Option<(Place, Place)>,
-    /// The ends of each spring.
+    /// The two end points of each spring \[m\].
     pub springs: Vec<(Place, Place)>,
-    /// Factor on every motion.
+    /// Factor by which all displacements are exaggerated.
     pub factor: f64,
-    /// Words below the drawing.
+    /// Caption below the drawing.
     pub caption: String,
     /// Whether gravity points down in the drawing.
     pub upright: bool,
-    /// Width \[px\].
+    /// Width of the drawing \[px\].
     pub width_px: f64,
 }
 
@@ -62,7 +62,8 @@ const TOP_PX: f64 = 40.0;
 const FOOT_PX: f64 = 56.0;
 
 impl ArmSketch {
-    /// A round factor that makes the largest motion about a tenth of the arm's size.
+    /// A factor, rounded, by which displacements are exaggerated so that the largest one looks about a tenth as large
+    /// as the arm.
     pub(crate) fn fitting_factor(&self) -> f64 {
         let places: Vec<Place> = self.stations().map(|(at, _)| at).collect();
         let span = |of: fn(&Place) -> f64| {
@@ -118,7 +119,7 @@ impl ArmSketch {
         tubes.chain(self.pivots.iter().map(|p| p.at)).chain(self.payload).chain(springs)
     }
 
-    /// Lower left and upper right corner of all that is drawn \[m\].
+    /// Lower left and upper right limits of all that is drawn \[m\].
     fn bounds(&self) -> (Place, Place) {
         let half = self.tubes.iter().map(|t| t.size_m / 2.0).fold(0.02, f64::max);
         let (mut low, mut high) = ((0.0f64, 0.0f64), (0.0f64, 0.0f64));
@@ -144,9 +145,9 @@ impl ArmSketch {
         }
     }
 
-    /// Joints at their places in the bent arm, with one label for those at one place.
+    /// Draws the joints at their positions in the deformed arm. Joints at the same position share one label.
     fn pivots(&self, out: &mut String, scale: f64, at: &impl Fn(Place) -> (f64, f64)) {
-        // labels stand above the thickest link
+        // labels are above the thickest link
         let raised = 9.0 + self.tubes.iter().map(|t| t.size_m / 2.0 * scale).fold(8.0, f64::max);
         let mut labels: Vec<((f64, f64), Vec<&str>)> = Vec::new();
         for pivot in &self.pivots {
@@ -175,7 +176,7 @@ impl ArmSketch {
         }
         for ((x, y), names) in labels {
             let words = names.join(" ");
-            // a label that is wider than the picture begins at its left edge
+            // the label is moved so that it does not leave the picture
             let half = text_px(&words, FONT_PX) / 2.0;
             let x = x.min(self.width_px - 8.0 - half).max(8.0 + half);
             let rim = " font-size=\"12\" paint-order=\"stroke\" stroke=\"#FFFFFF\" stroke-width=\"3\"";
@@ -198,7 +199,7 @@ impl ArmSketch {
         }
     }
 
-    /// Scale bar, gravity and caption.
+    /// Draws the scale bar, the direction of gravity and the caption.
     fn foot(&self, out: &mut String, scale: f64, height: f64) {
         let bar_m =
             [2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02].into_iter().find(|m| m * scale < 0.3 * self.width_px);
@@ -248,7 +249,7 @@ impl Tube {
     }
 }
 
-/// Unit vector across a line at one of its points.
+/// Unit vector perpendicular to the line through `points`, at the point with the index `i`.
 fn normal(points: &[(f64, f64)], i: usize) -> (f64, f64) {
     let (a, b) = (points[i.saturating_sub(1)], points[(i + 1).min(points.len() - 1)]);
     let (dx, dy) = (b.0 - a.0, b.1 - a.1);
@@ -256,7 +257,7 @@ fn normal(points: &[(f64, f64)], i: usize) -> (f64, f64) {
     if long > 0.0 { (-dy / long, dx / long) } else { (0.0, 0.0) }
 }
 
-/// A spring as a zigzag between two points.
+/// Draws a spring as a zigzag between two points.
 fn coil(out: &mut String, from: (f64, f64), to: (f64, f64)) {
     const TURNS: usize = 12;
     let (dx, dy) = (to.0 - from.0, to.1 - from.1);

@@ -1,7 +1,7 @@
-//! Stacked bars: what a whole is made of, one bar a case, the parts in the same order and look.
+//! Stacked bars: the parts of a whole, one bar per case, with the parts in the same order and look.
 //!
-//! Two families of parts differ by hue *and* by hatching, parts of a family by lightness; a part that is
-//! wide enough carries its name and share, so that the picture can be read in greyscale.
+//! Two families of parts differ by hue *and* by hatching. Parts of a family differ by lightness. A part that is
+//! wide enough has its name and share written on it, so that the picture can be read in greyscale.
 
 use super::draw::{FONT_PX, INK, escape, head, line, px, text, text_px};
 use crate::report::number::{percent, shortest};
@@ -13,32 +13,32 @@ const GAP_PX: f64 = 18.0;
 const TOP_PX: f64 = 44.0;
 const WIDTH_PX: f64 = 900.0;
 
-/// A part that bars are made of.
+/// A part of the stack, which every bar has.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Part {
-    /// Name.
+    /// Name of the part.
     pub name: String,
-    /// Whether it is of the second family (hatched).
+    /// Whether the part belongs to the second family, which is hatched.
     pub hatched: bool,
 }
 
 /// One bar.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Bar {
-    /// Words at its left.
+    /// Text to the left of the bar.
     pub label: String,
-    /// Words at its right: the whole.
+    /// Text to the right of the bar: its total.
     pub total: String,
-    /// One value a part; negative ones stand left of zero.
+    /// The value of each part. Negative values extend to the left of zero.
     pub values: Vec<f64>,
 }
 
-/// Bars under one another.
+/// A picture of bars, one below the other.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct StackedBars {
-    /// Title.
+    /// Title of the picture.
     pub title: String,
-    /// What the bars show, in a sentence or two, for those who cannot see them.
+    /// Description of the bars in a sentence or two, for readers who cannot see them.
     pub description: String,
     /// Unit of the values.
     pub unit: String,
@@ -48,11 +48,12 @@ pub(crate) struct StackedBars {
     pub bars: Vec<Bar>,
 }
 
-/// A bar this much longer than the shortest leaves nothing of it to be seen.
+/// Ratio of the longest to the shortest bar above which the parts of the shortest bar would be too small to be seen.
 const FAR_APART: f64 = 8.0;
 
 impl StackedBars {
-    /// The same with every bar as long as the others if some would be too short to be seen: parts of its own whole.
+    /// This picture in a readable form. If some bar would be too short to be seen, all bars get the same length, and
+    /// each shows fractions of its own total.
     #[must_use]
     pub(crate) fn readable(mut self) -> Self {
         let whole = |bar: &Bar| bar.values.iter().sum::<f64>();
@@ -102,7 +103,7 @@ impl StackedBars {
         out
     }
 
-    /// The numbers behind the bars, one line a bar and part.
+    /// The numbers behind the bars as CSV, one line per bar and part.
     pub(crate) fn to_csv(&self) -> String {
         let mut out = csv_line(&["case".into(), "part".into(), self.unit.clone()]);
         for bar in &self.bars {
@@ -121,7 +122,7 @@ impl StackedBars {
         if high > low { (low, high) } else { (0.0, 1.0) }
     }
 
-    /// One bar; returns where it ends at the right.
+    /// Draws one bar. Returns the position of its right end.
     fn bar(&self, out: &mut String, bar: &Bar, y: f64, x: &impl Fn(f64) -> f64) -> f64 {
         let (mut below, mut above) = (0.0, 0.0);
         let whole: f64 = bar.values.iter().sum();
@@ -135,7 +136,7 @@ impl StackedBars {
             let full = format!("{} {share}", self.parts[part].name);
             let fitting = [full, share].into_iter().find(|w| text_px(w, 12.0) < right - left - 6.0);
             if let Some(words) = fitting {
-                // hatching is darker than words on it may be: a rim of the part's own colour keeps them apart
+                // hatching makes text hard to read, so the text gets a rim in the colour of the part
                 let hatched = self.parts[part].hatched;
                 let ink = if !hatched && self.shade(part) < 0.45 { "#FFFFFE" } else { "#111111" };
                 let rim = if hatched { self.fill(part) } else { "none".into() };
@@ -173,7 +174,7 @@ impl StackedBars {
         text(out, (x + 22.0, y), "start", "", &self.parts[part].name);
     }
 
-    /// The legend in rows that fit the width: part and where its entry begins.
+    /// The legend in rows that fit the width: index of each part, and horizontal position of its entry.
     fn legend_rows(&self) -> Vec<Vec<(usize, f64)>> {
         let mut rows: Vec<Vec<(usize, f64)>> = vec![Vec::new()];
         let mut x = 24.0;
@@ -191,7 +192,7 @@ impl StackedBars {
         rows
     }
 
-    /// Place of a part in its family, 0 = darkest, 1 = lightest.
+    /// Lightness of a part within its family: 0 is the darkest, 1 the lightest.
     fn shade(&self, part: usize) -> f64 {
         let same = |p: &&Part| p.hatched == self.parts[part].hatched;
         let count = self.parts.iter().filter(same).count();

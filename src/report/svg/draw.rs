@@ -1,13 +1,13 @@
-//! The pieces that every picture is drawn with: colours, text, lines, the opening of the file.
+//! Elements that all pictures use: colours, text, lines and the head of the file.
 
 use crate::report::number::fixed;
 use std::fmt::Write;
 
-/// The palette of Okabe and Ito, ordered so that the first stand out best on white.
+/// The palette of Okabe and Ito. The colours that contrast best with white come first.
 pub const PALETTE: [&str; 8] =
     ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#B8A90A"];
 
-/// A style that stands back behind all others: grey, round.
+/// A style for what stays in the background: grey and round.
 pub const MUTED: usize = 999;
 
 pub(crate) const INK: &str = "#222222";
@@ -15,10 +15,11 @@ pub(crate) const FAINT: &str = "#E3E3E3";
 pub(crate) const FONT_PX: f64 = 13.0;
 pub(crate) const TITLE_PX: f64 = 16.0;
 pub(crate) const NOTE_PX: f64 = 12.0;
-/// Width of an average character over the font size; generous, so that text never leaves its place.
+/// Width of an average character, divided by the font size. It is rounded up, so that no text needs more space than
+/// was reserved.
 pub(crate) const CHARACTER: f64 = 0.62;
 
-/// The opening of a picture: size, title and description for those who cannot see it, white paper.
+/// The head of an SVG file: size, white background, and title and description for readers who cannot see it.
 pub(crate) fn head(title: &str, description: &str, width_px: f64, height_px: f64) -> String {
     let (w, h, title) = (px(width_px), px(height_px), escape(title));
     format!(
@@ -32,7 +33,8 @@ pub(crate) fn head(title: &str, description: &str, width_px: f64, height_px: f64
     )
 }
 
-/// Breaks words into rows of at most `most` characters where there are blanks to break at.
+/// Breaks text into rows of at most `most` characters. Rows are broken only at blanks, so that a longer word makes
+/// a longer row.
 pub(crate) fn wrap(words: &str, most: usize) -> Vec<String> {
     let mut rows: Vec<String> = Vec::new();
     for word in words.split_whitespace() {
@@ -47,12 +49,12 @@ pub(crate) fn wrap(words: &str, most: usize) -> Vec<String> {
     rows
 }
 
-/// Colour of a style.
+/// Colour of a style, as an SVG colour.
 pub(crate) fn colour(style: usize) -> &'static str {
     if style == MUTED { "#A0A0A0" } else { PALETTE[style % PALETTE.len()] }
 }
 
-/// A straight line.
+/// Draws a straight line.
 pub(crate) fn line(out: &mut String, from: (f64, f64), to: (f64, f64), colour: &str, width: f64) {
     let _ = writeln!(
         out,
@@ -64,7 +66,7 @@ pub(crate) fn line(out: &mut String, from: (f64, f64), to: (f64, f64), colour: &
     );
 }
 
-/// A dotted grey line.
+/// Draws a dotted grey line.
 pub(crate) fn dashed(out: &mut String, from: (f64, f64), to: (f64, f64)) {
     let _ = writeln!(
         out,
@@ -76,7 +78,7 @@ pub(crate) fn dashed(out: &mut String, from: (f64, f64), to: (f64, f64)) {
     );
 }
 
-/// Words at a place; `more` holds further attributes of the element.
+/// Writes text at a position. `more` has further attributes of the SVG element.
 pub(crate) fn text(out: &mut String, at: (f64, f64), anchor: &str, more: &str, words: &str) {
     let _ = writeln!(
         out,
@@ -87,18 +89,18 @@ pub(crate) fn text(out: &mut String, at: (f64, f64), anchor: &str, more: &str, w
     );
 }
 
-/// Width of a text, estimated on the long side \[px\].
+/// Width of a text, estimated so that it is rather too large \[px\].
 pub(crate) fn text_px(words: &str, font_px: f64) -> f64 {
     words.chars().count() as f64 * CHARACTER * font_px
 }
 
-/// A coordinate with two decimals at most.
+/// A coordinate with at most two decimals.
 pub(crate) fn px(value: f64) -> String {
     let text = fixed(value, 2);
     text.trim_end_matches('0').trim_end_matches('.').to_string()
 }
 
-/// Words as they may stand in an SVG file.
+/// Text with the characters escaped that have a meaning in SVG.
 pub(crate) fn escape(words: &str) -> String {
     words.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -1,8 +1,9 @@
-//! Outlines of markers about the origin.
+//! Outlines of markers, centred on the origin.
 
 use super::draw::{MUTED, PALETTE, px};
 
-/// A marker's outline: circle, square, triangle up, diamond, triangle down, plus, cross, star.
+/// Outline of the marker of a style, as an SVG path: circle, square, triangle up, diamond, triangle down, plus,
+/// cross or star. `r` is its radius \[px\].
 pub(crate) fn outline(style: usize, r: f64) -> String {
     const UP: &[(f64, f64)] = &[(0.0, -1.25), (1.15, 0.8), (-1.15, 0.8)];
     const DOWN: &[(f64, f64)] = &[(0.0, 1.25), (1.15, -0.8), (-1.15, -0.8)];
@@ -34,7 +35,7 @@ pub(crate) fn outline(style: usize, r: f64) -> String {
         (-1.33, -0.43),
         (-0.33, -0.45),
     ];
-    // beyond the palette the colours come again with other shapes, which have a hole
+    // beyond the number of colours, styles repeat the colours with other shapes, which have a hole
     let hole = style != MUTED && (style / PALETTE.len()) % 2 == 1;
     let polygon = |corners: &[(f64, f64)], r: f64, turn_rad: f64| {
         let inner = if hole { polygon(corners.iter().rev(), 0.45 * r, turn_rad) } else { String::new() };
@@ -54,7 +55,7 @@ pub(crate) fn outline(style: usize, r: f64) -> String {
     }
 }
 
-/// A circle drawn one way round (`sweep` 0) or the other.
+/// A circle, drawn anticlockwise or clockwise (`sweep` 0 or 1). Two circles of opposite sense make a ring.
 fn circle(r: f64, sweep: u8) -> String {
     let (r, d) = (px(r), px(2.0 * r));
     format!("M-{r} 0a{r} {r} 0 1 {sweep} {d} 0a{r} {r} 0 1 {sweep} -{d} 0z")

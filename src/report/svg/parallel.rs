@@ -1,4 +1,4 @@
-//! Parallel coordinates: one upright axis a choice or result, one line a design.
+//! Parallel coordinates: one vertical axis per choice or result, one line per design.
 
 use super::draw::{INK, colour, head, line, px, text, wrap};
 use std::fmt::Write;
@@ -10,36 +10,37 @@ const BOTTOM_PX: f64 = HEIGHT_PX - 26.0;
 const HEAD_CHARACTERS: usize = 13;
 const TICK_CHARACTERS: usize = 13;
 
-/// One axis.
+/// One vertical axis.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ParallelAxis {
-    /// Name with its unit.
+    /// Name of the axis, with its unit.
     pub label: String,
-    /// Place of each labelled value from 0 (bottom) to 1 (top).
+    /// Position of each labelled value from 0 (bottom) to 1 (top), and its label.
     pub ticks: Vec<(f64, String)>,
 }
 
-/// One line across all axes.
+/// One line across all axes, which stands for a design.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ParallelLine {
-    /// Place on each axis from 0 to 1; `None` has no place there.
+    /// Position of the line on each axis from 0 to 1. `None` where the design has no value; the line is interrupted
+    /// there.
     pub places: Vec<Option<f64>>,
-    /// Colour as in the other pictures.
+    /// Style index, which determines the colour as in the other pictures.
     pub style: usize,
-    /// Name of a line that stands out.
+    /// Name of the line; `None` for a line that is not highlighted.
     pub name: Option<String>,
 }
 
-/// Parallel coordinates.
+/// A picture of parallel coordinates.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Parallel {
-    /// Title.
+    /// Title of the picture.
     pub title: String,
-    /// What is shown, in a sentence or two, for those who cannot see it.
+    /// Description in a sentence or two, for readers who cannot see the picture.
     pub description: String,
     /// Axes from left to right.
     pub axes: Vec<ParallelAxis>,
-    /// Lines; those with a name are drawn last and stand out.
+    /// The lines. Those with a name are drawn last and are highlighted.
     pub lines: Vec<ParallelLine>,
 }
 
@@ -114,7 +115,7 @@ fn y(place: f64) -> f64 {
     BOTTOM_PX - place * (BOTTOM_PX - TOP_PX)
 }
 
-/// As much of a word as fits beside an axis.
+/// The beginning of a text, as much as fits next to an axis.
 fn shortened(words: &str) -> String {
     if words.chars().count() <= TICK_CHARACTERS {
         return words.to_string();

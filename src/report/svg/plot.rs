@@ -1,4 +1,4 @@
-//! A plot: axes, series, notes and guides, drawn in a frame with its legend beside it.
+//! A plot: axes, series, notes and guides in a frame, with the legend to the right of it.
 
 use super::draw::{
     FAINT, FONT_PX, INK, MUTED, NOTE_PX, TITLE_PX, colour, dashed, head, line, px, text, text_px, wrap,
@@ -10,14 +10,14 @@ use std::fmt::Write;
 
 const LEGEND_CHARACTERS: usize = 26;
 
-/// An axis.
+/// An axis of a plot.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Axis {
     /// Label with its unit: `deflection [mm]`.
     pub label: String,
-    /// How it counts.
+    /// Linear or logarithmic scale.
     pub scale: Scale,
-    /// Ends in data units; `None` takes them from the data.
+    /// Ends of the axis in data units; `None` takes them from the data.
     pub range: Option<(f64, f64)>,
 }
 
@@ -31,46 +31,46 @@ impl Axis {
 /// How the points of a series are joined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Stroke {
-    /// Not joined.
+    /// The points are not joined.
     #[default]
     None,
-    /// A solid line.
+    /// The points are joined by a solid line.
     Solid,
-    /// A dashed line.
+    /// The points are joined by a dashed line.
     Dashed,
-    /// The style's own pattern of dashes, so that lines differ without colour.
+    /// A dash pattern that depends on the style, so that lines differ without colour.
     Patterned,
 }
 
-/// Points that belong together.
+/// A series of points.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Series {
-    /// Name in the legend.
+    /// Name in the legend; empty leaves the series out of the legend.
     pub name: String,
-    /// Points in the order they are joined.
+    /// Points, in the order in which they are joined.
     pub points: Vec<(f64, f64)>,
-    /// Index of colour and marker shape; series with equal `style` look alike.
+    /// Index of colour and marker shape. Series with equal `style` look the same.
     pub style: usize,
     /// Whether the markers are hollow.
     pub open: bool,
     /// How the points are joined.
     pub stroke: Stroke,
-    /// Radius of the markers \[px\]; 0 = none.
+    /// Radius of the markers \[px\]; 0 draws none.
     pub marker_px: f64,
 }
 
 impl Series {
-    /// Markers joined by a solid line.
+    /// A series of markers that are joined by a solid line.
     pub fn line(name: &str, style: usize, points: Vec<(f64, f64)>) -> Self {
         Self { name: name.into(), points, style, open: false, stroke: Stroke::Solid, marker_px: 4.5 }
     }
 
-    /// Hollow markers joined by a dashed line: a variant of another series.
+    /// A series of hollow markers that are joined by a dashed line. It shows a variant of another series.
     pub fn variant(name: &str, style: usize, points: Vec<(f64, f64)>) -> Self {
         Self { open: true, stroke: Stroke::Dashed, ..Self::line(name, style, points) }
     }
 
-    /// Markers alone, smaller the more there are.
+    /// A series of markers that are not joined. They are smaller if there are many.
     pub fn scatter(name: &str, style: usize, points: Vec<(f64, f64)>) -> Self {
         let marker_px = match points.len() {
             0..=60 => 4.5,
@@ -81,58 +81,58 @@ impl Series {
     }
 }
 
-/// On which side of its place a note stands.
+/// The side of its point on which a note is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Side {
-    /// Right of and above the place.
+    /// Right of and above the point.
     #[default]
     RightAbove,
-    /// Left of and below the place.
+    /// Left of and below the point.
     LeftBelow,
 }
 
-/// Words at a place in the plot.
+/// A text at a point of the plot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Note {
-    /// Place in data units.
+    /// The point in data units.
     pub at: (f64, f64),
-    /// Words, moved until they lie inside the frame.
+    /// The text. It is moved until it is inside the frame.
     pub text: String,
-    /// Where the words stand.
+    /// Side of the point on which the text is written.
     pub side: Side,
 }
 
 /// A dashed line across the whole plot at a value of one axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Guide {
-    /// Whether the value is of the x axis (a vertical line).
+    /// Whether the value belongs to the x axis, so that the line is vertical.
     pub vertical: bool,
-    /// Value in data units.
+    /// Value on the axis, in data units.
     pub value: f64,
-    /// Words beside the line.
+    /// Text next to the line.
     pub text: String,
 }
 
-/// A plot.
+/// A plot: data in a frame with two axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plot {
-    /// Title.
+    /// Title of the plot.
     pub title: String,
-    /// What the plot shows, in a sentence or two, for those who cannot see it.
+    /// Description of the plot in a sentence or two, for readers who cannot see it.
     pub description: String,
     /// Horizontal axis.
     pub x: Axis,
     /// Vertical axis.
     pub y: Axis,
-    /// Data.
+    /// Series of data.
     pub series: Vec<Series>,
-    /// Words in the plot.
+    /// Texts in the plot.
     pub notes: Vec<Note>,
-    /// Lines at stated values.
+    /// Dashed lines at stated values.
     pub guides: Vec<Guide>,
-    /// Width \[px\].
+    /// Width of the plot \[px\].
     pub width_px: f64,
-    /// Height \[px\].
+    /// Height of the plot \[px\].
     pub height_px: f64,
 }
 
@@ -172,7 +172,8 @@ impl Plot {
         head(&self.title, &self.description, self.width_px, self.height_px)
     }
 
-    /// Ends of the data along one axis; with nothing to show, 1 to 10.
+    /// Ends of an axis: its stated range, or else the smallest and largest value of the data. Without any data they are
+    /// 1 and 10. `along_x` says which axis it is.
     fn extent(&self, axis: &Axis, along_x: bool) -> (f64, f64) {
         let guides = self.guides.iter().filter(|g| g.vertical == along_x).map(|g| g.value);
         let points = self.series.iter().flat_map(|s| &s.points).filter(|p| self.shows(p));
@@ -188,12 +189,12 @@ impl Plot {
     }
 }
 
-/// Whether a value has a place on an axis.
+/// Whether a value can be drawn on an axis. A logarithmic axis needs a positive value.
 fn usable(scale: Scale, value: f64) -> bool {
     value.is_finite() && (scale == Scale::Linear || value > 0.0)
 }
 
-/// The frame and the way from data to pixels.
+/// The frame of a plot, and the conversion from data units to pixels.
 pub(super) struct Canvas {
     pub(super) left: f64,
     pub(super) right: f64,
@@ -223,7 +224,7 @@ impl Canvas {
         )
     }
 
-    /// A point's pixels, if it lies in the frame.
+    /// Position of a point, given in data units, in the picture \[px\]; `None` if it is outside the frame.
     pub(super) fn inside(&self, point: (f64, f64)) -> Option<(f64, f64)> {
         if !usable(self.x.scale, point.0) || !usable(self.y.scale, point.1) {
             return None;
@@ -314,7 +315,7 @@ impl Canvas {
         }
     }
 
-    /// Words with a white rim, moved until they lie inside the frame.
+    /// Writes text with a white rim, moved so that it is inside the frame.
     pub(super) fn words(&self, out: &mut String, (x, y): (f64, f64), words: &str) {
         let x = x.min(self.right - 6.0 - text_px(words, NOTE_PX)).max(self.left + 6.0);
         let y = y.clamp(self.top + 15.0, self.bottom - 6.0);
@@ -349,7 +350,7 @@ impl Canvas {
     }
 }
 
-/// Room for the legend at the right of the frame \[px\].
+/// Width of the legend to the right of the frame \[px\].
 fn legend_px(series: &[Series]) -> f64 {
     let rows = series.iter().flat_map(|s| wrap(&s.name, LEGEND_CHARACTERS));
     let widest = rows.map(|row| text_px(&row, FONT_PX)).fold(0.0, f64::max);
@@ -366,7 +367,8 @@ fn dashes(series: &Series) -> String {
     if pattern.is_empty() { String::new() } else { format!(" stroke-dasharray=\"{pattern}\"") }
 }
 
-/// All markers of a series: one outline, and a path without stroke that has it at every corner.
+/// Draws all markers of a series. The outline is written once, and an invisible path repeats it at each of its
+/// points.
 pub(super) fn markers(out: &mut String, series: &Series, points: &[(f64, f64)]) {
     if points.is_empty() || series.marker_px <= 0.0 {
         return;
@@ -376,7 +378,7 @@ pub(super) fn markers(out: &mut String, series: &Series, points: &[(f64, f64)]) 
     } else {
         (colour(series.style), "#FFFFFF", "0.6")
     };
-    // the name says all there is to the outline, so that pictures joined in one page do not disagree
+    // the id contains everything that determines the outline, so that equal ids in one page mean equal outlines
     let open = if series.open { "o" } else { "f" };
     let id = format!("m{}{open}{}", series.style, px(10.0 * series.marker_px));
     let shape = outline(series.style, series.marker_px);
@@ -387,7 +389,7 @@ pub(super) fn markers(out: &mut String, series: &Series, points: &[(f64, f64)]) 
          <path d=\"{shape}\" fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"{width}\"/></marker>\n\
          <path d=\"M{}\" fill=\"none\" marker-start=\"url(#{id})\" marker-mid=\"url(#{id})\" \
          marker-end=\"url(#{id})\"/>",
-        // a path of one point has no end of its own: the point is given twice
+        // a path needs two points, so a single point is given twice
         if corners.len() == 1 { format!("{0}L{0}", corners[0]) } else { corners.join("L") }
     );
 }

@@ -1,4 +1,4 @@
-//! Rows of marks along one axis: a value before and after, a value with its interval, a score.
+//! Rows of marks along one axis: for example values before and after, or values with intervals.
 
 use super::draw::{FAINT, FONT_PX, INK, MUTED, NOTE_PX, colour, dashed, head, line, px, text, text_px};
 use super::plot::{Axis, Series, Stroke, markers};
@@ -12,42 +12,42 @@ const ROW_PX: f64 = 26.0;
 const TOP_PX: f64 = 88.0;
 const WIDTH_PX: f64 = 900.0;
 
-/// A mark in a row.
+/// Value of the mark on the axis.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Mark {
-    /// Where it is.
+    /// Value at which the mark is drawn, in the unit of the axis.
     pub value: f64,
-    /// Ends of its interval; an end that is not known runs to the frame with an arrow.
+    /// Ends of the interval around the value. An unknown end is drawn as an arrow at the frame.
     pub interval: Option<(Option<f64>, Option<f64>)>,
-    /// Which entry of the legend it belongs to.
+    /// Index of the mark's entry in the legend.
     pub kind: usize,
 }
 
-/// One row.
+/// One row of marks.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Row {
-    /// Words at its left.
+    /// Text to the left of the row.
     pub label: String,
-    /// Marks, joined by a line where there are several.
+    /// Marks; several marks are joined by a line.
     pub marks: Vec<Mark>,
-    /// Words at its right.
+    /// Text to the right of the row.
     pub remark: String,
 }
 
-/// Rows of marks under one axis.
+/// A picture of rows of marks with a common axis.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct RowPlot {
-    /// Title.
+    /// Title of the picture.
     pub title: String,
-    /// What the rows show, in a sentence or two, for those who cannot see them.
+    /// Description of the rows in a sentence or two, for readers who cannot see them.
     pub description: String,
-    /// The axis.
+    /// The common axis.
     pub x: Axis,
-    /// Names of the kinds of marks; hollow markers for the first where there are two.
+    /// Names of the kinds of marks, for the legend. If there are several, the markers of the first kind are hollow.
     pub kinds: Vec<String>,
     /// Rows from top to bottom.
     pub rows: Vec<Row>,
-    /// Dashed lines at values, with words.
+    /// Values at which dashed lines are drawn, with their texts.
     pub guides: Vec<(f64, String)>,
 }
 
@@ -85,7 +85,7 @@ impl RowPlot {
         out
     }
 
-    /// The numbers behind the rows, one line a mark.
+    /// The numbers behind the rows as CSV, one line per mark.
     pub(crate) fn to_csv(&self) -> String {
         let cells = ["row", "mark", "value", "low", "high"].map(String::from);
         let mut out = csv_line(&cells);
@@ -162,7 +162,8 @@ impl RowPlot {
         }
     }
 
-    /// Before is hollow and grey, after is solid and blue; a single kind is solid and blue.
+    /// The look of a kind of marks. The first of several kinds (before) is hollow and grey, the others are filled.
+    /// A single kind is filled and blue.
     fn look(&self, kind: usize) -> Series {
         let before = self.kinds.len() > 1 && kind == 0;
         let (style, open) = if before { (MUTED, true) } else { (kind.saturating_sub(1), false) };

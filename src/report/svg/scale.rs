@@ -1,11 +1,11 @@
-//! How an axis counts.
+//! The scale of an axis: linear or logarithmic.
 
-/// How an axis counts.
+/// The scale of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Scale {
-    /// Equal steps.
+    /// Linear scale: equal steps of the value have equal lengths.
     #[default]
     Linear,
-    /// Equal ratios; values that are not positive are left out.
+    /// Logarithmic scale: equal ratios of values have equal lengths. Values that are not positive are left out.
     Log,
 }

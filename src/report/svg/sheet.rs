@@ -1,21 +1,21 @@
-//! Plots under one another as one picture, their frames in line, with one legend.
+//! Several plots in one picture, one below the other, with aligned frames and one legend.
 
 use super::draw::{INK, NOTE_PX, escape, line, px, text, text_px};
 use super::plot::{Canvas, Plot, Series};
 use std::fmt::Write;
 
-/// Radius of the ring around a noted place \[px\].
+/// Radius of the ring around a point that has a note \[px\].
 const RING_PX: f64 = 7.0;
 
-/// Plots that share a picture.
+/// Several plots in one picture.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Sheet {
-    /// Title for those who cannot see it; the plots have their own.
+    /// Title for readers who cannot see the picture; the plots have their own titles.
     pub title: String,
-    /// What the sheet shows, in a sentence or two, for those who cannot see it.
+    /// Description of the picture in a sentence or two, for readers who cannot see it.
     pub description: String,
-    /// Plots from top to bottom. The legend stands beside the first. Notes get a ring at their place and are set where they
-    /// cover least, whatever their side.
+    /// Plots from top to bottom. The legend is next to the first one. The points of notes get a ring. The notes are
+    /// placed where they cover least, whatever their `side` is.
     pub plots: Vec<Plot>,
 }
 
@@ -46,7 +46,7 @@ impl Sheet {
         out
     }
 
-    /// One canvas a plot, with their frames in line.
+    /// The frame of each plot, with left and right edges aligned.
     fn canvases(&self) -> Vec<Canvas> {
         let mut canvases: Vec<Canvas> = self.plots.iter().map(Canvas::new).collect();
         let left = canvases.iter().map(|c| c.left).fold(0.0, f64::max);
@@ -71,7 +71,7 @@ impl Canvas {
         }
     }
 
-    /// Notes with a ring at their place, each set where it covers least.
+    /// Draws notes with rings at their points. Each note is placed where it covers least.
     fn ringed_notes(&self, out: &mut String, plot: &Plot) {
         let noted: Vec<_> = plot.notes.iter().filter_map(|n| Some((n, self.inside(n.at)?))).collect();
         let mut obstacles = Obstacles {
@@ -98,7 +98,8 @@ impl Canvas {
         }
     }
 
-    /// Places for a note of this size around a point, inside the frame, the nearest first.
+    /// Possible positions for a note with the size (`width`, `height`) around the point (`x`, `y`), inside the frame
+    /// \[px\]. The nearest come first.
     fn candidates(&self, (x, y): (f64, f64), (width, height): (f64, f64)) -> Vec<Rect> {
         let inside = |b: &Rect| {
             b.left >= self.left + 4.0
@@ -119,7 +120,7 @@ impl Canvas {
     }
 }
 
-/// What a note should not cover.
+/// Positions that a note should not cover: points of the data, rings, and other notes.
 struct Obstacles {
     points: Vec<(f64, f64)>,
     rings: Vec<(f64, f64)>,
@@ -127,7 +128,8 @@ struct Obstacles {
 }
 
 impl Obstacles {
-    /// How bad a place is: other notes and rings first, then points, then the way to its own ring.
+    /// Cost of the position `place` for a note. Covering other notes and rings costs most, then covering points, then
+    /// the distance to `own`, the ring of the note.
     fn cost(&self, place: &Rect, own: (f64, f64)) -> u64 {
         let boxes = self.boxes.iter().filter(|b| b.touches(place)).count() as u64;
         let rings =
@@ -166,7 +168,7 @@ impl Rect {
             && other.top < self.bottom
     }
 
-    /// The point of the rectangle nearest to another.
+    /// The point of the rectangle that is nearest to the point (`x`, `y`) \[px\].
     fn nearest(&self, (x, y): (f64, f64)) -> (f64, f64) {
         (x.clamp(self.left, self.right), y.clamp(self.top, self.bottom))
     }
@@ -183,7 +185,7 @@ fn ring(out: &mut String, (x, y): (f64, f64)) {
     }
 }
 
-/// A thin line from a ring to its note, where they do not touch.
+/// Draws a thin line from a ring to its note, if the note is not next to the ring.
 fn leader(out: &mut String, (x, y): (f64, f64), note: &Rect) {
     let (end_x, end_y) = note.nearest((x, y));
     let way = libm::hypot(end_x - x, end_y - y);

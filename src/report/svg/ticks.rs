@@ -1,30 +1,30 @@
-//! Where an axis has its ticks and what stands beside them.
+//! Positions and labels of the ticks of an axis.
 
 use super::scale::Scale;
 
-/// One tick.
+/// One tick of an axis.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Tick {
-    /// Where it is, in data units.
+    /// Value of the tick, in data units.
     pub value: f64,
-    /// Its label; `None` for a minor tick.
+    /// Label of the tick; `None` for a minor tick.
     pub label: Option<String>,
 }
 
-/// A range widened to round numbers, and its ticks.
+/// The range of an axis, widened to round numbers, and its ticks.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Ruling {
     /// Scale of the axis.
     pub scale: Scale,
-    /// Lower end in data units.
+    /// Lower end of the axis, in data units.
     pub low: f64,
-    /// Upper end in data units.
+    /// Upper end of the axis, in data units.
     pub high: f64,
-    /// Ticks in rising order.
+    /// Ticks in ascending order.
     pub ticks: Vec<Tick>,
 }
 
-/// Rules an axis over the data from `low` to `high` with about `count` labelled ticks.
+/// Chooses range and ticks of an axis for data from `low` to `high`, with about `count` labelled ticks.
 pub(crate) fn rule(scale: Scale, low: f64, high: f64, count: usize) -> Ruling {
     match scale {
         Scale::Linear => linear(low, high, count),
@@ -33,7 +33,7 @@ pub(crate) fn rule(scale: Scale, low: f64, high: f64, count: usize) -> Ruling {
 }
 
 impl Ruling {
-    /// Position of a value along the axis, 0 at the lower end and 1 at the upper.
+    /// Position of a value along the axis: 0 at the lower end, 1 at the upper end.
     pub(crate) fn position(&self, value: f64) -> f64 {
         match self.scale {
             Scale::Linear => (value - self.low) / (self.high - self.low),
@@ -44,7 +44,7 @@ impl Ruling {
 
 fn linear(low: f64, high: f64, count: usize) -> Ruling {
     let (low, high) = widen(low, high);
-    // a range that nearly reaches zero starts at zero
+    // a range that begins near zero begins at zero
     let low = if low > 0.0 && low < 0.35 * high { 0.0 } else { low };
     let (step, decimals) = nice_step((high - low) / count.max(1) as f64);
     let first = (low / step + 1e-9).floor();
@@ -55,7 +55,8 @@ fn linear(low: f64, high: f64, count: usize) -> Ruling {
     Ruling { scale: Scale::Linear, low: first * step, high: last * step, ticks }
 }
 
-/// A step of 1, 2, 2.5 or 5 times a power of ten that is at least `least`, and its decimals.
+/// A step of 1, 2, 2.5 or 5 times a power of ten that is at least `least`, and the number of decimals for its
+/// labels.
 fn nice_step(least: f64) -> (f64, usize) {
     let power = libm::log10(least).floor() as i32;
     let unit = 10f64.powi(power);
@@ -93,12 +94,12 @@ fn logarithmic(low: f64, high: f64, count: usize) -> Ruling {
     Ruling { scale: Scale::Log, low, high, ticks }
 }
 
-/// `mantissa · 10^power`, exact where the decimal number is.
+/// `mantissa · 10^power`. The division keeps negative powers exact to the last digit.
 fn times_power(mantissa: f64, power: i32) -> f64 {
     if power < 0 { mantissa / 10f64.powi(-power) } else { mantissa * 10f64.powi(power) }
 }
 
-/// Where a logarithmic axis may end within a decade.
+/// Numbers within a decade at which a logarithmic axis may end.
 const STOPS: [f64; 3] = [1.0, 2.0, 5.0];
 
 fn stop_below(value: f64) -> f64 {
@@ -113,7 +114,7 @@ fn stop_above(value: f64) -> f64 {
     candidates.filter(|s| *s >= value * (1.0 - 1e-9)).fold(times_power(1.0, power + 1), f64::min)
 }
 
-/// A range that is not empty.
+/// The range from `low` to `high`, or a wider one if it is empty or nearly so.
 fn widen(low: f64, high: f64) -> (f64, f64) {
     let size = low.abs().max(high.abs());
     if high - low > 1e-9 * size {

@@ -1,8 +1,9 @@
-//! Where to branch a subproblem below a single upper bound: the options of a level, or a torque.
+//! Where to branch a subproblem below a single upper bound: at the options of a level, or at a torque.
 //!
-//! No weights refute the mixture of the cheapest members, though no single design is such a mixture. So the search branches
-//! where the mixture is furthest from a design: at a level whose mixed options differ most in what they add to the rows, or at a
-//! torque if the mixture twists less, or is stiffer, than its gears are at the torque that its own weights make.
+//! When no weights refute the subproblem, a mixture of its cheapest members satisfies all rows, although no single
+//! design need do so. The search branches where this mixture is furthest from a design. That is at a level whose
+//! mixed options differ most in what they add to the rows. Or it is at a torque, if the gears of the mixture twist
+//! less, or are stiffer, than they would under the torque that the mixture's own weights cause.
 
 use super::super::bound::{Members, compliances};
 use super::super::pose::Pose;
@@ -12,24 +13,27 @@ use super::rows::Rows;
 use super::subproblem::{Subproblem, TorqueInterval};
 use super::weights::{Member, Reduced};
 
-/// Smallest gain that is a reason to branch, as a part of what the upper bound allows. If no gain is larger, the
-/// level with the most options is branched.
+/// Smallest score for which a level or torque is branched, as a fraction of what the upper bound allows. If no
+/// score is larger, the level with the most options is branched.
 const WORTH_IT: f64 = 1e-4;
-/// A row counts for [`SAY`] more than its weight if its value at the mixture is within this distance of zero.
+/// If a row's value for the mixture is within this distance of zero (its limit), [`SAY`] is added to the weight of the
+/// row in the score.
 const NEAR: f64 = 0.2;
 const SAY: f64 = 0.1;
-/// Members with a smaller share of the mixture provide no break points at which to branch a torque.
+/// A member with a smaller weight in the mixture than this has no influence on the torque at which an interval is
+/// divided.
 const SHARE: f64 = 1e-3;
-/// A torque is not branched if its interval is narrower than this part of the torque's greatest magnitude.
+/// A torque is not branched if its interval is narrower than this fraction of the torque's greatest magnitude.
 const KNOWN: f64 = 2e-3;
-/// Where the mixture's own torque is nearer to an end than this part of the interval, the interval is divided
-/// elsewhere.
+/// If the torque of the mixture is nearer to an end of the interval than this fraction of its width, the interval
+/// is divided elsewhere.
 const EDGE: f64 = 0.1;
 
-/// A way to branch a subproblem.
+/// One way to divide a subproblem in two.
 pub(super) enum Branching {
-    /// Divides the options of a part (joints are numbered before tubes) by the sum of an option's numbers times
-    /// `per_number`: options up to the value `at`, and those beyond. Without `at` they are divided into equal parts.
+    /// Divides the options of a part (joints are numbered before tubes) by a value: the sum of an option's numbers
+    /// times `per_number`. Options with a value up to `at` make one half, the others the second. Without `at` the
+    /// halves have equal numbers of options.
     Options {
         part: usize,
         per_number: Vec<f64>,
@@ -42,8 +46,8 @@ pub(super) enum Branching {
     },
 }
 
-/// Ways to branch, the most promising first. `curves` holds the twists and slopes of the torsion curves, by which
-/// drives are divided.
+/// Ways to divide a subproblem, the most promising first. `curves` has the twists and slopes of the torsion curves.
+/// They are needed to divide drives by a weighted sum of their numbers.
 #[derive(Default)]
 pub(super) struct Branchings {
     pub branchings: Vec<Branching>,
@@ -51,11 +55,12 @@ pub(super) struct Branchings {
 }
 
 impl Rows<'_> {
-    /// Ways to branch what is left of a subproblem, the most promising first.
+    /// Ways to divide a subproblem, the most promising first. `left` is the subproblem after its options were reduced,
+    /// with the mixture that no weights refute.
     pub(super) fn branchings(&self, members: &Members, left: &Reduced) -> Vec<Branching> {
         let between = self.between(left);
         let mut found = Vec::new();
-        // the drive that fits first is no choice
+        // where the first drive that fits is taken, there are no options to branch
         let is_choice = |part: &usize| self.table.joints.get(*part).is_none_or(|j| j.drives.level.is_some());
         for part in (0..self.columns.joints + self.table.tubes.len()).filter(is_choice) {
             found.push(self.by_options(part, &between, members, left));
@@ -67,7 +72,8 @@ impl Rows<'_> {
         found.into_iter().map(|(_, branching)| branching).collect()
     }
 
-    /// The numbers of the mixture: the mean of the members' numbers, weighted by their shares.
+    /// The numbers of all parts of the mixture in `left`: the means of its members' numbers, weighted with their
+    /// fractions.
     fn between(&self, left: &Reduced) -> Vec<f64> {
         let mut between = vec![0.0; self.columns.len()];
         for (share, member) in &left.mixed {
@@ -76,8 +82,9 @@ impl Rows<'_> {
         between
     }
 
-    /// How much the members of the mixture differ in what a part adds to the rows, and how to branch by the row in
-    /// which they differ most.
+    /// Score of a division by the options of a part, and this division. The score says how much the members of the
+    /// mixture differ in what the part adds to the rows. The options are divided by their value in the row in which the
+    /// members differ most. `between` holds the numbers of the mixture.
     fn by_options(
         &self,
         part: usize,
@@ -115,8 +122,8 @@ impl Rows<'_> {
         }
     }
 
-    /// How much a row counts: its weight, and [`SAY`] more if the mixture is close to the row's limit. Rows of torque
-    /// intervals do not count.
+    /// Weight of a row in the score of a branching: its multiplier, and [`SAY`] more if the mixture, with the numbers
+    /// `between`, is close to the row's limit. Rows of torque intervals have weight zero.
     fn says(&self, row: usize, between: &[f64], left: &Reduced) -> f64 {
         let near = self.rows[row].value(between) > -NEAR;
         match (self.first_interval..self.first_mode).contains(&row) {
@@ -125,8 +132,8 @@ impl Rows<'_> {
         }
     }
 
-    /// The part of a tube's or a bearing's tip displacement that the linear bound of force times compliance leaves out at the
-    /// mixture, in units of the weighted rows.
+    /// By how much the linear (McCormick) bound of force times compliance is too low for the mixture with the numbers
+    /// `between`. It is the error in the tip displacement by one tube or bearing, in units of the weighted rows.
     fn left_out_of(&self, part: usize, between: &[f64], members: &Members, weights: &[f64]) -> f64 {
         let of_tip = |&(row, case, direction): &(usize, usize, nalgebra::Vector3<f64>)| {
             let pose = self.pose(case);
@@ -148,8 +155,8 @@ impl Rows<'_> {
         self.tips.iter().map(of_tip).sum()
     }
 
-    /// Every product of force and compliance that a part has in the displacement of the tip, with the position of the
-    /// compliance.
+    /// Every product of force and compliance by which a part displaces the tip in a case. Each is given by the position
+    /// of the compliance in the list of numbers, the force, and the interval of the compliance.
     fn products<'p>(
         &self,
         part: usize,
@@ -165,8 +172,9 @@ impl Rows<'_> {
         works.map(|(which, (work, compliance))| (number(which), work, compliance)).collect()
     }
 
-    /// Ways to branch at the torques of a case, each with its gain. The mixture gains where its gears twist or
-    /// stiffen as they would under other torques than those that the mixture's own masses make.
+    /// Ways to divide a subproblem at the torques of a judged case, each with its score. The score is positive if the
+    /// gears of the mixture twist less, or are stiffer, than they are under the torques that the mixture's own masses
+    /// cause. `between` holds the numbers of the mixture.
     fn by_torques(&self, case: usize, between: &[f64], left: &Reduced) -> Vec<(f64, Branching)> {
         let pose = self.pose(case);
         let own_nm = |torque: &Linear| {
@@ -202,8 +210,8 @@ impl Rows<'_> {
         branchings.collect()
     }
 
-    /// By how much the mixture twists less than its gears would under a torque, in units of the weighted row of the
-    /// tip.
+    /// By how much the gears of the mixture twist less than they would under `torque_nm`, the torque that the mixture's
+    /// own masses cause. The difference is given in units of the weighted row of the tip displacement.
     fn less_twisted(&self, case: usize, joint: usize, torque_nm: f64, left: &Reduced) -> f64 {
         let Some(&(row, _, direction)) = self.tips.iter().find(|tip| tip.1 == case) else { return 0.0 };
         let sense = 1.0f64.copysign(self.pose(case).tip_m_per_rad[joint].dot(&direction));
@@ -219,9 +227,10 @@ impl Rows<'_> {
         left.weights[row] * self.rows[row].per_number[twist] * less
     }
 
-    /// Torque at which to divide the interval of a joint's torque: the next break point (T1, T2) of a gear in the
-    /// mixture, beyond the mixture's own torque. If there is none, the mixture's own torque; if that is too near an
-    /// end, the middle. `None` if the interval is already narrow enough.
+    /// Torque at which the interval of a joint's torque is divided. `torque_nm` is the torque that the mixture's own
+    /// masses cause. The interval is divided at the next break point (T1, T2) of a gear of the mixture beyond this
+    /// torque. If there is none, it is divided at this torque, or in the middle if this torque is too near an end.
+    /// `None` if the interval is narrow enough already.
     fn branching_nm(&self, case: usize, joint: usize, torque_nm: f64, left: &Reduced) -> Option<f64> {
         let Span { least, most } = self.torques[case][joint];
         let edge = EDGE * (most - least);
@@ -238,7 +247,7 @@ impl Rows<'_> {
 }
 
 impl Branchings {
-    /// The two halves of a subproblem; `None` if no branching divides it.
+    /// The two halves of a subproblem; `None` if no way to branch divides it.
     pub(super) fn halves(&self, table: &PartsTable, subproblem: &Subproblem) -> Option<[Subproblem; 2]> {
         self.branchings.iter().find_map(|branching| subproblem.branched(table, branching, &self.curves))
     }
@@ -296,8 +305,8 @@ impl Subproblem {
     }
 }
 
-/// The options whose value is at most `at`, and the others. If either group would be empty, the options are sorted by
-/// their value and divided into equal parts. `None` if there is only one option.
+/// Divides `options` into those whose `value` is at most `at` and the others. If either group would be empty, the
+/// options are sorted by their value and divided into equal parts. `None` if there is only one option.
 fn halved(options: &[u32], value: impl Fn(&u32) -> f64, at: Option<f64>) -> Option<[Vec<u32>; 2]> {
     let (mut low, mut high): (Vec<u32>, Vec<u32>) =
         options.iter().partition(|option| at.is_some_and(|at| value(option) <= at));

@@ -1,39 +1,45 @@
-//! Minimax weights of a matrix: those under which the least weighted row is greatest.
+//! Maximin weights of a matrix: the weights for which the smallest weighted row sum is greatest.
 //!
-//! `max t : A w >= t, Σ w = 1, w >= 0` is a matrix game. It is solved by an interior-point path: Newton's steps on
-//! `t + μ (Σ log(A w - t) + Σ log w)` while `μ` falls. The shares `μ / (A w - t)` of the rows are the dual solution.
+//! `max t : A w >= t, Σ w = 1, w >= 0` is a matrix game. It is solved by an interior-point method: Newton steps on
+//! `t + μ (Σ log(A w - t) + Σ log w)` while `μ` is reduced. The fractions `μ / (A w - t)` of the rows are the dual
+//! solution.
 //!
-//! Why not the simplex method: weights short of the optimum are as good for a bound, weights from the centre exclude more
-//! options than those of a vertex, and the search uses the simplex method already.
+//! The simplex method is not used, for three reasons. Weights near the optimum give bounds that are as good.
+//! Weights from the centre exclude more options than weights at a vertex. And the search already uses the simplex
+//! method, so that the verifier uses another one.
 
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
-/// The barrier parameter `μ`: its first value, the factor by which it falls from stage to stage, and its last value
-/// times the number of rows and columns.
+/// Barrier parameter `μ` before the first stage, which already uses [`STAGE`] times this value. It is also how far `t`
+/// starts below the least row sum.
 const FIRST: f64 = 0.3;
+/// Factor by which `μ` is reduced from stage to stage.
 const STAGE: f64 = 0.2;
+/// The stages end at `μ` = this divided by the number of rows and columns together.
 const LAST: f64 = 3e-4;
 /// Largest number of Newton steps at each stage.
 const STEPS: usize = 4;
-/// Upper bound of a condition's weight.
+/// Upper limit of the weight of a condition (a column of a pair of opposite sign). It is needed because the sum of the
+/// weights does not limit these weights.
 const MOST: f64 = 3.0;
-/// Largest part of the distance to the nearest bound that a step may go, so that weights and slacks stay positive.
+/// Largest fraction of the distance to the nearest limit that a step may take, so that weights and slacks stay
+/// positive.
 const SHORT_OF: f64 = 0.95;
 
-/// Weights of the columns, and shares of the rows in a mixture (the dual solution). The shares add up to one, and so
-/// do the weights of the columns that are not conditions.
+/// Weights of the columns, and fractions of the rows in a mixture (the dual solution). The fractions add up to one.
+/// So do the weights of those columns that are not conditions.
 pub(super) struct Minimax {
     pub weights: Vec<f64>,
     pub shares: Vec<f64>,
-    /// Upper bound of the least weighted row, over all weights.
+    /// Upper limit, over all weights, of the smallest weighted row sum.
     pub most: f64,
 }
 
-/// The weights of the columns under which the least weighted row is greatest.
+/// The weights of the columns for which the smallest weighted row sum is greatest.
 ///
-/// Weights of conditions do not count in the sum of the weights; each is at most [`MOST`] instead. Conditions come in
-/// pairs of opposite sign (a torque is at least so large, and at most so large). If their weights counted, equal
+/// Weights of conditions do not count in the sum of the weights; each is at most [`MOST`] instead. Conditions come
+/// in pairs of opposite sign (a torque is at least a value, and at most another). If their weights counted, equal
 /// weights on both columns of a pair would use up part of the sum without any effect.
 pub(super) fn solve(rows: &[Vec<f64>], conditions: Range<usize>) -> Minimax {
     let (count, width) = (rows.len(), rows[0].len());
@@ -116,8 +122,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// No weights make the least weighted row greater than `most`, and the weights found come close to it. The
-        /// witness is fictitious play.
+        /// No weights make the smallest weighted row sum greater than `most`, and the weights found come close to
+        /// it. The comparison is with fictitious play, another method for matrix games.
         #[test]
         fn no_weights_are_better_by_much_and_none_than_what_is_said(
             rows in prop::collection::vec(prop::collection::vec(-1.0f64..1.0, 4), 1..9),

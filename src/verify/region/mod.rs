@@ -1,17 +1,19 @@
-//! Region by region: proves that a front of a huge space lacks no design.
+//! Region by region: proves that the front of a very large space lacks no design.
 //!
-//! A design that no row beats lies below some *local upper bound* of the front ([`upper_bounds`]): it is no heavier than the
-//! bound, deflects no more and is no slower. So the verifier goes from bound to bound.
+//! A design that no design of the front dominates lies below some *local upper bound* of the front
+//! ([`upper_bounds`]): it is no heavier than the bound, deflects no more and has no lower mode. So the verifier
+//! examines these bounds one after the other.
 //!
-//! A box takes every part at its lightest and at its stiffest at once, though a part is one or the other. Weighted sums over the
-//! parts take mass, deflection and modes together ([`rows`]), and are much sharper. If the least sum of any member is more than
-//! the upper bound allows, there is no member below it. If it is only close to that, options that cost more than what is left are
-//! excluded ([`weights`], by reduced costs).
+//! The ideal point of a box takes each part at its lightest and at its stiffest at once, although no part is both.
+//! Weighted sums over the parts combine mass, deflection and modes ([`rows`]) and are much sharper. If the least
+//! sum of any member is more than the upper bound allows, no member is below the bound. Otherwise options that
+//! raise the least sum by more than the difference are excluded ([`weights`], by reduced costs).
 //!
-//! The upper bounds are the leaves of a tree; the bound of a node covers those below it. At every node, from the root on, options
-//! are excluded as long as that pays ([`search`]). If no option is left, or no member can be below the bound, that part
-//! of the tree is done. Else its two halves are searched with the options left. Below a single bound the search branches: it
-//! splits the options of a level, or a torque, in two ([`branch`]). Few designs are searched box by box.
+//! The upper bounds are the leaves of a tree; the bound of a node covers all bounds below it. At every node, from
+//! the root on, options are excluded as long as enough of them go ([`search`]). If no option is left, or if no
+//! member can be below the bound, this branch of the tree is done. Otherwise its two halves are searched with the
+//! remaining options. Below a single bound the search branches: it divides the options of a level, or a torque, in
+//! two ([`branch`]). When few designs are left, they are searched box by box.
 
 pub(super) mod branch;
 pub(super) mod matrix_game;

@@ -1,9 +1,9 @@
-//! All parts of a space, as columns of numbers that prices are put on.
+//! All parts of a space, as lists of numbers that can have prices.
 //!
-//! A tube is a line of numbers: its mass; for each of the study's surroundings its weight and its inertias per length; its stiffnesses
-//! and its compliances. The tubes of a link stand in a tree whose nodes know the least and the most of every number.
-//! A drive is its mass, its torsion curve and the tilt of its bearing; many drives have one curve and one bearing, so that
-//! their price is worked out once.
+//! The list of a tube has its mass; for each of the study's surroundings its weight and its inertias per length;
+//! its stiffnesses and its compliances. The tubes of a link are in a tree whose nodes store the least and the
+//! greatest of every number. A drive has a mass, a torsion curve and the tilt compliance of its bearing. Many
+//! drives share one curve and one bearing, whose price is then computed only once.
 
 use super::super::drive_range::DriveRange;
 use super::super::drives::DriveOptions;
@@ -20,17 +20,19 @@ pub(super) struct PartsTable {
     pub tubes: Vec<TubeTable>,
 }
 
-/// For each torsion curve of a joint: its twist in every judged case, then its slope in every judged case, then
-/// compliance and stiffness of the output bearing that comes with it. `None` for a curve that no drive of the subproblem has.
+/// The numbers of each torsion curve that the drives of a joint have: its twist in every judged case, then its slope in
+/// every judged case, then compliance and stiffness of the output bearing that belongs to it. `None` for a curve that
+/// no drive of the subproblem has.
 pub(super) type Numbers = Vec<Option<Vec<f64>>>;
 
-/// The drives that a joint may have.
+/// The drives that a joint may have, sorted by torsion curve and bearing.
 pub(super) struct JointTable {
     pub drives: DriveOptions,
     pub masses_kg: Vec<f64>,
     /// For each drive, the index of its torsion curve in `curves`.
     pub curve: Vec<u32>,
-    /// The different torsion curves with their bearings, each with the numbers of the first drive that has the curve.
+    /// The distinct torsion curves, each together with a bearing. An entry holds the numbers of the first drive that
+    /// has this curve and this bearing.
     pub curves: Vec<DriveRange>,
 }
 
@@ -45,11 +47,11 @@ pub(super) struct TubeTable {
     priced: usize,
 }
 
-/// Numbers of a tube beyond its stresses that have no price: whether it is round, half its width, and the room for gear and
-/// motor.
+/// How many numbers of a tube, in addition to its stresses, have no price: whether it is round, half its width, and
+/// the largest widths of gear and motor.
 const BESIDE_STRESSES: usize = 4;
 
-/// Positions of the numbers in the list that describes a tube.
+/// Positions of a tube's numbers in its list.
 pub(super) mod place {
     use crate::verify::tubes::{DENSITIES, STIFFNESSES};
     pub(crate) const MASS: usize = 0;
@@ -71,8 +73,8 @@ pub(super) mod place {
         stiffness(waters, STIFFNESSES + which)
     }
 
-    /// Number of leading entries in a tube's list that can have a price. The entries after them (stresses, shape,
-    /// width, room) never have one.
+    /// Number of leading entries in a tube's list that can have a price. The entries after them (stresses,
+    /// roundness, half width, widths of gear and motor) never have one.
     pub(crate) fn priced(waters: usize) -> usize {
         stiffness(waters, 2 * STIFFNESSES)
     }
@@ -105,7 +107,7 @@ impl JointTable {
 }
 
 impl JointTable {
-    /// The numbers of a drive.
+    /// The numbers of the drive with this index, as a range of a single curve.
     pub(super) fn range(&self, drive: u32) -> &DriveRange {
         &self.drives.options[drive as usize].range
     }
@@ -118,7 +120,7 @@ impl TubeTable {
         let priced = place::priced(waters);
         let width = priced + STRESSES + BESIDE_STRESSES;
         let mut bounds = vec![0.0; 2 * width * tree.len()];
-        // halves come after their node
+        // the halves of a node come after it in the list, so they are computed before it here
         for node in (0..tree.len() as u32).rev() {
             let at = 2 * width * node as usize;
             match tree.halves(node) {
@@ -139,7 +141,7 @@ impl TubeTable {
         Self { options, tree, bounds, width, priced }
     }
 
-    /// Least and greatest value, over a node's tubes, of every number that may have a price.
+    /// The least and the greatest value of every number that may have a price, over the tubes below the node `node`.
     pub(super) fn bounds(&self, node: u32) -> [&[f64]; 2] {
         self.all_bounds(node).map(|bounds| &bounds[..self.priced])
     }
@@ -150,12 +152,12 @@ impl TubeTable {
         [&both[..self.width], &both[self.width..]]
     }
 
-    /// How many of a tube's numbers may have a price.
+    /// How many numbers of a tube can have a price. They come first in its list.
     pub(super) fn priced(&self) -> usize {
         self.priced
     }
 
-    /// Range of the tubes below some nodes.
+    /// Least and greatest numbers of the tubes below the nodes `nodes` of the tree.
     pub(super) fn range(&self, nodes: &[u32]) -> TubeRange {
         let [mut least, mut most] = self.all_bounds(nodes[0]).map(<[f64]>::to_vec);
         for &node in nodes {
@@ -167,21 +169,21 @@ impl TubeTable {
         TubeRange { middle: least.clone(), least, most }
     }
 
-    /// The tubes below some nodes, as options.
+    /// The tubes below the nodes `nodes` of the tree, as a list of options.
     pub(super) fn only(&self, nodes: &[u32]) -> TubeOptions {
         let mut options: Vec<u32> = nodes.iter().flat_map(|&node| self.tree.options(node)).copied().collect();
         options.sort_unstable();
         self.options.only(&options)
     }
 
-    /// Number of tubes below some nodes.
+    /// Number of tubes below the nodes `nodes` of the tree.
     pub(super) fn count(&self, nodes: &[u32]) -> usize {
         nodes.iter().map(|&node| self.tree.options(node).len()).sum()
     }
 }
 
 fn numbers(tube: &TubeNumbers) -> Vec<f64> {
-    // what does not yield has neither: nothing is ever paid for its stiffness
+    // a rigid tube has stiffness and compliance zero here, so that its stiffness never contributes to a price
     let stiffness = |k: &f64| if k.is_finite() { *k } else { 0.0 };
     let mut numbers = vec![tube.mass_kg];
     for around in &tube.around {

@@ -1,15 +1,15 @@
-//! The cheapest part when every number of it has a price, and the parts that a sum can afford.
+//! The cheapest part when every number of it has a price, and the parts whose price is within a limit.
 
 use super::parts_table::TubeTable;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Largest number of nodes that are priced in the search for the cheapest tube. If it is reached, the price of a node
-/// of several tubes stands for theirs.
+/// Largest number of nodes that are priced in the search for the cheapest tube. If it is reached, the price of a
+/// node with several tubes is used as a lower bound.
 const MOST_LOOKS: usize = 400;
 
-/// Prices of a tube's numbers, with the positive and the negative prices apart. For a set of tubes, the least value
-/// of a number counts where its price is positive (paid), and the greatest where it is negative (earned).
+/// Prices of a tube's numbers, with the positive and the negative prices apart. For a set of tubes, a number with a
+/// positive price (paid) counts at its least value, a number with a negative price (earned) at its greatest.
 pub(super) struct Prices {
     paid: Vec<f64>,
     earned: Vec<f64>,
@@ -23,19 +23,20 @@ impl Prices {
         }
     }
 
-    /// Lower bound of the price of every tube in a set, given the least and greatest values of its numbers.
+    /// Lower bound of the price of every tube in a set whose numbers lie between `least` and `most`.
     pub(super) fn of(&self, [least, most]: [&[f64]; 2]) -> f64 {
         dot(&self.paid, least) + dot(&self.earned, most)
     }
 
-    /// The values of the numbers that give the price of [`Self::of`].
+    /// The number of a tube at which [`Self::of`] takes each price: the least where the price is positive, the greatest
+    /// where it is negative.
     pub(super) fn numbers(&self, [least, most]: [&[f64]; 2]) -> Vec<f64> {
         let cheapest = |i: usize| if self.earned[i] < 0.0 { most[i] } else { least[i] };
         (0..least.len()).map(cheapest).collect()
     }
 }
 
-/// Dot product in four separate sums, which a processor computes side by side.
+/// Dot product of two lists. It is summed in four separate sums, which a processor computes in parallel.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 4];
     let (fours, others) = (a.chunks_exact(4), b.chunks_exact(4));
@@ -46,11 +47,11 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     rest.map(|(a, b)| a * b).sum::<f64>() + (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
-/// Price and node of the cheapest tube below some nodes. If the search takes too long, the node holds several tubes,
-/// and the price is a lower bound of theirs.
+/// Price and node of the cheapest tube below the nodes `nodes`. If the search takes too many steps, the returned node
+/// has several tubes, and the price is a lower bound for all of them.
 pub(super) fn cheapest(table: &TubeTable, nodes: &[u32], prices: &Prices) -> (f64, u32) {
     let price = |node: u32| prices.of(table.bounds(node));
-    // the cheapest first, of equals the first node
+    // the cheapest node first; of equal prices the node with the lowest index
     let offer = |node: u32| Reverse((rank(price(node)), node));
     let mut open: BinaryHeap<Reverse<(i64, u32)>> = nodes.iter().map(|&node| offer(node)).collect();
     let mut looks = 0;
@@ -64,8 +65,8 @@ pub(super) fn cheapest(table: &TubeTable, nodes: &[u32], prices: &Prices) -> (f6
     }
 }
 
-/// About `about` nodes that hold every tube below `nodes` whose price is within all limits. The nodes with the most
-/// tubes are divided first.
+/// About `about` nodes that contain every tube below `nodes` that is cheap enough. `limits` holds sets of prices, each
+/// with the greatest price that a tube may have under them. The nodes with the most tubes are divided first.
 pub(super) fn affordable(
     table: &TubeTable,
     nodes: &[u32],
@@ -85,7 +86,8 @@ pub(super) fn affordable(
     kept
 }
 
-/// An integer that grows with the price, in the order of [`f64::total_cmp`].
+/// An integer that grows with the price, in the order of [`f64::total_cmp`]. Integers can be ordered in a heap,
+/// floating-point numbers cannot.
 fn rank(price: f64) -> i64 {
     let bits = price.to_bits() as i64;
     bits ^ ((bits >> 63) as u64 >> 1) as i64

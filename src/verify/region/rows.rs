@@ -1,22 +1,24 @@
-//! What every member of a subproblem below an upper bound keeps to, as sums over the parts.
+//! Linear inequalities that every member of a subproblem below an upper bound satisfies, as sums over the parts.
 //!
-//! | row | at most |
-//! |---|---|
-//! | mass: the sum of the parts' masses | that of the upper bound |
-//! | in a judged case, way of the tip along a direction `e` | deflection of the upper bound |
+//! | sum over the parts | upper limit |
+//! |---|---|---|
+//! | mass: the sum of the parts' masses | mass of the upper bound |
+//! | in a judged case, displacement of the tip along a direction `e` | deflection of the upper bound |
 //! | in a judged case, for a shape `x`: `λ xᵀMx - xᵀKx`, `λ` of the upper bound | 0 |
 //! | a torque that has an interval, and its negative | the end of the interval |
 //!
-//! *Way of the tip.* With force `F`, a sum over the loads, and compliance `c` of a tube, `(F - F₀)(c - c₀) >= 0` gives
-//! `F c >= F₀ c + c₀ (F - F₀)`. A gear twists under a torque `T`, in the sense that moves the tip along `e`, by at least
-//! `φ(T₀) + c₀ (T - T₀)`: `φ(T₀)` is the part's own, `c₀` the least twist per torque that a gear of the subproblem adds beyond `T₀`.
+//! *Tip displacement.* With force `F`, a sum over the loads, and compliance `c` of a tube, `(F - F₀)(c - c₀) >= 0`
+//! gives `F c >= F₀ c + c₀ (F - F₀)`. Under a torque `T`, in the sense that moves the tip along `e`, a gear twists
+//! by at least `φ(T₀) + c₀ (T - T₀)`. Here `φ(T₀)` is the twist of the gear itself, and `c₀` is the least twist per
+//! torque that any gear of the subproblem adds beyond `T₀`.
 //!
-//! A bearing tilts like a tube: force is the way of the tip per compliance.
+//! A bearing is treated like a tube. Its force is the tip displacement per compliance.
 //!
-//! *Modes.* `M` is linear in masses and inertias per length, `K` diagonal; the slope of a gear is the largest it has
-//! under the torques of the subproblem.
+//! *Modes.* `M` is linear in masses and inertias per length, `K` is diagonal. The slope of a gear is its largest
+//! slope under the torques of the subproblem.
 //!
-//! Every row is divided by about what the upper bound allows, and that is taken from it: it is at most zero.
+//! The upper limit is subtracted from every row, and the row is divided by about this limit. Each row is then at
+//! most zero.
 
 use super::super::bound::{Members, compliances, direction};
 use super::super::drive_range::{DriveRange, angle_rad};
@@ -35,20 +37,20 @@ use nalgebra::Vector3;
 const ROUNDING: f64 = 1e-9;
 
 /// An inequality that every member below the upper bound satisfies: a linear function of the numbers of all parts
-/// that is not positive.
+/// is not positive.
 pub(super) struct Row {
     pub per_number: Vec<f64>,
     pub fixed: f64,
 }
 
-/// Positions of each part's numbers in the list of all numbers. A joint has its mass, then its twist in every judged
-/// case, then its slope in every judged case, then compliance and stiffness of its bearing. A tube has its numbers
-/// of the parts table.
+/// Positions of each part's numbers in the list of all numbers. A joint has its mass, then its twist in every
+/// judged case, then its slope in every judged case, then compliance and stiffness of its bearing. A tube has the
+/// numbers of the parts table.
 #[derive(Clone)]
 pub(super) struct Columns {
     pub cases: usize,
     pub joints: usize,
-    /// Position of the first number of each tube, and at last the length of the list.
+    /// Position of the first number of each tube; the last entry is the length of the list.
     pub tubes: Vec<usize>,
 }
 
@@ -64,17 +66,18 @@ pub(super) struct Rows<'a> {
     /// Index of the first row of a mode. `modes` holds the case and the trial shape of each row of a mode.
     pub first_mode: usize,
     pub modes: Vec<(usize, Vec<f64>)>,
-    /// For each joint, the twists, slopes and bearings of its torsion curves; `None` for a curve that no drive of the
-    /// subproblem has.
+    /// For each joint, the twists, slopes and bearing numbers of its torsion curves. `None` for a curve that no
+    /// drive of the subproblem has.
     pub curves: Vec<Numbers>,
-    /// Interval of the torque on each joint in each judged case \[N m\]. `per_torque` is the least increase of the
-    /// twist per torque, from the end of the interval where the twist is least \[rad/(N m)\].
+    /// Interval of the torque on each joint in each judged case \[N m\]. `per_torque` holds the least compliance
+    /// \[rad/(N m)\] with which the twist grows from the end of the interval where it is least.
     pub torques: Vec<Vec<Span>>,
     pub per_torque: Vec<Vec<f64>>,
-    /// For each row of a tip displacement: the index of the row, its judged case, and the direction of the
-    /// displacement.
+    /// For each row on a tip displacement: the index of the row, its judged case, and the direction along which the
+    /// displacement is taken.
     pub tips: Vec<(usize, usize, Vector3<f64>)>,
-    /// For each judged case, whether a strain coordinate may be rigid in some member of the subproblem.
+    /// For each judged case and each strain coordinate, whether the coordinate may be rigid in some member of the
+    /// subproblem.
     rigid: Vec<Vec<bool>>,
 }
 
@@ -100,12 +103,13 @@ impl Columns {
         self.mass(joint) + 1 + self.cases + case
     }
 
-    /// Compliance of the bearing.
+    /// Position of the compliance of the joint's bearing.
     pub(super) fn tilt(&self, joint: usize) -> usize {
         self.mass(joint) + 1 + 2 * self.cases
     }
 
-    /// Stiffness of the bearing; 0 if it is rigid, and then nothing is ever paid for it.
+    /// Position of the stiffness of the joint's bearing. The stiffness is stored as 0 if the bearing is rigid, so
+    /// that it never contributes to a price.
     fn tilt_stiffness(&self, joint: usize) -> usize {
         self.tilt(joint) + 1
     }
@@ -122,7 +126,8 @@ impl Columns {
         }
     }
 
-    /// Position of the number that is proportional to a load: the mass of a drive, or the weight of a tube.
+    /// Position, in the list of all numbers, of the number to which the load with the index `load` is proportional: the
+    /// mass of a drive, or the weight per length of a tube. `water` is the index of the medium around the arm.
     pub(super) fn load(&self, load: usize, water: usize) -> usize {
         match load.checked_sub(self.joints) {
             None => self.mass(load),
@@ -136,13 +141,15 @@ impl Row {
         Self { per_number: vec![0.0; columns.len()], fixed: 0.0 }
     }
 
-    /// Adds a quantity that is linear in the loads: its fixed part, and its part per load.
+    /// Adds a quantity that is linear in the loads (masses of drives, weights per length of tubes) to this row: its
+    /// constant part `fixed`, and its coefficients `per_load`. `water` is the index of the medium around the arm.
     fn add(&mut self, columns: &Columns, water: usize, fixed: f64, per_load: impl Iterator<Item = f64>) {
         self.fixed += fixed;
         per_load.enumerate().for_each(|(load, per)| self.per_number[columns.load(load, water)] += per);
     }
 
-    /// Subtracts the allowed value from the row and divides the row by a scale. The row is then at most zero.
+    /// Subtracts the upper limit `allowed` from the row and divides the row by `scale`. The row is then at most zero
+    /// for every member below the upper bound.
     fn less(mut self, allowed: f64, scale: f64) -> Self {
         self.fixed = (self.fixed - allowed) / scale;
         self.per_number.iter_mut().for_each(|per| *per /= scale);
@@ -155,7 +162,8 @@ impl Row {
 }
 
 impl<'a> Rows<'a> {
-    /// The rows of a subproblem with these members. The subproblem's trial shapes give the rows of modes.
+    /// The rows (inequalities) of a subproblem for the local upper bound `upper`. `members` holds the intervals of its
+    /// parts' numbers. There is one row of a mode for each trial shape of the subproblem.
     pub(super) fn new(
         skeleton: &'a Skeleton,
         table: &'a PartsTable,
@@ -219,7 +227,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Adds the row of the tip displacement in a case, along the direction in which the stiffest arm's tip moves.
+    /// Adds the row on the tip displacement in a judged case. The displacement is taken along the direction in which
+    /// the tip of the stiffest arm moves.
     fn add_tip(&mut self, case: usize, pose: &Pose, members: &Members) {
         let Some(direction) = direction(pose, members) else { return };
         let loads = &members.loads[pose.water];
@@ -253,8 +262,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Adds the linear bound of the product of a force and a compliance to a row. `number` is the position of the
-    /// compliance, `least` the least that it is.
+    /// Adds the linear lower bound of force times compliance to `row`. `number` is the position of the compliance in
+    /// the list of numbers and `least` its least value. The displacement is taken along `direction`.
     fn add_product(&self, row: &mut Row, number: usize, least: f64, force: &Force, direction: &Vector3<f64>) {
         row.per_number[number] += force.least;
         let per_load = force.work.per_load.iter().map(|per| least * per.dot(direction));
@@ -262,7 +271,9 @@ impl<'a> Rows<'a> {
         row.add(&self.columns, force.water, fixed, per_load);
     }
 
-    /// Adds a gear's part of the tip displacement to a row, and stores the least twist of each torsion curve.
+    /// Adds the displacement of the tip by the twist of a gear to `row`, and stores the least twist of each torsion
+    /// curve among its numbers. `torque` is the torque on the joint as a function of the loads. `along_m` is the
+    /// displacement of the tip per radian along the direction of the row.
     fn add_twist(
         &mut self,
         row: &mut Row,
@@ -288,7 +299,8 @@ impl<'a> Rows<'a> {
         row.add(&self.columns, water, by * (sense * torque.fixed - span.least), per_load);
     }
 
-    /// Stores the greatest slope of each torsion curve under the torques of the subproblem.
+    /// Stores the greatest slope that each torsion curve has under the torques of the subproblem among the numbers of
+    /// the curve.
     fn add_slopes(&mut self) {
         let cases = self.columns.cases;
         for (joint, curves) in self.curves.iter_mut().enumerate() {
@@ -317,7 +329,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Adds the row of a trial shape. Coordinates that may be rigid are set to zero in the shape.
+    /// Adds the row of a mode for the trial shape `shape` in a judged case. Coordinates that may be rigid in some
+    /// member are set to zero in it, because a rigid coordinate cannot move.
     pub(super) fn add_mode(&mut self, case: usize, mut shape: Vec<f64>) {
         let eigenvalue = self.upper.eigenvalue();
         if eigenvalue == 0.0 {
@@ -357,8 +370,8 @@ impl<'a> Rows<'a> {
         masses.chain(densities)
     }
 
-    /// Position of the number that determines the stiffness of a coordinate, and the factor on this number. If no
-    /// part determines the stiffness, the stiffness itself as an error.
+    /// Position of the number that determines the stiffness of `coordinate`, and the factor by which it is multiplied.
+    /// If no part determines the stiffness, the stiffness itself is returned as `Err`.
     fn stiffness(&self, case: usize, coordinate: &Coordinate) -> Result<(usize, f64), f64> {
         match *coordinate {
             Coordinate::Joint(joint) => Ok((self.columns.slope(joint, case), 1.0)),
@@ -376,7 +389,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Stiffness and inertia matrices, in a case, of the arm whose parts have these numbers.
+    /// Stiffness and inertia matrices of an arm in a judged case. `numbers` is the list of the numbers of all its
+    /// parts.
     pub(super) fn pencil(&self, case: usize, numbers: &[f64]) -> Pencil {
         let pose = self.pose(case);
         let stiffness = self.skeleton.coordinates.iter().zip(&self.rigid[case]);
@@ -393,14 +407,15 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// A force, as displacement of the tip per compliance, and the least that it is along the direction of a row.
+/// A force that deforms a tube or bearing, given as the tip displacement that it causes per unit of compliance. `least`
+/// is its least value along the direction of a row.
 struct Force<'w> {
     work: &'w LinearVector,
     least: f64,
     water: usize,
 }
 
-/// The numbers of a torsion curve, whose twists and slopes are not known yet, and of the bearing that comes with it.
+/// The numbers of a torsion curve and of its bearing. Twists and slopes are zero at first and are filled in later.
 fn numbers_of(range: &DriveRange, cases: usize) -> Vec<f64> {
     let stiffness = range.greatest_tilt_stiffness();
     let mut numbers = vec![0.0; 2 * cases];
@@ -408,13 +423,13 @@ fn numbers_of(range: &DriveRange, cases: usize) -> Vec<f64> {
     numbers
 }
 
-/// Least increase of a gear's twist per torque, from the least torque of an interval to any other torque in it
-/// \[rad/(N m)\].
+/// Least secant compliance of a gear \[rad/(N m)\] between the least torque of an interval and any other torque in it.
+/// `range` are the gears.
 fn least_twist_per_nm(range: &DriveRange, torque_nm: Span) -> f64 {
     let Span { least, most } = torque_nm;
     let stiff = &range.stiff;
     match least >= 0.0 && most > least {
-        // slopes that rise: the whole way is the stiffest
+        // the slopes of this curve rise, so the secant to the end of the interval is the stiffest
         true => (angle_rad(stiff, most) - angle_rad(stiff, least)) / (most - least) * (1.0 - ROUNDING),
         false => 1.0 / stiff.tangent_nm_per_rad(torque_nm.largest_size() * (1.0 + ROUNDING) + ROUNDING),
     }

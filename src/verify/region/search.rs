@@ -1,9 +1,10 @@
-//! Going through the local upper bounds that the rows of a front leave.
+//! The search through the local upper bounds that a front leaves open.
 
 use super::super::bound::{Members, ROUNDING};
 use super::super::boxes::Boxes;
 use super::super::front_index::FrontIndex;
 use super::super::halt::{Found, Halt};
+use super::super::ledger::{Branch, Ledger};
 use super::super::modes::eigenvalue_of;
 use super::super::search::Search;
 use super::super::settings::Settings;
@@ -18,7 +19,7 @@ use super::weights::Reduced;
 use crate::pareto::objectives::Objectives;
 use std::sync::Arc;
 
-/// The options are narrowed once more if the last narrowing removed at least this part of the designs.
+/// The options are reduced once more if the last reduction removed at least this fraction of the designs.
 const WORTH_IT: f64 = 0.3;
 
 /// The inputs of a search, except the parts.
@@ -28,18 +29,19 @@ pub(in super::super) struct Work<'s> {
     pub index: &'s FrontIndex,
     pub settings: Settings,
     pub halt: &'s Halt<'s>,
+    pub ledger: &'s Ledger<'s>,
 }
 
-/// A search of all regions that the designs of a front leave open.
+/// A search through all regions that the designs of a front leave open.
 pub(in super::super) struct RegionSearch<'s> {
     skeleton: Arc<Skeleton>,
     table: PartsTable,
     work: &'s Work<'s>,
 }
 
-/// The result of narrowing a subproblem.
+/// The result of reducing the options of a subproblem.
 enum Narrowed {
-    /// No member is below the upper bound.
+    /// The subproblem is done: it is proved that no member is below the upper bound.
     Refuted,
     Few,
     Many(Branchings),
@@ -47,7 +49,8 @@ enum Narrowed {
 }
 
 impl RegionSearch<'_> {
-    /// Looks for designs that belong on a front but are missing from it.
+    /// Searches all regions for designs that belong on a front but are missing from it. `parts` are the options of the
+    /// space, and `work` has the front and the conditions that end the search.
     pub(crate) fn explore_all(skeleton: Arc<Skeleton>, parts: Parts, work: &Work) -> Found {
         let limits = &skeleton.limits;
         let room = 1.0 + ROUNDING;
@@ -59,11 +62,20 @@ impl RegionSearch<'_> {
         let uppers = UpperBounds::new(work.front, limit, work.settings.apart);
         let table = PartsTable::new(parts);
         let Some(whole) = Subproblem::whole(&table) else { return Found::default() };
-        RegionSearch { skeleton, table, work }.explore(&uppers, 0, whole)
+        RegionSearch { skeleton, table, work }.explore((&uppers, 0), whole, Branch::ROOT)
     }
 
-    /// Searches the regions below a node of the tree of upper bounds.
-    fn explore(&self, uppers: &UpperBounds, at: usize, mut subproblem: Subproblem) -> Found {
+    /// Searches the regions below a node of the tree of upper bounds, unless that was done before.
+    fn explore(&self, uppers: (&UpperBounds, usize), subproblem: Subproblem, branch: Branch) -> Found {
+        self.work.ledger.of(branch, self.work.halt, || self.explore_now(uppers, subproblem, branch))
+    }
+
+    fn explore_now(
+        &self,
+        (uppers, at): (&UpperBounds, usize),
+        mut subproblem: Subproblem,
+        branch: Branch,
+    ) -> Found {
         let Some((upper, halves)) = uppers.node(at) else { return Found::default() };
         let mut found = Found::default();
         let branchings = match self.narrow(&mut subproblem, upper, &mut found.boxes) {
@@ -78,11 +90,16 @@ impl RegionSearch<'_> {
         };
         let Some([a, b]) = subproblems else { return found.with(self.explore_boxes(&subproblem, upper)) };
         let [first, second] = halves.unwrap_or([at; 2]);
-        let (a, b) = rayon::join(|| self.explore(uppers, first, a), || self.explore(uppers, second, b));
+        let [of_a, of_b] = branch.halves();
+        let (a, b) = rayon::join(
+            || self.explore((uppers, first), a, of_a),
+            || self.explore((uppers, second), b, of_b),
+        );
         found.with(a).with(b)
     }
 
-    /// Narrows the options of a subproblem as long as each narrowing removes enough designs.
+    /// Reduces the options of `subproblem` below `upper` as long as each step removes enough designs. `regions` counts
+    /// the steps.
     fn narrow(&self, subproblem: &mut Subproblem, upper: UpperBound, regions: &mut u64) -> Narrowed {
         loop {
             if self.work.halt.stopped() {
@@ -101,8 +118,8 @@ impl RegionSearch<'_> {
         }
     }
 
-    /// Removes the options that no member below an upper bound has, and returns ways to branch the rest. `None` if no
-    /// member is left.
+    /// Removes the options that no member below `upper` can have from `subproblem`, and returns ways to branch the
+    /// rest. `None` if it is proved that no member is left.
     fn narrow_once(&self, subproblem: &mut Subproblem, upper: UpperBound) -> Option<Branchings> {
         let tubes = subproblem.tube_ranges(&self.table);
         let members = subproblem.hold(&self.skeleton, &self.table, &tubes)?;
@@ -133,8 +150,9 @@ impl RegionSearch<'_> {
         Some(Branchings { branchings, curves })
     }
 
-    /// Where a subproblem has no trial shape in a case, adds the lowest mode of the stiffest arm. `None` if this arm
-    /// has a frequency of `hz` or less in some case.
+    /// Adds a trial shape to `subproblem` in each judged case in which it has none: the lowest mode of the ideal arm
+    /// (every stiffness greatest, every inertia least). `None` if this arm has a frequency of at most `hz` in some
+    /// case, so that no member is faster.
     fn stiffest_shapes(&self, subproblem: &mut Subproblem, members: &Members, hz: f64) -> Option<()> {
         let eigenvalue = eigenvalue_of(hz);
         if !eigenvalue.is_finite() {
@@ -150,10 +168,11 @@ impl RegionSearch<'_> {
         Some(())
     }
 
-    /// Searches the designs of a subproblem box by box.
+    /// Searches the designs of a subproblem below `upper` box by box.
     fn explore_boxes(&self, subproblem: &Subproblem, upper: UpperBound) -> Found {
         let boxes = Boxes::of(Arc::clone(&self.skeleton), subproblem.parts(&self.table));
-        let search = Search { boxes: &boxes, front: self.work.index, upper, halt: self.work.halt };
-        boxes.root().map_or_else(Found::default, |root| search.explore(&root))
+        let Work { index, halt, ledger, .. } = *self.work;
+        let search = Search { boxes: &boxes, front: index, upper, halt, ledger };
+        boxes.root().map_or_else(Found::default, |root| search.explore(&root, Branch::DEEP))
     }
 }

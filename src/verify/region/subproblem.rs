@@ -1,4 +1,4 @@
-//! The options that may have members below an upper bound.
+//! A subproblem: the options of each part that members below an upper bound may have.
 
 use super::super::bound::Members;
 use super::super::drive_range::DriveRange;
@@ -9,10 +9,10 @@ use super::super::span::Span;
 use super::super::tubes::TubeRange;
 use super::parts_table::PartsTable;
 
-/// Trial shapes whose rows have no larger weight than this are not handed on to the halves of a subproblem.
+/// A trial shape whose row has at most this weight is not passed on to the halves of a subproblem.
 const NO_SAY: f64 = 0.01;
 
-/// Limits the torque on a joint in a judged case to an interval. Branching makes such limits.
+/// Limits the torque on a joint in a judged case to an interval. Such limits come from branching.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TorqueInterval {
     pub case: usize,
@@ -20,21 +20,22 @@ pub(super) struct TorqueInterval {
     pub between: Span,
 }
 
-/// The options of every joint and link, and what the parent subproblem hands on: torque intervals, weights of rows,
-/// trial shapes.
+/// The options of every joint and link, together with what the parent subproblem passes on: torque intervals,
+/// weights of rows and trial shapes.
 #[derive(Clone)]
 pub(super) struct Subproblem {
-    /// Drives of each joint, in ascending order.
+    /// Indices of the drives that each joint may have, in ascending order.
     pub joints: Vec<Vec<u32>>,
-    /// For each link, the nodes of its tree whose tubes remain.
+    /// For each link, the nodes of its tree whose tubes it may have.
     pub tubes: Vec<Vec<u32>>,
     pub torque_intervals: Vec<TorqueInterval>,
-    /// Weights of the rows with which the search for weights starts. Rows of torques and modes are left out.
+    /// Weights of the rows (inequalities), with which the search for better weights starts. Rows of torques and modes
+    /// are left out.
     pub weights: Vec<f64>,
     pub shapes: Vec<Shape>,
 }
 
-/// A trial shape in a judged case, with the weight of its row.
+/// A trial shape (motion that bounds the lowest mode) in a judged case, with the weight of its row.
 #[derive(Clone)]
 pub(super) struct Shape {
     pub case: usize,
@@ -58,7 +59,7 @@ impl Subproblem {
         })
     }
 
-    /// Number of designs. A joint that takes the lightest drive that holds is no choice and counts once.
+    /// Number of designs that the options make. A joint with the first-fit rule has no choice and counts once.
     pub(super) fn designs(&self, table: &PartsTable) -> f64 {
         let joints = self.joints.iter().zip(&table.joints);
         let joints = joints.map(|(kept, joint)| if joint.drives.level.is_some() { kept.len() } else { 1 });
@@ -66,7 +67,8 @@ impl Subproblem {
         joints.chain(tubes).map(|count| count as f64).product()
     }
 
-    /// Limits a torque to an interval, in addition to any interval that it has already.
+    /// Limits the torque on a joint to the interval `new`. If the torque has an interval already, the intersection of
+    /// both is taken.
     pub(super) fn keep_torque(&mut self, new: TorqueInterval) {
         let known =
             self.torque_intervals.iter_mut().find(|known| known.case == new.case && known.joint == new.joint);
@@ -79,7 +81,8 @@ impl Subproblem {
         }
     }
 
-    /// Keeps the trial shapes whose rows have some weight, and the last shape of each case.
+    /// Removes trial shapes whose rows have little weight. The last shape of each of the `cases` judged cases is kept
+    /// in any event.
     pub(super) fn keep_shapes(&mut self, cases: usize) {
         let mut kept = Vec::new();
         for case in 0..cases {
@@ -95,7 +98,9 @@ impl Subproblem {
         self.tubes.iter().zip(&table.tubes).map(|(nodes, tubes)| tubes.range(nodes)).collect()
     }
 
-    /// Removes the drives that cannot hold, and returns the ranges of the remaining parts. `None` if no member holds.
+    /// Removes the drives that cannot meet their demand, going from the tip inward. Returns the remaining members: the
+    /// ranges of their drives, and of their tubes, which are in `tubes`. `None` if it is proved that no member passes
+    /// its checks.
     pub(super) fn hold<'t>(
         &mut self,
         skeleton: &Skeleton,
@@ -122,7 +127,7 @@ impl Subproblem {
         skeleton.strong_enough(&members).then_some(members)
     }
 
-    /// The remaining options as parts, for a search box by box.
+    /// The options of each joint and link that remain in this subproblem, in the form that the search box by box needs.
     pub(super) fn parts(&self, table: &PartsTable) -> Parts {
         let joints = self.joints.iter().zip(&table.joints);
         let tubes = self.tubes.iter().zip(&table.tubes);

@@ -1,27 +1,29 @@
 //! All local upper bounds of a front, in a tree.
 //!
-//! A design that no row beats lies below some upper bound: it is no heavier, deflects no more and is no slower. The bounds
-//! are made row by row. A bound that the row beats is replaced by three that it does not beat, one for each objective; bounds that
-//! lie within another are removed.
+//! A design that no design of the front dominates lies below some upper bound: it is no heavier, deflects no more
+//! and has no lower mode. The bounds are updated with one design of the front after another. A bound above a design
+//! is replaced by three bounds, one for each objective, that are not above it. Bounds within another bound are
+//! removed.
 
 use super::super::upper_bound::UpperBound;
 use crate::pareto::objectives::Objectives;
 use std::collections::HashSet;
 
 /// Relative amount by which a dominating design must be better in at least one objective. All objectives of the
-/// front's designs are made worse by as much before bounds are made.
+/// front's designs are made worse by this amount before the bounds are computed.
 const BETTER: f64 = 2e-7;
 
-/// A binary tree over upper bounds; the root is node 0.
+/// A binary tree over the local upper bounds of a front. The root is node 0.
 pub(super) struct UpperBounds(Vec<Node>);
 
-/// The upper bound that covers all bounds below a node, and the two halves of the node.
+/// A node of the tree: the upper bound that covers all bounds below the node, and the indices of its two halves. A
+/// leaf has no halves.
 type Node = (UpperBound, Option<[usize; 2]>);
 
 impl UpperBounds {
-    /// The local upper bounds of a front within the limits: every feasible design that no design of the front dominates
-    /// lies below one of them. Only one design is used for each cell of a logarithmic grid of the step `apart` (relative;
-    /// 0 uses all). Fewer designs give looser bounds, so nothing is missed.
+    /// The local upper bounds that a front leaves open within the limits. Every feasible design that no design of the
+    /// front dominates lies below at least one of them. With `apart` > 0, only one design of the front is used for each
+    /// cell of a logarithmic grid of this relative step. Fewer designs give looser bounds, so nothing is missed.
     pub(super) fn new(front: &[Objectives], limits: UpperBound, apart: f64) -> Self {
         let mut uppers = left_open(&thinned(front, apart), limits);
         let mut nodes = Vec::new();
@@ -31,14 +33,15 @@ impl UpperBounds {
         Self(nodes)
     }
 
-    /// A node of the tree. Node 0, the root, is `None` if nothing is open.
+    /// The node with the number `at`: its upper bound and its two halves. Node 0 is the root; it is missing (`None`) if
+    /// no region is open.
     pub(super) fn node(&self, at: usize) -> Option<Node> {
         self.0.get(at).copied()
     }
 }
 
-/// One design for each cell of a logarithmic grid with steps of `apart` (relative), or all designs if `apart` is
-/// zero. Their objectives are made worse by [`BETTER`].
+/// One design of the front for each cell of a logarithmic grid with steps of `apart` (relative), or all designs if
+/// `apart` is zero. The objectives of each are made worse by [`BETTER`].
 fn thinned(front: &[Objectives], apart: f64) -> Vec<UpperBound> {
     let mut taken = HashSet::new();
     let step = libm::log1p(apart);
@@ -55,7 +58,7 @@ fn thinned(front: &[Objectives], apart: f64) -> Vec<UpperBound> {
     rows.map(worse).collect()
 }
 
-/// The upper bounds that designs leave open within the limits. None of these bounds lies within another.
+/// The local upper bounds within `limits` that the designs `rows` leave open. No bound lies within another.
 fn left_open(rows: &[UpperBound], limits: UpperBound) -> Vec<UpperBound> {
     let mut uppers = vec![limits];
     for row in rows {
@@ -80,8 +83,8 @@ fn left_open(rows: &[UpperBound], limits: UpperBound) -> Vec<UpperBound> {
     uppers
 }
 
-/// Builds the tree under some upper bounds: divides them at the median of the objective in which they are spread
-/// most, and so on. Returns the number of the node.
+/// Builds the tree over some upper bounds. They are divided at the median of the objective in which they are spread
+/// most, and each half is divided in the same way. Returns the index of the node.
 fn grow(uppers: &mut [UpperBound], nodes: &mut Vec<Node>) -> usize {
     let here = nodes.len();
     nodes.push((uppers[0], None));
@@ -108,7 +111,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Whether a design is below some upper bound under a node. The tree is descended node by node.
+    /// Whether a design is below some upper bound under a node.
     fn is_below(uppers: &UpperBounds, at: usize, design: &UpperBound) -> bool {
         uppers.node(at).is_some_and(|(upper, halves)| {
             design.is_within(&upper)

@@ -1,8 +1,9 @@
 //! Weighted sums of a subproblem's rows (surrogate constraints).
 //!
-//! With weights that are not negative a weighted sum of the rows must not be positive either. Its least over all members
-//! is found part by part. If that is positive, no member lies below the upper bound; else the part of it that is left tells
-//! which options are too dear for any member (reduced costs).
+//! With non-negative weights, a weighted sum of the rows is not positive for any member below the upper bound. The
+//! least value of this sum over all members is found part by part. If it is positive, no member lies below the
+//! upper bound. Otherwise the distance of this least value from zero tells which options are too expensive for any
+//! member (reduced costs).
 
 use super::matrix_game::{Minimax, solve};
 use super::price::{Prices, affordable, cheapest};
@@ -12,51 +13,53 @@ use std::ops::Range;
 
 /// Largest number of weightings that are tried for a subproblem.
 const MOST_SURROGATES: usize = 24;
-/// Largest number of times that new trial shapes are added.
+/// Largest number of times that trial shapes are added to the rows.
 const MOST_SHAPES: usize = 3;
-/// Number of further weightings after it is clear that none can refute the subproblem. Better weights exclude more
-/// options.
+/// Number of further weightings after it is clear that no weighting refutes the subproblem. They are worth the time
+/// because better weights exclude more options.
 const TO_NARROW: usize = 4;
-/// A weighting is good enough if no other can raise the least weighted sum by more than this.
+/// The search for weights ends if no weighting can raise the least weighted sum by more than this. Rows are scaled, so
+/// it has no unit.
 const SETTLED: f64 = 5e-4;
-/// Values of rows are clamped to this magnitude, so that a row far from its limit does not outweigh the others.
+/// Values of rows are limited to this magnitude, so that a row far from its limit does not outweigh the others.
 const FAR: f64 = 10.0;
-/// Rounding of sums whose terms are about one.
+/// Margin for rounding in sums whose terms are about one.
 pub(super) const ROUNDING: f64 = 1e-9;
-/// Number of weightings that are used to exclude options. Those with the greatest least sums are taken.
+/// Number of weightings that are used to exclude options: those with the greatest least sums.
 const STRICTEST: usize = 12;
-/// Approximate number of nodes into which the tubes of a link are divided.
+/// Approximate number of nodes into which the tubes of a link are divided when options are excluded.
 const NODES: usize = 128;
 
-/// Weights of the rows, the least weighted sum over all members, and the amount that each part adds to it.
+/// A weighting of the rows: the weights, the least value of the weighted sum over all members (`least`), and the amount
+/// that each part adds to it.
 struct Surrogate {
     weights: Vec<f64>,
     least: f64,
     parts: Vec<f64>,
 }
 
-/// The cheapest member under a weighting, as the numbers of its parts. It need not be a design: each of its gears may
-/// be under another torque than the masses make.
+/// The cheapest member under a weighting, as the numbers of its parts. It need not be a design, because each gear
+/// may have the twist of another torque than the masses cause.
 pub(super) struct Member {
     pub numbers: Vec<f64>,
-    /// The drive of each joint.
+    /// Index of the drive of each joint.
     pub drives: Vec<u32>,
 }
 
-/// What is left of a subproblem below an upper bound.
+/// The result of reducing a subproblem below an upper bound.
 pub(super) struct Reduced {
-    /// For each joint, the drives that a member below the upper bound may have. `tubes` holds the same for each link,
-    /// as nodes of its tree.
+    /// For each joint, the drives that a member below the upper bound may have. `tubes` has the same for each link,
+    /// as nodes of the link's tree.
     pub joints: Vec<Vec<u32>>,
     pub tubes: Vec<Vec<u32>>,
-    /// The cheapest members, each with its share in the mixture that no weights refute.
+    /// The cheapest members, each with its fraction of the mixture that no weights refute.
     pub mixed: Vec<(f64, Member)>,
     /// The weights of the rows that come nearest to a proof that no member is below the upper bound.
     pub weights: Vec<f64>,
 }
 
 impl Rows<'_> {
-    /// Price of each number: its coefficient in the weighted sum of the rows.
+    /// Price of each number of a part: its coefficient in the sum of the rows with these weights.
     fn prices(&self, weights: &[f64]) -> Vec<f64> {
         let mut prices = vec![0.0; self.columns.len()];
         for (row, weight) in self.rows.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
@@ -65,14 +68,16 @@ impl Rows<'_> {
         prices
     }
 
-    /// Price of each torsion curve of a joint; infinite if no drive of the subproblem has the curve.
+    /// Price of each torsion curve of a joint, with the bearing that belongs to it. Infinite if no drive of the
+    /// subproblem has the curve.
     fn curve_prices(&self, joint: usize, prices: &[f64]) -> Vec<f64> {
         let first = self.columns.mass(joint) + 1;
         let price = |numbers: &Vec<f64>| numbers.iter().zip(&prices[first..]).map(|(a, b)| a * b).sum();
         self.curves[joint].iter().map(|numbers| numbers.as_ref().map_or(f64::INFINITY, price)).collect()
     }
 
-    /// The least weighted sum over the members of a subproblem, and a member that attains it.
+    /// Minimizes the weighted sum of the rows over the members of a subproblem. Returns the least sum, and a member
+    /// that attains it.
     fn least(&self, subproblem: &Subproblem, weights: Vec<f64>) -> (Surrogate, Member) {
         let prices = self.prices(&weights);
         let mut numbers = vec![0.0; self.columns.len()];
@@ -110,7 +115,8 @@ impl Rows<'_> {
         (Surrogate { weights, least, parts }, Member { numbers, drives })
     }
 
-    /// The weights with which the parent subproblem ended; equal weights if there is no parent.
+    /// The weights with which the search of a subproblem starts: those with which its parent ended, or equal weights if
+    /// it has no parent.
     fn inherited(&self, subproblem: &Subproblem) -> Vec<f64> {
         let mut weights = subproblem.weights.clone();
         weights.resize(self.first_mode, 0.0);
@@ -122,7 +128,8 @@ impl Rows<'_> {
         if fits { weights.iter().map(|weight| weight / sum).collect() } else { even }
     }
 
-    /// What is left of a subproblem below the upper bound; `None` if some weighting proves that nothing is left.
+    /// Reduces the options of a subproblem below the upper bound for which these rows were made. `None` if some
+    /// weighting proves that no member lies below it.
     pub(super) fn reduce(&mut self, subproblem: &Subproblem) -> Option<Reduced> {
         let (mut surrogates, mut members, mut values) = (Vec::new(), Vec::new(), Vec::<Vec<f64>>::new());
         let (mut shapes, mut to_narrow, mut nearest) = (0, 0, f64::NEG_INFINITY);
@@ -153,7 +160,7 @@ impl Rows<'_> {
             }
             weights = minimax.weights;
         };
-        // each row by itself; the parent has done so with the rows of the objectives
+        // each row alone; for the rows of the objectives the parent has done so already
         let first = if subproblem.weights.is_empty() { 0 } else { self.first_interval };
         let singles = (first..self.first_mode).map(|row| {
             let mut weights = vec![0.0; self.rows.len()];
@@ -176,8 +183,8 @@ impl Rows<'_> {
         })
     }
 
-    /// Indices of the rows of torque intervals. Such rows come in pairs of opposite sign, so they do not count in the
-    /// sum of the weights.
+    /// Indices of the rows of torque intervals. These rows come in pairs of opposite sign, so their weights do not
+    /// count in the sum of the weights.
     fn conditions(&self) -> Range<usize> {
         self.first_interval..self.first_mode
     }
@@ -186,8 +193,8 @@ impl Rows<'_> {
         self.rows.iter().map(|row| row.value(&member.numbers).clamp(-FAR, FAR)).collect()
     }
 
-    /// In every case in which the mixture of some members has a mode below the upper bound's frequency, adds the row
-    /// of this mode. Returns whether any was added.
+    /// Adds the row of a mode in every case in which a mixture has a mode below the upper bound's frequency. The
+    /// mixture consists of `members`, with the fractions in `minimax`. Returns whether a row was added.
     fn add_shapes(&mut self, members: &[Member], minimax: &Minimax) -> bool {
         let mut between = vec![0.0; self.columns.len()];
         for (member, share) in members.iter().zip(&minimax.shares) {
@@ -203,8 +210,8 @@ impl Rows<'_> {
         self.rows.len() > before
     }
 
-    /// The options of each joint and of each link that no weighting excludes; `None` if a joint or link has no option
-    /// left.
+    /// The options of each joint and of each link that none of the weightings `surrogates` excludes; `None` if a joint
+    /// or link has no option left.
     fn affordable(
         &self,
         subproblem: &Subproblem,

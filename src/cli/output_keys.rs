@@ -1,0 +1,584 @@
+//! Keys and columns of the files that the program writes, for programs that read them. `tests/program/output_schemas.rs` holds
+//! them against files that it writes.
+
+use crate::arm::effect::catalogue::KINDS;
+use crate::arm::effect::kind::{Kind as EffectKind, Parameter, Place};
+use crate::input::key::{Key, Kind, Shape, optional, required};
+use crate::input::schema::FileKind;
+use serde_json::{Map, Value, json};
+
+/// The kinds of JSON files that the program writes and other programs read.
+pub(super) const OUTPUTS: [FileKind; 4] = [
+    FileKind {
+        name: "run",
+        about: "`run.json`: what was searched, how it ended, and the files of a study's result.",
+        root: Kind::Object(&RUN),
+    },
+    FileKind {
+        name: "shard",
+        about: "`shard.json`: one shard of a search, as `armwright merge` reads it.",
+        root: Kind::Object(&SHARD),
+    },
+    FileKind {
+        name: "verdict",
+        about: "`verdict.json`: what `armwright reconcile` found in a campaign.",
+        root: Kind::Object(&VERDICT),
+    },
+    FileKind {
+        name: "export",
+        about: "`export.json`: what an export carries, what it leaves out, and what the other program must find.",
+        root: Kind::Object(&EXPORT),
+    },
+];
+
+const NUMBER_OR_NULL: Kind = Kind::Either(&[Kind::NonNegative, Kind::Null]);
+const COUNT_OR_NULL: Kind = Kind::Either(&[Kind::Whole(0), Kind::Null]);
+const WORDS: Kind = Kind::List(&Kind::Text);
+const LIST: Kind = Kind::List(&Kind::Anything);
+const STATUS: Kind = Kind::Word(&["complete", "certified", "partial", "interrupted", "infeasible"]);
+const FILES: Key =
+    required("files", Kind::Map(&Kind::Text), "-", "Every other file, with the BLAKE3 hash of its bytes.");
+const VERSION: Key = required("tool_version", Kind::Text, "-", "Version of armwright that wrote the file.");
+
+/// An object of which only some keys are told; others are there too.
+const fn open(name: &'static str, about: &'static str, keys: &'static [Key]) -> Shape {
+    Shape { name, about, keys, rules: &[], others: Some(&Kind::Anything) }
+}
+
+static RUN: Shape = Shape::new(
+    "run",
+    "A study's result. `docs/results-format.md` explains each key.",
+    &[
+        required("schema_version", Kind::Whole(1), "-", "Of this file."),
+        required("study", Kind::Text, "-", "Name of the study."),
+        required("question", Kind::Either(&[Kind::Text, Kind::Null]), "-", "Its question."),
+        required("search", Kind::Word(&["exhaustive", "exact"]), "-", "How the front was found."),
+        required("status", STATUS, "-", "How the search ended."),
+        required("designs_total", Kind::NonNegative, "-", "Designs in the space; rounded above 2^53."),
+        required("designs_evaluated", Kind::Whole(0), "-", "Designs that were evaluated."),
+        required("designs_excluded", Kind::NonNegative, "-", "Designs that were left out."),
+        required("front_size", Kind::Whole(0), "-", "Rows of `front.csv`."),
+        required("hypervolume", Kind::Number, "-", "Of the front, in logarithms."),
+        required("boxes", COUNT_OR_NULL, "-", "Boxes that an exact search bounded."),
+        required("boxes_open", COUNT_OR_NULL, "-", "Boxes that an exact search left open."),
+        required("gap", NUMBER_OR_NULL, "-", "The gap that an exact search proved; 0 for a whole front."),
+        required(
+            "proved_to_mass_kg",
+            NUMBER_OR_NULL,
+            "kg",
+            "The mass up to which the front is proved whole.",
+        ),
+        required("ties_listed", Kind::Flag, "-", "Whether tied drives are rows of their own."),
+        required(
+            "picks",
+            Kind::List(&Kind::Object(&PICK)),
+            "-",
+            "Lightest, stiffest, highest mode and knee.",
+        ),
+        required("elapsed_s", Kind::NonNegative, "s", "How long the search took."),
+        required("designs_per_s", Kind::NonNegative, "1/s", "Designs evaluated in a second."),
+        required("threads", Kind::Whole(1), "-", "Number of threads."),
+        VERSION,
+        required("platform", Kind::Text, "-", "System and processor."),
+        required("models", Kind::Map(&Kind::Text), "-", "Models of links and joints."),
+        required("constraints", WORDS, "-", "The limits, in words."),
+        required("cases", WORDS, "-", "The cases, in words."),
+        required("materials", Kind::List(&Kind::Object(&MATERIAL)), "-", "The front of each material."),
+        required("not_checked", WORDS, "-", "Options left out because a rating is blank."),
+        required("remarks", WORDS, "-", "What a reader should know."),
+        required("effects", LIST, "-", "The study's effects, and whether they count."),
+        required("effects_mass_kg", Kind::Number, "kg", "Mass that effects add to every design."),
+        required("carried_over", LIST, "-", "Corrections of an arm file, and whether they apply."),
+        required("catalogs", Kind::Either(&[Kind::Text, Kind::Null]), "-", "Folder of own rows."),
+        required("study_hash", Kind::Text, "-", "BLAKE3 hash of the study's text."),
+        required("catalogs_hash", Kind::Text, "-", "Hash of every catalog rating."),
+        required("not_written", WORDS, "-", "What could not be made; empty in a whole result."),
+        optional(
+            "worst_poses",
+            Kind::Anything,
+            "-",
+            "left out while not made",
+            "Poses in which picks are worse.",
+        ),
+        optional(
+            "lighter_on_same_drives",
+            LIST,
+            "-",
+            "left out while not made",
+            "Picks whose drives came with weight.",
+        ),
+        optional("ballast_designs", Kind::Whole(0), "-", "left out while not made", "Rows of `ballast.csv`."),
+        optional(
+            "tolerance",
+            Kind::Anything,
+            "-",
+            "left out while not made",
+            "The front under scatter, or null.",
+        ),
+        optional(
+            "within",
+            Kind::Anything,
+            "-",
+            "left out while not made",
+            "Designs near the front, or null.",
+        ),
+        FILES,
+    ],
+    &[],
+);
+
+static PICK: Shape = Shape::new(
+    "pick",
+    "A design of the front that is best in something.",
+    &[
+        required("names", WORDS, "-", "What it is picked for."),
+        required("design_id", Kind::Text, "-", "Name of the design."),
+        required("mass_kg", Kind::NonNegative, "kg", "Its mass."),
+        required(
+            "extras_mass_kg",
+            Kind::NonNegative,
+            "kg",
+            "Of that, what joints weigh beyond their drives.",
+        ),
+        required("mass_lower_bound_kg", NUMBER_OR_NULL, "kg", "No design as stiff and as fast weighs less."),
+        required("mixture_kg", NUMBER_OR_NULL, "kg", "Approximate mass if parts could be blended."),
+        required(
+            "loads_oppose",
+            Kind::Either(&[Kind::Flag, Kind::Null]),
+            "-",
+            "Whether loads of both signs weaken the bound; null if there is none.",
+        ),
+    ],
+    &[],
+);
+
+static MATERIAL: Shape = Shape::new(
+    "material",
+    "The front of the designs whose links are all of one material.",
+    &[
+        required("name", Kind::Text, "-", "Catalog name."),
+        required("slug", Kind::Text, "-", "Its part of file names."),
+        required("status", STATUS, "-", "How its search ended."),
+        required("front_size", Kind::Whole(0), "-", "Rows of its front."),
+        required("cost_eur_per_kg", NUMBER_OR_NULL, "EUR/kg", "Price of the material."),
+        required("ties_listed", Kind::Flag, "-", "Whether tied drives are rows of their own."),
+    ],
+    &[],
+);
+
+static SHARD: Shape = Shape::new(
+    "shard",
+    "A shard of a search.",
+    &[
+        required("schema_version", Kind::Whole(1), "-", "Of this file."),
+        required("study", Kind::Text, "-", "Name of the study."),
+        VERSION,
+        required("study_hash", Kind::Text, "-", "BLAKE3 hash of the study's text."),
+        required("catalogs_hash", Kind::Text, "-", "Hash of every catalog rating."),
+        required("flags", Kind::Object(&FLAGS), "-", "Kind of search."),
+        required("designs_total", Kind::NonNegative, "-", "Designs in the space; rounded above 2^53."),
+        required("shard", Kind::Array(2, &Kind::Whole(1)), "-", "Its number and the number of shards."),
+        optional(
+            "range",
+            Kind::Array(2, &Kind::Whole(0)),
+            "-",
+            "left out by an exact search",
+            "First number of its designs, and the first after them.",
+        ),
+        optional(
+            "fronts",
+            Kind::List(&Kind::Object(&SHARD_FRONT)),
+            "-",
+            "left out by a visit",
+            "What was searched for each front.",
+        ),
+        optional(
+            "boxes",
+            Kind::Whole(0),
+            "-",
+            "left out by a visit",
+            "Boxes bounded for the front of all designs.",
+        ),
+        required("designs_evaluated", Kind::Whole(0), "-", "Designs that were evaluated."),
+        required("candidates", Kind::Whole(0), "-", "Designs found for the front of all designs."),
+        required("proved", Kind::Flag, "-", "Whether no design of the shard is missing."),
+        required("command", WORDS, "-", "Words that name study, limits, catalogs and search."),
+        required("elapsed_s", Kind::NonNegative, "s", "How long it took."),
+        required("threads", Kind::Whole(1), "-", "Number of threads."),
+        required("platform", Kind::Text, "-", "System and processor."),
+        FILES,
+    ],
+    &[],
+);
+
+static FLAGS: Shape = Shape::new(
+    "flags",
+    "In these all shards of a search agree.",
+    &[
+        required("search", Kind::Word(&["exhaustive", "exact"]), "-", "Kind of search."),
+        optional("gap", Kind::Below(1.0), "-", "left out by a visit", "Gap to which an exact search goes."),
+    ],
+    &[],
+);
+
+static SHARD_FRONT: Shape = Shape::new(
+    "front of a shard",
+    "What an exact search did for one front.",
+    &[
+        required("front", Kind::Text, "-", "`all`, or a material."),
+        required("subtrees", WORDS, "-", "Names of the subtrees: the halves that lead to each."),
+        required("designs_evaluated", Kind::Whole(0), "-", "Designs that were evaluated."),
+        required("boxes", Kind::Whole(0), "-", "Boxes bounded up to the end of this front."),
+        required("gap", Kind::NonNegative, "-", "The gap that was proved."),
+    ],
+    &[],
+);
+
+static VERDICT: Shape = Shape::new(
+    "verdict",
+    "What was found in a campaign. `docs/reconcile.md` explains it.",
+    &[
+        required("schema", Kind::Whole(1), "-", "Version of this file's form."),
+        required("campaign", Kind::Text, "-", "Name of the campaign."),
+        required("campaign_blake3", Kind::Text, "-", "Hash of the campaign's files."),
+        optional(
+            "catalogs_hash",
+            Kind::Text,
+            "-",
+            "left out by the library",
+            "Hash of every catalog rating.",
+        ),
+        VERSION,
+        required(
+            "verdict",
+            Kind::Word(&["no_gap", "explained", "unexplained", "insufficient_data"]),
+            "-",
+            "The verdict.",
+        ),
+        required("reasons", WORDS, "-", "Why, in sentences."),
+        required(
+            "effects",
+            Kind::List(&Kind::Object(&FINDING)),
+            "-",
+            "Effects that explain the gap; empty unless explained.",
+        ),
+        required("suspects", Kind::List(&Kind::Object(&FINDING)), "-", "Effects that may be there."),
+        required("empirical", Kind::List(&Kind::Object(&FINDING)), "-", "Laws without a name."),
+        required("corrected_models", LIST, "-", "Models that the corrected arm could have."),
+        required("kept_out", Kind::Anything, "-", "Errors on held-out readings, before and after."),
+        required("located", Kind::Anything, "-", "Where the gap is."),
+        required(
+            "next_test",
+            Kind::Anything,
+            "-",
+            "The test that separates best what is open; may be empty.",
+        ),
+        required("further_tests", LIST, "-", "The next best tests."),
+        required("readings", Kind::Anything, "-", "Gross errors, and noise over what was declared."),
+        required("lack_of_fit", Kind::Anything, "-", "Structure that is left; may be empty."),
+        required("calibrated", LIST, "-", "Parameters calibrated within their tolerance."),
+        required("records", LIST, "-", "What records against time show."),
+        required("stages", LIST, "-", "Steps of an analysis of absolute positions."),
+        required("evidence", LIST, "-", "Score of each candidate model."),
+        optional("study", Kind::Anything, "-", "left out without --study", "The study under both models."),
+        optional(
+            "files",
+            Kind::Map(&Kind::Text),
+            "-",
+            "left out by the library",
+            "Every other file, with the BLAKE3 hash of its bytes.",
+        ),
+    ],
+    &[],
+);
+
+static FINDING: Shape = open(
+    "finding",
+    "An effect with its values.",
+    &[
+        required("effect", Kind::Text, "-", "Name of the effect (`armwright schema effects`)."),
+        required("at", Kind::Text, "-", "Its place."),
+        required("parameters", Kind::Map(&Kind::Object(&INTERVAL)), "-", "Its parameters."),
+        required(
+            "indistinguishable_from",
+            LIST,
+            "-",
+            "At most three effects that these readings cannot tell from it.",
+        ),
+    ],
+);
+
+static INTERVAL: Shape = open(
+    "interval",
+    "A value with its interval; numbers, or lists of them.",
+    &[
+        required("value", Kind::Anything, "-", "Best value."),
+        required("low", Kind::Anything, "-", "Lower end; null if the readings do not bound it."),
+        required("high", Kind::Anything, "-", "Upper end; null if the readings do not bound it."),
+    ],
+);
+
+static EXPORT: Shape = Shape::new(
+    "export",
+    "An export of an arm.",
+    &[
+        required("to", Kind::Word(&["calculix", "mjcf", "urdf", "json", "csv", "bom"]), "-", "The form."),
+        required("arm", Kind::Text, "-", "Name of the arm."),
+        required("mass_kg", Kind::NonNegative, "kg", "Its mass, payload excluded."),
+        required(
+            "case",
+            Kind::Anything,
+            "-",
+            "The case at whose loads curves became numbers, as in cases files.",
+        ),
+        required("files", WORDS, "-", "Names of the files."),
+        required("left_out", Kind::List(&Kind::Object(&LEFT_OUT)), "-", "What the files cannot carry."),
+        required("notes", WORDS, "-", "What a reader of the files must know."),
+        required(
+            "expected",
+            Kind::Either(&[Kind::Object(&EXPECTED), Kind::Null]),
+            "-",
+            "What a program must find; null if the files are no model.",
+        ),
+        VERSION,
+    ],
+    &[],
+);
+
+static LEFT_OUT: Shape = Shape::new(
+    "left out",
+    "Something that files do not carry.",
+    &[
+        required("what", Kind::Text, "-", "What it is."),
+        required("at", Kind::Text, "-", "Where it is."),
+        required("why", Kind::Text, "-", "Why, and what to do instead."),
+        required("tip_share", Kind::Number, "-", "Its share of the tip's deflection."),
+    ],
+    &[],
+);
+
+static EXPECTED: Shape = Shape::new(
+    "expected",
+    "What a program must find that is given the files.",
+    &[
+        required("joint_torque_nm", Kind::Map(&Kind::Number), "N m", "What holds each joint that turns."),
+        optional(
+            "joint_force_n",
+            Kind::Map(&Kind::Number),
+            "N",
+            "none",
+            "What holds each joint that slides.",
+        ),
+        optional(
+            "tip_displacement_m",
+            Kind::Array(3, &Kind::Number),
+            "m",
+            "none",
+            "Displacement of the tip.",
+        ),
+        optional("frequencies_hz", Kind::List(&Kind::Positive), "Hz", "none", "Lowest frequencies."),
+    ],
+    &[],
+);
+
+/// A table that the program writes: its name, what it is, and its columns. `<link>` and `<joint>` stand for names of the arm.
+pub(super) struct OutputTable {
+    pub name: &'static str,
+    pub about: &'static str,
+    columns: &'static [Key],
+}
+
+/// The tables that other programs read.
+pub(super) const TABLES: [OutputTable; 2] = [
+    OutputTable {
+        name: "front",
+        about: "front.csv: a design of the front in each row, lightest first.",
+        columns: &FRONT,
+    },
+    OutputTable {
+        name: "bom",
+        about: "bom.csv: equal parts in each row; masses add up to the arm's.",
+        columns: &BOM,
+    },
+];
+
+const NONE: &str = "blank";
+
+static FRONT: [Key; 22] = [
+    required("design_id", Kind::Text, "-", "Name of the design."),
+    required("<link>_material", Kind::Text, "-", "Catalog name."),
+    required("<link>_shape", Kind::Text, "-", "Shape of the section."),
+    required("<link>_width_mm", Kind::Positive, "mm", "Outer size along the section's y."),
+    required("<link>_height_mm", Kind::Positive, "mm", "Outer size along the section's z."),
+    required("<link>_wall_mm", Kind::Positive, "mm", "Wall."),
+    optional("<link>_profile", Kind::Text, "-", NONE, "Designation of a catalog profile."),
+    optional("<joint>_gear", Kind::Text, "-", NONE, "Catalog name."),
+    optional("<joint>_motor", Kind::Text, "-", NONE, "Catalog name."),
+    required("tip_deflection_mm", Kind::NonNegative, "mm", "Largest over the judged poses."),
+    required("mass_kg", Kind::NonNegative, "kg", "Links and drives."),
+    required("lowest_mode_hz", Kind::NonNegative, "Hz", "Smallest over the judged poses."),
+    required("tie_group", Kind::Whole(1), "-", "Designs of one number have equal objectives."),
+    optional(
+        "<joint>_margin",
+        Kind::NonNegative,
+        "-",
+        NONE,
+        "Allowed over needed value of the binding check.",
+    ),
+    optional("<joint>_binds", Kind::Text, "-", NONE, "That check."),
+    optional(
+        "<joint>_bearing_margin",
+        Kind::NonNegative,
+        "-",
+        NONE,
+        "Factor by which the bearing's loads may grow.",
+    ),
+    optional(
+        "<joint>_motor_rms_margin",
+        Kind::NonNegative,
+        "-",
+        NONE,
+        "Continuous torque over root mean square.",
+    ),
+    optional("<joint>_input_rpm", Kind::NonNegative, "rpm", NONE, "Speed of the motor."),
+    optional(
+        "<joint>_critical_rpm",
+        Kind::NonNegative,
+        "rpm",
+        NONE,
+        "Speed at which the gear excites the lowest mode.",
+    ),
+    optional(
+        "stress_safety_factor",
+        Kind::NonNegative,
+        "-",
+        NONE,
+        "Strength over stress, smallest over the links.",
+    ),
+    optional("material_cost_eur", Kind::NonNegative, "EUR", NONE, "Raw material of the open links."),
+    required("extras_mass_kg", Kind::NonNegative, "kg", "What joints weigh beyond their drives."),
+];
+
+static BOM: [Key; 10] = [
+    required("item", Kind::Whole(1), "-", "Number of the row."),
+    required("count", Kind::Whole(1), "-", "How many there are."),
+    required("part", Kind::Text, "-", "What it is."),
+    required("kind", Kind::Text, "-", "Kind of part, such as gear, motor, link."),
+    required("mass_kg", Kind::NonNegative, "kg", "Mass of all of them."),
+    optional("length_m", Kind::NonNegative, "m", NONE, "Length of each link."),
+    optional("source", Kind::Text, "-", NONE, "Where its figures are from."),
+    optional("confidence", Kind::Text, "-", NONE, "How sure they are."),
+    optional("cost_eur", Kind::NonNegative, "EUR", NONE, "Cost of all of them."),
+    required("used_at", Kind::Text, "-", "Joints and links that have one."),
+];
+
+impl OutputTable {
+    /// The columns as a Table Schema.
+    pub(super) fn schema(&self) -> Value {
+        let field = |column: &Key| {
+            let kind = match column.kind {
+                Kind::Whole(_) => "integer",
+                Kind::Number | Kind::Positive | Kind::NonNegative => "number",
+                _ => "string",
+            };
+            let mut out = json!({
+                "name": column.name,
+                "type": kind,
+                "description": column.about,
+                "constraints": {"required": column.default.is_none()},
+            });
+            if column.unit != "-" {
+                out["unit"] = json!(column.unit);
+            }
+            out
+        };
+        json!({
+            "title": format!("Armwright: {}", self.name),
+            "description": self.about,
+            "fields": self.columns.iter().map(field).collect::<Vec<_>>(),
+            "missingValues": [""],
+        })
+    }
+}
+
+/// Name of the schema of effects on the command line, and what it is.
+pub(super) const EFFECTS: (&str, &str) =
+    ("effects", "An effect as arm files, studies and verdicts have it: places, parameters and their bounds.");
+
+/// The JSON Schema of an entry of `effects`: for each effect, its places and parameters.
+pub(super) fn effects_schema() -> Value {
+    json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Armwright: effects",
+        "description": EFFECTS.1,
+        "oneOf": KINDS.iter().flat_map(|kind| of_effect(kind)).collect::<Vec<_>>(),
+    })
+}
+
+/// The schema of an effect; one for each of its places where they have parameters of their own.
+fn of_effect(kind: &EffectKind) -> Vec<Value> {
+    let mut groups: Vec<(Vec<Place>, &[Parameter])> = Vec::new();
+    for &place in kind.places {
+        let parameters = (kind.parameters)(place);
+        match groups.iter_mut().find(|(_, of)| *of == parameters) {
+            Some((places, _)) => places.push(place),
+            None => groups.push((vec![place], parameters)),
+        }
+    }
+    let one = |(places, parameters): (Vec<Place>, &[Parameter])| {
+        let needed: Vec<&str> = parameters.iter().filter(|p| p.default.is_none()).map(|p| p.name).collect();
+        let properties: Map<String, Value> =
+            parameters.iter().map(|p| (p.name.to_string(), of_parameter(p))).collect();
+        let words: Vec<String> = places.iter().map(|place| place_words(*place)).collect();
+        json!({
+            "description": kind.summary,
+            "type": "object",
+            "required": ["effect", "at", "parameters"],
+            "properties": {
+                "effect": {"const": kind.name},
+                "at": {"type": "string", "description": words.join("; ")},
+                "parameters": {
+                    "type": "object",
+                    "properties": properties,
+                    "required": needed,
+                    "additionalProperties": false,
+                },
+            },
+        })
+    };
+    groups.into_iter().map(one).collect()
+}
+
+fn place_words(place: Place) -> String {
+    match place {
+        Place::Joint => "a joint that turns".into(),
+        Place::Prismatic => "a prismatic joint".into(),
+        Place::Link => "a link".into(),
+        Place::Tube => "a link that is a tube".into(),
+        Place::Base => "base".into(),
+        Place::Payload => "payload".into(),
+        Place::Arm => "arm".into(),
+        Place::Channel(channel) => channel.word().into(),
+    }
+}
+
+fn of_parameter(parameter: &Parameter) -> Value {
+    if parameter.is_channel {
+        return json!({"type": "string", "description": "a channel: static, modal, windup or positions"});
+    }
+    let mut number = json!({"type": "number"});
+    for (key, bound) in [("minimum", parameter.low), ("maximum", parameter.high)] {
+        // an infinite bound is none
+        if bound.is_finite() {
+            number[key] = json!(bound);
+        }
+    }
+    if let Some(default) = parameter.default {
+        number["default"] = json!(default);
+    }
+    match parameter.count {
+        0 => json!({"type": "array", "items": number}),
+        1 => number,
+        count => json!({"type": "array", "items": number, "minItems": count, "maxItems": count}),
+    }
+}

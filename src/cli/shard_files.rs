@@ -1,0 +1,115 @@
+//! The files of a shard: where they are, and how they are read back.
+
+use super::failure::Failure;
+use super::manifest::SHARD;
+use crate::exact::outcome::FoundInShard;
+use crate::search::sweep::Shard;
+use crate::study::definition::Study;
+use crate::study::exact_shards::fronts_of;
+use crate::study::shards::read_found;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+/// Names of the other files of a shard.
+pub(super) const CANDIDATES: &str = "candidates.csv";
+pub(super) const STUDY: &str = "study.json";
+
+/// Keys in which all shards of one search agree.
+pub(super) const COMMON: [&str; 5] =
+    ["tool_version", "study_hash", "catalogs_hash", "flags", "designs_total"];
+
+/// The folder of a shard, next to those of the others.
+pub(super) fn folder_of(shards: &Path, shard: Shard) -> PathBuf {
+    shards.join(format!("{}-of-{}", shard.number, shard.of))
+}
+
+/// Reads what a shard of an exact search found, front by front.
+///
+/// # Errors
+/// The file or the manifest is not one that this program writes.
+pub(super) fn read_candidates_of(
+    dir: &Path,
+    manifest: &Value,
+    study: &Study,
+) -> Result<Vec<FoundInShard>, Failure> {
+    let fronts = fronts_of(&study.space, manifest["flags"]["gap"].as_f64().unwrap_or_default()).len();
+    let file = dir.join(CANDIDATES);
+    let text = fs_err::read_to_string(&file).map_err(|e| Failure::File(e.to_string()))?;
+    let mut found = read_found(&text, fronts)
+        .map_err(|line| Failure::File(format!("{}:{line}: no candidate", file.display())))?;
+    for (at, found) in found.iter_mut().enumerate() {
+        let facts = &manifest["fronts"][at];
+        let fault = || Failure::File(format!("{}: fronts, no subtrees or counts", dir.join(SHARD).display()));
+        let subtrees = facts["subtrees"].as_array().ok_or_else(fault)?;
+        found.subtrees = subtrees.iter().filter_map(Value::as_str).map(String::from).collect();
+        found.designs_evaluated = facts["designs_evaluated"].as_u64().ok_or_else(fault)?;
+        found.boxes = facts["boxes"].as_u64().ok_or_else(fault)?;
+        found.gap = facts["gap"].as_f64();
+    }
+    Ok(found)
+}
+
+/// The folders of shards among some folders, or in them.
+///
+/// # Errors
+/// A folder cannot be read, or none has a shard.
+pub(super) fn shards_in_all(folders: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+    let mut all = Vec::new();
+    for folder in folders {
+        let inside = shards_in(folder, DEEPEST)?;
+        if inside.is_empty() {
+            return Err(Failure::File(format!(
+                "{} has no shard, which is a folder with {SHARD}; `armwright run STUDY --shard 1/4` makes one",
+                folder.display()
+            )));
+        }
+        all.extend(inside);
+    }
+    Ok(all)
+}
+
+/// Folders are searched for shards to this depth.
+const DEEPEST: usize = 3;
+
+/// The folders of shards in a folder, itself among them, in the order of their names.
+fn shards_in(folder: &Path, depth: usize) -> Result<Vec<PathBuf>, Failure> {
+    if folder.join(SHARD).is_file() {
+        return Ok(vec![folder.to_path_buf()]);
+    }
+    let entries = fs_err::read_dir(folder).map_err(|e| Failure::File(e.to_string()))?;
+    let mut inside: Vec<PathBuf> =
+        entries.flatten().map(|entry| entry.path()).filter(|p| p.is_dir()).collect();
+    inside.sort();
+    let mut out = Vec::new();
+    for folder in inside.iter().filter(|_| depth > 0) {
+        out.extend(shards_in(folder, depth - 1)?);
+    }
+    Ok(out)
+}
+
+pub(super) fn hash_of(bytes: &[u8]) -> String {
+    blake3::hash(bytes).to_hex().to_string()
+}
+
+/// Reads the manifest of a shard and checks that its files are those that it names.
+///
+/// # Errors
+/// A file is missing, is no manifest, or has other bytes.
+pub(super) fn read_manifest(dir: &Path) -> Result<Value, Failure> {
+    let path = dir.join(SHARD);
+    let text = fs_err::read_to_string(&path).map_err(|e| Failure::File(e.to_string()))?;
+    let manifest: Value =
+        serde_json::from_str(&text).map_err(|e| Failure::File(format!("{}: {e}", path.display())))?;
+    for name in [CANDIDATES, STUDY] {
+        let file = dir.join(name);
+        let bytes = fs_err::read(&file).map_err(|e| Failure::File(e.to_string()))?;
+        if manifest["files"][name].as_str() != Some(&hash_of(&bytes)) {
+            return Err(Failure::Check(format!(
+                "{} is not the file that {} was written with: run the shard again",
+                file.display(),
+                path.display()
+            )));
+        }
+    }
+    Ok(manifest)
+}

@@ -1,0 +1,156 @@
+//! Shards of an exact search: subtrees of the space, each searched by itself.
+//!
+//! The box of all designs is halved until there are enough boxes, always the one with the most designs and always at its
+//! level with the most options. That depends on the space alone, so every process that knows the space makes the same
+//! subtrees. They are dealt to the shards in turn. A subtree is named by the halves that lead to it; such names tell
+//! by themselves whether some subtrees hold every design once ([`refuse_holes`]).
+//!
+//! What a shard prunes is infeasible, or dominated by a design that it found or was given, or by one with a lighter drive
+//! that lies in any subtree (`dominance.rs`). So the union of what all shards found lacks no design of the front, and what is
+//! left of it by the rule of one machine is the front of one machine.
+
+use super::bound::DesignBox;
+use super::outcome::{ExactOutcome, FoundInShard};
+use super::problem::Problem;
+use super::run::Exact;
+use super::search_state::{Findings, SearchState, nondominated};
+use crate::search::sweep::Shard;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// Number of subtrees of each shard in a search by boxes. Of many small ones no shard gets the hard ones alone.
+const SUBTREES: usize = 8;
+/// The same in a search by regions: each subtree looks through all regions.
+const SUBTREES_BY_REGIONS: usize = 1;
+/// No space is halved this often.
+const LONGEST_NAME: usize = 256;
+
+impl<'p> Exact<'p> {
+    /// Searches the shard for the front of all designs, or for that of the designs of one material. `given` are findings of
+    /// the same study in whichever part of the space; they prune boxes and are part of what is found.
+    pub fn found(&self, material_index: Option<usize>, given: &[FoundInShard]) -> FoundInShard {
+        let mut state = SearchState::toward(self.only);
+        for FoundInShard { decided, undecided, .. } in given {
+            state.learn(Findings {
+                kept: decided.clone(),
+                undecided: undecided.clone(),
+                ..Findings::default()
+            });
+        }
+        let live = material_index.is_none().then_some(&self.live);
+        self.search_part(self.space_of(material_index).as_ref(), (state, given.is_empty()), live)
+    }
+
+    /// The result of a search whose shards found this. They must hold every design ([`refuse_holes`]).
+    pub fn joined(&self, material_index: Option<usize>, shards: &[FoundInShard]) -> ExactOutcome {
+        let all = |of: fn(&FoundInShard) -> &Vec<_>| shards.iter().flat_map(of).copied().collect();
+        let sum = |of: fn(&FoundInShard) -> u64| shards.iter().map(of).sum();
+        let mut undecided: Vec<_> = all(|found| &found.undecided);
+        undecided.sort_unstable_by_key(|candidate| candidate.number);
+        undecided.dedup_by_key(|candidate| candidate.number);
+        let gaps: Option<Vec<f64>> = shards.iter().map(|found| found.gap).collect();
+        let found = FoundInShard {
+            subtrees: Vec::new(),
+            designs_evaluated: sum(|found| found.designs_evaluated),
+            boxes: sum(|found| found.boxes),
+            boxes_open: sum(|found| found.boxes_open),
+            gap: gaps.and_then(|gaps| gaps.into_iter().reduce(f64::max)),
+            decided: nondominated(all(|found| &found.decided)),
+            undecided,
+        };
+        self.listed(self.space_of(material_index).as_ref(), found)
+    }
+
+    /// The subtrees of this search: their names and boxes.
+    pub(super) fn subtrees(&self, whole: &Problem, by_regions: bool) -> (Vec<String>, Vec<DesignBox>) {
+        let Shard { number, of } = self.shard;
+        let each = if by_regions { SUBTREES_BY_REGIONS } else { SUBTREES };
+        let most = if self.shard == Shard::WHOLE { 1 } else { of as usize * each };
+        let dealt = whole.divided(most).into_iter().skip(number as usize - 1).step_by(of as usize);
+        dealt.unzip()
+    }
+}
+
+impl Problem<'_> {
+    /// Disjoint boxes that hold every design, at most so many, by their names.
+    fn divided(&self, most: usize) -> Vec<(String, DesignBox)> {
+        let size = |design_box: &DesignBox| self.members(design_box).to_bits();
+        let root = self.root();
+        let mut open = BinaryHeap::from([(size(&root), Reverse(String::new()), root)]);
+        let mut single = Vec::new();
+        while open.len() + single.len() < most {
+            let Some((_, Reverse(name), design_box)) = open.pop() else { break };
+            let Some(halves) = self.halved(&design_box) else {
+                single.push((name, design_box));
+                continue;
+            };
+            open.extend(
+                halves
+                    .into_iter()
+                    .zip(["0", "1"])
+                    .map(|(half, end)| (size(&half), Reverse(format!("{name}{end}")), half)),
+            );
+        }
+        single.extend(open.into_iter().map(|(_, Reverse(name), design_box)| (name, design_box)));
+        single.sort_unstable();
+        single
+    }
+
+    /// The halves of a box at its level with the most options. `None` for a box of one design.
+    fn halved(&self, design_box: &DesignBox) -> Option<[DesignBox; 2]> {
+        let options = |level: &usize| (self.members_at(design_box, *level), Reverse(*level));
+        let level = (0..design_box.len()).max_by_key(options)?;
+        let halves = self.halves(design_box, level)?;
+        Some(halves.map(|half| {
+            let mut design_box = design_box.clone();
+            design_box[level] = half;
+            design_box
+        }))
+    }
+}
+
+/// Checks that some subtrees of one space hold every design once.
+///
+/// # Errors
+/// The name of a subtree that is missing, or of one that is there twice or lies in another, in words.
+pub fn refuse_holes(mut subtrees: Vec<&str>) -> Result<(), String> {
+    subtrees.sort_unstable();
+    match subtrees.iter().find(|name| name.len() > LONGEST_NAME) {
+        Some(name) => Err(format!("\"{}...\" is no subtree", &name[..8])),
+        None => holds_all("", &subtrees),
+    }
+}
+
+/// Checks that the subtrees below a subtree hold its designs once. They are sorted, and their names begin with its name.
+fn holds_all(name: &str, below: &[&str]) -> Result<(), String> {
+    match below {
+        [] => Err(format!("subtree \"{name}\" is in none of them")),
+        [only] if *only == name => Ok(()),
+        [first, ..] if *first == name => {
+            Err(format!("the designs of subtree \"{}\" are in two of them", below[1]))
+        }
+        _ => {
+            let zero = format!("{name}0");
+            let middle = below.partition_point(|of| of.starts_with(&zero));
+            holds_all(&zero, &below[..middle])?;
+            holds_all(&format!("{name}1"), &below[middle..])
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn subtrees_that_lack_designs_or_share_some_are_told() {
+        assert_eq!(refuse_holes(vec![""]), Ok(()));
+        assert_eq!(refuse_holes(vec!["10", "0", "11"]), Ok(()));
+        let fault = |subtrees: &[&str]| refuse_holes(subtrees.to_vec()).expect_err("a fault");
+        assert!(fault(&[]).contains("\"\" is in none"));
+        assert!(fault(&["0", "11"]).contains("\"10\" is in none"));
+        assert!(fault(&["0", "1", "1"]).contains("\"1\" are in two"));
+        assert!(fault(&["0", "01", "1"]).contains("\"01\" are in two"));
+        assert!(fault(&["0", "x"]).contains("\"1\" is in none") || fault(&["0", "x"]).contains("\"10\""));
+    }
+}

@@ -1,0 +1,44 @@
+//! The joints of a space with the drives of the catalogs tabulated.
+//!
+//! Neither the limits of a study nor the sections of its links change which drives a joint may have. Tables take most of the
+//! time in which a small problem is made, so problems over one study share them.
+
+use super::design_space::{DesignSpace, SpacePiece};
+use super::slot::{Slot, joint_slot, rail_slot};
+use super::station::reaches_m;
+use crate::catalog::Catalogs;
+use std::sync::Arc;
+
+/// The joints of a space, piece by piece from the base; `None` for any other piece.
+#[derive(Clone)]
+pub(crate) struct TabulatedJoints<'c>(Arc<[Option<Slot<'c>>]>);
+
+impl<'c> TabulatedJoints<'c> {
+    /// Tabulates the drives of every joint.
+    pub(crate) fn new(space: &'c DesignSpace, catalogs: &'c Catalogs) -> Self {
+        let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
+        let mut reaches_m = reaches_m(space, sizing).into_iter();
+        let slot = |piece: &'c SpacePiece| match piece {
+            SpacePiece::Joint(joint) => {
+                Some(joint_slot(space, joint, reaches_m.next().unwrap_or_default(), catalogs))
+            }
+            SpacePiece::Prismatic(slide) => Some(rail_slot(space, slide, catalogs)),
+            SpacePiece::Link(_) | SpacePiece::Choice(_) => None,
+        };
+        Self(space.pieces.iter().map(slot).collect())
+    }
+
+    /// The joint that is piece number `piece`, base to tip.
+    pub(crate) fn get(&self, piece: usize) -> Option<&Slot<'c>> {
+        self.0.get(piece)?.as_ref()
+    }
+
+    /// A slot of the joint that is piece number `piece`; it shares the table.
+    pub(crate) fn slot(&self, piece: usize) -> Option<Slot<'c>> {
+        match self.get(piece)? {
+            Slot::Given { law, mass_kg } => Some(Slot::Given { law: *law, mass_kg: *mass_kg }),
+            Slot::Sized(sized) => Some(Slot::Sized(Arc::clone(sized))),
+            Slot::Bearing { .. } | Slot::Motor { .. } | Slot::Link { .. } | Slot::Offset { .. } => None,
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! The branches of a search that are done, so that another process need not go through them again.
+//!
+//! The search halves what it has; a branch near the root is named by the halves that lead to it. What a branch came to does
+//! not depend on the others, so a search that goes on has the result of one that was never stopped.
+
+use super::halt::{Found, Halt};
+use super::parts_box::Design;
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Branches from so many halvings on are not written down by themselves.
+const DEEPEST: u32 = 16;
+
+/// Keeps a state, if it is time to do so. The state is made only then.
+pub type Keep<'s> = dyn Fn(&dyn Fn() -> Vec<u8>) + Sync + 's;
+
+/// The branches that are done. By default none is, and nothing is kept.
+#[derive(Default)]
+pub struct Ledger<'s> {
+    keep: Option<&'s Keep<'s>>,
+    done: Mutex<Done>,
+    /// Held by the thread that keeps a state.
+    keeping: Mutex<()>,
+}
+
+/// What is written down: the boxes that each finished branch bounded, and the single designs found so far.
+#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Done {
+    boxes: BTreeMap<u32, u64>,
+    designs: BTreeSet<Design>,
+}
+
+/// A branch: the digits of this number in base 2, after the leading one, are the halves that lead to it. Zero stands for
+/// a branch that is not written down.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Branch(u32);
+
+impl Branch {
+    pub(super) const ROOT: Self = Self(1);
+    pub(super) const DEEP: Self = Self(0);
+
+    /// Its two halves.
+    pub(super) fn halves(self) -> [Self; 2] {
+        match self.0 {
+            0 => [Self::DEEP; 2],
+            deep if deep >> DEEPEST > 0 => [Self::DEEP; 2],
+            name => [Self(2 * name), Self(2 * name + 1)],
+        }
+    }
+}
+
+impl<'s> Ledger<'s> {
+    /// Goes on from the state that an earlier process kept, if there is one.
+    ///
+    /// # Errors
+    /// The bytes are no state, in words.
+    pub fn resumed(from: Option<&[u8]>, keep: &'s Keep<'s>) -> Result<Self, String> {
+        let done = from.map(postcard::from_bytes).transpose().map_err(|e| e.to_string())?;
+        let done = Mutex::new(done.unwrap_or_default());
+        Ok(Self { keep: Some(keep), done, keeping: Mutex::default() })
+    }
+
+    fn done(&self) -> MutexGuard<'_, Done> {
+        self.done.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The single designs that an earlier process found.
+    pub(super) fn designs(&self) -> BTreeSet<Design> {
+        self.done().designs.clone()
+    }
+
+    /// What a branch comes to: explored now, or by an earlier process.
+    pub(super) fn of(&self, branch: Branch, halt: &Halt, explore: impl FnOnce() -> Found) -> Found {
+        let Some(keep) = self.keep.filter(|_| branch != Branch::DEEP) else { return explore() };
+        if let Some(&boxes) = self.done().boxes.get(&branch.0) {
+            return Found { boxes, open: 0 };
+        }
+        let found = explore();
+        // what was found in a search that ends early may be less than all
+        if found.open == 0 && !halt.stopped() {
+            let mut done = self.done();
+            for half in branch.halves() {
+                done.boxes.remove(&half.0);
+            }
+            done.boxes.insert(branch.0, found.boxes);
+            drop(done);
+            if let Ok(_alone) = self.keeping.try_lock() {
+                keep(&|| self.bytes(halt));
+            }
+        }
+        found
+    }
+
+    /// The state. Designs are taken down last: those of every branch that is done are among them.
+    fn bytes(&self, halt: &Halt) -> Vec<u8> {
+        let boxes = self.done().boxes.clone();
+        let designs = halt.designs.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        postcard::to_stdvec(&Done { boxes, designs }).expect("numbers can be written to memory")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::AtomicBool;
+
+    #[test]
+    fn branches_have_names_of_their_own_down_to_a_depth() {
+        let mut level = vec![Branch::ROOT];
+        let mut all = BTreeSet::new();
+        for _ in 0..=DEEPEST {
+            all.extend(level.iter().map(|branch| branch.0));
+            level = level.into_iter().flat_map(Branch::halves).collect();
+        }
+        assert_eq!(all.len(), (1 << (DEEPEST + 1)) - 1);
+        assert!(level.iter().all(|branch| *branch == Branch::DEEP));
+    }
+
+    #[test]
+    fn a_branch_that_is_done_is_not_explored_again_and_one_that_was_stopped_is() {
+        let stop = AtomicBool::new(false);
+        let halt =
+            Halt { stop: &stop, deadline: None, designs: Default::default(), count: Default::default() };
+        let kept = Mutex::new(Vec::new());
+        let keep = |state: &dyn Fn() -> Vec<u8>| *kept.lock().expect("alone") = state();
+        let keep: &Keep = &keep;
+        let [a, b] = Branch::ROOT.halves();
+        let ledger = Ledger::resumed(None, keep).expect("nothing");
+        assert_eq!(ledger.of(a, &halt, || Found { boxes: 7, open: 0 }).boxes, 7);
+        assert_eq!(ledger.of(b, &halt, || Found { boxes: 1, open: 1 }).open, 1);
+        let state = kept.lock().expect("alone").clone();
+        let again = Ledger::resumed(Some(&state), keep).expect("a state");
+        assert_eq!(again.of(a, &halt, || panic!("explored again")).boxes, 7);
+        assert_eq!(again.of(b, &halt, || Found { boxes: 9, open: 0 }).boxes, 9);
+        assert!(Ledger::resumed(Some(&state[..1]), keep).is_err(), "a torn state");
+    }
+}
