@@ -72,8 +72,8 @@ impl Provenance {
         self.file.starts_with(BUILT_IN)
     }
 
-    /// What is said beside a part whose core figures were not read in its vendor's document: `third party`, `from memory` or
-    /// `representative`.
+    /// The caveat that is printed with a part whose main numbers were not read in a document: `from memory` or
+    /// `representative`; `None` for other parts.
     ///
     /// ```
     /// use armwright::catalog::Catalogs;
@@ -85,8 +85,8 @@ impl Provenance {
     /// ```
     pub fn caveat(&self) -> Option<&'static str> {
         match self.confidence {
-            Confidence::Verified => None,
-            Confidence::ThirdParty | Confidence::FromMemory | Confidence::Representative => {
+            Confidence::Verified | Confidence::ThirdParty => None,
+            Confidence::FromMemory | Confidence::Representative => {
                 Some(Confidence::WORDS[self.confidence as usize])
             }
         }

@@ -8,7 +8,7 @@ use crate::input::json::Document;
 use crate::report::number::fixed;
 use crate::report::whole_file::folder_of;
 use crate::report::words::{TERMINAL, wrap};
-use crate::study::arm_capacity::{arm_capacity, limits_of_parts, read_limits};
+use crate::study::arm_capacity::{arm_capacity, has_rated_bearings, limits_of_parts, read_limits};
 use crate::study::capacity::{Capacity, Limit, capacity_of};
 use crate::study::load::load_study;
 use clap::Args;
@@ -69,8 +69,7 @@ fn said(args: &CapacityArgs, name: &str, found: &Capacity, remarks: &[String]) -
 }
 
 /// What the capacity of an arm file leaves out.
-const AT_REST: &str =
-    "Only the torques at rest are judged: motion, output bearings, heat and strength are not checked.";
+const AT_REST: &str = "Judged are torques and output bearings at rest, as far as their ratings are known. Motion, heat and strength are not checked.";
 
 /// Whether the file is an arm and no study, which has poses.
 fn is_arm_file(path: &str) -> bool {

@@ -1,4 +1,5 @@
-//! Parts whose figures were not read in their vendor's document: it is said beside every pick that uses them.
+//! Caveats of parts: some ratings were not read from a document, or are typical values of a class of parts. Every
+//! pick that uses such a part is marked.
 
 use super::front_table::FrontTable;
 use super::words::{TERMINAL, wrap};
@@ -24,7 +25,7 @@ impl Caveats {
         Self(parts.filter_map(caveat).collect())
     }
 
-    /// `third party`, `representative` or `from memory`; `None` for a part whose vendor's document was seen.
+    /// Caveat of a part: `representative` or `from memory`; `None` if its ratings were read from a document.
     pub fn of_part(&self, name: &str) -> Option<&'static str> {
         self.0.get(name).copied()
     }
@@ -56,9 +57,7 @@ impl Caveats {
             used.iter().map(|(part, names)| format!("{} in {}", self.marked(part), place(names))).collect();
         match words.is_empty() {
             true => String::new(),
-            false => {
-                wrap(&format!("Figures not from the vendor's document: {}.", words.join("; ")), TERMINAL, "")
-            }
+            false => wrap(&format!("Figures not from a document: {}.", words.join("; ")), TERMINAL, ""),
         }
     }
 }

@@ -284,10 +284,9 @@ mod tests {
         assert!((screw(0.790).max_speed_rpm() / by_table - 1.0).abs() < 0.005);
         let of = |ends, factor: f64| {
             let by_table = factor * 12.5 / (790.0 * 790.0) * 1e7;
-            assert!(
-                (Screw { ends, ..screw(0.790) }.max_speed_rpm() / by_table - 1.0).abs() < 0.01,
-                "{ends:?}"
-            );
+            // the table has its factors to the tenth: 0.05 of 3.4 is 1.5 %
+            let speed_rpm = Screw { ends, ..screw(0.790) }.max_speed_rpm();
+            assert!((speed_rpm / by_table - 1.0).abs() < 0.05 / factor, "{ends:?}");
         };
         of(Ends::FixedFree, 3.4);
         of(Ends::Supported, 9.7);
@@ -301,7 +300,8 @@ mod tests {
         let screw =
             Screw { lead_m: 0.02, dynamic_load_rating_n: Some(17_073.1), efficiency: 0.9484, ..screw(1.2) };
         let gear = screw.gear();
-        assert!((1000.0 / (gear.ratio * screw.efficiency) - 3.3564).abs() < 1e-4);
+        // the efficiency is printed to four digits, which is 1.8e-4 N m
+        assert!((1000.0 / (gear.ratio * screw.efficiency) - 3.3564).abs() < 2e-4);
         let motion = MotionRequirement::default().joint_motion(1.0, Some(2400.0 / 60.0 * 0.02));
         let always = JointMotion { mean_speed_fraction: 1.0, ..motion };
         let life_h = gear_life_h(&gear, &always, 1200f64.powi(3)).expect("known");
