@@ -62,3 +62,26 @@ fn a_gear_in_numbers_has_a_bearing_too() {
 fn a_result_without_gears_leaves_nothing_of_them_out() {
     assert!(said(json!({"stiffness_nm_per_rad": 1e5, "mass_kg": 3.0}), json!({})).is_empty());
 }
+
+/// The sizes in the sentence are those of the row "together" of the table.
+#[test]
+fn the_size_of_what_is_left_out_is_that_of_the_table() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let page = std::fs::read_to_string(root.join("docs/left-out.md")).expect("the page");
+    let row = page.lines().find(|line| line.starts_with("| **together** |")).expect("the row");
+    let numbers: Vec<f64> = row
+        .split('|')
+        .skip(3)
+        .filter_map(|cell| cell.trim().replace('\u{2212}', "-").parse().ok())
+        .map(|percent: f64| percent.abs().round())
+        .collect();
+    let [tip, mode, mass] = [0, 1, 2].map(|i| [numbers[i], numbers[i + 3]]);
+    let here = folder_with("study.json", &study(json!({"drive": "first_fit"}), json!({})));
+    let (_, said) = armwright(here.path(), &["run", "study.json", "--out", "out"]);
+    let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    let sentence = format!(
+        "it adds {} to {} % to the deflection and {} to {} % to the mass, and takes {} to {} % from the lowest mode",
+        tip[0], tip[1], mass[0], mass[1], mode[0], mode[1]
+    );
+    assert!(said.contains(&sentence), "{sentence}: {said}");
+}
