@@ -10,7 +10,7 @@
 //! and the rest of it is held by the part that carries the motor. Both enter as a [`Linkage`](super::linkage::Linkage).
 //!
 //! *Masses.* Motor (and gear, if it sits there) are a point on the part that carries them. A stage between two axes has half
-//! of its mass on each.
+//! of its mass on each. Of the stages at the motor, the last one has half of its mass on the next axis.
 
 use super::body::{JointBodies, RigidBody};
 use super::element_keys::read_coupling;
@@ -418,8 +418,15 @@ impl Transmission {
         crossed: &[(usize, Vector3<f64>)],
         along: usize,
     ) -> Vec<Hung> {
-        let near_kg: f64 = self.stages[..along].iter().map(|stage| stage.mass_kg).sum();
-        let mut hung = vec![(at, on, point_m, self.motor_kg + near_kg)];
+        // stages at the motor sit there; the last of them reaches the next axis
+        let near = &self.stages[..along];
+        let near_kg: f64 = near.iter().map(|stage| stage.mass_kg).sum();
+        let half_kg = near.last().map_or(0.0, |stage| stage.mass_kg / 2.0);
+        let next = crossed.first().map_or(joint, |(element, _)| *element);
+        let mut hung = vec![
+            (at, on, point_m, self.motor_kg + near_kg - half_kg),
+            (next, HungOn::Start, Vector3::zeros(), half_kg),
+        ];
         for (k, stage) in self.stages[along..].iter().enumerate() {
             let end = crossed.get(k + 1).map_or(joint, |(element, _)| *element);
             hung.push((crossed[k].0, HungOn::Moving, Vector3::zeros(), stage.mass_kg / 2.0));

@@ -156,6 +156,29 @@ pub struct Pick {
     pub design: Design,
 }
 
+/// The check of a drive that is nearest to its limit in a design.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct TightestCheck {
+    /// Name of the joint.
+    pub joint: String,
+    /// The check in words, such as `gear mean`.
+    pub check: String,
+    /// Allowed value divided by needed value, as a factor on torque.
+    pub margin: f64,
+}
+
+/// The tightest check of the design in a row of a front, by the columns `<joint>_margin` and `<joint>_binds`; `None` if no
+/// drive was checked.
+pub(crate) fn tightest_check(front: &FrontTable, row: usize) -> Option<TightestCheck> {
+    let cells = &front.rows[row];
+    let of_column = |(column, name): (usize, &String)| {
+        let joint = name.strip_suffix("_binds")?;
+        let margin: f64 = cells[front.column(&format!("{joint}_margin"))?].parse().ok()?;
+        Some(TightestCheck { joint: joint.to_string(), check: cells[column].clone(), margin })
+    };
+    front.columns.iter().enumerate().filter_map(of_column).min_by(|a, b| a.margin.total_cmp(&b.margin))
+}
+
 /// For each pick, its row in the table and its names in one text.
 pub(crate) fn rows_and_names(picks: &[Pick]) -> Vec<(usize, String)> {
     picks.iter().map(|pick| (pick.design.row, pick.names.join(", "))).collect()

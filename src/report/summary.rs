@@ -5,9 +5,10 @@ use super::certificate::gap_words;
 use super::compare::text::short_labels;
 use super::facts::SummaryFacts;
 use super::front_table::FrontTable;
-use super::number::{cost_words, grouped, large, percent_of, significant};
+use super::number::{cost_words, fixed, grouped, large, percent_of, significant};
 use super::picks::{
-    Design, Objective, Pick, best, designs, knee, marked_choices, materials, picks, rows_and_names,
+    Design, Objective, Pick, TightestCheck, best, designs, knee, marked_choices, materials, picks,
+    rows_and_names, tightest_check,
 };
 use super::resonance::warnings;
 use super::table::{Column, Table};
@@ -61,6 +62,10 @@ pub fn summary_md(input: &SummaryInput) -> String {
                 pick.design.design_id,
                 ties(pick, &found.designs)
             ));
+        }
+        let tightest = tightest_words(&input.overall, &found.picks);
+        if !tightest.is_empty() {
+            out.push_str(&format!("\n{tightest}\n"));
         }
         out.push_str(KNEE);
         let names: Vec<String> = input.materials.iter().map(|m| m.name.clone()).collect();
@@ -116,6 +121,10 @@ pub fn terminal_summary(input: &SummaryInput) -> String {
     if !found.picks.is_empty() {
         out.push_str(&format!("\n{}", small_plots(&found.designs)));
         out.push_str(&format!("\n{}", picks_table(&found.picks, TERMINAL_PICKS).to_text()));
+        let tightest = tightest_words(&input.overall, &found.picks);
+        if !tightest.is_empty() {
+            out.push_str(&wrap(&tightest, TERMINAL, ""));
+        }
         out.push_str(&facts.caveats.sentence(&input.overall, &rows_and_names(&found.picks)));
         let names: Vec<String> = input.materials.iter().map(|m| m.name.clone()).collect();
         if !names.is_empty() {
@@ -309,6 +318,23 @@ fn picks_table(picks: &[Pick], headers: [&str; 6]) -> Table {
         table.row(cells);
     }
     table
+}
+
+/// The check of a drive that is nearest to its limit in each pick, in a sentence; empty if the study sizes no drive. It shows
+/// where the parts on offer, rather than the tubes, decide how good a design can be.
+fn tightest_words(front: &FrontTable, picks: &[Pick]) -> String {
+    let words: Vec<String> = picks
+        .iter()
+        .filter_map(|pick| {
+            let tightest = tightest_check(front, pick.design.row)?;
+            let TightestCheck { joint, check, margin } = &tightest;
+            Some(format!("{}: {joint} {check} {}", pick.names.join(", "), fixed(*margin, 3)))
+        })
+        .collect();
+    match words.is_empty() {
+        true => String::new(),
+        false => format!("Tightest check of the drives (allowed over needed): {}.", words.join("; ")),
+    }
 }
 
 const MARKDOWN_MATERIALS: [&str; 7] = [

@@ -250,8 +250,8 @@ fn a_belt_before_the_gear_counts_in_every_figure_of_the_drive() {
             drive.motor.rotor_inertia_kgm2.expect("known"),
         )
     };
-    let ((ratio, efficiency, inertia, speed), gear_kgm2, rotor_kgm2) = drive(&with, "CSG-20-100", "ILM50x14");
-    let ((bare_ratio, bare_efficiency, _, bare_speed), ..) = drive(&without, "CSG-20-100", "ILM50x14");
+    let ((ratio, efficiency, inertia, speed), gear_kgm2, rotor_kgm2) = drive(&with, "CSG-20-100", "ILM70x18");
+    let ((bare_ratio, bare_efficiency, _, bare_speed), ..) = drive(&without, "CSG-20-100", "ILM70x18");
     assert_eq!((ratio, bare_ratio), (200.0, 100.0));
     assert!((efficiency - 0.95 * bare_efficiency).abs() < 1e-15);
     assert!((inertia - (rotor_kgm2 + 2e-5 + gear_kgm2 / 4.0)).abs() < 1e-18);
