@@ -124,7 +124,7 @@ fn a_study_with_a_rail_runs_designs_and_analyses() {
 }
 
 #[test]
-fn a_study_says_that_a_rail_is_not_sized() {
+fn a_study_says_how_a_rail_is_sized() {
     let folder = folder();
     let study = json!({"name": "rail", "chain": [
         {"type": "prismatic", "name": "rail", "axis": [0, 1, 0], "stiffness_n_per_m": 1e7, "drive": "all_fits", "range_mm": [0, 100]},
@@ -133,7 +133,11 @@ fn a_study_says_that_a_rail_is_not_sized() {
     fs::write(folder.path().join("study.json"), study.to_string()).expect("written");
     let output = run(folder.path(), &["size", "study.json"]);
     assert_eq!(output.status.code(), Some(3));
-    for says in ["whose drive is not sized", "write \"pose\": {\"rail_mm\": 0} instead"] {
+    for says in [
+        "write first_fit: the lightest pair of a screw or rack",
+        "stiffness_n_per_m: stands beside \"drive\"",
+        "write \"pose\": {\"rail_mm\": 0} instead",
+    ] {
         assert!(errors(&output).contains(says), "{says}: {}", errors(&output));
     }
 }
