@@ -139,54 +139,75 @@ impl<'c> Problem<'c> {
             force_bounds: Arc::default(),
         };
         for (place, layer) in space.layers() {
-            let part = match layer {
-                Layer::Piece(SpacePiece::Joint(_)) => {
-                    problem.joint(joints.slots[place].take()?, joints.needs[place].tilts, ties)?
-                }
-                Layer::Piece(SpacePiece::Prismatic(slide)) => {
-                    Part::Given { mass_kg: 0.0, curve: CurveBox::of(&space.slide_law(slide)) }
-                }
-                Layer::Piece(piece) => {
-                    let leaves = |option| (joints.lever_m(place, option), joints.room(place, option));
-                    problem.link(piece, takes, leaves)?
-                }
-                Layer::Tilt(tilt) => Part::Given { mass_kg: 0.0, curve: CurveBox::of(&tilt.law()) },
-                Layer::Guide(spring) => Part::Given { mass_kg: 0.0, curve: CurveBox::of(&spring.law()) },
-                // A given mass that belongs to no part loads the arm, but is not counted in the mass of a design.
-                Layer::Mass(_) | Layer::Travelling(_) | Layer::Springs(_) => Part::Offset { mass_kg: 0.0 },
-                Layer::Extra(mass_kg) => Part::Offset { mass_kg },
-                Layer::Bodies(carried) => Part::Offset { mass_kg: carried.mass_kg() },
-                // A motor elsewhere is beyond this search.
-                Layer::Motor(_) => return None,
-                // The tilts of a gear's bearing are coordinates of its joint.
-                Layer::Bearing(_) => continue,
-            };
-            let is_joint = matches!(layer, Layer::Piece(SpacePiece::Joint(_)));
-            let lever = joints.levers[place].as_ref().filter(|_| is_joint);
-            problem.levers.push(lever.map(|lever| problem.lever(lever)));
-            let room = joints.rooms[place].as_ref().filter(|_| is_joint);
-            problem.rooms.push(room.map(|room| problem.room_at(room)));
-            problem.parts.push(part);
-            // Play (lost motion and friction) belongs to the joint and is the same for every drive.
-            problem.joint_plays.push(match layer {
-                Layer::Piece(SpacePiece::Joint(joint)) => {
-                    JointPlay::of(&space.joint_piece(joint, Curve::Linear(1.0), None).law)
-                }
-                _ => None,
-            });
+            // The tilts of a gear's bearing are coordinates of its joint.
+            if let Layer::Bearing(_) = layer {
+                continue;
+            }
+            let part = problem.part((place, layer), &mut joints, takes, ties)?;
+            match layer {
+                Layer::Piece(SpacePiece::Joint(joint)) => problem.push_joint(part, joint, &joints, place),
+                _ => problem.push(part),
+            }
             // A harness moves and weighs with its link, so the inertia of the link includes it. The mass of a design
             // does not include it, so a negative offset subtracts it from the sum of masses.
             if let Layer::Piece(piece) = layer
                 && let Some(harness_kg) = harness_kg(space, piece)
             {
-                problem.parts.push(Part::Offset { mass_kg: -harness_kg });
-                problem.joint_plays.push(None);
-                problem.levers.push(None);
-                problem.rooms.push(None);
+                problem.push(Part::Offset { mass_kg: -harness_kg });
             }
         }
         problem.lighter_is_better = problem.grows_with_weight();
         Some(problem.with_inertias())
+    }
+
+    /// Compiles one layer of the chain, which belongs to the piece at `place`. The drives of a joint are taken out of
+    /// `joints`. `takes` and `ties` are those of [`new`](Self::new). `None` if a choice has no option, or if the layer
+    /// has no part in this search.
+    fn part(
+        &mut self,
+        (place, layer): (usize, Layer<'c>),
+        joints: &mut Joints<'c>,
+        takes: &dyn Fn(&LinkOption) -> bool,
+        ties: Ties,
+    ) -> Option<Part<'c>> {
+        Some(match layer {
+            Layer::Piece(SpacePiece::Joint(_)) => {
+                self.joint(joints.slots[place].take()?, joints.needs[place].tilts, ties)?
+            }
+            Layer::Piece(SpacePiece::Prismatic(slide)) => {
+                Part::Given { mass_kg: 0.0, curve: CurveBox::of(&self.space.slide_law(slide)) }
+            }
+            Layer::Piece(piece) => {
+                let leaves = |option| (joints.lever_m(place, option), joints.room(place, option));
+                self.link(piece, takes, leaves)?
+            }
+            Layer::Tilt(tilt) => Part::Given { mass_kg: 0.0, curve: CurveBox::of(&tilt.law()) },
+            Layer::Guide(spring) => Part::Given { mass_kg: 0.0, curve: CurveBox::of(&spring.law()) },
+            // A given mass that belongs to no part loads the arm, but is not counted in the mass of a design.
+            Layer::Mass(_) | Layer::Travelling(_) | Layer::Springs(_) => Part::Offset { mass_kg: 0.0 },
+            Layer::Extra(mass_kg) => Part::Offset { mass_kg },
+            Layer::Bodies(bodies) => Part::Offset { mass_kg: bodies.mass_kg() },
+            // A motor elsewhere is beyond this search, and the tilts of a gear's bearing belong to its joint.
+            Layer::Motor(_) | Layer::Bearing(_) => return None,
+        })
+    }
+
+    /// Adds the compiled part of the joint at `place`, with its play and with what its bearing and its drive need to
+    /// know about the link outboard.
+    fn push_joint(&mut self, part: Part<'c>, joint: &SpaceJoint, joints: &Joints<'c>, place: usize) {
+        self.levers.push(joints.levers[place].as_ref().map(|lever| self.lever(lever)));
+        self.rooms.push(joints.rooms[place].as_ref().map(|room| self.room_at(room)));
+        self.parts.push(part);
+        // Play (lost motion and friction) belongs to the joint and is the same for every drive.
+        self.joint_plays.push(JointPlay::of(&self.space.joint_piece(joint, Curve::Linear(1.0), None).law));
+    }
+
+    /// Adds a compiled part that is not a joint, and so has no play, no lever and no drive that must fit.
+    fn push(&mut self, part: Part<'c>) {
+        self.levers.push(None);
+        self.rooms.push(None);
+        self.parts.push(part);
+        self.joint_plays.push(None);
     }
 
     /// Compiles the joint in `slot`. `tilts` tells whether its bearing tilts with some drive. `ties` tells whether

@@ -101,14 +101,9 @@ impl Pose {
             self.bearings.push(bearing);
             match posed {
                 PosedPiece::Joint { twist, at_m, across } => {
-                    for (at, tilt) in across.iter().flatten().enumerate() {
-                        self.rows.push(outboard.row(piece, TILT + at, tilt, 0.0, tip_m));
-                    }
-                    self.rows.push(outboard.row(piece, TORSION, twist, 0.0, tip_m));
+                    self.rows.extend(outboard.joint_rows(piece, twist, across.as_ref(), tip_m));
                     self.inertia_about.push(Some(outboard.inertia_row(twist)));
-                    let mut forms = [Matrix6::zeros(); INERTIAS];
-                    forms[inertia::MASS] = body_inertia(1.0, at_m, &Matrix3::zeros());
-                    outboard.push(weight_wrench(1.0, &space.down, at_m), forms);
+                    outboard.add_drive(at_m, space);
                 }
                 PosedPiece::Body(body) => {
                     self.inertia_about.push(None);
@@ -118,36 +113,25 @@ impl Pose {
                 }
                 PosedPiece::Tube(tube) => {
                     self.inertia_about.push(None);
-                    let end_m = tube.root_m + tube.frame * Vector3::x() * tube.length_m;
                     // The search checks the stress only where the section is a choice.
                     if tube.chosen {
-                        self.stress.push(outboard.stress(piece, tube, &end_m));
+                        self.stress.push(outboard.stress(piece, tube, &tube.point_m(tube.length_m)));
                     }
-                    let areas = areas_per_n(tube, &space.down);
-                    let bodies = tube.bodies.as_ref().map_or([0.0; 8], |bodies| bodies.end_forces);
-                    for (end, coordinate) in ENDS.into_iter().enumerate() {
-                        // The weight of a tube strains the tube itself too, although it is not outboard of the tube.
-                        let own = areas[end];
-                        let mut row = outboard.row(piece, coordinate, &tube.ends[end], own, tip_m);
-                        row.fixed += bodies[end] + tube.pulls.end_forces[end];
-                        self.rows.push(row);
-                    }
-                    let middle_m = tube.root_m + tube.frame * Vector3::x() * (tube.length_m / 2.0);
-                    outboard.push(weight_wrench(1.0, &space.down, &middle_m), tube.rigid_forms());
-                    outboard.fixed += tube.pulls.wrench;
-                    if let Some(bodies) = &tube.bodies {
-                        outboard.fixed += bodies.weight;
-                        outboard.fixed_inertia += bodies.rigid;
-                    }
+                    self.rows.extend(outboard.tube_rows(piece, tube, &space.down, tip_m));
+                    outboard.add_tube(tube, space);
                     if tube.chosen {
                         self.stress.push(outboard.stress(piece, tube, &tube.root_m));
                     }
                 }
             }
         }
+        self.leave_out_unstrained();
+    }
+
+    /// Removes the rows of coordinates that no load strains, such as those across the vertical plane of a planar arm.
+    /// Torsions of joints stay, because the demand on joints is needed in any case.
+    fn leave_out_unstrained(&mut self) {
         let scale = self.rows.iter().map(Row::largest).fold(0.0, f64::max);
-        // Coordinates that no load strains are left out, such as those across the vertical plane of a planar arm.
-        // Torsions of joints stay, because the demand on joints is needed in any case.
         let is_torsion: Vec<bool> = self.rows.iter().map(|row| self.is_torsion(row)).collect();
         let mut is_torsion = is_torsion.into_iter();
         self.rows.retain(|row| is_torsion.next() == Some(true) || row.largest() > 1e-13 * scale);
@@ -348,6 +332,11 @@ impl TubeForms {
 }
 
 impl PosedTube {
+    /// The point of the tube's axis at the distance `from_root_m` from its root.
+    fn point_m(&self, from_root_m: f64) -> Vector3<f64> {
+        self.root_m + self.frame * Vector3::x() * from_root_m
+    }
+
     /// Inertia matrices of the tube as a rigid body, about the world's origin, each per unit of one line inertia
     /// (inertia per metre).
     fn rigid_forms(&self) -> [Matrix6<f64>; INERTIAS] {
@@ -435,9 +424,60 @@ impl Outboard {
         self.push(Wrench::zeros(), [Matrix6::zeros(); INERTIAS]);
     }
 
+    /// Adds the weight and the inertia of the drive of a joint at the point `at_m`: a point mass.
+    fn add_drive(&mut self, at_m: &Vector3<f64>, space: &DesignSpace) {
+        let mut forms = [Matrix6::zeros(); INERTIAS];
+        forms[inertia::MASS] = body_inertia(1.0, at_m, &Matrix3::zeros());
+        self.push(weight_wrench(1.0, &space.down, at_m), forms);
+    }
+
+    /// Adds the weight and the inertia of a tube, of the bodies on it, and the loads of springs on it.
+    fn add_tube(&mut self, tube: &PosedTube, space: &DesignSpace) {
+        let middle_m = tube.point_m(tube.length_m / 2.0);
+        self.push(weight_wrench(1.0, &space.down, &middle_m), tube.rigid_forms());
+        self.fixed += tube.pulls.wrench;
+        if let Some(bodies) = &tube.bodies {
+            self.fixed += bodies.weight;
+            self.fixed_inertia += bodies.rigid;
+        }
+    }
+
     fn push(&mut self, per_n: Wrench, inertia: [Matrix6<f64>; INERTIAS]) {
         self.per_n.push(per_n);
         self.inertia.push(inertia);
+    }
+
+    /// The rows of the joint `piece`: of the tilts of its bearing about the axes `across`, if it tilts, then of its
+    /// torsion. `twist` is the motion of everything outboard per radian of torsion.
+    fn joint_rows(
+        &self,
+        piece: usize,
+        twist: &Twist,
+        across: Option<&[Twist; 2]>,
+        tip_m: &Vector3<f64>,
+    ) -> impl Iterator<Item = Row> {
+        let tilts = across.into_iter().flatten().enumerate();
+        let tilts = tilts.map(move |(at, tilt)| self.row(piece, TILT + at, tilt, 0.0, tip_m));
+        tilts.chain(std::iter::once(self.row(piece, TORSION, twist, 0.0, tip_m)))
+    }
+
+    /// The rows of the tube `piece`: one for each of the eight coordinates that move its end ([`ENDS`]).
+    fn tube_rows(
+        &self,
+        piece: usize,
+        tube: &PosedTube,
+        down: &Vector3<f64>,
+        tip_m: &Vector3<f64>,
+    ) -> impl Iterator<Item = Row> {
+        let areas = areas_per_n(tube, down);
+        let bodies = tube.bodies.as_ref().map_or([0.0; 8], |bodies| bodies.end_forces);
+        ENDS.into_iter().enumerate().map(move |(end, coordinate)| {
+            // The weight of a tube strains the tube itself too, although it is not outboard of the tube.
+            let own = areas[end];
+            let mut row = self.row(piece, coordinate, &tube.ends[end], own, tip_m);
+            row.fixed += bodies[end] + tube.pulls.end_forces[end];
+            row
+        })
     }
 
     /// The row of a strain coordinate: the force on it and the tip's displacement by it. A unit of the coordinate moves

@@ -1,7 +1,7 @@
 //! Eight partial arms, whose numbers stand next to each other in memory, while slots (places of a part) are added from
 //! the row level to the base.
 
-use super::row::hinge_numbers;
+use super::row_case::hinge_numbers;
 use crate::mechanics::lanes::{Eight, LANES};
 use crate::pareto::objectives::Objectives;
 use crate::space::problem::ArmProblem;

@@ -17,6 +17,8 @@ pub mod resume;
 pub(crate) mod row;
 pub(crate) mod row_bearing;
 pub(crate) mod row_begun;
+pub(crate) mod row_case;
+pub(crate) mod row_chunk;
 pub(crate) mod row_drives;
 pub(crate) mod row_lanes;
 pub(crate) mod row_modes;

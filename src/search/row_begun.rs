@@ -1,8 +1,9 @@
 //! The numbers of a row that depend on the arm outboard of it. They are computed once for all designs of the row.
 
 use super::arms::EightArms;
-use super::row::{AtJoint, AtJoints, Row, hinge_numbers};
+use super::row::Row;
 use super::row_bearing::BearingsBegun;
+use super::row_case::{AtJoint, AtJoints, hinge_numbers};
 use crate::mechanics::lowest_lanes::Outboard;
 use crate::sizing::bearing::BearingDemand;
 use crate::sizing::fit::LinkRoom;
@@ -44,7 +45,7 @@ pub(crate) struct CaseBegun {
     pub at: AtJoints,
     /// The entries of the inertia matrix of everything outboard that count in Dunkerley's sum (the sum of `1/λ` over
     /// the eigenvalues). Entries off the diagonal are doubled. The order is that of
-    /// [`RowCase::spread_entries`](super::row::RowCase::spread_entries).
+    /// [`RowCase::spread_entries`](super::row_case::RowCase::spread_entries).
     pub spread: Vec<f64>,
     /// Loads at the end of the row's link from everything outboard: axial force \[N\], torsion and both bending moments
     /// \[N m\].

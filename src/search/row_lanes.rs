@@ -11,8 +11,10 @@
 #![allow(clippy::needless_range_loop)]
 
 use super::arms::EightArms;
-use super::row::{AtJoint, Chunk, Hinge, Row, RowChunk, StressEight, Twisting};
+use super::row::{Row, RowChunk, Twisting};
 use super::row_begun::{Begun, RowScratch};
+use super::row_case::{AtJoint, Hinge};
+use super::row_chunk::{Chunk, StressEight};
 use super::row_drives::DriveAttributes;
 use super::row_modes::Question;
 use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, splat_all};

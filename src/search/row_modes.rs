@@ -15,8 +15,10 @@
 //! its reciprocal is a lower bound of the lowest eigenvalue.
 
 use super::arms::EightArms;
-use super::row::{ChunkModal, RowCase, RowChunk};
+use super::row::RowChunk;
 use super::row_begun::{Begun, CaseOutboard};
+use super::row_case::RowCase;
+use super::row_chunk::ChunkModal;
 use crate::mechanics::lanes::{Eight, LANES, Lanes};
 use crate::mechanics::lowest_lanes::{Inner, LaneLink, Outboard, Walk, pass, roots};
 use crate::space::levels::Keep;

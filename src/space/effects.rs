@@ -205,56 +205,77 @@ impl DesignSpace {
     pub(crate) fn layers(&self) -> Vec<(usize, Layer<'_>)> {
         let mut out = Vec::with_capacity(self.pieces.len());
         for (index, piece) in self.pieces.iter().enumerate().rev() {
-            let joint = match piece {
-                SpacePiece::Joint(joint) => joint,
-                SpacePiece::Prismatic(slide) => {
-                    self.add_prismatic(index, piece, slide, &mut out);
-                    continue;
-                }
+            match piece {
+                SpacePiece::Joint(joint) => self.add_joint(index, piece, joint, &mut out),
+                SpacePiece::Prismatic(slide) => self.add_prismatic(index, piece, slide, &mut out),
                 SpacePiece::Link(link) => {
-                    out.push((index, Layer::Piece(piece)));
                     let is_tube = matches!(link.body, LinkBody::Tube { .. });
                     let by = if is_tube { Carrier::Tube } else { Carrier::Frame };
-                    out.extend(carried(&link.bodies, by).map(|bodies| (index, bodies)));
-                    out.extend(self.pulled(index, Side::Moving(index)));
-                    out.extend(self.motors_on(index, true));
-                    out.extend(self.motors_on(index, false));
-                    out.extend(self.root_springs(link).map(|tilt| (index, tilt)));
-                    continue;
+                    self.add_link(index, piece, link, carried(&link.bodies, by), &mut out);
                 }
                 SpacePiece::Choice(choice) => {
-                    out.push((index, Layer::Piece(piece)));
-                    out.extend(carried(&choice.bodies, Carrier::Tube).map(|bodies| (index, bodies)));
-                    out.extend(self.pulled(index, Side::Moving(index)));
-                    out.extend(self.motors_on(index, true));
-                    out.extend(self.motors_on(index, false));
-                    out.extend(self.root_springs(&choice.first_link()).map(|tilt| (index, tilt)));
-                    continue;
+                    let bodies = carried(&choice.bodies, Carrier::Tube);
+                    self.add_link(index, piece, &choice.first_link(), bodies, &mut out);
                 }
-            };
-            out.extend(carried(&joint.bodies.rotating, Carrier::RotatedFrame).map(|bodies| (index, bodies)));
-            out.extend(self.pulled(index, Side::Moving(index)));
-            out.extend(self.motors_on(index, true));
-            let bearing = joint.bearing.stated();
-            let affected = self.joint_piece(joint, Curve::Rigid, bearing);
-            if joint.bearing_is_open() {
-                out.push((index, Layer::Piece(piece)));
-                out.extend([0, 1].map(|which| (index, Layer::Bearing(BearingSpring { joint, which }))));
-            } else {
-                let across = [About::Across(joint, 0), About::Across(joint, 1)];
-                out.extend(tilts(across, affected.tilt_rad_per_nm).map(|tilt| (index, tilt)));
-                out.push((index, Layer::Piece(piece)));
             }
-            if let Some(mass_kg) = bearing.map(|b| b.mass_kg).filter(|mass_kg| *mass_kg > 0.0) {
-                out.push((index, Layer::Extra(mass_kg)));
-            }
-            if affected.mass_kg != 0.0 {
-                out.push((index, Layer::Mass(affected.mass_kg)));
-            }
-            out.extend(carried(&joint.bodies.fixed, Carrier::Frame).map(|bodies| (index, bodies)));
-            out.extend(self.pulled(index, Side::Fixed(index)));
-            out.extend(self.motors_on(index, false));
         }
+        self.add_base(&mut out);
+        out
+    }
+
+    /// Adds the layers of a link or of a choice of links, tip first: the link, its bodies, the springs that pull on it,
+    /// the motors on it and the springs at its root. `link` is the link or the first option.
+    fn add_link<'s>(
+        &'s self,
+        index: usize,
+        piece: &'s SpacePiece,
+        link: &Link,
+        bodies: Option<Layer<'s>>,
+        out: &mut Vec<(usize, Layer<'s>)>,
+    ) {
+        out.push((index, Layer::Piece(piece)));
+        out.extend(bodies.map(|bodies| (index, bodies)));
+        out.extend(self.pulled(index, Side::Moving(index)));
+        out.extend(self.motors_on(index, true));
+        out.extend(self.motors_on(index, false));
+        out.extend(self.root_springs(link).map(|tilt| (index, tilt)));
+    }
+
+    /// Adds the layers of a joint, tip first: what turns with it, its drive and its bearing, and what does not turn.
+    fn add_joint<'s>(
+        &'s self,
+        index: usize,
+        piece: &'s SpacePiece,
+        joint: &'s SpaceJoint,
+        out: &mut Vec<(usize, Layer<'s>)>,
+    ) {
+        out.extend(carried(&joint.bodies.rotating, Carrier::RotatedFrame).map(|bodies| (index, bodies)));
+        out.extend(self.pulled(index, Side::Moving(index)));
+        out.extend(self.motors_on(index, true));
+        let bearing = joint.bearing.stated();
+        let affected = self.joint_piece(joint, Curve::Rigid, bearing);
+        if joint.bearing_is_open() {
+            out.push((index, Layer::Piece(piece)));
+            out.extend([0, 1].map(|which| (index, Layer::Bearing(BearingSpring { joint, which }))));
+        } else {
+            let across = [About::Across(joint, 0), About::Across(joint, 1)];
+            out.extend(tilts(across, affected.tilt_rad_per_nm).map(|tilt| (index, tilt)));
+            out.push((index, Layer::Piece(piece)));
+        }
+        if let Some(mass_kg) = bearing.map(|b| b.mass_kg).filter(|mass_kg| *mass_kg > 0.0) {
+            out.push((index, Layer::Extra(mass_kg)));
+        }
+        if affected.mass_kg != 0.0 {
+            out.push((index, Layer::Mass(affected.mass_kg)));
+        }
+        out.extend(carried(&joint.bodies.fixed, Carrier::Frame).map(|bodies| (index, bodies)));
+        out.extend(self.pulled(index, Side::Fixed(index)));
+        out.extend(self.motors_on(index, false));
+    }
+
+    /// Adds the layers of the base: the springs that balance the arm, those of a compliant frame, and the tilts of a
+    /// base that lifts off or is compliant.
+    fn add_base<'s>(&'s self, out: &mut Vec<(usize, Layer<'s>)>) {
         out.extend(self.pulled(0, Side::Base));
         let base = self.surroundings();
         let fixed = base.base_frame.springs().into_iter();
@@ -265,7 +286,6 @@ impl DesignSpace {
             level.map(|about| (0, Layer::Tilt(Tilt { about, law })))
         }));
         out.extend(tilts(level, base.base_tilt_rad_per_nm).map(|tilt| (0, tilt)));
-        out
     }
 
     /// Adds the layers of a prismatic joint, tip first: the bodies that travel, the drive and the guide, and the

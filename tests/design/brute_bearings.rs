@@ -3,7 +3,8 @@
 use crate::brute::catalog::Catalog;
 use crate::brute::design::search;
 use crate::brute::study::Study;
-use crate::brute_force::{ALUMINIUM, STEEL, assert_same, boxes, six_axes};
+use crate::brute_force::assert_same;
+use crate::brute_studies::{ALUMINIUM, STEEL, boxes, six_axes};
 use serde_json::{Value, json};
 
 /// A reach and a payload that ask more of bearings than of teeth: at the waist, whose gear is a choice, and at the wrist.

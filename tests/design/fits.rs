@@ -4,7 +4,8 @@
 use crate::brute::catalog::Catalog;
 use crate::brute::design::chains;
 use crate::brute::study::Study as BruteStudy;
-use crate::brute_force::{ALUMINIUM, STEEL, assert_same, boxes, six_axes};
+use crate::brute_force::assert_same;
+use crate::brute_studies::{ALUMINIUM, STEEL, boxes, six_axes};
 use crate::dice::Dice;
 use crate::exact_front::random_study;
 use crate::exact_support::{both_searches, read};

@@ -7,6 +7,7 @@ mod bodies;
 mod brute;
 mod brute_bearings;
 mod brute_force;
+mod brute_studies;
 mod budget;
 mod closed_forms;
 mod dice;

@@ -362,39 +362,22 @@ impl StaticPose {
         changes: &StaticChanges,
         state: &mut StaticState,
     ) {
-        let geometry = &self.geometry;
         if changes.linear {
-            let warming = &coefficients.warming;
-            state.softness.clear();
-            if warming.is_none() {
-                state.compliance = geometry.compliance(coefficients, |_| true);
-            } else {
-                state.compliance = geometry.compliance(coefficients, |i| !layout.is_of_link(i));
-                state.bending = geometry.compliance(coefficients, |i| layout.is_of_link(i));
-                state.softness.extend(self.loads.iter().map(|load| 1.0 / warming.factor(&load.when)));
-            }
+            self.update_compliance(layout, coefficients, state);
         }
-        let joints = geometry.joints.len();
-        let count = self.loads.len();
+        let joints = self.geometry.joints.len();
         if changes.payload {
-            let wrench = |load: &Load| {
-                geometry.wrench(&load.payload, &load.force_n, layout.gravity_m_s2, coefficients)
-            };
-            state.wrenches.clear();
-            state.wrenches.extend(self.loads.iter().map(wrench));
-            state.loaded_nm.clear();
-            let torques_nm =
-                geometry.joints.iter().flat_map(|m| state.wrenches.iter().map(|w| m.twist.dot(w)));
-            state.loaded_nm.extend(torques_nm);
+            self.update_loads(layout, coefficients, state);
         }
         if changes.weights {
-            geometry.add_up_dead_torques(coefficients, layout, Channel::Static, &mut state.moved_dead_nm);
+            let moved_dead_nm = &mut state.moved_dead_nm;
+            self.geometry.add_up_dead_torques(coefficients, layout, Channel::Static, moved_dead_nm);
             state.dead_nm.resize(joints, f64::NAN);
         }
         if changes.lift || changes.weights || changes.payload {
             self.lift(layout, coefficients, state);
         }
-        state.twists_rad.resize(joints * count, 0.0);
+        state.twists_rad.resize(joints * self.loads.len(), 0.0);
         for j in 0..joints {
             // a weight changes the torque only on joints inboard of it
             let is_loaded_otherwise = changes.weights && state.moved_dead_nm[j] != state.dead_nm[j];
@@ -402,20 +385,54 @@ impl StaticPose {
                 state.dead_nm[j] = state.moved_dead_nm[j];
             }
             if is_loaded_otherwise || changes.payload || changes.laws[j] {
-                let own = j * count..(j + 1) * count;
-                let law = |row| coefficients.law_at(j, Channel::Static, geometry.angles_rad[j], row);
-                let (dead_nm, loaded_nm) = (state.dead_nm[j], &state.loaded_nm[own.clone()]);
-                let twists_rad = &mut state.twists_rad[own];
-                match coefficients.tests[Channel::Static as usize].softening_of(j) {
-                    None => follow(&law(0), dead_nm, loaded_nm, twists_rad),
-                    Some(softening) => {
-                        let unchanged = coefficients.law(j, Channel::Static).at_angle(geometry.angles_rad[j]);
-                        let rows = self.loads.iter().map(|load| load.when.row);
-                        let laws =
-                            rows.map(|row| (unchanged.softer(softening.reference_factor(row)), law(row)));
-                        follow_changing(laws, dead_nm, loaded_nm, twists_rad);
-                    }
-                }
+                self.update_twists(j, coefficients, state);
+            }
+        }
+    }
+
+    /// Computes how the linear compliances together move the tip, and stores it in `state`. If the moduli of the links
+    /// change between loads, the compliance of the links is stored apart from that of the rest.
+    fn update_compliance(&self, layout: &Layout, coefficients: &Coefficients, state: &mut StaticState) {
+        let geometry = &self.geometry;
+        let warming = &coefficients.warming;
+        state.softness.clear();
+        if warming.is_none() {
+            state.compliance = geometry.compliance(coefficients, |_| true);
+        } else {
+            state.compliance = geometry.compliance(coefficients, |i| !layout.is_of_link(i));
+            state.bending = geometry.compliance(coefficients, |i| layout.is_of_link(i));
+            state.softness.extend(self.loads.iter().map(|load| 1.0 / warming.factor(&load.when)));
+        }
+    }
+
+    /// Computes the wrench of each load and its torque on each joint, and stores them in `state`.
+    fn update_loads(&self, layout: &Layout, coefficients: &Coefficients, state: &mut StaticState) {
+        let geometry = &self.geometry;
+        let wrench =
+            |load: &Load| geometry.wrench(&load.payload, &load.force_n, layout.gravity_m_s2, coefficients);
+        state.wrenches.clear();
+        state.wrenches.extend(self.loads.iter().map(wrench));
+        state.loaded_nm.clear();
+        let torques_nm = geometry.joints.iter().flat_map(|m| state.wrenches.iter().map(|w| m.twist.dot(w)));
+        state.loaded_nm.extend(torques_nm);
+    }
+
+    /// Computes the twists (torsion angles) of joint `j` under the loads from the torques in `state`, and stores them
+    /// there.
+    fn update_twists(&self, j: usize, coefficients: &Coefficients, state: &mut StaticState) {
+        let count = self.loads.len();
+        let angle_rad = self.geometry.angles_rad[j];
+        let own = j * count..(j + 1) * count;
+        let law = |row| coefficients.law_at(j, Channel::Static, angle_rad, row);
+        let (dead_nm, loaded_nm) = (state.dead_nm[j], &state.loaded_nm[own.clone()]);
+        let twists_rad = &mut state.twists_rad[own];
+        match coefficients.tests[Channel::Static as usize].softening_of(j) {
+            None => follow(&law(0), dead_nm, loaded_nm, twists_rad),
+            Some(softening) => {
+                let unchanged = coefficients.law(j, Channel::Static).at_angle(angle_rad);
+                let rows = self.loads.iter().map(|load| load.when.row);
+                let laws = rows.map(|row| (unchanged.softer(softening.reference_factor(row)), law(row)));
+                follow_changing(laws, dead_nm, loaded_nm, twists_rad);
             }
         }
     }
