@@ -16,10 +16,11 @@ use crate::report::certificate::gap_words;
 use crate::report::front_table::FrontTable;
 use crate::report::words::{TERMINAL, wrap};
 use crate::study::check::{Claim, Completeness, resume_check};
+use crate::study::definition::Study;
 use crate::study::read::read_study;
 use crate::study::ties;
 use clap::{Args, Subcommand};
-use serde_json::json;
+use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -61,31 +62,12 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs, log: Log) -> Result<Ans
     let run = &results.run;
     let (file, text) = results.text("study.json")?;
     let study = read_study(Document::parse(&file, &text)?, catalogs)?;
-    if let Some(what) = study.space.beyond_bounds() {
-        return Err(Failure::Usage(format!(
-            "the study \"{}\" has {what}, which the bounds of this check do not cover; `armwright design` and \
-             `armwright analyze --cases` compute a row again",
-            study.name
-        )));
-    }
+    refuse_beyond_bounds(&study)?;
     let front = args.results.join("front.csv");
     let front_csv = results.with_todays_ids("front.csv")?;
     let table = FrontTable::parse(&front, &front_csv).map_err(|e| Failure::File(e.to_string()))?;
-    let mut faults = Vec::new();
-    if run["study_hash"].as_str() != Some(blake3::hash(text.as_bytes()).to_hex().as_str()) {
-        faults.push("study.json is not the study that was run".to_string());
-    }
-    if run["front_size"].as_u64() != Some(table.rows.len() as u64) {
-        faults.push(format!(
-            "front.csv has {} designs, run.json says {}",
-            table.rows.len(),
-            run["front_size"]
-        ));
-    }
-    let gap = match run["status"].as_str() {
-        Some("certified" | "complete") => Some(run["gap"].as_f64().unwrap_or(0.0)),
-        _ => run["gap"].as_f64(),
-    };
+    let mut faults = differences_from_run(run, &text, &table);
+    let gap = claimed_gap(run);
     let ties_listed = run["ties_listed"].as_bool().unwrap_or(true);
     let stop = stopped_by_signal();
     // a file that is not there has none
@@ -111,7 +93,56 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs, log: Log) -> Result<Ans
     }
     settle(&path)?;
     faults.extend(check.faults);
-    let completeness = match &check.completeness {
+    if faults.is_empty() {
+        let rows = check.rows;
+        let completeness = completeness_words(&check.completeness);
+        let words =
+            format!("{rows} designs agree with the model, and none dominates another; {completeness}");
+        let exit = if check.completeness.is_ok() { Exit::Done } else { Exit::Unsettled };
+        return Ok(Answer { text: wrap(&words, TERMINAL, ""), exit });
+    }
+    Err(Failure::Check(format!("{}:\n  {}", args.results.display(), faults.join("\n  "))))
+}
+
+/// Refuses a study that the bounds of the check do not cover.
+fn refuse_beyond_bounds(study: &Study) -> Result<(), Failure> {
+    match study.space.beyond_bounds() {
+        Some(what) => Err(Failure::Usage(format!(
+            "the study \"{}\" has {what}, which the bounds of this check do not cover; `armwright design` and \
+             `armwright analyze --cases` compute a row again",
+            study.name
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// Faults of a folder whose study (`text`) or front (`table`) is not the one that `run.json` (`run`) states.
+fn differences_from_run(run: &Value, text: &str, table: &FrontTable) -> Vec<String> {
+    let mut faults = Vec::new();
+    if run["study_hash"].as_str() != Some(blake3::hash(text.as_bytes()).to_hex().as_str()) {
+        faults.push("study.json is not the study that was run".to_string());
+    }
+    if run["front_size"].as_u64() != Some(table.rows.len() as u64) {
+        faults.push(format!(
+            "front.csv has {} designs, run.json says {}",
+            table.rows.len(),
+            run["front_size"]
+        ));
+    }
+    faults
+}
+
+/// The gap that a run claims for its front, as a fraction: 0 claims that no design is missing, `None` claims nothing.
+fn claimed_gap(run: &Value) -> Option<f64> {
+    match run["status"].as_str() {
+        Some("certified" | "complete") => Some(run["gap"].as_f64().unwrap_or(0.0)),
+        _ => run["gap"].as_f64(),
+    }
+}
+
+/// Words that say whether designs are missing and how it was proved, or why it was not settled.
+fn completeness_words(completeness: &Result<Completeness, String>) -> String {
+    match completeness {
         Ok(Completeness { boxes, gap, by_exact_search }) => {
             let what = if *gap > 0.0 { gap_words(*gap) } else { "no design is missing".into() };
             let how = match by_exact_search {
@@ -121,13 +152,5 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs, log: Log) -> Result<Ans
             format!("{what} ({boxes} boxes, {how})")
         }
         Err(why) => format!("it was not settled whether a design is missing: {why}"),
-    };
-    if faults.is_empty() {
-        let rows = check.rows;
-        let words =
-            format!("{rows} designs agree with the model, and none dominates another; {completeness}");
-        let exit = if check.completeness.is_ok() { Exit::Done } else { Exit::Unsettled };
-        return Ok(Answer { text: wrap(&words, TERMINAL, ""), exit });
     }
-    Err(Failure::Check(format!("{}:\n  {}", args.results.display(), faults.join("\n  "))))
 }

@@ -287,14 +287,7 @@ fn search_exactly(asked: &Asked, with: &With) -> Result<Written, Failure> {
         Status::Infeasible => {
             Err(Failure::Infeasible(why_infeasible(study, catalogs, stop, extent.deadline)))
         }
-        Status::Partial if outcome.front.is_empty() => {
-            let why = format!(
-                "no design was found before the search was stopped ({} boxes); nothing was written, {}",
-                boxes[0],
-                if is_interrupted { "the same command goes on" } else { "allow more time" }
-            );
-            Err(if is_interrupted { Failure::Interrupted(why) } else { Failure::Partial(why) })
-        }
+        Status::Partial if outcome.front.is_empty() => Err(none_found(boxes[0], is_interrupted)),
         _ => {
             let problem = ArmProblem::new(&part.space, catalogs);
             let finished = Finished {
@@ -314,10 +307,7 @@ fn search_exactly(asked: &Asked, with: &With) -> Result<Written, Failure> {
             let finishing = Instant::now();
             let mut written = finished.keep(supplements, stop, keep)?;
             if how.time_limit.is_some() {
-                let more_s = finishing.elapsed().as_secs_f64();
-                written
-                    .terminal
-                    .push_str(&format!("Working out and writing the files took {more_s:.1} s more.\n"));
+                written.terminal.push_str(&finishing_words(finishing.elapsed()));
             }
             if is_interrupted {
                 log.note("stopped; the front so far is written without summary, page and plots, and the same command goes on");
@@ -331,4 +321,19 @@ fn search_exactly(asked: &Asked, with: &With) -> Result<Written, Failure> {
             Ok(written)
         }
     }
+}
+
+/// The failure of an exact search that was stopped, by the user or by its time limit, before it found a design.
+/// `boxes` is the number of boxes that it bounded.
+fn none_found(boxes: u64, is_interrupted: bool) -> Failure {
+    let why = format!(
+        "no design was found before the search was stopped ({boxes} boxes); nothing was written, {}",
+        if is_interrupted { "the same command goes on" } else { "allow more time" }
+    );
+    if is_interrupted { Failure::Interrupted(why) } else { Failure::Partial(why) }
+}
+
+/// Words on the time that a search with a time limit takes after the limit.
+fn finishing_words(finishing: Duration) -> String {
+    format!("Working out and writing the files took {:.1} s more.\n", finishing.as_secs_f64())
 }

@@ -124,6 +124,31 @@ struct Unexplained {
     has_laws: bool,
 }
 
+impl Unexplained {
+    /// The first arm and the others. The placements of the arms are written into `provenance`.
+    fn arms_with(mut self, provenance: &mut Value) -> (Arm, Vec<Arm>) {
+        let places = self.placements.as_object().into_iter().flatten();
+        places.for_each(|(key, value)| provenance[key.as_str()] = value.clone());
+        let first = self.arms.remove(0);
+        (first, self.arms)
+    }
+}
+
+/// Adds the calibrated factors that the other readings showed (`own`) to those of the positions (`provenance`).
+fn add_calibrated(provenance: &mut Value, own: &Value) {
+    if let (Some(all), Some(own)) = (provenance["calibrated"].as_array_mut(), own["calibrated"].as_array()) {
+        all.extend(own.iter().cloned());
+    }
+}
+
+/// The less favourable of two tests for lack of fit: the one that fails, or else the one with the larger chi-squared
+/// per degree of freedom. `None` if there is no test.
+fn worse_fit(loaded: Option<LackOfFit>, placed: Option<LackOfFit>) -> Option<LackOfFit> {
+    let order =
+        |a: &LackOfFit, b: &LackOfFit| a.fails.cmp(&b.fails).then(a.chi2_per_dof.total_cmp(&b.chi2_per_dof));
+    [loaded, placed].into_iter().flatten().max_by(order)
+}
+
 /// Labels of the findings (effect and place), joined by `and`.
 fn labels(findings: &[Finding]) -> String {
     findings.iter().map(Finding::label).collect::<Vec<_>>().join(" and ")
@@ -198,22 +223,9 @@ impl Both<'_> {
         let has_laws = unexplained.as_ref().is_some_and(|written| written.has_laws);
         let (corrected, other_corrected) = match unexplained {
             None => (corrected, placed.other_corrected),
-            Some(Unexplained { mut arms, placements, .. }) => {
-                let places = placements.as_object().into_iter().flatten();
-                places.for_each(|(key, value)| provenance[key.as_str()] = value.clone());
-                let first = arms.remove(0);
-                (first, arms)
-            }
+            Some(written) => written.arms_with(&mut provenance),
         };
-        if let (Some(all), Some(own)) =
-            (provenance["calibrated"].as_array_mut(), loaded.provenance["calibrated"].as_array())
-        {
-            all.extend(own.iter().cloned());
-        }
-        let fits = [loaded.lack_of_fit, placed.lack_of_fit].into_iter().flatten();
-        let worse = |a: &LackOfFit, b: &LackOfFit| {
-            a.fails.cmp(&b.fails).then(a.chi2_per_dof.total_cmp(&b.chi2_per_dof))
-        };
+        add_calibrated(&mut provenance, &loaded.provenance);
         Outcome {
             verdict,
             reasons,
@@ -226,7 +238,7 @@ impl Both<'_> {
                 outliers: [loaded.noise.outliers, placed.noise.outliers].concat(),
                 ..loaded.noise
             },
-            lack_of_fit: fits.max_by(worse),
+            lack_of_fit: worse_fit(loaded.lack_of_fit, placed.lack_of_fit),
             residuals: [loaded.residuals, placed.residuals].concat(),
             corrected,
             other_corrected,

@@ -227,6 +227,22 @@ impl Analysis {
             false => format!("{:?} deg", self.case.pose_deg),
         };
         let mut out = format!("{}, case \"{}\": pose {pose}\n", arm.name, self.case.name);
+        self.mass_and_tip_text(arm, &mut out);
+        if !self.unbent.is_empty() {
+            let _ = writeln!(out, "  ignored, because links are held rigid: {}", self.unbent.join(", "));
+        }
+        self.shares_text(&mut out);
+        self.guides_text(&mut out);
+        self.bearings_text(arm, &mut out);
+        joints_remarks_text(arm, &mut out);
+        springs_text(&self.springs, &mut out);
+        self.modes_text(&mut out);
+        self.response_text(&mut out);
+        out
+    }
+
+    /// Adds the mass of the arm and the displacement of its tip.
+    fn mass_and_tip_text(&self, arm: &Arm, out: &mut String) {
         let _ = writeln!(out, "  arm mass            {:10.3} kg", arm.mass_kg());
         let added_kg = arm.structure_in(&self.case).mass_kg() - arm.mass_kg();
         if added_kg.abs() > 1e-9 {
@@ -247,46 +263,9 @@ impl Analysis {
                 "  The tip {words}.\n  Is every number of the file in its unit (Pa, kg/m3, m, kg, N m/rad)?"
             );
         }
-        if !self.unbent.is_empty() {
-            let _ = writeln!(out, "  ignored, because links are held rigid: {}", self.unbent.join(", "));
-        }
-        self.shares_text(&mut out);
-        self.guides_text(&mut out);
-        self.bearings_text(arm, &mut out);
-        let impossible = arm.impossible_bodies();
-        if !impossible.is_empty() {
-            let _ = writeln!(
-                out,
-                "  no solid has the inertia of a body of {}: one principal moment exceeds the sum of the others",
-                impossible.join(", ")
-            );
-        }
-        let rigid = rigid_bearings(arm);
-        if !rigid.is_empty() {
-            let _ = writeln!(out, "  rigid output bearing without mass: {}", rigid.join(", "));
-        }
-        let unknown = bearings_without_stiffness(arm);
-        if !unknown.is_empty() {
-            let _ = writeln!(
-                out,
-                "  rigid output bearing, because its tilting stiffness is unknown (the tip deflects more than printed): {}",
-                unknown.join(", ")
-            );
-        }
-        let bare = without_extras(arm);
-        if !bare.is_empty() {
-            let _ = writeln!(
-                out,
-                "  nothing weighed beyond gear, motor and bearing (no \"extras\" in the file): {}",
-                bare.join(", ")
-            );
-        }
-        springs_text(&self.springs, &mut out);
-        self.modes_text(&mut out);
-        self.response_text(&mut out);
-        out
     }
 
+    /// Adds a table of the torque or force of each element and of its share in the displacement of the tip.
     fn shares_text(&self, out: &mut String) {
         let total = self.statics.tip_displacement_m;
         let _ = writeln!(out, "  element          torque Nm    moves the tip by mm (x, y, z)      share");
@@ -338,6 +317,39 @@ impl Analysis {
                 r.frequency_hz, a.x, a.y, a.z, p.x, p.y, p.z
             );
         }
+    }
+}
+
+/// Adds what is doubtful or left out at joints: bodies whose inertia no solid has, bearings that count as rigid, and
+/// joints where nothing beyond gear, motor and bearing is weighed.
+fn joints_remarks_text(arm: &Arm, out: &mut String) {
+    let impossible = arm.impossible_bodies();
+    if !impossible.is_empty() {
+        let _ = writeln!(
+            out,
+            "  no solid has the inertia of a body of {}: one principal moment exceeds the sum of the others",
+            impossible.join(", ")
+        );
+    }
+    let rigid = rigid_bearings(arm);
+    if !rigid.is_empty() {
+        let _ = writeln!(out, "  rigid output bearing without mass: {}", rigid.join(", "));
+    }
+    let unknown = bearings_without_stiffness(arm);
+    if !unknown.is_empty() {
+        let _ = writeln!(
+            out,
+            "  rigid output bearing, because its tilting stiffness is unknown (the tip deflects more than printed): {}",
+            unknown.join(", ")
+        );
+    }
+    let unweighed = without_extras(arm);
+    if !unweighed.is_empty() {
+        let _ = writeln!(
+            out,
+            "  nothing weighed beyond gear, motor and bearing (no \"extras\" in the file): {}",
+            unweighed.join(", ")
+        );
     }
 }
 

@@ -78,12 +78,7 @@ pub fn read_study(document: Document, catalogs: &Catalogs) -> Result<Study, Faul
 fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     let root = node.shaped(&STUDY)?;
     let text = |key| root.or(key, String::new(), |n| n.string().map(String::from));
-    let name = root.required("name").and_then(|n| match n.string()? {
-        name if name.chars().any(|c| c.is_ascii_alphanumeric()) => Some(name.to_string()),
-        name => {
-            n.fault(format!("\"{name}\" is no name"), "give letters or digits: results are written under it")
-        }
-    });
+    let name = root.required("name").and_then(|n| read_study_name(&n));
     let (question, _notes) = (text("question"), text("notes"));
     let gravity = read_gravity(&root);
     let gap = root.or("gap_percent", 0.0, read_gap);
@@ -108,13 +103,9 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     let effects = root.or("effects", Vec::new(), read_effects);
     let harness_kg_per_m = root.or("harness_kg_per_m", 0.0, Node::non_negative);
     let Cases { cases, judged, sizing } = cases?;
-    let mut motion = motion?;
+    let motion = motion?;
     let (gravity_m_s2, down) = gravity?;
-    weight_is_needed(&root, gravity_m_s2, &motion)?;
-    // without gravity the paper's reading of Eq 8 is refused, so the value is not used
-    if gravity_m_s2 > 0.0 {
-        motion.gravity_m_s2 = gravity_m_s2;
-    }
+    let motion = under_gravity(&root, gravity_m_s2, motion)?;
     let (mut chain, mut effects, harness_kg_per_m) = (chain?, effects?, harness_kg_per_m?);
     let springs = read_balance(&root, &mut chain);
     effects.extend(harness_effects(&chain, harness_kg_per_m, &effects));
@@ -136,14 +127,44 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     check_effects(&space, &root)?;
     in_range?;
     let Aside { not_checked, mut remarks, .. } = aside;
-    remarks.extend(connections_remark(&space));
-    remarks.extend(harness_remark(&space, harness_kg_per_m));
-    remarks.extend(fit_remarks(&space, catalogs));
-    remarks.extend(omissions(&space));
-    remarks.extend(creep_remarks(&space, catalogs));
-    remarks.extend(impossible_bodies_remark(&space));
-    remarks.extend(balance_remarks(&space));
+    remarks.extend(remarks_on(&space, harness_kg_per_m, catalogs));
     Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks })
+}
+
+/// Reads the name of a study. It has a letter or a digit, because the folder of results is named after it.
+fn read_study_name(node: &Node) -> Option<String> {
+    match node.string()? {
+        name if name.chars().any(|c| c.is_ascii_alphanumeric()) => Some(name.to_string()),
+        name => node
+            .fault(format!("\"{name}\" is no name"), "give letters or digits: results are written under it"),
+    }
+}
+
+/// Remarks for the reader of the result that follow from the whole design space.
+fn remarks_on(space: &DesignSpace, harness_kg_per_m: f64, catalogs: &Catalogs) -> Vec<String> {
+    let mut out = Vec::new();
+    out.extend(connections_remark(space));
+    out.extend(harness_remark(space, harness_kg_per_m));
+    out.extend(fit_remarks(space, catalogs));
+    out.extend(omissions(space));
+    out.extend(creep_remarks(space, catalogs));
+    out.extend(impossible_bodies_remark(space));
+    out.extend(balance_remarks(space));
+    out
+}
+
+/// The required motion `motion` under the gravity of the study.
+fn under_gravity(
+    root: &Object,
+    gravity_m_s2: f64,
+    mut motion: MotionRequirement,
+) -> Option<MotionRequirement> {
+    weight_is_needed(root, gravity_m_s2, &motion)?;
+    // without gravity the paper's reading of Eq 8 is refused, so the value is not used
+    if gravity_m_s2 > 0.0 {
+        motion.gravity_m_s2 = gravity_m_s2;
+    }
+    Some(motion)
 }
 
 /// Checks that a study without gravity asks for nothing that is defined as a multiple of the weight: the paper's
@@ -279,6 +300,7 @@ fn unique_names(node: &Node, pieces: &[SpacePiece]) -> Option<()> {
     }
 }
 
+/// Reads a joint that turns, and its transmission; `None` in place of the transmission if the joint has no key of one.
 fn read_space_joint(node: &Node, open: &Open) -> Option<(SpaceJoint, Option<Transmission>)> {
     let object = node.shaped(&JOINT)?;
     let name = read_name(&object);
@@ -287,60 +309,13 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<(SpaceJoint, Option<Tran
     let brake = object.or("brake", false, Node::boolean);
     let duty = object.or("duty", open.duty.cloned(), |n| read_duty(n).map(Some));
     let fit = read_fit(&object, open.fit);
-    if !object.has("drive") && !object.has("motor") {
-        stray(
-            &object,
-            &["brake", "duty", "fit"],
-            "has no motor beside it",
-            "add \"drive\", or \"gear\" and \"motor\"",
-        );
-    }
-    if object.has("coupled") {
-        let of_driven = ["drive", "motor", "range_deg", "max_speed_rad_s", "brake", "duty"];
-        stray(
-            &object,
-            &of_driven,
-            "stands beside \"coupled\"",
-            "a linkage turns this joint: write it at the joint that drives it",
-        );
-    }
+    refuse_keys_of_other_joints(&object);
     let coupled = object.or("coupled", None, |n| read_coupling(n).map(Some));
     let (turns_with, transmission) = (
         read_turns_with(&object),
         Transmission::read(&object, open.catalogs, motor_side_kg(&object, open.catalogs)),
     );
-    let drive = match object.optional("drive") {
-        Some(drive) => {
-            let given = [
-                "stiffness_nm_per_rad",
-                "windup",
-                "gear",
-                "motor",
-                "gear_mass",
-                "mass_kg",
-                "motor_mass_kg",
-                "gear_at",
-                "gear_ratio",
-            ];
-            stray(
-                &object,
-                &given,
-                "stands beside \"drive\"",
-                "a drive is either searched for or given; keep one",
-            );
-            let own = object.or("drives", open.drives.clone(), |n| read_drives(n, open.catalogs));
-            read_drive_choice(&drive, &own?)
-        }
-        None => {
-            stray(
-                &object,
-                &["drives"],
-                "has no \"drive\" beside it",
-                "add \"drive\": \"first_fit\" or \"all_fits\"",
-            );
-            read_given_drive(&object, open)
-        }
-    };
+    let drive = read_drive(&object, open);
     let (drive, bearing) = (drive?, read_bearing(&object, open.catalogs));
     let bearing = bearing_source(&object, bearing?, &drive, open.catalogs);
     // the mass of a given drive is stated and includes its extras
@@ -374,6 +349,55 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<(SpaceJoint, Option<Tran
         turns_with: turns_with?,
     };
     Some((joint, transmission))
+}
+
+/// Reports the keys of a joint with a motor where a joint has none, and the keys of a driven joint where a linkage
+/// turns the joint.
+fn refuse_keys_of_other_joints(object: &Object) {
+    if !object.has("drive") && !object.has("motor") {
+        stray(
+            object,
+            &["brake", "duty", "fit"],
+            "has no motor beside it",
+            "add \"drive\", or \"gear\" and \"motor\"",
+        );
+    }
+    if object.has("coupled") {
+        let of_driven = ["drive", "motor", "range_deg", "max_speed_rad_s", "brake", "duty"];
+        stray(
+            object,
+            &of_driven,
+            "stands beside \"coupled\"",
+            "a linkage turns this joint: write it at the joint that drives it",
+        );
+    }
+}
+
+/// Reads the drive of a joint: it is searched for if the joint has the key `drive`, otherwise the study gives it.
+fn read_drive(object: &Object, open: &Open) -> Option<DriveChoice> {
+    let Some(drive) = object.optional("drive") else {
+        stray(
+            object,
+            &["drives"],
+            "has no \"drive\" beside it",
+            "add \"drive\": \"first_fit\" or \"all_fits\"",
+        );
+        return read_given_drive(object, open);
+    };
+    let given = [
+        "stiffness_nm_per_rad",
+        "windup",
+        "gear",
+        "motor",
+        "gear_mass",
+        "mass_kg",
+        "motor_mass_kg",
+        "gear_at",
+        "gear_ratio",
+    ];
+    stray(object, &given, "stands beside \"drive\"", "a drive is either searched for or given; keep one");
+    let own = object.or("drives", open.drives.clone(), |n| read_drives(n, open.catalogs));
+    read_drive_choice(&drive, &own?)
 }
 
 /// Reads a prismatic joint, whose guide and masses a study gives, and its drive too unless it is sized.
