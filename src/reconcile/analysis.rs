@@ -4,15 +4,14 @@
 use super::fit::descent::{Effort, Fit, Weights};
 use super::fit::held_out;
 use super::fit::held_out::{HeldOut, rms};
-use super::fit::interval::{deviations, intervals};
+use super::fit::interval::intervals;
 use super::fit::noise::Noise;
 use super::fit::units;
 use super::forward::prepared::Forward;
 use super::model::calibration::Nuisance;
 use super::model::candidates::candidates;
+use super::model::estimate::Finding;
 use super::model::estimate::Interval;
-use super::model::estimate::{Estimate, Finding};
-use super::model::fitted_parameters::fitted_parameters;
 use super::model::parameters::{Candidate, Model};
 use super::model::seen::seen;
 use super::readings::campaign::Campaign;
@@ -30,9 +29,8 @@ use super::verdict::judgement::{does_not_predict, too_many_alternatives};
 use super::verdict::next_test;
 use super::verdict::outcome::{Calibrated, Evidence, Law, Located, Outcome, ReadingResidual, Verdict};
 use super::verdict::too_little::{rows, too_little};
-use super::verdict::{caution, correct, corrected_model, locate};
+use super::verdict::{caution, correct, corrected_model, fitted, locate};
 use crate::arm::Arm;
-use crate::arm::effect::empirical::KIND;
 use serde_json::Value;
 use std::cell::OnceCell;
 
@@ -248,14 +246,14 @@ impl Analysis<'_> {
             (None, _) => Some(&self.best),
         };
         let in_arm = match (&choice, written) {
-            (Some(_), Some(fit)) => self.found_in(fit, &intervals(self.forward, fit, self.weights), &[]),
+            (Some(_), Some(fit)) => fitted::effects(fit, &intervals(self.forward, fit, self.weights), &[]),
             _ => named.to_vec(),
         };
         let unwritten = if choice.is_some() { &self.baseline } else { &self.best };
-        let calibrated = self.calibrated(written.unwrap_or(unwritten));
+        let calibrated = fitted::calibrated(written.unwrap_or(unwritten));
         let (corrected, provenance) =
             correct::corrected(self.campaign, self.forward, written, &in_arm, &calibrated, verdict);
-        let empirical = written.map_or(Vec::new(), |fit| self.laws(fit, &in_arm));
+        let empirical = written.map_or(Vec::new(), |fit| fitted::laws(fit, &in_arm));
         let models = choice.map_or(Vec::new(), |choice| choice.rows);
         Corrections { calibrated, empirical, models, corrected, provenance }
     }
@@ -382,8 +380,7 @@ impl Analysis<'_> {
     /// Sentence that lists the stiffnesses about which the readings say nothing: the fit leaves more than 90 % of
     /// their tolerance. Empty if there are none.
     fn unidentified(&self) -> Vec<String> {
-        let blind: Vec<String> = self
-            .calibrated(&self.best)
+        let blind: Vec<String> = fitted::calibrated(&self.best)
             .into_iter()
             .filter(|c| c.learnt > 0.9 && c.name.ends_with("stiffness"))
             .map(|c| c.name)
@@ -413,29 +410,7 @@ impl Analysis<'_> {
             return few_rows::suspects(self.search, explaining, self.weights);
         }
         let competitors: Vec<_> = (0..self.best.model.effects.len()).map(|i| self.competitors(i)).collect();
-        self.found_in(&self.best, self.ends(), &competitors)
-    }
-
-    /// The effects of the model `fit` with their parameters. `ends` has the 95 % intervals of all parameters of
-    /// effects, in the order of the model. `competitors` has one list for each effect: names and places of the
-    /// effects that could replace it.
-    fn found_in(&self, fit: &Fit, ends: &[Interval], competitors: &[Vec<(String, String)>]) -> Vec<Finding> {
-        let mut parameter = 0;
-        let effects = fit.model.effects.iter().enumerate();
-        effects
-            .map(|(i, effect)| {
-                let first = fit.model.first_parameter(i);
-                let own = first..first + effect.free_parameters.len();
-                let finding = Finding {
-                    effect: effect.kind.name.into(),
-                    at: effect.at.clone(),
-                    parameters: fitted_parameters(effect, &fit.point.u[own], &ends[parameter..]),
-                    indistinguishable_from: competitors.get(i).cloned().unwrap_or_default(),
-                };
-                parameter += effect.free_parameters.len();
-                finding
-            })
-            .collect()
+        fitted::effects(&self.best, self.ends(), &competitors)
     }
 
     /// Chooses the model for the corrected arm if no effect explains the readings.
@@ -448,19 +423,6 @@ impl Analysis<'_> {
         corrected_model::choose(self.with_laws, first_law, self.noise, baseline, named, chosen)
     }
 
-    /// The laws without a name among the effects of the model `fit`, with their parameters. `findings` has one entry
-    /// for each effect of the model.
-    fn laws(&self, fit: &Fit, findings: &[Finding]) -> Vec<Law> {
-        let each = fit.model.effects.iter().zip(findings);
-        each.filter(|(effect, _)| effect.kind.name == KIND.name)
-            .map(|(effect, finding)| Law {
-                finding: finding.clone(),
-                law: empirical::in_words(effect),
-                may_be: empirical::may_be(effect),
-            })
-            .collect()
-    }
-
     fn competitors(&self, effect: usize) -> Vec<(String, String)> {
         let own: Vec<usize> = self.selection.best.effects.clone();
         let twins = self.best.model.effects[effect].twins.iter().cloned();
@@ -470,26 +432,6 @@ impl Analysis<'_> {
             .map(|&e| &self.search.candidates[e])
             .map(|c| (c.kind.name.to_string(), c.at.clone()));
         twins.chain(others).collect()
-    }
-
-    fn calibrated(&self, fit: &Fit) -> Vec<Calibrated> {
-        let sds = deviations(fit);
-        let numbers = fit.model.nuisance.numbers.iter().enumerate();
-        numbers
-            .map(|(i, (calibration, _))| {
-                let factor = |u: f64| fit.model.nuisance.factor(i, u);
-                let (u, sd) = (fit.point.u[i], sds[i].min(1.0));
-                Calibrated {
-                    name: calibration.name(),
-                    factor: Estimate {
-                        value: factor(u),
-                        low: Some(factor(u - 1.96 * sd)),
-                        high: Some(factor(u + 1.96 * sd)),
-                    },
-                    learnt: sd,
-                }
-            })
-            .collect()
     }
 
     fn located(&self) -> Vec<Located> {

@@ -4,6 +4,7 @@ pub(crate) mod caution;
 pub(crate) mod correct;
 pub(crate) mod corrected_model;
 pub(crate) mod files;
+pub(crate) mod fitted;
 pub(crate) mod judgement;
 pub(crate) mod locate;
 pub(crate) mod next_test;

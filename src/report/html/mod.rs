@@ -6,6 +6,7 @@
 //! filters. [`study`], `campaign` and `comparison` take plain values and fill the templates in this folder.
 
 pub(crate) mod campaign;
+pub(crate) mod campaign_page;
 pub(crate) mod comparison;
 pub(crate) mod document;
 pub(crate) mod front_data;
