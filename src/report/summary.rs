@@ -88,19 +88,9 @@ pub fn summary_md(input: &SummaryInput) -> String {
     if !facts.ranges.is_empty() {
         out.push_str(&format!("- Ranges of the joints: {}.\n", listed(&facts.ranges)));
     }
-    if !facts.remarks.is_empty() {
-        out.push_str("\n## Remarks\n\n");
-        facts.remarks.iter().for_each(|words| out.push_str(&format!("- {words}\n")));
-    }
-    let warnings = warnings(&input.overall, &found.picks);
-    if !warnings.is_empty() {
-        out.push_str("\n## Warnings\n\n");
-        warnings.iter().for_each(|words| out.push_str(&format!("- {words}\n")));
-    }
-    if !facts.not_checked.is_empty() {
-        out.push_str("\n## Not checked\n\n");
-        facts.not_checked.iter().for_each(|words| out.push_str(&format!("- {words}\n")));
-    }
+    out.push_str(&section("Remarks", &facts.remarks));
+    out.push_str(&section("Warnings", &warnings(&input.overall, &found.picks)));
+    out.push_str(&section("Not checked", &facts.not_checked));
     if let Some(pick) = found.default_pick() {
         out.push_str(&format!("\n## Take a design out\n\n```\n{}```\n", commands(facts, pick)));
     }
@@ -108,6 +98,12 @@ pub fn summary_md(input: &SummaryInput) -> String {
         out.push_str(&format!("\narmwright {}\n", facts.tool_version));
     }
     out
+}
+
+/// A section of the summary with one line for each of the `lines`; empty without lines.
+fn section(title: &str, lines: &[String]) -> String {
+    let listed: String = lines.iter().map(|words| format!("- {words}\n")).collect();
+    if listed.is_empty() { listed } else { format!("\n## {title}\n\n{listed}") }
 }
 
 const KNEE: &str = "\nThe knee is the design nearest to the ideal point, which has the best value of every objective. Distances are\nmeasured in logarithms, each objective scaled by its range over the front.\n";

@@ -525,7 +525,10 @@ fn the_page_of_all_keys_is_what_the_program_prints() {
 #[test]
 fn an_unknown_kind_is_refused_with_the_kinds_there_are() {
     let (code, said) = armwright(&project(), &["schema", "arms"]);
-    assert!(code == 2 && said.contains("kinds: arm, cases, study, campaign, ") && said.contains(", effects"), "{said}");
+    assert!(
+        code == 2 && said.contains("kinds: arm, cases, study, campaign, ") && said.contains(", effects"),
+        "{said}"
+    );
 }
 
 /// The cells of the rows of a page's tables whose first cell names keys.
