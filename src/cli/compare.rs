@@ -78,7 +78,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<String, Failure> {
         let pairs = first.into_iter().flat_map(|a| others.unwrap_or_default().iter().map(move |b| (a, b)));
         comparison.moved = pairs.map(|(a, b)| moved(a, b)).collect();
     }
-    comparison.remarks = remarks(&said_by(&args.results)?);
+    comparison.remarks = remarks(&said_by(&args.results, labels(&args.results))?);
     let mut out = if args.json { json_text(&comparison) } else { comparison.to_text() };
     if let Some(dir) = &args.out {
         let inputs: Vec<&Path> = args.results.iter().map(PathBuf::as_path).collect();
@@ -216,7 +216,7 @@ fn is_one_study(results: &[PathBuf]) -> bool {
 }
 
 /// A label for every path: the fewest last components that distinguish it from the others.
-pub(super) fn labels(results: &[PathBuf]) -> Vec<String> {
+fn labels(results: &[PathBuf]) -> Vec<String> {
     let most = results.iter().map(|r| r.components().count()).max().unwrap_or(1);
     let at = |parts: usize| results.iter().map(|r| last_parts(r, parts)).collect::<Vec<_>>();
     let differ = |labels: &Vec<String>| labels.iter().enumerate().all(|(i, l)| !labels[..i].contains(l));

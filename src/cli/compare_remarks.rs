@@ -1,6 +1,5 @@
 //! What is said beside a comparison: where the questions of the results differ, and what each leaves out.
 
-use super::compare::labels;
 use super::failure::Failure;
 use super::results::Results;
 use crate::report::number::shortest;
@@ -19,12 +18,12 @@ pub(super) struct Said {
 const TASK: [&str; 7] =
     ["payload", "poses", "cases", "gravity_m_s2", "motion", "constraints", "judged_poses"];
 
-/// The result folders among what is compared.
+/// The result folders among what is compared, each with its label.
 ///
 /// # Errors
 /// As of [`Results::open`].
-pub(super) fn said_by(results: &[PathBuf]) -> Result<Vec<Said>, Failure> {
-    let folders = results.iter().zip(labels(results)).filter(|(path, _)| path.join("run.json").is_file());
+pub(super) fn said_by(results: &[PathBuf], labels: Vec<String>) -> Result<Vec<Said>, Failure> {
+    let folders = results.iter().zip(labels).filter(|(path, _)| path.join("run.json").is_file());
     let said = folders.map(|(path, label)| {
         let study = std::fs::read_to_string(path.join("study.json")).unwrap_or_default();
         let study = serde_json::from_str(&study).unwrap_or_default();
