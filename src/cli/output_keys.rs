@@ -86,6 +86,12 @@ static RUN: Shape = Shape::new(
         required("materials", Kind::List(&Kind::Object(&MATERIAL)), "-", "The front of each material."),
         required("not_checked", WORDS, "-", "Options left out because a rating is blank."),
         required("remarks", WORDS, "-", "What a reader should know."),
+        required(
+            "caveats",
+            Kind::Either(&[Kind::Text, Kind::Null]),
+            "-",
+            "Parts of the picks whose ratings are representative or from memory, in a sentence.",
+        ),
         required("effects", LIST, "-", "The study's effects, and whether they count."),
         required("effects_mass_kg", Kind::Number, "kg", "Mass that effects add to every design."),
         required("carried_over", LIST, "-", "Corrections of an arm file, and whether they apply."),
