@@ -5,12 +5,10 @@ use super::asked::Asked;
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
 use super::finished::{catalogs_hash, count, pretty};
-use super::manifest::SHARD;
+use super::manifest::{SHARD, hash};
 use super::progress::Watch;
 use super::search::{With, stopped_by_signal};
-use super::shard_files::{
-    CANDIDATES, COMMON, STUDY, hash_of, read_candidates_of, read_manifest, shards_in_all,
-};
+use super::shard_files::{CANDIDATES, COMMON, STUDY, read_candidates_of, read_manifest, shards_in_all};
 use crate::exact::Known;
 use crate::exact::outcome::FoundInShard;
 use crate::search::sweep::{Shard, Status};
@@ -56,7 +54,7 @@ pub(super) fn run_shard(
         "schema_version": 1,
         "study": asked.study.name,
         "tool_version": env!("CARGO_PKG_VERSION"),
-        "study_hash": hash_of(asked.text.as_bytes()),
+        "study_hash": hash(asked.text.as_bytes()),
         "catalogs_hash": catalogs_hash(with.catalogs),
         "flags": flags,
         "designs_total": count(designs_total),

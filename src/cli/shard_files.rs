@@ -1,7 +1,7 @@
 //! The files of a shard: where they are, and how they are read back.
 
 use super::failure::Failure;
-use super::manifest::SHARD;
+use super::manifest::{SHARD, hash};
 use crate::exact::outcome::FoundInShard;
 use crate::search::sweep::Shard;
 use crate::study::definition::Study;
@@ -87,10 +87,6 @@ fn shards_in(folder: &Path, depth: usize) -> Result<Vec<PathBuf>, Failure> {
     Ok(out)
 }
 
-pub(super) fn hash_of(bytes: &[u8]) -> String {
-    blake3::hash(bytes).to_hex().to_string()
-}
-
 /// Reads the manifest of a shard and checks that its files are those that it names.
 ///
 /// # Errors
@@ -103,7 +99,7 @@ pub(super) fn read_manifest(dir: &Path) -> Result<Value, Failure> {
     for name in [CANDIDATES, STUDY] {
         let file = dir.join(name);
         let bytes = fs_err::read(&file).map_err(|e| Failure::File(e.to_string()))?;
-        if manifest["files"][name].as_str() != Some(&hash_of(&bytes)) {
+        if manifest["files"][name].as_str() != Some(&hash(&bytes)) {
             return Err(Failure::Check(format!(
                 "{} is not the file that {} was written with: run the shard again",
                 file.display(),

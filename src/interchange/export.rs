@@ -199,6 +199,7 @@ fn to_mjcf(asked: &Asked, catalogs: &Catalogs) -> Export {
     let mut rest = Remainder::new(asked.arm.structure_in(asked.case), asked.case);
     rest.without_water();
     rest.without_balance_springs();
+    rest.without_turning_with_others();
     let case = rest.without_tip_load("an MJCF file has no load: apply it at the site \"tip\" (xfrc_applied)");
     if asked.pieces == 0 {
         rest.without_flexible_links("links are rigid: ask for pieces with --flexible N");
@@ -297,6 +298,7 @@ fn to_urdf(asked: &Asked) -> Export {
     let mut rest = Remainder::new(asked.arm.structure_in(asked.case), &case);
     rest.without_water();
     rest.without_balance_springs();
+    rest.without_turning_with_others();
     let case = rest.without_tip_load("a URDF has no load");
     rest.without_flexible_links("a URDF has rigid links");
     rest.without_springs(

@@ -82,6 +82,25 @@ impl Remainder {
         }
     }
 
+    /// Lets every joint turn by its own drive alone, joint by joint, for files in which no standing motor turns a joint with
+    /// others.
+    pub(crate) fn without_turning_with_others(&mut self) {
+        let turned = self.structure.joints().filter(|joint| !joint.turns_with.is_empty());
+        let names: Vec<String> = turned.map(|joint| joint.name.clone()).collect();
+        for name in names {
+            let why = "the file has no motor that sits elsewhere: the joint does not turn with the joints that its belts cross";
+            self.remove("turns_with", &name, why, |structure| {
+                for piece in &mut structure.pieces {
+                    if let Piece::Joint(joint) = piece
+                        && joint.name == name
+                    {
+                        joint.turns_with.clear();
+                    }
+                }
+            });
+        }
+    }
+
     /// Removes the compliance of every link, one by one, so that the loss of each is recorded. `why` is the reason for
     /// the record.
     pub(crate) fn without_flexible_links(&mut self, why: &str) {

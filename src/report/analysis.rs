@@ -15,7 +15,7 @@ use crate::mechanics::modes::Mode;
 use crate::mechanics::prismatic::GuideLoad;
 use crate::mechanics::response::{Response, frequency_response};
 use crate::mechanics::statics::{JointLoad, Statics};
-use crate::space::bearing_loads::resolved;
+use crate::space::bearing_loads::{at_centre, bearings_of};
 use nalgebra::Vector3;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
@@ -175,11 +175,9 @@ impl Analysis {
     /// The joints that have an output bearing, each with the bearing and the load on the bearing with the joint at
     /// rest.
     fn on_bearings<'a>(&'a self, arm: &'a Arm) -> impl Iterator<Item = (&'a str, OnBearing<'a>)> {
-        let bearing = |name: &str| {
-            let at = arm.chain.iter().position(|element| element.name() == name)?;
-            let Element::Joint(joint) = &arm.chain[at] else { return None };
-            Some(resolved(joint.bearing?, &joint.axis, arm.chain.get(at + 1)))
-        };
+        let bearings: Vec<(&str, Bearing)> = bearings_of(arm).collect();
+        let bearing =
+            move |name: &str| bearings.iter().find(|(joint, _)| *joint == name).map(|(_, bearing)| *bearing);
         self.carried()
             .filter_map(move |(name, load)| Some((name, OnBearing { load, bearing: bearing(name)? })))
     }
@@ -389,7 +387,7 @@ impl OnBearing<'_> {
     /// Moment at the centre of the bearing \[N m\]: the moment where the link attaches, plus the radial force times
     /// the bearing's offset along the axis.
     fn moment_with_offset_nm(&self) -> f64 {
-        self.load.moment_nm + self.bearing.offset_m.unwrap_or_default().abs() * self.load.radial_n
+        at_centre(self.load, &self.bearing).moment_nm
     }
 }
 

@@ -6,12 +6,13 @@ use super::slot::Slot;
 use super::station::StationJoint;
 use crate::arm::bearing::BearingSource;
 use crate::arm::section::Section;
-use crate::arm::{Bearing, Element, Link, LinkBody};
+use crate::arm::{Arm, Bearing, Element, Link, LinkBody};
 use crate::catalog::gear::GearMass;
 use crate::mechanics::beam::section_frame;
 use crate::mechanics::chain::across;
+use crate::mechanics::statics::JointLoad;
 use crate::mechanics::{Wrench, angular, linear};
-use crate::sizing::bearing::BearingLimits;
+use crate::sizing::bearing::{BearingLimits, BearingLoad};
 use nalgebra::Vector3;
 
 /// What must be known of a space, in addition to poses and masses, to compute the loads on output bearings.
@@ -85,6 +86,20 @@ pub(crate) fn resolved(bearing: Bearing, axis: &Vector3<f64>, next: Option<&Elem
     };
     let lever_m = bearing.ratings.offset_m.unwrap_or_default() + half_m;
     Bearing { offset_m: bearing.offset_m.or(Some(lever_m)), ..bearing }
+}
+
+/// The output bearings of an arm by the names of their joints, each with its lever resolved.
+pub(crate) fn bearings_of(arm: &Arm) -> impl Iterator<Item = (&str, Bearing)> {
+    arm.chain.iter().enumerate().filter_map(|(at, element)| {
+        let Element::Joint(joint) = element else { return None };
+        Some((joint.name.as_str(), resolved(joint.bearing?, &joint.axis, arm.chain.get(at + 1))))
+    })
+}
+
+/// What a bearing with a resolved lever carries under the load on its joint, with the moment at its centre.
+pub(crate) fn at_centre(load: &JointLoad, bearing: &Bearing) -> BearingLoad {
+    let JointLoad { moment_nm, radial_n, axial_n } = *load;
+    BearingLoad { moment_nm, radial_n, axial_n }.with_lever(bearing.offset_m.unwrap_or_default().abs())
 }
 
 /// Half the extent of a link along the axis of the joint to which it attaches \[m\].

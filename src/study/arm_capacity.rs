@@ -8,13 +8,13 @@
 
 use super::capacity::{AtPose, Capacity, Limit};
 use crate::arm::load::LoadCase;
-use crate::arm::{Arm, Element};
+use crate::arm::{Arm, Bearing};
 use crate::catalog::Catalogs;
 use crate::input::json::{Document, Faults, Node};
 use crate::mechanics::chain::Chain;
 use crate::mechanics::statics::JointLoad;
-use crate::sizing::bearing::{BearingLimits, BearingLoad};
-use crate::space::bearing_loads::resolved;
+use crate::sizing::bearing::BearingLimits;
+use crate::space::bearing_loads::{at_centre, bearings_of};
 
 /// The largest torque that a joint may hold at rest.
 #[derive(Debug, Clone, PartialEq)]
@@ -141,59 +141,44 @@ fn limit(arm: &Arm, case: &LoadCase, limits: &[TorqueLimit]) -> Limit {
     least
 }
 
-/// The ratings of an output bearing of an arm, with the lever at which its link attaches.
-struct RatedBearing {
-    /// Name of the joint.
-    joint: String,
-    /// Lever along the axis from the centre of the bearing to the link \[m\].
-    lever_m: f64,
-    limits: BearingLimits,
+/// The load of a bearing at rest as a part of what is allowed, for both checks that a standing bearing has to pass.
+fn uses(bearing: &Bearing, load: &JointLoad) -> [(f64, &'static str); 2] {
+    let (limits, load) = (limits_at_rest(bearing), at_centre(load, bearing));
+    [
+        (limits.moment_nm(&load) / limits.running_moment_nm, "bearing moment"),
+        (limits.static_load_n(&load) / limits.at_rest_n, "bearing static safety"),
+    ]
 }
 
-impl RatedBearing {
-    /// The load at rest as a part of what is allowed, for both checks that a standing bearing has to pass.
-    fn uses(&self, load: &JointLoad) -> [(f64, &'static str); 2] {
-        let JointLoad { moment_nm, radial_n, axial_n } = *load;
-        let load = BearingLoad { moment_nm, radial_n, axial_n }.with_lever(self.lever_m);
-        [
-            (self.limits.moment_nm(&load) / self.limits.running_moment_nm, "bearing moment"),
-            (self.limits.static_load_n(&load) / self.limits.at_rest_n, "bearing static safety"),
-        ]
-    }
-}
-
-/// The output bearings of an arm.
-fn rated_bearings(arm: &Arm) -> impl Iterator<Item = RatedBearing> + '_ {
-    arm.chain.iter().enumerate().filter_map(|(at, element)| {
-        let Element::Joint(joint) = element else { return None };
-        let bearing = resolved(joint.bearing?, &joint.axis, arm.chain.get(at + 1));
-        Some(RatedBearing {
-            joint: joint.name.clone(),
-            lever_m: bearing.offset_m.unwrap_or_default().abs(),
-            // speed and life limit what a bearing bears while it turns, and an arm file says nothing of motion
-            limits: BearingLimits::of(Some(&bearing), 0.0, 0.0),
-        })
-    })
+/// The limits of a bearing that stands. Speed and life limit what a bearing bears while it turns, and an arm file says nothing of
+/// motion.
+fn limits_at_rest(bearing: &Bearing) -> BearingLimits {
+    BearingLimits::of(Some(bearing), 0.0, 0.0)
 }
 
 /// Whether any output bearing of an arm has a rating that limits its load at rest.
 pub(crate) fn has_rated_bearings(arm: &Arm) -> bool {
-    rated_bearings(arm).any(|b| b.limits.running_moment_nm.min(b.limits.at_rest_n).is_finite())
+    bearings_of(arm).any(|(_, bearing)| {
+        let limits = limits_at_rest(&bearing);
+        limits.running_moment_nm.min(limits.at_rest_n).is_finite()
+    })
 }
 
 /// The largest payload in a case that all output bearings hold at rest. Their loads are norms of what is affine in the payload's mass,
 /// and so convex: those of no payload and of the largest one hold everything between.
 fn limit_of_bearings(arm: &Arm, case: &LoadCase) -> Limit {
     let chain = Chain::new(&arm.structure_in(case), case.links);
-    let bearings: Vec<RatedBearing> = rated_bearings(arm).collect();
+    let bearings: Vec<(&str, Bearing)> = bearings_of(arm).collect();
     let worst = |payload_kg: f64| {
         let mut loaded = case.clone();
         loaded.payload.mass_kg = payload_kg;
         let statics = chain.pose(&loaded).statics();
         let loads = statics.joint_torques_nm.iter().zip(&statics.bearing_loads);
         loads
-            .filter_map(|((name, _), load)| Some((bearings.iter().find(|b| b.joint == *name)?, load)))
-            .flat_map(|(bearing, load)| bearing.uses(load).map(|(part, check)| (part, bearing, check)))
+            .filter_map(|((name, _), load)| Some((bearings.iter().find(|(joint, _)| joint == name)?, load)))
+            .flat_map(|((joint, bearing), load)| {
+                uses(bearing, load).map(|(part, check)| (part, *joint, check))
+            })
             .max_by(|a, b| a.0.total_cmp(&b.0))
     };
     let none = Limit { payload_kg: f64::INFINITY, piece: String::new(), check: String::new() };
@@ -214,9 +199,7 @@ fn limit_of_bearings(arm: &Arm, case: &LoadCase) -> Limit {
         }
     }
     match worst(failed_kg) {
-        Some((_, bearing, check)) => {
-            Limit { payload_kg: held_kg, piece: bearing.joint.clone(), check: check.into() }
-        }
+        Some((_, joint, check)) => Limit { payload_kg: held_kg, piece: joint.into(), check: check.into() },
         None => none,
     }
 }

@@ -456,6 +456,29 @@ fn what_is_left_out_and_what_stays_make_the_whole_deflection() {
     }
 }
 
+/// A motor at the base and a belt of ratio 1 without a gear: while the motor stands, the forearm stays level. A file of MuJoCo has
+/// no such motor.
+#[test]
+fn a_joint_that_turns_with_others_is_left_out_by_name_with_its_share() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let joint =
+        |name: &str| json!({"type": "joint", "name": name, "axis": [0, 1, 0], "stiffness_nm_per_rad": 5e4});
+    let link = |name: &str| json!({"type": "link", "name": name, "vector_m": [0.4, 0, 0], "mass_kg": 2});
+    let mut elbow = joint("elbow");
+    elbow["turns_with"] = json!({"shoulder": -1});
+    let arm = json!({"name": "level", "chain": [joint("shoulder"), link("upper"), elbow, link("fore")]});
+    let file = write(&folder.path().join("arm.json"), &arm);
+    for form in ["mjcf", "urdf"] {
+        let out = folder.path().join(form).display().to_string();
+        done(&["export", &file, "--to", form, "--out", &out]);
+        let record = read(Path::new(&out).join("export.json"));
+        let items = record["left_out"].as_array().expect("a list");
+        let item = items.iter().find(|item| item["what"] == "turns_with").expect("it is named");
+        assert_eq!(item["at"], "elbow");
+        assert!(item["tip_share"].as_f64().expect("a share").abs() > 0.01, "{item}");
+    }
+}
+
 #[test]
 fn an_arm_that_goes_out_as_urdf_comes_back_the_same() {
     let folder = tempfile::tempdir().expect("a folder");
