@@ -177,7 +177,7 @@ impl Curve {
         }
     }
 
-    /// The curve with a compliance in series \[rad/(N m)\]: every slope yields more, and the break points stay.
+    /// The curve with a compliance in series \[rad/(N m)\]: every segment becomes more compliant, and the break points stay.
     #[must_use]
     pub fn in_series(&self, rad_per_nm: f64) -> Curve {
         if rad_per_nm == 0.0 {

@@ -165,7 +165,7 @@ impl Prismatic {
         Some((stiffness?, guide?, moves?))
     }
 
-    /// How the joint yields, as [`read_springs`](Self::read_springs) reads it.
+    /// The compliance of the joint, as [`read_springs`](Self::read_springs) reads it.
     pub(crate) fn springs_to_json(&self) -> Value {
         json!({
             "stiffness_n_per_m": self.stiffness_n_per_m,

@@ -1,6 +1,6 @@
 //! Motors that do not sit at the joint they drive, and the belts, chains, shafts and gear stages between both.
 //!
-//! *Torsion.* The stages transmit one torque, each multiplied by the ratios after it. At the joint they yield by the sum of
+//! *Torsion.* The stages transmit one torque, each multiplied by the ratios after it. Their compliance at the joint is the sum of
 //! `1/(k R²)` in series with the gear, with the stiffness k at the output of a stage and the product R of the ratios after it.
 //!
 //! *Coupled motion.* A motor that stands on a part inboard of other joints holds the pulley on the axis of each of these
@@ -105,7 +105,7 @@ impl Stages {
         rotor_kgm2 + before.inertia_kgm2 + at_gear_kgm2 / (before.ratio * before.ratio)
     }
 
-    /// The same without what yields and weighs, which a design has in its curves and bodies.
+    /// The stages without compliance and mass, which a design has in its torsion curves and bodies.
     #[must_use]
     pub fn rigid(&self) -> Self {
         let rigid = |stage: Stage| Stage { rad_per_nm: 0.0, mass_kg: 0.0, ..stage };

@@ -24,8 +24,9 @@ use std::f64::consts::PI;
 const YOUNGS_MODULUS_PA: f64 = 2.06e11;
 /// Density of the shaft \[kg/m³\].
 const DENSITY_KG_M3: f64 = 7850.0;
-/// What the makers leave of Euler's load, and of the critical speed.
+/// Part of Euler's load that the makers allow (THK, page A15-30).
 const OF_EULER: f64 = 0.5;
+/// Part of the critical speed that the makers allow (MISUMI, page 1677).
 const OF_CRITICAL: f64 = 0.8;
 /// Turns for which the dynamic load rating is defined.
 const RATED_TURNS: f64 = 1e6;
@@ -129,7 +130,7 @@ impl Screw {
         self.max_speed_rpm.map_or(bent_rpm, |balls_rpm| bent_rpm.min(balls_rpm))
     }
 
-    /// Stiffness along the travel \[N/m\]: shaft, nut and bearings in series, with the nut where the shaft yields most.
+    /// Stiffness along the travel \[N/m\]: shaft, nut and bearings in series, with the nut where the shaft is most compliant.
     pub fn stiffness_n_per_m(&self) -> f64 {
         let held = if self.ends == Ends::Fixed { 4.0 } else { 1.0 };
         let shaft = self.length_m / (held * YOUNGS_MODULUS_PA * self.area_m2());

@@ -250,7 +250,7 @@ pub struct SpaceJoint {
     /// passive joint is the sum of the factors times their angles. `None` for a driven joint, which has an entry in
     /// every pose.
     pub coupled: Option<Vec<(String, f64)>>,
-    /// Stages between motor, gear and joint. Those of a drive that is given yield in its curve already.
+    /// Stages between motor, gear and joint. The compliance of the stages of a given drive is in its torsion curve already.
     pub stages: Stages,
     /// Where the motor of a drive that is sized stands, if not at the joint.
     pub motor_place: Option<MotorPlace>,

@@ -5,12 +5,14 @@ use super::fit::joints_that_ask;
 use super::harness::has_harness;
 use crate::arm::bearing::BearingSource;
 use crate::arm::extras::ExtrasSource;
+use crate::arm::transmission::Stages;
 use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint, SpacePiece};
 
-/// Sentences on the physics and the checks that the results of a study do not include; empty if no joint has a gear.
+/// Sentences on the physics and the checks that the results of a study do not include; empty if no joint has a gear
+/// and no rail is sized.
 pub(super) fn omissions(space: &DesignSpace) -> Vec<String> {
     let with_gear: Vec<&SpaceJoint> = joints(space).filter(|joint| has_gear(joint)).collect();
-    if with_gear.is_empty() {
+    if with_gear.is_empty() && !has_sized_rail(space) {
         return Vec::new();
     }
     let named = |wanted: fn(&SpaceJoint) -> bool| {
@@ -46,23 +48,24 @@ pub(super) fn omissions(space: &DesignSpace) -> Vec<String> {
 fn left_out_everywhere(space: &DesignSpace) -> String {
     let fits = joints_that_ask(space).next().is_some();
     let rigid = connection_share(space) == 0.0;
+    let has_stages = joints(space).any(|joint| joint.stages != Stages::default());
     let list = [
         rigid.then_some("the compliance of the connections between links and joints"),
         (!has_harness(space)).then_some("the cables along the links"),
         Some("castings between gears and tubes"),
         Some("the scatter and the friction of gears"),
+        has_stages.then_some("the pull and the strength of belts and stages"),
+        has_sized_rail(space).then_some("the friction of guides"),
         Some("the floor"),
-        Some("temperature"),
         (!fits).then_some("whether the parts fit into each other"),
     ];
-    let list: Vec<&str> = list.into_iter().flatten().collect();
-    let words = match list.split_last() {
-        Some((last, [])) => (*last).to_string(),
-        Some((last, [first])) => format!("{first} and {last}"),
-        Some((last, first)) => format!("{}, and {last}", first.join(", ")),
-        None => String::new(),
-    };
-    format!("Left out of every number: {words}. {SIZE_OF_WHAT_IS_LEFT_OUT}")
+    let words = list.into_iter().flatten().collect::<Vec<_>>().join(", ");
+    format!("Left out of every number: {words}, and temperature. {SIZE_OF_WHAT_IS_LEFT_OUT}")
+}
+
+/// Whether a screw or rack and its motor are chosen for some prismatic joint.
+fn has_sized_rail(space: &DesignSpace) -> bool {
+    space.pieces.iter().any(|piece| matches!(piece, SpacePiece::Prismatic(rail) if rail.drive.is_some()))
 }
 
 /// How much a built arm differs by all that is left out: the row "together" of docs/left-out.md.

@@ -163,11 +163,11 @@ fn drive_kg(allowed: &AllowedParts, gear: &Gear, motor: &Motor) -> Option<f64> {
     Some(((gear.mass_kg(allowed.gear_mass)? + motor.mass_kg?) * PER_KG).round() / PER_KG)
 }
 
-/// The torsion curve of a gear whose connections yield by a share of what the gear itself does; `None` if the catalog lacks a
+/// The torsion curve of a gear whose connections add a share of its own compliance; `None` if the catalog lacks a
 /// number of the curve.
 fn torsion_curve(gear: &Gear, joint: &AskedJoint) -> Option<Windup> {
     let share = joint.connection_share;
-    // a stage before the gear yields in series, by the square of the gear's ratio less
+    // a stage before the gear is in series; its compliance at the joint is smaller by the square of the gear's ratio
     let before = joint.stage.rad_per_nm / (gear.ratio * gear.ratio);
     let together = |stiffness: Option<f64>| {
         let own = stiffness? * (1.0 / (1.0 + share));

@@ -327,3 +327,14 @@ fn what_a_study_cannot_size_is_refused_by_name() {
         "an actuator has its motor within",
     );
 }
+
+#[test]
+fn a_study_with_a_belt_says_what_of_it_is_left_out() {
+    let catalogs = Catalogs::builtin();
+    let left_out = |text: Value| {
+        let study = read(&text, &catalogs);
+        study.remarks.iter().any(|words| words.contains("the pull and the strength of belts"))
+    };
+    assert!(left_out(study(json!({"transmission": [belt()]}))));
+    assert!(!left_out(study(json!({}))));
+}

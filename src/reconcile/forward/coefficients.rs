@@ -280,7 +280,7 @@ impl Coefficients {
     pub fn new(layout: &Layout, nominal: &Subject, subject: &Subject) -> Self {
         let structure = &subject.structure;
         let mut linear = vec![0.0; layout.n];
-        // a frame of the nominal base has coordinates of its own; what a subject's yields beyond it is a tilt
+        // a frame of the nominal base has coordinates of its own; what the base of a subject deflects beyond it is a tilt
         let further = structure.base_frame.0 - nominal.structure.base_frame.0;
         (0..2).for_each(|i| linear[i] = structure.base_tilt_rad_per_nm + further[(i, i)]);
         layout.frames.iter().for_each(|(at, compliance)| linear[*at] = *compliance);

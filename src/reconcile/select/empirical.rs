@@ -38,7 +38,7 @@ const SOFTENING_IN: [Channel; 2] = [Channel::Static, Channel::Modal];
 const SOFTENED_AFTER: [f64; 2] = [0.08, 0.5];
 /// The place of the base.
 const BASE: &str = "base";
-/// Largest tilt of a base that is looked for, as a multiple of what the first joint yields.
+/// Largest tilt of a base that is looked for, as a multiple of the deflection of the first joint.
 const SOFTEST: f64 = 100.0;
 /// Fewest poses before and after a base turned.
 const FEWEST_POSES: usize = 2;
@@ -102,7 +102,7 @@ fn steady() -> Vec<Number> {
     [0.0, 1.0, 0.0, 1.0, 1.0].map(Stated).to_vec()
 }
 
-/// A base that tilts about world x and about y, each by its own compliance; sizes are those of the first joint that yields.
+/// A base that tilts about world x and about y, each by its own compliance; sizes are those of the first compliant joint.
 /// `None` if a piece of the arm is called as the base is.
 fn lean(forward: &Forward) -> Option<Candidate> {
     let laws = forward.coefficients(&forward.nominal).laws;
