@@ -2,7 +2,7 @@
 
 use super::keys::{PAYLOAD, VECTOR, WATER};
 use super::{JointModel, LinkModel, Words};
-use crate::input::key::{Kind, Rule, Shape, optional, words_of};
+use crate::input::key::{Key, Kind, Rule, Shape, optional, words_of};
 use crate::input::schema::FileKind;
 
 /// The format of a cases file.
@@ -18,32 +18,55 @@ pub(crate) const LINK_MODELS: Kind = Kind::Word(&words_of::<LinkModel, 3>(LinkMo
 /// The words for the joint models in files.
 pub(crate) const JOINT_MODELS: Kind = Kind::Word(&words_of::<JointModel, 3>(JointModel::WORDS));
 
+/// Name of a case or a pose.
+pub(crate) const CASE_NAME: Key = optional("name", Kind::Text, "-", "its place in the list", "Name.");
+
+/// The pose as a list of angles.
+pub(crate) const POSE_DEG: Key = optional(
+    "pose_deg",
+    Kind::List(&Kind::Number),
+    "deg",
+    "pose",
+    "One angle a driven joint, base to tip, of a chain without prismatic joints.",
+);
+
+/// The pose by the names of the joints.
+pub(crate) const POSE: Key = optional(
+    "pose",
+    Kind::Map(&Kind::Number),
+    "deg, mm",
+    "pose_deg",
+    "Angles and travels by joint, `{\"rail_mm\": 250, \"j2_deg\": 30}`; joints left away stay at 0.",
+);
+
+/// What the arm holds.
+pub(crate) const HELD: Key = optional("payload", Kind::Object(&PAYLOAD), "-", "none", "What the arm holds.");
+
+/// Force at the tip.
+pub(crate) const TIP_FORCE: Key =
+    optional("tip_force_n", VECTOR, "N", "[0, 0, 0]", "Force at the tip, in world axes.");
+
+/// Moment at the tip.
+pub(crate) const TIP_MOMENT: Key =
+    optional("tip_moment_nm", VECTOR, "N m", "[0, 0, 0]", "Moment at the tip, in world axes.");
+
+/// Water around the arm.
+pub(crate) const AROUND: Key = optional("water", Kind::Object(&WATER), "-", "dry", "Water around the arm.");
+
 /// The keys of a load case.
 pub(crate) static CASE: Shape = Shape::new(
     "case",
     "A load case: a pose, a load and the models to use.",
     &[
-        optional("name", Kind::Text, "-", "its place in the list", "Name."),
-        optional(
-            "pose_deg",
-            Kind::List(&Kind::Number),
-            "deg",
-            "pose",
-            "One angle a driven joint, base to tip, of a chain without prismatic joints.",
-        ),
-        optional(
-            "pose",
-            Kind::Map(&Kind::Number),
-            "deg, mm",
-            "pose_deg",
-            "Angles and travels by joint, `{\"rail_mm\": 250, \"j2_deg\": 30}`; joints left away stay at 0.",
-        ),
-        optional("payload", Kind::Object(&PAYLOAD), "-", "none", "What the arm holds."),
-        optional("tip_force_n", VECTOR, "N", "[0, 0, 0]", "Force at the tip, in world axes."),
-        optional("tip_moment_nm", VECTOR, "N m", "[0, 0, 0]", "Moment at the tip, in world axes."),
+        CASE_NAME,
+        POSE_DEG,
+        POSE,
+        HELD,
+        TIP_FORCE,
+        TIP_MOMENT,
         optional("links", LINK_MODELS, "-", "\"full\"", "Physics of the links."),
         optional("joints", JOINT_MODELS, "-", "\"three_segment\"", "Physics of the joints."),
-        optional("water", Kind::Object(&WATER), "-", "dry", "Water around the arm."),
+        AROUND,
     ],
     &POSE_RULES,
 );

@@ -1,10 +1,13 @@
 //! The keys of arm files. The reader uses this list, and `armwright schema arm` prints it.
 
 use super::effect::catalogue::NAMES as EFFECTS;
+use super::element_keys::{
+    AXIS, BODIES_OF_JOINT, BODIES_OF_LINK, COUPLED, GEAR, IS_JOINT, IS_LINK, LINK_MASS, LINK_PIECES,
+    LINK_SECTION, LINK_VECTOR, MOTOR, NAME, OUTPUT_BEARING, STIFFNESS, TORSION_CURVE, WHICH_GEAR_MASS,
+};
 use super::keys::{
-    BEARING_VALUE, COUNTERWEIGHTS, COUPLING, EXTRAS, GEAR_AT, GEAR_MASS, GEAR_RATIO, GRAVITY, JOINT_BODIES,
-    LINK_BODIES, MASS_FACTOR, MOTOR_AT, MOTOR_MASS, MOTOR_POINT, PIECES, POSITIVE_OR_NULL, SECTION, SPRINGS,
-    STATED, STIFFNESS_FACTOR, TRANSMISSION, TRANSMISSION_RULES, TURNS_WITH, VECTOR, WINDUP,
+    COUNTERWEIGHTS, EXTRAS, GEAR_AT, GEAR_RATIO, GRAVITY, MASS_FACTOR, MOTOR_AT, MOTOR_MASS, MOTOR_POINT,
+    SPRINGS, STATED, STIFFNESS_FACTOR, TRANSMISSION, TRANSMISSION_RULES, TURNS_WITH,
 };
 use super::prismatic_keys::PRISMATIC;
 use crate::input::key::{Kind, Rule, SCHEMA_ADDRESS, Shape, optional, required};
@@ -23,13 +26,7 @@ pub(crate) static ARM: Shape = Shape::new(
     &[
         SCHEMA_ADDRESS,
         optional("name", Kind::Text, "-", "\"arm\"", "Name of the arm."),
-        optional(
-            "gravity_m_s2",
-            GRAVITY,
-            "m/s²",
-            "9.81",
-            "A number along world -z, 0 for none, or a vector in the world.",
-        ),
+        GRAVITY,
         optional(
             "materials",
             Kind::Map(&Kind::Object(&MATERIAL)),
@@ -79,31 +76,14 @@ pub(crate) static JOINT: Shape = Shape::new(
     "joint",
     "A joint: it turns everything after it about its axis.",
     &[
-        required("type", Kind::Word(&["joint"]), "-", "Says that this is a joint."),
-        required("name", Kind::Name, "-", "Name, unique in the arm."),
-        required(
-            "axis",
-            VECTOR,
-            "-",
-            "Direction in the frame moved by the joints before it; its length does not matter.",
-        ),
-        optional(
-            "stiffness_nm_per_rad",
-            POSITIVE_OR_NULL,
-            "N m/rad",
-            "the gear's",
-            "One stiffness; null is rigid.",
-        ),
-        optional("windup", Kind::Object(&WINDUP), "-", "the gear's", "The three-segment torsion curve."),
-        optional(
-            "gear",
-            Kind::Text,
-            "-",
-            "none",
-            "A gear of the catalog; gives curve and mass where they are not written.",
-        ),
-        optional("motor", Kind::Text, "-", "none", "A motor of the catalog; gives its mass."),
-        optional("gear_mass", GEAR_MASS, "-", "\"housed_unit\"", "Which mass of the gear counts."),
+        IS_JOINT,
+        NAME,
+        AXIS,
+        STIFFNESS,
+        TORSION_CURVE,
+        GEAR,
+        MOTOR,
+        WHICH_GEAR_MASS,
         optional(
             "mass_kg",
             Kind::NonNegative,
@@ -111,13 +91,7 @@ pub(crate) static JOINT: Shape = Shape::new(
             "gear and motor, else 0",
             "A point on the axis, inboard of the joint.",
         ),
-        optional(
-            "bearing",
-            BEARING_VALUE,
-            "-",
-            "the gear's, if it is a housed unit",
-            "The output bearing: its numbers, the name of a housed gear, or null for a rigid one.",
-        ),
+        OUTPUT_BEARING,
         optional(
             "extras",
             Kind::Object(&EXTRAS),
@@ -125,14 +99,8 @@ pub(crate) static JOINT: Shape = Shape::new(
             "none",
             "What the joint weighs beyond drive and bearing.",
         ),
-        optional("bodies", JOINT_BODIES, "-", "[]", "Rigid parts with centre and inertia."),
-        optional(
-            "coupled",
-            COUPLING,
-            "-",
-            "none",
-            "A passive joint of a linkage: the factors of the driven joints that turn it.",
-        ),
+        BODIES_OF_JOINT,
+        COUPLED,
         MOTOR_AT,
         MOTOR_POINT,
         MOTOR_MASS,
@@ -156,9 +124,9 @@ pub(crate) static LINK: Shape = Shape::new(
     "link",
     "A link: a tube or bar, or a rigid offset if it has no section.",
     &[
-        required("type", Kind::Word(&["link"]), "-", "Says that this is a link."),
-        required("name", Kind::Name, "-", "Name, unique in the arm."),
-        required("vector_m", VECTOR, "m", "From root to end, in the frame moved by the joints before it."),
+        IS_LINK,
+        NAME,
+        LINK_VECTOR,
         optional(
             "material",
             Kind::Text,
@@ -166,16 +134,10 @@ pub(crate) static LINK: Shape = Shape::new(
             "none",
             "Name of the tube's material, in the file or the catalog.",
         ),
-        optional(
-            "section",
-            SECTION,
-            "-",
-            "none",
-            "The cross-section; without it the link is a rigid offset.",
-        ),
-        optional("mass_kg", Kind::NonNegative, "kg", "0", "Point mass at mid-length of a rigid offset."),
-        optional("bodies", LINK_BODIES, "-", "[]", "Rigid parts with centre and inertia."),
-        optional("pieces", PIECES, "-", "none", "Steps and tapers, instead of a section."),
+        LINK_SECTION,
+        LINK_MASS,
+        BODIES_OF_LINK,
+        LINK_PIECES,
         STIFFNESS_FACTOR,
         MASS_FACTOR,
     ],

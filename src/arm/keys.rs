@@ -9,8 +9,14 @@ pub(crate) const VECTOR: Kind = Kind::Array(3, &Kind::Number);
 /// A number greater than zero, or `null`.
 pub(crate) const POSITIVE_OR_NULL: Kind = Kind::Either(&[Kind::Positive, Kind::Null]);
 
-/// Gravity: a number along world -z, or a vector in the world.
-pub(crate) const GRAVITY: Kind = Kind::Either(&[Kind::NonNegative, VECTOR]);
+/// Gravity of an arm or a study.
+pub(crate) const GRAVITY: Key = optional(
+    "gravity_m_s2",
+    Kind::Either(&[Kind::NonNegative, VECTOR]),
+    "m/s²",
+    "9.81",
+    "A number along world -z, 0 for none, or a vector in the world.",
+);
 
 /// Which mass of a gear counts: component set or housed unit.
 pub(crate) const GEAR_MASS: Kind = Kind::Word(&["component_set", "housed_unit"]);
@@ -85,14 +91,24 @@ pub(crate) static BEARING: Shape = Shape::new(
     &[],
 );
 
-const TENSOR: Kind = Kind::Array(3, &VECTOR);
+/// Mass of a body.
+pub(super) const BODY_MASS: Key = required("mass_kg", Kind::NonNegative, "kg", "Mass.");
+
+/// Inertia of a body.
+pub(super) const BODY_INERTIA: Key = optional(
+    "inertia_kgm2",
+    Kind::Array(3, &VECTOR),
+    "kg m²",
+    "[[0, 0, 0], [0, 0, 0], [0, 0, 0]]",
+    "Inertia about the centre of gravity, in the same frame.",
+);
 
 /// The keys of a body of a link.
 pub(crate) static LINK_BODY: Shape = Shape::new(
     "body of a link",
     "A rigid part of a link.",
     &[
-        required("mass_kg", Kind::NonNegative, "kg", "Mass."),
+        BODY_MASS,
         optional(
             "cg_m",
             VECTOR,
@@ -100,13 +116,7 @@ pub(crate) static LINK_BODY: Shape = Shape::new(
             "[0, 0, 0]",
             "Centre of gravity from the start of the link, in the frame of vector_m.",
         ),
-        optional(
-            "inertia_kgm2",
-            TENSOR,
-            "kg m²",
-            "[[0, 0, 0], [0, 0, 0], [0, 0, 0]]",
-            "Inertia about the centre of gravity, in the same frame.",
-        ),
+        BODY_INERTIA,
     ],
     &[],
 );
@@ -116,15 +126,9 @@ pub(crate) static JOINT_BODY: Shape = Shape::new(
     "body of a joint",
     "A rigid part of a joint.",
     &[
-        required("mass_kg", Kind::NonNegative, "kg", "Mass."),
+        BODY_MASS,
         optional("cg_m", VECTOR, "m", "[0, 0, 0]", "Centre of gravity from the joint's point."),
-        optional(
-            "inertia_kgm2",
-            TENSOR,
-            "kg m²",
-            "[[0, 0, 0], [0, 0, 0], [0, 0, 0]]",
-            "Inertia about the centre of gravity, in the same frame.",
-        ),
+        BODY_INERTIA,
         optional(
             "rotates",
             Kind::Flag,
@@ -405,7 +409,7 @@ pub(crate) static COUNTERWEIGHT: Shape = Shape::new(
             "m",
             "Where it is, from the start of the element in the frame that it carries.",
         ),
-        required("mass_kg", Kind::NonNegative, "kg", "Mass."),
+        BODY_MASS,
     ],
     &[],
 );
@@ -452,7 +456,7 @@ pub(crate) static PAYLOAD: Shape = Shape::new(
     "payload",
     "What the arm holds at its tip.",
     &[
-        required("mass_kg", Kind::NonNegative, "kg", "Mass."),
+        BODY_MASS,
         optional("cg_m", VECTOR, "m", "[0, 0, 0]", "Centre of gravity from the tip, in the last frame."),
         optional(
             "inertia_about_cg_kgm2",

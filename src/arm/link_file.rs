@@ -1,12 +1,14 @@
 //! Reads a link of an arm file or a study: its tube with section and material, or its rigid offset.
 
 use super::body::read_link_bodies;
+use super::element_keys::read_name;
 use super::keys::{RECTANGULAR_BAR, RECTANGULAR_TUBE, ROUND_BAR, ROUND_TUBE};
 use super::load::vector;
 use super::section::{LinkMaterial, Section};
 use super::section_file::{read_i_beam, read_stated_section};
 use super::{Link, LinkBody};
 use crate::catalog::Catalogs;
+use crate::catalog::material::Material;
 use crate::input::json::{Node, Object};
 use nalgebra::Vector3;
 
@@ -17,17 +19,9 @@ pub(super) const DEFAULT_POISSON: f64 = 0.3;
 /// recorded.
 pub(crate) type NamedMaterial = (String, Option<LinkMaterial>);
 
-/// Reads the name of an element.
-pub(super) fn read_name(node: &Node) -> Option<String> {
-    match node.string()? {
-        "" => node.fault("is empty", "give every element a name"),
-        name => Some(name.to_string()),
-    }
-}
-
 /// Reads a link of one section, or a rigid offset.
 pub(super) fn read_link(object: &Object, materials: &[NamedMaterial], catalogs: &Catalogs) -> Option<Link> {
-    let name = object.required("name").and_then(|n| read_name(&n));
+    let name = read_name(object);
     let vector_m = object.required("vector_m").and_then(|n| vector(&n));
     let body = match object.optional("section") {
         Some(section) => read_tube((object, object), &section, vector_m, materials, catalogs),
@@ -101,13 +95,18 @@ fn find_material(
             ),
         );
     };
-    let Some(shear_modulus_pa) = row.shear_modulus_pa else {
+    let Some(material) = material_of(row) else {
         return node
             .fault(format!("material \"{name}\" has no shear modulus"), "add the material to the file");
     };
+    Some(material)
+}
+
+/// The elastic material of a row of the catalog; `None` if the row states no shear modulus.
+pub(crate) fn material_of(row: &Material) -> Option<LinkMaterial> {
     Some(LinkMaterial {
         youngs_modulus_pa: row.youngs_modulus_pa,
-        shear_modulus_pa,
+        shear_modulus_pa: row.shear_modulus_pa?,
         density_kg_m3: row.density_kg_m3,
         poisson: row.poisson.unwrap_or(DEFAULT_POISSON),
     })

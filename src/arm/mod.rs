@@ -21,7 +21,7 @@ pub(crate) mod file_keys;
 pub(crate) mod joint_law;
 pub(crate) mod joint_torque;
 pub(crate) mod keys;
-mod link_file;
+pub(crate) mod link_file;
 pub(crate) mod linkage;
 pub(crate) mod load;
 pub(crate) mod pieces;

@@ -5,8 +5,9 @@
 //! an end load is then 0.3 % too large. This error falls with the square of the number of slices.
 
 use super::body::{RigidBody, read_link_bodies};
+use super::element_keys::read_name;
 use super::keys::PIECE;
-use super::link_file::{NamedMaterial, read_link, read_name, read_tube};
+use super::link_file::{NamedMaterial, read_link, read_tube};
 use super::load::vector;
 use super::section::{LinkMaterial, Section};
 use super::{Link, LinkBody};
@@ -126,7 +127,7 @@ fn read_pieces(
             stray.fault::<()>("stands beside \"pieces\"", "write it into the pieces");
         }
     }
-    let name = object.required("name").and_then(|n| read_name(&n));
+    let name = read_name(object);
     let vector_m = object.required("vector_m").and_then(|n| vector(&n));
     let bodies = read_link_bodies(object);
     let read: Vec<_> =

@@ -1,6 +1,7 @@
 //! The keys of prismatic joints, in arm files and in studies.
 
-use super::keys::{POSITIVE_OR_NULL, VECTOR};
+use super::element_keys::NAME;
+use super::keys::{BODY_INERTIA, BODY_MASS, POSITIVE_OR_NULL, VECTOR};
 use crate::input::key::{Key, Kind, Shape, optional, required};
 
 /// A list of bodies of a prismatic joint.
@@ -12,7 +13,7 @@ pub(crate) const STIFFNESS: usize = 3;
 /// The keys of a prismatic joint in an arm file; a study has more.
 pub(crate) const KEYS: [Key; 9] = [
     required("type", Kind::Word(&["prismatic"]), "-", "Says that this is a prismatic joint."),
-    required("name", Kind::Name, "-", "Name, unique in the chain."),
+    NAME,
     required(
         "axis",
         VECTOR,
@@ -65,7 +66,7 @@ pub(crate) static PRISMATIC_BODY: Shape = Shape::new(
     "body of a prismatic joint",
     "A rigid part of a prismatic joint.",
     &[
-        required("mass_kg", Kind::NonNegative, "kg", "Mass."),
+        BODY_MASS,
         optional(
             "cg_m",
             VECTOR,
@@ -73,13 +74,7 @@ pub(crate) static PRISMATIC_BODY: Shape = Shape::new(
             "[0, 0, 0]",
             "Centre of gravity from the moved point, of a body that stays from where the joint begins.",
         ),
-        optional(
-            "inertia_kgm2",
-            Kind::Array(3, &VECTOR),
-            "kg m²",
-            "[[0, 0, 0], [0, 0, 0], [0, 0, 0]]",
-            "Inertia about the centre of gravity, in the same frame.",
-        ),
+        BODY_INERTIA,
         optional("travels", Kind::Flag, "-", "false", "Whether the body travels, outboard of the springs."),
     ],
     &[],

@@ -171,7 +171,7 @@ impl Transmission {
         let is_told = gear_ratio.is_some() || gear_at_motor != Some(false) || object.has("drive");
         if !is_told && stages.iter().flatten().any(|stage| stage.rad_per_nm > 0.0) {
             return object.node().fault(
-                "has stages that yield before a gear of unknown ratio",
+                "has compliant stages before a gear of unknown ratio",
                 "add \"gear_ratio\" (1 if the stages drive the joint itself), or \"gear_at\": \"motor\"",
             );
         }

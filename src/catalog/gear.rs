@@ -208,6 +208,44 @@ pub struct Gear {
 }
 
 impl Gear {
+    /// A gear of which nothing but name, kind and ratio is known: it has the usual life of its kind, and no other number.
+    pub(crate) fn unrated(id: &str, kind: GearKind, ratio: f64, provenance: Provenance) -> Self {
+        Self {
+            id: id.to_string(),
+            series: id.to_string(),
+            kind,
+            size: 0,
+            ratio,
+            life: LifeLaw::usual(kind),
+            rated_torque_nm: None,
+            repeated_peak_torque_nm: None,
+            average_torque_limit_nm: None,
+            momentary_peak_torque_nm: None,
+            max_input_speed_rpm: None,
+            average_input_speed_limit_rpm: None,
+            inertia_input_kgm2: None,
+            mass_component_set_kg: None,
+            mass_housed_unit_kg: None,
+            t1_nm: None,
+            t2_nm: None,
+            k1_nm_per_rad: None,
+            k2_nm_per_rad: None,
+            k3_nm_per_rad: None,
+            hysteresis_loss_arcmin: None,
+            backlash_arcmin: None,
+            lost_motion_arcmin: None,
+            transmission_accuracy_arcmin: None,
+            tilting_stiffness_nm_per_rad: None,
+            permissible_tilting_moment_nm: None,
+            bearing: BearingRatings::default(),
+            buckling_torque_nm: None,
+            ratcheting_torque_nm: None,
+            envelope: Envelope::default(),
+            efficiency: None,
+            provenance,
+        }
+    }
+
     /// Mass of the gear \[kg\] as it is bought: as a component set or as a housed unit (`which`). `None` if this mass
     /// is blank.
     pub fn mass_kg(&self, which: GearMass) -> Option<f64> {

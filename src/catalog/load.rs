@@ -93,36 +93,31 @@ fn overlay_sources(folder: &Path) -> Result<(Vec<Source>, Vec<Fault>), InputErro
     Ok((sources, names.iter().filter_map(|name| stray_file(folder, name)).collect()))
 }
 
-const FILE_NAMES: [&str; 7] = [
-    "gears.csv",
-    "gears_efficiency.csv",
-    "actuators.csv",
-    "motors.csv",
-    "motor_curves.csv",
-    "materials.csv",
-    "profiles.csv",
-];
+/// Names of all files that a catalog folder may have.
+fn file_names() -> [&'static str; 7] {
+    CatalogFile::ALL.map(CatalogFile::file_name)
+}
 
 fn no_catalog_file(folder: &str, names: &[String]) -> Fault {
-    let near = names.iter().find_map(|name| Some((name, closest(name, &FILE_NAMES)?)));
+    let near = names.iter().find_map(|name| Some((name, closest(name, &file_names())?)));
     let near = near.map(|(name, known)| format!("should {name} be {known}? ")).unwrap_or_default();
     Fault {
         file: folder.into(),
         line: None,
         field: String::new(),
         problem: "the folder holds no catalog file".into(),
-        hint: format!("{near}put in any of: {}", FILE_NAMES.join(", ")),
+        hint: format!("{near}put in any of: {}", file_names().join(", ")),
     }
 }
 
 fn stray_file(folder: &Path, name: &str) -> Option<Fault> {
-    let stray = name.to_lowercase().ends_with(".csv") && !FILE_NAMES.contains(&name);
+    let stray = name.to_lowercase().ends_with(".csv") && !file_names().contains(&name);
     stray.then(|| Fault {
         file: folder.join(name).display().to_string(),
         line: None,
         field: String::new(),
         problem: "is not read".into(),
-        hint: format!("catalog files are called {}", FILE_NAMES.join(", ")),
+        hint: format!("catalog files are called {}", file_names().join(", ")),
     })
 }
 
@@ -220,11 +215,6 @@ fn add_alias(catalogs: &mut Catalogs, row: &Row) {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_file_names_are_those_of_the_files() {
-        assert_eq!(CatalogFile::ALL.map(CatalogFile::file_name), FILE_NAMES);
-    }
 
     #[test]
     fn the_built_in_catalogs_are_sound() {

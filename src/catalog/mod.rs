@@ -72,8 +72,13 @@ impl Provenance {
         self.file.starts_with(BUILT_IN)
     }
 
-    /// The caveat that is printed with a part whose main numbers were not read in a document: `from memory` or
-    /// `representative`; `None` for other parts.
+    /// Whether the number in a column of the row was not read in a document.
+    pub(crate) fn is_unverified(&self, column: &str) -> bool {
+        self.unverified_fields.iter().any(|listed| listed == column)
+    }
+
+    /// The caveat that is printed with a part whose main numbers were not read in a document of its vendor: `third party`,
+    /// `from memory` or `representative`; `None` for other parts.
     ///
     /// ```
     /// use armwright::catalog::Catalogs;
@@ -85,8 +90,8 @@ impl Provenance {
     /// ```
     pub fn caveat(&self) -> Option<&'static str> {
         match self.confidence {
-            Confidence::Verified | Confidence::ThirdParty => None,
-            Confidence::FromMemory | Confidence::Representative => {
+            Confidence::Verified => None,
+            Confidence::ThirdParty | Confidence::FromMemory | Confidence::Representative => {
                 Some(Confidence::WORDS[self.confidence as usize])
             }
         }

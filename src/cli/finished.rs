@@ -35,11 +35,11 @@ use crate::study::bearing_remarks::bearing_remarks;
 use crate::study::budget::budgets;
 use crate::study::definition::Study;
 use crate::study::effects::Correction;
-use crate::study::given_remarks::given_drive_remarks;
+use crate::study::given_remarks::GivenDrives;
 use crate::study::outcome::StudyOutcome;
 use crate::study::page::study_page;
 use crate::study::range::range_words;
-use crate::study::table::front_table;
+use crate::study::table::{front_table, front_table_with};
 use crate::study::ties::ties;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -292,7 +292,9 @@ impl Finished<'_> {
     fn summary(&self) -> SummaryInput {
         let (study, sweep) = (self.study, &self.outcome.sweep);
         let cost = |name: &str| self.catalogs.materials.iter().find(|m| m.name == name)?.cost_eur_per_kg;
-        let overall = front_table(self.problem, self.catalogs, &self.outcome.front);
+        let mut given = GivenDrives::of(self.problem, self.catalogs);
+        let overall =
+            front_table_with(self.problem, self.catalogs, &self.outcome.front, |rows| given.take(rows));
         SummaryInput {
             budgets: Vec::new(),
             facts: SummaryFacts {
@@ -310,7 +312,7 @@ impl Finished<'_> {
                 cases: self.judged_cases(),
                 ranges: range_words(&study.space),
                 not_checked: study.not_checked.clone(),
-                remarks: self.remarks(&overall),
+                remarks: self.remarks(&overall, &given),
                 caveats: Caveats::of(self.catalogs),
                 results: self.dir.display().to_string(),
             },
@@ -331,10 +333,10 @@ impl Finished<'_> {
     }
 
     /// What a reader should know of the question, and of the output bearings and the given drives in the answer.
-    fn remarks(&self, front: &FrontTable) -> Vec<String> {
+    fn remarks(&self, front: &FrontTable, given: &GivenDrives) -> Vec<String> {
         let of_study = self.study.remarks.iter().cloned();
         let of_bearings = bearing_remarks(&self.study.space, self.catalogs, front);
-        let of_given = given_drive_remarks(self.problem, self.catalogs, &self.outcome.front);
+        let of_given = given.remarks(self.outcome.front.len());
         of_study.chain(of_bearings).chain(of_given).collect()
     }
 

@@ -39,6 +39,19 @@ const STATUS: Kind = Kind::Word(&["complete", "certified", "partial", "interrupt
 const FILES: Key =
     required("files", Kind::Map(&Kind::Text), "-", "Every other file, with the BLAKE3 hash of its bytes.");
 const VERSION: Key = required("tool_version", Kind::Text, "-", "Version of armwright that wrote the file.");
+const SCHEMA_VERSION: Key = required("schema_version", Kind::Whole(1), "-", "Of this file.");
+const STUDY: Key = required("study", Kind::Text, "-", "Name of the study.");
+const STUDY_HASH: Key = required("study_hash", Kind::Text, "-", "BLAKE3 hash of the study's text.");
+const CATALOGS_HASH: Key = required("catalogs_hash", Kind::Text, "-", "Hash of every catalog rating.");
+const DESIGNS_TOTAL: Key =
+    required("designs_total", Kind::NonNegative, "-", "Designs in the space; rounded above 2^53.");
+const DESIGNS_EVALUATED: Key =
+    required("designs_evaluated", Kind::Whole(0), "-", "Designs that were evaluated.");
+const ELAPSED: Key = required("elapsed_s", Kind::NonNegative, "s", "How long the search took.");
+const THREADS: Key = required("threads", Kind::Whole(1), "-", "Number of threads.");
+const PLATFORM: Key = required("platform", Kind::Text, "-", "System and processor.");
+const TIES_LISTED: Key =
+    required("ties_listed", Kind::Flag, "-", "Whether tied drives are rows of their own.");
 
 /// An object of which only some keys are told; others are there too.
 const fn open(name: &'static str, about: &'static str, keys: &'static [Key]) -> Shape {
@@ -49,13 +62,13 @@ static RUN: Shape = Shape::new(
     "run",
     "A study's result. `docs/results-format.md` explains each key.",
     &[
-        required("schema_version", Kind::Whole(1), "-", "Of this file."),
-        required("study", Kind::Text, "-", "Name of the study."),
+        SCHEMA_VERSION,
+        STUDY,
         required("question", Kind::Either(&[Kind::Text, Kind::Null]), "-", "Its question."),
         required("search", Kind::Word(&["exhaustive", "exact"]), "-", "How the front was found."),
         required("status", STATUS, "-", "How the search ended."),
-        required("designs_total", Kind::NonNegative, "-", "Designs in the space; rounded above 2^53."),
-        required("designs_evaluated", Kind::Whole(0), "-", "Designs that were evaluated."),
+        DESIGNS_TOTAL,
+        DESIGNS_EVALUATED,
         required("designs_excluded", Kind::NonNegative, "-", "Designs that were left out."),
         required("front_size", Kind::Whole(0), "-", "Rows of `front.csv`."),
         required("hypervolume", Kind::Number, "-", "Of the front, in logarithms."),
@@ -68,18 +81,18 @@ static RUN: Shape = Shape::new(
             "kg",
             "The mass up to which the front is proved whole.",
         ),
-        required("ties_listed", Kind::Flag, "-", "Whether tied drives are rows of their own."),
+        TIES_LISTED,
         required(
             "picks",
             Kind::List(&Kind::Object(&PICK)),
             "-",
             "Lightest, stiffest, highest mode and knee.",
         ),
-        required("elapsed_s", Kind::NonNegative, "s", "How long the search took."),
+        ELAPSED,
         required("designs_per_s", Kind::NonNegative, "1/s", "Designs evaluated in a second."),
-        required("threads", Kind::Whole(1), "-", "Number of threads."),
+        THREADS,
         VERSION,
-        required("platform", Kind::Text, "-", "System and processor."),
+        PLATFORM,
         required("models", Kind::Map(&Kind::Text), "-", "Models of links and joints."),
         required("constraints", WORDS, "-", "The limits, in words."),
         required("cases", WORDS, "-", "The cases, in words."),
@@ -90,14 +103,14 @@ static RUN: Shape = Shape::new(
             "caveats",
             Kind::Either(&[Kind::Text, Kind::Null]),
             "-",
-            "Parts of the picks whose ratings are representative or from memory, in a sentence.",
+            "Parts of the picks whose ratings were not seen in a document of the vendor, in a sentence.",
         ),
         required("effects", LIST, "-", "The study's effects, and whether they count."),
         required("effects_mass_kg", Kind::Number, "kg", "Mass that effects add to every design."),
         required("carried_over", LIST, "-", "Corrections of an arm file, and whether they apply."),
         required("catalogs", Kind::Either(&[Kind::Text, Kind::Null]), "-", "Folder of own rows."),
-        required("study_hash", Kind::Text, "-", "BLAKE3 hash of the study's text."),
-        required("catalogs_hash", Kind::Text, "-", "Hash of every catalog rating."),
+        STUDY_HASH,
+        CATALOGS_HASH,
         required("not_written", WORDS, "-", "What could not be made; empty in a whole result."),
         optional(
             "worst_poses",
@@ -167,7 +180,7 @@ static MATERIAL: Shape = Shape::new(
         required("status", STATUS, "-", "How its search ended."),
         required("front_size", Kind::Whole(0), "-", "Rows of its front."),
         required("cost_eur_per_kg", NUMBER_OR_NULL, "EUR/kg", "Price of the material."),
-        required("ties_listed", Kind::Flag, "-", "Whether tied drives are rows of their own."),
+        TIES_LISTED,
     ],
     &[],
 );
@@ -176,13 +189,13 @@ static SHARD: Shape = Shape::new(
     "shard",
     "A shard of a search.",
     &[
-        required("schema_version", Kind::Whole(1), "-", "Of this file."),
-        required("study", Kind::Text, "-", "Name of the study."),
+        SCHEMA_VERSION,
+        STUDY,
         VERSION,
-        required("study_hash", Kind::Text, "-", "BLAKE3 hash of the study's text."),
-        required("catalogs_hash", Kind::Text, "-", "Hash of every catalog rating."),
+        STUDY_HASH,
+        CATALOGS_HASH,
         required("flags", Kind::Object(&FLAGS), "-", "Kind of search."),
-        required("designs_total", Kind::NonNegative, "-", "Designs in the space; rounded above 2^53."),
+        DESIGNS_TOTAL,
         required("shard", Kind::Array(2, &Kind::Whole(1)), "-", "Its number and the number of shards."),
         optional(
             "range",
@@ -205,13 +218,13 @@ static SHARD: Shape = Shape::new(
             "left out by a visit",
             "Boxes bounded for the front of all designs.",
         ),
-        required("designs_evaluated", Kind::Whole(0), "-", "Designs that were evaluated."),
+        DESIGNS_EVALUATED,
         required("candidates", Kind::Whole(0), "-", "Designs found for the front of all designs."),
         required("proved", Kind::Flag, "-", "Whether no design of the shard is missing."),
         required("command", WORDS, "-", "Words that name study, limits, catalogs and search."),
-        required("elapsed_s", Kind::NonNegative, "s", "How long it took."),
-        required("threads", Kind::Whole(1), "-", "Number of threads."),
-        required("platform", Kind::Text, "-", "System and processor."),
+        ELAPSED,
+        THREADS,
+        PLATFORM,
         FILES,
     ],
     &[],
@@ -233,7 +246,7 @@ static SHARD_FRONT: Shape = Shape::new(
     &[
         required("front", Kind::Text, "-", "`all`, or a material."),
         required("subtrees", WORDS, "-", "Names of the subtrees: the halves that lead to each."),
-        required("designs_evaluated", Kind::Whole(0), "-", "Designs that were evaluated."),
+        DESIGNS_EVALUATED,
         required("boxes", Kind::Whole(0), "-", "Boxes bounded up to the end of this front."),
         required("gap", Kind::NonNegative, "-", "The gap that was proved."),
     ],

@@ -27,6 +27,9 @@ pub(super) const STARTS: [[f64; 3]; 2] = [[0.0, 0.0, 1.0], [0.3, 1.0, 0.0]];
 /// Greatest number of refinement steps of the trial shapes on a box of one design.
 const MOST_STEPS: usize = 30;
 
+/// Fraction of the frequency of a bound below which a better trial shape is assumed not to lower it.
+const LOWEST_BY_SHAPE: f64 = 0.4;
+
 /// A box of designs: the number of one node of each level's tree, tip first.
 pub(super) type DesignBox = Vec<u32>;
 
@@ -42,6 +45,12 @@ pub(super) struct BoxBound {
 impl BoxBound {
     /// The bound of a box of which nothing is known yet: no mass, no deflection and an infinite frequency.
     pub(super) const OPEN: Self = Self { mass_kg: 0.0, tip_m: 0.0, hz: f64::INFINITY };
+
+    /// The bound that a better trial shape might have. It is assumed to lower the frequency to no less than a fraction of
+    /// it. If the box would not be pruned even then, no better shape is computed.
+    pub(super) fn with_better_shape(&self) -> Self {
+        Self { hz: LOWEST_BY_SHAPE * self.hz, ..*self }
+    }
 
     /// The bound with all three objectives made worse by the factor `1 + slack`.
     pub(super) fn slackened(&self, slack: f64) -> Self {

@@ -122,7 +122,7 @@ impl Problem<'_> {
             work.tip_growth[row.piece] += part_m.abs() * softer;
         }
         if total > 0.0 {
-            work.tip_growth.iter_mut().for_each(|yields| *yields /= total);
+            work.tip_growth.iter_mut().for_each(|growth| *growth /= total);
         }
     }
 

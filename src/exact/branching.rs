@@ -199,7 +199,7 @@ impl Rows<'_> {
     fn softer(&self, mixed: &Mixed, judged: usize, row: &Row) -> f64 {
         let case = self.tips[judged].case;
         let posed = &self.problem.poses[case].pieces[row.piece];
-        let yields = |stiffness: &[f64; STIFFNESSES]| {
+        let deflection = |stiffness: &[f64; STIFFNESSES]| {
             let stiffness = posed.coordinate_stiffness(row.coordinate, stiffness);
             if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 }
         };
@@ -208,7 +208,7 @@ impl Rows<'_> {
             let [least_nm, most_nm] = self.work.torques[case][row.piece];
             stiffest[0] = curve.steepest(least_nm, most_nm);
         }
-        mean(mixed, |member| yields(&member.stiffness_in(judged)[row.piece])) - yields(&stiffest)
+        mean(mixed, |member| deflection(&member.stiffness_in(judged)[row.piece])) - deflection(&stiffest)
     }
 }
 

@@ -14,9 +14,6 @@ const EQUAL: f64 = 1e-9;
 /// A design dominates another only if it is better by at least this fraction in one objective, so that rounding cannot
 /// decide.
 const BETTER: f64 = 1e-7;
-/// A better trial shape is assumed to lower the frequency of a bound to no less than this fraction of it. If no
-/// incumbent would dominate the bound even then, no better shape is computed, because it would not prune the box.
-const NEAR: f64 = 0.4;
 /// Number of grid steps in a factor of two of mass or deflection.
 const STEPS: f64 = 64.0;
 
@@ -95,10 +92,10 @@ impl Incumbents {
         in_list(self.rows.get(&step(best.mass_kg))) || in_list(self.columns.get(&step(best.tip_deflection_m)))
     }
 
-    /// Whether an incumbent would dominate the bound if a better trial shape lowered the frequency of the bound to the
-    /// fraction [`NEAR`]. Only then is a better shape worth its time.
+    /// Whether an incumbent would dominate the bound with a better trial shape. Only then is a better shape worth its
+    /// time.
     pub(super) fn nearly_dominates(&self, box_bound: &BoxBound) -> bool {
-        self.dominates(&BoxBound { hz: box_bound.hz * NEAR, ..*box_bound })
+        self.dominates(&box_bound.with_better_shape())
     }
 }
 

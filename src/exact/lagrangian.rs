@@ -241,8 +241,8 @@ impl Rows<'_> {
         for (judged, tip) in self.tips.iter().enumerate() {
             let water_kg = self.problem.poses[tip.case].water_kg_m3 * line[inertia::OUTER_AREA] * length_m;
             self.add_weight(piece, judged, (mass_kg - water_kg) * self.problem.space.gravity_m_s2, member);
-            let yields = tip.compliances[piece].iter().zip(stiffnesses).map(|(c, s)| c / s);
-            member.values[1 + judged] += yields.sum::<f64>();
+            let deflections = tip.compliances[piece].iter().zip(stiffnesses).map(|(c, s)| c / s);
+            member.values[1 + judged] += deflections.sum::<f64>();
             // A rigid coordinate stores no strain energy, so its stiffness is 0 here.
             let place = member.place(judged, piece);
             member.stiffness[place] = stiffnesses.map(|s| if s.is_finite() { s } else { 0.0 });

@@ -16,10 +16,6 @@ use crate::search::near::{BUFFER, NearDesign, NearDesigns, ROUNDING, Shortfall, 
 use crate::search::sweep::Candidate;
 use crate::space::design::number;
 
-/// A better trial shape is assumed to lower the frequency of a bound to no less than this fraction of it. If the box
-/// would not be pruned even then, no better shape is computed.
-const NEAR: f64 = 0.4;
-
 impl Exact<'_> {
     /// Finds the designs that meet the constraints and are near `front`. A design is near if its shortfall, the
     /// fraction by which it is worse than some design of the front, is at most the slack. The designs of the front are
@@ -63,13 +59,12 @@ impl Exact<'_> {
         near: &mut Vec<NearDesign>,
     ) -> Vec<OpenBox> {
         self.budget.count_box();
-        let lower = |box_bound: &BoxBound| BoxBound { hz: box_bound.hz * NEAR, ..*box_bound };
         let verdict = problem.bound(
             &mut here.design_box,
             &mut here.shapes,
             work,
             |box_bound| !seeker.is_near(box_bound),
-            |box_bound| !seeker.is_near(&lower(box_bound)),
+            |box_bound| !seeker.is_near(&box_bound.with_better_shape()),
         );
         let Verdict::Open(box_bound) = verdict else { return Vec::new() };
         let Some(level) = problem.widest_level(&here.design_box, &here.shapes, work) else {

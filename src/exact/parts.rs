@@ -42,14 +42,14 @@ impl Line {
     /// The numbers of a tube with its harness. The link model tells which strains the tube has.
     pub(super) fn new(beam: &Beam, harness_kg_per_m: f64, model: LinkModel) -> Self {
         let tube = tube_inertia(beam, model);
-        let yields = |place: usize| match model {
+        let is_compliant = |place: usize| match model {
             LinkModel::Rigid => false,
             LinkModel::Bending => place < 2,
             LinkModel::Full => true,
         };
         let mut stiffnesses = line_stiffnesses(beam).map(|s| s / beam.flexibility);
         for (place, stiffness) in stiffnesses.iter_mut().enumerate() {
-            if !yields(place) {
+            if !is_compliant(place) {
                 *stiffness = f64::INFINITY;
             }
         }

@@ -117,6 +117,13 @@ impl Shape {
     }
 }
 
+impl Key {
+    /// This key with another value that is used without it, as JSON or in words.
+    pub(crate) const fn or(self, default: &'static str) -> Self {
+        Self { default: Some(default), ..self }
+    }
+}
+
 /// A key that must occur.
 pub(crate) const fn required(name: &'static str, kind: Kind, unit: &'static str, about: &'static str) -> Key {
     Key { name, kind, unit, default: None, about }

@@ -9,7 +9,7 @@ use crate::arm::load::LoadCase;
 use crate::arm::pose::any_slides;
 use crate::arm::prismatic::{Moves, PrismaticPiece};
 use crate::arm::structure::{LinkPiece, Piece, Structure};
-use crate::mechanics::chain::{Chain, Item, Posed, Yielding};
+use crate::mechanics::chain::{Chain, Compliance, Item, Posed};
 use crate::mechanics::prismatic::guide_name;
 use nalgebra::Vector3;
 use serde_json::{Map, Value, json};
@@ -149,8 +149,8 @@ impl Snapshot {
                 Item::Load(load) => wrench += load,
                 Item::Elastic(element) => {
                     let torque = statics.joint_torques_nm.iter().find(|(name, _)| *name == element.name);
-                    loads.push(match (&element.yielding, torque) {
-                        (Yielding::Joint(_), Some((_, torque_nm))) => vec![*torque_nm],
+                    loads.push(match (&element.compliance, torque) {
+                        (Compliance::Joint(_), Some((_, torque_nm))) => vec![*torque_nm],
                         _ => element.twists.iter().map(|twist| twist.dot(&wrench)).collect(),
                     });
                     if let Some(own) = &element.own {
@@ -160,8 +160,8 @@ impl Snapshot {
             }
         }
         loads.reverse();
-        let yielded = statics.deformations.iter().zip(&statics.tangent_compliances);
-        let points = loads.iter().zip(yielded).map(|(loads, (deflections, tangents))| {
+        let deflected = statics.deformations.iter().zip(&statics.tangent_compliances);
+        let points = loads.iter().zip(deflected).map(|(loads, (deflections, tangents))| {
             let each = loads.iter().zip(deflections).zip(tangents);
             each.map(|((load_nm, deflection_rad), tangent)| Working {
                 load_nm: *load_nm,

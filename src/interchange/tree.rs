@@ -11,7 +11,7 @@ use crate::arm::LinkModel;
 use crate::arm::prismatic::PrismaticPiece;
 use crate::arm::structure::{Beam, LinkPiece};
 use crate::mechanics::beam::{line_stiffnesses, tube_inertia};
-use crate::mechanics::chain::{ElasticElement, Item, OwnMass, Yielding};
+use crate::mechanics::chain::{Compliance, ElasticElement, Item, OwnMass};
 use crate::mechanics::{Twist, angular, body_inertia, linear, stack};
 use nalgebra::{Matrix3, Matrix6, Vector3};
 use std::collections::BTreeMap;
@@ -136,10 +136,10 @@ impl Builder<'_> {
     /// Adds the hinges of a joint, of its bearing or guide, or of a frame. `carriage` is the joint whose guide this is, if the
     /// guide travels.
     fn springs(&mut self, element: &ElasticElement, workings: &[Working], carriage: Option<&PrismaticPiece>) {
-        let slides = matches!(element.yielding, Yielding::Slide { .. });
-        let is_joint = slides || matches!(element.yielding, Yielding::Joint(_));
-        let yields = self.options.springs && workings.iter().any(|working| !working.is_rigid());
-        if !is_joint && !yields {
+        let slides = matches!(element.compliance, Compliance::Slide { .. });
+        let is_joint = slides || matches!(element.compliance, Compliance::Joint(_));
+        let is_compliant = self.options.springs && workings.iter().any(|working| !working.is_rigid());
+        if !is_joint && !is_compliant {
             return;
         }
         // a joint is in one body with its bearing or guide, whose name begins with the joint's
@@ -168,7 +168,7 @@ impl Builder<'_> {
                 self.last().hinges.push(play);
             }
         }
-        if !yields {
+        if !is_compliant {
             return;
         }
         for (i, (twist, working)) in element.twists.iter().zip(workings).enumerate() {

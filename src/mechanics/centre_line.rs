@@ -35,11 +35,11 @@ impl Posed<'_> {
         let mut walk = Walk::default();
         let mut out = Vec::new();
         if elements.peek().is_some_and(|(e, _)| e.name == "base") {
-            walk.yields(elements.next());
+            walk.deflects(elements.next());
         }
         let is_frame = |e: &ElasticElement| e.name.ends_with(".frame_compliance");
         if elements.peek().is_some_and(|(e, _)| is_frame(e)) {
-            walk.yields(elements.next());
+            walk.deflects(elements.next());
         }
         for piece in &self.chain.pieces {
             match piece {
@@ -47,9 +47,9 @@ impl Posed<'_> {
                     let axis = walk.rotation * joint.axis.into_inner();
                     out.push(walk.station(&joint.name, walk.at_m, Some(axis)));
                     if joint.tilt_rad_per_nm > 0.0 {
-                        walk.yields(elements.next());
+                        walk.deflects(elements.next());
                     }
-                    walk.yields(elements.next());
+                    walk.deflects(elements.next());
                     walk.rotation *= Rotation3::from_axis_angle(&joint.axis, joint.angle.of(pose_rad));
                 }
                 Prepared::Prismatic(joint) => {
@@ -60,15 +60,15 @@ impl Posed<'_> {
                         out.push(walk.station(&joint.name, walk.at_m + travel, None));
                     }
                     if !joint.guide_is_rigid() {
-                        walk.yields(elements.next());
+                        walk.deflects(elements.next());
                     }
-                    walk.yields(elements.next());
+                    walk.deflects(elements.next());
                     walk.at_m += travel;
                     out.push(walk.station(&joint.name, walk.at_m, None));
                 }
                 Prepared::Link(link, beam) => {
                     if elements.peek().is_some_and(|(e, _)| is_frame(e)) {
-                        walk.yields(elements.next());
+                        walk.deflects(elements.next());
                     }
                     let element = if beam.is_some() { elements.next() } else { None };
                     let vector = walk.rotation * link.vector_m;
@@ -80,7 +80,7 @@ impl Posed<'_> {
                         }
                         out.push(station);
                     }
-                    walk.yields(element);
+                    walk.deflects(element);
                     walk.at_m += vector;
                 }
             }
@@ -120,7 +120,7 @@ impl Walk {
 
     /// Adds the motion that an elastic element causes to the motion so far; nothing for `None`. The item is the element
     /// and the values of its strain coordinates.
-    fn yields(&mut self, element: Option<(&ElasticElement, &Vec<f64>)>) {
+    fn deflects(&mut self, element: Option<(&ElasticElement, &Vec<f64>)>) {
         if let Some((element, q)) = element {
             self.motion += element.twists.iter().zip(q).map(|(twist, q)| twist * *q).sum::<Twist>();
         }

@@ -72,7 +72,7 @@ pub(super) enum Prepared {
 
 /// How the strain coordinates of an element (its deflections) follow from the generalized forces on them.
 #[derive(Debug, Clone)]
-pub enum Yielding {
+pub enum Compliance {
     /// In proportion to the force; one compliance for each coordinate.
     Linear(Vec<f64>),
     /// By the joint law of a revolute joint, which has one coordinate: its angle of torsion.
@@ -96,7 +96,7 @@ pub struct ElasticElement {
     /// at the world's origin.
     pub twists: Vec<Twist>,
     /// How the strain coordinates (the deflections of the element) follow from the generalized forces on them.
-    pub yielding: Yielding,
+    pub compliance: Compliance,
     /// Torque on the coordinate of a joint that comes neither from weight nor from the load, such as that of a
     /// counterbalance \[N m\]; 0 for other elements.
     pub torque_nm: f64,
@@ -329,7 +329,7 @@ impl Walk {
             name: joint.name.clone(),
             at_m: self.at_m,
             twists: vec![rotation_twist(&axis, &self.at_m)],
-            yielding: Yielding::Joint(joint.law.at_angle(angle_rad)),
+            compliance: Compliance::Joint(joint.law.at_angle(angle_rad)),
             torque_nm: joint.torque.at(angle_rad),
             own: None,
         }));
@@ -382,7 +382,7 @@ impl Walk {
             name: link.name.clone(),
             at_m: self.at_m,
             twists,
-            yielding: Yielding::Linear(beam.compliances.clone()),
+            compliance: Compliance::Linear(beam.compliances.clone()),
             torque_nm: 0.0,
             own: Some(self.own_mass(piece, link, beam, &frame)),
         }
@@ -415,7 +415,7 @@ impl Walk {
             name,
             at_m: self.at_m,
             twists: axes.iter().map(|axis| rotation_twist(axis, &self.at_m)).collect(),
-            yielding: Yielding::Linear(vec![compliance; 2]),
+            compliance: Compliance::Linear(vec![compliance; 2]),
             torque_nm: 0.0,
             own: None,
         }));
@@ -428,7 +428,7 @@ impl Walk {
             name: base_lift::KIND.name.into(),
             at_m: self.at_m,
             twists: [Vector3::x(), Vector3::y()].map(|axis| rotation_twist(&axis, &self.at_m)).to_vec(),
-            yielding: Yielding::Lift(lift),
+            compliance: Compliance::Lift(lift),
             torque_nm: 0.0,
             own: None,
         }));
@@ -445,7 +445,7 @@ impl Walk {
             name: format!("{name}.frame_compliance"),
             at_m: self.at_m,
             twists: axes.iter().map(turn).collect(),
-            yielding: Yielding::Linear(compliances),
+            compliance: Compliance::Linear(compliances),
             torque_nm: 0.0,
             own: None,
         }));

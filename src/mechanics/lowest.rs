@@ -45,7 +45,7 @@ pub(crate) struct BlockLink<const N: usize> {
 
 impl<const N: usize> BlockLink<N> {
     /// Whether the link is compliant in any direction.
-    pub(crate) fn yields(&self) -> bool {
+    pub(crate) fn is_compliant(&self) -> bool {
         self.end.amax() > 0.0 || self.end_inertia.iter().any(|m| m.amax() > 0.0)
     }
 }

@@ -90,7 +90,9 @@ impl<const N: usize> Outboard<N> {
                     _ => self.steps.push(Shared::Body(inertia * mass)),
                 },
                 Step::Joint(twist, compliance) => self.steps.push(Shared::Joint(*twist, compliance)),
-                Step::Link(link) if link.yields() => self.steps.push(Shared::Link(Box::new(link.clone()))),
+                Step::Link(link) if link.is_compliant() => {
+                    self.steps.push(Shared::Link(Box::new(link.clone())))
+                }
                 Step::Link(link) => self.steps.push(Shared::Body(link.root[0])),
             }
         }
@@ -139,7 +141,7 @@ pub(crate) fn pass<V: Lanes, const N: usize>(
         match step {
             Shared::Body(inertia) => state.body(inertia),
             Shared::Joint(twist, compliance) => state.joint(twist, V::splat(*compliance)),
-            Shared::Link(link) => state.yielding_link(&**link),
+            Shared::Link(link) => state.compliant_link(&**link),
         }
     }
     // in the same walk, because the pivots of shared and inboard pieces form one sequence
@@ -273,7 +275,7 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
     /// for everything inboard grows by `λ row rowᵀ / pivot`. `scale` is `λ / pivot`; for a joint it is multiplied by
     /// the compliance of the joint.
     #[inline(always)]
-    fn yield_by(&mut self, pivot: V, row: &[V; N], scale: V) {
+    fn release_by(&mut self, pivot: V, row: &[V; N], scale: V) {
         for i in 0..N {
             let scaled = row[i] * scale;
             for j in 0..=i {
@@ -294,23 +296,23 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
             }
             own = own + momentum[i] * V::splat(twist[i]);
         }
-        let yielding = self.lambda * compliance;
+        let softness = self.lambda * compliance;
         // the pivot is 1 - λ c tᵀWt, with c the compliance of the joint
-        let pivot = V::splat(1.0) - yielding * own;
-        self.yield_by(pivot, &momentum, yielding / pivot);
+        let pivot = V::splat(1.0) - softness * own;
+        self.release_by(pivot, &momentum, softness / pivot);
     }
 
     /// Adds a compliant link that differs between the eight chains.
     #[inline(always)]
     pub(crate) fn link(&mut self, link: &LaneLink<N>) {
-        self.yielding_link(link);
+        self.compliant_link(link);
     }
 
     /// Adds a link that is the same in all eight chains, compliant or rigid.
     #[inline(always)]
     pub(crate) fn shared_link(&mut self, link: &BlockLink<N>) {
-        match link.yields() {
-            true => self.yielding_link(link),
+        match link.is_compliant() {
+            true => self.compliant_link(link),
             false => self.body(&link.root[0]),
         }
     }
@@ -318,7 +320,7 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
     /// Adds a compliant link, whether the eight chains share it or not. It forms `S` and `P` of the formula in
     /// [`lowest`](super::lowest), then eliminates the end coordinates one by one.
     #[inline(always)]
-    fn yielding_link<L: LinkNumbers<N>>(&mut self, link: &L) {
+    fn compliant_link<L: LinkNumbers<N>>(&mut self, link: &L) {
         let lambda = self.lambda;
         // the product W t of the formula
         let mut moved = [[V::zero(); N]; N];
@@ -358,7 +360,7 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
                     p[g][i] = p[g][i] - factor * p[k][i];
                 }
             }
-            self.yield_by(pivot, &p[k], lambda * inverse);
+            self.release_by(pivot, &p[k], lambda * inverse);
         }
     }
 }

@@ -7,7 +7,7 @@
 //! the carriage; if a ram moves, it stays where the joint begins.
 
 use super::beam::section_frame;
-use super::chain::{ElasticElement, Item, Walk, Yielding};
+use super::chain::{Compliance, ElasticElement, Item, Walk};
 use super::{Wrench, angular, linear, rotation_twist, stack};
 use crate::arm::prismatic::{Moves, PrismaticPiece};
 use crate::arm::springs::{ElementFrame, Side};
@@ -58,7 +58,7 @@ impl Walk {
             name: joint.name.clone(),
             at_m: springs_m,
             twists: vec![stack(&frame.column(0).into(), &Vector3::zeros())],
-            yielding: Yielding::Slide { m_per_n: joint.m_per_n, frame },
+            compliance: Compliance::Slide { m_per_n: joint.m_per_n, frame },
             torque_nm: 0.0,
             own: None,
         }));
@@ -83,7 +83,7 @@ fn guide(joint: &PrismaticPiece, frame: &Matrix3<f64>, springs_m: &Vector3<f64>)
         name: guide_name(&joint.name),
         at_m: *springs_m,
         twists,
-        yielding: Yielding::Linear(compliances),
+        compliance: Compliance::Linear(compliances),
         torque_nm: 0.0,
         own: None,
     }

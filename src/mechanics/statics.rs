@@ -4,7 +4,7 @@
 //! laws. In a serial chain every internal force follows from the loads alone, so one pass from the tip to the base is
 //! enough.
 
-use super::chain::{ElasticElement, Item, Posed, Yielding};
+use super::chain::{Compliance, ElasticElement, Item, Posed};
 use super::linkage::Transferred;
 use super::prismatic::GuideLoad;
 use super::{Twist, Wrench, angular, displacement_at, force_wrench, linear, stack};
@@ -130,8 +130,8 @@ impl Posed<'_> {
         out: &mut Statics,
     ) {
         let mut motion = Twist::zeros();
-        let (yielded, tangents) = match &element.yielding {
-            Yielding::Joint(law) => {
+        let (deflections, tangents) = match &element.compliance {
+            Compliance::Joint(law) => {
                 // a driving joint also holds the torque that the linkage transfers from its passive joint
                 let mut torque_nm = element.twists[0].dot(wrench) + element.torque_nm;
                 let mut passive_twist = Twist::zeros();
@@ -146,27 +146,28 @@ impl Posed<'_> {
                 out.bearing_loads.push(JointLoad::of(wrench, &axis, &element.at_m));
                 (vec![angle_rad], vec![law.tangent_compliance_rad_per_nm(torque_nm)])
             }
-            Yielding::Slide { m_per_n, frame } => {
+            Compliance::Slide { m_per_n, frame } => {
                 let force_n = element.twists[0].dot(wrench);
                 out.joint_forces_n.push((element.name.clone(), force_n));
                 out.guide_loads.push(GuideLoad::of(&element.name, wrench, frame, &element.at_m));
                 (vec![m_per_n * force_n], vec![*m_per_n])
             }
-            Yielding::Lift(lift) => {
+            Compliance::Lift(lift) => {
                 let moments_nm: Vec<f64> = element.twists.iter().map(|twist| twist.dot(wrench)).collect();
                 let each = |of: &dyn Fn(f64) -> f64| moments_nm.iter().map(|nm| of(*nm)).collect::<Vec<_>>();
                 (each(&|nm| lift.angle_rad(nm)), each(&|nm| lift.tangent_compliance_rad_per_nm(nm)))
             }
-            Yielding::Linear(compliances) => {
+            Compliance::Linear(compliances) => {
                 let work = |i: usize| element.own.as_ref().map_or(0.0, |own| own.weight_work[i]);
                 let coordinates = element.twists.iter().zip(compliances).enumerate();
-                let yielded = coordinates.map(|(i, (twist, c))| c * (twist.dot(wrench) + work(i))).collect();
-                (yielded, compliances.clone())
+                let deflections =
+                    coordinates.map(|(i, (twist, c))| c * (twist.dot(wrench) + work(i))).collect();
+                (deflections, compliances.clone())
             }
         };
-        motion += element.twists.iter().zip(&yielded).map(|(twist, q)| twist * *q).sum::<Twist>();
+        motion += element.twists.iter().zip(&deflections).map(|(twist, q)| twist * *q).sum::<Twist>();
         out.shares_m.push((element.name.clone(), displacement_at(&motion, &self.tip_m)));
-        out.deformations.push(yielded);
+        out.deformations.push(deflections);
         out.tangent_compliances.push(tangents);
         // the work of a link's own weight is already counted above; from here on this weight loads everything inboard
         if let Some(own) = &element.own {

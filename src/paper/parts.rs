@@ -1,6 +1,7 @@
 //! The catalog parts that the paper's studies use.
 
 use super::output::PaperError;
+use crate::arm::file::windup_of;
 use crate::arm::joint_law::Windup;
 use crate::catalog::Catalogs;
 use crate::catalog::gear::Gear;
@@ -29,17 +30,7 @@ fn hfuc(catalogs: &Catalogs, size: u32, ratio: u32) -> Result<&Gear, PaperError>
 /// The catalog has no such gear, or its torsion curve is incomplete.
 pub(crate) fn windup(catalogs: &Catalogs, size: u32) -> Result<Windup, PaperError> {
     let gear = gear(catalogs, size)?;
-    complete_curve(gear).ok_or_else(|| missing("complete torsion curve of gear", &gear.id))
-}
-
-fn complete_curve(gear: &Gear) -> Option<Windup> {
-    Some(Windup {
-        k1_nm_per_rad: gear.k1_nm_per_rad?,
-        k2_nm_per_rad: gear.k2_nm_per_rad?,
-        k3_nm_per_rad: gear.k3_nm_per_rad?,
-        t1_nm: gear.t1_nm?,
-        t2_nm: gear.t2_nm?,
-    })
+    windup_of(gear).ok_or_else(|| missing("complete torsion curve of gear", &gear.id))
 }
 
 /// The motor of this model name.

@@ -1,5 +1,5 @@
-//! Caveats of parts: some ratings were not read from a document, or are typical values of a class of parts. Every
-//! pick that uses such a part is marked.
+//! Caveats of parts: some ratings were not read in a document of the vendor, or are typical values of a class of parts.
+//! Every pick that uses such a part is marked.
 
 use super::front_table::FrontTable;
 use super::words::{TERMINAL, wrap};
@@ -25,7 +25,8 @@ impl Caveats {
         Self(parts.filter_map(caveat).collect())
     }
 
-    /// Caveat of a part: `representative` or `from memory`; `None` if its ratings were read from a document.
+    /// Caveat of a part: `third party`, `from memory` or `representative`; `None` if its ratings were read in a document of
+    /// the vendor.
     pub fn of_part(&self, name: &str) -> Option<&'static str> {
         self.0.get(name).copied()
     }
@@ -57,7 +58,11 @@ impl Caveats {
             used.iter().map(|(part, names)| format!("{} in {}", self.marked(part), place(names))).collect();
         match words.is_empty() {
             true => String::new(),
-            false => wrap(&format!("Figures not from a document: {}.", words.join("; ")), TERMINAL, ""),
+            false => wrap(
+                &format!("Figures not seen in a document of the vendor: {}.", words.join("; ")),
+                TERMINAL,
+                "",
+            ),
         }
     }
 }
@@ -80,6 +85,7 @@ mod tests {
         let caveats = Caveats::of(&Catalogs::builtin());
         assert_eq!(caveats.of_part("Structural steel S355"), None);
         assert_eq!(caveats.marked("F11-10"), "F11-10 (from memory)");
+        assert_eq!(caveats.marked("HG-KR73"), "HG-KR73 (third party)");
         let words = |row: &str| row.split(';').map(String::from).collect::<Vec<_>>();
         let front = FrontTable {
             columns: words("design_id;arm_material;j1_motor;tip_deflection_mm;mass_kg;lowest_mode_hz"),

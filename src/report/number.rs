@@ -23,6 +23,11 @@ pub fn significant(value: f64, digits: usize) -> String {
     }
 }
 
+/// `mantissa · 10^power`. The division keeps negative powers exact to the last digit.
+pub(crate) fn times_power_of_ten(mantissa: f64, power: i32) -> f64 {
+    if power < 0 { mantissa / 10f64.powi(-power) } else { mantissa * 10f64.powi(power) }
+}
+
 /// A value with `decimals` digits after the point; never `-0.00`.
 pub fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");

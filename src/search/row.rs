@@ -44,7 +44,7 @@ pub(crate) struct Row {
     /// for a link or an offset has no drives.
     pub drives: Vec<DriveAttributes>,
     /// Indices of the inner slots that deflect elastically. The link of the row level is left out.
-    pub yielding: Vec<usize>,
+    pub compliant: Vec<usize>,
     /// The hinges (elastic coordinates) of all inner slots. The link of the row level is left out.
     pub hinges: Vec<Hinge>,
     /// Mass of the given drives, tubes and offsets among the inner slots \[kg\].
@@ -122,7 +122,7 @@ impl Row {
             first,
             chosen: chosen(problem, first),
             chunks,
-            yielding: (0..slots.len()).filter(|&k| hinges.iter().any(|hinge| hinge.slot == k)).collect(),
+            compliant: (0..slots.len()).filter(|&k| hinges.iter().any(|hinge| hinge.slot == k)).collect(),
             fixed_kg: slots.iter().filter_map(Slot::fixed_kg).sum::<f64>()
                 + given_tubes().map(|tube| tube.mass_kg).sum::<f64>(),
             twisting: (0..slots.len()).map(|k| twisting(&slots[k], &drives[k], k, &cases)).collect(),

@@ -280,16 +280,16 @@ fn loaded(station: &Station) -> [bool; 6] {
 /// Number of inner slots from the row level to the last one that is compliant in this block; 0 if none is. `first` is
 /// the slot of the row level, and `links_yield` tells whether some option of the row's link is compliant.
 fn last_yielding<const N: usize>(block: &Block<N>, first: usize, links_yield: bool) -> usize {
-    let yields = |slot: &BlockSlot<N>| match slot {
+    let is_compliant = |slot: &BlockSlot<N>| match slot {
         BlockSlot::Joint { twist, .. } => twist.amax() > 0.0,
-        BlockSlot::Links(options) => options[0].yields(),
+        BlockSlot::Links(options) => options[0].is_compliant(),
         BlockSlot::Body(_) => false,
     };
     // the first slot may be the link of the row, of which some options may be compliant
-    let inner = block.slots[first + 1..].iter().rposition(yields).map(|last| last + 2);
+    let inner = block.slots[first + 1..].iter().rposition(is_compliant).map(|last| last + 2);
     let of_row = match &block.slots[first] {
         BlockSlot::Links(_) => links_yield,
-        slot => yields(slot),
+        slot => is_compliant(slot),
     };
     inner.unwrap_or(usize::from(of_row))
 }

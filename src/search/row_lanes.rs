@@ -166,7 +166,7 @@ impl RowChunk<'_, '_> {
             None => self.start::<V>(begun, arms),
         }
         let mut chosen = 0;
-        for &k in &self.row.yielding {
+        for &k in &self.row.compliant {
             if slots[k].given_tube().is_some() {
                 largest_s2 = largest_s2.max(self.add_tube(k, arms));
                 continue;

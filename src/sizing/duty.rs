@@ -1,6 +1,9 @@
 //! Duty cycles: the phases that a joint repeats. They give the mean speed, the weights of the cubic mean torque and
 //! the weights of the motor's heat.
 
+/// Relative difference up to which two ramp times count as equal.
+const SAME_TIME: f64 = 1e-9;
+
 /// What a joint does during one phase of the duty cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PhaseKind {
@@ -115,6 +118,22 @@ impl DutyCycle {
     pub fn ramps_s(&self) -> [f64; 2] {
         [PhaseKind::Accelerate, PhaseKind::Decelerate]
             .map(|kind| self.phases.iter().filter(|p| p.kind == kind).map(|p| p.duration_s).sum())
+    }
+
+    /// The total times of speeding up and of slowing down \[s\], if they differ; `None` if they are equal, as they must
+    /// be.
+    pub(crate) fn unequal_ramps_s(&self) -> Option<[f64; 2]> {
+        let [up_s, down_s] = self.ramps_s();
+        ((up_s - down_s).abs() > SAME_TIME * (up_s + down_s)).then_some([up_s, down_s])
+    }
+
+    /// The duration \[s\] of the first ramp that does not take `ramp_time_s` \[s\], the time in which the joint reaches its
+    /// speed; `None` if all ramps do. Phases of one kind that follow one another are one ramp.
+    pub(crate) fn other_ramp_s(&self, ramp_time_s: f64) -> Option<f64> {
+        let is_ramp = |kind| matches!(kind, PhaseKind::Accelerate | PhaseKind::Decelerate);
+        let runs = self.phases.chunk_by(|a, b| a.kind == b.kind).filter(|run| is_ramp(run[0].kind));
+        let mut ramps_s = runs.map(|run| run.iter().map(|phase| phase.duration_s).sum::<f64>());
+        ramps_s.find(|&ramp_s| ramp_s > 0.0 && (ramp_s - ramp_time_s).abs() > SAME_TIME * ramp_time_s)
     }
 
     /// Angle through which the joint turns in the whole cycle, divided by its largest speed \[s\].

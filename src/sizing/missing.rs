@@ -1,35 +1,78 @@
 //! The parts of a drive table that cannot be checked, with the ratings that they lack.
 
 use super::select::DriveTable;
+use crate::catalog::envelope::Envelope;
 use crate::catalog::needs::{Lack, words};
 
-/// Number of parts that a message names.
+/// Number of groups of parts that a message names.
 const NAMED: usize = 4;
+/// Number of parts of a group that a message names.
+const NAMED_OF_GROUP: usize = 3;
+
+/// A part that lacks ratings.
+struct LackingPart<'t> {
+    id: &'t str,
+    /// Whether the part is built in, and whether a known size of it does not fit.
+    order: (bool, bool),
+    lacks: Vec<Lack>,
+}
+
+/// The first names of a list, and the number of the others.
+fn first_of(names: &[&str]) -> String {
+    let named = names[..names.len().min(NAMED_OF_GROUP)].join(", ");
+    match names.len().saturating_sub(NAMED_OF_GROUP) {
+        0 => named,
+        more => format!("{named} and {more} more"),
+    }
+}
 
 impl DriveTable<'_> {
     /// In words, the parts that cannot be checked and the ratings that they lack. Parts of the user's own catalogs
-    /// come first. `None` if every part has all its ratings.
+    /// come first, then those whose known sizes fit. `None` if every part has all its ratings.
     ///
-    /// `PLE-60-40: no rated_life_h (life), no efficiency_rated_2000rpm (motor torque)`
+    /// `PLE-60-40, PLE-60-50: no rated_life_h (life), no efficiency_rated_2000rpm (motor torque)`
     pub fn missing_figures(&self) -> Option<String> {
-        let gears = self.gears().iter().map(|g| (&g.id, &g.provenance, g.lacks(self.gear_mass())));
-        let motors = self.motors().iter().map(|m| (&m.id, &m.provenance, m.lacks()));
-        let mut lacking: Vec<(&String, bool, Vec<Lack>)> = Vec::new();
-        for (id, from, lacks) in gears.chain(motors).filter(|(.., lacks)| !lacks.is_empty()) {
-            // an actuator is listed both as a gear and as a motor, under the same name
-            match lacking.iter_mut().find(|(other, ..)| *other == id) {
-                Some((.., all)) => all.extend(lacks),
-                None => lacking.push((id, from.is_built_in(), lacks)),
+        let mut groups: Vec<(String, Vec<&str>)> = Vec::new();
+        for part in self.lacking_parts() {
+            let lacks = words(&part.lacks);
+            match groups.iter_mut().find(|(other, _)| *other == lacks) {
+                Some((_, names)) => names.push(part.id),
+                None => groups.push((lacks, vec![part.id])),
             }
         }
-        lacking.sort_by_key(|(_, is_built_in, _)| *is_built_in);
-        let named: Vec<String> =
-            lacking.iter().take(NAMED).map(|(id, _, lacks)| format!("{id}: {}", words(lacks))).collect();
-        let more = match lacking.len().saturating_sub(NAMED) {
-            0 => String::new(),
-            more => format!("; and {more} more parts"),
-        };
-        (!named.is_empty()).then(|| format!("{}{more}", named.join("; ")))
+        let named = groups.iter().take(NAMED).map(|(lacks, names)| format!("{}: {lacks}", first_of(names)));
+        let more: usize = groups.iter().skip(NAMED).map(|(_, names)| names.len()).sum();
+        let more = (more > 0).then(|| format!("and {more} more parts"));
+        (!groups.is_empty()).then(|| named.chain(more).collect::<Vec<_>>().join("; "))
+    }
+
+    /// The parts that cannot be checked, those of the user's own catalogs first, then those whose known sizes fit.
+    fn lacking_parts(&self) -> Vec<LackingPart<'_>> {
+        let fit = &self.motion().fit;
+        let no_size = Envelope::default();
+        let gears = self.gears().iter().map(|g| {
+            let fits = fit.allows(&g.envelope_as(self.gear_mass()), &no_size);
+            LackingPart {
+                id: &g.id,
+                order: (g.provenance.is_built_in(), !fits),
+                lacks: g.lacks(self.gear_mass()),
+            }
+        });
+        let motors = self.motors().iter().map(|m| LackingPart {
+            id: &m.id,
+            order: (m.provenance.is_built_in(), !fit.allows(&no_size, &m.envelope)),
+            lacks: m.lacks(),
+        });
+        let mut lacking: Vec<LackingPart> = Vec::new();
+        for part in gears.chain(motors).filter(|part| !part.lacks.is_empty()) {
+            // an actuator is listed both as a gear and as a motor, under the same name
+            match lacking.iter_mut().find(|other| other.id == part.id) {
+                Some(other) => other.lacks.extend(part.lacks),
+                None => lacking.push(part),
+            }
+        }
+        lacking.sort_by_key(|part| part.order);
+        lacking
     }
 
     /// In words, the parts that cannot be checked and the ratings that they lack, for messages that also name the

@@ -15,8 +15,7 @@
 //! I, A are those of the root of the thread, E = 206 GPa and ρ = 7850 kg/m³ those of steel. The mass of the shaft turns with the motor and does not
 //! travel.
 
-use crate::catalog::envelope::Envelope;
-use crate::catalog::gear::{BearingRatings, Gear, GearKind, LifeLaw};
+use crate::catalog::gear::{Gear, GearKind, LifeLaw};
 use crate::catalog::{Confidence, Provenance};
 use std::f64::consts::PI;
 
@@ -198,46 +197,15 @@ impl Rack {
 
 /// A gear along a travel of which nothing but ratio \[rad/m\] and efficiency is known.
 fn linear(kind: GearKind, name: &str, ratio: f64, efficiency: f64) -> Gear {
-    Gear {
-        id: name.to_string(),
-        series: name.to_string(),
-        kind,
-        size: 0,
-        ratio,
-        life: LifeLaw { rated_h: None, rated_speed_rpm: None, exponent: 3.0 },
-        rated_torque_nm: None,
-        repeated_peak_torque_nm: None,
-        average_torque_limit_nm: None,
-        momentary_peak_torque_nm: None,
-        max_input_speed_rpm: None,
-        average_input_speed_limit_rpm: None,
-        inertia_input_kgm2: None,
-        mass_component_set_kg: None,
-        mass_housed_unit_kg: None,
-        t1_nm: None,
-        t2_nm: None,
-        k1_nm_per_rad: None,
-        k2_nm_per_rad: None,
-        k3_nm_per_rad: None,
-        hysteresis_loss_arcmin: None,
-        backlash_arcmin: None,
-        lost_motion_arcmin: None,
-        transmission_accuracy_arcmin: None,
-        tilting_stiffness_nm_per_rad: None,
-        permissible_tilting_moment_nm: None,
-        bearing: BearingRatings::default(),
-        buckling_torque_nm: None,
-        ratcheting_torque_nm: None,
-        envelope: Envelope::default(),
-        efficiency: Some(efficiency),
-        provenance: Provenance {
-            source: "the study".into(),
-            confidence: Confidence::Verified,
-            unverified_fields: Vec::new(),
-            file: "the study".into(),
-            line: 0,
-        },
-    }
+    let provenance = Provenance {
+        source: "the study".into(),
+        confidence: Confidence::Verified,
+        unverified_fields: Vec::new(),
+        file: "the study".into(),
+        line: 0,
+    };
+    let life = LifeLaw { rated_h: None, rated_speed_rpm: None, exponent: 3.0 };
+    Gear { life, efficiency: Some(efficiency), ..Gear::unrated(name, kind, ratio, provenance) }
 }
 
 impl Gear {

@@ -117,16 +117,12 @@ impl MotionRequirement {
             positive("emergency_stops", stops)?;
         }
         self.duty_cycle.phases.iter().try_for_each(Phase::validate)?;
-        let [up_s, down_s] = self.duty_cycle.ramps_s();
-        if (up_s - down_s).abs() > SAME_TIME * (up_s + down_s) {
+        if let Some([up_s, down_s]) = self.duty_cycle.unequal_ramps_s() {
             return Err(RequirementError::UnequalRamps { up_s, down_s });
         }
         positive("duty_cycle total duration_s", self.duty_cycle.phases.iter().map(|p| p.duration_s).sum())
     }
 }
-
-/// Relative difference up to which the two ramp times count as equal.
-const SAME_TIME: f64 = 1e-9;
 
 impl Phase {
     fn validate(&self) -> Result<(), RequirementError> {

@@ -60,13 +60,10 @@ pub(crate) fn gear(
 ) -> Gear {
     let mut parts = id.split('-');
     let mut next = || parts.next().expect("series-size-ratio");
+    let (series, size) = (next().to_string(), next().parse().expect("a size"));
     Gear {
-        id: id.to_string(),
-        series: next().to_string(),
-        size: next().parse().expect("a size"),
-        kind: GearKind::StrainWave,
-        ratio: next().parse().expect("a ratio"),
-        life: LifeLaw::usual(GearKind::StrainWave),
+        series,
+        size,
         rated_torque_nm: Some(torques_nm[0]),
         repeated_peak_torque_nm: Some(torques_nm[1]),
         average_torque_limit_nm: Some(torques_nm[2]),
@@ -76,23 +73,8 @@ pub(crate) fn gear(
         inertia_input_kgm2: Some(inertia),
         mass_component_set_kg: Some(masses_kg[0]),
         mass_housed_unit_kg: Some(masses_kg[1]),
-        t1_nm: None,
-        t2_nm: None,
-        k1_nm_per_rad: None,
-        k2_nm_per_rad: None,
-        k3_nm_per_rad: None,
-        hysteresis_loss_arcmin: None,
-        backlash_arcmin: None,
-        lost_motion_arcmin: None,
-        transmission_accuracy_arcmin: None,
-        tilting_stiffness_nm_per_rad: None,
-        permissible_tilting_moment_nm: None,
-        bearing: Default::default(),
-        buckling_torque_nm: None,
-        ratcheting_torque_nm: None,
-        envelope: Default::default(),
         efficiency: Some(0.78),
-        provenance: provenance(),
+        ..Gear::unrated(id, GearKind::StrainWave, next().parse().expect("a ratio"), provenance())
     }
 }
 

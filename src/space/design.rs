@@ -1,7 +1,7 @@
 //! One complete design: its number and name, its parts, its arm, and its objectives by the full model.
 
 use super::bearing_loads::resolved;
-use super::design_space::{DriveChoice, LinkOption, MotorPlace, SpaceJoint, SpacePiece};
+use super::design_space::{Case, DesignSpace, DriveChoice, LinkOption, MotorPlace, SpaceJoint, SpacePiece};
 pub(crate) use super::full_model::full_deflection_m;
 pub use super::full_model::{full_objectives, objectives_with};
 use super::levels::OutwardIn;
@@ -168,21 +168,23 @@ impl<'c> ArmProblem<'c> {
     /// The judged cases of the study, as load cases of the full model.
     pub fn load_cases(&self) -> Vec<LoadCase> {
         let space = self.space();
-        space
-            .judged_cases
-            .iter()
-            .map(|&i| &space.cases[i])
-            .map(|case| LoadCase {
-                name: case.name.clone(),
-                pose_deg: case.pose_deg.clone(),
-                payload: case.payload,
-                tip_force_n: case.tip_force_n,
-                tip_moment_nm: case.tip_moment_nm,
-                links: space.links,
-                joints: space.joints,
-                water: case.water,
-            })
-            .collect()
+        space.judged_cases.iter().map(|&i| space.load_case(&space.cases[i])).collect()
+    }
+}
+
+impl DesignSpace {
+    /// A case of the study as a load case of the full model.
+    pub(crate) fn load_case(&self, case: &Case) -> LoadCase {
+        LoadCase {
+            name: case.name.clone(),
+            pose_deg: case.pose_deg.clone(),
+            payload: case.payload,
+            tip_force_n: case.tip_force_n,
+            tip_moment_nm: case.tip_moment_nm,
+            links: self.links,
+            joints: self.joints,
+            water: case.water,
+        }
     }
 }
 

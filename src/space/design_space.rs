@@ -9,8 +9,7 @@ use crate::arm::extras::ExtrasSource;
 use crate::arm::file::windup_of;
 use crate::arm::joint_law::Curve;
 use crate::arm::linkage::composed;
-use crate::arm::load::Payload;
-use crate::arm::load::Water;
+use crate::arm::load::{Payload, Water};
 use crate::arm::pose::{DrivenJoint, Motion};
 use crate::arm::section::{LinkMaterial, Section};
 use crate::arm::springs::{Side, Spring};
@@ -113,7 +112,7 @@ use std::sync::Arc;
 /// let problem = ArmProblem::new(&space, &catalogs);
 /// let [thin, thick] = [0, 1].map(|number| evaluate(&problem, number).expect("this design holds").objectives);
 /// assert!(thin.mass_kg < thick.mass_kg);
-/// // the joint yields far more than the tube, and the heavier tube turns it further
+/// // the joint twists far more than the tube, and the heavier tube turns it further
 /// assert!(thin.tip_deflection_m < thick.tip_deflection_m);
 /// ```
 #[derive(Debug, Clone, PartialEq)]
@@ -345,9 +344,9 @@ impl SpaceJoint {
     /// Torsion curve of the joint with a catalog gear. It includes the compliance of the connections at the joint. The
     /// curve is rigid if the catalog has none for this gear.
     pub(crate) fn curve_with(&self, gear: &Gear) -> Curve {
-        let yields = 1.0 + self.connection_share;
+        let softer = 1.0 + self.connection_share;
         let of_gear =
-            windup_of(gear).map_or(Curve::Rigid, |windup| Curve::Windup(windup.stiffened(1.0 / yields)));
+            windup_of(gear).map_or(Curve::Rigid, |windup| Curve::Windup(windup.stiffened(1.0 / softer)));
         of_gear.in_series(self.stages.before.rad_per_nm / (gear.ratio * gear.ratio))
     }
 

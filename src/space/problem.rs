@@ -545,10 +545,10 @@ pub(crate) fn block_steps<'a, const N: usize>(
 ) -> impl Iterator<Item = Step<'a, N>> {
     let steps = block.slots[..slots].iter().enumerate().flat_map(|(slot, piece)| match piece {
         BlockSlot::Joint { twist, inertia_per_kg } => {
-            let yields = state.compliances[slot] > 0.0 && twist.amax() > 0.0;
+            let is_compliant = state.compliances[slot] > 0.0 && twist.amax() > 0.0;
             let weighs = arm.masses_kg[slot] > 0.0;
             [
-                yields.then_some(Step::Joint(twist, state.compliances[slot])),
+                is_compliant.then_some(Step::Joint(twist, state.compliances[slot])),
                 weighs.then_some(Step::Body(arm.masses_kg[slot], inertia_per_kg)),
             ]
         }

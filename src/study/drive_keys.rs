@@ -3,9 +3,18 @@
 use super::motor_kinds::MOTOR_WORDS;
 use crate::arm::keys::GEAR_MASS;
 use crate::catalog::gear::GearKind;
-use crate::input::key::{Kind, Shape, optional, words_of};
+use crate::input::key::{Key, Kind, Shape, optional, words_of};
 
 const TEXTS: Kind = Kind::List(&Kind::Text);
+
+/// Whether a sized joint has a brake.
+pub(super) const BRAKE: Key = optional(
+    "brake",
+    Kind::Flag,
+    "-",
+    "false",
+    "Whether a brake holds the joint at rest; then its motor need not.",
+);
 
 /// Which parts may be chosen.
 pub(super) static DRIVES: Shape = Shape::new(

@@ -3,6 +3,7 @@
 use super::keys::FIT;
 use crate::catalog::Catalogs;
 use crate::catalog::gear::GearMass;
+use crate::catalog::motor::MotorKind;
 use crate::input::json::{Node, Object};
 use crate::report::number::significant;
 use crate::sizing::fit::{FitRequirement, MotorPlace};
@@ -66,7 +67,13 @@ pub(super) fn fit_remarks(space: &DesignSpace, catalogs: &Catalogs) -> Vec<Strin
             without.join(", ")
         )
     });
-    let sentences = [Some(asked), no_link, component_sets(&asking), unknown_sizes(&asking, catalogs)];
+    let sentences = [
+        Some(asked),
+        no_link,
+        component_sets(&asking),
+        unknown_sizes(&asking, catalogs),
+        recalled_sizes(&asking, catalogs),
+    ];
     sentences.into_iter().flatten().collect()
 }
 
@@ -120,17 +127,46 @@ fn phrases(asking: &[&SpaceJoint]) -> Vec<String> {
     phrases.into_iter().map(|(phrase, names)| format!("{phrase} ({})", names.join(", "))).collect()
 }
 
+/// Whether something holds for the sizes and the drives that some of the joints ask.
+fn by_any(asking: &[&SpaceJoint], holds: &dyn Fn(&FitRequirement, &DriveFilter) -> bool) -> bool {
+    asking.iter().any(|joint| match &joint.drive {
+        DriveChoice::FirstFit(filter) | DriveChoice::AllFits(filter) => holds(&joint.fit, filter),
+        DriveChoice::Given { .. } => false,
+    })
+}
+
+/// Number of allowed gears whose limited sizes are in the catalogs, but were not seen in a document, in words; `None` if
+/// there are none.
+fn recalled_sizes(asking: &[&SpaceJoint], catalogs: &Catalogs) -> Option<String> {
+    let gears = catalogs.gears.iter().filter(|gear| {
+        by_any(asking, &|fit, filter| {
+            let size = gear.envelope_as(filter.gear_mass);
+            let counts = [
+                (fit.gear_to_link_max.is_some(), size.outer_diameter_m, "outer_diameter_mm"),
+                (fit.cable_bore_min_m.is_some(), size.hollow_bore_m, "hollow_bore_mm"),
+                (fit.drive_length_max_m.is_some(), size.length_m, "length_mm"),
+            ];
+            let is_unseen = |column: &str| gear.provenance.is_unverified(column);
+            filter.allows_gear(gear)
+                && counts
+                    .iter()
+                    .any(|(asked, size_m, column)| *asked && size_m.is_some() && is_unseen(column))
+        })
+    });
+    let gears = gears.count();
+    (gears > 0).then(|| {
+        format!(
+            "Sizes that were recalled and not seen in a document count like others: that is so of {gears} gears that these joints \
+             may have (unverified_fields in `armwright catalog show --part NAME`)."
+        )
+    })
+}
+
 /// Number of allowed parts for which the catalogs lack a size that is limited, in words; `None` if there are none.
 fn unknown_sizes(asking: &[&SpaceJoint], catalogs: &Catalogs) -> Option<String> {
     let is_blank = |asked: bool, size_m: Option<f64>| asked && size_m.is_none();
-    let by_any = |lacks: &dyn Fn(&FitRequirement, &DriveFilter) -> bool| {
-        asking.iter().any(|joint| match &joint.drive {
-            DriveChoice::FirstFit(filter) | DriveChoice::AllFits(filter) => lacks(&joint.fit, filter),
-            DriveChoice::Given { .. } => false,
-        })
-    };
     let gears = catalogs.gears.iter().filter(|gear| {
-        by_any(&|fit, filter| {
+        by_any(asking, &|fit, filter| {
             let size = gear.envelope_as(filter.gear_mass);
             filter.allows_gear(gear)
                 && (is_blank(fit.gear_to_link_max.is_some(), size.outer_diameter_m)
@@ -140,9 +176,11 @@ fn unknown_sizes(asking: &[&SpaceJoint], catalogs: &Catalogs) -> Option<String> 
     });
     let motors = catalogs.motors.iter().filter(|motor| {
         let size = &motor.envelope;
-        by_any(&|fit, filter| {
+        by_any(asking, &|fit, filter| {
             let behind = fit.motor == MotorPlace::Behind;
+            // the size of an actuator is that of its gear
             filter.allows_motor(motor)
+                && motor.kind != MotorKind::OfActuator
                 && (is_blank(fit.motor == MotorPlace::InLink, size.outer_diameter_m)
                     || is_blank(behind && fit.cable_bore_min_m.is_some(), size.hollow_bore_m)
                     || is_blank(behind && fit.drive_length_max_m.is_some(), size.length_m))
@@ -209,6 +247,7 @@ mod tests {
              and of the motor behind it at most 150.0 mm (shoulder); motor in the hollow of that link (elbow)",
             "not compared with a link in elbow: there is none before the next joint",
             "A size that the catalogs do not give is not checked",
+            "Sizes that were recalled and not seen in a document count like others",
         ] {
             assert!(remarks.contains(words), "{words}\n{remarks}");
         }

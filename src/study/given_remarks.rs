@@ -1,12 +1,8 @@
 //! Given drives that are too weak for designs of a front, so that it can be said beside the front.
 
-use super::outcome::Front;
-use super::table::sizing_rows;
 use crate::catalog::Catalogs;
 use crate::sizing::check::{Check, CheckState};
 use crate::sizing::sheet::{JointSizingRow, with_part};
-use crate::space::design::options;
-use crate::space::levels::OutwardIn;
 use crate::space::problem::ArmProblem;
 
 /// A given drive and what it fails over a front.
@@ -50,26 +46,30 @@ impl Overloaded {
     }
 }
 
-/// The given drives that fail checks in designs of a front, a sentence each.
-pub(crate) fn given_drive_remarks(problem: &ArmProblem, catalogs: &Catalogs, front: &Front) -> Vec<String> {
-    let pieces = problem.space().pieces.iter().enumerate();
-    let mut given: Vec<Overloaded> = pieces
-        .filter_map(|(piece, what)| {
+/// The given drives of a study, with what they fail in the designs that were taken so far.
+pub(crate) struct GivenDrives(Vec<Overloaded>);
+
+impl GivenDrives {
+    /// The given drives of a study; no design was taken yet.
+    pub(crate) fn of(problem: &ArmProblem, catalogs: &Catalogs) -> Self {
+        let given = problem.space().pieces.iter().enumerate().filter_map(|(piece, what)| {
             let drive = problem.fixed_drive(piece, catalogs)?.drive.name();
             Some(Overloaded { joint: what.name().to_string(), drive, designs: 0, worst: Vec::new() })
-        })
-        .collect();
-    if given.is_empty() {
-        return Vec::new();
+        });
+        Self(given.collect())
     }
-    for judged in front {
-        let chosen = options(problem.level_sizes(), judged.design.number);
-        let rows = chosen.and_then(|chosen| sizing_rows(problem, catalogs, &chosen).ok()).unwrap_or_default();
-        for drive in &mut given {
+
+    /// Takes the sizing rows of a design.
+    pub(crate) fn take(&mut self, rows: &[JointSizingRow]) {
+        for drive in &mut self.0 {
             if let Some(row) = rows.iter().find(|row| row.joint == drive.joint) {
                 drive.take(row);
             }
         }
     }
-    given.iter().filter_map(|drive| drive.sentence(front.len())).collect()
+
+    /// A sentence for each given drive that fails checks in some of the `designs` designs of a front.
+    pub(crate) fn remarks(&self, designs: usize) -> Vec<String> {
+        self.0.iter().filter_map(|drive| drive.sentence(designs)).collect()
+    }
 }

@@ -4,6 +4,7 @@
 use super::limit::{short, toward};
 use crate::arm::joint_law::Curve;
 use crate::catalog::Catalogs;
+use crate::catalog::gear::{Gear, GearKind, GearMass};
 use crate::sizing::demand::JointDemand;
 use crate::sizing::explain::Shortfall;
 use crate::sizing::rpm_from_rad_s;
@@ -12,6 +13,8 @@ use crate::space::design_space::{DesignSpace, DriveChoice, SpacePiece};
 use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::SizedJoint;
 
+/// Largest number of actuators that a message names.
+const MOST_NAMED: usize = 4;
 /// Largest number of sections of a link that are tried to find the one with which the demand on a joint is least.
 const MOST_SECTIONS: u32 = 64;
 
@@ -63,7 +66,8 @@ fn first_obstacle(space: &DesignSpace, catalogs: &Catalogs) -> Option<(usize, St
         let stuck = stuck_at(&problem, &sections)?;
         let table = &problem.sized_joint(stuck.piece)?.table;
         if table.is_empty() {
-            return Some((stuck.piece, no_legal_drive(table, &stuck.demand)));
+            let advice = passage_advice(table, catalogs);
+            return Some((stuck.piece, no_legal_drive(table, &stuck.demand) + &advice));
         }
         match easier_sections(&problem, &sections, &stuck, table) {
             Ok(further) => sections = further,
@@ -191,7 +195,7 @@ fn no_legal_drive(table: &DriveTable, demand: &JointDemand) -> String {
         ),
         None => table.smallest_shortfall(demand).map_or_else(
             || {
-                let missing = table.missing_figures();
+                let missing = table.missing_figures().map(|missing| missing + OWN_CATALOG);
                 let missing = missing.unwrap_or_else(|| "\"drives\" leaves no gear or no motor".into());
                 format!(
                     "joint {joint}: no drive of the catalogs can be checked in full: {missing}; `armwright size STUDY --explain \
@@ -208,10 +212,42 @@ fn in_words(table: &DriveTable, shortfall: &Shortfall) -> String {
     format!("{shortfall}{}", missing_words(table))
 }
 
-/// The ratings that parts lack, as the end of a sentence; empty if none are missing.
+/// The ratings that parts lack and where to state them, as the end of a sentence; empty if none are missing.
 fn missing_words(table: &DriveTable) -> String {
     let missing = table.also_missing_figures();
-    missing.map(|missing| format!("; not checked: {missing}")).unwrap_or_default()
+    missing.map(|missing| format!("; not checked: {missing}{OWN_CATALOG}")).unwrap_or_default()
+}
+
+/// Where to state a rating that the catalogs lack.
+const OWN_CATALOG: &str = " (state what you know of them in a catalog of your own, --catalogs DIR)";
+
+/// The actuators of the catalogs with the passage for cables that the study asks, if it does not offer them, as the end of
+/// a sentence. Empty if the study asks no passage.
+fn passage_advice(table: &DriveTable, catalogs: &Catalogs) -> String {
+    let fit = &table.motion().fit;
+    let Some(least_m) = fit.cable_bore_min_m else { return String::new() };
+    let is_offered = |gear: &Gear| table.gears().iter().any(|offered| offered.id == gear.id);
+    let passes = |gear: &&Gear| {
+        let own = catalogs.motors.iter().find(|motor| gear.goes_with(motor));
+        gear.kind == GearKind::Actuator
+            && gear.envelope.hollow_bore_m.is_some_and(|bore_m| bore_m >= least_m)
+            && gear.lacks(GearMass::HousedUnit).is_empty()
+            && own.is_some_and(|motor| motor.lacks().is_empty())
+            && !is_offered(gear)
+    };
+    let names: Vec<String> = catalogs.gears.iter().filter(passes).map(|gear| gear.id.clone()).collect();
+    let named = &names[..names.len().min(MOST_NAMED)];
+    let more = match names.len() - named.len() {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    match names.is_empty() {
+        true => String::new(),
+        false => format!(
+            "; the catalogs have actuators with such a passage, which \"drives\" can offer: \"actuators\": [\"{}\"]{more}",
+            named.join("\", \"")
+        ),
+    }
 }
 
 /// The largest joint speed that any pair of gear and motor allows \[rad/s\], and the names of this pair.

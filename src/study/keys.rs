@@ -1,14 +1,20 @@
 //! The keys of study files. The readers use these lists, and `armwright schema study` prints them.
 
 use super::choose_keys::CHOOSE;
-use super::drive_keys::DRIVES;
+use super::drive_keys::{BRAKE, DRIVES};
 use super::rail_keys::PRISMATIC;
-use crate::arm::case_keys::{JOINT_MODELS, LINK_MODELS, POSE_RULES};
+use crate::arm::case_keys::{
+    AROUND, CASE_NAME, HELD, JOINT_MODELS, LINK_MODELS, POSE as POSE_BY_NAMES, POSE_DEG, POSE_RULES,
+    TIP_FORCE, TIP_MOMENT,
+};
+use crate::arm::element_keys::{
+    AXIS, BODIES_OF_JOINT, BODIES_OF_LINK, COUPLED, GEAR, IS_JOINT, IS_LINK, LINK_MASS, LINK_PIECES,
+    LINK_SECTION, LINK_VECTOR, MOTOR, NAME, OUTPUT_BEARING, STIFFNESS, TORSION_CURVE, WHICH_GEAR_MASS,
+};
 use crate::arm::file_keys::{EFFECT_LIST, GIVEN_LINK_RULES};
 use crate::arm::keys::{
-    BEARING_VALUE, COUNTERWEIGHTS, COUPLING, EXTRAS, GEAR_AT, GEAR_MASS, GEAR_RATIO, GRAVITY, JOINT_BODIES,
-    LINK_BODIES, MASS_FACTOR, MOTOR_AT, MOTOR_MASS, MOTOR_POINT, PAYLOAD, PIECES, POSITIVE_OR_NULL, SECTION,
-    SPRINGS, STIFFNESS_FACTOR, TRANSMISSION, TRANSMISSION_RULES, TURNS_WITH, VECTOR, WATER, WINDUP,
+    COUNTERWEIGHTS, EXTRAS, GEAR_AT, GEAR_RATIO, GRAVITY, MASS_FACTOR, MOTOR_AT, MOTOR_MASS, MOTOR_POINT,
+    POSITIVE_OR_NULL, SPRINGS, STIFFNESS_FACTOR, TRANSMISSION, TRANSMISSION_RULES, TURNS_WITH,
 };
 use crate::input::key::{Kind, Rule, SCHEMA_ADDRESS, Shape, optional, required};
 use crate::input::schema::FileKind;
@@ -33,13 +39,7 @@ pub(super) static STUDY: Shape = Shape::new(
         required("name", Kind::Name, "-", "Name; results go to `results/<name>`."),
         optional("question", Kind::Text, "-", "\"\"", "The question in a sentence."),
         optional("notes", Kind::Text, "-", "\"\"", "A text for people; read and otherwise ignored."),
-        optional(
-            "gravity_m_s2",
-            GRAVITY,
-            "m/s²",
-            "9.81",
-            "A number along world -z, 0 for none, or a vector in the world.",
-        ),
+        GRAVITY,
         required(
             "chain",
             Kind::NonEmpty(&Kind::Either(&[
@@ -50,15 +50,9 @@ pub(super) static STUDY: Shape = Shape::new(
             "-",
             "Joints, prismatic joints and links from base to tip.",
         ),
-        optional(
-            "payload",
-            Kind::Object(&PAYLOAD),
-            "-",
-            "none",
-            "What the arm holds in every pose that states none.",
-        ),
-        optional("tip_force_n", VECTOR, "N", "[0, 0, 0]", "Force at the tip, in world axes."),
-        optional("tip_moment_nm", VECTOR, "N m", "[0, 0, 0]", "Moment at the tip, in world axes."),
+        HELD,
+        TIP_FORCE,
+        TIP_MOMENT,
         required(
             "poses",
             Kind::NonEmpty(&Kind::Object(&POSE)),
@@ -132,14 +126,9 @@ pub(super) static JOINT: Shape = Shape::new(
     "joint",
     "A joint: its drive is searched for or given.",
     &[
-        required("type", Kind::Word(&["joint"]), "-", "Says that this is a joint."),
-        required("name", Kind::Name, "-", "Name, unique in the chain."),
-        required(
-            "axis",
-            VECTOR,
-            "-",
-            "Direction in the frame moved by the joints before it; its length does not matter.",
-        ),
+        IS_JOINT,
+        NAME,
+        AXIS,
         optional(
             "drive",
             Kind::Word(&["first_fit", "all_fits"]),
@@ -154,17 +143,11 @@ pub(super) static JOINT: Shape = Shape::new(
             "the study's",
             "Which parts this joint's drive may have.",
         ),
-        optional(
-            "stiffness_nm_per_rad",
-            POSITIVE_OR_NULL,
-            "N m/rad",
-            "the gear's",
-            "A given stiffness; null is rigid.",
-        ),
-        optional("windup", Kind::Object(&WINDUP), "-", "the gear's", "A given torsion curve."),
-        optional("gear", Kind::Text, "-", "none", "A given gear of the catalog."),
-        optional("motor", Kind::Text, "-", "none", "A given motor of the catalog."),
-        optional("gear_mass", GEAR_MASS, "-", "\"housed_unit\"", "Which mass of a given gear counts."),
+        STIFFNESS,
+        TORSION_CURVE,
+        GEAR,
+        MOTOR,
+        WHICH_GEAR_MASS,
         optional("mass_kg", Kind::NonNegative, "kg", "from the parts, else 0", "Mass of a given drive."),
         optional(
             "max_speed_rad_s",
@@ -173,13 +156,7 @@ pub(super) static JOINT: Shape = Shape::new(
             "tip speed over reach",
             "The speed that the joint must reach.",
         ),
-        optional(
-            "bearing",
-            BEARING_VALUE,
-            "-",
-            "the gear's, if it is a housed unit",
-            "The output bearing: its numbers, the name of a housed gear, or null for a rigid one.",
-        ),
+        OUTPUT_BEARING,
         optional(
             "extras",
             EXTRAS_VALUE,
@@ -194,23 +171,11 @@ pub(super) static JOINT: Shape = Shape::new(
             "-180 to 180",
             "Smallest and largest angle of the joint.",
         ),
-        optional(
-            "brake",
-            Kind::Flag,
-            "-",
-            "false",
-            "Whether a brake holds the joint at rest; then its motor need not.",
-        ),
+        BRAKE,
         optional("duty", DUTY, "-", "the cycle", "What the joint does in numbers."),
         optional("fit", FIT_VALUE, "-", "the study's", "What is asked of the sizes of the joint's parts."),
-        optional("bodies", JOINT_BODIES, "-", "[]", "Rigid parts with centre and inertia, in every design."),
-        optional(
-            "coupled",
-            COUPLING,
-            "-",
-            "none",
-            "A passive joint of a linkage: the factors of the driven joints that turn it.",
-        ),
+        BODIES_OF_JOINT,
+        COUPLED,
         MOTOR_AT,
         MOTOR_POINT,
         MOTOR_MASS,
@@ -241,9 +206,9 @@ pub(super) static LINK: Shape = Shape::new(
     "link",
     "A link: its tube is chosen or given, or it is a rigid offset.",
     &[
-        required("type", Kind::Word(&["link"]), "-", "Says that this is a link."),
-        required("name", Kind::Name, "-", "Name, unique in the chain."),
-        required("vector_m", VECTOR, "m", "From root to end, in the frame moved by the joints before it."),
+        IS_LINK,
+        NAME,
+        LINK_VECTOR,
         optional(
             "choose",
             Kind::Object(&CHOOSE),
@@ -252,22 +217,10 @@ pub(super) static LINK: Shape = Shape::new(
             "An open link: materials and sections to choose from.",
         ),
         optional("material", Kind::Text, "-", "none", "Material of a given tube, by its catalog name."),
-        optional(
-            "section",
-            SECTION,
-            "-",
-            "none",
-            "The cross-section of a given tube; without it the link is a rigid offset.",
-        ),
-        optional("mass_kg", Kind::NonNegative, "kg", "0", "Point mass at mid-length of a rigid offset."),
-        optional(
-            "bodies",
-            LINK_BODIES,
-            "-",
-            "[]",
-            "Rigid parts with centre and inertia, whichever tube the link has.",
-        ),
-        optional("pieces", PIECES, "-", "none", "Steps and tapers of a given link, instead of a section."),
+        LINK_SECTION,
+        LINK_MASS,
+        BODIES_OF_LINK,
+        LINK_PIECES,
         STIFFNESS_FACTOR,
         MASS_FACTOR,
     ],
@@ -289,30 +242,12 @@ pub(super) static POSE: Shape = Shape::new(
     "pose",
     "A pose in which the arm is judged and sized.",
     &[
-        optional("name", Kind::Text, "-", "its place in the list", "Name."),
-        optional(
-            "pose_deg",
-            Kind::List(&Kind::Number),
-            "deg",
-            "pose",
-            "One angle a driven joint, base to tip, of a chain without prismatic joints.",
-        ),
-        optional(
-            "pose",
-            Kind::Map(&Kind::Number),
-            "deg, mm",
-            "pose_deg",
-            "Angles and travels by joint, `{\"rail_mm\": 250, \"j2_deg\": 30}`; joints left away stay at 0.",
-        ),
-        optional("payload", Kind::Object(&PAYLOAD), "-", "the study's", "What the arm holds in this pose."),
-        optional("tip_force_n", VECTOR, "N", "the study's", "Force at the tip in this pose, in world axes."),
-        optional(
-            "tip_moment_nm",
-            VECTOR,
-            "N m",
-            "the study's",
-            "Moment at the tip in this pose, in world axes.",
-        ),
+        CASE_NAME,
+        POSE_DEG,
+        POSE_BY_NAMES,
+        HELD.or("the study's"),
+        TIP_FORCE.or("the study's"),
+        TIP_MOMENT.or("the study's"),
         optional(
             "sizing",
             Kind::Flag,
@@ -335,10 +270,7 @@ pub(super) static POSE: Shape = Shape::new(
 pub(super) static ENVIRONMENT: Shape = Shape::new(
     "environment",
     "What the arm is in.",
-    &[
-        required("name", Kind::Text, "-", "Appended to the names of the poses."),
-        optional("water", Kind::Object(&WATER), "-", "dry", "Water around the arm."),
-    ],
+    &[required("name", Kind::Text, "-", "Appended to the names of the poses."), AROUND],
     &[],
 );
 

@@ -7,9 +7,6 @@ use crate::sizing::duty::{DutyCycle, Phase, PhaseKind};
 use crate::sizing::requirement::MotionRequirement;
 use crate::sizing::stated::{StatedDuty, StatedPhase};
 
-/// Relative difference up to which the two ramp times count as equal.
-const SAME_TIME: f64 = 1e-9;
-
 /// Reads the motion of the tip. Keys that are missing have the paper's values.
 pub(super) fn read_motion(node: &Node) -> Option<MotionRequirement> {
     let object = node.shaped(&MOTION)?;
@@ -36,6 +33,17 @@ pub(super) fn read_motion(node: &Node) -> Option<MotionRequirement> {
     })
 }
 
+/// A remark if a ramp of the cycle takes another time than the ramp for which drives are sized; otherwise `None`.
+pub(super) fn ramp_remark(motion: &MotionRequirement) -> Option<String> {
+    let stated_s = motion.ramp_time_s;
+    motion.duty_cycle.other_ramp_s(stated_s).map(|ramp_s| {
+        format!(
+            "A ramp of the cycle takes {ramp_s} s, and ramp_time_s is {stated_s} s: the torque of a ramp is that of {stated_s} s, \
+             and mean torque, life and motor heat count it for {ramp_s} s. State the same time in both."
+        )
+    })
+}
+
 /// Reads the duty cycle that every joint repeats, a list of phases.
 fn read_cycle(node: &Node) -> Option<DutyCycle> {
     let read: Vec<Option<Phase>> = node.array()?.iter().map(read_phase).collect();
@@ -43,8 +51,7 @@ fn read_cycle(node: &Node) -> Option<DutyCycle> {
     if cycle.phases.iter().all(|phase| phase.duration_s == 0.0) {
         return node.fault("takes no time", "give at least one phase with \"time_s\" above 0");
     }
-    let [up_s, down_s] = cycle.ramps_s();
-    if (up_s - down_s).abs() > SAME_TIME * (up_s + down_s) {
+    if let Some([up_s, down_s]) = cycle.unequal_ramps_s() {
         return node.fault(
             format!("speeds up for {up_s} s and slows down for {down_s} s"),
             "give both the same time: they happen at one acceleration, and the joint comes back to rest",
@@ -103,4 +110,47 @@ fn read_stated_phase(node: &Node) -> Option<StatedPhase> {
     let time = object.required("time_s").and_then(|n| n.non_negative());
     let speed = object.required("speed_rpm").and_then(|n| n.non_negative());
     Some(StatedPhase { torque_nm: torque?, time_s: time?, speed_rpm: speed? })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::catalog::Catalogs;
+    use crate::input::json::Document;
+    use crate::study::read::read_study;
+    use serde_json::{Value, json};
+
+    /// Remarks on a study of one joint with this motion.
+    fn remarks(motion: Value) -> String {
+        let study = json!({"name": "s", "motion": motion, "chain": [
+            {"type": "joint", "name": "j", "axis": [0, 1, 0], "drive": "first_fit"},
+            {"type": "link", "name": "arm", "vector_m": [0.3, 0, 0], "mass_kg": 1}],
+            "poses": [{"pose_deg": [0]}]});
+        let document = Document::parse("s.json", &study.to_string()).unwrap();
+        read_study(document, &Catalogs::builtin()).unwrap().remarks.join(" ")
+    }
+
+    /// A cycle whose ramps take these times \[s\].
+    fn cycle(ramps_s: &[f64]) -> Value {
+        let ramp =
+            |phase: &str| ramps_s.iter().map(|s| json!({"phase": phase, "time_s": s})).collect::<Vec<_>>();
+        let still = json!({"phase": "rest", "time_s": 1.0});
+        Value::Array([ramp("accelerate"), ramp("decelerate"), vec![still]].concat())
+    }
+
+    #[test]
+    fn a_cycle_whose_ramps_contradict_the_ramp_time_is_remarked() {
+        let said = remarks(json!({"ramp_time_s": 0.2, "cycle": cycle(&[0.5])}));
+        assert!(said.contains("A ramp of the cycle takes 0.5 s, and ramp_time_s is 0.2 s"), "{said}");
+        let unstated = remarks(json!({"cycle": cycle(&[0.5])}));
+        assert!(unstated.contains("ramp_time_s is 0.2 s"), "the default counts: {unstated}");
+        for agreeing in [
+            json!({"ramp_time_s": 0.3}),
+            json!({"ramp_time_s": 0.5, "cycle": cycle(&[0.5])}),
+            json!({"ramp_time_s": 0.5, "cycle": cycle(&[0.2, 0.3])}),
+            json!({"cycle": [{"phase": "fraction", "time_s": 4, "of_static_torque": 0.5, "of_speed": 0.5}]}),
+        ] {
+            let said = remarks(agreeing.clone());
+            assert!(!said.contains("ramp of the cycle"), "{agreeing}: {said}");
+        }
+    }
 }

@@ -4,7 +4,6 @@
 //! by field. Designs are translated by the names of gears and motors and by positions in the study's own lists of
 //! sections.
 
-use crate::arm::load::LoadCase;
 use crate::catalog::Catalogs;
 use crate::sizing::demand::LinearReading;
 use crate::sizing::duty::{Phase, PhaseKind};
@@ -25,21 +24,11 @@ use crate::verify::question::{
 
 /// The question of a study for the verifier, without anything that a search computed.
 pub fn question(space: &DesignSpace) -> Question {
-    let case = |case: &crate::space::design_space::Case| LoadCase {
-        name: case.name.clone(),
-        pose_deg: case.pose_deg.clone(),
-        payload: case.payload,
-        tip_force_n: case.tip_force_n,
-        tip_moment_nm: case.tip_moment_nm,
-        links: space.links,
-        joints: space.joints,
-        water: case.water,
-    };
     Question {
         gravity_m_s2: space.gravity_m_s2,
         down: space.down,
         pieces: space.pieces.iter().map(piece).collect(),
-        cases: space.cases.iter().map(case).collect(),
+        cases: space.cases.iter().map(|case| space.load_case(case)).collect(),
         judged_cases: space.judged_cases.clone(),
         sizing_cases: space.sizing_cases.clone(),
         motion: motion(&space.motion),

@@ -1,6 +1,6 @@
 //! The keys of prismatic joints of a study, and of the screws and racks among which their drive is sized.
 
-use super::drive_keys::DRIVES;
+use super::drive_keys::{BRAKE, DRIVES};
 use crate::arm::keys::POSITIVE_OR_NULL;
 use crate::arm::prismatic_keys;
 use crate::input::key::{Key, Kind, Rule, Shape, optional, required};
@@ -75,13 +75,7 @@ const RAIL_KEYS: [Key; 6] = [
         "Which motors it may have; gears do not count.",
     ),
     optional("max_speed_m_s", Kind::Positive, "m/s", "the tip's", "The speed that the joint must reach."),
-    optional(
-        "brake",
-        Kind::Flag,
-        "-",
-        "false",
-        "Whether a brake holds the joint at rest; then its motor need not.",
-    ),
+    BRAKE,
 ];
 
 const PART_NAME: Key =

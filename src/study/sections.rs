@@ -3,16 +3,17 @@
 use super::choose_keys::{
     GRID, PROFILE_FILTER, PROFILES, RECTANGULAR_BARS, RECTANGULAR_TUBES, ROUND_BARS, ROUND_TUBES,
 };
-use crate::arm::section::{LinkMaterial, Section};
+use crate::arm::link_file::material_of;
+use crate::arm::section::Section;
+use crate::arm::{Link, LinkBody};
 use crate::catalog::Catalogs;
 use crate::catalog::material::Material;
 use crate::catalog::profile::{Profile, ProfileShape};
 use crate::input::json::{Node, Object, closest};
 use crate::space::constraint::Constraints;
-use crate::space::design_space::LinkOption;
+use crate::space::design_space::{DesignSpace, LinkOption, SpacePiece};
 use std::collections::{BTreeSet, HashSet};
 
-const DEFAULT_POISSON: f64 = 0.3;
 /// Largest number of points of a grid. More are a sign of a mistake in the step.
 const MOST_POINTS: usize = 100_000;
 /// Largest number of sections that one family of a study file may have, before walls that do not fit are left out.
@@ -287,6 +288,23 @@ fn stainless_without_profiles(materials: &[&Material], sections: &Sections, link
     })
 }
 
+/// A remark on the links that the material cost leaves out: those whose tube the study gives. `None` if there are none, or
+/// if no tube is chosen.
+pub(super) fn cost_remark(space: &DesignSpace) -> Option<String> {
+    let chooses = space.pieces.iter().any(|piece| matches!(piece, SpacePiece::Choice(_)));
+    let given_tube = |piece: &SpacePiece| match piece {
+        SpacePiece::Link(Link { name, body: LinkBody::Tube { .. }, .. }) => Some(name.clone()),
+        _ => None,
+    };
+    let given: Vec<String> = space.pieces.iter().filter_map(given_tube).collect();
+    (chooses && !given.is_empty()).then(|| {
+        format!(
+            "Material cost is that of the tubes that are chosen: the given tube of {} is not in it.",
+            given.join(", ")
+        )
+    })
+}
+
 /// Each material combined with each section. Materials that lack a rating that a constraint needs are left out, and a
 /// message on each is added to `aside`.
 pub(super) fn options(
@@ -299,17 +317,11 @@ pub(super) fn options(
     aside.remarks.extend(stainless_without_profiles(materials, sections, link));
     let mut out = Vec::new();
     for material in materials {
-        let Some(shear_modulus_pa) = material.shear_modulus_pa else { continue };
+        let Some(elastic) = material_of(material) else { continue };
         if let Some(missing) = missing_rating(material, constraints) {
             aside.not_checked.push(format!("link {link}: {} has no {missing} in the catalog", material.name));
             continue;
         }
-        let elastic = LinkMaterial {
-            youngs_modulus_pa: material.youngs_modulus_pa,
-            shear_modulus_pa,
-            density_kg_m3: material.density_kg_m3,
-            poisson: material.poisson.unwrap_or(DEFAULT_POISSON),
-        };
         for (section, profile) in &sections.sections {
             if profile.as_ref().is_some_and(|p| !sold_in(&p.family, material)) {
                 continue;
@@ -337,4 +349,34 @@ fn missing_rating(material: &Material, constraints: &Constraints) -> Option<&'st
         return Some("cost");
     }
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::catalog::Catalogs;
+    use crate::input::json::Document;
+    use crate::study::read::read_study;
+    use serde_json::{Value, json};
+
+    #[test]
+    fn the_material_cost_says_which_given_tubes_it_leaves_out() {
+        let section = json!({"shape": "round_tube", "diameter_m": 0.1, "wall_m": 0.004});
+        let given = json!({"type": "link", "name": "column", "vector_m": [0, 0, 0.3], "material": "Aluminium 6061-T6",
+            "section": section});
+        let tubes = json!([{"shape": "round_tube", "diameter_mm": 80, "wall_mm": 3}]);
+        let open = json!({"type": "link", "name": "boom", "vector_m": [0.5, 0, 0],
+            "choose": {"materials": ["Aluminium 6061-T6"], "sections": tubes}});
+        let offset = json!({"type": "link", "name": "flange", "vector_m": [0.1, 0, 0]});
+        let remarks = |links: &[&Value]| {
+            let joint = json!({"type": "joint", "name": "j", "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e4});
+            let chain: Vec<&Value> = std::iter::once(&joint).chain(links.iter().copied()).collect();
+            let study = json!({"name": "s", "chain": chain, "poses": [{"pose_deg": [0]}]});
+            let document = Document::parse("s.json", &study.to_string()).unwrap();
+            read_study(document, &Catalogs::builtin()).unwrap().remarks.join(" ")
+        };
+        let said = remarks(&[&given, &open, &offset]);
+        assert!(said.contains("the given tube of column is not in it"), "{said}");
+        assert!(!remarks(&[&open, &offset]).contains("Material cost"), "an offset costs nothing");
+        assert!(!remarks(&[&given]).contains("Material cost"), "nothing is chosen, and no cost is printed");
+    }
 }

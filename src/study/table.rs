@@ -1,6 +1,6 @@
 //! A front as a table, with every choice, objective and margin of every design.
 
-use super::outcome::Front;
+use super::outcome::{Front, Judged};
 use crate::catalog::Catalogs;
 use crate::catalog::gear::GearKind;
 use crate::report::front_table::FrontTable;
@@ -15,9 +15,19 @@ use crate::space::problem::{ArmProblem, Partial};
 
 /// A front as a table: one row for each design, with its choices, objectives and margins.
 pub fn front_table(problem: &ArmProblem, catalogs: &Catalogs, front: &Front) -> FrontTable {
+    front_table_with(problem, catalogs, front, |_| ())
+}
+
+/// The table of a front. `sized` gets the sizing rows of each design, tip first.
+pub(crate) fn front_table_with(
+    problem: &ArmProblem,
+    catalogs: &Catalogs,
+    front: &Front,
+    mut sized: impl FnMut(&[JointSizingRow]),
+) -> FrontTable {
     FrontTable {
         columns: columns(problem, catalogs),
-        rows: front.iter().filter_map(|judged| row(problem, catalogs, judged)).collect(),
+        rows: front.iter().filter_map(|judged| row(problem, catalogs, judged, &mut sized)).collect(),
     }
 }
 
@@ -56,7 +66,12 @@ fn has_parts(drive: &DriveChoice) -> bool {
     !matches!(drive, DriveChoice::Given { gear: None, motor: None, .. })
 }
 
-fn row(problem: &ArmProblem, catalogs: &Catalogs, judged: &super::outcome::Judged) -> Option<Vec<String>> {
+fn row(
+    problem: &ArmProblem,
+    catalogs: &Catalogs,
+    judged: &Judged,
+    sized: &mut impl FnMut(&[JointSizingRow]),
+) -> Option<Vec<String>> {
     let chosen = options(problem.level_sizes(), judged.design.number)?;
     let mut out = vec![id_of(problem.whole_number(judged.design.number))];
     for (piece, part) in problem.space().pieces.iter().zip(problem.parts(&chosen)?) {
@@ -78,7 +93,9 @@ fn row(problem: &ArmProblem, catalogs: &Catalogs, judged: &super::outcome::Judge
     let o = judged.design.objectives;
     out.extend([o.tip_deflection_m * 1e3, o.mass_kg, o.lowest_mode_hz].map(number));
     out.push(judged.tie_group.to_string());
-    for joint in sizing_rows(problem, catalogs, &chosen).ok()?.into_iter().rev() {
+    let joints = sizing_rows(problem, catalogs, &chosen).ok()?;
+    sized(&joints);
+    for joint in joints.into_iter().rev() {
         out.push(joint.margin.map_or(String::new(), number));
         out.push(joint.binds.unwrap_or_default().to_string());
         out.push(joint.bearing_margin.map_or(String::new(), number));

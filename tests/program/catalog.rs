@@ -44,9 +44,9 @@ fn places(faults: &[Fault]) -> Vec<(String, Option<usize>, &str)> {
 fn the_built_in_catalogs_have_all_their_rows() {
     let catalogs = Catalogs::builtin();
     let count = |series| catalogs.gears.iter().filter(|g| g.series == series).count();
-    assert_eq!(catalogs.gears.len(), 195 + 19, "actuators have a gear within");
+    assert_eq!(catalogs.gears.len(), 195 + 52, "actuators have a gear within");
     assert_eq!([count("HFUC"), count("CSG"), count("SHG")], [62, 44, 44]);
-    assert_eq!(catalogs.motors.len(), 99 + 19);
+    assert_eq!(catalogs.motors.len(), 99 + 52);
     assert_eq!(catalogs.motors.iter().filter(|m| m.kind.is_hydraulic()).count(), 11);
     assert_eq!(catalogs.materials.len(), 41);
     assert_eq!(catalogs.profiles.len(), 435);
@@ -96,7 +96,7 @@ fn the_example_of_the_readme_loads_and_its_tables_name_every_column() {
         .expect("the file");
     let example: Vec<&str> = readme.lines().skip_while(|l| !l.starts_with("type,model")).take(2).collect();
     let catalogs = load(&[("motors.csv", &example.join("\n"))]).expect("sound");
-    assert_eq!(catalogs.motors.len(), 99 + 19 + 1);
+    assert_eq!(catalogs.motors.len(), 99 + 52 + 1);
     assert_eq!(catalogs.warnings, Catalogs::builtin().warnings);
     for file in CatalogFile::ALL {
         for column in file.columns() {
@@ -312,7 +312,7 @@ fn an_overlay_adds_rows_and_replaces_rows_of_the_same_name() {
         "{GEAR_HEADER}\nHFUC,58,100,,,,,,,,600e3,,own test,verified\nMY,20,100,,,,,,,,25e3,,own,third party\n"
     );
     let catalogs = load(&[("gears.csv", &gears)]).expect("sound");
-    assert_eq!(catalogs.gears.len(), 195 + 19 + 1);
+    assert_eq!(catalogs.gears.len(), 195 + 52 + 1);
     let replaced = catalogs.gear("HFUC-58-100").expect("there");
     assert_eq!((replaced.k2_nm_per_rad, replaced.rated_torque_nm), (Some(600e3), None));
     assert_eq!((replaced.provenance.line, replaced.provenance.source.as_str()), (2, "own test"));

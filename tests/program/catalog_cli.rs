@@ -72,7 +72,7 @@ fn csv_is_a_file_that_a_catalog_folder_can_hold() {
     }
     let (again, builtin) = (Catalogs::load(Some(folder.path())).expect("sound"), Catalogs::builtin());
     let ids = |c: &Catalogs| c.motors.iter().map(|m| (m.id.clone(), m.mass_kg)).collect::<Vec<_>>();
-    assert_eq!((ids(&again), again.gears.len(), again.profiles.len()), (ids(&builtin), 195 + 19, 435));
+    assert_eq!((ids(&again), again.gears.len(), again.profiles.len()), (ids(&builtin), 195 + 52, 435));
 }
 
 #[test]

@@ -139,3 +139,31 @@ fn a_study_without_a_choice_is_empty_in_every_verb() {
         assert!(code == 5 && said.contains("joint j1") && said.contains("widen"), "{words:?}: {code} {said}");
     }
 }
+
+#[test]
+fn a_passage_that_no_gear_has_is_refused_with_what_is_missing_and_actuators_let_cables_through() {
+    let mut study = study();
+    study["drives"]["gear_series"] = json!(["CSG", "SHG"]);
+    study["fit"] = json!({"cable_bore_min_mm": 25});
+    let said = refused(&study);
+    for piece in [
+        "gear bore",
+        "SHG-25-50, SHG-25-80, SHG-25-100 and",
+        "no average_input_speed_limit_rpm (mean input speed)",
+        "--catalogs DIR",
+        "\"actuators\": [\"CHA-25A-30\"",
+    ] {
+        assert!(said.contains(piece), "{piece} in {said}");
+    }
+    assert!(!said.contains("CHA-20A"), "its passage is 18 mm wide: {said}");
+    study["drives"] = json!({"actuators": "all"});
+    let here = tempfile::tempdir().expect("a folder");
+    std::fs::write(here.path().join("study.json"), study.to_string()).expect("written");
+    let (code, said) = armwright(here.path(), &["run", "study.json", "--out", "x"]);
+    assert_eq!(code, 0, "{said}");
+    let front = std::fs::read_to_string(here.path().join("x/front.csv")).expect("a front");
+    let column =
+        front.lines().next().expect("a header").split(',').position(|c| c == "j1_gear").expect("a gear");
+    let gears: Vec<&str> = front.lines().skip(1).filter_map(|row| row.split(',').nth(column)).collect();
+    assert!(!gears.is_empty() && gears.iter().all(|gear| gear.starts_with("CHA-")), "{front}");
+}

@@ -6,14 +6,16 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Replaced words, as they stand in prose.
-const IN_PROSE: [&str; 14] = [
+const IN_PROSE: [&str; 17] = [
     "alike", "parting", "rival", "rivals", "knob", "knobs", "kept-out", "kept out", "sag", "sags", "sagged",
-    "sagging", "doubt", "doubts",
+    "sagging", "doubt", "doubts", "yields", "yielded", "yielding",
 ];
 
 /// Replaced words inside public names.
-const IN_NAMES: [&str; 9] =
-    ["alike", "parting", "rival", "knob", "sag", "beside", "doubt", "bare", "carried"];
+const IN_NAMES: [&str; 12] = [
+    "alike", "parting", "rival", "knob", "sag", "beside", "doubt", "bare", "carried", "yields", "yielded",
+    "yielding",
+];
 
 fn project() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))

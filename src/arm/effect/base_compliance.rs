@@ -2,7 +2,7 @@
 //! chain.
 
 use super::bearing_tilt;
-use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits, Yields};
+use super::kind::{ElasticRotation, Kind, Parameter, Place, Scale, Scope, Traits};
 use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] =
@@ -17,7 +17,7 @@ pub(crate) const KIND: Kind = Kind {
     parameters: |_| PARAMETERS,
     apply,
     traits: Traits {
-        yields: Some(Yields::Tilt),
+        rotation: Some(ElasticRotation::Tilt),
         same_at_vertical_first_joint: Some(bearing_tilt::KIND.name),
         starts: |_| vec![vec![0.1], vec![0.5]],
         ..Traits::USUAL

@@ -1,7 +1,7 @@
 //! `bearing_tilt`: a joint tilts more than its nominal bearing allows. The effect is two equal rotational springs
 //! about the two axes perpendicular to the joint's axis, in series with the bearing.
 
-use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits, Yields};
+use super::kind::{ElasticRotation, Kind, Parameter, Place, Scale, Scope, Traits};
 use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] =
@@ -15,7 +15,11 @@ pub(crate) const KIND: Kind = Kind {
     places: &[Place::Joint],
     parameters: |_| PARAMETERS,
     apply,
-    traits: Traits { yields: Some(Yields::Tilt), starts: |_| vec![vec![0.1], vec![0.5]], ..Traits::USUAL },
+    traits: Traits {
+        rotation: Some(ElasticRotation::Tilt),
+        starts: |_| vec![vec![0.1], vec![0.5]],
+        ..Traits::USUAL
+    },
 };
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {

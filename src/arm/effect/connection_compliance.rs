@@ -1,7 +1,7 @@
 //! `connection_compliance`: a flange, shaft or bolts deflect in torsion in series with the gear:
 //! `1/k = 1/k_gear + 1/c`.
 
-use super::kind::{Kind, Needs, Parameter, Place, Scale, Scope, Traits, Yields};
+use super::kind::{ElasticRotation, Kind, Needs, Parameter, Place, Scale, Scope, Traits};
 use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] =
@@ -17,7 +17,7 @@ pub(crate) const KIND: Kind = Kind {
     apply,
     traits: Traits {
         needs: Needs::TwistingJoint,
-        yields: Some(Yields::AboutAxis),
+        rotation: Some(ElasticRotation::AboutAxis),
         starts: |_| vec![vec![0.1], vec![0.5]],
         ..Traits::USUAL
     },

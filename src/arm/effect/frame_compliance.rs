@@ -1,7 +1,7 @@
 //! `frame_compliance`: a structure rotates elastically about three axes, with a different compliance about each and
 //! with coupling between them. It is the ground under the arm, or the casting behind a joint.
 
-use super::kind::{Kind, Parameter, Place, Scope, Traits, Yields};
+use super::kind::{ElasticRotation, Kind, Parameter, Place, Scope, Traits};
 use super::subject::Subject;
 use crate::arm::structure::FrameCompliance;
 use nalgebra::{Matrix3, SymmetricEigen};
@@ -19,7 +19,12 @@ pub(crate) const KIND: Kind = Kind {
     places: &[Place::Base, Place::Link],
     parameters: |_| PARAMETERS,
     apply,
-    traits: Traits { is_sought: false, yields: Some(Yields::Frame), contradiction, ..Traits::USUAL },
+    traits: Traits {
+        is_sought: false,
+        rotation: Some(ElasticRotation::Frame),
+        contradiction,
+        ..Traits::USUAL
+    },
 };
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {

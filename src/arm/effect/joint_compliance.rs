@@ -1,6 +1,6 @@
 //! `joint_compliance`: a joint that is rigid in the nominal model deflects in torsion.
 
-use super::kind::{Kind, Needs, Parameter, Place, Scale, Scope, Traits, Yields};
+use super::kind::{ElasticRotation, Kind, Needs, Parameter, Place, Scale, Scope, Traits};
 use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] =
@@ -16,7 +16,7 @@ pub(crate) const KIND: Kind = Kind {
     apply,
     traits: Traits {
         needs: Needs::RigidJoint,
-        yields: Some(Yields::AboutAxis),
+        rotation: Some(ElasticRotation::AboutAxis),
         starts: |_| vec![vec![0.5], vec![2.0]],
         ..Traits::USUAL
     },

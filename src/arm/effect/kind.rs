@@ -216,7 +216,7 @@ pub enum Removes {
 /// Which elastic rotation an effect adds under gravity, as readings of absolute positions show it. Positions are
 /// searched in this order: an effect of a later class can imitate those of the classes before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Yields {
+pub enum ElasticRotation {
     /// Rotation of a joint about its axis.
     AboutAxis,
     /// Tilt of a joint about the two axes perpendicular to its axis, or of the base about both horizontal axes, with
@@ -228,6 +228,14 @@ pub enum Yields {
 
 /// A parameter that a search fits: its name, and the index of one of its numbers, or `None` for all of its numbers.
 pub type Freed = (&'static str, Option<usize>);
+
+/// The places of an effect that every kind of readings can have.
+pub(super) const EVERY_CHANNEL: &[Place] = &[
+    Place::Channel(Channel::Static),
+    Place::Channel(Channel::Modal),
+    Place::Channel(Channel::Windup),
+    Place::Channel(Channel::Positions),
+];
 
 /// Prior probability of an effect that is seldom met, relative to a usual one, before any reading is considered.
 pub const RARE: f64 = 0.3;
@@ -281,7 +289,7 @@ pub struct Traits {
     pub removes: Option<Removes>,
     /// The elastic rotation under gravity by which absolute positions show the effect; `None` if positions are not
     /// searched for it.
-    pub yields: Option<Yields>,
+    pub rotation: Option<ElasticRotation>,
     /// Name of the effect at the first joint that is identical with this one if that joint is vertical.
     pub same_at_vertical_first_joint: Option<&'static str>,
     /// Finds a contradiction between the values of all parameters, each of which is within its limits. Returns the
@@ -305,7 +313,7 @@ impl Traits {
         changes_bending: false,
         in_bounds: true,
         removes: None,
-        yields: None,
+        rotation: None,
         same_at_vertical_first_joint: None,
         contradiction: |_| None,
     };

@@ -1,8 +1,7 @@
 //! `outlier`: single rows of readings are gross errors, for example because a reflector slipped or a number was
 //! mistyped.
 
-use super::channel::Channel;
-use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
+use super::kind::{EVERY_CHANNEL, Kind, Parameter, Scale, Scope, Traits};
 use super::subject::Subject;
 
 /// The parameter of the effect: the numbers of the rows that are gross errors. There may be any number of them.
@@ -14,12 +13,7 @@ pub(crate) const KIND: Kind = Kind {
     name: "outlier",
     summary: "single rows are gross errors",
     scope: Scope::Test,
-    places: &[
-        Place::Channel(Channel::Static),
-        Place::Channel(Channel::Modal),
-        Place::Channel(Channel::Windup),
-        Place::Channel(Channel::Positions),
-    ],
+    places: EVERY_CHANNEL,
     parameters: |_| ROWS,
     apply,
     traits: Traits { is_sought: false, ..Traits::USUAL },
@@ -33,6 +27,7 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::channel::Channel;
     use super::*;
 
     fn subject() -> Subject {

@@ -1,7 +1,6 @@
 //! `sensor_gain`: the reading is the actual value times a factor.
 
-use super::channel::Channel;
-use super::kind::{Absent, Kind, Parameter, Place, Scale, Scope, Traits};
+use super::kind::{Absent, EVERY_CHANNEL, Kind, Parameter, Scale, Scope, Traits};
 use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] =
@@ -12,12 +11,7 @@ pub(crate) const KIND: Kind = Kind {
     name: "sensor_gain",
     summary: "the sensor of a channel reads a factor times the truth",
     scope: Scope::Test,
-    places: &[
-        Place::Channel(Channel::Static),
-        Place::Channel(Channel::Modal),
-        Place::Channel(Channel::Windup),
-        Place::Channel(Channel::Positions),
-    ],
+    places: EVERY_CHANNEL,
     parameters: |_| PARAMETERS,
     apply,
     traits: Traits { starts: |setting| vec![vec![1.0 / setting.values_at_one[0]]], ..Traits::USUAL },
@@ -31,6 +25,7 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::channel::Channel;
     use super::*;
 
     fn subject() -> Subject {

@@ -1,7 +1,6 @@
 //! `time_shift`: the clock of a channel is ahead or behind. It matters for time records only.
 
-use super::channel::Channel;
-use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
+use super::kind::{EVERY_CHANNEL, Kind, Parameter, Scale, Scope, Traits};
 use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] = &[Parameter::number("seconds", -3600.0, 3600.0, 0.01, Scale::Linear)];
@@ -11,12 +10,7 @@ pub(crate) const KIND: Kind = Kind {
     name: "time_shift",
     summary: "the clock of a channel runs ahead or behind (time records)",
     scope: Scope::Test,
-    places: &[
-        Place::Channel(Channel::Static),
-        Place::Channel(Channel::Modal),
-        Place::Channel(Channel::Windup),
-        Place::Channel(Channel::Positions),
-    ],
+    places: EVERY_CHANNEL,
     parameters: |_| PARAMETERS,
     apply,
     traits: Traits { is_sought: false, ..Traits::USUAL },

@@ -1,7 +1,6 @@
 //! `wrong_unit`: a channel is written in another unit than its column states, such as inches, metres or degrees.
 
-use super::channel::Channel;
-use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
+use super::kind::{EVERY_CHANNEL, Kind, Parameter, Scale, Scope, Traits};
 use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] = &[Parameter::number("factor", 1e-7, 1e7, 25.4, Scale::Log)];
@@ -11,12 +10,7 @@ pub(crate) const KIND: Kind = Kind {
     name: "wrong_unit",
     summary: "a channel is written in another unit than its column says",
     scope: Scope::Test,
-    places: &[
-        Place::Channel(Channel::Static),
-        Place::Channel(Channel::Modal),
-        Place::Channel(Channel::Windup),
-        Place::Channel(Channel::Positions),
-    ],
+    places: EVERY_CHANNEL,
     parameters: |_| PARAMETERS,
     apply,
     traits: Traits { is_sought: false, ..Traits::USUAL },
@@ -48,6 +42,7 @@ pub const SLIPS: &[(f64, &str)] = &[
 
 #[cfg(test)]
 mod tests {
+    use super::super::channel::Channel;
     use super::*;
 
     fn subject() -> Subject {

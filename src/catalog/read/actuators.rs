@@ -6,7 +6,9 @@
 //! mass and the largest torque, which limits emergency stops.
 
 use super::envelope::envelope;
+use super::gears::bearing;
 use super::row::Row;
+use crate::catalog::envelope::Envelope;
 use crate::catalog::gear::{Gear, GearKind, LifeLaw};
 use crate::catalog::motor::{Motor, MotorKind};
 
@@ -40,7 +42,7 @@ pub(crate) fn gear(row: &Row) -> Option<Gear> {
         transmission_accuracy_arcmin: None,
         tilting_stiffness_nm_per_rad: row.number("tilting_stiffness_nm_per_rad"),
         permissible_tilting_moment_nm: row.number("permissible_tilting_moment_nm"),
-        bearing: Default::default(),
+        bearing: bearing(row),
         buckling_torque_nm: None,
         ratcheting_torque_nm: None,
         envelope: envelope(row),
@@ -65,7 +67,12 @@ pub(crate) fn motor(row: &Row) -> Option<Motor> {
         mass_kg: Some(0.0),
         curve: Vec::new(),
         rated_power_w: None,
-        envelope: Default::default(),
+        // the actuator's size is that of its gear: the motor adds no length, and the passage is the same
+        envelope: Envelope {
+            outer_diameter_m: None,
+            length_m: Some(0.0),
+            hollow_bore_m: envelope(row).hollow_bore_m,
+        },
         provenance: row.provenance()?,
     })
 }
@@ -126,5 +133,17 @@ mod tests {
         assert_eq!(gear.single_slope_nm_per_rad(), Some(16000.0));
         assert_ne!(motor.id, "A-51");
         assert!(!Gear { id: "B".into(), ..gear }.goes_with(&motor));
+    }
+
+    #[test]
+    fn the_passage_is_that_of_the_whole_and_the_motor_adds_no_length() {
+        let log = Log::default();
+        let text = "model,length_mm,hollow_bore_mm,bearing_pitch_diameter_m,bearing_static_load_rating_n,source,confidence\n\
+            A,90,27,0.088,45000,a test,verified\n";
+        let read = rows(CatalogFile::Actuators, "actuators.csv", text.as_bytes(), &log);
+        let (gear, motor) = (gear(&read[0]).expect("sound"), motor(&read[0]).expect("sound"));
+        assert_eq!((gear.envelope.length_m, motor.envelope.length_m), (Some(0.09), Some(0.0)));
+        assert_eq!((gear.envelope.hollow_bore_m, motor.envelope.hollow_bore_m), (Some(0.027), Some(0.027)));
+        assert_eq!(gear.bearing.pitch_diameter_m.zip(gear.bearing.static_load_rating_n), Some((0.088, 45e3)));
     }
 }

@@ -60,7 +60,7 @@ fn life(row: &Row, kind: GearKind) -> LifeLaw {
     }
 }
 
-fn bearing(row: &Row) -> BearingRatings {
+pub(super) fn bearing(row: &Row) -> BearingRatings {
     BearingRatings {
         pitch_diameter_m: row.number("bearing_pitch_diameter_m"),
         offset_m: row.number("bearing_offset_m"),

@@ -14,7 +14,7 @@ use crate::arm::structure::Beam;
 use crate::interchange::snapshot::{Snapshot, Working};
 use crate::interchange::tree::mass_properties;
 use crate::mechanics::beam::section_frame;
-use crate::mechanics::chain::{Body, ElasticElement, Item, OwnMass, Yielding};
+use crate::mechanics::chain::{Body, Compliance, ElasticElement, Item, OwnMass};
 use crate::mechanics::{Twist, angular, displacement_at};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
@@ -156,7 +156,7 @@ impl Builder<'_> {
             self.model.hinges.push(HingeNode { name, node, working: *working });
             self.region.hinges.push((node, *twist));
         }
-        if matches!(element.yielding, Yielding::Joint(_)) {
+        if matches!(element.compliance, Compliance::Joint(_)) {
             self.follow(element);
         }
     }

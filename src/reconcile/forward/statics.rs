@@ -329,7 +329,7 @@ fn dead_torques(posed: &Posed) -> (Vec<f64>, [f64; 2]) {
             Item::Body(body) => wrench += body.weight(),
             Item::Load(load) => wrench += load,
             Item::Elastic(element) => {
-                if let crate::mechanics::chain::Yielding::Joint(_) = element.yielding {
+                if let crate::mechanics::chain::Compliance::Joint(_) = element.compliance {
                     let passive = carried.iter().filter(|c| c.driver == element.name);
                     let passive_nm: f64 = passive.map(|c| c.torque_nm).sum();
                     torques.push(element.twists[0].dot(&wrench) + element.torque_nm + passive_nm);
@@ -500,14 +500,14 @@ impl StaticPose {
     ) {
         let geometry = &self.geometry;
         let compliance = |index: usize| further.iter().find(|(i, _)| *i == index).map(|(_, c)| *c);
-        let yielding: Matrix3x6<f64> = geometry
+        let compliance_of: Matrix3x6<f64> = geometry
             .linear
             .iter()
             .filter_map(|m| Some(m.tip * (compliance(m.index)? * m.twist.transpose())))
             .sum();
         for (k, load) in self.loads.iter().enumerate() {
             let wrench = geometry.wrench(&load.payload, &load.force_n, layout.gravity_m_s2, coefficients);
-            let moved = 1e3 * yielding * wrench;
+            let moved = 1e3 * compliance_of * wrench;
             self.measured(k).for_each(|(component, datum)| out[datum] += moved[component]);
         }
     }

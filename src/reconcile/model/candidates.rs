@@ -6,7 +6,7 @@ use super::parameters::{Candidate, FreeParameter, Number};
 use crate::arm::effect::catalogue::KINDS;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::immersion::PAYLOAD_DENSITY;
-use crate::arm::effect::kind::{Freed, Kind, Parameter, Place, Removes, Scale, Setting, Yields};
+use crate::arm::effect::kind::{ElasticRotation, Freed, Kind, Parameter, Place, Removes, Scale, Setting};
 use crate::arm::effect::validate::fits_nominal;
 use crate::arm::effect::wrong_unit;
 use crate::arm::effect::{connection_compliance, servo_compliance, thermal_modulus, travel_compliance};
@@ -244,7 +244,7 @@ fn of_size(parameter: &Parameter, sizes: &Sizes) -> Parameter {
 /// adds compliance. `None` if the kind of effect is no tilt or the bearing is rigid.
 fn nominal_bearing_nm_per_rad(forward: &Forward, kind: &Kind, at: &str) -> Option<f64> {
     let joint = forward.nominal.structure.joints().find(|j| j.name == at)?;
-    let tilts = kind.traits.yields == Some(Yields::Tilt) && joint.tilt_rad_per_nm > 0.0;
+    let tilts = kind.traits.rotation == Some(ElasticRotation::Tilt) && joint.tilt_rad_per_nm > 0.0;
     tilts.then(|| 1.0 / joint.tilt_rad_per_nm)
 }
 

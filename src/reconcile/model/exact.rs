@@ -9,7 +9,7 @@ use crate::arm::joint_law::JointLaw;
 use crate::arm::load::Payload;
 use crate::arm::structure::{FrameCompliance, LinkPiece, Piece, Structure};
 use crate::mechanics::chain::Chain;
-use crate::mechanics::chain::{Posed, Yielding};
+use crate::mechanics::chain::{Compliance, Posed};
 use crate::mechanics::{Twist, displacement_at};
 use crate::reconcile::forward::bench::{ARCMIN_PER_RAD, bench_twists_rad};
 use crate::reconcile::readings::placement::Placement;
@@ -193,9 +193,9 @@ fn joints(posed: &Posed) -> Vec<(JointLaw, Twist, f64)> {
     let laws = posed.elements().filter_map(|element| {
         // elements without strain coordinates have no twist
         let own: Vec<Twist> = twists.by_ref().take(element.twists.len()).collect();
-        match element.yielding {
-            Yielding::Joint(law) => Some((law, own[0])),
-            Yielding::Linear(_) | Yielding::Slide { .. } | Yielding::Lift(_) => None,
+        match element.compliance {
+            Compliance::Joint(law) => Some((law, own[0])),
+            Compliance::Linear(_) | Compliance::Slide { .. } | Compliance::Lift(_) => None,
         }
     });
     laws.zip(torques).map(|((law, twist), (_, torque))| (law, twist, torque)).collect()

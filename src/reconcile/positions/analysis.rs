@@ -5,13 +5,13 @@ use super::align;
 use super::fit::fit;
 use super::fitted::{Fitted, Sample};
 use super::kinematics::{Geometry, Number, Pose, number_groups};
-use super::loads::{Loads, Yielding, candidates};
+use super::loads::{CompliantPlace, Loads, candidates};
 use super::moved::{Boundary, Kind};
 use super::play;
 use super::points::{Point, points};
 use super::tree::Tree;
 use crate::arm::Arm;
-use crate::arm::effect::kind::Yields;
+use crate::arm::effect::kind::ElasticRotation;
 use crate::reconcile::fit::stats::median;
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::components::Components;
@@ -35,7 +35,8 @@ const LEAN: f64 = 1e-3;
 
 /// Classes of compliances (about a joint's axis, tilt, frame), in the order in which the search for effects tries
 /// them.
-const CLASSES: [Yields; 3] = [Yields::AboutAxis, Yields::Tilt, Yields::Frame];
+const CLASSES: [ElasticRotation; 3] =
+    [ElasticRotation::AboutAxis, ElasticRotation::Tilt, ElasticRotation::Frame];
 
 /// Result of the analysis of a campaign of positions.
 #[derive(Clone)]
@@ -43,7 +44,7 @@ pub(crate) struct Positions {
     /// The table of position errors, stage by stage.
     pub stages: Vec<Stage>,
     /// All candidates: one for each effect at each place where it may be added to the model.
-    pub candidates: Vec<Yielding>,
+    pub candidates: Vec<CompliantPlace>,
     /// For each candidate, whether it may be named as an effect.
     pub(super) considered: Vec<bool>,
     /// The fit of the final model: geometry, compliances and sessions.
@@ -323,7 +324,7 @@ pub(super) fn samples(
     campaign: &Campaign,
     tree: &Tree,
     geometry: &Geometry,
-    candidates: &[Yielding],
+    candidates: &[CompliantPlace],
     points: &[Point],
 ) -> Vec<Sample> {
     let points: Vec<usize> = campaign

@@ -131,15 +131,15 @@ impl Fitted {
     pub(crate) fn displacement(&self, sample: &Sample) -> Vector3<f64> {
         let gravity = &self.geometry.gravity;
         let [by_x, by_y] = &sample.deflection.known_slopes_m;
-        sample.deflection.known_m + by_x * gravity.x + by_y * gravity.y + self.yielded(sample, gravity)
+        sample.deflection.known_m + by_x * gravity.x + by_y * gravity.y + self.displaced_m(sample, gravity)
     }
 
     /// How far the effects of the model let the measured point of a sample move under gravity along the direction
     /// `gravity`, in the level frame \[m\]. The effects deflect elastically or close their play.
-    pub(crate) fn yielded(&self, sample: &Sample, gravity: &Vector3<f64>) -> Vector3<f64> {
+    pub(crate) fn displaced_m(&self, sample: &Sample, gravity: &Vector3<f64>) -> Vector3<f64> {
         let effects = self.effects.iter().zip(&self.compliances);
         effects.fold(Vector3::zeros(), |sum, (&effect, compliances)| {
-            sum + sample.deflection.yielded(effect, compliances, gravity)
+            sum + sample.deflection.displaced_m(effect, compliances, gravity)
         })
     }
 
@@ -150,7 +150,7 @@ impl Fitted {
         let effects = self.effects.iter().zip(&self.compliances);
         let springs = effects.filter(|(effect, _)| !sample.deflection.is_play(**effect));
         springs.fold(Vector3::zeros(), |sum, (&effect, compliances)| {
-            sum + sample.deflection.yielded(effect, compliances, &Vector3::ith(axis, 1.0))
+            sum + sample.deflection.displaced_m(effect, compliances, &Vector3::ith(axis, 1.0))
         })
     }
 

@@ -8,7 +8,7 @@
 use super::kinematics::Geometry;
 use super::tree::Tree;
 use crate::arm::body::total_kg;
-use crate::arm::effect::kind::{Kind, Yields};
+use crate::arm::effect::kind::{ElasticRotation, Kind};
 use crate::arm::effect::{
     base_compliance, bearing_tilt, connection_compliance, frame_compliance, joint_compliance,
 };
@@ -31,12 +31,12 @@ pub(crate) const FRAME_ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (0, 1), (
 
 /// A candidate: an effect at a place, which makes the arm compliant or gives it play there.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Yielding {
+pub(crate) struct CompliantPlace {
     /// Name of the effect.
     pub effect: &'static str,
     /// Direction of the compliance: about a joint's axis, tilt about the two axes perpendicular to it, or rotation of
     /// a frame about every axis.
-    pub yields: Yields,
+    pub rotation: ElasticRotation,
     /// Place of the effect: the name of a joint or link, or `base`.
     pub at: String,
     /// Torque scale `T_c` of play \[N m\], if the candidate is play and no spring. Its parameter is then the half width
@@ -123,7 +123,7 @@ impl Deflection {
 
     /// Displacement of the point under gravity along `gravity` if the candidate has the compliances `compliances`
     /// \[rad/(N m)\], in the level frame \[m\]. For play the entry is the half width \[rad\].
-    pub(crate) fn yielded(
+    pub(crate) fn displaced_m(
         &self,
         candidate: usize,
         compliances: &[f64],
@@ -147,24 +147,24 @@ impl Deflection {
 
 /// All candidates of compliance: about the axis and across the axis of every joint, of the base, and of the link
 /// behind every joint.
-pub(crate) fn candidates(tree: &Tree) -> Vec<Yielding> {
+pub(crate) fn candidates(tree: &Tree) -> Vec<CompliantPlace> {
     let mut out = Vec::new();
     for piece in &tree.pieces {
         if let Piece::Joint(joint) = piece {
             let rigid = joint.law.is_rigid();
             let about_axis = if rigid { &joint_compliance::KIND } else { &connection_compliance::KIND };
-            out.extend(Yielding::new(about_axis, &joint.name));
-            out.extend(Yielding::new(&bearing_tilt::KIND, &joint.name));
+            out.extend(CompliantPlace::new(about_axis, &joint.name));
+            out.extend(CompliantPlace::new(&bearing_tilt::KIND, &joint.name));
         }
     }
-    out.extend(Yielding::new(&base_compliance::KIND, "base"));
-    out.extend(Yielding::new(&frame_compliance::KIND, "base"));
+    out.extend(CompliantPlace::new(&base_compliance::KIND, "base"));
+    out.extend(CompliantPlace::new(&frame_compliance::KIND, "base"));
     let behind = tree.arms.iter().flat_map(|chain| chain.windows(2));
     for (joint, link) in behind.map(|pair| (&tree.pieces[pair[0]], &tree.pieces[pair[1]])) {
         if let (Piece::Joint(_), Piece::Link(link)) = (joint, link)
-            && !out.iter().any(|c| c.yields == Yields::Frame && c.at == link.name)
+            && !out.iter().any(|c| c.rotation == ElasticRotation::Frame && c.at == link.name)
         {
-            out.extend(Yielding::new(&frame_compliance::KIND, &link.name));
+            out.extend(CompliantPlace::new(&frame_compliance::KIND, &link.name));
         }
     }
     out
@@ -174,52 +174,57 @@ impl Tree {
     /// Whether the compliance of the candidate `frame` can have the same effect as the candidate `other`. The frame
     /// of the base includes the tilt of the base, and the frame of a link includes the compliance of the joint before
     /// it.
-    pub(crate) fn contains(&self, frame: &Yielding, other: &Yielding) -> bool {
+    pub(crate) fn contains(&self, frame: &CompliantPlace, other: &CompliantPlace) -> bool {
         let is_behind = |pair: &[usize]| match (&self.pieces[pair[0]], &self.pieces[pair[1]]) {
             (Piece::Joint(joint), Piece::Link(link)) => joint.name == other.at && link.name == frame.at,
             _ => false,
         };
-        frame.yields == Yields::Frame
-            && other.yields != Yields::Frame
+        frame.rotation == ElasticRotation::Frame
+            && other.rotation != ElasticRotation::Frame
             && other.play_nm.is_none()
             && (frame.at == other.at || self.arms.iter().any(|chain| chain.windows(2).any(is_behind)))
     }
 }
 
-impl Yielding {
+impl CompliantPlace {
     /// The candidate of the effect `kind` at the place `at`; `None` if the effect adds no compliance that positions
     /// can show.
     fn new(kind: &'static Kind, at: &str) -> Option<Self> {
-        kind.traits.yields.map(|yields| Self { effect: kind.name, yields, at: at.into(), play_nm: None })
+        kind.traits.rotation.map(|rotation| Self {
+            effect: kind.name,
+            rotation,
+            at: at.into(),
+            play_nm: None,
+        })
     }
 
     /// Number of compliances of the candidate. A frame has xx, yy, xy, xz and yz. The frame of a link also has zz,
     /// because weights can turn it about z; they cannot turn the base about z.
     pub(crate) fn count(&self) -> usize {
-        match (self.yields, self.at.as_str()) {
-            (Yields::Frame, "base") => 5,
-            (Yields::Frame, _) => 6,
+        match (self.rotation, self.at.as_str()) {
+            (ElasticRotation::Frame, "base") => 5,
+            (ElasticRotation::Frame, _) => 6,
             _ => 1,
         }
     }
 
     /// Number of axes about which the candidate rotates under load.
     fn axes(&self) -> usize {
-        match self.yields {
-            Yields::AboutAxis => 1,
-            Yields::Tilt => 2,
-            Yields::Frame => 3,
+        match self.rotation {
+            ElasticRotation::AboutAxis => 1,
+            ElasticRotation::Tilt => 2,
+            ElasticRotation::Frame => 3,
         }
     }
 
     /// The name of the elastic element in the chain that stands for the candidate.
     fn element(&self) -> String {
         let is_base_tilt = self.effect == base_compliance::KIND.name;
-        match self.yields {
-            Yields::AboutAxis => self.at.clone(),
-            Yields::Tilt if is_base_tilt => self.at.clone(),
-            Yields::Tilt => format!("{}.bearing", self.at),
-            Yields::Frame => format!("{}.{}", self.at, self.effect),
+        match self.rotation {
+            ElasticRotation::AboutAxis => self.at.clone(),
+            ElasticRotation::Tilt if is_base_tilt => self.at.clone(),
+            ElasticRotation::Tilt => format!("{}.bearing", self.at),
+            ElasticRotation::Frame => format!("{}.{}", self.at, self.effect),
         }
     }
 }
@@ -263,7 +268,7 @@ impl<'a> Loads<'a> {
         campaign: &Campaign,
         tree: &'a Tree,
         geometry: &Geometry,
-        candidates: &[Yielding],
+        candidates: &[CompliantPlace],
     ) -> Self {
         let ready: Vec<Vec<Ready>> = campaign
             .arms()
@@ -277,7 +282,7 @@ impl<'a> Loads<'a> {
             })
             .collect();
         let mut first = 0;
-        let slot = |candidate: &Yielding| {
+        let slot = |candidate: &CompliantPlace| {
             let (swings, compliances) = (candidate.axes(), candidate.count());
             let slot = Slot { first, swings, compliances, play_nm: candidate.play_nm };
             first += slot.swings;
@@ -326,7 +331,7 @@ impl<'a> Loads<'a> {
 }
 
 impl Ready {
-    fn new(campaign: &Campaign, arm: &Arm, point_m: Vector3<f64>, candidates: &[Yielding]) -> Self {
+    fn new(campaign: &Campaign, arm: &Arm, point_m: Vector3<f64>, candidates: &[CompliantPlace]) -> Self {
         let mut structure = arm.structure(JointModel::ThreeSegment);
         for piece in &mut structure.pieces {
             if let Piece::Link(link) = piece
@@ -407,13 +412,13 @@ fn trunk_items(campaign: &Campaign, tree: &Tree, ready: &[Vec<Ready>]) -> [usize
 
 /// Places of each candidate's elements in an arm. The elements of an arm are the same in every pose, so they are
 /// sought in one.
-fn places(unit: &Chain, arm: &Arm, candidates: &[Yielding]) -> Vec<Place> {
+fn places(unit: &Chain, arm: &Arm, candidates: &[CompliantPlace]) -> Vec<Place> {
     let rest = vec![0.0; arm.driven_joint_names().len()];
     let posed = unit.pose_rad(&rest, &Payload::default(), Vector3::zeros());
     let mut names: Vec<&str> = posed.elements().map(|element| element.name.as_str()).collect();
     names.reverse();
     let place = |name: &str| names.iter().position(|n| *n == name);
-    let of = |candidate: &Yielding| {
+    let of = |candidate: &CompliantPlace| {
         let driven = unit.linkages().iter().filter(|l| l.driver == candidate.element());
         let passive = driven.filter_map(|l| Some((place(&l.passive)?, l.factor)));
         Place { own: place(&candidate.element()), passive: passive.collect() }

@@ -6,7 +6,7 @@ use super::fitted::Fitted;
 use super::points::Point;
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::select::lack_of_fit::LackOfFit;
-use crate::reconcile::verdict::next_test::{WORTHLESS_SIGMAS, readings_needed, spread_pose};
+use crate::reconcile::verdict::next_test::{LEAST_SIGMAS, readings_needed, spread_pose};
 use crate::reconcile::verdict::outcome::{NextTest, Verdict};
 use std::collections::HashSet;
 
@@ -57,7 +57,7 @@ impl Positions {
         let (best, sigmas) = gap.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
         let row = &proposed.positions[best];
         let [a, b] = &names;
-        if sigmas < WORTHLESS_SIGMAS {
+        if sigmas < LEAST_SIGMAS {
             let separates = format!(
                 "no position separates {a} from {b}, in a hundred readings: load the tip sideways and measure the turn on both sides \
                  of each place with dial gauges or an inclinometer"

@@ -11,7 +11,7 @@ use super::transmission;
 use crate::arm::Arm;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::entry::Effect;
-use crate::arm::effect::kind::Yields;
+use crate::arm::effect::kind::ElasticRotation;
 use crate::reconcile::fit::held_out::{HeldOut, rms};
 use crate::reconcile::fit::noise::Noise;
 use crate::reconcile::model::estimate::{Estimate, Finding};
@@ -49,10 +49,10 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let lack_of_fit = found.lack_of_fit(campaign);
     let competitors: Vec<Vec<(usize, Fitted)>> =
         (0..found.fitted.effects.len()).map(|i| found.competitors(i)).collect();
-    let yielding = (0..found.fitted.effects.len())
+    let compliant = (0..found.fitted.effects.len())
         .map(|i| found.with_session_instead(campaign, i, found.finding(i, &competitors[i])));
     let uneven = found.transmissions.iter().map(|&joint| found.transmission_finding(joint));
-    let findings: Vec<Finding> = yielding.chain(uneven).collect();
+    let findings: Vec<Finding> = compliant.chain(uneven).collect();
     let (verdict, mut reasons) = found.verdict(campaign, &lack_of_fit, &findings);
     reasons.extend(found.session_sentences(campaign));
     reasons.extend(found.other_convention(campaign));
@@ -206,7 +206,7 @@ impl Positions {
     fn finding(&self, i: usize, competitors: &[(usize, Fitted)]) -> Finding {
         let candidate = &self.candidates[self.fitted.effects[i]];
         let (c, sd) = (&self.fitted.compliances[i], &self.fitted.deviations[i]);
-        let parameters = match candidate.yields {
+        let parameters = match candidate.rotation {
             _ if candidate.play_nm.is_some() => {
                 let scale_nm = candidate.play_nm.unwrap_or_default();
                 vec![
@@ -214,8 +214,8 @@ impl Positions {
                     ("torque_nm".into(), vec![self.play_scale(i, scale_nm)]),
                 ]
             }
-            Yields::Frame => frame_parameters(c, sd),
-            Yields::AboutAxis | Yields::Tilt => {
+            ElasticRotation::Frame => frame_parameters(c, sd),
+            ElasticRotation::AboutAxis | ElasticRotation::Tilt => {
                 vec![("stiffness_nm_per_rad".into(), vec![stiffness(c[0], sd[0])])]
             }
         };

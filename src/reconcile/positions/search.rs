@@ -8,7 +8,7 @@ use super::fitted::{Fitted, Miss, Sample, readings};
 use super::normal::Factor;
 use super::rows::{Further, normal};
 use super::structure::squares;
-use crate::arm::effect::kind::Yields;
+use crate::arm::effect::kind::ElasticRotation;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -22,9 +22,9 @@ impl Positions {
     /// Adds the effect of the class `class` (kind of compliance) that raises the likelihood most, if the rise is
     /// worth the effect's price and held-out poses confirm it. Effects that become unnecessary are dropped. Returns
     /// whether an effect was added.
-    pub(crate) fn add(&mut self, campaign: &Campaign, class: Yields) -> bool {
+    pub(crate) fn add(&mut self, campaign: &Campaign, class: ElasticRotation) -> bool {
         let base = &self.fitted;
-        let tried = self.best_additions(base, |c| self.candidates[c].yields == class);
+        let tried = self.best_additions(base, |c| self.candidates[c].rotation == class);
         let gain = |(_, f): &(usize, Fitted)| {
             f.ln_likelihood - self.prices(&f.effects) - (base.ln_likelihood - self.prices(&base.effects))
         };

@@ -10,7 +10,7 @@ use super::fitted::{Sample, readings};
 use super::normal::Factor;
 use super::rows::normal;
 use crate::arm::effect::channel::Channel;
-use crate::arm::effect::kind::Yields;
+use crate::arm::effect::kind::ElasticRotation;
 use crate::reconcile::fit::stats::{ln_chi_squared_tail, median};
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::rows::PositionRow;
@@ -153,7 +153,7 @@ impl<'a> Asker<'a> {
     fn new(found: &'a Positions, campaign: &Campaign) -> Self {
         let joint = |c: &usize| {
             let candidate = &found.candidates[*c];
-            candidate.yields == Yields::AboutAxis && candidate.play_nm.is_none()
+            candidate.rotation == ElasticRotation::AboutAxis && candidate.play_nm.is_none()
         };
         let torque =
             |c: usize| found.samples.iter().map(|s| s.deflection.lever(c).1.abs()).fold(1e-9, f64::max);

@@ -8,10 +8,10 @@
 
 use super::analysis::Positions;
 use super::fitted::Sample;
-use super::loads::Yielding;
+use super::loads::CompliantPlace;
 use super::normal::Factor;
 use super::rows::normal;
-use crate::arm::effect::kind::Yields;
+use crate::arm::effect::kind::ElasticRotation;
 use crate::arm::structure::Piece;
 use crate::reconcile::readings::declared::BASE;
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -32,21 +32,21 @@ impl Positions {
     /// the model.
     fn unnamed_springs(&self) -> Vec<usize> {
         // tilt of the base and tilt of a first joint have the same effect
-        let place = |c: &Yielding| match (c.yields, self.tree.pieces.first()) {
-            (Yields::Tilt, Some(Piece::Joint(first))) if c.at == first.name => BASE.to_string(),
+        let place = |c: &CompliantPlace| match (c.rotation, self.tree.pieces.first()) {
+            (ElasticRotation::Tilt, Some(Piece::Joint(first))) if c.at == first.name => BASE.to_string(),
             _ => c.at.clone(),
         };
         let is_named = |c: usize| {
             let candidate = &self.candidates[c];
             self.fitted.effects.iter().any(|&e| {
                 let named = &self.candidates[e];
-                (named.yields, place(named)) == (candidate.yields, place(candidate))
+                (named.rotation, place(named)) == (candidate.rotation, place(candidate))
                     || self.tree.contains(named, candidate)
             })
         };
         let is_spring = |c: &usize| {
             let candidate = &self.candidates[*c];
-            self.considered[*c] && candidate.play_nm.is_none() && candidate.yields != Yields::Frame
+            self.considered[*c] && candidate.play_nm.is_none() && candidate.rotation != ElasticRotation::Frame
         };
         (0..self.candidates.len()).filter(is_spring).filter(|c| !is_named(*c)).collect()
     }

@@ -347,8 +347,8 @@ impl<'a> Judged<'a> {
         out
     }
 
-    /// Twist against torque of about [`POINTS`] rows, for the picture: as recorded, and corrected so that only the
-    /// spring is left.
+    /// Twist against torque of about [`POINTS`] rows, for the picture: as recorded, and corrected so that the
+    /// spring and its friction are left.
     fn trace(&self) -> Vec<Traced> {
         let model = self.model;
         let p = model.places;

@@ -128,14 +128,14 @@ fn section(joint: &JointRecord) -> PageSection {
 }
 
 /// The picture of a joint: two diagrams of twist against torque. The upper one shows them as recorded, the lower one
-/// corrected so that only the spring is left.
+/// corrected so that the spring and its friction are left.
 fn figure(joint: &JointRecord) -> Figure {
     let points = |of: fn(&Traced) -> f64| -> Vec<(f64, f64)> {
         joint.trace.iter().map(|t| (t.torque_nm, 1e3 * of(t))).collect()
     };
     let title = format!("{}: twist against torque", joint.joint);
-    let caption = "Above: motor less link, as recorded, about its mean. Below: without the time shift, friction and \
-                   transmission error that were found, with what the model says of the spring.";
+    let caption = "Above: motor less link, as recorded, without a constant offset. Below: without the time shift and the \
+                   transmission error that were found too. The loop of friction stays. The model is drawn with it.";
     let panel = |title: &str, label: &str, series: Vec<Series>| Plot {
         title: title.into(),
         x: Axis::new("torque at the output [Nm]", Scale::Linear),

@@ -11,8 +11,8 @@ const HALF_WIDTHS: [usize; 9] = [3, 4, 6, 8, 12, 16, 24, 32, 48];
 /// Largest misfit of a window (root mean square), as a multiple of the signal's noise. At this value the distortion
 /// by the window is a third of the noise.
 const STILL_NOISE: f64 = 1.05;
-/// Two neighbouring rows are separated by a gap if their times differ by more than this many usual steps.
-const GAP_STEPS: f64 = 2.5;
+/// A window that lasts this many times as long as its usual steps has a gap between its rows.
+const LONGEST: f64 = 1.5;
 /// Sum of the squares of the weights of a fourth difference (1, -4, 6, -4, 1).
 const FOURTH_DIFFERENCE_VARIANCE: f64 = 70.0;
 
@@ -75,7 +75,7 @@ pub(crate) fn smooth(t_s: &[f64], x: &[f64], half: usize) -> Smooth {
     for i in half..n.saturating_sub(half) {
         let window = i - half..=i + half;
         let width = t_s[i + half] - t_s[i - half];
-        if width > step * (2 * half) as f64 * GAP_STEPS.min(1.5) {
+        if width > step * (2 * half) as f64 * LONGEST {
             continue;
         }
         let scale = 0.5 * width;

@@ -19,11 +19,9 @@ use rayon::prelude::*;
 use std::cell::OnceCell;
 
 /// Smallest rise of the score \[ln of the evidence\] for which a second or third effect is accepted. It is above
-/// zero, because two missing effects are less probable than one.
-const WORTH: f64 = 3.0;
-/// Smallest rise of the score \[ln of the evidence\] for which the first effect is accepted. It is zero, because a
+/// zero, because two missing effects are less probable than one. A first effect needs no more than a rise, because a
 /// missing effect is as probable as none.
-const FIRST_WORTH: f64 = 0.0;
+const WORTH: f64 = 3.0;
 /// The listed alternatives to an effect are as many as are needed so that the effect and they together contain the
 /// right one with this probability.
 const CREDIBLE: f64 = 0.95;
@@ -85,7 +83,7 @@ impl<'a> Search<'a> {
             let effort = Effort { steps: 12, tolerance: 0.02 };
             let again = fit(self.forward, &self.model(&known.effects), &known.u, self.weights, effort);
             best = self.repair(self.scored(&known.effects, &again), &mut seen);
-            if best.score < baseline.score + FIRST_WORTH {
+            if best.score < baseline.score {
                 best = baseline.clone();
             }
         }
@@ -99,14 +97,14 @@ impl<'a> Search<'a> {
             let tried = self.extend(&best, &seen);
             seen.extend(tried.iter().cloned());
             // several missing effects are less probable than one
-            let worth = if best.effects.is_empty() { FIRST_WORTH } else { WORTH };
+            let worth = if best.effects.is_empty() { 0.0 } else { WORTH };
             let Some(next) = better(&tried, best.score + worth) else { break };
             best = self.settled(next);
             if let Some(lower) = self.lower_baseline(&best, &baseline) {
                 baseline = self.scored(&[], &lower);
                 (baseline_fit, law) = (lower, OnceCell::new());
                 seen.clear(); // these fits started from a calibration that had not converged
-                if best.score < baseline.score + FIRST_WORTH {
+                if best.score < baseline.score {
                     best = baseline.clone();
                     continue;
                 }
@@ -170,11 +168,7 @@ impl<'a> Search<'a> {
         };
         let mut seen: Vec<Scored> = promising.par_iter().map(again).collect();
         let baseline = seen.remove(0);
-        let worth = |s: &Scored| match s.effects.len() {
-            0 => 0.0,
-            n => FIRST_WORTH + (n - 1) as f64 * WORTH,
-        };
-        let net = |s: &&Scored| s.score - worth(s);
+        let net = |s: &&Scored| s.score - s.effects.len().saturating_sub(1) as f64 * WORTH;
         let is_more = |s: &&Scored| {
             let is_part = |part: &Scored| {
                 part.effects.len() < s.effects.len() && part.effects.iter().all(|e| s.effects.contains(e))

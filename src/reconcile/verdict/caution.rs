@@ -110,8 +110,8 @@ pub(crate) fn beyond_tolerance(fit: &Fit, calibrated: &[Calibrated]) -> Option<S
     let (rarity, beyond): (Vec<f64>, Vec<String>) = beyond.unzip();
     let doubt = match rarity.iter().any(|one_in| *one_in > RARE) {
         true => {
-            ". So far off is seldom a matter of tolerance: the part may be another than the arm file says, or something \
-             yields or weighs beside it that these readings do not tell from it"
+            ". So far off is seldom a matter of tolerance: the part may be another than the arm file says, or \
+             something else deflects or has mass there that these readings do not tell from it"
         }
         false => "",
     };

@@ -35,9 +35,9 @@ const MODAL_POSES: usize = 4;
 const PROPOSALS: usize = 4;
 /// Difference of the predictions of two models that suffices to decide between them \[standard deviations\].
 pub(crate) const ENOUGH: f64 = 4.0;
-/// Separation that one reading must reach \[standard deviations\]. With less, a hundred readings would not be
-/// enough.
-pub(crate) const WORTHLESS_SIGMAS: f64 = 0.1 * ENOUGH;
+/// Least separation with which a test is proposed \[standard deviations\]. A hundred readings of it are [`ENOUGH`], because
+/// the mean of a hundred is ten times as sharp as one.
+pub(crate) const LEAST_SIGMAS: f64 = ENOUGH / 10.0;
 /// Largest number of readings that is printed.
 const MOST_READINGS: f64 = 9999.0;
 /// Standard deviations that are assumed where a channel was not measured.
@@ -76,7 +76,7 @@ pub(crate) fn propose(question: &Question) -> Vec<NextTest> {
     // a competing model that no test separates cannot be ruled out by more readings
     let most = |competitor: usize| gaps.iter().map(|list| list[competitor]).fold(0.0, f64::max);
     let (open, twins): (Vec<usize>, Vec<usize>) =
-        (0..question.competitors.len()).partition(|&competitor| most(competitor) >= WORTHLESS_SIGMAS);
+        (0..question.competitors.len()).partition(|&competitor| most(competitor) >= LEAST_SIGMAS);
     if open.is_empty() {
         let names: Vec<&str> =
             twins.iter().map(|&competitor| question.competitors[competitor].0.as_str()).collect();
@@ -359,7 +359,7 @@ mod tests {
 
     #[test]
     fn a_test_is_worth_a_hundred_readings_at_most() {
-        assert_eq!([ENOUGH, 0.5 * ENOUGH, WORTHLESS_SIGMAS].map(readings_needed), [1, 4, 100]);
+        assert_eq!([ENOUGH, 0.5 * ENOUGH, LEAST_SIGMAS].map(readings_needed), [1, 4, 100]);
         assert_eq!(readings_needed(0.0), MOST_READINGS as usize, "models that do not differ");
     }
 }

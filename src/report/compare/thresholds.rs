@@ -1,6 +1,7 @@
 //! Round limits at which fronts are compared, spread over the range where the fronts overlap.
 
 use super::question::Question;
+use crate::report::number::times_power_of_ten;
 use crate::report::picks::{Design, Objective, best};
 use serde::Serialize;
 
@@ -109,15 +110,9 @@ fn round_between(low: f64, high: f64, count: usize, limited: Objective) -> Vec<f
 fn stops_between(low: f64, high: f64, stops: &[u32]) -> Vec<f64> {
     let (from, to) = (libm::log10(low).floor() as i32 - 1, libm::log10(high).ceil() as i32);
     (from..=to)
-        .flat_map(|power| stops.iter().map(move |s| decimal(*s, power - 1)))
+        .flat_map(|power| stops.iter().map(move |s| times_power_of_ten(f64::from(*s), power - 1)))
         .filter(|v| (low..=high).contains(v))
         .collect()
-}
-
-/// `digits * 10^power`. The division keeps negative powers exact to the last digit.
-fn decimal(digits: u32, power: i32) -> f64 {
-    let digits = f64::from(digits);
-    if power < 0 { digits / 10f64.powi(-power) } else { digits * 10f64.powi(power) }
 }
 
 /// From `found`, numbers in ascending order, those nearest to `count` points that are evenly spread from `low` to
@@ -140,7 +135,7 @@ fn nearest_round(low: f64, high: f64, limited: Objective) -> f64 {
     let (value, up) = if limited == Objective::Mode { (low, false) } else { (high, true) };
     let power = libm::log10(value).floor() as i32 - 1;
     let digits = value / 10f64.powi(power);
-    decimal(if up { digits.ceil() } else { digits.floor() } as u32, power)
+    times_power_of_ten(if up { digits.ceil() } else { digits.floor() }, power)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Positions and labels of the ticks of an axis.
 
 use super::scale::Scale;
+use crate::report::number::times_power_of_ten;
 
 /// One tick of an axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -83,7 +84,7 @@ fn logarithmic(low: f64, high: f64, count: usize) -> Ruling {
     let every = ((decades / (2 * count.max(1)) as f64).ceil() as i32).max(1);
     let ticks = (libm::log10(low).floor() as i32..=libm::log10(high).ceil() as i32)
         .flat_map(|power| (1..10).map(move |m| (m, power)))
-        .map(|(m, power)| (f64::from(m), power, times_power(f64::from(m), power)))
+        .map(|(m, power)| (f64::from(m), power, times_power_of_ten(f64::from(m), power)))
         .filter(|(_, _, value)| (low * (1.0 - 1e-9)..=high * (1.0 + 1e-9)).contains(value))
         .map(|(m, power, value)| Tick {
             value,
@@ -94,24 +95,19 @@ fn logarithmic(low: f64, high: f64, count: usize) -> Ruling {
     Ruling { scale: Scale::Log, low, high, ticks }
 }
 
-/// `mantissa · 10^power`. The division keeps negative powers exact to the last digit.
-fn times_power(mantissa: f64, power: i32) -> f64 {
-    if power < 0 { mantissa / 10f64.powi(-power) } else { mantissa * 10f64.powi(power) }
-}
-
 /// Numbers within a decade at which a logarithmic axis may end.
 const STOPS: [f64; 3] = [1.0, 2.0, 5.0];
 
 fn stop_below(value: f64) -> f64 {
     let power = libm::log10(value).floor() as i32;
-    let candidates = STOPS.iter().map(|s| times_power(*s, power));
-    candidates.filter(|s| *s <= value * (1.0 + 1e-9)).fold(times_power(1.0, power), f64::max)
+    let candidates = STOPS.iter().map(|s| times_power_of_ten(*s, power));
+    candidates.filter(|s| *s <= value * (1.0 + 1e-9)).fold(times_power_of_ten(1.0, power), f64::max)
 }
 
 fn stop_above(value: f64) -> f64 {
     let power = libm::log10(value).floor() as i32;
-    let candidates = STOPS.iter().map(|s| times_power(*s, power));
-    candidates.filter(|s| *s >= value * (1.0 - 1e-9)).fold(times_power(1.0, power + 1), f64::min)
+    let candidates = STOPS.iter().map(|s| times_power_of_ten(*s, power));
+    candidates.filter(|s| *s >= value * (1.0 - 1e-9)).fold(times_power_of_ten(1.0, power + 1), f64::min)
 }
 
 /// The range from `low` to `high`, or a wider one if it is empty or nearly so.

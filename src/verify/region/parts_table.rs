@@ -92,9 +92,9 @@ impl PartsTable {
 impl JointTable {
     fn new(drives: DriveOptions) -> Self {
         let mut curves: Vec<DriveRange> = Vec::new();
-        let yields = |a: &DriveRange| (a.stiff, a.soft, a.modal_nm_per_rad, a.tilt_rad_per_nm);
+        let compliances = |a: &DriveRange| (a.stiff, a.soft, a.modal_nm_per_rad, a.tilt_rad_per_nm);
         let curve = |range: &DriveRange| {
-            let known = curves.iter().position(|known| yields(known) == yields(range));
+            let known = curves.iter().position(|known| compliances(known) == compliances(range));
             known.unwrap_or_else(|| {
                 curves.push(*range);
                 curves.len() - 1
