@@ -1,15 +1,15 @@
 //! The keys of arm files. The reader uses this list, and `armwright schema arm` prints it.
 
 use super::effect::catalogue::NAMES as EFFECTS;
-use super::element_keys::{
-    AXIS, BODIES_OF_JOINT, BODIES_OF_LINK, COUPLED, GEAR, IS_JOINT, IS_LINK, LINK_MASS, LINK_PIECES,
-    LINK_SECTION, LINK_VECTOR, MOTOR, NAME, OUTPUT_BEARING, STIFFNESS, TORSION_CURVE, WHICH_GEAR_MASS,
-};
 use super::keys::{
     COUNTERWEIGHTS, EXTRAS, GEAR_AT, GEAR_RATIO, GRAVITY, MASS_FACTOR, MOTOR_AT, MOTOR_MASS, MOTOR_POINT,
     SPRINGS, STATED, STIFFNESS_FACTOR, TRANSMISSION, TRANSMISSION_RULES, TURNS_WITH,
 };
 use super::prismatic_keys::PRISMATIC;
+use super::shared_keys::{
+    AXIS, BODIES_OF_JOINT, BODIES_OF_LINK, COUPLED, GEAR, IS_JOINT, IS_LINK, LINK_MASS, LINK_PIECES,
+    LINK_SECTION, LINK_VECTOR, MOTOR, NAME, OUTPUT_BEARING, STIFFNESS, TORSION_CURVE, WHICH_GEAR_MASS,
+};
 use crate::input::key::{Kind, Rule, SCHEMA_ADDRESS, Shape, optional, required};
 use crate::input::schema::FileKind;
 

@@ -30,6 +30,7 @@ pub(crate) mod prismatic;
 pub(crate) mod prismatic_keys;
 pub(crate) mod section;
 mod section_file;
+pub(crate) mod shared_keys;
 pub(crate) mod springs;
 pub(crate) mod springs_file;
 pub(crate) mod structure;

@@ -1,7 +1,7 @@
 //! The keys of prismatic joints, in arm files and in studies.
 
-use super::element_keys::NAME;
 use super::keys::{BODY_INERTIA, BODY_MASS, POSITIVE_OR_NULL, VECTOR};
+use super::shared_keys::NAME;
 use crate::input::key::{Key, Kind, Shape, optional, required};
 
 /// A list of bodies of a prismatic joint.

@@ -28,7 +28,8 @@ fn first_of(names: &[&str]) -> String {
 
 impl DriveTable<'_> {
     /// In words, the parts that cannot be checked and the ratings that they lack. Parts of the user's own catalogs
-    /// come first, then those whose known sizes fit. `None` if every part has all its ratings.
+    /// come first. Built-in parts whose known sizes do not fit are left out if others fit. `None` if every part has all
+    /// its ratings.
     ///
     /// `PLE-60-40, PLE-60-50: no rated_life_h (life), no efficiency_rated_2000rpm (motor torque)`
     pub fn missing_figures(&self) -> Option<String> {
@@ -46,7 +47,7 @@ impl DriveTable<'_> {
         (!groups.is_empty()).then(|| named.chain(more).collect::<Vec<_>>().join("; "))
     }
 
-    /// The parts that cannot be checked, those of the user's own catalogs first, then those whose known sizes fit.
+    /// The parts that cannot be checked and would fit, those of the user's own catalogs first.
     fn lacking_parts(&self) -> Vec<LackingPart<'_>> {
         let fit = &self.motion().fit;
         let no_size = Envelope::default();
@@ -70,6 +71,10 @@ impl DriveTable<'_> {
                 Some(other) => other.lacks.extend(part.lacks),
                 None => lacking.push(part),
             }
+        }
+        // what does not fit cannot be chosen, whatever figures it has
+        if lacking.iter().any(|part| !part.order.1) {
+            lacking.retain(|part| !part.order.1 || !part.order.0);
         }
         lacking.sort_by_key(|part| part.order);
         lacking

@@ -147,8 +147,8 @@ fn a_passage_that_no_gear_has_is_refused_with_what_is_missing_and_actuators_let_
     study["fit"] = json!({"cable_bore_min_mm": 25});
     let said = refused(&study);
     for piece in [
-        "gear bore",
-        "SHG-25-50, SHG-25-80, SHG-25-100 and",
+        "bore 25.0 mm needed, 0.0 allowed",
+        "SHG-25-50, SHG-25-80, SHG-25-100 and 29 more: ",
         "no average_input_speed_limit_rpm (mean input speed)",
         "--catalogs DIR",
         "\"actuators\": [\"CHA-25A-30\"",
