@@ -184,7 +184,7 @@ fn a_pick_of_a_representative_material_says_so() {
         [said.split_whitespace().collect::<Vec<_>>().join(" "), read("summary.md"), read("report.html")]
     };
     let [said, summary, page] = said_of("Aluminium 6082-T6", &profiles);
-    assert!(said.contains("Figures not from a document: "), "{said}");
+    assert!(said.contains("Figures not seen in a document of the vendor: "), "{said}");
     assert!(said.contains("Aluminium 6082-T6 (representative) in every pick"), "{said}");
     assert!(summary.contains("Aluminium 6082-T6 (representative) (profile representative)"), "{summary}");
     assert!(page.contains("</a> (representative)"), "beside the material of a link");
