@@ -48,7 +48,7 @@ fn study_of_ties(seed: u64) -> Value {
 fn every_tie_of_drives_that_weigh_and_twist_alike_is_listed() {
     let catalogs = Catalogs::builtin();
     let (mut designs, mut points) = (0, 0);
-    for seed in 0..5 {
+    for seed in 0..3 {
         let text = study_of_ties(seed);
         designs += agree(&text, seed % 2 == 0);
         let study = read(&text, &catalogs);
@@ -62,7 +62,7 @@ fn every_tie_of_drives_that_weigh_and_twist_alike_is_listed() {
         points += sweep.front.iter().map(|c| of(c.objectives.minimized())).collect::<BTreeSet<_>>().len();
     }
     println!("{designs} designs of {points} points, the same in both");
-    assert!(points > 150 && designs > 2 * points, "{designs} designs of {points} points");
+    assert!(points > 90 && designs > 2 * points, "{designs} designs of {points} points");
 }
 
 #[test]
@@ -86,7 +86,7 @@ fn a_search_to_a_gap_lists_fewer_designs_and_none_is_better_by_more() {
     let catalogs = Catalogs::builtin();
     let stop = AtomicBool::new(false);
     let mut fewer = 0;
-    for seed in 0..10 {
+    for seed in 0..6 {
         let study = read(&study_of_ties(seed), &catalogs);
         let problem = ArmProblem::new(&study.space, &catalogs);
         let sweep = Sweep::new(&problem, study.space.constraints, &stop).run();
@@ -106,7 +106,7 @@ fn a_search_to_a_gap_lists_fewer_designs_and_none_is_better_by_more() {
             fewer += usize::from(found.front.len() < sweep.front.len());
         }
     }
-    assert!(fewer > 10, "a gap of 5 % saves designs in {fewer} of 20 searches only");
+    assert!(fewer > 6, "a gap of 5 % saves designs in {fewer} of 12 searches only");
 }
 
 fn armwright(words: &[&str]) -> (i32, String) {
@@ -127,7 +127,7 @@ fn study_of_a_wrist() -> Value {
     json!({"name": "wrist", "chain": [
         joint("shoulder", [0, 1, 0]),
         {"type": "link", "name": "arm", "vector_m": [0.4, 0, 0], "choose": {"materials": ["Aluminium 6061-T6"],
-            "sections": [{"shape": "round_tube", "diameter_mm": [50, 60, 70, 80, 90], "wall_mm": [1, 2, 4]}]}},
+            "sections": [{"shape": "round_tube", "diameter_mm": [50, 70, 90], "wall_mm": [1, 3]}]}},
         joint("roll", [1, 0, 0]), joint("pitch", [0, 1, 0]), joint("twist", [1, 0, 0]),
         {"type": "link", "name": "flange", "vector_m": [0.05, 0, 0]}],
         "payload": {"mass_kg": 2, "cg_m": [0, 0, 0.05]}, "poses": [{"pose_deg": [0, 0, 0, 0]}],

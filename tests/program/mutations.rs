@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// Mutations of each reader, if nothing is said.
-const DEFAULT: u64 = 100;
+const DEFAULT: u64 = 50;
 /// A file that takes longer hangs the program, as far as a user can tell. A debug build beside others is slow.
 const LONGEST: Duration = Duration::from_secs(20);
 
