@@ -118,9 +118,9 @@ fn is_weak(selection: &Selection) -> bool {
     !selection.best.effects.is_empty() && selection.best.score - selection.baseline.score < WEAK
 }
 
-/// Finds the effects and the noise. If the noise of a channel shows that its readings are in another unit than
-/// stated, the search is repeated with larger standard deviations of this channel. The repetition counts, and
-/// `forward` gets these standard deviations, only if the wrong unit is then found as an effect.
+/// Finds the effects and the noise. If the noise of a channel shows that its readings are in another unit than stated,
+/// the search is repeated with larger standard deviations of this channel. The result of the repetition is used only if
+/// the wrong unit is then found as an effect. `forward` then gets the larger standard deviations too.
 fn settled(
     campaign: &Campaign,
     forward: &mut Forward,
@@ -155,7 +155,7 @@ struct Analysis<'a> {
     campaign: &'a Campaign,
     forward: &'a Forward,
     search: &'a Search<'a>,
-    /// The search `search` once more, with laws without a name appended to its candidates.
+    /// A copy of `search` to whose candidates the laws without a name are appended.
     with_laws: &'a Search<'a>,
     selection: &'a Selection,
     noise: &'a Noise,
@@ -171,7 +171,7 @@ struct Analysis<'a> {
     alternatives: Vec<Vec<Scored>>,
     /// All sets of effects that explain the readings, if the campaign has only a few rows; otherwise `None`.
     explaining: Option<Vec<Scored>>,
-    /// Test for lack of fit of calibration alone, if the evidence for the effects is weak; otherwise `None`.
+    /// Result of the test for lack of fit for calibration alone; `None` unless the evidence for the effects is weak.
     without: Option<LackOfFit>,
     /// 95 % intervals of the parameters of the best model's effects. They are computed when they are first asked for.
     ends: OnceCell<Vec<Interval>>,

@@ -313,9 +313,9 @@ impl Both<'_> {
         out
     }
 
-    /// Root mean squares of the held-out residuals of both kinds of readings together \[standard deviations\]. The
-    /// value before is with calibration alone. For positions it is scaled by the ratio of median errors, because the
-    /// fit with the findings of the other readings already contains effects.
+    /// Root mean squares of the held-out residuals of both kinds of readings together \[standard deviations\].
+    /// `rms_before` is with calibration alone. Its part for positions is scaled by the ratio of median errors, because
+    /// the fit with the findings of the other readings already contains effects.
     fn held_out(&self) -> Option<HeldOut> {
         let (Some(loaded), Some(placed)) = (self.loaded.held_out, self.placed.held_out) else {
             return self.loaded.held_out.or(self.placed.held_out);

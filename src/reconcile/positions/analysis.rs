@@ -57,7 +57,7 @@ pub(crate) struct Positions {
     /// Indices of the driven joints for which a transmission error was found, counted as in a pose.
     pub(super) transmissions: Vec<usize>,
     pub(super) tree: Tree,
-    /// The points on the tools. A point that was moved on the tool between two sessions counts as two points.
+    /// The points on the tools. A point that was moved on the tool between two sessions is listed as two points.
     pub(super) points: Vec<Point>,
     /// The boundaries between sessions (runs of rows with one set-up) that are in the model.
     pub(super) sessions: Vec<Boundary>,

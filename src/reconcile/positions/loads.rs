@@ -3,7 +3,7 @@
 //!
 //! A joint of compliance `c` about an axis `u` through `p` moves a point `x` by `c g (u x (x - p)) (u x (S - m p))ᵀ ĝ`.
 //! Here `m` and `S` are mass and first moment of everything outboard, `g` the strength and `ĝ` the direction of
-//! gravity. Other arms on the same trunk count too.
+//! gravity. The mass of other arms on the same trunk is included.
 
 use super::kinematics::Geometry;
 use super::tree::Tree;
@@ -145,8 +145,8 @@ impl Deflection {
     }
 }
 
-/// All candidates of compliance: about the axis and across the axis of every joint, of the base, and of the link
-/// behind every joint.
+/// All candidates of compliance: about the axis of every joint, across this axis, of the base, and of a frame at the
+/// base and at the root of each link that follows a joint.
 pub(crate) fn candidates(tree: &Tree) -> Vec<Yielding> {
     let mut out = Vec::new();
     for piece in &tree.pieces {
@@ -171,9 +171,9 @@ pub(crate) fn candidates(tree: &Tree) -> Vec<Yielding> {
 }
 
 impl Tree {
-    /// Whether the compliance of the candidate `frame` can have the same effect as the candidate `other`. The frame
-    /// of the base includes the tilt of the base, and the frame of a link includes the compliance of the joint before
-    /// it.
+    /// Whether the compliance of the candidate `frame` can have the same effect as the candidate `other`. The frame of
+    /// the base includes the tilt of the base. The frame of a link includes the compliance of the joint just inboard of
+    /// the link.
     pub(crate) fn contains(&self, frame: &Yielding, other: &Yielding) -> bool {
         let is_behind = |pair: &[usize]| match (&self.pieces[pair[0]], &self.pieces[pair[1]]) {
             (Piece::Joint(joint), Piece::Link(link)) => joint.name == other.at && link.name == frame.at,

@@ -184,7 +184,7 @@ struct Earlier<'a> {
     /// The model's gradient, multiplied by the whitening factor `W`.
     gradient: DVector<f64>,
     /// Derivatives of a row's position with respect to the model's numbers, multiplied by `W`. The next field,
-    /// `offset`, holds the derivatives with respect to the offset.
+    /// `offset`, has the derivatives with respect to the offset.
     model: DMatrix<f64>,
     offset: DMatrix<f64>,
     cross: DMatrix<f64>,

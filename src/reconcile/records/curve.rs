@@ -77,10 +77,10 @@ impl Law {
         if matches!(self, Law::Segments(..)) { 2 } else { 1 }
     }
 
-    /// The four columns of the law at the spring torque `t` \[N m\]. The first two are shapes, and the others are
-    /// their derivatives with respect to the torques of the law; 0 where the law has fewer than two. `drag` is the
-    /// state `s` of the hysteresis, for the law's half width and for one that is larger by [`WIDER`]; other laws do
-    /// not use it.
+    /// The four columns of the law at the spring torque `t` \[N m\]. The first two are shapes, and the others are their
+    /// derivatives with respect to the torques of the law. For a law with a single torque, the second of each pair is
+    /// 0. `drag` is the state `s` of the hysteresis, for the law's half width and for one that is larger by [`WIDER`];
+    /// other laws do not use it.
     fn columns(self, t: f64, drag: [f64; 2]) -> [f64; 4] {
         let beyond = |edge: f64| if t.abs() > edge { t.signum() } else { 0.0 };
         match self {

@@ -13,14 +13,14 @@ use super::smooth::{half_width, smooth};
 use super::twist::CLEARLY;
 use crate::reconcile::model::estimate::Estimate;
 
-/// Number of columns of the joint's own load, which stand behind the offsets of the records: accelerations of motor
-/// and link, sine and cosine of the link's angle, and of twice this angle.
+/// Number of columns of the joint's own load, which come after the columns of the records' offsets: accelerations of
+/// motor and link, sine and cosine of the link's angle, and of twice this angle.
 const OWN_LOAD: usize = 6;
 /// Number of columns of friction: sign of the speed, speed, and sign of the speed times the magnitude of the load.
 const FRICTION: usize = 3;
-/// The link's acceleration is added to the balance of torques if it makes held-out blocks better by this many
-/// standard errors. Less is asked than for other columns, because the inertia of the link surely exists and is one
-/// column only.
+/// The link's acceleration is added to the balance of torques if held-out blocks are then predicted better by this many
+/// standard errors. The number is smaller than for other columns, because the inertia of the link surely exists and is
+/// one column only.
 const SLIGHTLY: f64 = 1.0;
 /// A row enters the balance of torques only if the magnitude of the smoothed sign of the speed differs from one by at
 /// most this. Near a reversal the friction is not known.
@@ -140,7 +140,7 @@ impl Balance<'_> {
 }
 
 /// Motion (angle, speed, acceleration) of each other joint at the rows of this joint. Only joints that are in all
-/// records of this joint count.
+/// records of this joint are used.
 fn motions(rows: &JointRows, records: &[Record]) -> Vec<Motion> {
     let own: Vec<&Record> = records
         .iter()

@@ -269,8 +269,8 @@ impl Builder<'_> {
         change_to(self.forward, &self.fit.point, moved).into_iter().map(|d| d / PART).collect()
     }
 
-    /// The change of every reading, in its unit, by additional compliances. `further` holds pairs: index of the
-    /// strain coordinate, and its additional compliance.
+    /// The change of every reading, in its unit, by additional compliances. Each entry of `further` is a pair: index of
+    /// the strain coordinate, and its additional compliance.
     fn yielding_column(&self, further: &[(usize, f64)]) -> Vec<f64> {
         let forward = self.forward;
         let mut truth = vec![0.0; forward.data.len()];
@@ -327,8 +327,8 @@ impl Builder<'_> {
     }
 
     /// Laws of static readings that follow the load in a way that the model lacks: loads other than stated, a support
-    /// that deflects in the direction of the load, and readings that grow while a pose is held. `column` builds a
-    /// column.
+    /// that deflects in the direction of the load, and readings that grow while the arm stays in one pose. `column`
+    /// builds a column.
     fn load_laws(&self, column: ColumnOf) -> Vec<Law> {
         let rows = &self.campaign.statics;
         let gravity = self.forward.layout.gravity_m_s2;

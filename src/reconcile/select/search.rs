@@ -151,8 +151,8 @@ impl<'a> Search<'a> {
         fit(self.forward, &model, &end.u, self.weights, Effort { steps: 0, tolerance: 0.0 })
     }
 
-    /// Fits the model with the parameter number `parameter` held at `value`, and then with this parameter free.
-    /// `from` is the point from which the fit starts. `None` if the readings rule the value out.
+    /// Fits the model with the parameter number `parameter` fixed at `value`, and then fits it with this parameter
+    /// free. `from` is the point from which the fit starts. `None` if the readings rule the value out.
     fn held_then_free(&self, model: &Model, from: &Point, parameter: usize, value: f64) -> Option<Point> {
         let effort = Effort { steps: 5, tolerance: 0.02 };
         let mut held = model.clone();
