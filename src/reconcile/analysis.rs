@@ -113,7 +113,8 @@ fn sought(campaign: &Campaign, forward: &Forward, nuisance: &Nuisance, few: bool
     candidates
 }
 
-/// Whether the best effects raise the logarithm of the evidence by less than [`WEAK`] above the baseline.
+/// Whether the evidence for the best effects is weak: their score exceeds that of the baseline by less than [`WEAK`].
+/// False if there are no effects.
 fn is_weak(selection: &Selection) -> bool {
     !selection.best.effects.is_empty() && selection.best.score - selection.baseline.score < WEAK
 }
@@ -377,8 +378,8 @@ impl Analysis<'_> {
         )
     }
 
-    /// Sentence that lists the stiffnesses about which the readings say nothing: the fit leaves more than 90 % of
-    /// their tolerance. Empty if there are none.
+    /// Sentence that lists the stiffnesses about which the readings say nothing: after the fit, their standard
+    /// deviation is still more than 90 % of that from the tolerance. Empty if there are none.
     fn unidentified(&self) -> Vec<String> {
         let blind: Vec<String> = fitted::calibrated(&self.best)
             .into_iter()

@@ -22,8 +22,8 @@ use super::verdict::too_little::rows;
 use crate::arm::{Arm, Element};
 use serde_json::{Value, json};
 
-/// Reconciles a campaign with its arm. If there are absolute positions and other readings, each of the two kinds is
-/// reconciled by itself, and the two verdicts are then joined.
+/// Reconciles a campaign with its arm. If there are absolute positions and other readings, each of the two kinds gets a
+/// verdict of its own, and the two verdicts are then joined.
 ///
 /// ```
 /// use armwright::catalog::Catalogs;

@@ -169,10 +169,10 @@ impl Cell {
         let fitted = fit_below(forward, &model, start, weights, HELD, limit);
         let held = axes.each_ref().map(|a| a.parameter);
         let of_rest = without(&fitted.curvature, held);
-        // the density at the nodes is the evidence of the fit without the factor for the two held parameters
+        // the density at the nodes is the evidence of the fit without the factor for the two fixed parameters
         let ln_density =
             fitted.evidence + 0.5 * (ln_determinant(fitted.curvature.clone()) - ln_determinant(of_rest));
-        // the two held parameters are not part of the covariance
+        // the two fixed parameters are not part of the covariance
         let covariance = without(&data_curvature(&fitted), held).try_inverse();
         let mut deviations = vec![f64::INFINITY; fitted.point.u.len()];
         let rest = (0..deviations.len()).filter(|p| !held.contains(p)).collect::<Vec<_>>();

@@ -64,7 +64,7 @@ pub struct Point {
 
 /// A fitted model, with its predictions, derivatives and evidence.
 pub struct Fit<'a> {
-    /// The model, with its effects and the parameters that are held.
+    /// The model, with its effects and the parameters that are held fixed.
     pub model: Model<'a>,
     /// The point where the objective is smallest, with its predictions.
     pub point: Point,

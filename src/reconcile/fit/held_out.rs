@@ -28,8 +28,8 @@ pub struct HeldOut {
 }
 
 /// Residual of every datum, predicted with its pose held out, measured minus predicted \[declared standard
-/// deviations\]. `u` holds the parameters of the full fit, from which each refit starts. `None` for data that are
-/// never held out.
+/// deviations\]. `u` are the parameters of the full fit, from which each refit starts. `None` for data that are never
+/// held out.
 pub(crate) fn residuals(forward: &Forward, model: &Model, u: &[f64], weights: &Weights) -> Vec<Option<f64>> {
     // A frequency jumps where a torque passes a break point. If the break points were free, a held-out test close to a
     // break point would be predicted from either side by chance.

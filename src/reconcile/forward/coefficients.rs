@@ -50,8 +50,8 @@ pub struct Layout {
     /// Index and compliance of each coordinate that belongs to a frame compliance of the base or of a link's root. No
     /// fit changes these compliances.
     frames: Vec<(usize, f64)>,
-    /// Compliance of each strain coordinate of the links as drawn, for arms whose links are rigid in the nominal
-    /// model. It is 0 for all other coordinates.
+    /// Compliance that each strain coordinate of a link has according to the link's section. It is used for trial
+    /// shapes where the nominal model has rigid links. It is 0 for all other coordinates.
     pub lacking: Vec<f64>,
     /// The arm with every elastic element present, so that mechanics lists all coordinates.
     pub template: Chain,
@@ -352,7 +352,7 @@ impl Coefficients {
         law
     }
 
-    /// Which numbers that static readings depend on differ between this subject and `other`.
+    /// Which of the numbers that static readings depend on differ between this subject and `other`.
     pub(crate) fn static_changes(&self, other: &Self) -> StaticChanges {
         let in_test = |c: &Self, joint: usize| {
             (c.law(joint, Channel::Static), c.tests[Channel::Static as usize].softening_of(joint))

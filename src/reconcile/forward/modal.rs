@@ -1,9 +1,10 @@
 //! Predicts natural frequencies by a reduced flexibility form, with exact derivatives.
 //!
 //! Let the columns of `F` be the inertia forces of the nominal arm's lowest modes. They include all coordinates, even
-//! those without compliance. The trial shapes `C F` are then correct to first order in every compliance and mass. With
-//! `B = C F` the reduced problem is `BᵀM B z = μ FᵀB z`, where `μ = 1/ω²`. One solution `x = B z`, scaled to `xᵀK x =
-//! 1`, with `y = M x`, gives the effect of every parameter: `dμ = yᵀ dC y / μ + xᵀ dM x`.
+//! those without compliance. The trial shapes `C F` are then correct to first order in every compliance and mass. Here
+//! `C` is the diagonal matrix of the compliances, `K` its inverse and `M` the mass matrix. With `B = C F` the reduced
+//! problem is `BᵀM B z = μ FᵀB z`, where `μ = 1/ω²`. One solution `x = B z`, scaled to `xᵀK x = 1`, with `y = M x`,
+//! gives the effect of every parameter: `dμ = yᵀ dC y / μ + xᵀ dM x`.
 
 use super::added_mass::Factor;
 use super::coefficients::{Coefficients, Layout};

@@ -170,8 +170,8 @@ impl Forward {
             })
     }
 
-    /// Expresses a subject (an arm under test) as compliances, joint laws and masses, the last relative to the
-    /// nominal arm.
+    /// Expresses a subject (an arm under test) as compliances, joint laws and masses. The masses are given as
+    /// differences from those of the nominal arm.
     pub fn coefficients(&self, subject: &Subject) -> Coefficients {
         Coefficients::new(&self.layout, &self.nominal, subject)
     }

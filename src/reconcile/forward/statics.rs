@@ -282,9 +282,8 @@ impl PoseGeometry {
 }
 
 /// Computes the twists (torsion angles) of a joint under successive loads, relative to the twist of the unloaded arm
-/// \[rad\]. `dead_nm` is the torque without load, and `loaded_nm` holds the additional torque of each load. The
-/// unloaded arm is the reference. It is taken to come to rest before each pose, so the friction play starts from
-/// rest.
+/// \[rad\]. `dead_nm` is the torque without load, and `loaded_nm` gives the additional torque of each load. The
+/// unloaded arm is the reference. It is taken to come to rest before each pose, so the friction play starts from rest.
 fn follow(law: &JointLaw, dead_nm: f64, loaded_nm: &[f64], twists_rad: &mut [f64]) {
     follow_from(law, law, dead_nm, loaded_nm, twists_rad);
 }
@@ -307,7 +306,8 @@ fn follow_from(
 
 /// Computes the twists (torsion angles) of a joint under successive loads like `follow`, for a joint whose law differs
 /// from load to load. For each load, `laws` gives the law when the reference of its reading was read, and the law under
-/// the load. Each twist is computed with its own two laws, through all loads from rest to this one.
+/// the load. The twist under a load is computed with the two laws of this load, through all loads from rest to this
+/// one.
 fn follow_changing(
     laws: impl Iterator<Item = (JointLaw, JointLaw)>,
     dead_nm: f64,

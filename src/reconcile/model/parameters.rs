@@ -388,8 +388,8 @@ impl<'a> Model<'a> {
         None
     }
 
-    /// Whether the parameter with index `index` is equal to or below the other parameter below which it cannot lie.
-    /// Lowering it further would have no effect.
+    /// Whether the parameter with index `index` is at its lower limit or below it, if another parameter is this limit.
+    /// Lowering the parameter further would have no effect.
     pub fn rests(&self, index: usize, u: &[f64]) -> bool {
         self.floor(index).is_some_and(|least| u[index] <= u[least])
     }

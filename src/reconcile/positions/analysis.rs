@@ -33,8 +33,8 @@ const ROUGH_M: f64 = 0.01;
 /// Angle by which gravity is tilted to compute derivatives of the deflection numerically \[rad\].
 const LEAN: f64 = 1e-3;
 
-/// Classes of compliances (about a joint's axis, tilt, frame), in the order in which the search for effects tries
-/// them.
+/// Classes of compliances (about a joint's axis, tilt across it, rotation of a frame about every axis), in the order in
+/// which the search for effects tries them.
 const CLASSES: [Yields; 3] = [Yields::AboutAxis, Yields::Tilt, Yields::Frame];
 
 /// Result of the analysis of a campaign of positions.

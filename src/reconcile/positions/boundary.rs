@@ -14,8 +14,8 @@ use crate::reconcile::readings::campaign::Campaign;
 const LARGE_MM: f64 = 1.0;
 /// Number of rows on each side of a session boundary that are compared to find what else changes at the boundary.
 const BESIDE: usize = 15;
-/// Smallest number of rows on each side of a session boundary for this comparison. With fewer, nothing is said to
-/// change.
+/// Smallest number of rows on each side of a session boundary from which it is judged what else changes at the
+/// boundary. With fewer rows, it is assumed that nothing else changes.
 const FEWEST_BESIDE: usize = 4;
 
 impl Positions {

@@ -36,7 +36,7 @@ pub(crate) enum Number {
     /// (sine or cosine, once or twice a turn).
     Transmission(usize, usize),
     /// Factor by which the angle of a passive joint follows that of a driven joint: index of the piece, index of the
-    /// term.
+    /// term among those of the joint's coupling.
     Ratio(usize, usize),
     /// Horizontal component of the unit vector of gravity \[-\]: index of the axis, x or y, of the level frame.
     Gravity(usize),

@@ -60,7 +60,7 @@ impl Positions {
         ln_likelihood(&misses, scale(&misses, self.fitted.scale_m))
     }
 
-    /// Fits the model, with the deflection under gravity computed again for the geometry of the fit before, and drops
+    /// Fits the model, with the deflection under gravity computed again for the geometry of the previous fit, and drops
     /// effects that are not worth their price. This is repeated until no effect is dropped.
     fn settle(&mut self, campaign: &Campaign) {
         loop {
@@ -102,7 +102,7 @@ impl Positions {
         let numbers = self.fitted.compliances[position].iter().zip(&self.fitted.deviations[position]);
         // an effect that others can replace has large standard deviations
         let is_small = |(c, deviation): (&f64, &f64)| 0.5 * (c / deviation).powi(2) < 2.0 * price;
-        // if some compliance is held at its constraint, the standard deviations of the others are too small
+        // if some compliance is fixed at its constraint, the standard deviations of the others are too small
         let is_held = self.fitted.deviations.iter().flatten().any(|d| !d.is_finite());
         is_held || numbers.into_iter().all(is_small)
     }

@@ -53,7 +53,7 @@ impl Best {
 #[derive(Clone)]
 enum Block {
     Free,
-    /// The compliances have been set to their constraint: each changes by this amount \[rad/(N m)\].
+    /// The compliances are fixed at their constraint. To get there, each changes by this amount \[rad/(N m)\].
     Held(Vec<f64>),
     /// The compliances are those of a frame: the entries of the matrix `L Lᵀ`, with this `L`.
     Frame(Matrix3<f64>),
@@ -92,7 +92,7 @@ pub(crate) fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) ->
             let step = &best.step[parabola.ranges[k].clone()];
             let wanted: Vec<f64> = own.iter().zip(step).map(|(c, by)| c + by).collect();
             let spring = nearest_spring(&wanted);
-            // the step would leave the constraint: hold this block there and solve for the others again
+            // the step would leave the constraint: fix this block at it and solve for the others again
             if spring != wanted {
                 is_settled = false;
                 parabola.blocks[k] = match own.len() {

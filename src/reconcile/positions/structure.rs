@@ -125,7 +125,7 @@ pub(crate) fn squares(s: &DMatrix<f64>, z: &nalgebra::DVector<f64>) -> (f64, f64
     let eigen = SymmetricEigen::new((s + s.transpose()) * 0.5);
     let largest = eigen.eigenvalues.max();
     let (mut statistic, mut dof) = (0.0, 0.0);
-    // directions that the model can already fit carry no information
+    // directions that the model can already fit give no information
     for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
         if *value > 1e-6 * largest && *value > 1e-9 {
             statistic += vector.dot(z).powi(2) / value;

@@ -2,9 +2,13 @@
 //!
 //! `T_m = T_0 + J a_m + I a_l + A sin q_l + B cos q_l + (coupling with other joints) + (F_c + f |T_l|) sgn w + F_v w`
 //!
+//! Here `a_m` and `a_l` are the accelerations of motor and link, `q_l` is the angle of the link, `w` the speed of the
+//! motor, and `T_l` the torque of the load. All other letters are coefficients that are fitted: `F_c` is Coulomb
+//! friction, `f` friction in proportion to the load, and `F_v` viscous friction.
+//!
 //! The load of a joint also depends on the position and motion of the other joints. Their angles, speeds and
-//! accelerations enter as free columns, joint by joint, where held-out blocks are predicted better with them. `T_l` is
-//! the torque of the load. It comes from a first fit, without the terms of friction.
+//! accelerations enter as free columns, joint by joint, where held-out blocks are predicted better with them. The
+//! torque of the load `T_l` comes from a first fit, without the terms of friction.
 
 use super::blocks::Fitted;
 use super::reading::Record;

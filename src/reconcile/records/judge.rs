@@ -174,7 +174,7 @@ impl<'a> Judged<'a> {
         let Some(f) = self.friction.filter(|f| f.is_possible && is_positive(&f.viscous_nms_per_rad)) else {
             return (plain, String::new());
         };
-        // the columns of a torsion law use the torque without viscous friction, so only the linear compliance counts
+        // the columns of a torsion law use the torque without viscous friction, so only the linear compliance is used
         // here
         let c = self.fitted().coefficient(self.model.places.torque());
         let is_known = is_positive(&c);

@@ -100,8 +100,8 @@ pub(crate) fn smooth(t_s: &[f64], x: &[f64], half: usize) -> Smooth {
 mod tests {
     use super::*;
 
-    /// Noise that is the same in every run: twelve uniform numbers of a linear congruential generator added to a nearly
-    /// normal deviate.
+    /// Noise that is the same in every run. Each value is the sum of twelve uniform numbers of a linear congruential
+    /// generator, which is nearly a normal deviate.
     fn deviates(n: usize) -> Vec<f64> {
         let mut state = 1u64;
         let mut uniform = move || {

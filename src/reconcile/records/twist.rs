@@ -7,6 +7,9 @@
 //!
 //! | symbol | what it is | unit |
 //! |---|---|---|
+//! | `w`, `w_l` | speeds of the motor (at the output) and of the link | rad/s |
+//! | `a` | acceleration of the motor at the output | rad/s² |
+//! | `q`, `N` | angle of the motor at the output, gear ratio | rad, 1 |
 //! | `s` | time by which the link's reading is late | s |
 //! | `c` | compliance | rad/(N m) |
 //! | `T_m` | torque of the motor at the output | N m |

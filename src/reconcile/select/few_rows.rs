@@ -37,7 +37,7 @@ const IMPLAUSIBLE: f64 = 15.0;
 const MATERIAL: f64 = 0.02;
 /// A stiffness is not identified if the ratio of its largest to its smallest possible value is larger than this.
 const WIDE: f64 = 1.2;
-/// Factors by which a stiffness is multiplied, and then divided, to find its possible range.
+/// Factors by which a stiffness is divided, and then multiplied, to find its possible range.
 const FACTORS: [f64; 9] = [1.1, 1.2, 1.4, 1.7, 2.0, 3.0, 4.0, 6.0, 10.0];
 /// Largest number of explaining sets, the best first, for which the stiffnesses are varied.
 const MOST_PROFILES: usize = 6;
@@ -267,8 +267,8 @@ fn outboard_kg(subject: &Subject, joint: &str) -> f64 {
         .sum()
 }
 
-/// Sentences on joints whose stiffness cannot be identified: it can have very different values with which the
-/// readings are still explained. The joint with the widest range comes first.
+/// Sentences on joints whose stiffness cannot be identified: the readings are still explained with very different
+/// values of this stiffness. The joint with the widest range comes first.
 fn unidentified_stiffnesses(search: &Search, explaining: &[Scored], subjects: &[Subject]) -> Vec<String> {
     let joints = search.forward.nominal.structure.joints().filter(|j| !j.law.is_rigid());
     let mut ranges: Vec<(String, f64, f64)> = joints
@@ -316,7 +316,7 @@ fn free_factors(search: &Search, set: &Scored, joint: &str) -> (f64, f64) {
         for factor in factors {
             model.held = vec![(index, libm::log(*factor))];
             let fitted = fit(search.forward, &model, &u, search.weights, Effort::default());
-            // the prior of the held factor is not part of the misfit
+            // the prior of the fixed factor is not part of the misfit
             let misfit = fitted.point.objective - libm::log(*factor).powi(2);
             if !is_probable(search, set, misfit) {
                 break;

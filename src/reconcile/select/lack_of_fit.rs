@@ -3,8 +3,9 @@
 //! The residuals of a correct model are noise. They do not depend on the order of the tests, a joint's angle, the load,
 //! the branch or the torque. For each such quantity a few columns `X`, functions of it, are tested. After the part that
 //! the model could still fit is removed, the statistic is `zᵀ S⁻¹ z` with `z = Xᵀr` and `S = XᵀX - XᵀJ (JᵀWJ)⁻¹ JᵀX`.
-//! It follows a chi-squared distribution if there is no structure. The smooth laws of [`unnamed`](super::unnamed) are
-//! tested too.
+//! Here `r` are the residuals and `J` the derivatives of the predicted readings with respect to the parameters, both in
+//! standard deviations, and `(JᵀWJ)⁻¹` is the covariance matrix of the parameters. The statistic follows a chi-squared
+//! distribution if there is no structure. The smooth laws of [`unnamed`](super::unnamed) are tested too.
 
 use super::structure::Structure;
 use super::unnamed;

@@ -62,13 +62,13 @@ struct State {
     channel: Channel,
 }
 
-/// A function that gives, for a state of the joint, an additional torque-like term and its derivative with respect to
-/// the torque. The additional twist is the compliance times the first \[N m\], and the additional tangent compliance
-/// is the compliance times the second.
+/// A function that gives two numbers for a state of the joint: an additional torque \[N m\], and its derivative with
+/// respect to the joint's torque. The additional twist of the joint is its compliance times the additional torque. The
+/// additional tangent compliance is the compliance times the derivative.
 type Shape<'a> = &'a dyn Fn(&State) -> (f64, f64);
 
-/// A function that builds a column of a channel's readings. It receives the entry as a function of the datum's index
-/// and predicted reading.
+/// A function that builds a column of a channel's readings. Its argument is a function that gives the entry of a datum
+/// from the index and the predicted reading of this datum.
 type ColumnOf<'a> = &'a dyn Fn(&dyn Fn(usize, f64) -> f64) -> Vec<f64>;
 
 struct Builder<'a> {
@@ -456,7 +456,8 @@ mod tests {
     use crate::reconcile::model::parameters::Model;
     use std::path::Path;
 
-    /// Checks the laws about the model as it is against the sensitivities of the calibration.
+    /// Calls `check` with a builder of laws for a test campaign, linearized about the nominal arm, and with the
+    /// calibrated parameters.
     fn about_the_bare_model(check: impl FnOnce(&Builder, &Nuisance)) {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/campaigns/plain-0251e");
         let campaign = Campaign::read(&folder, &Catalogs::default()).expect("sound");

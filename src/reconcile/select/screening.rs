@@ -24,12 +24,14 @@ const WORTH: f64 = 3.0;
 /// Smallest rise of the score \[ln of the evidence\] for which the first effect is accepted. It is zero, because a
 /// missing effect is as probable as none.
 const FIRST_WORTH: f64 = 0.0;
-/// As many alternatives to an effect are listed as are needed so that the right effect is with this probability either
-/// the effect itself or one of the alternatives.
+/// Probability that the right effect is either the best one or one of its listed alternatives. As many alternatives are
+/// listed as are needed to reach this probability.
 const CREDIBLE: f64 = 0.95;
-/// A model whose score after a few steps of a fit is below the best by more than this is not fitted further.
+/// A model whose score after a few steps of a fit is below the best score by more than this is not fitted further \[ln
+/// of the evidence\].
 const HOPELESS: f64 = 40.0;
-/// A model whose score is below the best of its stage by less than this is examined further.
+/// A model whose score is below the best of its stage by less than this may still be the best one, and is refined or
+/// fitted again \[ln of the evidence\].
 const PROMISING: f64 = 12.0;
 /// Largest number of effects in a model.
 pub(crate) const MOST_EFFECTS: usize = 3;
@@ -429,7 +431,7 @@ impl<'a> Search<'a> {
         let candidate = &self.candidates[index];
         let mut model = base.with(candidate);
         model.smoothing = if self.is_smoothed(base, index) { WIDE } else { 0.0 };
-        // break points are held, because the linearized model does not contain the jumps of the frequencies there
+        // break points are held fixed, because the linearized model does not contain the jumps of the frequencies there
         model.held =
             model.break_points().into_iter().filter(|p| *p < base.len()).map(|p| (p, here.u[p])).collect();
         let held = model.held.clone();

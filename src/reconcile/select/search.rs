@@ -115,8 +115,8 @@ impl<'a> Search<'a> {
         self.centre_breaks(model, best)
     }
 
-    /// The model `scored`, fitted until it has converged if it has break points and may be the explanation; otherwise
-    /// as it is. If the descent had stopped early, a further effect would seem necessary.
+    /// Fits the model `scored` until it has converged, if it has break points and may be the explanation. Otherwise the
+    /// model is returned as it is. If a descent had stopped too early, a further effect would seem necessary.
     pub(super) fn settled(&self, scored: Scored) -> Scored {
         if self.model(&scored.effects).break_points().is_empty() || !self.may_explain(&scored) {
             return scored;

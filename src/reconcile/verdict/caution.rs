@@ -43,8 +43,8 @@ pub(crate) fn opposed(forward: &Forward, fit: &Fit) -> Option<String> {
     ))
 }
 
-/// Number of elements of the chain between the places of the effects `a` and `b`; `None` if a place is not in the
-/// chain. The payload is taken to be at the end of the chain.
+/// Distance between the places of the effects `a` and `b`, as a number of elements of the chain; `None` if a place is
+/// not in the chain. The payload is taken to be at the end of the chain.
 fn distance(forward: &Forward, a: &Candidate, b: &Candidate) -> Option<usize> {
     let structure = &forward.nominal.structure;
     let at = |candidate: &Candidate| {

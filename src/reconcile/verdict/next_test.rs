@@ -35,8 +35,8 @@ const MODAL_POSES: usize = 4;
 const PROPOSALS: usize = 4;
 /// Difference of the predictions of two models that suffices to decide between them \[standard deviations\].
 pub(crate) const ENOUGH: f64 = 4.0;
-/// Separation that one reading must reach \[standard deviations\]. With less, a hundred readings would not be
-/// enough.
+/// Difference between the predictions of two models that one reading must show \[standard deviations\]. With a smaller
+/// difference, a hundred readings would not be enough.
 pub(crate) const WORTHLESS_SIGMAS: f64 = 0.1 * ENOUGH;
 /// Largest number of readings that is printed.
 const MOST_READINGS: f64 = 9999.0;
