@@ -236,7 +236,7 @@ impl Analysis<'_> {
         }
     }
 
-    /// The corrections of the arm. They depend on `verdict`: without an explanation, a model for the corrected arm is
+    /// The corrections of the arm. They depend on `verdict`: if it is `unexplained`, a model for the corrected arm is
     /// chosen first. `named` are the effects that the verdict names.
     fn corrections(&self, verdict: Verdict, named: &[Finding]) -> Corrections {
         let choice = (verdict == Verdict::Unexplained).then(|| self.model_without_explanation());
@@ -378,8 +378,8 @@ impl Analysis<'_> {
         )
     }
 
-    /// Sentence that lists the stiffnesses about which the readings say nothing: after the fit, their standard
-    /// deviation is still more than 90 % of that from the tolerance. Empty if there are none.
+    /// Sentence that lists the stiffnesses about which the readings say nothing: their standard deviation after the fit
+    /// is more than 90 % of that before the fit, which follows from the tolerance. Empty if there are none.
     fn unidentified(&self) -> Vec<String> {
         let blind: Vec<String> = fitted::calibrated(&self.best)
             .into_iter()

@@ -105,8 +105,9 @@ struct Asked<'a> {
     channel: Option<Channel>,
 }
 
-/// The channels for which a compliance of the joint is sought that acts in this channel only. Empty if a single channel
-/// shows how the joint twists. Such a compliance could then not be told from one that acts in all channels.
+/// The channels in which a further compliance of the joint is sought. Each of these compliances acts in the tests of
+/// its channel only. Empty if a single channel shows how the joint twists, because the compliance could then not be
+/// told from one that acts in all channels.
 fn channels_apart(forward: &Forward, kind: &Kind, joint: &str) -> Vec<Channel> {
     let shown = channels_of_joint(forward, joint);
     let sought = kind.traits.sought_in.iter().filter(|channel| shown.contains(channel));

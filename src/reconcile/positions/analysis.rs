@@ -93,11 +93,11 @@ pub(crate) fn calibrated(campaign: &Campaign) -> Calibrated {
 /// Analyses the positions of a campaign: calibrates the geometry, finds sessions, and finds compliances and
 /// transmission errors.
 ///
-/// A compliance can look like a change of session if the rows were taken configuration by configuration. So each
-/// session is examined again once the effects are in the model. It is suspect if it is no longer worth its price, or
-/// if it begins at a row where something else changes. The analysis is then repeated with two other sets of sessions:
-/// those that remain, and those that are needed in addition to effects that were found without sessions. The model
-/// with the best score is kept.
+/// A compliance can look like a change of session if the rows were taken in one configuration of the arm after the
+/// other. So each session is examined again once the effects are in the model. It is suspect if it is no longer worth
+/// its price, or if it begins at a row where something else changes. The analysis is then repeated with two other sets
+/// of sessions: those that remain, and those that are needed in addition to effects that were found without sessions.
+/// The model with the best score is kept.
 pub(crate) fn analyze(campaign: &Campaign) -> Positions {
     let calibrated = Positions::in_declared_sessions(campaign);
     let mut found = calibrated.clone();

@@ -30,7 +30,7 @@ const FEWEST: usize = 5;
 /// Largest number of sessions that are found, beyond the first.
 const MOST: usize = 6;
 
-/// The model in which the rows before some row have become a session with a placement of its own.
+/// A fitted model in which the rows before the row `first` have become a session with a placement of its own.
 pub(super) struct Split {
     samples: Vec<Sample>,
     numbers: Vec<Number>,

@@ -37,7 +37,7 @@ const SOFTENING_IN: [Channel; 2] = [Channel::Static, Channel::Modal];
 /// Values from which fits start, for the number of rows in which 63 % of a joint's softening takes place, as fractions
 /// of the rows of the file.
 const SOFTENED_AFTER: [f64; 2] = [0.08, 0.5];
-/// Name of the base as the place of a candidate.
+/// Name of the base, by which a candidate states its place.
 const BASE: &str = "base";
 /// Largest compliance of a base against tilt that is sought, as a multiple of the compliance of the first compliant
 /// joint.
