@@ -80,9 +80,9 @@ fn of_readings(campaign: &Campaign) -> Outcome {
     of_both(campaign, loaded, placed)
 }
 
-/// First finds effects from `loaded` (the readings other than positions), on an arm whose geometry was calibrated
-/// from `placed` (the positions). Then finds effects that the positions still need. If the first step does not
-/// explain the readings of `loaded`, the effects that the positions show are tried on them.
+/// First finds effects from `loaded` (the readings other than positions), on an arm whose geometry was calibrated from
+/// `placed` (the positions). Then finds effects that the positions still need. If the first step does not explain the
+/// readings of `loaded`, the effects that the positions show are tried on these readings.
 fn of_both(campaign: &Campaign, mut loaded: Campaign, placed: Campaign) -> Outcome {
     let calibrated = positions::analysis::calibrated(&placed);
     loaded.arm = calibrated.arms[0].clone();

@@ -29,8 +29,8 @@ use std::collections::{HashMap, HashSet};
 
 /// Smallest number of positions from which anything can be concluded.
 pub(crate) const FEWEST: usize = 20;
-/// If the variance of the errors exceeds the declared variance by this factor, the verdict is that nothing is
-/// explained, whatever else is found. The errors are then five times as large as those of the instrument.
+/// If the variance of the errors exceeds the declared variance by this factor, the verdict is `unexplained`, whatever
+/// else is found. The errors are then five times as large as those of the instrument.
 const HOPELESS_VARIANCE: f64 = 25.0;
 /// Largest ratio of the median error at held-out poses to the median error in the fit. If the ratio is larger, the
 /// poses are too similar to determine everything that is calibrated.

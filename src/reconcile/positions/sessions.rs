@@ -9,10 +9,10 @@
 //! - `b = Σ s e - Cᵀ W g`,
 //! - `C = Σ W m sᵀ`.
 //!
-//! Here `A` is the curvature of the model, whose factor whitens (`A⁻¹ = WᵀW`), and `g` its gradient. The sums are over
-//! the earlier rows: of the slopes `s` of the offset, the slopes `m` of the model's numbers, and the errors `e`. All
-//! sums grow row by row, so one pass tries every row. The computing time is proportional to the number of rows, and the
-//! memory does not depend on it.
+//! Here `A` is the curvature matrix of the model, `W` its whitening factor (`A⁻¹ = WᵀW`), and `g` the gradient. The
+//! sums are over the earlier rows: of the slopes `s` of the offset, the slopes `m` of the model's numbers, and the
+//! errors `e`. All sums grow row by row, so one pass tries every row. The computing time is proportional to the number
+//! of rows, and the memory does not depend on it.
 
 use super::analysis::Positions;
 use super::fit::fit;
