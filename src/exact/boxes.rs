@@ -28,7 +28,8 @@ impl OpenBox {
         Self::first(problem, &[problem.root()]).pop()
     }
 
-    /// Boxes of a space that are searched first. None if no design of the space meets the constraints.
+    /// The boxes `boxes` as open boxes, with which a search starts. They have the first trial shapes of the whole
+    /// space, and no bound yet. Empty if no design of the space meets the constraints.
     pub(super) fn first(problem: &Problem, boxes: &[DesignBox]) -> Vec<Self> {
         let Some(shapes) = problem.first_shapes(&mut Work::default()).map(Arc::new) else {
             return Vec::new();
@@ -104,8 +105,9 @@ pub(super) fn open_boxes<F: Default>(
     Done { tasks: stack, findings }
 }
 
-/// One pass over some boxes and all into which they are divided. `keep` is shown the state and the open boxes after each
-/// round. Returns the bounds of the boxes that are still open when the search is stopped.
+/// One pass with the slack `slack` over the boxes `first` and all boxes into which they are divided. `keep` is shown
+/// the state and the open boxes after each round. Returns the bounds of the boxes that are still open when the search
+/// is stopped.
 pub(super) fn pass_by_boxes(
     budget: &Budget,
     problem: &Problem,

@@ -85,8 +85,8 @@ impl Pose {
 
     /// Writes the rows of this pose: for each strain coordinate, its generalized force as a linear function of the
     /// weights outboard. The function goes inward from the tip and adds each piece to the wrench of everything
-    /// outboard. `joints` holds the needs of each joint and `springs` the wrench of each spring, both with the number
-    /// of the piece at which they act.
+    /// outboard. `joints` has the needs of each joint and `springs` the wrench of each spring, both with the number of
+    /// the piece at which they act.
     fn compile(
         &mut self,
         space: &DesignSpace,
@@ -138,7 +138,7 @@ impl Pose {
     }
 
     /// The loads on the output bearing of the joint `piece`, as functions of the weights and inertias outboard.
-    /// `joints` holds the needs of each joint. `None` if the piece is not a joint, its bearing is not checked, or the
+    /// `joints` has the needs of each joint. `None` if the piece is not a joint, its bearing is not checked, or the
     /// case is not a sizing case.
     fn bearing(
         &self,

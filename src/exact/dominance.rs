@@ -97,8 +97,8 @@ impl Problem<'_> {
         work: &Work,
     ) -> Option<bool> {
         let mut shrunk = false;
-        // The argument requires that contributions to the tip's displacement do not oppose each other. A pose where
-        // they may oppose does no harm if it cannot be the worst pose of the box.
+        // The proof at the head of this file requires that contributions to the tip's displacement do not oppose each
+        // other. A pose in which they may oppose each other does no harm if the tip cannot deflect most in this pose.
         if !self.lighter_is_better || work.greatest_tip_m.iter().any(|most_m| *most_m > tip_m) {
             return Some(false);
         }

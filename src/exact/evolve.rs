@@ -57,7 +57,7 @@ enum Offspring {
 }
 
 impl Offspring {
-    /// Whether the three objectives of the child were computed for its own design.
+    /// Whether the three objectives of the child were computed.
     fn is_evaluated(&self) -> bool {
         matches!(self, Self::Infeasible | Self::Feasible(_))
     }

@@ -176,7 +176,7 @@ impl Problem<'_> {
         ]
     }
 
-    /// The least and the greatest space that the link of a joint leaves for the gear and motor of this joint.
+    /// The least and the greatest space that the link outboard of a joint leaves for the joint's gear and motor.
     fn room(&self, piece: usize, work: &Work) -> [LinkRoom; 2] {
         match self.rooms[piece] {
             None => [LinkRoom::ANY; 2],
@@ -225,7 +225,7 @@ fn feasible_drives(tree: &Tree<DriveBox>, node: u32, asked: &LeastDemand, depth:
 /// Whether some option of the box may carry `load`: axial force \[N\], moments about y and z and torsion \[N m\].
 fn stress_holds(links: &LinkBox, load: &[f64; 4]) -> bool {
     let [axial, y, z, torsion]: [f64; 4] = std::array::from_fn(|k| load[k] * links.stress[k]);
-    // For other sections the two bending stresses add up at one edge of the section.
+    // In a section that is not round, the two bending stresses add up at one edge of the section.
     let bending = if links.round { libm::hypot(y, z) } else { y + z };
     von_mises(axial + bending, torsion) <= 1.0
 }

@@ -15,7 +15,7 @@ const AT_REST: f64 = 1e-8;
 pub(super) struct JointPlay {
     /// Clearance that closes as the torque grows; `None` if the joint has none.
     lost_motion: Option<LostMotion>,
-    /// Half width of the twist that friction holds back \[rad\].
+    /// Greatest angle by which friction reduces the twist \[rad\]: the half width of the hysteresis.
     friction_rad: f64,
 }
 

@@ -111,7 +111,8 @@ impl Stairs {
         if to < from || self.steps.get(from).is_some_and(|step| step[0] == tip_m && step[1] >= hz) {
             return false;
         }
-        // Bound k lies between the steps k - 1 and k. The outer two are shared with the neighbours.
+        // Bound k lies between the steps k - 1 and k. The design cuts off the bounds from `from` to `to`, and replaces
+        // the steps between them.
         upper_bounds.extend((from..=to).map(|k| self.bound_before(k, design.mass_kg)));
         self.steps.splice(from..to, [[tip_m, hz]]);
         true

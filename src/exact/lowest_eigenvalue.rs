@@ -152,8 +152,8 @@ impl LaneWork for Cholesky<'_> {
 }
 
 /// The inertia matrix `M` of an arm over the given coordinates (index of the piece, index of its strain coordinate).
-/// `inertia` holds the line inertias of each piece. Each column holds the inertia forces of a unit motion of one
-/// coordinate.
+/// `inertia` has the line inertias of each piece. Each column of `M` consists of the inertia forces of a unit motion of
+/// one coordinate.
 fn matrix(pose: &Pose, coordinates: &[(usize, usize)], inertia: &[[f64; INERTIAS]]) -> Vec<f64> {
     let n = coordinates.len();
     let mut work = Work::default();

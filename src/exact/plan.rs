@@ -69,7 +69,7 @@ impl Plan {
         Self { slacks: coarser.chain([gap]).collect(), most_passed_over }
     }
 
-    /// The slack of the next pass. `done` holds the completed passes. `left_s` is the time left \[s\], `None` without a
+    /// The slack of the next pass. `done` are the completed passes. `left_s` is the time left \[s\], `None` without a
     /// time limit. The result is `None` once the gap that was asked for is proved.
     pub(super) fn next(&self, done: &[Pass], left_s: Option<f64>) -> Option<f64> {
         let Some(last) = done.last() else { return self.slacks.first().copied() };

@@ -83,8 +83,8 @@ pub(super) struct Pose {
 /// A piece in a pose.
 pub(super) enum PosedPiece {
     /// A joint. `twist` is the motion of everything outboard per radian (metre for a prismatic joint), and `at_m` the
-    /// place of its mass. `across` holds the motions per radian of tilt of the output bearing about the two axes across
-    /// the joint axis; `None` if no option tilts.
+    /// place of its mass. `across` has the motions of everything outboard per radian of tilt of the output bearing
+    /// about the two axes across the joint axis; `None` if no option tilts.
     Joint { twist: Twist, at_m: Vector3<f64>, across: Option<[Twist; 2]> },
     /// A rigid body, with its inertia about the world's origin.
     Body(Matrix6<f64>),
@@ -233,8 +233,8 @@ impl Pose {
 }
 
 impl PosedPiece {
-    /// For a coordinate of this piece: the index of the stiffness that resists it, and the factor that this stiffness
-    /// divides to give the deflection per unit of force.
+    /// For a coordinate of this piece: the index of the stiffness that resists it, and a factor. The factor divided by
+    /// this stiffness is the deflection per unit of force.
     #[inline]
     pub(super) fn resisted(&self, coordinate: usize) -> (usize, f64) {
         match self {

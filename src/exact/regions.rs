@@ -33,8 +33,8 @@ const WORTH_IT: f64 = 0.1;
 /// Width of a grid cell for the thinning of incumbents, as a fraction of the slack.
 const THINNED: f64 = 0.45;
 
-/// The options that may belong to a design of a region, with the trial shapes and multipliers of the region from which
-/// it was divided.
+/// The options that may belong to a design of a region. The trial shapes and multipliers are those of the larger region
+/// of which this region is a part, until its own are computed.
 #[derive(Clone)]
 pub(super) struct Subproblem<'p> {
     problem: Arc<Problem<'p>>,
@@ -53,8 +53,9 @@ enum Task<'p> {
     Boxes { problem: Arc<Problem<'p>>, upper: LocalUpperBound, first: OpenBox },
 }
 
-/// One pass over the whole search region, for the designs of some boxes. `seen` is called after each round. Returns one bound for each task that is left
-/// when the search is stopped.
+/// One pass with the slack `slack` over the whole search region, for the designs of the boxes `boxes`. A region of at
+/// most `regions_to` designs is searched box by box. `seen` is called after each round. Returns one bound for each task
+/// that is left when the search is stopped.
 pub(super) fn pass_by_regions<'p>(
     budget: &Budget<'p>,
     problem: &Problem<'p>,
@@ -99,7 +100,8 @@ pub(super) fn pass_by_regions<'p>(
 }
 
 impl<'p> Search<'_, 'p> {
-    /// Searches the region below the local upper bounds under node `at` of their tree. Returns the tasks that remain.
+    /// Searches the region below the local upper bounds under node `at` of their tree. If it has at most `regions_to`
+    /// designs, it is searched box by box. Returns the tasks that remain.
     fn region(
         &self,
         upper_bounds: Arc<LocalUpperBounds>,
@@ -229,8 +231,9 @@ impl<'p> Subproblem<'p> {
         Self::whole(&problem.restricted_to(&nodes)?, incumbents_seen, work)
     }
 
-    /// Bounds a subproblem below a local upper bound. Returns the survivors, and whether the subproblem was
-    /// restricted to them. It is restricted if enough designs were excluded. `None` if the region is empty.
+    /// Bounds a subproblem below a local upper bound. Returns the survivors, and whether the subproblem was restricted
+    /// to them. It is restricted if enough designs were excluded. `is_beaten` tells whether a known design dominates
+    /// every design with a given bound. `None` if the region is empty.
     pub(super) fn reduce(
         &mut self,
         upper: &LocalUpperBound,

@@ -214,8 +214,8 @@ impl<'p> Exact<'p> {
         Problem::with_joints(self.space, self.joints(), takes, ties)
     }
 
-    /// Searches a part of the study from a state, or takes what an earlier process found in it. The flag tells whether no
-    /// designs are known at the start.
+    /// Searches a part of the study from a state, or takes what an earlier process found in it. The flag tells whether
+    /// no designs are known at the start.
     pub(super) fn search_part(
         &self,
         whole: Option<&Problem<'p>>,

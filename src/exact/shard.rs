@@ -1,13 +1,13 @@
 //! Shards of an exact search: subtrees of the space, each searched by itself.
 //!
-//! The box of all designs is halved until there are enough boxes, always the one with the most designs and always at its
-//! level with the most options. That depends on the space alone, so every process that knows the space makes the same
-//! subtrees. They are dealt to the shards in turn. A subtree is named by the halves that lead to it; such names tell
-//! by themselves whether some subtrees hold every design once ([`refuse_holes`]).
+//! The box of all designs is halved until there are enough boxes, always the one with the most designs and always at
+//! its level with the most options. That depends on the space alone, so every process that knows the space makes the
+//! same subtrees. They are dealt to the shards in turn. A subtree is named by the halves that lead to it; such names
+//! tell by themselves whether some subtrees hold every design once ([`refuse_holes`]).
 //!
-//! What a shard prunes is infeasible, or dominated by a design that it found or was given, or by one with a lighter drive
-//! that lies in any subtree (`dominance.rs`). So the union of what all shards found lacks no design of the front, and what is
-//! left of it by the rule of one machine is the front of one machine.
+//! What a shard prunes is infeasible, or dominated by a design that it found or was given, or by one with a lighter
+//! drive that lies in any subtree (`dominance.rs`). So the union of what all shards found lacks no design of the front,
+//! and what is left of it by the rule of one machine is the front of one machine.
 
 use super::bound::DesignBox;
 use super::outcome::{ExactOutcome, FoundInShard};
@@ -26,8 +26,8 @@ const SUBTREES_BY_REGIONS: usize = 1;
 const LONGEST_NAME: usize = 256;
 
 impl<'p> Exact<'p> {
-    /// Searches the shard for the front of all designs, or for that of the designs of one material. `given` are findings of
-    /// the same study in whichever part of the space; they prune boxes and are part of what is found.
+    /// Searches the shard for the front of all designs, or for that of the designs of one material. `given` are
+    /// findings of the same study in whichever part of the space; they prune boxes and are part of what is found.
     pub fn found(&self, material_index: Option<usize>, given: &[FoundInShard]) -> FoundInShard {
         let mut state = SearchState::toward(self.only);
         for FoundInShard { decided, undecided, .. } in given {
@@ -121,7 +121,8 @@ pub fn refuse_holes(mut subtrees: Vec<&str>) -> Result<(), String> {
     }
 }
 
-/// Checks that the subtrees below a subtree hold its designs once. They are sorted, and their names begin with its name.
+/// Checks that the subtrees below a subtree hold its designs once. They are sorted, and their names begin with its
+/// name.
 fn holds_all(name: &str, below: &[&str]) -> Result<(), String> {
     match below {
         [] => Err(format!("subtree \"{name}\" is in none of them")),

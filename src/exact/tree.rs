@@ -122,7 +122,7 @@ impl<B: Bounds> Tree<B> {
             }
         };
         match &self.whole {
-            // => The root contains every node over which the tree is built.
+            // The root contains every node over which the tree is built.
             Some(_) if node == 0 => self.stands_on.iter().for_each(|&at| enter(at + WHOLE)),
             Some(_) => {
                 let mut open = vec![node];

@@ -8,7 +8,7 @@ use crate::space::problem::ArmProblem;
 use crate::space::slot::Slot;
 
 impl Parts {
-    /// Drops the drives that cannot meet the least demand on their joint, over all remaining options outboard. If a
+    /// Drops the drives that cannot meet the least demand that any remaining options outboard put on their joint. If a
     /// joint takes the lightest drive that meets its demand, drives heavier than the lightest one that meets the
     /// greatest demand are dropped too. Returns whether any drive was dropped.
     pub(super) fn drop_drives(&mut self, problem: &ArmProblem, cases: &[CaseLoads]) -> bool {

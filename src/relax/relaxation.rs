@@ -12,7 +12,7 @@ use crate::space::problem::ArmProblem;
 const ROUNDS: usize = 4;
 /// Greatest number of solutions of the program in a round. After each solution, trial shapes or options are added.
 const STEPS: usize = 40;
-/// Relative margin for rounding of an objective.
+/// Relative amount by which a required objective is relaxed, as a margin for rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// The bound on mass for designs that meet the required objectives.

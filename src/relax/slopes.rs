@@ -18,8 +18,8 @@ pub(super) fn tangent_range(law: &JointLaw, torque_nm: [f64; 2]) -> [f64; 2] {
 }
 
 /// Least and greatest secant compliance of a joint \[rad/(N m)\] between any two torques of the interval `torque_nm`.
-/// The torque has risen from rest, so friction holds back a part of the gear's twist, until the half width of the
-/// hysteresis is reached.
+/// The torque is taken to have risen from zero. Friction then reduces the gear's twist, by at most the half width of
+/// the hysteresis.
 pub(super) fn rising_range(law: &JointLaw, torque_nm: [f64; 2]) -> [f64; 2] {
     let [least, most] = tangent_range(&as_it_twists(law), torque_nm);
     let Some(stiffness) = law.play_stiffness_nm_per_rad() else { return [least, most] };

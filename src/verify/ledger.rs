@@ -1,7 +1,7 @@
 //! The branches of a search that are done, so that another process need not go through them again.
 //!
-//! The search halves what it has; a branch near the root is named by the halves that lead to it. What a branch came to does
-//! not depend on the others, so a search that goes on has the result of one that was never stopped.
+//! The search halves what it has; a branch near the root is named by the halves that lead to it. What a branch came to
+//! does not depend on the others, so a search that goes on has the result of one that was never stopped.
 
 use super::halt::{Found, Halt};
 use super::parts_box::Design;
@@ -31,8 +31,8 @@ struct Done {
     designs: BTreeSet<Design>,
 }
 
-/// A branch: the digits of this number in base 2, after the leading one, are the halves that lead to it. Zero stands for
-/// a branch that is not written down.
+/// A branch: the digits of this number in base 2, after the leading one, are the halves that lead to it. Zero stands
+/// for a branch that is not written down.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Branch(u32);
 

@@ -58,9 +58,9 @@ impl Ratings {
         widths: [0.0; 2],
     };
 
-    /// The ratings of a drive under a joint's motion; `None` if the motion is too fast for the drive, if the drive does not
-    /// go into the joint, or if the catalog lacks a number. A blank number of the bearing or of a size excludes nothing; `size`
-    /// is that of the gear in the build that is asked for.
+    /// The ratings of a drive under a joint's motion; `None` if the motion is too fast for the drive, if the drive does
+    /// not go into the joint, or if the catalog lacks a number. A blank number of the bearing or of a size excludes
+    /// nothing; `size` is that of the gear in the build that is asked for.
     pub(super) fn of(
         gear: &Gear,
         size: &Envelope,
