@@ -53,8 +53,8 @@ impl DrivesByCurve {
                 continue;
             }
             if let Some(halves) = tree.children(at) {
-                // If the least limits of the node carry the demand, so does every drive below the node, and none is
-                // tested.
+                // If even the least limits of the node carry the demand, every drive below the node carries it, and
+                // none of them is tested.
                 let asked = asked.filter(|asked| !drives.least_limits.hold(&asked.demand));
                 open.extend(halves.map(|half| (half, asked)));
                 continue;

@@ -267,8 +267,8 @@ impl PosedPiece {
     }
 }
 
-/// Adds the motion that the two tilts of a joint's bearing cause to `twist`, the motion of everything outboard. `x`
-/// holds the coordinates of the joint.
+/// Adds the motion that the two tilts of a joint's bearing cause to `twist`, the motion of everything outboard. `x` are
+/// the coordinates of the joint.
 #[inline]
 fn add_tilts(across: &Option<[Twist; 2]>, x: &[f64], twist: &mut Twist) {
     for (tilt, x) in across.iter().flatten().zip(&x[TILT..]) {
@@ -305,7 +305,7 @@ fn displacement(twist: &Twist, at_m: &Vector3<f64>) -> Vector3<f64> {
 }
 
 impl PosedTube {
-    /// Adds the motion of the tube's end relative to its root to `twist`, the motion of everything outboard. `x` holds
+    /// Adds the motion of the tube's end relative to its root to `twist`, the motion of everything outboard. `x` are
     /// the strain coordinates of the tube.
     #[inline]
     fn carry(&self, twist: &mut Twist, x: &[f64]) {

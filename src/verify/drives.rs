@@ -31,8 +31,8 @@ pub(super) struct DriveOption {
     pub drives: Vec<(u32, Ratings)>,
 }
 
-/// How drives of equal mass, torsion curve and bearing stiffness are treated, which no objective tells apart:
-/// `Apart` makes one option of each, `Together` one option of all.
+/// How drives of equal mass, torsion curve and bearing stiffness are treated. No objective tells them apart. `Apart`
+/// makes one option of each drive, `Together` one option of all of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Ties {
     Apart,

@@ -38,7 +38,7 @@ pub(super) struct Duty {
     pub has_brake: bool,
     /// The stage between motor and gear.
     pub stage: AskedStage,
-    /// What is asked of the sizes of the parts.
+    /// Limits on the sizes of gear and motor.
     pub fit: AskedFit,
     /// Whether the motor's heat is checked.
     pub checks_heat: bool,
@@ -165,10 +165,10 @@ impl AskedMotion {
         self.tip_speed_m_s / self.ramp_time_s
     }
 
-    /// Whether no torque of a demand and no heat decreases when static torque or inertia grows. Only while the
-    /// joint slows down is the linear torque subtracted from the static torque. If speeding up takes at least as
-    /// long, it outweighs this: the motor has its largest torque of the cycle there, and that torque grows at least
-    /// as fast as any other decreases.
+    /// Whether no torque of a demand and no heat decreases when static torque or inertia grows. Only while the joint
+    /// slows down is the linear torque subtracted from the static torque. If the joint speeds up for at least as long
+    /// as it slows down, speeding up outweighs this: the motor then has its largest torque of the cycle while the joint
+    /// speeds up, and that torque grows at least as fast as any other decreases.
     pub fn grows(&self) -> bool {
         let mean = self.mean_torque();
         mean.of_difference <= mean.of_sum
@@ -178,7 +178,8 @@ impl AskedMotion {
         self.phases.iter().map(AskedPhase::travel_s).sum()
     }
 
-    /// Fractions of the cycle's time that its kinds of phases take.
+    /// Fractions of the cycle's time that its kinds of phases take. A phase with a stated fraction of the static torque
+    /// is weighted with the square of this fraction.
     fn shares(&self, has_brake: bool) -> CycleShares {
         let whole_s: f64 = self.phases.iter().map(|phase| phase.duration_s).sum();
         let mut shares = CycleShares::default();

@@ -127,7 +127,7 @@ pub(super) fn efficiency(gear: &Gear) -> Option<f64> {
     gear.efficiency.or((gear.kind == GearKind::Direct).then_some(1.0))
 }
 
-/// Inertia of rotor and stage, and of the gear's input behind the stage, at the motor \[kg m²\].
+/// Inertia of the rotor, the stage and the gear's input, all referred to the motor's shaft \[kg m²\].
 pub(super) fn input_inertia_kgm2(gear: &Gear, motor: &Motor, stage: &AskedStage) -> Option<f64> {
     let none = (gear.kind == GearKind::Direct).then_some(0.0);
     let at_gear_kgm2 = gear.inertia_input_kgm2.or(none)?;

@@ -188,9 +188,9 @@ impl Layout {
         self.add_bodies(piece_rank(place), &joint.bodies.rotating, rotation);
     }
 
-    /// Adds rotational springs at the present end of the chain. `springs` holds the axis of each in the world and its
-    /// compliance \[rad/(N m)\]. Springs without compliance are left out. `place` is the number of the piece to which
-    /// they belong.
+    /// Adds rotational springs at the present end of the chain. `springs` has the axis of each spring in the world and
+    /// its compliance \[rad/(N m)\]. Springs without compliance are left out. `place` is the number of the piece to
+    /// which they belong.
     fn add_springs(&mut self, place: usize, springs: &[(Vector3<f64>, f64)]) {
         for &(axis, rad_per_nm) in springs.iter().filter(|(_, rad_per_nm)| *rad_per_nm > 0.0) {
             let (rank, at_m, compliance) = (spring_rank(place), self.tip_m, rad_per_nm);

@@ -68,8 +68,8 @@ impl Judge<'_> {
         self.missing_since(&Ledger::default(), front, settings, (stop, deadline))
     }
 
-    /// As [`missing`](Self::missing), except for the branches that the ledger says are done. It must be of the same
-    /// question and front.
+    /// As [`missing`](Self::missing), without the branches that are finished in `ledger`. The ledger must be of the
+    /// same question and the same front.
     pub fn missing_since(
         &self,
         ledger: &Ledger,

@@ -142,8 +142,7 @@ impl Factor {
         x
     }
 
-    /// Solves `Lᵀ x = b` for `x`, where `L` is this Cholesky factor. `x` holds `b` at first and the solution at the
-    /// end.
+    /// Solves `Lᵀ x = b` for `x`, where `L` is this Cholesky factor. `x` is `b` at first and the solution at the end.
     fn solve_upper(&self, x: &mut [f64]) {
         let lower = |i: usize, j: usize| self.lower[row(i) + j];
         for i in (0..self.size).rev() {

@@ -1,7 +1,8 @@
 //! One case of a study as sums over parts: torques, deflection, stress and inertia.
 //!
-//! *Loads* are the masses of drives \[kg\] and the weights of tubes per length \[N/m\]. Each load adds in
-//! proportion to the torque on a joint (by its lever arm) and to the force and moment in a tube's section.
+//! *Loads* are the masses of drives \[kg\] and the weights of tubes per length \[N/m\]. The torque on a joint, and the
+//! force and the moment in a tube's section, are sums of contributions that are proportional to the loads. The factor
+//! of a torque is a lever arm.
 //!
 //! *Deflection* follows from the method of the unit load. The displacement of the tip along `e` is the work of the
 //! real internal loads, divided by the stiffness, on the internal loads of a unit force `e` at the tip: `Σ θ_j (a_j

@@ -69,7 +69,7 @@ pub struct AskedJoint {
     pub bearing: BearingSource,
     /// Where the masses in addition to gear, motor and bearing come from.
     pub extras: ExtrasSource,
-    /// Rigid bodies at the joint in addition to all these.
+    /// Rigid bodies at the joint, in addition to drive, bearing and extra parts.
     pub bodies: JointBodies,
     /// How the drive of the joint is found.
     pub drive: AskedDrive,
@@ -78,14 +78,14 @@ pub struct AskedJoint {
     pub max_speed_rad_s: Option<f64>,
     /// Whether a brake holds the joint at rest.
     pub has_brake: bool,
-    /// The duty that the study states for this joint in place of its cycle; empty if none.
+    /// The duty that the study states for this joint in place of the duty cycle of all joints; empty if none.
     pub duty: Vec<AskedDutyPhase>,
     /// Limits on the sizes of gear and motor.
     pub fit: AskedFit,
     /// Compliance of the joint's connections, as a fraction of the compliance of a catalog gear and of that gear's
     /// bearing.
     pub connection_share: f64,
-    /// The stage between motor and gear, of a drive that is sized.
+    /// The stage between motor and gear. It is used only if the drive comes from the catalogs.
     pub stage: AskedStage,
 }
 
@@ -94,16 +94,16 @@ pub struct AskedJoint {
 pub struct AskedStage {
     /// Turns of the motor per turn of the gear's input.
     pub ratio: f64,
-    /// Part of the power that arrives.
+    /// Fraction of the motor's power that reaches the gear's input.
     pub efficiency: f64,
     /// Moment of inertia at the motor \[kg m²\].
     pub inertia_kgm2: f64,
-    /// Twist of the gear's input per torque there \[rad/(N m)\].
+    /// Twist of the stage at the gear's input per torque on this input \[rad/(N m)\].
     pub rad_per_nm: f64,
 }
 
 impl AskedStage {
-    /// The motor turns the gear itself.
+    /// No stage: the motor turns the gear's input directly.
     pub const NONE: Self = Self { ratio: 1.0, efficiency: 1.0, inertia_kgm2: 0.0, rad_per_nm: 0.0 };
 }
 
@@ -112,9 +112,9 @@ impl AskedStage {
 pub struct AskedFit {
     /// Largest allowed ratio of the gear's outer diameter to the width of the link that follows the joint.
     pub gear_to_link_max: Option<f64>,
-    /// Whether the motor must go into the hollow of that link.
+    /// Whether the motor must go into the hollow of the link that follows the joint.
     pub motor_in_link: bool,
-    /// Whether the motor is behind the gear on the joint's axis.
+    /// Whether the motor is on the joint's axis, in line with the gear.
     pub motor_on_axis: bool,
     /// Smallest bore that each part on the axis must have \[m\].
     pub cable_bore_min_m: Option<f64>,
@@ -224,7 +224,7 @@ pub struct AskedMotion {
     pub emergency_stops: Option<f64>,
 }
 
-/// The two ways in which Eq 8, the torque of linear acceleration, can be read.
+/// The two ways in which Eq 8, the torque of linear acceleration (see docs/sizing.md), can be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LinearTorque {
     /// Inertia of everything outboard about the joint's axis, times the joint's acceleration.
@@ -269,7 +269,7 @@ pub struct Limits {
     pub tip_deflection_max_m: Option<f64>,
     /// Largest allowed mass of the arm \[kg\].
     pub mass_max_kg: Option<f64>,
-    /// Lowest mode that is required at least \[Hz\].
+    /// Smallest allowed frequency of the lowest mode \[Hz\].
     pub lowest_mode_min_hz: Option<f64>,
     /// Bandwidth of the servo \[Hz\], and the smallest allowed ratio of the lowest mode to this bandwidth.
     pub servo_hz_and_ratio: Option<[f64; 2]>,
