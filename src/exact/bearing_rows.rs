@@ -17,7 +17,8 @@ const NOTHING: f64 = 1e-13;
 /// Number of components of a load: moments about the two axes across the joint axis, forces along these two axes, and
 /// the force along the joint axis.
 const COMPONENTS: usize = 5;
-/// Indices of the components whose length is the moment, the radial force and the axial force.
+/// Indices of the components that make up the moment, the radial force and the axial force. Each of these three is the
+/// length of its components as a vector.
 const MOMENT: [usize; 2] = [0, 1];
 const RADIAL: [usize; 2] = [2, 3];
 const AXIAL: [usize; 1] = [4];
@@ -155,7 +156,7 @@ impl BearingRows {
     }
 
     /// Whether none of the three loads on the bearing (moment, radial force, axial force) can fall when a drive gets
-    /// heavier. `is_drive` tells whether the piece with an index is a drive.
+    /// heavier. `is_drive` tells whether the piece with a given index is a drive.
     ///
     /// The length of a sum of vectors grows with one contribution if this contribution has no negative dot product with
     /// any other. For `a` at rest and `b` of a ramp, the greater of `|a + b|` and `|a - b|` grows if `|a|`, `|b|` and

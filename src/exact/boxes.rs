@@ -12,7 +12,7 @@ use super::shape::Shape;
 use super::work::Work;
 use std::sync::Arc;
 
-/// Greatest number of boxes that one task bounds. Then it returns the boxes that are still open.
+/// Greatest number of boxes that one task bounds. After that, the task returns the boxes that are still open.
 const BOXES: usize = 32;
 
 /// A box that waits to be bounded, with the trial shapes and the bound of the box from which it was halved.
@@ -88,7 +88,8 @@ fn go_through_boxes<K: Sync, F: Send + Default>(
 }
 
 /// Bounds the box `first` and then boxes into which it is divided, depth first, until [`BOXES`] boxes are bounded.
-/// `open` bounds one box and returns its parts. Returns the boxes that are still open and the designs found.
+/// `open` bounds one box and returns the boxes into which it is divided. Returns the boxes that are still open and the
+/// designs found.
 pub(super) fn open_boxes<F: Default>(
     budget: &Budget,
     first: OpenBox,

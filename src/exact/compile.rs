@@ -29,7 +29,8 @@ use std::sync::Arc;
 /// The joints of a chain with their drives, before anything is compiled. Every list has one entry for each piece of the
 /// chain, base to tip.
 struct Joints<'c> {
-    /// The given joint or the drives of each joint; `None` for any other piece, and after the joint was compiled.
+    /// For each joint, its given drive or the drives that it may have; `None` for any other piece, and after the joint
+    /// was compiled.
     slots: Vec<Option<Slot<'c>>>,
     /// The motion of each joint and the state of its bearing, as a compiled pose needs them; default values for any
     /// other piece.
@@ -243,8 +244,8 @@ impl<'c> Problem<'c> {
     }
 
     /// Compiles a link of the chain with the options for which `takes` is true. For the index of an option, `leaves`
-    /// returns the lever from the joint inboard \[m\] and the space that the link leaves for the drive of this joint.
-    /// `None` if no option is admitted.
+    /// returns the lever of the loads on the bearing of the joint inboard \[m\], and the space that the link leaves for
+    /// the drive of this joint. `None` if no option is admitted.
     fn link(
         &mut self,
         piece: &'c SpacePiece,
@@ -283,7 +284,7 @@ impl<'c> Problem<'c> {
         }
     }
 
-    /// A joint whose drive is a level of the search.
+    /// Compiles a joint whose drive the search chooses, and adds its level.
     fn drives(&mut self, sized: Arc<SizedJoint<'c>>, tilts: bool, ties: Ties) -> Option<Part<'c>> {
         self.level(sized.table.len());
         let rays = self.rays(self.parts.len(), sized.table.motion());
@@ -294,7 +295,7 @@ impl<'c> Problem<'c> {
         Some(Part::Drives { sized, kinds: Arc::new(kinds), tree: Arc::new(tree), rays: Arc::new(rays) })
     }
 
-    /// A joint that takes the lightest drive that can carry its load.
+    /// Compiles a joint that takes the lightest drive that can carry its load.
     fn first_fit(&self, sized: Arc<SizedJoint<'c>>, tilts: bool) -> Option<Part<'c>> {
         let rays = self.rays(self.parts.len(), sized.table.motion());
         let candidates = sized.table.first_fit_candidates();

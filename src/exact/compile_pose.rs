@@ -394,8 +394,8 @@ struct Outboard {
     per_n: Vec<Wrench>,
     /// Inertia of the payload and of the bodies that the study gives, added up so far, about the world's origin.
     fixed_inertia: Matrix6<f64>,
-    /// Sum of `fixed_inertia` as it was when each piece was added: the inertia of payload and given bodies outboard of
-    /// this piece, tip first.
+    /// For each piece, tip first, the value of `fixed_inertia` before this piece was added: the inertia of payload and
+    /// given bodies outboard of the piece.
     fixed_inertia_of: Vec<Matrix6<f64>>,
     /// Inertia of each piece about the world's origin per unit of each line inertia, tip first.
     inertia: Vec<[Matrix6<f64>; INERTIAS]>,

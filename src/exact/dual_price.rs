@@ -29,8 +29,8 @@ pub(super) struct Gear {
     pub torques_nm: [f64; 2],
     /// Index of the first of the gear's two rows (inequalities of the bound), if the slope of the gear may change
     /// within the interval. The two rows, one for each direction, force the torque at which the gear is evaluated to
-    /// equal the torque of the weights. `None` for a gear with a single slope. Such a gear is evaluated at the torque
-    /// `torques_nm[0]`, and its twist grows linearly with the weights from there.
+    /// equal the torque that the weights cause. `None` for a gear with a single slope. Such a gear is evaluated at the
+    /// torque `torques_nm[0]`. From this torque on, its twist grows linearly with the weights.
     pub row: Option<usize>,
     /// Least compliance of any gear of the box within the interval of torque \[rad/(N m)\]. It is 0 and unused for a
     /// gear with a single slope.
@@ -64,7 +64,8 @@ impl Gear {
 pub(super) struct DualPrice {
     /// Price per unit of each line inertia of a tube. For any other piece the first entry is the price per kilogram.
     pub inertia: [f64; INERTIAS],
-    /// Price per unit of each compliance of a tube. For a joint the entry [`TILT`] is that of its bearing.
+    /// Price per unit of each compliance of a tube. For a joint, the entry [`TILT`] is the price of its bearing's
+    /// compliance.
     pub compliance: [f64; STIFFNESSES],
     /// Amount by which each unit of a stiffness lowers the weighted sum. The stiffnesses are those of a tube or of a
     /// joint's bearing.

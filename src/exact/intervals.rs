@@ -14,7 +14,7 @@ use crate::space::slot::SizedJoint;
 
 /// Relative margin for rounding of a sum of a few dozen terms.
 pub(super) const ROUNDING: f64 = 1e-12;
-/// Number of levels that the search for drives that cannot carry a demand descends in a tree of drives.
+/// Greatest number of steps down a tree of drives in which drives that cannot carry a demand are searched for.
 const DEPTH: usize = 6;
 
 impl Problem<'_> {
@@ -155,7 +155,7 @@ impl Problem<'_> {
         (rounded(static_nm), rounded(inertia_kgm2))
     }
 
-    /// The least and the greatest loads on the output bearing of a joint, over all cases; zero if no bearing is
+    /// The least and the greatest loads on the output bearing of a joint, over all cases; zero if this bearing is not
     /// checked.
     pub(super) fn bearing_loads(&self, piece: usize, work: &Work) -> [BearingDemand; 2] {
         let Some(lever) = self.levers[piece] else { return [BearingDemand::default(); 2] };
@@ -205,8 +205,8 @@ impl Problem<'_> {
     }
 }
 
-/// The box around those drives below `node` that may carry the demand `asked`. The function descends at most `depth`
-/// levels of the tree. Drives that it excludes there do not widen the box. `None` if no drive may carry the demand.
+/// The box around those drives below `node` that may carry the demand `asked`. The function goes at most `depth` steps
+/// down the tree. Drives that it excludes in these steps do not widen the box. `None` if no drive may carry the demand.
 fn feasible_drives(tree: &Tree<DriveBox>, node: u32, asked: &LeastDemand, depth: usize) -> Option<DriveBox> {
     let drives = &tree.node(node).bounds;
     if !drives.may_hold(asked) {

@@ -54,8 +54,8 @@ pub(super) struct Begun {
     open: Option<OpenPass>,
 }
 
-/// The open boxes of a pass. `shapes` holds each list of trial shapes once, because several boxes share it. A box
-/// refers to its list by index.
+/// The open boxes of a pass. `shapes` has each list of trial shapes once, because several boxes share it. A box refers
+/// to its list by index.
 #[derive(Clone, Serialize, Deserialize)]
 struct OpenPass {
     slack: f64,
@@ -81,7 +81,7 @@ impl<'s> Journal<'s> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The result of the next part, if an earlier process finished it.
+    /// The result of the next part of the search, if an earlier process finished this part.
     pub(super) fn next_finished(&self) -> Option<FoundInShard> {
         let mut state = self.lock();
         let found = state.finished.get(state.used).cloned()?;
@@ -94,7 +94,7 @@ impl<'s> Journal<'s> {
         self.lock().begun.take()
     }
 
-    /// Records the result of a part.
+    /// Records the result of a finished part of the search.
     pub(super) fn finish(&self, found: &FoundInShard) {
         if let Some(keeper) = self.keeper {
             let mut state = self.lock();

@@ -51,8 +51,8 @@ impl Rows<'_> {
     /// upper limit by as much as possible. They are the solution of a matrix game between the rows and the relaxed
     /// designs.
     pub(super) fn best_multipliers(&self, members: &[RelaxedDesign], upper: &LocalUpperBound) -> Game {
-        /// Lower limit of the scaled excess of a row over its limit. A row so far below its limit has no influence on
-        /// the game.
+        /// If the value of a scaled row is further below its limit than this, this number is used for the difference. A
+        /// row so far below its limit has no influence on the game.
         const NO_SAY: f64 = -10.0;
         let row_limits: Vec<f64> = self.row_limits(upper).collect();
         let mut above = Vec::with_capacity(members.len() * row_limits.len());

@@ -159,7 +159,7 @@ impl Bounds for LinkBox {
 /// Relative difference below which a torque and a break point count as equal.
 pub(super) const SAME_TORQUE: f64 = 1e-12;
 
-/// Number of rays, the proportions of static torque and inertia for which a box of drives knows its capacity.
+/// Number of rays: the proportions of static torque and inertia for which the capacity of each box of drives is stored.
 pub(super) const RAYS: usize = 12;
 
 /// Rays: demands on a joint in fixed proportions of static torque and inertia. A drive that carries a demand also
@@ -200,7 +200,8 @@ impl Rays {
 }
 
 /// Fraction by which the motor heat of a least demand is lowered and that of a greatest demand is raised to cover
-/// rounding. A margin on the loads alone would not do, because the motor's own inertia can cause most of the heat.
+/// rounding. A margin on the loads alone would not be enough, because the motor's own inertia can cause most of the
+/// heat.
 pub(super) const HEAT_ROUNDING: f64 = 1e-12;
 
 /// The least demand that the members of a box put on a joint.
@@ -250,7 +251,7 @@ pub(super) struct DriveBox {
     pub mass_kg: [f64; 2],
     /// The greatest value of each limit of a drive over the members.
     pub limits: DriveLimits,
-    /// The least of each limit over the members.
+    /// The least value of each limit of a drive over the members.
     pub least_limits: DriveLimits,
     /// For each ray (fixed proportion of static torque and inertia), the greatest multiple of its demand that a single
     /// member carries.

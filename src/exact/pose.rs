@@ -56,7 +56,7 @@ pub(super) fn degree_factor(coordinate: usize) -> f64 {
 
 /// A case, compiled for bounds. Pieces are counted from the tip.
 pub(super) struct Pose {
-    /// Whether the case counts for deflection and lowest mode.
+    /// Whether deflection and lowest mode are judged in this case.
     pub judged: bool,
     /// Whether drives and stresses are checked in this case.
     pub sizing: bool,
@@ -75,8 +75,8 @@ pub(super) struct Pose {
     pub stress: Vec<StressRow>,
     /// Inertia of everything outboard about each joint's axis; `None` for a piece that is not a joint.
     pub inertia_about: Vec<Option<InertiaRow>>,
-    /// Loads on the output bearing of each joint; `None` for any other piece, if no bearing is checked, or if the case
-    /// is not a sizing case.
+    /// Loads on the output bearing of each joint. `None` for a joint whose bearing is not checked, for any other piece,
+    /// and for all pieces if the case is not a sizing case.
     pub bearings: Vec<Option<BearingRows>>,
 }
 

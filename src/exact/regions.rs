@@ -182,9 +182,9 @@ impl<'p> Search<'_, 'p> {
         }
     }
 
-    /// The local upper bounds of what remains of the region below `upper` after incumbents that were found since
-    /// `upper` was made have cut it. `incumbents_seen` is the number of incumbents that were known then, and is brought
-    /// up to date. `None` if no later incumbent lies in the region.
+    /// The local upper bounds of what later incumbents leave undominated of the region below `upper`. Later incumbents
+    /// are those found since `upper` was made. `incumbents_seen` is the number of incumbents that were known when it
+    /// was made, and is brought up to date. `None` if no later incumbent lies in the region.
     fn clipped(&self, upper: &LocalUpperBound, incumbents_seen: &mut usize) -> Option<LocalUpperBounds> {
         let is_inside = |o: &Objectives| {
             o.mass_kg < upper.mass_kg && o.tip_deflection_m < upper.tip_m && o.lowest_mode_hz > upper.hz

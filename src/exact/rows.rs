@@ -54,8 +54,8 @@ impl WarmStart {
     }
 }
 
-/// The rows of a box: linear inequalities between the numbers of the parts that every member below a local upper bound
-/// satisfies.
+/// The rows of a box: linear inequalities in the numbers of the parts. Every member below a local upper bound satisfies
+/// them.
 pub(super) struct Rows<'a> {
     pub problem: &'a Problem<'a>,
     pub work: &'a Work,
@@ -93,7 +93,7 @@ pub(super) struct Force<'a> {
     pub row: usize,
 }
 
-/// A trial shape (motion of the arm) that bounds the modes in a judged case, with the numbers of its row.
+/// A trial shape (motion of the arm) that bounds the modes in a judged case, with what is needed to make its row.
 pub(super) struct Mode {
     /// Index of the judged case.
     pub judged: usize,
@@ -234,7 +234,7 @@ impl<'a> Rows<'a> {
                 Some(torque_nm) => Gear::at(row.piece, judged, torque_nm),
                 None => {
                     // The slope may change within the interval of torque. The gear is then evaluated at a torque of its
-                    // own, which two rows force to equal the torque of the weights.
+                    // own, which two rows force to equal the torque that the weights cause.
                     let [least_nm, most_nm] = work.torques[case][row.piece];
                     let compliance = 1.0 / curve.steepest(least_nm, most_nm);
                     let torques_nm = work.forces[case][at];
@@ -313,13 +313,13 @@ impl<'a> Rows<'a> {
 
     /// Adds multipliers of the torque rows to `multipliers`. With them the price of a gear's twist grows with the
     /// torque that the weights make, by the least compliance of the box (McCormick). Without them a gear could be
-    /// evaluated at any torque at no price.
+    /// evaluated at any torque without raising the weighted sum.
     pub(super) fn with_torques(&self, mut multipliers: Vec<f64>) -> Vec<f64> {
         for gear in &self.gears {
             let Some(row) = gear.row else { continue };
             let tip = 1 + gear.judged;
             let per_twist = multipliers[tip] / self.scale[tip] * self.tips[gear.judged].joints[gear.piece];
-            // The row in which the price rises with the torque of the weights.
+            // The row in which the price rises with the torque that the weights cause.
             let at = if per_twist > 0.0 { row + 1 } else { row };
             multipliers[at] += per_twist.abs() * gear.least_compliance * self.scale[at];
         }
@@ -351,8 +351,8 @@ impl<'a> Rows<'a> {
         objectives.chain(torques).chain(modes).zip(&self.scale).map(|(row, scale)| row / scale)
     }
 
-    /// Sets of multipliers that use a single row. There is one for each row with a finite limit below `upper`, except
-    /// for torque rows.
+    /// Sets of multipliers that use a single row. There is one for each row that has a finite limit for members below
+    /// `upper`, except for torque rows.
     pub(super) fn single_row_multipliers(&self, upper: &LocalUpperBound) -> Vec<Vec<f64>> {
         let is_torque = |row: usize| (1 + self.tips.len()..self.first_mode).contains(&row);
         let rows = self.row_limits(upper).enumerate().filter(|(row, a)| a.is_finite() && !is_torque(*row));

@@ -26,7 +26,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-/// Stack size that each worker thread needs \[bytes\]. Regions of an exact search are nested calls, and a worker that
+/// Stack size that each worker thread needs \[bytes\]. An exact search by regions makes nested calls, and a worker that
 /// waits for others runs their tasks on its own stack. A program that builds its own thread pool has to give its
 /// workers this much.
 pub const WORKER_STACK_BYTES: usize = 64 << 20;
@@ -256,7 +256,7 @@ impl<'p> Exact<'p> {
         found
     }
 
-    /// Lists what was found, with all ties.
+    /// Lists the designs found. All ties are listed if there are not too many.
     pub(super) fn listed(&self, whole: Option<&Problem<'p>>, found: FoundInShard) -> ExactOutcome {
         let FoundInShard { designs_evaluated, boxes, boxes_open, gap, decided: mut front, undecided, .. } =
             found;
@@ -294,7 +294,7 @@ impl<'p> Exact<'p> {
         live: Option<&Live>,
     ) -> Ended {
         let (designs, by_regions) = (whole.designs() as f64, self.is_by_regions(whole));
-        // Small spaces need no passes with slack. With given designs there is something to prune with from the start.
+        // Small spaces need no passes with slack. If designs are given, boxes can be pruned from the start.
         let in_passes = is_new && (by_regions || designs > LARGE);
         let early = live.filter(|_| in_passes).map(|live| Early::new(&self.budget, whole, live));
         let mut begun = self.journal.begun();

@@ -100,8 +100,8 @@ impl Shape {
         kinetic
     }
 
-    /// Replaces this shape `x` by `C M x`, one step of inverse iteration, in which the base moves by `base`. Then it is
-    /// scaled.
+    /// Replaces this shape `x` by `C M x`, one step of inverse iteration, in which the base moves by `base`. Then the
+    /// shape is scaled.
     fn iterate(&mut self, pose: &Pose, ideal: &Ideal, base: &Twist, work: &mut Work) {
         inertia_forces(pose, ideal.inertia, base, &self.x, work);
         let mut largest = 0.0f64;
@@ -255,7 +255,8 @@ impl PosedPiece {
         }
     }
 
-    /// Stiffness of a coordinate of the piece for these section or joint stiffnesses; 0 for a rigid coordinate.
+    /// Stiffness of a coordinate of the piece; 0 for a rigid coordinate. `stiffness` are the stiffnesses of the tube's
+    /// section, or of the joint and its bearing.
     #[inline]
     pub(super) fn coordinate_stiffness(&self, coordinate: usize, stiffness: &[f64; STIFFNESSES]) -> f64 {
         match self {

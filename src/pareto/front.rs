@@ -41,7 +41,7 @@ pub(crate) fn all_numbers(points: &[[f64; 3]]) -> Result<(), NotANumber> {
 }
 
 /// The front: indices, ascending, of the points that no other point dominates. A point dominates another if it is
-/// nowhere larger and somewhere smaller. Comparisons are exact, and equal points are all kept.
+/// larger in no objective and smaller in at least one. Comparisons are exact, and equal points are all kept.
 ///
 /// # Errors
 /// [`NotANumber`] with the first point that has a NaN.

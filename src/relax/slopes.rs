@@ -30,8 +30,8 @@ pub(super) fn rising_range(law: &JointLaw, torque_nm: [f64; 2]) -> [f64; 2] {
     [least - held_back, most - freed]
 }
 
-/// The joint law `law` with the torsion curve that holds for static twist. A gear whose vibration is computed with its
-/// first slope alone still has all three segments in static twist.
+/// The joint law `law` with the torsion curve that is used for static twist. A gear whose vibration is computed with
+/// its first slope alone still has all three segments in static twist.
 fn as_it_twists(law: &JointLaw) -> JointLaw {
     let curve = match law.curve {
         Curve::WindupK1(windup) => Curve::Windup(windup),

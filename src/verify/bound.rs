@@ -34,8 +34,8 @@ pub(super) struct Members<'w> {
 pub(super) struct IdealPoint {
     pub mass_kg: f64,
     pub tip_m: f64,
-    /// Index among the poses of the judged case that bounds the deflection, and the direction of the tip's
-    /// displacement there.
+    /// Index among the poses of the judged case that bounds the deflection, and the direction of the tip's displacement
+    /// in this case.
     pub worst: usize,
     pub direction: Vector3<f64>,
 }

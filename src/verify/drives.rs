@@ -177,8 +177,8 @@ pub(super) fn first_fits<'o, T>(
     options.scan(false, fit).filter(move |(_, option)| option.holds(&least))
 }
 
-/// The coordinates by which the tree groups similar drives, each with a weight. Any grouping gives a valid proof; a
-/// good one makes the bounds tight.
+/// The coordinates by which the tree puts similar drives together, each multiplied by a weight. Any weights give a
+/// valid proof; good ones make the bounds tight.
 fn keys(option: &DriveOption) -> Vec<f64> {
     let (drive, ratings) = (&option.range, option.ratings());
     let stiff = &drive.stiff;

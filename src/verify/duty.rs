@@ -23,8 +23,8 @@ pub(super) struct Duty {
     pub acceleration_rad_s2: f64,
     /// Required life of the gear \[h\].
     pub life_h: f64,
-    /// Torque of linear acceleration for each kg m² of inertia \[rad/s²\], and for each N m of static torque. One
-    /// of the two is zero: Eq 8 can be read in either way, and the study states which one it takes.
+    /// Torque of linear acceleration for each kg m² of inertia \[rad/s²\], and for each N m of static torque. One of
+    /// the two is zero: Eq 8 (see docs/sizing.md) can be read in either way, and the study states which one it takes.
     linear_per_inertia: f64,
     linear_per_static: f64,
     /// Torque of linear acceleration in an emergency stop, divided by that in a ramp.
@@ -144,7 +144,8 @@ impl Duty {
 
 /// Largest speed of a joint \[rad/s\]. It is the maximum that the study states for the joint, or else the speed of the
 /// tip divided by the lever `reach_m`. The lever is taken as at least `min_lever_m`, because a short lever would give a
-/// roll joint an absurd speed. A duty in numbers has its own largest speed.
+/// roll joint an absurd speed. If the study states a duty of the joint in numbers, the speed of the tip is not used,
+/// and the result is at least the largest speed of this duty.
 fn speed_rad_s(motion: &AskedMotion, reach_m: f64, joint: &AskedJoint) -> f64 {
     let fastest_rpm = joint.duty.iter().map(|phase| phase.speed_rpm).fold(0.0, f64::max);
     match (joint.max_speed_rad_s, joint.duty.is_empty()) {

@@ -42,8 +42,9 @@ pub(super) fn room(joint: &AskedJoint, vector_m: &Vector3<f64>, section: &Sectio
     [gear_m, motor_m]
 }
 
-/// Width of a tube in the plane in which a joint turns it \[m\]. If the joint's axis is along the tube (within the
-/// angle at which section frames change), it is the smaller of the two outer sizes.
+/// Width of a tube in the plane in which a joint turns it \[m\]. If the angle between the joint's axis and the tube is
+/// below 8°, it is the smaller of the two outer sizes. The section frame of a tube changes at the same angle to the
+/// vertical.
 fn width_m(axis: &Vector3<f64>, vector_m: &Vector3<f64>, section: &Section) -> f64 {
     let frame = section_frame(vector_m);
     let (width_m, height_m) = section.outer_m();

@@ -38,7 +38,7 @@ pub(super) struct HeatDemand {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct CycleShares {
     pub ramp_up: f64,
-    /// Travel at constant speed. A phase with a stated fraction of the static torque counts times the square of
+    /// Travel at constant speed. A phase with a stated fraction of the static torque is weighted with the square of
     /// this fraction.
     pub travel: f64,
     pub ramp_down: f64,

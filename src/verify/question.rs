@@ -29,7 +29,7 @@ pub struct Question {
     pub pieces: Vec<AskedPiece>,
     /// All poses and loads, each with the models of links and joints.
     pub cases: Vec<LoadCase>,
-    /// Indices of the cases over which tip deflection and lowest mode are taken.
+    /// Indices of the judged cases, over which tip deflection and lowest mode are taken.
     pub judged_cases: Vec<usize>,
     /// Indices of the sizing cases, in which drives are checked and stresses include acceleration.
     pub sizing_cases: Vec<usize>,
@@ -96,7 +96,7 @@ pub struct AskedStage {
     pub ratio: f64,
     /// Fraction of the motor's power that reaches the gear's input.
     pub efficiency: f64,
-    /// Moment of inertia at the motor \[kg m²\].
+    /// Moment of inertia of the stage, referred to the motor's shaft \[kg m²\].
     pub inertia_kgm2: f64,
     /// Twist of the stage at the gear's input per torque on this input \[rad/(N m)\].
     pub rad_per_nm: f64,
@@ -116,9 +116,9 @@ pub struct AskedFit {
     pub motor_in_link: bool,
     /// Whether the motor is on the joint's axis, in line with the gear.
     pub motor_on_axis: bool,
-    /// Smallest bore that each part on the axis must have \[m\].
+    /// Smallest bore that the gear must have \[m\], and the motor too if it is on the joint's axis.
     pub cable_bore_min_m: Option<f64>,
-    /// Largest length of the parts on the axis together \[m\].
+    /// Largest length of the gear \[m\], together with the motor if that is on the joint's axis too.
     pub drive_length_max_m: Option<f64>,
 }
 
@@ -153,19 +153,19 @@ pub enum AskedDrive {
 /// The parts of the catalogs that a joint may use. `None` in a field allows all.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AllowedParts {
-    /// Which of the two catalog masses of a gear counts: that of its housed unit or that of its component set.
+    /// Which of the two catalog masses of a gear is used: that of its housed unit or that of its component set.
     pub gear_mass: GearMass,
     /// Allowed series of gears.
     pub gear_series: Option<Vec<String>>,
     /// Allowed reduction ratios.
     pub ratios: Option<Vec<f64>>,
-    /// Allowed kinds of gears; actuators are not affected.
+    /// Allowed kinds of gears. For actuators, `actuators` alone decides.
     pub gear_kinds: Option<Vec<GearKind>>,
     /// Allowed gears by name.
     pub gears: Option<Vec<String>>,
     /// Allowed actuators by model.
     pub actuators: Option<Vec<String>>,
-    /// Allowed kinds of motors; those of actuators are not affected.
+    /// Allowed kinds of motors. For the motors of actuators, `actuators` alone decides.
     pub motor_kinds: Option<Vec<MotorKind>>,
     /// Allowed motors by name.
     pub motors: Option<Vec<String>>,
@@ -229,7 +229,8 @@ pub struct AskedMotion {
 pub enum LinearTorque {
     /// Inertia of everything outboard about the joint's axis, times the joint's acceleration.
     OfInertia,
-    /// Acceleration of the tip divided by gravity, times the static torque. The paper reads Eq 8 in this way.
+    /// Acceleration of the tip divided by gravity, times the static torque. The paper that `src/paper` reproduces reads
+    /// Eq 8 in this way.
     OfStaticTorque,
 }
 
@@ -257,7 +258,7 @@ pub enum AskedPhaseKind {
     Fraction {
         /// Fraction of the static torque.
         of_static_torque: f64,
-        /// Fraction of the joint's speed.
+        /// Fraction of the joint's full speed.
         of_speed: f64,
     },
 }

@@ -25,8 +25,8 @@ const SAY: f64 = 0.1;
 const SHARE: f64 = 1e-3;
 /// A torque is not branched if its interval is narrower than this fraction of the torque's greatest magnitude.
 const KNOWN: f64 = 2e-3;
-/// If the torque of the mixture is nearer to an end of the interval than this fraction of its width, the interval
-/// is divided elsewhere.
+/// If the torque of the mixture is nearer to an end of the interval than this fraction of the interval's width, the
+/// interval is divided elsewhere.
 const EDGE: f64 = 0.1;
 
 /// One way to divide a subproblem in two.

@@ -25,7 +25,7 @@ pub(super) struct PartsTable {
 /// no drive of the subproblem has.
 pub(super) type Numbers = Vec<Option<Vec<f64>>>;
 
-/// The drives that a joint may have, sorted by torsion curve and bearing.
+/// The drives that a joint may have, each with the index of its torsion curve and bearing.
 pub(super) struct JointTable {
     pub drives: DriveOptions,
     pub masses_kg: Vec<f64>,

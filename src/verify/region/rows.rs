@@ -273,8 +273,8 @@ impl<'a> Rows<'a> {
     }
 
     /// Adds the displacement of the tip by the twist of a gear to `row`, and stores the least twist of each torsion
-    /// curve among its numbers. `torque` is the torque on the joint as a function of the loads. `along_m` is the
-    /// displacement of the tip per radian along the direction of the row.
+    /// curve among the numbers of the curve. `torque` is the torque on the joint as a function of the loads. `along_m`
+    /// is the displacement of the tip per radian along the direction of the row.
     fn add_twist(
         &mut self,
         row: &mut Row,
