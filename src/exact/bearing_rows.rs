@@ -86,8 +86,8 @@ impl Frame {
         Self([about(first), about(second), along(first), along(second), along(axis)])
     }
 
-    /// The moments and forces of `wrench` about and along the axes of this frame. A component that is only rounding
-    /// becomes zero.
+    /// The moments and forces of `wrench` about and along the axes of this frame. A component that is only due to
+    /// rounding becomes zero.
     fn components(&self, wrench: &Wrench) -> [f64; COMPONENTS] {
         self.0.each_ref().map(|unit| {
             let component = unit.dot(wrench);

@@ -80,7 +80,7 @@ impl DrivesByCurve {
     }
 }
 
-/// Eight groups with curves, and the states of their gears in each judged case.
+/// Eight groups of drives ([`CurveGroup`]) that are not rigid, and the states of their gears in each judged case.
 struct EightGroups {
     /// Mass \[kg\] of the lightest and of the heaviest drive of each group, and their nodes. Lanes without a group of
     /// their own repeat the last group.
@@ -94,7 +94,7 @@ struct EightGroups {
     count: usize,
 }
 
-/// A candidate state of the gears of eight groups.
+/// A candidate state of the gear of each of eight groups of drives ([`CurveGroup`]).
 #[derive(Clone, Copy)]
 struct EightStates {
     torque_nm: Eight,
@@ -103,8 +103,8 @@ struct EightStates {
 }
 
 impl EightGroups {
-    /// Packs at most eight groups that have curves. `gears` are the gear of their joint in each judged case, and `play`
-    /// is the play of the joint.
+    /// Packs at most eight groups of drives that are not rigid. `gears` are the gear of their joint in each judged
+    /// case, and `play` is the play of the joint.
     fn new(groups: &[(&CurveGroup, &CurveBox)], gears: &[&Gear], play: Option<&JointPlay>) -> Self {
         let group = |lane: usize| groups[lane.min(groups.len() - 1)].0;
         let lanes =
@@ -122,7 +122,7 @@ impl EightGroups {
 }
 
 impl EightStates {
-    /// The candidate states of the curves of at most eight groups under torques in an interval \[N m\].
+    /// The candidate states of the curves of at most eight groups of drives, under torques in an interval \[N m\].
     fn all(
         groups: &[(&CurveGroup, &CurveBox)],
         torques_nm: [f64; 2],
@@ -147,7 +147,7 @@ impl EightStates {
     }
 }
 
-/// The prices of eight groups.
+/// Computes the least price of a drive in each of eight groups of drives ([`CurveGroup`]).
 struct GroupPrices<'a> {
     groups: &'a EightGroups,
     price: &'a DualPrice,

@@ -118,7 +118,7 @@ fn by_mass(members: Vec<Individual>) -> Vec<Individual> {
     kept
 }
 
-/// The parents and the tools from which one child is made.
+/// What is needed to make one child.
 struct Recombination<'a, 'p> {
     budget: &'a Budget<'p>,
     problem: &'a Problem<'p>,

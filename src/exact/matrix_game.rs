@@ -152,8 +152,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// The mixture satisfies the balanced pair as an equation. The greatest of the other columns under the mixture
-        /// equals the value that the weights guarantee, so no weights are better.
+        /// The mixture satisfies the pair of balanced columns as an equation. The greatest of the other columns under
+        /// the mixture equals the value that the weights guarantee, so no weights are better.
         #[test]
         fn a_balanced_pair_is_a_condition_and_no_stake(rows in prop::collection::vec(-1.0f64..1.0, 3 * 6)) {
             let rows: Vec<f64> = rows.chunks(3).flat_map(|r| [r[0], r[1], r[2], -r[2]]).collect();

@@ -5,8 +5,8 @@
 //! local upper bound allows ([`reduced_cost`](super::reduced_cost)). With fewer options the bounds are sharper, and
 //! more options can be excluded.
 //!
-//! Local upper bounds are refuted in groups, by one bound that covers all of a group. A group that is not refuted is
-//! divided into two. A region below a single bound that is not refuted is branched on options or on a torque
+//! Local upper bounds are refuted several at a time, by one bound that covers all of them. A set of bounds that is not
+//! refuted is divided into two. A region below a single bound that is not refuted is branched on options or on a torque
 //! ([`branching`](super::branching)) until few designs are left. These are searched box by box.
 
 use super::bound::{BoxBound, DesignBox, Verdict};

@@ -62,8 +62,8 @@ pub fn exact_front(points: &[[f64; 3]]) -> Result<Vec<usize>, NotANumber> {
     Ok(front)
 }
 
-/// The front after rounding to twelve digits, as groups of ties. The points of a group are equal to 12 digits in
-/// all three objectives. Groups are sorted by the objectives, and the indices within a group ascend.
+/// The front after rounding to twelve digits, as sets of ties. The points of a set are equal to 12 digits in all three
+/// objectives. Sets are sorted by the objectives, and the indices within a set ascend.
 ///
 /// # Errors
 /// [`NotANumber`] with the first point that has a NaN.

@@ -60,7 +60,7 @@ pub(super) struct BearingRatings {
 const SAFETY_AT_REST: f64 = 3.0;
 /// Static safety `C₀ / P₀` in an emergency stop. The vendor asks for this value under shocks.
 const SAFETY_IN_A_STOP: f64 = 2.0;
-/// Load factor f_w of the life: the value for which the vendor's own tables hold.
+/// Load factor f_w of the life: the value for which the vendor's own tables are valid.
 const LOAD_FACTOR: f64 = 1.3;
 
 /// The output bearing that a joint has with `gear`. `source` tells whether the study states the bearing or it comes

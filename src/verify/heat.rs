@@ -173,7 +173,7 @@ pub(super) fn continuous_nm(motor: &Motor, speed_rpm: f64) -> Option<f64> {
 /// One phase of a stated duty: torque and acceleration at the joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct StatedPhase {
-    /// Fraction of the duty's time.
+    /// Duration of the phase, as a fraction of the duration of the whole duty.
     share: f64,
     torque_nm: f64,
     acceleration_rad_s2: f64,
