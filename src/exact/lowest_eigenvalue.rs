@@ -1,7 +1,7 @@
 //! The exact lowest eigenvalue of one arm, independent of any trial shape.
 //!
-//! With `A = C^½ M C^½` and the compliance matrix `C`, the inverse of the stiffness matrix `K`, all eigenvalues of `K φ
-//! = λ M φ` lie above `λ` exactly if `1/λ - A` is positive definite (Sylvester's law of inertia). One Cholesky
+//! With `A = C^½ M C^½` and the compliance matrix `C`, the inverse of the stiffness matrix `K`, all eigenvalues of
+//! `K φ = λ M φ` lie above `λ` exactly if `1/λ - A` is positive definite (Sylvester's law of inertia). One Cholesky
 //! factorization decides that.
 
 use super::parts::INERTIAS;

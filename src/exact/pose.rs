@@ -62,8 +62,8 @@ pub(super) struct Pose {
     pub sizing: bool,
     /// Whether no two contributions to the tip's displacement can oppose each other.
     pub contributions_align: bool,
-    /// Density of the water around the arm \[kg/m³\], 0 in air. The net weight of a tube per length is `g (mass - water
-    /// · outer area)`.
+    /// Density of the water around the arm \[kg/m³\], 0 in air. The net weight of a tube per length is
+    /// `g (mass - water · outer area)`.
     pub water_kg_m3: f64,
     pub pieces: Vec<PosedPiece>,
     /// Inertia of the payload about the world's origin.
@@ -137,9 +137,9 @@ pub(super) struct Pulls {
     pub end_forces: [f64; 8],
 }
 
-/// Matrices of the quadratic forms of kinetic energy. `across` and `rotary` are over `(root translation, root rotation,
-/// curvatures, shears)` in one plane. `polar` is over `(root rotation, torsions)` about the tube's axis, and `along`
-/// over `(root translation, stretches)` along it.
+/// Matrices of the quadratic forms of kinetic energy. `across` and `rotary` are over
+/// `(root translation, root rotation, curvatures, shears)` in one plane. `polar` is over `(root rotation, torsions)`
+/// about the tube's axis, and `along` over `(root translation, stretches)` along it.
 pub(super) struct TubeForms {
     pub across_z: SMatrix<f64, 9, 9>,
     pub across_y: SMatrix<f64, 9, 9>,

@@ -67,8 +67,8 @@ impl Shape {
         shape
     }
 
-    /// One step of inverse iteration of this shape towards the lowest mode of an ideal arm that is orthogonal to the
-    /// shapes in `others`.
+    /// One step of inverse iteration of this shape, towards a mode of an ideal arm: the lowest of those modes that are
+    /// orthogonal to the shapes in `others`.
     pub(super) fn improve(&mut self, pose: &Pose, ideal: &Ideal, others: &[Self], work: &mut Work) {
         self.iterate(pose, ideal, &Twist::zeros(), work);
         self.clear_of(pose, ideal, others);

@@ -20,7 +20,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, PoisonError};
 use std::time::Instant;
 
-/// Number of single designs that are judged together. After each batch, the search looks whether it must stop.
+/// Number of single designs that are judged together. After each batch, the search checks whether it must stop.
 const BATCH: usize = 4096;
 /// Largest number of designs up to which all ties are listed. If there are more, one design of each set of ties is
 /// listed.

@@ -193,9 +193,9 @@ fn motor_peak_nm(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<f64> {
     Some((peak_nm - own_nm) * gain(gear, stage)?)
 }
 
-/// Cube of the mean torque under which the gear reaches the required life \[(N m)³\], from `L10 = L_rated (T_rated
-/// / T_mean)^p (n_rated / n_mean)`. The life of a belt, a direct drive or an actuator is checked only if its row
-/// states one.
+/// Cube of the mean torque under which the gear reaches the required life \[(N m)³\], from
+/// `L10 = L_rated (T_rated / T_mean)^p (n_rated / n_mean)`. The life of a belt, a direct drive or an actuator is
+/// checked only if its row states one.
 fn life_nm3(gear: &Gear, _: &Motor, duty: &Duty) -> Option<f64> {
     let LifeLaw { rated_h, rated_speed_rpm, exponent } = gear.life;
     if rated_h.is_none() && matches!(gear.kind, GearKind::Belt | GearKind::Direct | GearKind::Actuator) {
