@@ -165,7 +165,7 @@ impl Prismatic {
         Some((stiffness?, guide?, moves?))
     }
 
-    /// The compliance of the joint, as [`read_springs`](Self::read_springs) reads it.
+    /// The elastic properties of the joint as JSON, as [`read_springs`](Self::read_springs) reads them.
     pub(crate) fn springs_to_json(&self) -> Value {
         json!({
             "stiffness_n_per_m": self.stiffness_n_per_m,
