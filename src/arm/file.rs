@@ -240,8 +240,8 @@ fn read_joint(object: &Object, catalogs: &Catalogs) -> Option<(Joint, Option<Tra
     Some((joint, transmission))
 }
 
-/// The output bearing of a joint: the bearing that the file states, else the bearing of the named gear if the
-/// catalogs know this gear.
+/// The output bearing of a joint: the bearing that the file states, else the bearing of the named gear if the catalogs
+/// know this gear and it sits at the joint.
 pub(crate) fn read_joint_bearing(object: &Object, catalogs: &Catalogs) -> Option<Option<Bearing>> {
     if let Stated::Bearing(bearing) = read_bearing(object, catalogs)? {
         return Some(bearing);

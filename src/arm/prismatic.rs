@@ -30,12 +30,13 @@ pub struct Prismatic {
     pub guide: Guide,
     /// Whether a carriage or a ram travels.
     pub moves: Moves,
-    /// Mass that travels \[kg\]. It is a point mass at the moved point, outboard of all springs.
+    /// Mass that travels \[kg\]. It is a point mass at the point to which the joint has travelled, outboard of all
+    /// springs.
     pub mass_kg: f64,
     /// Mass that stays where the joint begins \[kg\]. It is a point mass inboard of all springs.
     pub fixed_mass_kg: f64,
     /// Rigid bodies on the joint. Bodies that stay are measured from where the joint begins, bodies that travel from
-    /// the moved point.
+    /// the point to which the joint has travelled.
     pub bodies: JointBodies,
 }
 

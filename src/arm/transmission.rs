@@ -128,7 +128,7 @@ impl Stages {
     }
 }
 
-/// Keys of a joint whose motor sits elsewhere or drives it through stages.
+/// Keys of a joint whose motor does not sit at the joint, or drives it through stages.
 pub(crate) const TRANSMISSION_KEYS: [&str; 6] =
     ["motor_at", "motor_point_m", "motor_mass_kg", "gear_at", "gear_ratio", "transmission"];
 

@@ -54,13 +54,13 @@ impl GearKind {
         matches!(self, GearKind::Screw | GearKind::Rack)
     }
 
-    /// Whether a blank rating of such a gear means that there is no such limit. A direct drive has no teeth, and an
-    /// actuator is rated as a whole, by the numbers of its motor.
+    /// Whether a blank rating of gears of this kind means that there is no limit. A direct drive has no teeth, an
+    /// actuator is rated as a whole by the numbers of its motor, and a screw or rack may be stated with few ratings.
     pub fn has_no_ratings_of_its_own(self) -> bool {
         self.slides() || matches!(self, GearKind::Direct | GearKind::Actuator)
     }
 
-    /// Whether the life of such a gear is limited by its bearings, so that it is always checked. The life of a
+    /// Whether the life of gears of this kind is limited by their bearings, so that it is always checked. The life of a
     /// belt, a direct drive or an actuator is checked only if its row states one.
     pub fn wears_out(self) -> bool {
         !self.slides() && !matches!(self, GearKind::Belt | GearKind::Direct | GearKind::Actuator)

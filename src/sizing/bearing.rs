@@ -200,8 +200,8 @@ impl BearingLimits {
     }
 
     /// Dynamic equivalent load P_c \[N\]. The vendor changes from one pair of X and Y to the other where the axial
-    /// force is 1.5 times the bracket. On either side of this point the vendor's value is the larger of the two, so
-    /// no case distinction is needed.
+    /// force is 1.5 times `F_r + 2 M / d_p`. On either side of this point the vendor's value is the larger of the two,
+    /// so no case distinction is needed.
     #[inline]
     pub fn dynamic_load_n(&self, load: &BearingLoad) -> f64 {
         let across_n = self.across_n(load);

@@ -48,7 +48,7 @@ pub enum CheckKind {
     MotorWidth,
     /// The bore of the gear is wide enough for the cables.
     GearBore,
-    /// The bore of the motor behind the gear is wide enough for the cables.
+    /// The bore of a motor that is mounted behind the gear is wide enough for the cables.
     MotorBore,
     /// The drive is no longer than the space that the study states for this joint.
     DriveLength,

@@ -28,9 +28,9 @@ use std::f64::consts::PI;
 const YOUNGS_MODULUS_PA: f64 = 2.06e11;
 /// Density of the shaft \[kg/m³\].
 const DENSITY_KG_M3: f64 = 7850.0;
-/// Part of Euler's load that the makers allow (THK, page A15-30).
+/// Fraction of Euler's buckling load that the makers allow (THK, page A15-30).
 const OF_EULER: f64 = 0.5;
-/// Part of the critical speed that the makers allow (MISUMI, page 1677).
+/// Fraction of the critical speed that the makers allow (MISUMI, page 1677).
 const OF_CRITICAL: f64 = 0.8;
 /// Turns for which the dynamic load rating is defined.
 const RATED_TURNS: f64 = 1e6;
@@ -121,7 +121,7 @@ impl Screw {
         DENSITY_KG_M3 * self.area_m2() * self.length_m
     }
 
-    /// Force that the shaft bears without buckling \[N\]: half of Euler's.
+    /// Axial force up to which the shaft does not buckle \[N\]: half of Euler's buckling load.
     pub fn buckling_n(&self) -> f64 {
         let euler_n = PI * PI * YOUNGS_MODULUS_PA * self.second_moment_m4() / self.length_m.powi(2);
         OF_EULER * self.ends.buckling() * euler_n
@@ -143,7 +143,7 @@ impl Screw {
         1.0 / (shaft + self.series_n_per_m.map_or(0.0, |k| 1.0 / k))
     }
 
-    /// Moment of inertia at the motor \[kg m²\]: shaft, and what turns with it.
+    /// Moment of inertia of the shaft and of the parts that turn with it, referred to the motor \[kg m²\].
     pub fn inertia_kgm2(&self) -> f64 {
         self.shaft_kg() * self.root_diameter_m.powi(2) / 8.0 + self.further_inertia_kgm2
     }

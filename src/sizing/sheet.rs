@@ -79,7 +79,8 @@ pub struct JointSizingRow {
     pub margin: Option<f64>,
     /// L10 life of the wave-generator bearing \[h\].
     pub life_h: Option<f64>,
-    /// Whether the joint slides: its torques are then forces \[N\], and its speed is in m/s times 30/π.
+    /// Whether the joint slides. Its torques are then forces \[N\], and `joint_speed_rpm` is its speed in m/s times
+    /// 30/π.
     pub slides: bool,
     /// Mass of the drive \[kg\].
     pub mass_kg: Option<f64>,

@@ -85,7 +85,7 @@ pub enum Measure {
 pub struct Parameter {
     /// Name with unit, as files write it.
     pub name: &'static str,
-    /// Number of values: 1, or 3 for a vector.
+    /// Number of values: 1, more for a vector, or 0 for a list of any length.
     pub count: usize,
     /// Smallest value that a file may give.
     pub low: f64,
@@ -186,7 +186,7 @@ impl Parameter {
     }
 }
 
-/// What the nominal model must be like at a place so that an effect can be there.
+/// What the nominal model must be like at a place so that an effect is possible at this place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Needs {
     /// Nothing: the effect is possible at every place of its kind.
@@ -259,7 +259,7 @@ pub struct Traits {
     pub variants: &'static [&'static [Freed]],
     /// Prior probability of the effect, relative to a usual effect at one place, before any reading is considered.
     pub odds: f64,
-    /// What the nominal model must be like at a place so that the search tries the effect there.
+    /// What the nominal model must be like at a place so that the search tries the effect at this place.
     pub needs: Needs,
     /// Starting points of fits. Each is a list of values of the fit's variable `u` ([`Scale`]), one for each fitted
     /// number.

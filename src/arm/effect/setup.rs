@@ -40,7 +40,8 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// Whether the arm has the same structure in the tests of this channel as by itself.
+    /// Whether the arm has neither additional mass nor additional compliance in the tests of this channel, and no joint
+    /// softens.
     pub fn is_plain(&self) -> bool {
         self.mass_kg == 0.0 && self.servo_rad_per_nm.is_empty() && self.is_steady()
     }

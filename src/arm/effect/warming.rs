@@ -19,7 +19,7 @@ const LEAST: f64 = 0.05;
 /// How the compliance of a joint changes in the course of the tests of one channel: a gear warms up, bolts work loose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Softening {
-    /// Change of the factor on the compliance after many rows.
+    /// Change of the factor on the compliance that is approached after many rows; positive if the joint becomes softer.
     pub change: f64,
     /// Number of rows after which 63 % of this change is reached.
     pub rows: f64,
