@@ -45,7 +45,7 @@ impl Bearing {
     }
 
     /// The bearing of a housed gear as a separate part, for use with a component set. Its mass is the mass of the
-    /// housed unit less the mass of the component set. `None` if one of the two is unknown.
+    /// housed unit less the mass of the component set. `None` if one of the two masses is unknown.
     fn as_part(gear: &Gear) -> Option<Self> {
         let mass_kg = gear.mass_housed_unit_kg? - gear.mass_component_set_kg?;
         Some(Self { mass_kg, ..Self::of_gear(gear, GearMass::HousedUnit)? })

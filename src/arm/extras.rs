@@ -4,9 +4,9 @@
 //! stator. The remaining parts of a joint have no catalog row. [`Extras::usual`] estimates them from published
 //! fractions of the mass of a joint (eyoubot, "Lightweight harmonic drive robot actuator": motor 30 to 40 %, reducer
 //! 25 to 35 %, housing 15 to 25 %, brake 5 to 15 %, encoders 3 to 5 %). The middle of each range is divided by the 65
-//! % of motor and reducer. The mass of the brake agrees with Harmonic Drive's SHA actuators of sizes 20, 25 and 32, as
-//! the difference between the masses with and without a brake (the estimates are 0.10, 0.15 and 0.28 kg). The flange is
-//! a disc of aluminium. Flange and cables are representative masses without a source.
+//! % of motor and reducer. The estimated mass of the brake (0.10, 0.15 and 0.28 kg for the sizes 20, 25 and 32) agrees
+//! with the difference between Harmonic Drive's SHA actuators of these sizes with and without a brake. The flange is a
+//! disc of aluminium. Flange and cables are representative masses without a source.
 
 use super::keys::EXTRAS;
 use crate::catalog::gear::{Gear, GearKind, GearMass};
