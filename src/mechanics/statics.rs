@@ -132,7 +132,7 @@ impl Posed<'_> {
         let mut motion = Twist::zeros();
         let (yielded, tangents) = match &element.yielding {
             Yielding::Joint(law) => {
-                // a driving joint also holds the torque that the linkage transfers from its passive joint
+                // the torque on a driving joint includes the torque that the linkage transfers from its passive joint
                 let mut torque_nm = element.twists[0].dot(wrench) + element.torque_nm;
                 let mut passive_twist = Twist::zeros();
                 for passive in transferred.iter().filter(|c| c.driver == element.name) {
