@@ -1,4 +1,4 @@
-//! Finds out of which kind files and folders are, and finds all their faults.
+//! Finds out which kind of file or folder something is, and finds all its faults.
 
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
@@ -192,7 +192,7 @@ fn result_words(manifest: &str) -> &'static str {
     }
 }
 
-/// Checks that the files of a result still have the hashes that `manifest`, the file that lists them, has for them.
+/// Checks that the files of a result still have the hashes that the file `manifest` lists.
 fn unchanged(folder: &Path, manifest: &str) -> Result<(), Problem> {
     let path = folder.join(manifest);
     let text = std::fs::read_to_string(&path).map_err(|e| Problem::Unreadable(e.to_string()))?;

@@ -63,7 +63,7 @@ pub(super) struct Written {
     pub exit: Exit,
     /// One line on how long the search took.
     pub timing: String,
-    /// Optimality gap that was proved, as a fraction; `None` if the front is whole or none was proved.
+    /// Optimality gap that was proved, as a fraction; `None` if the front is whole or if no gap was proved.
     pub gap: Option<f64>,
     /// Whether no design is missing in the front.
     pub is_whole: bool,
@@ -85,7 +85,7 @@ pub(super) fn front_of_material(file: &str) -> String {
     format!("front.{file}.csv")
 }
 
-/// Whether a file of this name has the front of one material.
+/// Whether a file of this name contains the front of one material.
 pub(super) fn is_front_of_material(name: &str) -> bool {
     name.starts_with("front.") && name.ends_with(".csv") && name != "front.csv"
 }
@@ -95,7 +95,7 @@ pub(super) fn is_front_of_material(name: &str) -> bool {
 pub(super) struct FoundExactly {
     /// Number of boxes whose bounds were computed, and number of boxes that were left open.
     pub boxes: [u64; 2],
-    /// Optimality gap that was proved, as a fraction; `None` if none was proved.
+    /// Optimality gap that was proved, as a fraction; `None` if no gap was proved.
     pub gap: Option<f64>,
     /// Whether designs that differ only in drives of equal mass and torsion curve are all rows of the front.
     pub ties_listed: bool,
@@ -330,7 +330,8 @@ impl Finished<'_> {
         }
     }
 
-    /// What a reader should know of the question, and of the output bearings and the given drives in the answer.
+    /// Remarks that a reader should know: on the question of the study, and on the output bearings and the given drives
+    /// in the designs of the front.
     fn remarks(&self, front: &FrontTable) -> Vec<String> {
         let of_study = self.study.remarks.iter().cloned();
         let of_bearings = bearing_remarks(&self.study.space, self.catalogs, front);
@@ -338,7 +339,8 @@ impl Finished<'_> {
         of_study.chain(of_bearings).chain(of_given).collect()
     }
 
-    /// The parts of the picks whose figures are not their vendor's, in a sentence; `None` if there are none.
+    /// A sentence that names the parts of the picks whose ratings are not those of their vendor; `None` if there are
+    /// none.
     fn caveats(&self, summary: &SummaryInput) -> Option<String> {
         let picked = picks::rows_and_names(&picks::picks(&picks::designs(&summary.overall)));
         let sentence = summary.facts.caveats.sentence(&summary.overall, &picked);
@@ -454,8 +456,9 @@ pub(super) fn facts_of(run: &Value) -> Vec<(String, String)> {
         .collect()
 }
 
-/// The picture of the front. Designs of mixed materials are grey, and each material has a colour. If the search found
-/// a front of the material, this front is drawn.
+/// The picture of the front. Designs of mixed materials are grey, and each material has a colour. For each material its
+/// own front is drawn. If the search found no such front, the designs of the overall front that consist of this
+/// material are drawn.
 fn picture(summary: &SummaryInput) -> String {
     let mixed = mixed_designs(&summary.overall);
     let pure: Vec<(String, FrontTable)> = single_materials(summary)

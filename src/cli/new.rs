@@ -36,7 +36,8 @@ enum What {
 /// Arguments of the things that need nothing but a folder.
 #[derive(Debug, Args)]
 struct FolderArgs {
-    /// New folder, made with its parents; its name is the name of the study or arm. Nothing that is there is overwritten.
+    /// New folder, made with its parents; its name is the name of the study or arm. Nothing that is there is
+    /// overwritten.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
 }

@@ -23,7 +23,7 @@ const RECORD_EVERY: Duration = Duration::from_secs(1);
 /// The state of a search at one moment. A number is `None` if the search does not know it while it runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Progress {
-    /// Number of designs visited so far; of an exact search, number of designs evaluated so far.
+    /// Number of designs visited so far. In an exact search, number of designs evaluated so far.
     pub designs: u64,
     /// Optimality gap proved so far, as a fraction.
     pub gap: Option<f64>,
@@ -162,7 +162,8 @@ impl<'r> Watch<'r> {
     }
 }
 
-/// A function that calls `say` at most every ten seconds of elapsed time. It is itself called with the elapsed time.
+/// A function that calls `say` at most every ten seconds of elapsed time. The function is itself called with the
+/// elapsed time.
 fn in_lines(say: impl Fn(Duration)) -> impl FnMut(Duration) {
     let mut next = LINE_EVERY;
     move |elapsed| {

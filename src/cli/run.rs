@@ -61,9 +61,9 @@ pub(crate) struct RunArgs {
     /// boxes_open. There is a line every second and whenever the gap falls; null stands for what is not known
     #[arg(long, value_name = "FILE")]
     progress: Option<PathBuf>,
-    /// Search part M of N of the designs only, and write what it found for `armwright merge`. The parts can run one after
-    /// the other or on many machines; the front is the same. Every design is visited unless --search exact or --gap is
-    /// given
+    /// Search part M of N of the designs only, and write what it found for `armwright merge`. The parts can run one
+    /// after the other or on many machines; the front is the same. Every design is visited unless --search exact or
+    /// --gap is given
     #[arg(long, value_name = "M/N", value_parser = shard_of)]
     shard: Option<Shard>,
     /// Shards of exact searches of the same study, such as one to a wide gap on one machine: a shard of an exact search

@@ -52,7 +52,7 @@ pub(crate) enum GivenSprings {
 }
 
 impl GivenSprings {
-    /// Whether the file states that the joint is rigid about its axis or along its travel.
+    /// Whether the stiffness file states that the joint is rigid about its axis or along its travel.
     pub(crate) fn is_rigid(&self) -> bool {
         match self {
             Self::Hinge { curve, .. } => *curve == Curve::Rigid,
@@ -61,7 +61,7 @@ impl GivenSprings {
     }
 }
 
-/// A joint for which the file may state elastic properties.
+/// A joint for which the stiffness file may state elastic properties.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct MovingJoint<'a> {
     /// Name of the joint.

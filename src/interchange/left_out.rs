@@ -82,8 +82,8 @@ impl Remainder {
         }
     }
 
-    /// Lets every joint turn by its own drive alone, joint by joint, for files in which no standing motor turns a joint with
-    /// others.
+    /// Removes, joint by joint, that a joint turns with other joints because its motor sits inboard of them. Each joint
+    /// is then turned by its own drive alone. This is for files that cannot state motors that sit elsewhere.
     pub(crate) fn without_turning_with_others(&mut self) {
         let turned = self.structure.joints().filter(|joint| !joint.turns_with.is_empty());
         let names: Vec<String> = turned.map(|joint| joint.name.clone()).collect();

@@ -69,7 +69,8 @@ fn ends(xml: &mut Xml, parent: &str, child: &str, xyz_m: &Vector3<f64>) {
     xml.leaf("origin", &[("xyz", triple(xyz_m)), ("rpy", "0 0 0".into())]);
 }
 
-/// The range of a prismatic joint, which a URDF must have and an arm does not \[m\].
+/// Travel to either side that is written as the range of a prismatic joint \[m\]. A URDF must state a range, and an arm
+/// has none.
 pub(crate) const TRAVEL_M: f64 = 1e3;
 
 /// A joint. An arm has no ranges, so its joints are continuous where they turn.
