@@ -42,7 +42,7 @@ pub(crate) fn plot(
     out
 }
 
-/// Two blocks of lines, printed side by side. The right block starts at the column `width`.
+/// Two lists of lines as one text, side by side. The right list starts at the column `width`.
 pub(crate) fn beside(left: &[String], right: &[String], width: usize) -> String {
     let blank = String::new();
     let line = |i: usize| {

@@ -293,8 +293,8 @@ fn opposed(budgets: &[PickBudget]) -> bool {
     budgets.iter().any(|b| b.bound.is_some_and(|b| b.loads_oppose))
 }
 
-/// The stiffness budget as a block of the terminal's summary, within `width` columns: the budget of the knee and the
-/// bounds of all picks.
+/// The stiffness budget as a part of the summary on the terminal, within `width` columns: the budget of the knee and
+/// the bounds of all picks.
 pub fn budget_text(budgets: &[PickBudget], width: usize) -> String {
     let Some(pick) = shown(budgets) else { return String::new() };
     let mut out = format!("What one more kilogram buys at each joint and link: {}\n", pick.title());

@@ -92,7 +92,7 @@ mod tests {
             assert!(name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-'), "{name}");
             assert!(!DEVICES.contains(&name.as_str()) && !name.starts_with('-'), "{name}");
         }
-        // the third name gets another number, because a name does not take what another one was given
+        // the third name would give `pa6-x-2`, but the second name has this already; so the third gets a further number
         assert_eq!(made[..3], ["pa6-x", "pa6-x-2", "pa6-x-2-2"]);
     }
 

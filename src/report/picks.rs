@@ -167,8 +167,8 @@ pub(crate) struct TightestCheck {
     pub margin: f64,
 }
 
-/// The tightest check of the design in a row of a front, by the columns `<joint>_margin` and `<joint>_binds`; `None` if no
-/// drive was checked.
+/// The tightest check of the design in a row of a front, by the columns `<joint>_margin` and `<joint>_binds`. `None` if
+/// no drive was checked.
 pub(crate) fn tightest_check(front: &FrontTable, row: usize) -> Option<TightestCheck> {
     let cells = &front.rows[row];
     let of_column = |(column, name): (usize, &String)| {

@@ -3,7 +3,7 @@
 use minijinja::Environment;
 use serde_json::{Value, json};
 
-/// Name of the folder next to a page that has its pictures and the numbers behind them.
+/// Name of the folder next to a page that contains its pictures, and the numbers of the pictures as CSV.
 pub(crate) const PLOTS: &str = "plots";
 
 const STYLE: &str = include_str!("page.css");
