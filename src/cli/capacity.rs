@@ -17,7 +17,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 /// Finds the largest payload that an arm holds with the drives it has, in every sizing pose and in all of them
-/// together, and says which joint and which check ends it.
+/// together, and names the joint and the check that limit it.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: armwright capacity light-arm\n         armwright capacity my-study.json --design 2f --json\n         \
@@ -68,7 +68,7 @@ fn said(args: &CapacityArgs, name: &str, found: &Capacity, remarks: &[String]) -
     format!("{}{above}{lines}", to_text(name, found))
 }
 
-/// What the capacity of an arm file leaves out.
+/// The remark on the capacity of an arm file that says what is checked and what is not.
 const AT_REST: &str = "Judged are torques and output bearings at rest, as far as their ratings are known. Motion, heat and strength are not checked.";
 
 /// Whether the file at `path` is an arm file. It then has a chain and, in contrast to a study file, no poses.

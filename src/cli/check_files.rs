@@ -137,7 +137,7 @@ fn look_at_file(path: &Path, catalogs: &Catalogs) -> Look {
 }
 
 /// The kind of file to which a document belongs: the one whose keys match most keys of the document, or "cases" for a
-/// list of cases. If several kinds match equally many keys, it is the first of them.
+/// list of cases. If several kinds match equally many keys, it is the one that comes first in `FILES`.
 fn kind_of(value: &Value) -> Option<&'static str> {
     let Value::Object(map) = value else {
         let is_case = |item: &Value| item.as_object().is_some_and(|map| map.keys().any(|key| CASE.has(key)));

@@ -59,7 +59,7 @@ pub(super) struct Written {
     pub front: FrontTable,
     /// How the search ended.
     pub status: Status,
-    /// Exit status if all files are written.
+    /// Exit status with which the program ends.
     pub exit: Exit,
     /// One line on how long the search took.
     pub timing: String,
@@ -108,7 +108,8 @@ pub(super) struct Finished<'a> {
     pub text: &'a str,
     /// Corrections of a measured arm.
     pub corrections: &'a [Correction],
-    /// The problem with all options of the study, or only with the options that the designs of the front use.
+    /// The search problem, either with all options of the study or with only those options that the designs of the
+    /// front use.
     pub problem: &'a ArmProblem<'a>,
     /// The space with all options of the study.
     pub whole: &'a DesignSpace,

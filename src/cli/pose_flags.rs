@@ -5,7 +5,7 @@ use super::values::{entries, number_list};
 use crate::arm::pose::{DrivenJoint, any_slides, pose_of_keys};
 use clap::Args;
 
-/// A pose.
+/// Options that state a pose.
 #[derive(Debug, Clone, Args)]
 pub(super) struct PoseArgs {
     /// One angle per joint, base to tip [deg]; default all zero

@@ -20,7 +20,7 @@ use std::time::Duration;
 
 /// Folder for unfinished work inside a folder of results.
 const STATE: &str = ".armwright";
-/// Name of the lock file in this folder.
+/// Name of the lock file in the folder [`STATE`].
 const LOCK: &str = "lock";
 /// How many times a reader waits until a writer is done, and how long each time.
 const READER_WAITS: (u32, Duration) = (20, Duration::from_millis(100));

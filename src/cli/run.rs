@@ -66,8 +66,8 @@ pub(crate) struct RunArgs {
     /// --gap is given
     #[arg(long, value_name = "M/N", value_parser = shard_of)]
     shard: Option<Shard>,
-    /// Shards of exact searches of the same study, such as one to a wide gap on one machine: a shard of an exact search
-    /// begins with the designs that they found, and so prunes from the start what they dominate
+    /// Shards of other exact searches of the same study, such as a search with a wide gap on one machine. A shard of an
+    /// exact search begins with the designs that they found, and discards from the start what these dominate
     #[arg(long, value_name = "SHARD|DIR", num_args = 1.., requires = "shard")]
     incumbents: Vec<PathBuf>,
     #[command(flatten)]

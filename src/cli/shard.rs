@@ -32,7 +32,7 @@ pub(super) fn shard_of(text: &str) -> Result<Shard, String> {
     }
 }
 
-/// Largest number of shards. With more of them there would be more files than work.
+/// Largest number of shards. More shards would each have too little work for the files that they write.
 pub(super) const MOST_SHARDS: u32 = 100_000;
 
 /// Searches a shard. `words` are the words of the command line that name the study, the limits, the catalogs and the
@@ -205,7 +205,8 @@ struct Incumbents {
 }
 
 impl Incumbents {
-    /// Reads shards of exact searches. They may be of another gap and number of shards.
+    /// Reads shards of exact searches. Their gap and their number of shards may differ from those of the search that
+    /// begins with their designs.
     ///
     /// # Errors
     /// A folder has no shard, or one of another study, other catalogs or another kind of search.

@@ -37,7 +37,7 @@ pub(super) struct Unfinished {
     path: PathBuf,
     /// Keys that identify the search.
     search: Value,
-    /// The state that an earlier process saved.
+    /// The state that an earlier process saved; `None` if there is none.
     from: Option<Vec<u8>>,
     /// Time that earlier processes spent on the search.
     earlier: Duration,

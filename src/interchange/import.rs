@@ -207,8 +207,8 @@ impl<'t> Walk<'t> {
         self.lump(link, self.at, None);
     }
 
-    /// A name that no other element has. In a URDF a link and a joint may have the same name, in an arm no two
-    /// elements may.
+    /// A name for a link, made from `name`, that no other element has. In a URDF a link and a joint may have the same
+    /// name. In an arm no two elements may have the same name.
     fn free_name(&mut self, name: &str) -> String {
         let mut free = name.to_string();
         while !self.taken.insert(free.clone()) {

@@ -126,7 +126,8 @@ impl ImportReport {
         }
     }
 
-    /// Records properties of the whole robot. `tip` is the frame of the tip link in the world.
+    /// Records properties of the whole robot. `tip` is the frame of the tip link in the world, and `name` is the name
+    /// of this link.
     pub(super) fn finish(&mut self, tree: &UrdfTree, tip: &Isometry3<f64>, name: &str) {
         let (roll, pitch, yaw) = tip.rotation.euler_angles();
         self.tip_frame = json!({

@@ -36,7 +36,7 @@ pub(crate) enum Role {
     Play(f64),
 }
 
-/// One axis about which a body rotates relative to the body before it, or along which it slides.
+/// One axis about which a body rotates relative to the body inboard of it, or along which it slides.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Hinge {
     /// Name of the hinge.
@@ -53,14 +53,14 @@ pub(crate) struct Hinge {
     pub role: Role,
 }
 
-/// A rigid body, and the hinges that connect it to the body before it.
+/// A rigid body, and the hinges that connect it to the body inboard of it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Node {
     /// Name of the body.
     pub name: String,
     /// Origin of the body's frame in the world at zero joint angles \[m\].
     pub origin_m: Vector3<f64>,
-    /// Hinges between the body before and this one, base to tip. The first body has none.
+    /// Hinges between the body inboard of this body and this body, base to tip. The first body has none.
     pub hinges: Vec<Hinge>,
     /// Inertia matrix about the world's origin at zero joint angles.
     pub inertia: Matrix6<f64>,

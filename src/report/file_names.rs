@@ -34,7 +34,7 @@ pub fn file_name(name: &str) -> String {
     unique_file_name(name, &mut HashSet::new())
 }
 
-/// A file name for `name` that differs from all names in `taken`. It is added to `taken`.
+/// A file name for `name` that differs from all names in `taken`. The file name is added to `taken`.
 pub(crate) fn unique_file_name(name: &str, taken: &mut HashSet<String>) -> String {
     let plain = not_empty_and_short(name);
     let numbered = (2..).map(|number: u64| format!("{plain}-{number}"));
@@ -45,8 +45,8 @@ pub(crate) fn unique_file_name(name: &str, taken: &mut HashSet<String>) -> Strin
     free
 }
 
-/// The letters and digits of a name. If the name is too long or has none, a hash of the whole name makes the file
-/// name unique.
+/// The letters and digits of a name. If the name has none, is too long, or is one of [`DEVICES`], a hash of the whole
+/// name is added.
 fn not_empty_and_short(name: &str) -> String {
     let plain = letters_and_digits(name);
     let hash = || blake3::hash(name.as_bytes()).to_hex()[..HASH_LETTERS].to_string();

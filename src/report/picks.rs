@@ -156,7 +156,7 @@ pub struct Pick {
     pub design: Design,
 }
 
-/// The check of a drive that is nearest to its limit in a design.
+/// Of all checks of the drives of a design, the one that is nearest to its limit.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct TightestCheck {
     /// Name of the joint.

@@ -67,7 +67,8 @@ pub(crate) struct Model {
     pub loads: Vec<Term>,
     /// Index of the node at the tip.
     pub tip: usize,
-    /// Names of elements with an inertia tensor that no solid can have, so that no point masses represent it.
+    /// Names of elements with an inertia tensor that no solid can have, so that no point masses can represent this
+    /// tensor.
     pub impossible: Vec<String>,
 }
 
@@ -78,7 +79,7 @@ struct Meshed<'m> {
     first: usize,
     own: &'m OwnMass,
     length_m: f64,
-    /// The region of the root face.
+    /// The region to which the root face of the link belongs.
     root: Region,
 }
 
@@ -224,8 +225,8 @@ impl Builder<'_> {
         out
     }
 
-    /// Adds a link as a mesh of bricks, or as a rigid body if it cannot deform or cannot be meshed. `own` has its mass
-    /// and its place.
+    /// Adds a link as a mesh of bricks, or as a rigid body if it cannot deform or cannot be meshed. `own` has the mass
+    /// and the place of the link.
     fn link(&mut self, element: &ElasticElement, own: &OwnMass) {
         let link = self.snapshot.link(own.piece).cloned();
         let flexible = link.as_ref().and_then(|link| {

@@ -12,9 +12,9 @@ use std::collections::HashMap;
 /// The changes from one front to another.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Moved {
-    /// Label of the front before.
+    /// Label of the earlier front.
     pub from: String,
-    /// Label of the front after.
+    /// Label of the later front.
     pub to: String,
     /// Number of designs (equal in every choice) that are on both fronts with the same objectives.
     pub unchanged: usize,

@@ -101,8 +101,8 @@ pub struct CampaignPage {
     pub explained: bool,
     /// The driven joints, base to tip.
     pub joints: Vec<DrivenJoint>,
-    /// Root mean squares of the residuals before and after, for each part of the readings: channel, branch, load, mode,
-    /// joint.
+    /// Root mean squares of the residuals before and after the effects were added, for each part of the readings: by
+    /// channel, branch, load, mode and joint.
     pub parts: Vec<Compared>,
     /// All measured values.
     pub readings: Vec<Reading>,

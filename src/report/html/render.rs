@@ -18,7 +18,8 @@ const TEMPLATES: [(&str, &str); 7] = [
     ("document.html", include_str!("document.html")),
 ];
 
-/// Fills a template. The content security policy allows only scripts and styles that have the page's nonce.
+/// Fills a template. The content security policy of the page allows only those scripts and styles that are marked with
+/// its nonce, a hash of style, program and title.
 pub(super) fn render(template: &str, title: &str, content: Value, data: &Value) -> String {
     let mut environment = Environment::new();
     environment.add_filter("anchor", |name: String| anchor(&name));
