@@ -63,7 +63,8 @@ pub(super) struct Written {
     pub exit: Exit,
     /// One line on how long the search took.
     pub timing: String,
-    /// Optimality gap that was proved, as a fraction; `None` if the front is whole or if no gap was proved.
+    /// Optimality gap that was proved, as a fraction; 0 means that the front is whole. `None` for an exhaustive search,
+    /// or if no gap was proved.
     pub gap: Option<f64>,
     /// Whether no design is missing in the front.
     pub is_whole: bool,
@@ -80,7 +81,7 @@ pub(super) struct Written {
 const NOTHING_ELSE: &str =
     "what goes with the front: budget.csv, summary.md, report.html, plots, ties and supplements";
 
-/// Name of the file with the front of one material.
+/// Name of the file with the front of one material. `file` is the short name of the material.
 pub(super) fn front_of_material(file: &str) -> String {
     format!("front.{file}.csv")
 }
@@ -95,7 +96,7 @@ pub(super) fn is_front_of_material(name: &str) -> bool {
 pub(super) struct FoundExactly {
     /// Number of boxes whose bounds were computed, and number of boxes that were left open.
     pub boxes: [u64; 2],
-    /// Optimality gap that was proved, as a fraction; `None` if no gap was proved.
+    /// Optimality gap that was proved, as a fraction; 0 if the front is whole, `None` if no gap was proved.
     pub gap: Option<f64>,
     /// Whether designs that differ only in drives of equal mass and torsion curve are all rows of the front.
     pub ties_listed: bool,

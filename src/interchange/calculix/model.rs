@@ -88,8 +88,8 @@ struct Meshed<'m> {
 struct Region {
     /// Reference node, rotation node and the position of the reference node \[m\]. `None` for the ground.
     frame: Option<(usize, usize, Vector3<f64>)>,
-    /// Hinges between this reference node and the region: index of the hinge's node, and motion per unit of its
-    /// angle.
+    /// Hinges between the reference node and the region. Each has the index of its node, and the motion of the region
+    /// per unit of its angle.
     hinges: Vec<(usize, Twist)>,
 }
 

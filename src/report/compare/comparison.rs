@@ -166,8 +166,8 @@ fn sentence(question: Question, limit: f64, answers: &[Answer]) -> String {
     capital(&(out + "."))
 }
 
-/// Words on the answer of the reference front, which cannot win, to the question: the value that it reaches. Empty if
-/// this is no better than the value of `winner`.
+/// Words that state the value that the reference front reaches in the question. Empty if this value is no better than
+/// that of `winner`. The reference front itself cannot win.
 fn mixed(question: Question, winner: &Design, answers: &[Answer]) -> String {
     let sought = question.sought();
     let better = |a: &&Answer| {

@@ -97,7 +97,8 @@ pub struct CampaignPage {
     pub sentence: String,
     /// Reasons for the verdict, one sentence each.
     pub reasons: Vec<String>,
-    /// Whether the effects explain the difference between model and readings. Otherwise they are only suspected.
+    /// Whether the effects in `found` explain the difference between model and readings. Otherwise these effects are
+    /// only suspected.
     pub explained: bool,
     /// The driven joints, base to tip.
     pub joints: Vec<DrivenJoint>,
