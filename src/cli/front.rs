@@ -49,8 +49,8 @@ enum FrontVerb {
 struct CheckArgs {
     /// Result folder of a study
     results: PathBuf,
-    /// Stop looking for missing designs after so many seconds, and say so. The time of a check that was stopped and
-    /// goes on counts too
+    /// Stop looking for missing designs after so many seconds, and say so. If a check that was stopped goes on, the
+    /// time that it took before counts too
     #[arg(long, value_name = "SECONDS", value_parser = time_limit)]
     time_limit: Option<Duration>,
 }

@@ -1,5 +1,5 @@
 //! `armwright merge` and `armwright status`: join the shards of a search into its front, and list the shards that are
-//! there.
+//! found.
 
 use super::asked::Asked;
 use super::exit::{Answer, Exit};
@@ -317,7 +317,7 @@ impl Found {
         out
     }
 
-    /// The command that computes the shard with this number in the same search as this one.
+    /// The command that computes another shard of the search of this shard: the one with the number `number`.
     fn command_of(&self, number: u32) -> String {
         let words = self.manifest["command"].as_array().into_iter().flatten().filter_map(Value::as_str);
         let words: Vec<String> = words.map(shell_word).collect();

@@ -480,7 +480,7 @@ static BOM: [Key; 10] = [
 ];
 
 impl OutputTable {
-    /// The columns as a Table Schema.
+    /// The columns as a Table Schema, a JSON description of a CSV file.
     pub(super) fn schema(&self) -> Value {
         let field = |column: &Key| {
             let kind = match column.kind {

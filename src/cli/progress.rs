@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 
 /// Time between two looks at the state of a search.
 const LOOK_EVERY: Duration = Duration::from_millis(50);
-/// Time between two lines of text.
+/// Time between two lines of text that show the progress.
 const LINE_EVERY: Duration = Duration::from_secs(10);
 /// Time between two lines of the record. A line is added earlier if the optimality gap changes.
 const RECORD_EVERY: Duration = Duration::from_secs(1);

@@ -152,7 +152,7 @@ fn planned(args: &ReconcileArgs, campaign: &Campaign, catalogs: &Catalogs) -> Re
     Ok(out)
 }
 
-/// Writes the verdict, and then the page. Returns all files and a text for the terminal. If making the page fails, it
+/// Writes the verdict, and then the page. Returns all files and a text for the terminal. If the page cannot be made, it
 /// is left out with a warning, and the verdict stays.
 fn keep(
     campaign: &Campaign,

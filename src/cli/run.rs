@@ -248,7 +248,7 @@ fn run_paper(args: &RunArgs, catalogs: &Catalogs) -> Result<String, Failure> {
 /// Significant digits of the numbers in the tables of a page. The files have all digits.
 const PAGE_DIGITS: usize = 5;
 
-/// The page for a browser of a study of the paper, with its pictures and tables.
+/// The page, for a browser, of one of the paper's studies, with the pictures and tables of the study.
 fn paper_page(study: &str, files: &[(String, Vec<u8>)], run: &Value) -> DocumentPage {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     let ending = |end: &'static str| files.iter().filter_map(move |(n, b)| Some((n.strip_suffix(end)?, b)));

@@ -200,7 +200,7 @@ fn search_exactly(
 /// What shards of other exact searches of the study found.
 struct Incumbents {
     found: Vec<Vec<FoundInShard>>,
-    /// Hashes of the files with the candidates, one for each of these shards.
+    /// Hashes of the files with the candidates, one for each shard in `found`.
     hashes: Vec<Value>,
 }
 

@@ -26,9 +26,9 @@ pub(crate) struct Working {
     /// Generalized force on the coordinate \[N m\]. For a coordinate that slides, it is a force \[N\]. The deflection
     /// is then in m and the compliance in m/N.
     pub load_nm: f64,
-    /// Deflection of the coordinate under this force \[rad\].
+    /// Deflection of the coordinate under `load_nm` \[rad\].
     pub deflection_rad: f64,
-    /// Tangent compliance at this force \[rad/(N m)\].
+    /// Tangent compliance of the spring at `load_nm` \[rad/(N m)\].
     pub tangent_rad_per_nm: f64,
 }
 

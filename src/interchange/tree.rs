@@ -62,7 +62,7 @@ pub(crate) struct Node {
     pub origin_m: Vector3<f64>,
     /// Hinges between the body inboard of this body and this body, base to tip. The first body has none.
     pub hinges: Vec<Hinge>,
-    /// Inertia matrix about the world's origin at zero joint angles.
+    /// Inertia matrix (6 x 6, mass included) about the world's origin at zero joint angles.
     pub inertia: Matrix6<f64>,
     /// Rods for drawing: both ends in the world and radius \[m\].
     pub rods: Vec<(Vector3<f64>, Vector3<f64>, f64)>,

@@ -56,7 +56,7 @@ impl PieceKind {
     }
 }
 
-/// One piece of an arm, and the effect of one more kilogram there.
+/// One piece of an arm, and the effect of one more kilogram at this piece.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BudgetRow {
     /// Name of the joint, of the output bearing (`NAME.bearing`), of the guide (`NAME.guide`) or of the link.
@@ -65,8 +65,8 @@ pub struct BudgetRow {
     pub kind: PieceKind,
     /// Mass of the piece \[kg\]; 0 for a bearing, whose mass is included in that of its joint.
     pub mass_kg: f64,
-    /// Share of the tip deflection in the worst case that this piece causes, from 0 to 1; negative if the piece
-    /// reduces the deflection.
+    /// Share of the piece in the tip deflection of the worst case, from 0 to 1; negative if the piece reduces the
+    /// deflection.
     pub share: f64,
     /// Changes of deflection and lowest mode per kilogram if mass and stiffness of the piece grow in proportion; `None`
     /// for a bearing, which grows with its joint.

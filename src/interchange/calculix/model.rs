@@ -293,8 +293,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Makes a node move with a cross-section of a mesh, as the average of its nodes: with their mean displacement, and
-    /// with the rotation that fits their displacements best (least squares). `station` has the nodes of the
+    /// Makes a node move with a cross-section of a mesh: with the mean displacement of the nodes of the cross-section,
+    /// and with the rotation that fits their displacements best (least squares). `station` has the nodes of the
     /// cross-section, counted from the node `first`.
     fn average(&mut self, node: usize, first: usize, station: &[usize]) {
         let places: Vec<(usize, Vector3<f64>)> =

@@ -56,7 +56,7 @@ pub(crate) struct PickChange {
     pub changes: bool,
     /// Name of the design that the nominal model picks.
     pub nominal_design_id: String,
-    /// Objectives of this design under the nominal model.
+    /// Objectives of the design that the nominal model picks, under the nominal model.
     pub nominal: Option<Values>,
     /// Objectives of the design that the nominal model picks, under the corrected model; `None` if it is no longer
     /// feasible.

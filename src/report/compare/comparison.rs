@@ -64,7 +64,7 @@ pub struct Comparison {
     pub rows: Vec<Row>,
     /// Sentences for the reader: where the questions of the results differ, and the remarks of the results.
     pub remarks: Vec<String>,
-    /// Changes from the first result to each other one, if all are runs of one study.
+    /// Changes from the first result to each of the other results, if all are runs of one study.
     pub moved: Vec<Moved>,
 }
 

@@ -60,7 +60,7 @@ pub struct Found {
     pub label: String,
     /// Parameters of the effect, with intervals.
     pub parameters: Vec<Ranged>,
-    /// Effects that these readings cannot distinguish from this effect.
+    /// Effects that the readings of the campaign cannot distinguish from this effect.
     pub like: Vec<String>,
 }
 
@@ -82,7 +82,7 @@ pub struct Test {
     pub words: String,
     /// The models that the test distinguishes.
     pub separates: Vec<String>,
-    /// Expected difference between these models \[standard deviations\].
+    /// Expected difference between the models in `separates` \[standard deviations\].
     pub expected_sigmas: f64,
     /// Number of readings after which one model can be ruled out.
     pub readings_needed: usize,

@@ -64,7 +64,7 @@ pub struct DeflectionPart {
     pub torque_nm: Option<f64>,
     /// Displacement of the tip by this element's deformation, world axes \[mm\].
     pub moved_mm: [f64; 3],
-    /// Component of this displacement along the whole tip deflection \[mm\].
+    /// Component of `moved_mm` along the whole tip deflection \[mm\].
     pub along_mm: f64,
 }
 
