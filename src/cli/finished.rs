@@ -485,7 +485,7 @@ pub(super) fn count(n: u128) -> Value {
     u64::try_from(n).map_or_else(|_| json!(n as f64), |n| json!(n))
 }
 
-/// A hash of every rating of every part. It recognizes results that were made with other catalogs.
+/// A hash of every rating of every part. It shows whether a result was made with other catalogs.
 pub(super) fn catalogs_hash(catalogs: &Catalogs) -> String {
     blake3::hash(format!("{catalogs:?}").as_bytes()).to_hex().to_string()
 }

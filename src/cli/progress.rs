@@ -102,7 +102,7 @@ impl<'r> Watch<'r> {
     }
 
     /// Looks at a search again and again until `finished` is set. Each time, `see` is called with the elapsed time to
-    /// show the progress, and `now`, the state of the search, is added to the record if a line is due.
+    /// show the progress, and the state of the search, which `now` returns, is added to the record if a line is due.
     fn look(&self, finished: &AtomicBool, now: impl Fn() -> Progress, mut see: impl FnMut(Duration)) {
         let (mut next, mut last_gap) = (Duration::ZERO, None);
         while !finished.load(Ordering::Relaxed) {

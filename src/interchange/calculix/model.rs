@@ -57,7 +57,7 @@ pub(crate) struct Model {
     pub solids: Vec<Solid>,
     /// Hinges of joints, bearings and frames.
     pub hinges: Vec<HingeNode>,
-    /// Linear equations between degrees of freedom. The first term of each is the dependent one.
+    /// Linear equations between degrees of freedom. The degree of freedom of the first term is the dependent one.
     pub equations: Vec<Vec<Term>>,
     /// Degrees of freedom that are fixed: index of the node, and direction (0 to 2).
     pub held: Vec<(usize, usize)>,
