@@ -118,9 +118,9 @@ impl<'p, 'c> Weighed<'p, 'c> {
         }
     }
 
-    /// Replaces the part in `slot` by the lighter `option`. If this shows the part to be ballast, the finding is
-    /// returned with the mass of the lighter design \[kg\]. It does so if the lowest mode is the only objective that
-    /// gets worse, and if a joint inboard that became softer is the reason. Otherwise `None`.
+    /// Replaces the part in `slot` by the lighter `option`. The part is ballast if the lowest mode is the only
+    /// objective that gets worse, and if the reason is that a joint inboard became softer. Then the finding is
+    /// returned, with the mass of the lighter design \[kg\]. Otherwise `None`.
     fn without_weight(&self, level: usize, slot: usize, option: u32) -> Option<(f64, Ballast)> {
         let relieved = self.relieved(slot, option)?;
         let mut options = self.options.clone();

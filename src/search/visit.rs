@@ -14,8 +14,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Number of tasks to aim for: enough to give all threads equal work and to report progress.
 const TASKS: u128 = 512;
-/// Smallest number of tasks if each task gets a whole batch of rows. A smaller space is divided into smaller tasks
-/// than a batch, because idle threads cost more than incomplete batches.
+/// A task has at least a whole batch of rows, unless this would give fewer than this number of tasks. In a small space
+/// tasks are smaller than a batch, because idle threads cost more than incomplete batches.
 const LEAST_TASKS: u128 = 64;
 /// Largest number of rows in a batch. All rows of a batch are evaluated together, so that each chunk of the row level
 /// is read from memory once for the batch.
@@ -23,7 +23,7 @@ const BATCH: usize = 16;
 /// Largest number of designs in a batch.
 const BATCH_DESIGNS: usize = 1 << 18;
 
-/// Largest number of designs of a task: some seconds of work. This is what is lost when a task is interrupted.
+/// Largest number of designs of a task, which take some seconds. This work is lost if the task is interrupted.
 const TASK_DESIGNS: u128 = 1 << 24;
 
 /// A visit to all designs of a tree. Other threads can read its progress and stop it.

@@ -1,7 +1,7 @@
 //! The room that links leave for the gears and motors of the joints to which they attach.
 //!
 //! The link of a joint is the first tube between it and the next joint outboard. If there are only rigid offsets, the
-//! joint has no link here, and the limits that refer to a link are not checked at it.
+//! joint has no link in this sense, and the limits that refer to a link are not checked at this joint.
 
 use super::design_space::{SpaceJoint, SpacePiece};
 use crate::arm::section::Section;

@@ -46,8 +46,9 @@ pub fn why_infeasible(
     format!("{head}\n  {}", reasons.join("\n  "))
 }
 
-/// The reasons for a space that the exact search does not cover because of `unknown`: joints without a sufficient
-/// drive. Which limits stand in the way is not searched for.
+/// The reasons why no design is feasible, in words, for a space that the exact search does not cover because of
+/// `unknown`. They are the joints at which no drive meets the demand. The limits that exclude all designs are not
+/// searched for.
 fn obstacles_alone(without_limits: &DesignSpace, catalogs: &Catalogs, unknown: &str) -> Vec<String> {
     let mut reasons = joint_obstacles(without_limits, catalogs);
     reasons.push(format!(

@@ -133,7 +133,8 @@ pub(crate) fn first_fit_at(problem: &ArmProblem, outboard: &[u32], piece: usize)
 /// Starting from `sections`, one link at a time is given each of its sections.
 ///
 /// # Errors
-/// If there are no such sections: the demand for which the nearest drive has the largest margin.
+/// If there are no such sections: of all demands on this joint that were tried, the one that a drive comes nearest to
+/// meeting.
 fn easier_sections(
     problem: &ArmProblem,
     sections: &[u32],
@@ -203,7 +204,8 @@ fn no_legal_drive(table: &DriveTable, demand: &JointDemand) -> String {
     }
 }
 
-/// The shortfall of the nearest drive in words, followed by the ratings that other parts lack.
+/// In words, what the drive that comes nearest to meeting the demand lacks, followed by the ratings that other parts
+/// lack.
 fn in_words(table: &DriveTable, shortfall: &Shortfall) -> String {
     format!("{shortfall}{}", missing_words(table))
 }

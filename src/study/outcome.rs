@@ -58,9 +58,9 @@ pub struct OfMaterial {
     pub ties_listed: bool,
 }
 
-/// Runs an exhaustive search: evaluates every design of the study. `watch` runs on another thread to show progress.
-/// Its arguments are the number of designs, a function that returns how many are done, and a flag; it must return
-/// when the flag is set.
+/// Runs an exhaustive search: evaluates every design of the study. `watch` runs on another thread to show progress. Its
+/// arguments are the number of designs, a function that returns how many of them were visited, and a flag. `watch` must
+/// return when the flag is set.
 pub fn run_study(
     study: &Study,
     catalogs: &Catalogs,
@@ -188,8 +188,9 @@ pub(super) struct Searched {
 }
 
 impl Searched {
-    /// Takes the front of all designs, then, if that one is whole, finds those of the materials and the designs near the
-    /// front.
+    /// Starts from the result `whole` of the search for the front of all designs. If this front is whole, the fronts of
+    /// the materials and the designs near the front are searched too. `of_material` searches the front of the material
+    /// with a given index.
     pub(super) fn new(
         search: &Exact,
         space: &DesignSpace,
@@ -278,9 +279,9 @@ fn status(found: &ExactOutcome) -> Status {
     }
 }
 
-/// Runs an exact search: finds the fronts of a space without evaluating every design, and the near designs if they
-/// are asked for. It ends as `extent` says, or when `stop` is set. `watch` runs on another thread to show progress;
-/// it gets a function that returns what is known so far and a flag, and must return when the flag is set.
+/// Runs an exact search: finds the fronts of a space without evaluating every design, and the near designs if they are
+/// asked for. It ends as `extent` says, or when `stop` is set. `watch` runs on another thread to show progress; its
+/// arguments are a function that returns what is known so far, and a flag. `watch` must return when the flag is set.
 pub fn run_exact(
     study: &Study,
     catalogs: &Catalogs,
@@ -322,7 +323,7 @@ fn searched_by(
     judged_exactly(&searched, study, catalogs, near)
 }
 
-/// Judges what was found by the full model, in an excerpt of the study's space.
+/// Evaluates all designs that the searches found. This is done with the full model, in an excerpt of the study's space.
 pub(super) fn judged_exactly(
     searched: &Searched,
     study: &Study,

@@ -104,8 +104,8 @@ impl PickPoses {
         [(Objective::Deflection, 1e3, &self.worst.deflection), (Objective::Mode, 1.0, &self.worst.mode)]
     }
 
-    /// The worst poses, of the two for deflection and for mode, in which the objective is worse than in the judged
-    /// cases by more than [`WORSE`].
+    /// Those of the two worst poses (for deflection and for lowest mode) in which the objective is worse than in the
+    /// judged cases by more than [`WORSE`].
     fn worse(&self) -> impl Iterator<Item = (Objective, f64, &WorstPose)> {
         self.both().into_iter().filter(|(_, _, pose)| pose.worse() > WORSE)
     }

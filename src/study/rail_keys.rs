@@ -159,5 +159,5 @@ const RANGE_MM: Key = optional(
     "Smallest and largest travel of the joint.",
 );
 
-/// Keys of parts of the catalogs, which a prismatic joint has none of.
+/// Keys that name catalog parts of a drive. A prismatic joint must not have them.
 pub(super) const OF_CATALOG_DRIVE: [&str; 2] = ["gear", "motor"];

@@ -155,7 +155,8 @@ pub(crate) fn sizing_rows(
     Ok(rows)
 }
 
-/// Mass of a bearing that is a part of its own \[kg\].
+/// Mass of the output bearing of the joint `piece` \[kg\] if the study states the bearing as a separate part; otherwise
+/// 0.
 fn bearing_kg(problem: &ArmProblem, piece: usize) -> f64 {
     match &problem.space().pieces[piece] {
         SpacePiece::Joint(joint) => joint.bearing.stated().map_or(0.0, |bearing| bearing.mass_kg),
