@@ -15,8 +15,8 @@ pub(crate) struct EightArms {
     /// Bit mask, one bit per arm: the arms that have met every limit checked so far.
     pub held: u8,
     /// If no arm is left in `held`: how many of the drives that the search chooses inboard of the row level had been
-    /// added when the last arm failed. Rows with the same arm outboard that begin with the same drives fail too, so the
-    /// sweep skips them.
+    /// added when the last arm failed. A row with the same arm outboard and the same drives up to this number fails
+    /// too, so the sweep skips it.
     pub failed_with: usize,
     /// Mass of each arm, summed over the slots added so far \[kg\].
     pub mass_kg: Eight,

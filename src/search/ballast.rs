@@ -1,8 +1,8 @@
 //! Ballast: parts that a design has only for their weight.
 //!
-//! The torsion curve of a gear becomes steeper with torque. Weight outboard loads the gear past a break point of its
-//! curve. Its tangent stiffness then rises, and the lowest mode with it. A design can be on a front for that reason
-//! alone.
+//! A gear becomes stiffer with torque: K1, K2 and K3 grow along its torsion curve. Weight outboard may load the gear
+//! past a break point of this curve. Its tangent stiffness then rises, and the lowest mode with it. A design can be on
+//! a front for that reason alone.
 //!
 //! A part is reported as ballast if a lighter part that is at least as stiff in every way exists for its place, and
 //! if the design with this lighter part weighs less and deflects no more. Only its lowest mode is lower, because a

@@ -49,7 +49,7 @@ struct BearingCase {
 
 /// Load on a bearing while one joint accelerates and the other joints are at rest.
 struct Ramp {
-    /// Number of the accelerating joint in the list of all movers.
+    /// Number of the accelerating joint in the list of all movers (the driven joints, tip first).
     mover: usize,
     /// Acceleration of everything outboard of the accelerating joint: the twist of this joint (a kinematic vector)
     /// times its angular acceleration. `None` if the joint is outboard of the row, since then the load is known from

@@ -111,8 +111,8 @@ pub(crate) fn blocks(problem: &impl FinishRows) -> (u128, u128) {
     (product(outer), u128::from(row) * product(inner))
 }
 
-/// Number of options at each level, in three groups: the levels outboard of the row level, the row level itself, and
-/// the levels inboard of it.
+/// Number of options at each level, in three parts: the levels outboard of the row level, the row level itself, and the
+/// levels inboard of it.
 struct Levels<'p> {
     outer: &'p [u32],
     row: u32,
@@ -138,7 +138,7 @@ struct Walker<'v, 'p, P: FinishRows, K> {
     keeper: K,
     /// The partial arms outboard of the last row: the empty arm, the arm with one level, with two levels, and so on.
     begun: Vec<P::Partial>,
-    /// The options with which these arms were built, tip first.
+    /// The options with which the arms in `begun` were built, tip first.
     options: Vec<u32>,
     /// Rows that wait to be evaluated together.
     batch: Vec<DesignRow<P::Partial>>,
@@ -206,8 +206,8 @@ impl<'v, 'p, P: FinishRows, K: Keep> Walker<'v, 'p, P, K> {
         row >= rows.end
     }
 
-    /// Builds the arm outboard of the rows of the block with the number `arm`. `outer` are the numbers of options of
-    /// the levels outboard of the row level.
+    /// Builds the arm with the number `arm` among all arms outboard of the row level. `outer` are the numbers of
+    /// options of the levels outboard of the row level.
     ///
     /// # Errors
     /// The level at which the arm breaks a limit, whatever the options of the later levels are.

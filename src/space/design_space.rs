@@ -142,7 +142,7 @@ pub struct DesignSpace {
     pub constraints: Constraints,
     /// Effects: physics beyond the nominal model. Effects that describe a test are left out of every calculation.
     pub effects: Vec<Effect>,
-    /// Springs that balance every design. Their ends refer to elements by the numbers of `pieces`.
+    /// Springs that balance every design. The ends of a spring refer to elements by their indices in `pieces`.
     pub springs: Vec<Spring>,
 }
 
@@ -169,7 +169,7 @@ pub struct Case {
 pub enum SpacePiece {
     /// A joint that turns.
     Joint(SpaceJoint),
-    /// A prismatic joint. Its numbers are given by the study.
+    /// A prismatic joint. The study gives its guide and masses; its drive is given or sized.
     Prismatic(SpacePrismatic),
     /// A given link, or a rigid offset.
     Link(Link),
@@ -227,7 +227,7 @@ pub struct SpaceJoint {
     pub axis: Unit<Vector3<f64>>,
     /// Where the output bearing of the joint comes from: it is stated, or it comes with the chosen gear.
     pub bearing: BearingSource,
-    /// Where the masses beyond gear, motor and bearing come from.
+    /// Where the masses of further parts at the joint come from, such as housing, brake, encoders and cables.
     pub extras: ExtrasSource,
     /// Rigid bodies at the joint, in addition to drive, bearing and extras.
     pub bodies: JointBodies,

@@ -364,7 +364,7 @@ impl DesignSpace {
         })
     }
 
-    /// The springs of the frame at the root of a link.
+    /// The springs of the frame to which the root of a link is attached; none if no effect makes this frame compliant.
     fn root_springs(&self, link: &Link) -> impl Iterator<Item = Layer<'_>> + use<'_> {
         let springs = self.link_piece(link).root_frame.springs().into_iter();
         springs.map(|(axis, c)| Layer::Tilt(Tilt::linear(About::Fixed(axis), c)))

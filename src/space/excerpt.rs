@@ -184,7 +184,7 @@ impl ArmProblem<'_> {
             .collect()
     }
 
-    /// The excerpt of each level, tip first; `None` for a level that was not reduced.
+    /// For each level, tip first, which options of its whole list were kept; `None` for a level that was not reduced.
     fn excerpts(&self) -> impl Iterator<Item = Option<&Excerpt>> {
         self.level_slots().iter().map(|&slot| match &self.space().pieces[self.piece_of_slot(slot)] {
             SpacePiece::Choice(choice) => choice.excerpt.as_ref(),

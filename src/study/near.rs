@@ -196,7 +196,7 @@ impl NearFront {
         out
     }
 
-    /// Number of groups of near designs with equal objectives. Groups of a single design do not count.
+    /// Number of sets of near designs with equal objectives. Sets of a single design do not count.
     fn tied_groups(&self) -> usize {
         let Some(column) = self.table.column("tie_group") else { return 0 };
         let groups: Vec<&str> = self.table.rows.iter().map(|r| r[column].as_str()).collect();

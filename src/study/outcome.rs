@@ -176,7 +176,8 @@ pub struct Extent {
     /// The gap at which the search may end: for every design of the study, some listed design is worse by at most
     /// this fraction in each objective. 0 asks for the whole front.
     pub gap: f64,
-    /// Extent of the near designs that are asked for; `None` if none are.
+    /// How near the near designs may be that are asked for, and how many of them are listed; `None` if none are asked
+    /// for.
     pub near: Option<Slack>,
 }
 
@@ -223,8 +224,8 @@ impl Searched {
         fronts.flat_map(|of| of.front.iter().map(|c| c.number)).chain(near).collect()
     }
 
-    /// Evaluates the designs that were found with the full model: all those of the fronts, and at most `most` near
-    /// designs. `problem` is an excerpt of the space, so the numbers of the designs are converted to it.
+    /// Evaluates, with the full model, the designs that the searches found: all those of the fronts, and at most `most`
+    /// near designs. `problem` is an excerpt of the space, so the numbers of the designs are converted to it.
     fn judged(&self, problem: &ArmProblem, most: Option<usize>) -> (StudyOutcome, Option<NearDesigns>) {
         let here = |candidate: &Candidate| {
             let options = problem.options_of_whole(candidate.number)?;
@@ -323,7 +324,7 @@ fn searched_by(
     judged_exactly(&searched, study, catalogs, near)
 }
 
-/// Evaluates all designs that the searches found. This is done with the full model, in an excerpt of the study's space.
+/// Evaluates, with the full model and in an excerpt of the study's space, all designs that the searches found.
 pub(super) fn judged_exactly(
     searched: &Searched,
     study: &Study,

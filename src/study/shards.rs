@@ -67,7 +67,7 @@ fn candidate(cells: &[&str]) -> Option<Candidate> {
     Some(Candidate { number: number.parse().ok()?, objectives })
 }
 
-/// Name of the front of all designs; that of a material is its number.
+/// Name of the front of all designs. The name of a material's front is the index of the material.
 const ALL: &str = "all";
 
 /// What a shard of an exact search found, front by front, as CSV. The columns are those of [`candidates_csv`] and the
