@@ -1,7 +1,7 @@
 //! The inner loop of the sweep: it evaluates eight designs of a row at once.
 //!
 //! The slots from the row level to the base are added to eight arms at a time, one design in each lane of a vector
-//! register. Then follow [the lowest modes](super::row_modes). A design that breaks a limit, or that is surely
+//! register. Then the [lowest modes](super::row_modes) are computed. A design that breaks a limit, or that is surely
 //! dominated, is only counted.
 //!
 //! The functions are `#[inline(always)]` because this code is compiled once for each set of vector instructions. A

@@ -457,7 +457,7 @@ pub(crate) struct SpaceLinkage {
     /// Number of the piece that is the driven joint.
     pub driver: usize,
     /// Number of the piece that is the other joint. It is passive, or it is a driven joint whose motor sits inboard of
-    /// the first one.
+    /// the joint `driver`.
     pub passive: usize,
     /// Rotation of the other joint per rotation of the driven joint.
     pub factor: f64,

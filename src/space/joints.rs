@@ -34,8 +34,8 @@ impl<'c> TabulatedJoints<'c> {
         self.0.get(piece)?.as_ref()
     }
 
-    /// A new slot for the joint that is piece number `piece`. It shares the table of drives with the slot of
-    /// [`get`](Self::get).
+    /// A new slot for the joint that is piece number `piece`. It shares the table of drives with the slot that
+    /// [`get`](Self::get) returns.
     pub(crate) fn slot(&self, piece: usize) -> Option<Slot<'c>> {
         match self.get(piece)? {
             Slot::Given { law, mass_kg } => Some(Slot::Given { law: *law, mass_kg: *mass_kg }),

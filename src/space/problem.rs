@@ -580,7 +580,8 @@ impl OutwardIn for ArmProblem<'_> {
     }
 
     fn objectives(&self, complete: &Partial) -> Option<Objectives> {
-        // the passes for the lowest mode do not know linkages, nor masses that depend on a drive elsewhere
+        // the fast computation of the lowest mode covers neither linkages nor masses that depend on the drive of
+        // another joint
         if self.space.has_linkages() || self.space.has_motors_elsewhere() {
             return Some(full_objectives(&self.arm_of(complete)?, &self.load_cases()));
         }

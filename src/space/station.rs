@@ -61,7 +61,7 @@ pub(crate) struct OnTube {
 
 /// A load on a tube, at a point of its axis.
 pub(crate) struct OnAxis {
-    /// The point, from 0 (root) to 1 (end).
+    /// Place of the load on the tube's axis, from 0 (root) to 1 (end).
     pub xi: f64,
     /// Force and moment of the load, about the world's origin.
     pub wrench: Wrench,

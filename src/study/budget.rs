@@ -32,7 +32,8 @@ use crate::space::problem::ArmProblem;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-/// Relative change of mass and stiffness for the derivative *in place*, to either side.
+/// Fraction by which mass and stiffness of a piece are raised and lowered to find the effect of one more kilogram *in
+/// place*.
 const STEP: f64 = 1e-3;
 /// Largest mass that a *next part* may add, as a fraction of the arm's mass.
 const MOST_OF_ARM: f64 = 0.25;

@@ -84,7 +84,7 @@ pub fn check_front(
     deadline: Option<Instant>,
 ) -> FrontCheck {
     let until = (stop, deadline);
-    // without a state there is none that cannot be read
+    // the only error is a state of another search, and no state is given here
     resume_check(study, catalogs, claim, until, None).unwrap_or_else(|why| FrontCheck {
         faults: Vec::new(),
         rows: 0,

@@ -17,7 +17,8 @@ const MOST_SECTIONS: u32 = 64;
 
 /// Messages for every joint at which no drive meets the demand, from the tip inward. Each joint is examined with the
 /// lightest links. Then links are given other sections one at a time, to find those with which the demand on the joint
-/// is least. When the joints inboard of it are examined, a joint without a drive is taken as rigid and without mass.
+/// is least. A joint without a drive is then taken as rigid and without mass, while the joints inboard of it are
+/// examined.
 pub(super) fn joint_obstacles(space: &DesignSpace, catalogs: &Catalogs) -> Vec<String> {
     let mut space = few_sections(space);
     let mut found = Vec::new();

@@ -140,7 +140,7 @@ fn read_study_name(node: &Node) -> Option<String> {
     }
 }
 
-/// Remarks for the reader of the result that follow from the whole design space.
+/// Remarks that follow from the whole design space, for the reader of the result.
 fn remarks_on(space: &DesignSpace, harness_kg_per_m: f64, catalogs: &Catalogs) -> Vec<String> {
     let mut out = Vec::new();
     out.extend(connections_remark(space));
