@@ -86,7 +86,7 @@ impl RowScratch {
 }
 
 impl Begun {
-    /// Allocates the numbers of one row of a problem.
+    /// Allocates memory for the numbers of one row of a problem.
     fn new(problem: &ArmProblem) -> Self {
         let inner = &problem.slots()[problem.row_slot().unwrap_or(0)..];
         let numbers = hinge_numbers(inner);
