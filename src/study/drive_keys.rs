@@ -1,4 +1,4 @@
-//! The keys of `drives`: among which parts drives are sized.
+//! The keys of `drives`, which select the parts from which drives are sized.
 
 use super::motor_kinds::MOTOR_WORDS;
 use crate::arm::keys::GEAR_MASS;
@@ -7,7 +7,7 @@ use crate::input::key::{Kind, Shape, optional, words_of};
 
 const TEXTS: Kind = Kind::List(&Kind::Text);
 
-/// Which parts may be chosen.
+/// The keys that select the gears, actuators and motors from which drives are sized.
 pub(super) static DRIVES: Shape = Shape::new(
     "drives",
     "Which catalog parts may be chosen; a part must pass every filter given.",

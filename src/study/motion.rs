@@ -7,7 +7,7 @@ use crate::sizing::duty::{DutyCycle, Phase, PhaseKind};
 use crate::sizing::requirement::MotionRequirement;
 use crate::sizing::stated::{StatedDuty, StatedPhase};
 
-/// Relative difference up to which the two ramp times count as equal.
+/// Relative difference up to which the times of speeding up and of slowing down in a duty cycle count as equal.
 const SAME_TIME: f64 = 1e-9;
 
 /// Reads the motion of the tip. Keys that are missing have the paper's values.
