@@ -290,8 +290,9 @@ mod tests {
     use serde_json::json;
     use std::collections::BTreeSet;
 
-    /// A study of an arm with three joints whose drives are sized, in two poses. The upper arm, between the second and
-    /// the third joint, has an offset to the side.
+    /// A study of an arm with three joints whose drives are sized, in the pose `pose_deg` and in the stretched pose.
+    /// The upper arm, between the second and the third joint, has an offset of `side_m` to the side. `tip_n` is the
+    /// force at the tip along y.
     fn study(pose_deg: [f64; 3], side_m: f64, tip_n: f64, catalogs: &Catalogs) -> Study {
         let drives =
             json!({"gear_series": ["CSG"], "ratios": [100], "motor_models": ["ILM70x18", "ILM85x26"]});

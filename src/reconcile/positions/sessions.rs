@@ -181,7 +181,8 @@ impl Positions {
 /// Sums over the rows before some row. They give the gain if these rows had an offset (a placement) of their own.
 struct Earlier<'a> {
     factor: &'a Factor,
-    /// The model's gradient, multiplied by the whitening factor `W`.
+    /// Derivatives of the logarithm of the likelihood of all rows with respect to the model's numbers, multiplied by
+    /// the whitening factor `W`.
     gradient: DVector<f64>,
     /// Derivatives of a row's position with respect to the model's numbers, multiplied by `W`. The next field,
     /// `offset`, has the derivatives with respect to the offset.

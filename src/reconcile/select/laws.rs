@@ -281,8 +281,9 @@ impl Builder<'_> {
         self.read(&truth)
     }
 
-    /// Writes into `truth` the change of the frequencies by a change `dC` of the matrix of compliances \[Hz\].
-    /// `energy` receives the index of a datum and the inertia forces `y` of its mode, and gives `yᵀ dC y`.
+    /// Sets the entries of `truth` that belong to frequencies: the first-order change of each frequency \[Hz\] when
+    /// the compliance matrix changes by `dC`. `energy` receives the index of a datum and the inertia forces `y` of its
+    /// mode, and returns `yᵀ dC y`.
     fn add_modal(&self, truth: &mut [f64], energy: impl Fn(usize, &DVector<f64>) -> f64) {
         for (test, solved) in self.forward.modal.iter().zip(&self.fit.point.solved) {
             for &(datum, mode) in &test.modes {
